@@ -2,11 +2,12 @@
 
     python benches/accuracy.py [--points 1e7] [--whole]
 
-Prints the maximum and the 99th percentile of error/(1 + kappa_c) in units of 2^-53, and how many points
-were on the wrong side: a number where there is no steady state, or the code "forbidden" where there is one. --whole draws ell log-uniformly from 1e-8 to 1e8 and theta log-uniformly
-from 5e-324 to pi/2 half of the time, next to theta0 or thetaInf a quarter; otherwise both uniformly
-on the map that is drawn, and a bore. The reference shares no formula with the library: it is Eq. 15 of
-the paper with tangents, in MPFR.
+Prints the maximum and the 99th percentile of error/(1 + kappa_c) in units of 2^-53, and the number of points
+on the wrong side: a rate where there is no steady state, or the region "forbidden" where there is one. Points
+are uniform on the map that is drawn. With --whole ell is log-uniform from 1e-8 to 1e8, a fifth of it next to
+the critical aspect ratio; theta is next to theta0 or thetaInf for a quarter of the points, log-uniform from
+5e-324 to 1 for a third, and else uniform. Half of the bodies have a bore. The reference shares no formula
+with the library: it is Eq. 15 of the paper with tangents, in MPFR.
 """
 
 import argparse
@@ -63,7 +64,8 @@ def exact(theta, ell, bore):
 
 
 def errors(theta, ell, bore, rate, region):
-    """error/(1 + kappa_c) in ulp of every steady state, and how often the two disagree on there being one."""
+    """error/(1 + kappa_c) in ulp of every steady state, and the number of points at which library and
+    reference disagree whether there is one."""
     gmpy2.set_context(gmpy2.context(precision=260, emin=-(10**6), emax=10**6))
     found, wrong = [], 0
     for t, e, q, r, where in zip(theta, ell, bore, rate.tolist(), region.tolist(), strict=True):

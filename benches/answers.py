@@ -1,4 +1,4 @@
-"""What the library answers, in the same shape as the truth, and how far the two are apart."""
+"""Results of the library in the form of the truth, and their differences from the truth."""
 
 from typing import NamedTuple
 
@@ -12,34 +12,34 @@ KINDS = ("DONE", "FACE", "SIDE", "LIFT_OFF", "SLIP")
 
 
 class Answer(NamedTuple):
-    """One route's answer."""
+    """The result of one route: a way to call the library."""
 
     route: str
-    by: str  # what found it
+    by: str  # its method
     path: truth.Path
-    error: float  # claimed
+    error: float  # the estimate of the library
     pose_error: float
 
 
 class Apart(NamedTuple):
-    """Differences of an answer from the truth, absolute; NaN where there is nothing to compare."""
+    """Absolute differences of a result from the truth; NaN where there is nothing to compare."""
 
     kind: bool  # whether they end differently
     states: float
     time: float  # of the end
-    end: float  # state there
+    end: float  # of the state at the end
     poses: float
 
 
 def wrapped(turns, rest, angle):
-    """An angle as turns and rest, less the true one."""
+    """The error of an angle that is given as whole turns and a rest."""
     number = type(angle)
     turn = 4 * truth.quarter_turn(number)
     return float(number(float(turns)) * turn + number(float(rest)) - angle)
 
 
 def apart(found, true, poses=None):
-    """`found` and `true` are paths, `poses` the library's turns and contact points at its rows."""
+    """The differences of two paths; `poses` has the turns and contact points of the rows of `found`."""
     number = type(true.end[0])
     off = lambda a, b: max(abs(float(number(float(x)) - y)) for x, y in zip(a[:4], b[:4], strict=True))  # noqa: E731
     nan = float("nan")
@@ -63,7 +63,7 @@ def apart(found, true, poses=None):
 
 
 def rolled(start, times, beyond, want=(), **how):
-    """sc.roll's answer and, if wanted, poses; `how`: step= or tol=."""
+    """The result of sc.roll and, if `want` has them, its poses; `how`: step= or tol=."""
     m = sc.roll(
         sc.Body(*start[:3]),
         sc.State(*start[3:7]),
@@ -87,7 +87,7 @@ def rolled(start, times, beyond, want=(), **how):
 
 
 def swept(starts, t, beyond):
-    """sc.sweep.roll's answers of starts that share contact and mu."""
+    """The results of sc.sweep.roll for starts that share contact and mu."""
     columns = np.array([s.numbers for s in starts], dtype=float).T
     d = sc.sweep.roll(
         sc.Body(*columns[:3]),
@@ -109,7 +109,8 @@ def swept(starts, t, beyond):
 
 
 class Noise(NamedTuple):
-    """How far half an ulp (2^-53) of every input moves the truth, summed; and the kinds of ends that it may have."""
+    """Change of the truth by half an ulp (2^-53) of every input, summed over the inputs; and the kinds of
+    ends that occur."""
 
     kinds: frozenset
     states: float
@@ -118,12 +119,12 @@ class Noise(NamedTuple):
     poses: float
 
 
-#: inputs are moved by so much, and the change is scaled down: still linear, and far above the rounding of the truth
+#: relative change of an input; its effect is still linear, and far above the rounding of the truth
 MOVED = 2.0**-45
 
 
 def noise(start, times, base, beyond=False, bits=113, moved=MOVED):
-    """`base` is the truth of the start itself, by as many bits."""
+    """The noise of a start; `base` is its own truth, with the same number of bits."""
     number = truth.integrator(start.contact, bits, False, True, False).number
     kinds, sums = {base.kind}, np.zeros(4)
     pose = len(base.end) > 4

@@ -1,7 +1,7 @@
-"""How sweeps behave: Ctrl-C, other threads, forks, kills, memory. Figures of docs/hard-cases.md, C and P.
+"""Behaviour of sweeps: Ctrl-C, other threads, forks, kills, memory. Figures of docs/hard-cases.md, C and P.
 
-python benches/behaviour.py               all but kills
-python benches/behaviour.py --kills 100   so many kills of saves, half of them on two worker processes
+python benches/behaviour.py               everything except kills
+python benches/behaviour.py --kills 100   kills that many saves, half of them on two worker processes
 """
 
 import argparse
@@ -46,7 +46,7 @@ def jobs():
 
 
 def delays(run, rounds=12):
-    """Seconds from Ctrl-C to the exception, at random times."""
+    """Seconds from Ctrl-C to the exception, for interrupts at random times."""
     random, found = np.random.default_rng(1), []
     for _ in range(rounds):
         sent = []
@@ -68,7 +68,8 @@ def delays(run, rounds=12):
 
 
 def ticks(run, seconds=1.0):
-    """How often a thread that sleeps a millisecond wakes up, beside `run` or (None) idle."""
+    """Wake-ups per second of a thread that sleeps for a millisecond at a time, while `run` works or (None)
+    idle."""
     count, done = [0], threading.Event()
 
     def tick():
@@ -105,9 +106,9 @@ def fork_and_spawn():
 
 
 def peak(code, size):
-    """Peak memory of a fresh process that runs `code`, over what it has before; and over the size of the output."""
+    """Peak memory of a fresh process that runs `code`, less that of a process without it, over `size`."""
     head = "import numpy as np, xarray, spincyl as sc\n"
-    # not getrusage: its peak is inherited from the process that forked
+    # getrusage is not used: a child inherits its peak from the process that forked
     tail = "print(next(int(x.split()[1]) * 1024 for x in open('/proc/self/status') if 'VmHWM' in x))\n"
     peaks = [
         int(

@@ -1,10 +1,10 @@
-"""Speeds of two builds of the library beside each other: many motions, single ones, maps and drifts, best of many runs.
+"""Speeds of two builds of the library, best of many runs: many motions, single ones, maps and drifts.
 
     python benches/beside.py OLDER NEWER        ten minutes
 
-OLDER and NEWER are folders in which a build of `spincyl` stands, as `pip install --target OLDER some.whl` makes them. Each is
-asked by turns, in a process of its own and on one thread, so that what else the machine does meets both. Prints the time of
-each, per motion or point, and their ratio.
+OLDER and NEWER are folders with one build of `spincyl` each, as `pip install --target OLDER some.whl` makes
+them. The builds run in turn, each in a process of its own and on one thread, so that other work on the
+machine affects both. Prints the time of each, per motion or point, and their ratio.
 """
 
 import argparse
@@ -16,13 +16,13 @@ import time
 
 import numpy as np
 
-#: How many rounds of both, and the seconds that a case takes at least in each.
+#: Number of rounds of both builds, and least seconds of a case in each round.
 ROUNDS, SECONDS = 5, 0.2
 
 
 def cases():
-    """Name: what is done, and how many motions or points that are."""
-    import spincyl as sc  # the build that this process is for
+    """{name: (job, number of its motions or points)}."""
+    import spincyl as sc  # the build in PYTHONPATH
     from spincyl import loss, sweep
 
     rng = np.random.default_rng(5)
@@ -48,7 +48,7 @@ def cases():
     cylinders = sc.Body.solid(np.linspace(0.5, 3.0, count))
 
     def swings(kick, tol, **how):
-        """A swing of this width, as in docs/benchmarks.md."""
+        """Swings of the width that belongs to a kick, as in docs/benchmarks.md."""
         kicked = cylinders.steady(np.full(count, 1.4)).kicked(kick)
         return lambda: sweep.roll(cylinders, kicked, 20.0, tol=tol, **how), count
 
@@ -95,7 +95,7 @@ def cases():
 
 
 def measured():
-    """Seconds of each case, the best of this process."""
+    """Least seconds of each case in this process, per motion or point."""
     best = {}
     for name, (work, count) in cases().items():
         try:

@@ -2,16 +2,17 @@
 
     python benches/claims.py --count 10000         needs the dependency group `peers`; an hour on one core
 
-Bodies and starts of all kinds: tubes, coins, general moments, bodies that nobody could build (moments 1e-6 to 1e6, ell
-to 1000); at rest, almost at rest, steady, moving, nearly flat; theta beyond pi/2; numbers of one decimal; with and
-without mu; forward and backward; rolling and smooth. Each is asked of `sc.roll` with no wants, of `sc.roll` with both,
-and of `sc.sweep.roll`; some also with `tol=` or `step=`. The truth is Newton's and Euler's equations in Taylor series
-(truth.py) from the exact doubles.
+Bodies and starts of all kinds: tubes, coins, general moments, bodies that could not be built (moments 1e-6 to
+1e6, ell to 1000); at rest, almost at rest, steady, moving, nearly flat; theta beyond pi/2; numbers of one
+decimal; with and without mu; forward and backward; rolling and smooth. Each motion is computed by `sc.roll`
+without `want`, by `sc.roll` with pose and force, and by `sc.sweep.roll`; some also with `tol=` or `step=`.
+The truth is Newton's and Euler's equations in Taylor series (truth.py) from the exact doubles.
 
-A ratio is the true error over the claimed one, `Motion.error`, `Motion.pose_error` or `error` of the sweep, as
-they stand for all times of a motion; of a motion that ends, the time of the event and the state there. One is honest, a
-hundredth is vague. A claim of 0 beside a true error counts as infinite. Another end than the true one is counted apart:
-"unclear" if half an ulp of the inputs makes it the true one.
+A ratio is the true error over the claimed one: `Motion.error`, `Motion.pose_error`, or `error` of the sweep.
+These claims cover all times of a motion and, if it ends, the time of the event and the state there. A ratio
+of one is honest, a hundredth is vague. A claim of 0 beside a true error counts as infinite. A motion with
+another end than the true one is counted separately, as "unclear" if half an ulp of the inputs makes its end
+true.
 """
 
 import argparse
@@ -29,12 +30,12 @@ from judge import Tally
 import spincyl as sc
 
 BLOCK = 25
-#: a truth that needs more Taylor steps than that between two times is too dear
+#: a truth that needs more Taylor steps between two times takes too long, and is left out
 STEPS = 3000
 
 
 def asked(rng, scene, starts):
-    """(index, times, answer or error, poses) of every route."""
+    """(index of the start, times, result or error, poses, options) of every route."""
     t, beyond = scene["t"], scene["beyond"]
     both = [t / 3, t]
     for i, start in enumerate(starts):
@@ -54,7 +55,7 @@ def asked(rng, scene, starts):
 
 
 def enter(tally, start, times, beyond, answer, true, poses, how):
-    """One answer's ratios."""
+    """Adds the ratios of one result to the tally."""
     found = answers.apart(answer.path, true, poses)
     name, (said, is_) = (
         f"{answer.route} by {answer.by}",
@@ -71,7 +72,7 @@ def enter(tally, start, times, beyond, answer, true, poses, how):
         )
         return
     tally.add(f"{name}: states", found.states, answer.error, line)
-    if true.kind != truth.DONE and (true.time != 0 or found.time != 0):  # an end at the start claims nothing
+    if true.kind != truth.DONE and (true.time != 0 or found.time != 0):  # an end at the start has no error
         tally.add(f"{name}: {is_} time", found.time, answer.error, line)
         tally.add(f"{name}: {is_} state", found.end, answer.error, line)
     if poses is not None:

@@ -2,14 +2,15 @@
 
     python benches/cluster.py --docs           every figure of that page, in some minutes; writes its tables
     python benches/cluster.py --seconds 0.3    the same with smaller jobs, to see that it works
-    python benches/cluster.py --motions 1e9    so many motions of each job on the workers, only counted, not written
+    python benches/cluster.py --motions 1e9    so many motions of each job on the workers, only counted
 
-Two jobs. `kicked`: bodies near a steady state, which nutate on. `any start`: shapes, inclinations and angular velocities
-spread evenly, most of which end. Both make their starts from the number of a motion, so that a worker is sent a range.
-Contestants: `sweep.roll(threads=2)` of starts that are there already, dask on two threads, and dask on a LocalCluster of
-two processes of one thread each, the latter two from the numbers and reduced to the number of every kind of end; rounds
-alternate. The efficiency of the workers is against what two threads would need at least: half the time that one needs to
-make the starts, and `sweep.roll(threads=2)`.
+Two jobs. `kicked`: bodies near a steady state, which nutate on. `any start`: shapes, inclinations and angular
+velocities spread evenly, most of which end. Both compute a start from the index of its motion, so that a
+worker receives a range of indices. Contestants: `sweep.roll(threads=2)` with starts that exist already; dask
+on two threads; dask on a LocalCluster of two processes with one thread each. With dask a job begins with the
+indices and returns the number of every kind of end. Rounds alternate. The efficiency of the workers compares
+their time with the least that two threads could need: half the time in which one makes the starts, plus that
+of `sweep.roll(threads=2)`.
 """
 
 import argparse
@@ -28,7 +29,7 @@ import spincyl as sc
 
 
 def sizes(seconds):
-    """Motions a block, by time and by dask's bound on memory."""
+    """Motions per block of each job, as time and dask's bound on memory allow."""
     found = {}
     for name, start in JOBS.items():
         sample = np.linspace(0, 1e6, 20_000 if name == "kicked" else 2_000).round()
@@ -42,7 +43,7 @@ def spent(client):
 
 
 def efficiency(client, blocks, count, rounds):
-    """Two workers beside two threads: CPU microseconds a motion of a worker."""
+    """Two workers beside two threads; returns the CPU microseconds per motion of a worker for each job."""
     walls, cpus, each = [], [], {}
     for name, start in JOBS.items():
         size = blocks[name]
@@ -82,7 +83,7 @@ def efficiency(client, blocks, count, rounds):
                 (used["starts"] + used["roll"]) / used["workers"],
             )
         )
-        # of one core, for nothing else of what runs now belongs to the plan
+        # without the scheduler, whose time the plan counts separately
         each[name] = used["workers"] - used["scheduler"]
     told = "starts, one thread", "roll, two threads", "dask, two threads", "dask, two workers"
     head(
@@ -103,7 +104,7 @@ def efficiency(client, blocks, count, rounds):
 
 
 def graph(blocks):
-    """What the scheduler is sent."""
+    """The number and the size of the tasks that the scheduler receives."""
     head(
         "Sent: what a block is described by",
         "job",
@@ -124,7 +125,7 @@ def graph(blocks):
 
 
 def spread(client, blocks, count):
-    """How evenly blocks of one size take their time, by dask's own record of its tasks."""
+    """How much the times of blocks of one size differ, from dask's record of its tasks."""
     from distributed import get_task_stream
 
     head("Time of a block on a worker", "job", "blocks", "s, median", "least", "most")
@@ -137,13 +138,13 @@ def spread(client, blocks, count):
             for x in task["startstops"]
             if x["action"] == "compute" and "columns" in str(task["key"])
         ]
-        # what takes less than a hundredth of the longest only hands on a result
+        # tasks shorter than a hundredth of the longest only pass on a result
         took = [t for t in took if t > max(took) / 100]
         row(name, len(took), statistics.median(took), min(took), max(took))
 
 
 def plan(blocks, each, used, kept):
-    """What 1e9 motions take, from the figures above: computing alone, and what the one scheduler has to do meanwhile."""
+    """The time of 1e9 motions, from the figures above: the computing, and the work of the one scheduler."""
     told = (
         "motions a block",
         "computing, s",
@@ -162,7 +163,7 @@ def plan(blocks, each, used, kept):
 
 
 def many(motions, blocks):
-    """All of a large sweep, counted and not written."""
+    """A large sweep whose motions are counted and not written."""
     head("All of it", "job", "motions", "s", "us a motion", "how they ended")
     for name, start in JOBS.items():
         seconds, ends = wall(counted(lazy(start, motions, blocks[name])).compute)

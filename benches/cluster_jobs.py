@@ -14,7 +14,7 @@ LINES = []
 
 
 def kicked(number):
-    """Solid cylinders tilted at 0.05 out of a steady state at theta = 1.3."""
+    """Solid cylinders with w2 = 0.05 added to a steady state at theta = 1.3."""
     ell = 0.9 + 2.1 * ((number * 0.6180339887498949) % 1)
     s, tangent, a = np.sin(1.3), np.tan(1.3), 0.5 + 2 * ell * ell / 3
     w1 = np.sqrt(2 * (1 - ell * tangent) / ((a - ell * tangent) * s)) * s
@@ -22,7 +22,7 @@ def kicked(number):
 
 
 def any_start(number):
-    """Solid cylinders that start anyhow."""
+    """Solid cylinders with inclinations and angular velocities spread evenly."""
     roots = (0.8566748838545029, 0.733891856627126, 0.6287067210378087, 0.5385972572236101, 0.46140190073893)
     u, v, a, b, c = ((number * root) % 1 for root in roots)
     return sc.Body.solid(0.1 + 2.9 * u), sc.State(0.1 + 1.4 * v, 3 * a - 1.5, 3 * b - 1.5, 3 * c - 1.5)
@@ -40,7 +40,7 @@ def lazy(start, count, size):
 
 
 def counted(found):
-    """How many motions ended in each way: all that goes back from a worker."""
+    """The number of motions for each kind of end, which is all that a worker returns."""
     return da.bincount(found["status"].data, minlength=7)
 
 
@@ -65,7 +65,7 @@ def head(title, *cells):
     say("|" + " --- |" * len(cells))
 
 
-#: What keeps pages that were freed for the next block: dask's workers give them back otherwise.
+#: Settings that keep freed memory for the next block; dask's workers return it to the system by default.
 KEPT = {
     "distributed.nanny.pre-spawn-environ.MALLOC_TRIM_THRESHOLD_": 2**30,
     "distributed.nanny.pre-spawn-environ.MALLOC_MMAP_THRESHOLD_": 2**28,
@@ -74,7 +74,7 @@ KEPT = {
 
 @contextmanager
 def workers():
-    """Two processes of one thread each, and a client, whose process is also the scheduler's."""
+    """Two processes of one thread each, and a client in the process of the scheduler."""
     from distributed import Client, LocalCluster
 
     kw = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": ":0", "silence_logs": 50}

@@ -1,4 +1,5 @@
-"""What a sweep on workers costs its scheduler, what a worker holds, and what is written and done again: for cluster.py."""
+"""For cluster.py: the time of the scheduler, the memory of a worker, and sweeps that are saved, killed and
+resumed."""
 
 import os
 import pathlib
@@ -16,13 +17,14 @@ SIZE_OF = 50  # bytes of a motion's results: six numbers and two codes
 
 
 def peak():
-    """Peak resident memory of this process, and what it holds now, in bytes."""
+    """Peak and present resident memory of this process, in bytes."""
     told = pathlib.Path("/proc/self/status").read_text().splitlines()
     return [int(line.split()[1]) * 1024 for line in told if line.startswith(("VmHWM", "VmRSS"))]
 
 
 def scheduler(folder, count):
-    """Milliseconds of this process, which is client and scheduler, for one block more, and of the clock, by what is done."""
+    """CPU milliseconds of this process, which is client and scheduler, for one more block, and milliseconds
+    by the clock, for blocks that are counted and blocks that are saved."""
     ways = {
         "counted": lambda n: counted(lazy(kicked, 2 * n, 2)).compute(),
         "saved": lambda n: sc.sweep.save(lazy(kicked, 2 * n, 2), pathlib.Path(folder) / f"small{n}.zarr"),
@@ -47,7 +49,7 @@ def scheduler(folder, count):
 
 
 def memory(blocks):
-    """What a worker holds at most, over what it holds idle; the workers are fresh for each job."""
+    """Peak memory of a worker less what it holds idle; each job has new workers."""
     told = "its results, MB", "a worker idle, MB", "its peak over that, MB", "of the results"
     head("Memory of a worker", "job", "motions a block", *told)
     for name, start in JOBS.items():
@@ -77,7 +79,7 @@ def written(store):
 
 
 def saved(cluster, folder, size, count):
-    """A sweep written by two workers: undisturbed, with a worker killed, and gone on with."""
+    """A sweep that two workers write: undisturbed, with a worker killed, and run again when complete."""
     store, start = pathlib.Path(folder) / "sweep.zarr", any_start
     total = size * count
     head("Saved by two workers", "what happens", "s", "bytes a motion", "files a block")

@@ -1,7 +1,7 @@
-"""What it takes to compile: seconds by the clock and of the processor, and the memory of the largest compiler.
+"""Cost of compiling: wall time, CPU time, and the memory of the largest compiler process.
 
-The wheel, and new programs in empty folders that use the crate: each from nothing, dependencies included. Needs cargo, and
-maturin for the wheel; ten minutes in all.
+Compiles the wheel, and new programs in empty folders that use the crate, each from nothing, with its
+dependencies. Needs cargo, and maturin for the wheel; ten minutes in all.
 usage: python benches/compile.py
 """
 
@@ -15,7 +15,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 NO_NOALIAS = "-C llvm-args=-enable-noalias-to-md-conversion=false"
-#: What is asked of cargo: how the crate is added, how the program is built, what its environment is besides.
+#: Options of `cargo add`, options of `cargo build`, and additions to the environment.
 WAYS = {
     "release": ([], ["--release"], {}),
     "release, without noalias": ([], ["--release"], {"RUSTFLAGS": NO_NOALIAS}),
@@ -26,7 +26,7 @@ WAYS = {
 
 
 def clean(**more):
-    """The environment without what would change a build."""
+    """The environment without the variables that would change a build, and with `more`."""
     return {
         k: v
         for k, v in os.environ.items()
@@ -35,7 +35,7 @@ def clean(**more):
 
 
 def told(name, words, **how):
-    """Runs, and prints the seconds, those of the processor, and the GB of the largest process that it waited for."""
+    """Runs a command; prints its wall time, its CPU time, and the memory of the largest process in it."""
     began = time.perf_counter()
     process = subprocess.Popen(words, stdout=subprocess.DEVNULL, **how)
     _, code, used = os.wait4(process.pid, 0)

@@ -7,7 +7,7 @@ import numpy as np
 
 
 class Start(NamedTuple):
-    """What a motion starts from, in exact doubles, or in numbers of more bits."""
+    """Body, state and contact with which a motion starts, in exact doubles or in numbers with more bits."""
 
     ell: float
     i1: float
@@ -24,7 +24,7 @@ class Start(NamedTuple):
         return self[:7]
 
     def line(self, t):
-        """A line of Python that rolls it."""
+        """The Python call that computes the motion to `t`."""
         body = "sc.Body({!r}, {!r}, {!r})".format(*map(float, self[:3]))
         state = "sc.State({!r}, {!r}, {!r}, {!r})".format(*map(float, self[3:7]))
         more = f', contact="{self.contact}"' if self.contact != "rolling" else ""
@@ -41,7 +41,7 @@ def sign(rng):
 
 
 def uniform(rng, low, high, decimal=0.4):
-    """A number, with this chance one of one decimal, as people type them."""
+    """A uniform number, which has one decimal, as people type it, with the probability `decimal`."""
     x = float(rng.uniform(low, high))
     return round(x, 1) if rng.random() < decimal else x
 
@@ -53,7 +53,7 @@ def tube(ell, bore=0.0):
 
 
 def body(rng, extreme=0.0):
-    """ell, I1, I3; with this chance one that nobody could build."""
+    """ell, I1, I3; with the probability `extreme` of a body that could not be built."""
     if rng.random() < extreme:
         ell = 0.0 if rng.random() < 0.1 else log_uniform(rng, 1e-3, 1e3)
         i1 = log_uniform(rng, 1e-6, 1e6)
@@ -83,7 +83,7 @@ def tilt(rng):
 
 
 def inclination(rng, ell, beyond):
-    """An inclination; beyond pi/2 only where that is no end."""
+    """An inclination, beyond pi/2 only where no motion ends there."""
     theta = tilt(rng)
     if (ell == 0 or beyond) and rng.random() < 0.4:
         theta = float(np.pi) - theta if rng.random() < 0.7 else round(float(rng.uniform(1.6, 3.1)), 1)
@@ -102,7 +102,7 @@ def steady(of, theta):
 
 
 def spins(rng, of, theta):
-    """w1, w3: any, none, or those of a steady state with the centre at rest."""
+    """w1, w3: random, zero, small, or those of a steady state with the centre at rest."""
     kind = rng.random()
     if kind < 0.08:
         return 0.0, 0.0
@@ -115,7 +115,7 @@ def spins(rng, of, theta):
     most = float(rng.choice([0.5, 1.5, 4.0]))
     w1, w3 = uniform(rng, -most, most), uniform(rng, -most, most)
     if rng.random() < 0.5 and of[0] < 4:
-        w3 += of[0] * w1  # near those whose centre is at rest
+        w3 += of[0] * w1  # the centre is nearly at rest
     return w1, w3
 
 
@@ -133,7 +133,7 @@ def at_rest(rng, scene):
 
 
 def any_start(rng, scene):
-    """A start of any kind, of bodies that nobody could build among them."""
+    """A start of any kind, also of bodies that could not be built."""
     of = body(rng, extreme=0.25)
     theta = inclination(rng, of[0], scene["beyond"])
     w1, w3 = spins(rng, of, theta)
@@ -151,7 +151,7 @@ def any_start(rng, scene):
 
 
 def friction(rng):
-    """A coefficient of friction: none that ends a motion, one of one's head, or any."""
+    """A coefficient of friction: infinite, a round number, or log-uniform."""
     kind = rng.random()
     if kind < 0.6:
         return math.inf
@@ -159,7 +159,8 @@ def friction(rng):
 
 
 def scene(rng, longest):
-    """What a block of motions shares: contact, friction, whether to go beyond an end, and the last time."""
+    """The options that a block of motions shares, and the last time; `beyond`: motions go on beyond an
+    end."""
     t = log_uniform(rng, 0.1, longest)
     return {
         "contact": "rolling" if rng.random() < 0.6 else "smooth",

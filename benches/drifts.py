@@ -44,7 +44,7 @@ def one(body, k):
 
 
 def at_rest(body, theta, law, coefficient, end):
-    """The time to the end, by 30 digits."""
+    """The time to the end, with 30 digits."""
     with mp.workdps(30):
         bore, ell = mp.mpf(float(body.bore)), mp.mpf(float(body.ell))
         i3 = (1 + bore**2) / 2
@@ -73,7 +73,7 @@ def at_rest(body, theta, law, coefficient, end):
 
 
 def rolling(body, theta, loss, until):
-    """The time to an inclination, by DOP853 on (theta, w1, w3) with the equations typed anew."""
+    """The time to an inclination, by DOP853 on (theta, w1, w3) with equations written independently."""
     y = body.steady(theta)
     d = body.i1 * body.i3 + body.i1 + body.i3 * body.ell**2
 
@@ -146,13 +146,13 @@ def main():
 
 
 def stops_only(d, threads):
-    """Seconds of the compiled part alone, and of processors, which do not know who else works."""
+    """Wall and CPU seconds of the compiled part alone; the CPU time does not depend on other processes."""
     from spincyl import _core
 
     out = {name: np.empty(d.stops_at.size) for name in ("stops_at", "ends_at_theta")}
     out["ended"] = np.empty(d.stops_at.size, np.uint8)
     began, worked = time.perf_counter(), time.process_time()
-    _core.drift_stops(d._columns, ("rest", "rolling").index(d.centre), out, threads)
+    _core.drift_stops(d._columns, d.centre, out, threads)
     return time.perf_counter() - began, time.process_time() - worked
 
 

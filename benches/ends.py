@@ -1,11 +1,12 @@
-"""Motions that end, by the sweep and one by one: kinds and times of ends, who answered, errors true and claimed.
+"""Motions that end, by the sweep and one by one: kinds and times of ends, methods, true and claimed errors.
 
     python benches/ends.py [--count 1000000] [--truth 2000] [--hard 1500] [--set NAME ...]
 
-Random starts as in benches/peers/endings.py, to t = 20, `--count` of them by `sweep.roll` at 1e-10 and by `sc.roll`, and
-`--truth` of them by heyoka in 80-bit arithmetic (0: none); then `--hard` starts of every hard set (0: none) by all three.
-A wrong kind is one that differs from the other's. Errors are the worst of the time of the end and the state there, or of the
-state at t = 20, in natural units; true ones are against heyoka, and `over` counts those above twice the claimed one and 1e-14.
+Random starts as in benches/peers/endings.py, to t = 20: `--count` of them by `sweep.roll` at 1e-10 and by
+`sc.roll`, and `--truth` of them by heyoka in 80-bit arithmetic (0: none). Then `--hard` starts of every hard
+set (0: none) by all three. A wrong kind is a kind of end that differs from that by the other method. Errors
+are those of the time of the end or of the state there, whichever is larger, or of the state at t = 20, in
+natural units; true ones are against heyoka, and `over` counts those above twice the claimed one and 1e-14.
 Microseconds are CPU time of one thread.
 """
 
@@ -42,7 +43,7 @@ HEAD = (
 
 
 def singly(ell, start):
-    """(n, 6): kind, time and last state by `sc.roll`, and the seconds of CPU time it took."""
+    """Kind, time and last state (n, 6) by `sc.roll`, and the CPU seconds that it took."""
     found, began = np.empty((ell.size, 6)), time.process_time()
     for i in range(ell.size):
         motion = sc.roll(sc.Body.solid(ell[i]), sc.State(*start[i]), [0.0, T])
@@ -56,7 +57,7 @@ def singly(ell, start):
 
 
 def one_by_one(ell, start, pieces=64):
-    """The same on all cores."""
+    """As `singly`, on all cores."""
     parts = [x for x in np.array_split(np.arange(ell.size), pieces) if x.size]
     with ProcessPoolExecutor(os.cpu_count(), mp_context=get_context("spawn")) as pool:
         told = list(pool.map(singly, [ell[x] for x in parts], [start[x] for x in parts]))
@@ -64,7 +65,7 @@ def one_by_one(ell, start, pieces=64):
 
 
 def swept(ell, start):
-    """What the sweep tells, and its CPU seconds: the least of three calls, where one is not long enough."""
+    """The result of the sweep, and its CPU seconds: the least of three calls for few motions."""
     body, state, least = sc.Body.solid(ell), sc.State(*start.T), np.inf
     for _ in range(3 if ell.size <= 20_000 else 1):
         began = time.process_time()
@@ -74,18 +75,18 @@ def swept(ell, start):
 
 
 def parts(x):
-    """Median, 99 % and the worst."""
+    """Median, 99th percentile and maximum."""
     return tuple(float(f) for f in (*np.quantile(x, (0.5, 0.99)), x.max())) if x.size else (np.nan,) * 3
 
 
 def shares(codes, names):
-    """How many of each code, in words."""
+    """The share of each code, with its name."""
     count = np.bincount(codes)
     return ", ".join(f"{names(i).name.lower()} {n / codes.size:.4g}" for i, n in enumerate(count) if n)
 
 
 def measured(name, ell, start, truths):
-    """A row."""
+    """Prints the row of one set of starts."""
     found, seconds = swept(ell, start)
     told, claimed = table_of(found), found["error"].to_numpy()
     alone, spent = one_by_one(ell, start)
@@ -99,7 +100,7 @@ def measured(name, ell, start, truths):
     row += [int((~same).sum()), *parts(np.abs(told[ended, 1] - alone[ended, 1]))]
     if truths:
         some = np.linspace(0, ell.size - 1, min(truths, ell.size)).astype(int)
-        # heyoka watches for N = 0, which a body that has lifted at once does not pass
+        # heyoka detects zeros of N, and a body that lifts off at once has none
         some = some[press(ell[some], start[some]) > 0]
         truth = heyoka_alone(ell[some], start[some], 1e-18, wide=True)()
         right = told[some, 0] == truth[:, 0]
@@ -116,7 +117,7 @@ def powers(random, low, high, n):
 
 
 def grazing(n):
-    """Starts scaled so that they touch N = 0, and then by 1 +- 1e-2 ... 1e-10."""
+    """Starts scaled so that N just touches 0, and then by 1 +- 1e-2 ... 1e-10."""
     ell, start = draw(max(40, n), seed=17)
 
     def lifts(scale):
@@ -140,7 +141,7 @@ def grazing(n):
 
 
 def hard(n):
-    """{name: what makes ell and starts}."""
+    """{name: function that returns ell and starts}."""
 
     def changed(change, seed):
         def make():

@@ -1,4 +1,5 @@
-//! Cost of many motions at once: near-steady and wide swings, and RK4 over lanes. Elements are motions (or steps).
+//! Time of many motions at once: near-steady and wide swings, and RK4 over lanes. Elements are motions (or
+//! steps).
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use spincyl::ensemble::{Job, MotionOutput, MotionStarts, roll};
@@ -12,7 +13,7 @@ struct Many {
     state: [Vec<f64>; 4],
 }
 
-/// The same body throughout, given once.
+/// The same with one body, given as columns of one number.
 fn one(kick: f64) -> Many {
     let mut all = Many { body: Default::default(), state: Default::default() };
     let body = Body::solid(1.5).unwrap();

@@ -1,7 +1,8 @@
-"""Whether the standard error of a fitted inertia ratio is that of many repetitions.
+"""Compares the standard error of a fitted inertia ratio with the spread of many repetitions.
 
-Made-up measurements of both branches, with errors of 0.01 rad and 2 % that `compare` knows. Prints, for each
-body, mean and spread of (fitted - true) / error, which should be 0 and 1, and chi2 per degree of freedom, 1.
+Simulated measurements of both branches, with errors of 0.01 rad and 2 % that are given to `compare`. Prints,
+for each body, mean and spread of (fitted - true) / error, which should be 0 and 1, and chi2 per degree of
+freedom, which should be 1.
 
 usage: python benches/fit.py [--repeat 200]
 """

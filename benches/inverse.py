@@ -2,10 +2,11 @@
 
     python benches/inverse.py [--points 1e6] [--exact 1e5]
 
-Random solid cylinders and rates, a third of the exact ones at and within a few last bits of a fold or of rate 1.
-Counts are checked by Sturm's theorem in rational arithmetic on the exact doubles; the residual is
-|rate(theta) - rate| / rate in ulp of 2^-53 over 1 + kappa_c. Where kappa_c exceeds 2^45 no double theta has the
-rate to a digit: there the exact root is checked to lie within 3 ulp of theta, by signs in 260-bit arithmetic.
+Random solid cylinders and rates, a third of the exact ones at and within a few last bits of a fold or of rate
+1. Counts are checked by Sturm's theorem in rational arithmetic on the exact doubles; the residual is
+|rate(theta) - rate| / rate in ulp of 2^-53 over 1 + kappa_c. Where kappa_c exceeds 2^45 no double theta gives
+the rate to one digit: there the exact root is checked to lie within 3 ulp of theta, by signs in 260-bit
+arithmetic.
 """
 
 import argparse

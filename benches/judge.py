@@ -1,8 +1,8 @@
-"""True over claimed errors, by what is claimed: the table of them, and the first of those that break a claim.
+"""A table of true over claimed errors, one row for each claim, and the first motions that break a claim.
 
-`claims.py`, `slip_claims.py`, `losses_claims.py` and `slip_starts.py` fill it. A ratio of one is honest, a hundredth is
-vague; a claim of 0 beside a true error counts as infinite. What is compared "aside" is not what the claim speaks of, and
-breaks none.
+`claims.py`, `slip_claims.py`, `losses_claims.py` and `slip_starts.py` fill it. A ratio of one is honest, a
+hundredth is vague; a claim of 0 beside a true error counts as infinite. Rows with "aside" in their names are
+of numbers that the claim does not cover, and break none.
 """
 
 import collections
@@ -10,12 +10,12 @@ import math
 
 import numpy as np
 
-#: the most that is honest of a claim that estimates
+#: greatest honest ratio: a claim is an estimate, and not a bound
 HONEST = 10.0
 
 
 class Tally:
-    """Ratios by what is claimed, and how often something else happened."""
+    """Ratios by row, and counts of other events."""
 
     def __init__(self, show, honest=HONEST, nothing=0.0):
         self.rows, self.counts = collections.defaultdict(list), collections.Counter()
@@ -23,7 +23,8 @@ class Tally:
         self.honest, self.nothing = honest, nothing
 
     def add(self, name, true, claimed, line):
-        """A true error and the claimed one, of a motion as typed; NaN where nothing is known."""
+        """Adds a true error and the claimed one of the motion with the call `line`; a true error of NaN is
+        left out."""
         if math.isnan(true):
             return
         ratio = 0.0 if true <= self.nothing else true / claimed if claimed > 0 else math.inf
@@ -32,7 +33,7 @@ class Tally:
             self.tell(f"{name} above {self.honest:g}", f"{true:.3g} of {claimed:.3g} claimed: {line}")
 
     def count(self, name, text=None):
-        """Something that happened; with a text it is told, too, the first few times."""
+        """Counts an event, and prints its text the first few times."""
         self.counts[name] += 1
         if text:
             self.tell(name, text)

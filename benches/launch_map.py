@@ -1,9 +1,9 @@
-"""A map of launches: what comes of 200 x 200 flicks of the paper's tube, until they first roll and to t = 200.
+"""Time of a map of launches: 200 x 200 flicks of the paper's tube, until they first roll and to t = 200.
 
     python benches/launch_map.py [--side 200]        a minute
 
-Rates from 0.5 to 6, launch numbers from 1 to 3, mu = 0.3. The time is the least of two, by the clock, on all processors
-and on one thread.
+Rates from 0.5 to 6, launch numbers from 1 to 3, mu = 0.3. Prints wall times, the least of two runs, on all
+processors and on one thread, and the shares of the outcomes.
 """
 
 import argparse

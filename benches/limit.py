@@ -1,4 +1,4 @@
-"""A limit to the processor time of one job of a bench: what hangs is counted, and the next job begins."""
+"""A limit to the CPU time of one job of a bench: a job that hangs is counted, and the next job begins."""
 
 import contextlib
 import signal
@@ -10,7 +10,7 @@ class Late(Exception):
 
 @contextlib.contextmanager
 def limit(seconds):
-    """Raises Late in what runs under it for more than so many seconds of the processor."""
+    """Raises Late if the statements under it take more than this CPU time."""
 
     def late(*_):
         raise Late(f"more than {seconds:g} s")

@@ -1,17 +1,18 @@
-"""Whether the claimed errors of motions with losses hold, and whether energy, work and heat stay together.
+"""Claimed errors of motions with losses, and whether energy, work and heat sum to a constant.
 
     python benches/losses_claims.py --seconds 300       one core; needs gmpy2 and a C compiler
 
 Random bodies (disks, cans, tubes, rounded ones, balls), states (steady, nodding, any), one to three laws of
 1e-5 to 1e-1, contacts "rolling" (also with a coefficient of friction), "smooth" and Coulomb, to t = 1 ..
-60. `sc.roll` is asked with the default and with tol = 1e-8 and 1e-11.
+60. `sc.roll` computes each with the default tolerance and with tol = 1e-8 and 1e-11.
 
-The truth is found by losses_truth.py, which takes nothing from the library. Where it is too dear (a viscous
-law next to the table is stiff) there is only the sum of energy, work and heat.
+The truth is computed by losses_truth.py, which shares nothing with the library. Where it takes too long (a
+viscous law next to the table is stiff), only the sum of energy, work and heat is checked.
 
-True over claimed: states at all times, the time and the state of the end; a ratio of 10 is the most that is
-honest. The work is compared with the same claim, though that does not speak of it. What takes more than 6
-s, raises, ends otherwise than the truth, or claims too little or more than 1e-4 is printed with its call.
+Ratios of true to claimed errors are those of the states at all times and of the time and the state of the
+end; a ratio up to 10 is honest. The error of the work is compared with the same claim, which does not cover
+it. A motion that takes more than 6 s, raises, ends otherwise than the truth, claims too little or claims more
+than 1e-4 is printed with its call.
 """
 
 import argparse
@@ -35,7 +36,7 @@ VAGUE, LONGEST, STEPS = 1e-4, 6, 1500
 
 
 class Case:
-    """A motion that is asked for."""
+    """A random motion."""
 
     def __init__(self, rng):
         self.kind = str(rng.choice(["disk", "disk", "can", "tube", "rounded", "ball"]))
@@ -99,7 +100,7 @@ class Case:
         return f"sc.roll({self.shape!r}, {state}, {times}, {settings}, tol={tol!r})"
 
     def truth(self, until=math.inf):
-        """The rows to the first end or to a time; None if they are too dear."""
+        """The rows to the first end or to a time; None if the truth takes too long."""
         times = self.times if until > self.times[-1] else [*self.times[self.times < until], until]
         how = {"contact": self.contact, "mu": self.mu, "most": STEPS}
         try:
@@ -109,7 +110,7 @@ class Case:
 
 
 def enter(tally, case, tol, truth):
-    """One motion."""
+    """Adds one motion to the tally."""
     name = ("default" if tol is None else f"{tol:g}") + (
         ", ball" if case.kind == "ball" else f", {case.contact}"
     )
@@ -127,7 +128,7 @@ def enter(tally, case, tol, truth):
         start = float(case.shape.energy(case.state, "smooth" if case.contact == "smooth" else "rolling"))
         off = float(np.abs(total - start).max()) / max(1, abs(start))
         tally.add(f"{name}: energy, aside", off, max(m.error, 1e-13), call)
-    # the truth ends at the face, and sees only at the ends of its steps whether the body lifts off
+    # the truth ends at the face, and tests for lift-off only at the ends of its steps
     lands = m.status in (sc.Ending.FACE, sc.Ending.LIFT_OFF)
     if m.event and m.event.time > 0 and (truth is None or lands):
         before = 0.98 * m.event.time
@@ -148,9 +149,9 @@ def enter(tally, case, tol, truth):
     samples = np.array([row for kind, row in truth if kind in ("sample", "end")]).reshape(-1, 13)
     kind, last = truth[-1]
     whole = kind == "end" or kind in ENDS
-    if case.contact == "coulomb" and kind == "slips":  # it slips again; the truth does not go on
+    if case.contact == "coulomb" and kind == "slips":  # the truth ends where the body slips again
         whole = False
-    if case.coefficients[-1] and kind == "stops":  # its series end where psi' passes 0
+    if case.coefficients[-1] and kind == "stops":  # the series of the layer end where psi' = 0
         whole = False
     n = len(samples)
     if m.t.size < n or (whole and (m.t.size != n or m.status.name != ENDS[kind])):

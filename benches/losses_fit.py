@@ -1,11 +1,12 @@
-"""Whether fitted losses and their standard errors are right, and how often a law is known for what it is.
+"""Fitted losses and their standard errors, and how often the true law is identified.
 
-Made-up spin-downs of Euler's disk from 0.3 rad with the centre at rest, 200 inclinations with 1 % noise until a
-twentieth of the time is left (0.03 rad for laws that never stop). `fit_losses` is told no errors and fits all eight
-laws. Prints for each true law, over all its spin-downs: mean and spread of (fitted - true) / error of the coefficient
-and of the stopping time, which should be 0 and 1; the share in which AIC names the true law, and in which it tells
-it apart from all others; beside it the exponent of the log-log line with free stopping time, its spread, the error
-that it claims itself, and how far it is from the true one.
+Simulated spin-downs of Euler's disk from 0.3 rad with the centre at rest, 200 inclinations with 1 % noise
+until a twentieth of the time is left (0.03 rad for laws that never stop). `fit_losses` gets no errors of the
+data and fits all eight laws. Prints for each true law, over all its spin-downs: mean and spread of (fitted -
+true) / error of the coefficient and of the stopping time, which should be 0 and 1; the percentage of
+spin-downs in which AIC selects the true law, and in which it also rules out all others; the least dAIC of the
+others; and the exponent of the log-log line with free stopping time, its spread, its claimed error and its
+difference from the true one.
 
 usage: python benches/losses_fit.py [--count 200] [--centre rest] [--precession] [--law DryContour]
 """
@@ -21,7 +22,7 @@ import spincyl as sc
 
 DISK = sc.Body.from_metres(outer_diameter=0.0751, length=0.0128)  # Euler's disk
 START, END, POINTS, NOISE = 0.3, 0.03, 200, 0.01
-# of theta over the time left, near the end; the precession goes as its power -1/2
+# theta goes as this power of the time left, near the end; the precession goes as theta^(-1/2)
 EXPONENTS = {
     sc.loss.DryContour: 2 / 3,
     sc.loss.ViscousContour: 1 / 2,
@@ -36,7 +37,7 @@ TRUE = 1e-4
 
 
 def spin_downs(law, count, centre, rng):
-    """Times, what was measured at them, and the true stopping time."""
+    """Times, the simulated inclinations and precessions, and the true stopping time."""
     drift = sc.drift(DISK, START, law(TRUE), centre=centre)
     last = 0.95 * drift.stops_at if np.isfinite(drift.stops_at) else float(drift.time(END))
     t = np.linspace(0, last, POINTS)

@@ -1,17 +1,17 @@
 """Every reference motion with losses: errors, claim, time; SciPy's DOP853 beside it.
 
-    python benches/losses_motions.py [name ...]      those whose names begin so; or all
+    python benches/losses_motions.py [name ...]      those whose names begin so; default: all
 
 States, work lost, and the time and the state of the end are compared with 25 digits
-(tests/reference/losses.json), over 1 or the number if that is more. The ratio is the largest true error, of
-states and of the end and not scaled, over the one that is claimed: `Motion.error` speaks of both. The work
-has a column of its own, as the claim does not speak of it.
+(tests/reference/losses.json); errors are divided by the number if it is above 1. The ratio is the largest
+true error of states and of the end, not divided, over `Motion.error`, which covers both. The work has a
+column of its own, since the claim does not cover it.
 
-DOP853 solves the same equations in plain Python (losses_scipy.py) at the same times, and finds the first
-end of a piece: the contact stops, slip ends, drilling is held. Of its tolerances 1e-6 to 2.5e-14 the
-cheapest counts whose error is not above that of the library; where none is as good, the best one, and its
-microseconds carry a star. The last piece of a viscous whirr to the face is left out, as it is stiff for an
-explicit method.
+DOP853 solves the same equations in plain Python (losses_scipy.py) at the same times, and finds the first end
+of a smooth piece: the contact stops, slip ends, drilling is held. The table has the cheapest of its
+tolerances 1e-6 to 2.5e-14 with an error no larger than that of the library; if there is none, it has the most
+accurate one, with a star at the microseconds. The last piece of a viscous whirr to the face is left out, as
+it is stiff for an explicit method.
 """
 
 import pathlib
@@ -36,7 +36,7 @@ HEADS = (
 
 
 def asked(case):
-    """The motion at the samples of the table, and beyond them to its end, as a function without arguments."""
+    """A function that computes the motion at the samples of the table and on to its end."""
     theta, w1, w2, w3, *slip = case.start
     slips = case.contact == "coulomb"
     body, losses = body_of(case), losses_of(case)
@@ -51,12 +51,13 @@ def asked(case):
 
 
 def last(case):
-    """The row of the end that the library names, if it has one."""
+    """The row of the end, if the library reports one."""
     return next((row for row in case.rows if row.kind in ENDINGS), None)
 
 
 def errors(case, m):
-    """Of states, work, time and state of the end, scaled; and the largest the claim speaks of, not scaled."""
+    """Errors of states, work, time and state of the end, scaled; and the largest that the claim covers, not
+    scaled."""
     samples = [row for row in case.rows if row.kind in ON_THE_WAY][: m.t.size]
     plain, scaled = off(np.column_stack([m.theta, m.w]), samples, STATE)
     work = off(m.work_lost[:, None], samples, ["work"])[1].max(initial=0.0)
@@ -73,7 +74,7 @@ def errors(case, m):
 
 
 def beside(case, aim):
-    """DOP853: its error, its microseconds and evaluations, and whether the error reaches the aim."""
+    """Error, microseconds and evaluations of DOP853, and whether its error is at most `aim`."""
     rows, crosses, end = [], 0, None
     for row in case.rows:
         if row.kind in ON_THE_WAY:
@@ -94,7 +95,7 @@ def beside(case, aim):
                 lambda tol=tol: model.solve(case.start, times, tol, None, crosses, until), 1, per=1e6
             )
         except losses_scipy.Dear:
-            continue  # it creeps towards the end of the slip
+            continue  # its steps become too short near the end of the slip
         error = off(found.y.T, rows, names)[1].max(initial=0.0)
         if end is not None and end.kind != "face":
             name, t, y = found.end

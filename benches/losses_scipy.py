@@ -3,14 +3,14 @@
     lost = losses_scipy.Lossy(body, coefficients, contact="rolling", mu=0.0)
     found = lost.solve(start, times, rtol=1e-12)
 
-Not to be run, but read by the benches. The equations are those of rolling, of a smooth table and of Coulomb
+A module that other benches import. The equations are those of rolling, of a smooth table and of Coulomb
 friction for rounded rims, with the couples of all eight laws; `losses` are their coefficients in the order
 of the tables of tests/reference/losses.json. The numbers of a motion are (theta, w1, w2, w3, u_h, u_2, work
-lost). With `compiled` the right-hand side is numba's, where that is installed.
+lost). With `compiled` the right-hand side is compiled by numba, if that is installed.
 
-Dry friction and drilling friction act with the sign that psi' or w_z has at the start of a piece of the
-motion, also beyond the change of this sign, so that the equations are smooth where the integrator steps
-over it to find it.
+Within a piece of the motion dry friction and drilling friction keep the sign that psi' or w_z has at its
+start. They keep it also past the change of sign, so that the equations are smooth while the integrator
+locates it.
 """
 
 import math
@@ -34,7 +34,8 @@ class Dear(ArithmeticError):
 
 
 class Found:
-    """What was found: the numbers at the times, where it ended (None: at the last time), evaluations."""
+    """A solution: the numbers at the times, the end (None: at the last time), and the number of
+    evaluations."""
 
     def __init__(self, times, y, end, evaluations):
         self.times, self.y, self.end, self.evaluations = times, y, end, evaluations
@@ -50,7 +51,7 @@ def force(y, signs, body, losses, contact, mu):
     g, slope = ell * s - (1 - rho) * c, ell * c + (1 - rho) * s
     height, turn = slope + rho, w1 / s
     psi = w3 - c * turn
-    # the couple is `fixed + N per`, with x along (ct, 0, -1) for the laws of the contour
+    # the couple is f + N p; x, the part of the laws of the contour, is along (ct, 0, -1)
     x = viscous * radius * radius * psi + film * (math.pi / 4) * psi / s
     if layer:
         x += layer * math.copysign(abs(psi) ** 1.5, psi)
@@ -150,16 +151,16 @@ class Lossy:
         return self.force(y, signs)[0]
 
     def solve(self, start, times, rtol, atol=None, crosses=0, until=None):
-        """The motion to its first end, which is looked for beyond the last of the times, as far as `until`.
+        """The motion to its first end, which is looked for up to `until`, also beyond the last of the times.
 
-        The first `crosses` times that psi' changes its sign, it goes on with the other.
+        The first `crosses` changes of the sign of psi' do not end the motion.
         """
         y = np.array([*start, *[0.0] * (7 - len(start))])
         t, left, rows, evaluations = 0.0, np.asarray(times, float), [], 0
         self.left, signs = self.most, None
         until = left[-1] if until is None else until
         while True:
-            # after a piece psi' is 0, and goes on with the other sign
+            # a new piece begins with psi' = 0, which then has the other sign
             signs = self.signs(y) if signs is None else (-signs[0], signs[1])
             events = self.events(signs)
             found = solve_ivp(

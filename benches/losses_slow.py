@@ -2,15 +2,15 @@
 
     python benches/losses_slow.py        half a minute
 
-1. The full motion less the drift (b) of rolling without nutation, as the coefficient is halved: the largest
-   difference of theta over the same part of the drift. It falls linearly: the power is 1.
-2. The power of theta in the time left, thin disk, from 0.05 to 0.005 rad: fitted to the full motion
-   together with the time of its end. For linear air, which does not end, the rate of its closed solution,
-   over that. Drilling alone is not there: without slip it only turns the disk until w_z = 0, and then takes
-   nothing.
-3. How a small nutation dies out: its amplitude goes as theta^q, thin disk, from 0.05 to 0.005 rad.
-4. The fastest turn of a thin disk, phi' over the power of the coefficient, from a hundred times the
-   inclination at which the end begins.
+1. The largest difference of theta between the full motion and the drift (b) of rolling without nutation, over
+   the same part of the drift, as the coefficient is halved. It is proportional to the coefficient: power 1.
+2. The exponent of theta as a power of the time left, thin disk, from 0.05 to 0.005 rad: fitted to the full
+   motion together with the time of its end. For linear air, which does not end, the fitted rate over that of
+   the closed solution. Drilling is left out: without slip it only turns the disk until w_z = 0, and then
+   takes no energy.
+3. The decay of a small nutation: its amplitude goes as theta^q, thin disk, from 0.05 to 0.005 rad.
+4. The fastest precession phi' of a thin disk over a power of the coefficient; the motion starts at a hundred
+   times the inclination at which the end begins.
 
 The numbers beside these are those of the theory.
 """

@@ -1,11 +1,12 @@
-"""Motions with losses in Taylor series of long doubles: 16 to 17 digits, and a hundred times as fast as 40.
+"""Motions with losses in Taylor series of long doubles: 16 to 17 digits, a hundred times as fast as with 40
+digits.
 
     rows = losses_truth.exact(body, losses, start, times, contact="rolling", mu=0.0)
 
-Not to be run, but read by the benches. The equations are those of tests/reference/losses_forms.py, the angular
-momentum about the contact (of slip: about the centre), which take nothing from the library; the series are
-found by slip_tape.py. A row is what is there ("sample", "end", "stops", "slips", ...) and the numbers t,
-theta, w1, w2, w3, u_h, u_2, work, heat, phi, psi, x, y. It needs gmpy2 and a C compiler.
+A module that other benches import. The equations are those of tests/reference/losses_forms.py, for the
+angular momentum about the contact (for slip: about the centre), which share nothing with the library;
+slip_tape.py computes the series. A row is its kind ("sample", "end", "stops", "slips", ...) and the numbers
+t, theta, w1, w2, w3, u_h, u_2, work, heat, phi, psi, x, y. It needs gmpy2 and a C compiler.
 """
 
 import pathlib

@@ -1,15 +1,18 @@
-"""Whether many motions at once are what each of them is alone: `sc.sweep.roll` against `sc.roll` on random scenes.
+"""Compares many motions at once, `sc.sweep.roll`, with each of them alone, `sc.roll`, on random scenes.
 
-    python benches/many.py --count 100000       an hour and a half on one core; --seed N --family N draws one family again
-    python benches/many.py --grazing --count 5000 --seed 5       starts that only just meet an end or just miss it
+    python benches/many.py --count 100000                    an hour and a half on one core
+    python benches/many.py --seed N --family N               one family again
+    python benches/many.py --grazing --count 5000 --seed 5   starts that only just meet an end or just miss it
 
-The scenes are those of tests/scenes.py: every contact, law, rim, end and kind of start. Kinds of ends have to be equal, and
-times, states and periods within both claims together. What is not is printed with its call; `make long` runs this with a fresh seed,
-and prints it. Rows are of contacts, and of laws: a motion with three laws counts in three of them.
+The scenes are those of tests/scenes.py: every contact, law, rim, end and kind of start. Kinds of ends must be
+equal, and times, states and periods must agree within the sum of both claims. Motions that violate this are
+printed with their calls. `make long` runs this with a fresh seed, which is printed. Rows are of contacts and
+of laws: a motion with three laws counts in three of them.
 
-Grazing starts lie on both sides of a place between two random starts of one body where the kind of the end changes; it is
-found by halving the way between them. They are 1e-2 to 1e-7 of that way apart from it, but never as near as the sum of both
-claims, within which either end is right. Half the bodies have a theta_end of their own.
+Grazing starts: the straight line between two random starts of one body is halved until a place is found where
+the kind of the end changes. The starts lie on both sides of this place, at 1e-7 to 1e-2 of the length of the
+line, but never as near as the sum of both claims, within which either end is right. Half the bodies have a
+theta_end of their own.
 """
 
 import argparse
@@ -28,7 +31,7 @@ import scenes
 
 import spincyl as sc
 
-LONGEST = 60  # seconds of the processor of a family, after which it counts as hanging
+LONGEST = 60  # CPU seconds after which a family counts as hanging
 FAMILY, GRAZING = 20, 40
 #: for every contact: each law alone, none, and several
 LAWS = ([], *([k] for k in range(8)), [0, 3], [2, 4], [0, 1, 2, 3, 4, 5])
@@ -58,7 +61,8 @@ def told(scene, starts):
 
 
 def grazing(rng, contact, laws, count):
-    """A scene of starts that graze an end, and the names of the ends on both sides; perhaps fewer than `count`."""
+    """A scene of starts that graze an end, the names of the ends on both sides, and the distances from the
+    change; perhaps fewer than `count`."""
     many = 2 * count
     scene = scenes.draw(rng, many, contact, laws)
     ends = np.where(rng.random(many) < 0.5, np.pi / 2, rng.uniform(0.3, 1.5, many))
@@ -100,7 +104,7 @@ def grazing(rng, contact, laws, count):
 
 
 def random(seed, count, contact):
-    """Random scenes, each with its number; nothing is said of their ends."""
+    """Random scenes, each with its number, without the names of their ends."""
     for family in range(count // FAMILY):
         scene = scenes.draw(np.random.default_rng([seed, family]), FAMILY)
         if contact in (None, scene.contact):

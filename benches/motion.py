@@ -1,4 +1,4 @@
-"""The measured figures of the motion rows of docs/hard-cases.md, against tests/reference/motion.csv.
+"""Measures the figures in the rows on motion of docs/hard-cases.md, against tests/reference/motion.csv.
 
 python benches/motion.py        needs mpmath; half a minute
 """

@@ -1,4 +1,4 @@
-//! Cost of motions: a step of RK4 with nothing, with a pose and with contact forces; the exact solution.
+//! Time of motions: a step of RK4 with nothing else, with a pose and with contact forces; the exact solution.
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use spincyl::exact::Swing;
@@ -23,7 +23,7 @@ fn rk4_steps(c: &mut Criterion) {
     });
     let wanted = [("want nothing", false, false), ("want pose", true, false), ("want contact", false, true)];
     for (name, pose, force) in wanted {
-        // every step an output, the most that can be asked
+        // Every step is an output, which costs most.
         let times: Vec<f64> = (0..=STEPS).map(|i| i as f64 * 1e-3).collect();
         let scene = Ask { method: Method::Step(1e-3), pose, force, ..Ask::default() };
         group.bench_function(format!("{name}, every state"), |b| {

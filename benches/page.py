@@ -1,6 +1,7 @@
-"""What pages and photographs cost: sizes, first frames, requests, letters, seconds.
+"""Pages and exposures: their sizes, first frames, requests, letters and seconds.
 
-Prints a table, and takes a picture of a page; needs Chromium.  usage: python benches/page.py [PICTURE.png]
+Prints a table; with an argument, saves a picture of a page. Needs Chromium.
+usage: python benches/page.py [PICTURE.png]
 """
 
 import sys

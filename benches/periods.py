@@ -1,12 +1,13 @@
-"""True over claimed error of periods and of the precession in a period, of sc.swing and sc.sweep.roll, against 113 bits.
+"""True over claimed error of periods and precessions, of sc.swing and sc.sweep.roll, against 113 bits.
 
-    python benches/periods.py --count 10000         needs the dependency group `peers`; half an hour on one core
+    python benches/periods.py --count 10000     needs the dependency group `peers`; half an hour on one core
 
-Bodies of all kinds (tubes, disks, any moments, rounded rims, rims rounded to nearly a ball, balls), rolling and smooth;
-starts that are any, steady, next to steady, next to an unstable steady state, or upright to 1e-8 at either pole. The truth
-is the time between the turning points by Newton's and Euler's equations in Taylor series (heyoka), from the
-exact doubles. A ratio is the true error over the claimed one: `error` of the swing for its period, `error` of the sweep
-for both. Where there is no period (a face lands, an unstable state stays) both have to say so.
+Bodies of all kinds (tubes, disks, any moments, rounded rims, rims rounded to nearly a ball, balls), rolling
+and smooth; starts that are random, steady, next to steady, next to an unstable steady state, or upright to
+1e-8 at either pole. The truth is the time between the turning points by Newton's and Euler's equations in
+Taylor series (heyoka), from the exact doubles. A ratio is the true error over the claimed one: `error` of the
+swing for its period, `error` of the sweep for both. Where there is no period (a face lands, an unstable state
+stays) both must return an infinite one.
 """
 
 import argparse
@@ -36,7 +37,7 @@ def log_uniform(rng, low, high):
 
 @functools.cache
 def integrator(contact):
-    """heyoka's equations with phi, which stop at a turning point, and where the axis is vertical."""
+    """heyoka's equations with phi, which stop at a turning point and where the axis is vertical."""
     theta, w1, w2, w3, phi = hy.make_vars("theta", "w1", "w2", "w3", "phi")
     s, c = hy.sin(theta), hy.cos(theta)
     rates, _ = rates_and_force(contact, [hy.par[i] for i in range(4)], s, c, [w1, w2, w3], hy.expression)
@@ -53,7 +54,8 @@ def integrator(contact):
 
 
 def half(body, start, contact):
-    """Time and precession to the next turning point; infinite and NaN where the axis gets vertical; None if it takes too long."""
+    """Time and precession to the next turning point; infinite and NaN where the axis becomes vertical; None
+    if it takes too long."""
     ta, number = integrator(contact), hy.real128
     ta.reset_cooldowns()
     ta.time = number(0.0)
@@ -74,8 +76,9 @@ def half(body, start, contact):
 
 
 def truth(body, start, contact):
-    """Period and precession of a motion, from the ways to both turning points: where a way lingers at a saddle no other error
-    is in it; infinite and NaN where the axis gets vertical; None if it takes too long."""
+    """Period and precession of a motion, from separate motions to both turning points, so that an error of
+    one that lingers at a saddle does not spoil the other; infinite and NaN where the axis becomes vertical;
+    None if it takes too long."""
     found = [half(body, start, contact)]
     if start[2] != 0.0:
         found.append(half(body, (start[0], *(-x for x in start[1:])), contact))

@@ -1,9 +1,12 @@
-"""What the live page costs, and how it looks: sizes, ms of opening, of a change, of the map, of a picture; and screenshots.
+"""The live page: sizes, ms of opening, of a change, of the map and of a picture; and screenshots.
 
-Opening is told beside that of a page with nothing but one triangle in WebGL, which is the browser's own share; the
-pages take turns, and the least of all openings counts, because whatever else the machine does only adds to it.
-What the page's thread computes until its first picture hangs least of all on that.
-Prints a table; with a folder, writes screenshots of the scenes at three sizes, light and dark. Needs Chromium.
+The opening is compared with that of a page with nothing but one triangle in WebGL, which is the browser's own
+share. The pages are opened in turn, and the least time counts, because other work on the machine can only add
+to it. The time that the page's thread computes until its first picture depends least on other work.
+
+Prints a table; with a folder, writes screenshots of the scenes at three sizes, light and dark. Needs
+Chromium.
+
 usage: python benches/play.py [FOLDER] [--scenes WORD ...]
 """
 
@@ -19,8 +22,8 @@ from sys import path as search
 from playwright.sync_api import sync_playwright
 
 import spincyl as sc
-from spincyl._play import CORES
-from spincyl._scenes import scenes
+from spincyl._pages.play import CORES
+from spincyl._pages.words import scenes
 
 search.append(str(Path(__file__).parents[1] / "tests"))
 import browser
@@ -51,9 +54,9 @@ requestAnimationFrame(() => {
   document.documentElement.dataset.drawn = gl.getError() || performance.now();
 });
 </script>"""
-#: When the browser says that it has shown something.
+#: The browser's record of its first picture, in JavaScript.
 PAINTED = "performance.getEntriesByName('first-contentful-paint')[0]"
-#: When a page begins and when it has drawn, for a trace that knows how long its thread has computed.
+#: Marks the beginning and the first picture of a page in a trace, which records the CPU time of its thread.
 MARKS = """performance.mark("beginning");
 new MutationObserver(() => document.documentElement?.dataset.drawn && performance.mark("first picture"))
   .observe(document, { attributes: true, subtree: true, attributeFilter: ["data-drawn"] });"""
@@ -76,7 +79,8 @@ DRAG = """async () => {
 
 
 def opened(chromium, path):
-    """A page; and in ms when it has drawn its first picture, when the browser shows it, and the computing before it."""
+    """A page, and three times in ms: when it has drawn its first picture, when the browser shows it, and the
+    CPU time before it."""
     page = chromium.new_page(viewport={"width": 1280, "height": 800})
     page.add_init_script(MARKS)
     chromium.start_tracing(page=page, categories=["blink.user_timing"])
@@ -89,7 +93,7 @@ def opened(chromium, path):
 
 
 def openings(chromium, paths, rounds):
-    """For each page the least of all three, and the medians."""
+    """For each page the least values and the medians of the three times of `opened`."""
     found = {name: [] for name in paths}
     for _ in range(rounds):
         for name, path in paths.items():
@@ -101,7 +105,7 @@ def openings(chromium, paths, rounds):
 
 
 def measured(chromium, path):
-    """Medians of what the page says of its own times, in ms."""
+    """Medians of the times that the page itself measures, in ms."""
     page, *_ = opened(chromium, path)
     found = page.evaluate(DRAG)
     page.close()
@@ -109,7 +113,7 @@ def measured(chromium, path):
 
 
 def shots(chromium, page_path, folder, words):
-    """Screenshots of the scenes that are named, or of four of them."""
+    """Saves screenshots of the scenes whose names contain one of the words."""
     chosen = [(name, told) for name, told in scenes() if any(word in name for word in words)]
     for size, (width, height) in SIZES.items():
         for scheme in ("light", "dark"):
@@ -139,7 +143,7 @@ def main():
         paths = {"one triangle": Path(temporary) / "triangle.html"}
         paths["one triangle"].write_text(TRIANGLE)
         for friction, name in enumerate(CORES):
-            core = files("spincyl._view").joinpath(name).read_bytes()
+            core = files("spincyl._pages").joinpath("cores", name).read_bytes()
             path = sc.play(friction=bool(friction)).save(Path(temporary) / f"play{friction}.html")
             paths["whole page" if friction else "lean page"] = path
             print(f"{name:22} {len(gzip.decompress(core))} bytes, gzip {len(core)};", end=" ")

@@ -1,15 +1,15 @@
-"""How often the law of a spin-down that was heard is known for what it is: made-up recordings as a phone makes them.
+"""How often the law of a spin-down is identified from its sound: simulated recordings, as of a phone.
 
-A coin, a disk or a tube, sharp or rounded, comes to rest by one law, its centre at rest or rolling, the start
-being when it is let go. It rings at a few frequencies, louder once a turn. Before and after it there is silence for
-a random time; somebody handles it before he lets it go; the mains hum, and the table is knocked at random times.
-`wobble` hears it, and `fit_losses` fits every law by both centres. Verdicts:
+A coin, a disk or a tube, sharp or rounded, is let go and comes to rest by one law, its centre at rest or
+rolling. It rings at a few frequencies, loudest once a turn. Before and after it there is silence for a random
+time; in some recordings the body is handled before it is let go, the mains hum, and the table is knocked.
+`wobble` finds the turns, and `fit_losses` fits every law with both kinds of centre. Verdicts:
 
-right      the true law and centre are told apart from all others, and the coefficient is within four errors
-undecided  the true law and centre are among those that are not told apart
-wrong      another one is told apart, or the coefficient is not within four errors
-doubted    wrong, but it was warned that no law explains the points
-refused    nothing is heard, or no law fits
+right      only the true law and centre remain, and the coefficient is within four errors
+undecided  the true law and centre remain, and so do others
+wrong      the true law and centre are ruled out, or remain alone with a coefficient beyond four errors
+doubted    wrong, but with the warning that no law explains the points
+refused    no turns are found, or no law fits
 
 usage: python benches/recordings.py [--count 200] [--first 0] [--verbose]
 """
@@ -38,7 +38,8 @@ SURE = 4.0  # errors within which a coefficient is right
 
 
 def spin_down(rng):
-    """A body, its law with a coefficient of which it takes some seconds to stop, and its drift; in seconds."""
+    """A body, a law whose coefficient stops it within some seconds, the centre, the drift, and the length of
+    the recording in seconds."""
     while True:
         wide = rng.uniform(0.02, 0.09)
         tall = wide * rng.uniform(0.04, 0.25)
@@ -51,7 +52,7 @@ def spin_down(rng):
         kind = getattr(sc.loss, str(rng.choice(LAWS)))
         centre = str(rng.choice(["rest", "rolling"]))
         start, lasts = math.radians(rng.uniform(12, 25)), rng.uniform(4.0, 9.0)
-        # the coefficient scales the clock
+        # the time is inversely proportional to the coefficient
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             try:
@@ -97,7 +98,7 @@ def recording(seed):
         for k in range(1, 13):
             sound += loud / k * np.sin(2 * np.pi * k * mains * clock + rng.uniform(0, 2 * np.pi))
     click = np.arange(int(0.05 * HERTZ)) / HERTZ
-    if lead and rng.random() < 0.6:  # by hand: scratches and taps until it is let go
+    if lead and rng.random() < 0.6:  # by hand: scratches and taps until the body is let go
         hand = int(min(lead, rng.uniform(0.2, 1.0) * HERTZ))
         loud = np.abs(np.interp(np.arange(hand), np.linspace(0, hand, 12), rng.standard_normal(12)))
         sound[lead - hand : lead] += loud * rng.standard_normal(hand)
@@ -117,7 +118,8 @@ def _knock(sound, at, loud, click, rng):
 
 
 def verdict(seed, rivals=None):
-    """What is said of a recording, and what is true, in words; `rivals` are the names of other laws to fit."""
+    """The verdict on a recording, and a line with what is true and what was fitted; `rivals` are the names of
+    the other laws to fit, by default all."""
     clock, sound, body, law, centre = recording(seed)
     true = f"{type(law).__name__} {centre} {float(law.coefficient):.4g}"
     with warnings.catch_warnings(record=True) as told:

@@ -1,10 +1,11 @@
-"""What a rounded rim costs beside a sharp one, in one run and on one thread: maps, single motions, ensembles.
+"""Time for a rounded rim beside that for a sharp one, in one run and on one thread: maps, single motions,
+ensembles.
 
     python benches/rims.py [--fillet 0.1] [--motions 100000]
 
-Minima of several runs; the ratio is what to look at. The bodies are solid and have the same half length over the outer
-radius with either rim. The errors beside the times are those that the library claims, the largest of a run; the maps keep
-2 (1 + kappa_c) ulp with either.
+Times are minima of several runs; their ratio is the result. The bodies are solid and have the same half
+length over the outer radius with either rim. The errors are the largest that the library claims in a run; the
+maps have at most 2 (1 + kappa_c) ulp with either rim.
 """
 
 import argparse
@@ -18,7 +19,7 @@ import spincyl as sc
 
 
 def jobs(fillet, motions):
-    """Name, unit, seconds to units, what is timed, and a function that tells the error."""
+    """Name, unit, factor from seconds to this unit, the job, and a function that returns its error."""
     theta, ell = np.linspace(0.01, 1.57, 2000), np.linspace(0.2, 3, 1000)
     maps = {
         want: sc.sweep.portrait(theta, ell, fillet=fillet, want=want, threads=1)

@@ -1,10 +1,11 @@
-"""How far rounded rims are off: steady states and motions against the references of tests/reference, and the inverse.
+"""Errors for rounded rims: steady states and motions against the references of tests/reference, and the
+inverse.
 
     python benches/rounded.py [--bodies 20000]
 
-Each number is the largest of its kind, in units of what is promised: 2 (1 + kappa_c) ulp of a rate, 1e-13 of the larger
-term and 16 ulp times the conditioning of a kappa, 8 (1 + kappa_c) ulp of an inclination's rate; of motions the error,
-over t/20 where that is above 1, and the same over what the motion claims.
+Each number is the largest of its kind over its bound: 2 (1 + kappa_c) ulp of a rate; 1e-13 of the larger term
+and 16 ulp times the conditioning of a kappa; 8 (1 + kappa_c) ulp of the rate of an inclination. For motions
+it is the error, divided by t/20 where that is above 1, and the error over the claimed one.
 """
 
 import argparse
@@ -56,7 +57,7 @@ def steady_states():
 
 
 def motions():
-    """The worst error of states and of poses, and of each over its claim."""
+    """The largest error of states and of poses, and of each over the claimed one."""
     worst = dict.fromkeys(("state", "state over claim", "pose", "pose over claim"), 0.0)
     for kind, _, contact, *words in rows("motion"):
         if kind != "state":
@@ -73,7 +74,8 @@ def motions():
 
 
 def inverse(count):
-    """The worst residual of an inclination, of random bodies and rates; and how many have how many."""
+    """The largest residual of the inclinations of random bodies and rates, and how many bodies have 0, 1, ...
+    of them."""
     rng = np.random.default_rng(1)
     fillet = rng.uniform(0, 1, count)
     half = fillet + rng.uniform(0, 3, count) * rng.choice([1, 0.1], count)
@@ -81,7 +83,7 @@ def inverse(count):
     theta = np.asarray(sc.Body.solid(half, fillet=fillet).inclinations(rate))
     body = sc.Body.solid(half[:, None], fillet=fillet[:, None])
     with np.errstate(invalid="ignore"):
-        # near enough for rates that turn steep within a millionth
+        # h is small enough for rates that become steep within a millionth of theta
         around = [np.log(body.rate(theta * (1 + h))) for h in (1e-9, -1e-9)]
         condition = np.abs(around[0] - around[1]) / 2e-9
         off = np.abs(body.rate(theta) - rate[:, None]) / rate[:, None] / ULP / (1 + condition)

@@ -6,14 +6,15 @@ Rolling. A fifth each of five kinds of start, from tubes, coins, general moments
 (ell = sqrt(3)/2 at theta0, reduced rates around 1.0 and 0.4):
 
     rest       an unstable steady state, the inclination off by 1e-16 to 1e-5
-    kick       the same, and tilting at a rate of that size, either way
+    kick       an unstable steady state, which tilts at a rate of 1e-16 to 1e-5, either way
     mixed      all four numbers off, and the centre not at rest
     exact      a steady state solved to rounding, nothing added
     manifold   far from a steady state, on a motion that comes to it: found backward from there, then rounded
 
-Each is followed for 2.3 of its periods (at most 200 sqrt(R/g)), beyond ends that are not the face, and compared at
-eight times. Noise is the sum over the seven inputs of how far half an ulp (2^-53 relative) moves the truth at that
-time; allowed is max(1e-12, 10 noise). Where noise is above 1e-9 the truth is found with 240 bits. Units: rad, sqrt(g/R).
+Each is followed for 2.3 of its periods (at most 200 sqrt(R/g)), beyond ends that are not the face, and
+compared at eight times. Noise is the sum over the seven inputs of the change of the truth at that time by
+half an ulp (2^-53 relative); allowed is max(1e-12, 10 noise). Where noise is above 1e-9 the truth is computed
+with 240 bits. Units: rad, sqrt(g/R).
 """
 
 import argparse
@@ -44,7 +45,8 @@ def tilting(of, theta, w1, w3):
 
 
 def growth(of, theta, w1, w3):
-    """Growth rate of a departure from a steady state, NaN where it is stable: theta'' = -w2' at w1, w3 that follow."""
+    """Growth rate of a departure from a steady state, NaN where it is stable: theta'' = -w2', where w1 and w3
+    follow the inclination."""
     h = 1e-6
     _, d1, d3 = tilting(of, theta, w1, w3)
 
@@ -88,7 +90,7 @@ def steady(rng, kind):
 
 
 def solved(of, theta, w1, w3):
-    """The double w3 with which w2' is least."""
+    """The double w3 with which |w2'| is least."""
     best = w3
     for _ in range(60):
         near = [best, np.nextafter(best, -9e9), np.nextafter(best, 9e9)]
@@ -106,7 +108,8 @@ def residue(of, theta, w1, w3):
 
 
 def arriving(of, theta, w1, w3, rate, rng):
-    """A state whose motion comes to the saddle: the motion from its stable side, followed backward."""
+    """A state whose motion comes to the saddle: a motion from the stable side of the saddle, followed
+    backward."""
     off = draws.sign(rng) * 1e-7
     # theta' = -w2 = -rate off, and w1, w3 follow the inclination
     _, d1, d3 = tilting(of, theta, w1, w3)
@@ -144,7 +147,7 @@ def draw(rng, kind):
 
 
 def lasting(start):
-    """2.3 periods, from the times at which the true motion turns; to an early face; at most LATEST."""
+    """2.3 periods, from the turning points of the true motion; less if a face lands; at most LATEST."""
     follow = truth.integrator("rolling", 64, False, False, False)
     follow.begin(start)
     before, turns, t = math.copysign(1.0, start.w2) if start.w2 else 0.0, [], 0.0
@@ -160,7 +163,7 @@ def lasting(start):
 
 
 def noise(start, times, base):
-    """How far half an ulp of every input moves each of the numbers at each time, summed."""
+    """The change of each number at each time by half an ulp of every input, summed over the inputs."""
     number, moved = truth.TYPES[113][0], truth.TYPES[113][0](2.0) ** -80
     total = np.zeros(base.rows.shape)
     for which in range(7):
@@ -178,12 +181,13 @@ def eighths(t):
 
 
 def eight_times(start, t):
-    """A line of Python that rolls a start to the times of `eighths`."""
+    """The Python call that computes the motion of a start at the times of `eighths`."""
     return f"{start.line('T')[:-1]}, t0=0.0, beyond=True)".replace("'T'", f"np.arange(1, 9) * {t / 8!r}")
 
 
 def measured(start, t, true, noisy, want):
-    """Route, worst of errors over allowed, over claimed; the same of poses; microseconds."""
+    """The result, its largest errors over the allowed and over the claimed ones; and the same two ratios for
+    poses."""
     times = eighths(t)
     answer, poses = answers.rolled(start, times, True, want)
     number, count = type(true.rows[0, 0]), min(len(answer.path.rows), len(true.rows))
@@ -228,7 +232,7 @@ def main():
         times = eighths(t)
         true = truth.path(start, times, pose=True, beyond=True)
         noisy = noise(start, times, true)
-        if noisy.max() > 1e-9:  # half of the 113 bits
+        if noisy.max() > 1e-9:  # 113 bits are too few
             deep += 1
             true = truth.path(start, times, bits=240, pose=True, beyond=True)
         for name, want in (("states", ()), ("poses", ("pose",))):

@@ -1,9 +1,11 @@
-"""What single motions take, and what they claim: random scenes to t = 50, by `sc.roll`, as accurately as doubles allow.
+"""CPU times and claims of single motions: random scenes to t = 50, by `sc.roll`, as accurately as doubles
+allow.
 
     python benches/singles.py --count 5000      four minutes on one core; --seed N draws the same again
 
-The scenes are those of tests/scenes.py, with one last time. Prints the slowest of them with their calls, how many were refused
-and in which words, and how many claim more than 1e-6; `--longest` seconds of the processor are given to each.
+The scenes are those of tests/scenes.py, with one last time. Prints the slowest of them, how many were refused
+with which message, and those that claim more than 1e-6; `--calls` adds the calls. Each may take `--longest`
+CPU seconds.
 """
 
 import argparse

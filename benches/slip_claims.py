@@ -1,20 +1,21 @@
-"""Whether the claimed errors of slipping motions hold: true over claimed, of `sc.roll` and of `sc.sweep.roll`.
+"""Claimed errors of slipping motions: true over claimed, of `sc.roll` and of `sc.sweep.roll`.
 
     python benches/slip_claims.py --count 2000       half an hour on one core; needs gmpy2 and xarray
 
-Motions of all kinds: tubes launched from pi/2, disks, cans, rounded bodies and balls, planar and spatial, with Coulomb
-friction, also with a static coefficient that is larger, and with viscous friction; to t = 3 .. 50. Each is followed by
-`sc.roll` with tol = 1e-8, 1e-10, 1e-12 and the default, with poses at every other motion, and by `sc.sweep.roll`.
+Motions of all kinds: tubes launched from pi/2, disks, cans, rounded bodies and balls, planar and spatial,
+with Coulomb friction, also with a static coefficient that is larger, and with viscous friction; to t = 3 ..
+50. Each is computed by `sc.roll` with tol = 1e-8, 1e-10, 1e-12 and the default, with poses at every other
+motion, and by `sc.sweep.roll`.
 
-The truth of every row is one: the reduced equations in Taylor series of long doubles, order 20, whose steps err by 1e-20,
-in the variable tau while it slips (tests/reference/slip_forms.py, which takes nothing from the library; its series found by
-slip_tape.py). The first `--check` motions are found again with its reduced equations of 40 digits; the largest
-difference is printed.
+All rows have the same truth: the reduced equations of tests/reference/slip_forms.py, which share nothing with
+the library, in Taylor series of long doubles of order 20, whose steps err by 1e-20, in the variable tau
+during a slip. slip_tape.py computes the series. The first `--check` truths are computed again with 40 digits;
+the largest difference is printed.
 
-The claim is `error`: of theta, w1, w2, w3 at all times and of the time and the state of the event; and `pose_error`: of
-phi, psi and the contact point. What else there is (the slip, the heat, the times of the phases) is compared with the
-same claim, though that does not speak of it. A ratio of 10 is the most that is honest. A motion whose kinds of phases
-or end are not the true ones, with a finite claim, counts as "other"; with an infinite claim nothing is claimed.
+The claim `error` covers theta, w1, w2, w3 at all times and the time and the state of the event; `pose_error`
+covers phi, psi and the contact point. The slip, the heat and the times of the phases are compared with
+`error`, which does not cover them. A ratio up to 10 is honest. A motion whose kinds of phases or end are not
+the true ones counts as "other" if its claim is finite; an infinite claim claims nothing.
 """
 
 import argparse
@@ -43,7 +44,7 @@ from slip_tape import LongTape
 
 TOLERANCES = (1e-8, 1e-10, 1e-12, None)
 BLOCK = 20
-STEPS = 1500  # of a truth, and of the directions it tries; more is too dear
+STEPS = 1500  # a truth that needs more, with the directions it tries, takes too long
 DIGITS = 28
 KEPT = ("final", "end", "slip_time", "dissipated", "phases", "rolling_time", "rolling_theta", "rolling_w3")
 
@@ -76,7 +77,7 @@ class Quick(Reduced):
 
 
 class Truth:
-    """What a motion does, as doubles."""
+    """The true motion, as doubles."""
 
     def __init__(self, scene, found):
         rows = [(kind, np.array([float(x) for x in row])) for kind, row in found.rows]
@@ -93,11 +94,11 @@ class Truth:
 
 
 class Leaps(ArithmeticError):
-    """Nothing presses at the start."""
+    """The body does not press on the table at the start."""
 
 
 class Jumps(ArithmeticError):
-    """Something lands within the series by which a slip begins, which does not watch for that."""
+    """Something lands within the series by which a slip begins, in which landings are not detected."""
 
 
 def exact(scene):
@@ -108,7 +109,7 @@ def exact(scene):
 
 
 def checked(scene):
-    """The same to 30 digits."""
+    """The truth with 40 digits."""
     precise(slip.DIGITS)
     return Truth(scene, follow(Reduced(scene)))
 
@@ -117,7 +118,7 @@ def checked(scene):
 
 
 def drawn(rng, kind, end):
-    """A scene."""
+    """A random scene."""
     if kind == "launched":
         body = slip.tube(rng.uniform(1.5, 9), rng.uniform(0, 0.95))
         w1 = rng.uniform(1, 5)
@@ -163,7 +164,7 @@ KINDS = ("launched", "launched", "hoop", "planar", "disk", "disk", "can", "can",
 
 
 def on_edge(scene):
-    """Hoops on edge that slow down are unstable, and have rows of their own."""
+    """The name of a separate row for hoops on edge, which are unstable where they slow down."""
     return ", hoop on edge" if scene.name == "hoop" else ""
 
 
@@ -172,7 +173,7 @@ def contact(scene):
 
 
 def line(scene, tol=None):
-    """The motion as typed."""
+    """The Python call that computes the motion."""
     ell, i1, i3, fillet = scene.body
     round_rim = f", fillet={fillet!r}" if fillet else ""
     theta, w1, w2, w3, *u = scene.start
@@ -187,7 +188,7 @@ def line(scene, tol=None):
 
 
 def enter(tally, truth, tol, pose):
-    """One motion by sc.roll."""
+    """Adds one motion by sc.roll to the tally."""
     scene = truth.scene
     name = ("default" if tol is None else f"{tol:g}") + on_edge(scene)
     body = sc.Body(*scene.body[:3], fillet=scene.body[3])
@@ -200,7 +201,7 @@ def enter(tally, truth, tol, pose):
     except ValueError as e:
         tally.count(f"{name}: refused", f"{e}: {said}")
         return None
-    # u = 0 may be the first thing that happens; what the start is says the first phase
+    # the first phase follows from the start, also where u = 0 there
     kinds = [phase.kind == "rolling" for phase in m.phases][1:]
     if m.status != truth.ending or kinds != [rolls for _, rolls in truth.begins]:
         if math.isinf(m.error):
@@ -241,7 +242,7 @@ def enter(tally, truth, tol, pose):
 
 
 def swept(scenes, tol, threads=1):
-    """The motions by one sweep, columns by name."""
+    """The motions by one sweep, as columns by name."""
     ell, i1, i3, fillet = np.array([s.body for s in scenes]).T
     theta, w1, w2, w3, u_h, u_2 = np.array([s.start for s in scenes]).T
     mu, static = np.array([(s.mu, s.static) for s in scenes]).T
@@ -252,7 +253,7 @@ def swept(scenes, tol, threads=1):
 
 
 def sweep(tally, truths, singles, tol):
-    """The same by sweeps: against the truth, against `sc.roll`, and bit for bit."""
+    """Compares sweeps with the truth, with `sc.roll`, and with other sweeps bit for bit."""
     name = f"sweep {tol:g}"
     for law in ("coulomb", "viscous"):
         known = [(t, m) for t, m in zip(truths, singles, strict=True) if t.scene.law == law]
@@ -294,7 +295,7 @@ def sweep(tally, truths, singles, tol):
 
 
 def same_bits(tally, name, scenes, tol, found):
-    """Threads, order and neighbours must not matter."""
+    """Checks that the bits do not depend on threads, order and neighbours."""
 
     def compare(what, other, places):
         tally.count(f"{name}: compared bit for bit, {what}")

@@ -1,8 +1,8 @@
-"""An independent model of a body that slips and rolls, in plain doubles: the phases that it foresees.
+"""An independent model of a body that slips and rolls, in plain doubles, which predicts the phases.
 
-It integrates ln|u| and the direction of the slip in tau, dt = |u| dtau, with SciPy's LSODA, so that u = 0 is never stepped
-over; rolling with DOP853; and it lists the contact forces that are possible at u = 0 by brute force, over all directions.
-Where it comes so near a decision that its rounding and its tolerance could change it, it says that it is in doubt.
+It integrates ln|u| and the direction of the slip in tau, dt = |u| dtau, with SciPy's LSODA, so that u = 0 is
+never stepped over; rolling with DOP853; and it lists the contact forces that are possible at u = 0 by brute
+force, over all directions. Where its rounding and its tolerance could change a decision, it raises Doubtful.
 """
 
 import math
@@ -16,7 +16,7 @@ AT_REST = -25.0  # ln|u| from which the slip counts as ended, once its direction
 
 
 class Doubtful(Exception):
-    """The model is too near a decision."""
+    """The model is too near a decision to predict it."""
 
 
 class Model:
@@ -77,7 +77,8 @@ class Model:
         return w1, w2, w3, n, f_h, f_2
 
     def forces(self, y):
-        """What the contact can do at u = 0: the lift-off, rolling, and every direction of slip; and how clear it is."""
+        """The possible forces at u = 0: N without friction, the coefficient that rolling needs, and every
+        direction of slip; and how far the nearest decision is."""
         p = self.parts(y)
         alpha = np.linspace(0, 2 * np.pi, 1441)[:-1] + 1e-3
         x, z = np.cos(alpha), np.sin(alpha)
@@ -110,7 +111,8 @@ class Model:
         return p[10], excess, found, clear
 
     def settled(self, y):
-        """What follows at u = 0: "lift-off", "rolling", "undefined", or where slip begins, ln|u| and its direction."""
+        """The phase after u = 0: "lift-off", "rolling", "undefined", or for a slip ln|u| and its
+        direction."""
         bare, excess, found, clear = self.forces(y)
         if clear < NEAR or min(abs(excess / self.static - 1), abs(excess / self.mu - 1)) < NEAR:
             raise Doubtful
@@ -213,7 +215,7 @@ def predicted(body, mu, static, start, end=END, fine=1.0):
 
 
 def integrated(model, rates, span, q, method, names, events, longest):
-    """Which event ended it, or None, and where; doubtful if another one nearly did."""
+    """The event that ended a phase, or None, and the numbers then; Doubtful if another event nearly did."""
     within = {"rtol": 1e-9 * model.fine, "atol": 1e-11 * model.fine, "max_step": longest}
     solution = solve_ivp(rates, span, q, method, events=events, **within)
     if solution.status < 0:
@@ -225,7 +227,7 @@ def integrated(model, rates, span, q, method, names, events, longest):
 
 
 def slid(model, t, y, where, end):
-    """Slip to its end, in tau: what ended it, when, where."""
+    """Integrates a slip to its end, in tau: the event, the time and the state."""
 
     def rates(_, q):
         size = math.exp(q[4])
@@ -250,7 +252,7 @@ def slid(model, t, y, where, end):
     if fired is None:
         raise Doubtful
     if fired == "face" and (q[1] or q[3]):
-        raise Doubtful  # it comes to rest flat, in ever faster turns
+        raise Doubtful  # the body comes to rest flat, in ever faster turns
     if fired == "undefined" and q[4] < AT_REST:
         raise Doubtful  # its direction has not settled though |u| is 1e-11
     if fired == "rests" and model.slip(q[:4], 0.0, math.cos(q[5]), math.sin(q[5]))[3] > -NEAR:
@@ -259,7 +261,7 @@ def slid(model, t, y, where, end):
 
 
 def rolled(model, t, y, end):
-    """Rolling to its end."""
+    """Integrates rolling to its end."""
 
     def rates(_, q):
         w1, w2, w3, *_ = model.rolling(q[:4])
@@ -273,7 +275,8 @@ def rolled(model, t, y, end):
 
 
 def begun(model, t, y):
-    """A state shortly after rolling has given way, a short time on, in the direction with f = 0; none if undefined."""
+    """State, slip and time shortly after rolling has given way, in the direction with f = 0; the slip is None
+    if undefined."""
     short = 1e-4 * model.fine if model.static == model.mu else 0.0
     if short:
         w1, w2, w3, _, f_h, f_2 = model.rolling(y)
@@ -281,7 +284,7 @@ def begun(model, t, y):
         for angle, growth, _ in model.forces(y)[2]:
             apart = abs((angle - along + math.pi) % (2 * math.pi) - math.pi)
             if growth > NEAR or apart > 0.01:
-                return y, None, t  # a slip that begins with u' != 0, beside the one that rolling goes over to
+                return y, None, t  # another slip is possible, which begins with u' != 0
         y = [y[0] - short * y[2], y[1] + short * w1, y[2] + short * w2, y[3] + short * w3]
     _, _, found, _ = model.forces(y)
     if not found:

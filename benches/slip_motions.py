@@ -2,9 +2,9 @@
 
     python benches/slip_motions.py
 
-States and times of events against 25 digits (tests/reference/slip_motion.csv), scaled by 1 or the number if that is
-more. DOP853 solves the reduced equations in time up to the first end of a slip that is there from the start, with
-rtol = atol = 1e-12, and takes the last 1e-8 of the speed in a straight line.
+States and times of events against 25 digits (tests/reference/slip_motion.csv), divided by the number if it is
+above 1. DOP853 solves the reduced equations in time up to the first end of a slip that begins at the start,
+with rtol = atol = 1e-12, and covers the last 1e-8 of the speed by one linear step.
 """
 
 import pathlib

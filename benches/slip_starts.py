@@ -1,18 +1,20 @@
-"""Figure 3 of slipping: the phases of random starts, of sc.roll against an independent model in plain doubles.
+"""Figure 3 of slipping: the phases of random starts, of sc.roll against an independent model in plain
+doubles.
 
     python benches/slip_starts.py --count 10000 --painleve 1000        about 10 minutes, on one core
 
-The model is slip_model.py. A start is refused or followed to t = 3, and the kinds of the phases and the end are compared.
+The model is slip_model.py. A start is refused or followed to t = 3, and the kinds of the phases and the end
+are compared.
 
     agreed     the same phases, at the same times within 1e-4, and the same end
     refused    refused by both, by name: no unique contact force, or a body on its side that stays lying
-    wrong      another phase, another end, another time, or an answer where there is none     (goal 0)
-    silent     a number that is not one, or an error that does not name what is wrong        (goal 0)
-    left out   the model comes so near a decision (within 1e-3) that its rounding and its tolerance could change it;
-               and, where the library disagrees, the model does so with itself once it is ten times as fine
+    wrong      another phase, another end, another time, or a result where there is none      (goal 0)
+    silent     a NaN, or an error that does not name the cause                                (goal 0)
+    left out   the model is so near a decision (within 1e-3) that its rounding and tolerance could change it;
+               or it disagrees with the library, and with itself at a tenth of its tolerances
 
-Of the starts that are built to be undefined, at a slip where 1 - eps cos(alpha) < 0 and at u = 0 where the list of
-forces has none or more than one, all are to be refused.
+Other starts are built to be undefined: at a slip where 1 - eps cos(alpha) < 0, and at u = 0 where the list of
+forces has none or more than one. All of these must be refused.
 """
 
 import argparse
@@ -95,7 +97,7 @@ def drawn(rng):
 
 
 def undefined(rng):
-    """A start without exactly one contact force, and why: of light bodies, and fast, where u = 0."""
+    """A start without a unique contact force, and why; at u = 0 only light bodies that turn fast."""
     at_slip = rng.random() < 0.9
     while True:
         kind, body = drawn_body(rng)
@@ -141,7 +143,7 @@ def asked(body, mu, static, start, end=END):
 
 
 def differs(one, other):
-    """How far the times of two (phases, end, time) are apart; infinite where phases or ends differ."""
+    """Largest difference of the times of two (phases, end, time); infinite where phases or ends differ."""
     (phases, ending, when), (found, ended, at) = one, other
     if ended != ending or [kind for _, kind in phases] != [kind for _, kind in found]:
         return math.inf
@@ -166,7 +168,7 @@ def verdict(prediction, answer):
 
 
 def sensitive(prediction, start):
-    """Whether the model says something else once it is ten times as fine."""
+    """Whether the model predicts something else at a tenth of its tolerances."""
     try:
         return differs(prediction, predicted(*start, fine=0.1)) > 3e-5
     except (Doubtful, OverflowError):
@@ -174,7 +176,7 @@ def sensitive(prediction, start):
 
 
 def judged(start, tally, ask=True):
-    """One start: what the model says, and the verdict on what the library says; the latest of the times that agree."""
+    """The verdict on the library's result for one start, and the largest difference of times if it agrees."""
     try:
         prediction = predicted(*start)
     except (Doubtful, OverflowError, ZeroDivisionError, ValueError) as e:  # where SciPy's events give up, too

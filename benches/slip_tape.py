@@ -1,7 +1,8 @@
-"""The tape of tests/reference/series.py with its series found by a few lines of C, in long doubles (64 bits).
+"""The tape of tests/reference/series.py, with its series computed by a few lines of C in long doubles (64
+bits).
 
-It is ten times as fast, and made for many truths to 16 or 17 digits. It needs a C compiler, `cc`. Series that are slaved
-are left to the tape of series.py.
+It is ten times as fast, and made for many truths to 16 or 17 digits. It needs a C compiler, `cc`. Slaved
+series (`expand_slaved`) are left to the tape of series.py.
 """
 
 import ctypes
@@ -77,7 +78,7 @@ def long(value):
 
 
 class LongNode(Node):
-    """A quantity whose coefficients are made from the tape's when they are asked for."""
+    """A quantity whose coefficients are converted from those of the tape when they are first used."""
 
     __slots__ = ("place", "told")
 
@@ -97,7 +98,7 @@ class LongNode(Node):
 
 
 class LongTape(Tape):
-    """Operations as a table."""
+    """A tape whose operations are a table for the C code."""
 
     def __init__(self):
         self.size, self.table, self.values, self.states, self.rates = 0, [], [], [], []

@@ -1,11 +1,12 @@
-"""The motions that cost most among random ones, with their causes: is there a cliff?
+"""The slowest of random motions, and the causes of their times.
 
     python benches/slowest.py                  three kinds of 3000 motions, a minute
     python benches/slowest.py --count 100000   half an hour
 
-Launches slip on dry friction and land without a bounce; the second kind loses energy by one law or two besides, and
-the third one rolls with losses. Tubes with ell from 0.1 to 6.3, mu from 0.01 to 1, coefficients from 1e-4 to 0.1, each
-motion alone, to t = 200 with a tolerance of 1e-8. Most of them end early, so that the median is small.
+Launches slip on dry friction and land without a bounce; the second kind also loses energy by one law or two,
+and the third one rolls with losses. Tubes with ell from 0.1 to 6.3, mu from 0.01 to 1, coefficients from 1e-4
+to 0.1, each motion alone, to t = 200 with a tolerance of 1e-8. Most of them end early, so that the median is
+small.
 """
 
 import argparse
@@ -24,7 +25,7 @@ FLAT = 1e-3
 
 
 def drawn(rng, kind):
-    """A body, a state, and how it moves on."""
+    """A body, a state, and the options of the motion."""
     body = sc.Body.tube(10 ** rng.uniform(-1, 0.8), bore=rng.choice([0, 0.3, 0.8, 0.95]))
     theta, w, slip = rng.uniform(0.05, 1.55), rng.uniform(-3, 3, 3) * [1, 1, 2], rng.uniform(-2, 2, 2)
     how = {"tol": 1e-8}
@@ -38,7 +39,7 @@ def drawn(rng, kind):
 
 
 def followed(body, state, how):
-    """Seconds that a motion takes, and why it takes them."""
+    """CPU seconds of a motion, and their cause."""
     since, found, refused = time.process_time(), None, None
     try:
         with warnings.catch_warnings():

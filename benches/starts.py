@@ -1,14 +1,15 @@
-"""Figure 1: starts at rest or almost that come out wrong, of sc.roll and sc.sweep.roll, against heyoka.
+"""Figure 1: wrong results for starts at rest or almost, of sc.roll and sc.sweep.roll, against heyoka.
 
     python benches/starts.py --count 100000        needs the dependency group `peers`; on one core
 
-Half of the starts do not tilt at all (theta' = 0), the others by 1e-300 to 1e-4 sqrt(g/R); rolling and smooth, in
-blocks that share contact, mu, `beyond` and the last time (0.1 to 20 sqrt(R/g)). Each is asked of `sc.roll` with no
-wants, of `sc.roll` with both, and of `sc.sweep.roll`. The truth is Newton's and Euler's equations in Taylor series of
-64 bits (truth.py); a doubtful answer is judged again by 113 bits, and beside what half an ulp of the inputs does.
+Half of the starts do not tilt at all (theta' = 0), the others at 1e-300 to 1e-4 sqrt(g/R); rolling and
+smooth, in blocks that share contact, mu, `beyond` and the last time (0.1 to 20 sqrt(R/g)). Each motion is
+computed by `sc.roll` without `want`, by `sc.roll` with pose and force, and by `sc.sweep.roll`. The truth is
+Newton's and Euler's equations in Taylor series with 64 bits (truth.py); a doubtful result is compared again
+with 113 bits, and with the effect of half an ulp of the inputs.
 
-    wrong      another end, or off by more than 10 claimed + 10 noise + 1e-9, in the state at a time, or the time
-               or the state of the end
+    wrong      another end, or off by more than 10 claimed + 10 noise + 1e-9, in the state at a time, or the
+               time or the state of the end
     claim      right, but off by more than 10 claimed + 10 noise + 1e-12
     vague      a claimed error above 1e-6
     unclear    another end, which half an ulp of the inputs would make the true one
@@ -36,7 +37,7 @@ def off(found, claimed, floor, half_ulps=None):
 
 
 def unwatched(true, route, beyond):
-    """The truth as a sweep beyond the ends knows it: done, if it comes to the last time."""
+    """The truth for a sweep beyond the ends: a motion is done if it comes to the last time."""
     if route != "sweep.roll" or not beyond or not len(true.rows):
         return true
     return truth.Path(truth.DONE, None, true.rows[-1], true.rows)
@@ -64,13 +65,13 @@ def judge(start, times, beyond, answer, true):
 
 
 def block(rng, count):
-    """A scene and its starts, refused ones told apart by the caller."""
+    """A scene and its starts, some of which may be refused."""
     scene = draws.scene(rng, 20.0)
     return scene, [draws.at_rest(rng, scene) for _ in range(count)]
 
 
 def asked(scene, starts):
-    """(index, times, answer or error) of every route."""
+    """(index of the start, times, result or error) of every route."""
     t, beyond = scene["t"], scene["beyond"]
     both = [t / 3, t]
     for i, start in enumerate(starts):

@@ -1,5 +1,5 @@
-//! What is measured: one steady state, one kappa, one inverse, and maps of points (throughput in points).
-//! Errors stand beside these figures in docs/benchmarks.md.
+//! Time of one steady state, one kappa, one inverse, and of maps of points (throughput in points). The errors
+//! are in the same table of docs/benchmarks.md.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use spincyl::stability::at_rest;

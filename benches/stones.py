@@ -1,17 +1,20 @@
-"""Random stones from random starts: what is refused and why, how honest the claims are, and how long each takes.
+"""Random stones from random starts: those that are refused, the honesty of the claims, and the time of each
+motion.
 
     python benches/stones.py [--count 10000] [--seed 1] [--slowest 5]
     python benches/stones.py --sweep 20000
     python benches/stones.py --grazes 5000
 
-Stones are thin, flat, nearly round, twisted, half cut off, or any; starts are at rest, upright, on an edge, fast, about to
-lift off, upside down; tables are rough without limit, smooth, dry with a coefficient from 1e-6 to 10, or wet. Each motion is
-followed for ten units of time twice: as accurately as doubles allow, and within 1e-10. Both are to agree within both claims,
-energy and heat are to sum to a constant, and nothing may be no number.
+Stones are thin, flat, nearly round, twisted, half cut off, or any; starts are at rest, upright, on an edge,
+fast, about to lift off, upside down; tables are rough without limit, smooth, dry with a coefficient from 1e-6
+to 10, or viscous. Each motion is computed for ten units of time twice: as accurately as doubles allow, and
+within 1e-10. Both must agree within the sum of their claims, energy and heat must sum to a constant, and
+every number must be finite.
 
-`--sweep` sets `sweep.roll` beside `roll` at 4,001 times, from which reversals are counted anew; a count that differs is
-close if the spin comes within both claims of the spin that counts. `--grazes` chooses mu, the edge or the speed so that an
-end is touched from either side by 1e-13 to 1e-2, and follows each motion within several tolerances.
+`--sweep` compares `sweep.roll` with `roll` at 4,001 times, from which reversals are counted independently; a
+count that differs is close if the spin comes within both claims of the spin that counts as a reversal.
+`--grazes` chooses mu, the edge or the speed so that the motion reaches an end, or misses it, by 1e-13 to 1e-2
+of its margin, and computes it with several tolerances.
 """
 
 import argparse
@@ -103,7 +106,8 @@ def name_of(contact, more):
 
 
 def reversals(t, s):
-    """How often a spin at many times turns back, the zero before the first, and how near to counting it comes else."""
+    """The number of reversals of a spin that is given at many times, the zero before the first, and how near
+    the spin comes to one more or one less."""
     side, count, first, zero, enough, near = np.sign(s[0]), 0, np.nan, np.nan, 0.1 * abs(s[0]), np.inf
     far = 0.0
     for i in range(1, len(s)):
@@ -120,7 +124,7 @@ def reversals(t, s):
 
 
 def beside(given):
-    """`sweep.roll` beside `roll`."""
+    """Compares `sweep.roll` with `roll`."""
     found = collections.defaultdict(collections.Counter)
     t = np.linspace(0, 10, 4001)
     for i in range(given.sweep):
@@ -202,7 +206,8 @@ def beside(given):
 
 
 def extremum(follow, what, most):
-    """The first record of a number within a motion, largest or least, and its time; None if there is none inside."""
+    """The last local maximum (or minimum) of a number within a motion that exceeds all values before it, and
+    its time; None if there is none inside."""
     t = np.linspace(0, 6, 241)
     m = follow(t)
     values = (1 if most else -1) * what(m)
@@ -224,7 +229,8 @@ def extremum(follow, what, most):
 
 
 def grazing(rng):
-    """A stone and a start that touch an end by a share of its margin; what ends, the side, and the contact."""
+    """A stone, a start, contact and options with which an end is just reached or just missed; the kind of
+    end, the side, the distance as a share of the margin, and the time."""
     body, (n, w) = stone(rng), start(rng)
     body = sc.Ellipsoid(body.axes, body.inertia, body.offset)
     w = np.clip(w, -3, 3)
@@ -342,7 +348,7 @@ def main():
     parser.add_argument("--sweep", type=int, default=0, help="this many motions, sweep.roll beside roll")
     parser.add_argument("--grazes", type=int, default=0, help="this many motions that touch an end")
     given = parser.parse_args()
-    # many of these motions have errors, and some moments, that deserve a warning
+    # many of these motions, and some moments of inertia, rightly cause warnings
     warnings.simplefilter("ignore", UserWarning)
     warnings.simplefilter("ignore", RuntimeWarning)
     if given.sweep or given.grazes:

@@ -4,7 +4,7 @@ import time
 
 
 def best(job, rounds=5, clock=time.process_time, per=1.0):
-    """What a job returns, and its least time, in seconds or so many parts of one."""
+    """The result of a job and its least time, in units of 1/`per` seconds."""
     least = float("inf")
     for _ in range(rounds):
         began = clock()

@@ -1,8 +1,9 @@
-"""The truth that answers are judged against: Newton's and Euler's equations in Taylor series, by heyoka.
+"""The truth with which results are compared: Newton's and Euler's equations in Taylor series, by heyoka.
 
-The equations are those of tests/reference/axes.py, which solves a 3 x 3 system for the accelerations and takes nothing
-from the library. heyoka integrates them with 64, 113 or more bits, and finds where N, mu^2 N^2 - F_h^2, pi/2 - theta or
-theta - 1e-10 vanish as zeros of the Taylor polynomials of a step. Inputs are the exact doubles.
+The equations are those of tests/reference/axes.py, which solves a 3 x 3 system for the accelerations and
+shares nothing with the library. heyoka integrates them with 64, 113 or more bits, and finds where N, mu^2 N^2
+- F_h^2, pi/2 - theta or theta - 1e-10 vanish as zeros of the Taylor polynomials of a step. Inputs are the
+exact doubles.
 
 Units: lengths R, times sqrt(R/g), moments M R^2, forces M g.
 """
@@ -20,14 +21,14 @@ sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "tests" / "reference"
 from axes import horizontal, rates_and_force, vertical
 
 DONE, FACE, SIDE, LIFT_OFF, SLIP = range(5)
-#: a face closer than this has landed, as the library says of itself
+#: inclination below which a face has landed, as in the library
 FLAT = 1e-10
 #: significant bits: NumPy's or heyoka's type, and the tolerance of a step
 TYPES = {64: (np.longdouble, "1e-19"), 113: (hy.real128, "1e-33")}
 
 
 class Path(NamedTuple):
-    """What is true of a motion: how it ends, when and in which state, and the rows at the times before that."""
+    """The true motion: the kind, time and state of its end, and the rows at the times before that."""
 
     kind: int
     time: float  # of the end; the last time if it is done
@@ -46,7 +47,7 @@ def quarter_turn(number):
 
 
 def system(contact, pose):
-    """heyoka's equations, and what vanishes at (FACE, SIDE, LIFT_OFF, SLIP)."""
+    """heyoka's equations, and the expressions that vanish at the ends, in the order of _ENDS."""
     theta, w1, w2, w3, phi, psi, x, y = hy.make_vars("theta", "w1", "w2", "w3", "phi", "psi", "x", "y")
     s, c = hy.sin(theta), hy.cos(theta)
     rates, force = rates_and_force(
@@ -61,7 +62,7 @@ def system(contact, pose):
             # the contact point runs along e2 at the speed of the spin
             equations += [(x, -spin * hy.sin(phi)), (y, spin * hy.cos(phi))]
         else:
-            # the centre stands: contact = centre - (c - ell s) along the lean
+            # the centre is at rest: contact = centre - (c - ell s) along the lean
             out, out_rate = c - hy.par[0] * s, (s + hy.par[0] * c) * w2
             equations += [
                 (x, -out_rate * hy.cos(phi) + out * turn * hy.sin(phi)),
@@ -113,7 +114,7 @@ class Integrator:
         state = [number(x) for x in start[3:7]] + [number(0.0)] * (len(ta.state) - 4)
         for i, x in enumerate(state):
             ta.state[i] = x
-        # what falls in a plane meets the table, whatever else only comes near it
+        # only a body that falls in a plane reaches theta = 0; any other one turns before
         flat = 0.0 if start.w1 == 0 and start.w3 == 0 else FLAT
         right = quarter_turn(self.kind)
         side = right if start.ell > 0 else 10.0
@@ -122,7 +123,7 @@ class Integrator:
             ta.pars[i] = number(x)
 
     def until(self, t, steps):
-        """None if it comes to `t`, else what ends it before."""
+        """None if the motion comes to `t`, else the kind of its end."""
         outcome = self.ta.propagate_until(self.number(t), max_steps=steps)[0]
         if outcome == hy.taylor_outcome.time_limit:
             return None
@@ -147,7 +148,7 @@ def force(start):
 
 
 def at_start(start):
-    """The end of a start that is none, as the library documents it: the other rim, lift-off, slip."""
+    """The kind of end of a motion that is over at its start, as the library documents it; else None."""
     right = np.pi / 2
     rate, normal, friction = force(start)
     if start.ell > 0:
@@ -206,7 +207,7 @@ def reversed_(start):
 
 
 def landed(kind, ta):
-    """Time and state of an end; a face goes on from FLAT at the speed that it has."""
+    """Time and state of an end; below FLAT a face falls on at constant speed."""
     time, state = ta.time, ta.state.copy()
     if kind == FACE:
         at = 0 * state[0] if state[0] < 1 else 2 * quarter_turn(type(time))

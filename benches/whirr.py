@@ -1,22 +1,22 @@
-"""Whirrs to their end: evaluations for a turn, and time against error, beside SciPy's DOP853.
+"""Whirrs to their end: evaluations per turn, and time against error, beside SciPy's DOP853.
 
     python benches/whirr.py        a minute; needs gmpy2 and a C compiler
 
 Euler's disk (half its thickness is 0.17 of its radius; sharp, or with a rounded rim) from 0.3 rad until its
-contact point stops, by dry friction of the contour; with a nutation that is seen; and with every other law,
-to 0.9 of the time at which the face lands or the contact stops (a viscous law is stiff there), or to t = 60
-where it does not stop.
+contact point stops, by dry friction of the contour; with a visible nutation; and with every other law, to 0.9
+of the time at which the face lands or the contact stops (a viscous law is stiff there), or to t = 60 where it
+does not stop.
 
 "To the end" are the library's evaluations to the end itself, by default. The turns are those of the contact
-point round the rim, psi/(2 pi). What a motion needs is measured: DOP853 on the harmonic oscillator, for as
-many radians of the nutation as pass meanwhile (sqrt(kappa) next to the table times phi), at the same error.
-`need` is the ratio of evaluations to those; "a radian" are evaluations for each radian of psi.
+point round the rim, psi/(2 pi). `need` compares the evaluations with those of DOP853 on the harmonic
+oscillator at the same error, over the radians of the nutation in the same time, sqrt(kappa) next to the table
+times phi. "A radian" are evaluations for each radian of psi.
 
-The truth is found by losses_truth.py. The error is the largest of the four numbers of the state at eight
-times and at the end, and of the time of the end, over 1 or the number if that is more. DOP853 solves the
-same equations in plain Python (losses_scipy.py), at the same times; of its tolerances the cheapest is
-beside each row that is not worse, or the best one (with a star). Where numba is installed, DOP853 is timed
-with a compiled right-hand side as well.
+The truth is computed by losses_truth.py. The error is the largest of the four numbers of the state at eight
+times and at the end, and of the time of the end, each divided by the number if it is above 1. DOP853 solves
+the same equations in plain Python (losses_scipy.py), at the same times; each row has the cheapest of its
+tolerances that is as accurate, or the most accurate one (with a star). Where numba is installed, DOP853 is
+timed with a compiled right-hand side as well.
 """
 
 import functools
@@ -53,7 +53,7 @@ CASES = (
 
 
 def off(found, true):
-    """The largest error, over 1 or the number if that is more."""
+    """The largest error; an error of a number above 1 is divided by the number."""
     return float(np.max(np.abs(found - true) / np.maximum(1, np.abs(true)), initial=0.0))
 
 
@@ -67,7 +67,7 @@ def oscillator(radians):
 
 
 def cheapest(found, error):
-    """The least price that is not worse than the error; or of the best, with a star."""
+    """The least cost of a result that is at least this accurate, or the cost of the best one, with a star."""
     good = [price for other, *price in found if other <= error]
     return (*min(good), "") if good else (*min(found)[1:], "*")
 

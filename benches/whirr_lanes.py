@@ -2,11 +2,12 @@
 
     python benches/whirr_lanes.py [--count 512] [--tol 1e-8]
 
-Euler's disk (half its thickness is 0.17 of its radius, a sharp rim) starts at 0.25 to 0.35 rad, every other one with a
-nutation, and is followed to its end, or to t = 60 where it has none by then. The coefficients are such that drift alone would need 20 to 30 units of time
-from 0.3 rad to 0.03 rad, so that every law has about as much to do. Times are least CPU times of one thread. `off` is
-the largest difference of the end and of the last state from the same sweep at the tolerance 1e-12, over 1 or the
-number if that is more; the claims must cover it.
+Euler's disk (half its thickness is 0.17 of its radius, a sharp rim) starts at 0.25 to 0.35 rad, every other
+one with a nutation, and is followed to its end, or to t = 60 where it has none by then. The coefficients are
+such that drift alone would need 20 to 30 units of time from 0.3 rad to 0.03 rad, so that all laws take about
+equally long. Times are least CPU times of one thread. `off` is the largest difference of the end and of the
+last state from the same sweep at the tolerance 1e-12, divided by the number if it is above 1; the claims must
+cover it.
 """
 
 import argparse
@@ -40,14 +41,15 @@ LAWS = {
 
 
 def coefficient(law, seconds=25.0):
-    """The coefficient with which drift takes so long from 0.3 rad to 0.03 rad; time falls as its inverse."""
+    """The coefficient with which a drift takes this time from 0.3 rad to 0.03 rad; the time is inversely
+    proportional to it."""
     trial = sc.drift(DISK, 0.3, law(1e-4))
     least = trial.time(0.03)
     return 1e-4 * float(least) / seconds if np.isfinite(least) else 5e-3
 
 
 def starts(count):
-    """States (4, count) and shares of the coefficient."""
+    """States of `count` disks, and factors of their coefficients."""
     i = np.arange(count)
     theta = 0.25 + 0.1 * (i + 0.5) / count
     kick = 0.1 * (((i * 37_345) % 65_536) + 0.5) / 65_536

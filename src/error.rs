@@ -1,4 +1,4 @@
-//! The one type of error: a question has no answer. The error names the argument, its value and the accepted range.
+//! The error type of the library. An error names the argument, its value and the accepted range.
 
 /// The reason why a question about a body, a state, a scale or a motion has no answer.
 ///
@@ -37,7 +37,7 @@ pub enum Error {
         "theta = {theta:?} is forbidden: no steady state between theta_balance = {theta_balance:?} and theta_limit = {theta_limit:?}"
     )]
     Forbidden {
-        /// The inclination asked for, in radians.
+        /// The given inclination, in radians.
         theta: f64,
         /// The inclination at which the body balances on a point.
         theta_balance: f64,
@@ -49,7 +49,7 @@ pub enum Error {
         "theta = {theta:?} is too close to theta_balance = {theta_balance:?} or theta_limit = {theta_limit:?} to decide"
     )]
     Undetermined {
-        /// The inclination asked for, in radians.
+        /// The given inclination, in radians.
         theta: f64,
         /// The inclination at which the body balances on a point.
         theta_balance: f64,
@@ -61,7 +61,7 @@ pub enum Error {
         "step = {step:?} is too large at t = {time:?}, theta = {theta:?}: a step of {advice:.2e} would do, or tol="
     )]
     Step {
-        /// The step asked for.
+        /// The given step.
         step: f64,
         /// The time at which the step is too large.
         time: f64,
@@ -123,15 +123,16 @@ pub enum Error {
     },
 }
 
-/// Small things (an exact solution, a block of work, a thread) need fewer bytes than this at any time.
+/// Upper bound of the bytes that small work (an exact solution, a block of work, a thread) needs at any time.
 const SPARE: usize = 8 << 20;
 
-/// Returns an error if the memory is too small for small things, whose failed allocation would abort the process.
+/// Returns an error if the memory is too small for small work, whose failed allocation would abort the
+/// process.
 pub(crate) fn spare() -> Result<(), Error> {
     spare_for(0)
 }
 
-/// Returns an error if the memory is too small for this many bytes and for small things beside them.
+/// Returns an error if the memory is too small for this many bytes and for small work beside them.
 pub(crate) fn spare_for(bytes: usize) -> Result<(), Error> {
     let bytes = bytes.saturating_add(SPARE);
     let mut all = Vec::<u8>::new();
@@ -141,7 +142,7 @@ pub(crate) fn spare_for(bytes: usize) -> Result<(), Error> {
     found
 }
 
-/// Room for `count` things, or an error where this allocation or a small later one would abort the process.
+/// Room for `count` elements, or an error if this allocation or a small later one would abort the process.
 pub(crate) fn room<T>(count: usize) -> Result<Vec<T>, Error> {
     let bytes = count.saturating_mul(size_of::<T>());
     let mut things = Vec::new();
@@ -152,7 +153,7 @@ pub(crate) fn room<T>(count: usize) -> Result<Vec<T>, Error> {
     Ok(things)
 }
 
-/// A copy of the things, or the error of [`room`].
+/// A copy of the elements, or the error of [`room`].
 pub(crate) fn copied<T: Copy>(things: &[T]) -> Result<Vec<T>, Error> {
     let mut copy = room(things.len())?;
     copy.extend_from_slice(things);

@@ -27,7 +27,7 @@
 //! | `many` | [`sweep`] | steady states over dense grids, on lanes and threads | |
 //! | | [`ensemble`] | many motions at once, on lanes and threads | |
 //!
-//! `error` stands above all of them, and `python` below. Rolling and smooth share `contact::reduced`:
+//! All layers may use `error`, and `python` uses all of them. Rolling and smooth share `contact::reduced`:
 //! J w2' = w1 (ct (k w3 - al w1) + b w3 - k w1) - g + (J'/2) w2^2.
 
 // Without the modules for many bodies, without lanes, or with only one width of lanes, some items are not used.
@@ -62,11 +62,11 @@ pub mod drift {
     //! rest      theta' = -P/E'(theta),   t = -int E'/P dtheta            the centre held at rest: one line of states
     //! rolling   theta' = -F/(J kappa),   F = S_w1 a1 + S_w3 a3           no slip, no nutation: a surface of states
     //! ```
-    //! *Rest* is the landscape of Jackson et al., Am. J. Phys. 87, 85 (2019): the centre is held at rest, as slip does
-    //! below a ridge of the energy, and the body moves to lower energies, above a ridge upwards. *Rolling* is the drift of
-    //! a body that never slips: its losses push the body off the line on which the centre rests, nothing brings it back,
-    //! and a ridge has no effect; the drift ends where rolling becomes unstable, kappa = 0. Both are of first order in the
-    //! losses.
+    //! *Rest* is the landscape of Jackson et al., Am. J. Phys. 87, 85 (2019): the centre is held at rest, as
+    //! slip does below a ridge of the energy. The body moves to lower energies: below a ridge theta falls,
+    //! above it theta grows. *Rolling* is the drift of a body that never slips: its losses push the body off
+    //! the line on which the centre rests, nothing brings it back, and a ridge has no effect; the drift ends
+    //! where rolling becomes unstable, kappa = 0. Both are of first order in the losses.
     //!
     //! Error: 1e-12 of a time at rest and 1e-10 rolling. Up to 0.99 of the time to the end the same bounds hold for theta,
     //! w1 and Omega, relative, and for w3 relative to |w|. Where these numbers go as a high power of the time that is left,
@@ -87,10 +87,11 @@ pub mod stone {
     //! half       the lower half of it: d = (0, 0, -3 a3/8), the moments about d, and an edge that lands at pi/2
     //! theta      the inclination of axis 3, cos theta = n3
     //! ```
-    //! Natural units: the mass, the largest semi-axis and gravity are 1. A body here has no relation to a
-    //! [`Body`](crate::Body), which is a body of revolution with three first integrals; a stone has one, its energy, so that
-    //! its motion is always integrated. [`roll`] follows it through rolling and slipping,
-    //! [`rolling`] where nothing ends the rolling, and [`Rocking`] is that of a stone that spins upright.
+    //! Natural units: the mass, the largest semi-axis and gravity are 1. An ellipsoid is not a
+    //! [`Body`](crate::Body), which is a body of revolution with three first integrals; a stone has one, its
+    //! energy, so that its motion is always integrated. [`roll`] follows a stone through rolling and
+    //! slipping, [`rolling`] follows one that always rolls, and [`Rocking`] has the small oscillations of a
+    //! stone that spins upright.
     //!
     //! Sources: Walker, Sci. Am. 241(4), 172 (1979); Kane and Levinson, Int. J. Non-Linear Mech. 17, 175 (1982); Moffatt and
     //! Shimomura, Nature 416, 385 (2002), for the rising egg.
@@ -98,7 +99,8 @@ pub mod stone {
     pub use crate::laws::stone::{Ellipsoid, StonePose, StoneState};
     #[cfg(feature = "many")]
     pub use crate::many::stones::{StoneRow, StoneSummary, many};
-    pub use crate::motions::stone::{Rocking, RollingStone, roll, rolling};
+    pub use crate::motions::stone::{RollingStone, roll, rolling};
+    pub use crate::states::rocking::Rocking;
 }
 
 /// The example of the README runs as a doctest.

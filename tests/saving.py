@@ -15,8 +15,8 @@ from pathlib import Path
 
 import spincyl as sc
 from spincyl import report
-from spincyl._files import writer_of
 from spincyl.cli import main
+from spincyl.cli._files import writer_of
 
 BODY = sc.Body.solid(2.5)
 LIMIT = 500

@@ -11,10 +11,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import spincyl as sc
-from spincyl import _core
+from spincyl._contact import CODES
 from spincyl.sweep import Status
 
-LAWS = tuple(getattr(sc.loss, name) for name, _, _ in _core.loss_laws())
+LAWS = tuple(getattr(sc.loss, name) for name in CODES["Law"])
 CONTACTS = ("rolling", "mu", "smooth", "coulomb", "viscous")
 NUMBERS = ("theta", "w1", "w2", "w3")
 #: an end so near to the last time may be met by one of the two only

@@ -15,7 +15,7 @@ import pytest
 
 import spincyl as sc
 from spincyl import cli
-from spincyl._units import joined
+from spincyl._input.units import joined
 
 ROLL = ["roll", "--ell", "2.5", "--theta", "1.3", "--kick", "0.05"]
 PVC = ["--outer", "15.875mm", "--inner", "12.7mm", "--length", "95.25mm"]

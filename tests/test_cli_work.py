@@ -13,7 +13,7 @@ from test_cli import ROLL, said, shell
 
 import spincyl as sc
 from spincyl import report
-from spincyl._units import joined
+from spincyl._input.units import joined
 from spincyl.cli import _commands, _output
 from spincyl.cli._options import parser
 

@@ -6,7 +6,7 @@ from letters import letters
 from scipy.spatial.transform import Rotation
 
 import spincyl as sc
-from spincyl._shape import parts, rotations
+from spincyl._studio.shape import parts, rotations
 
 PIPE = sc.Body.tube(6.0, bore=0.8)  # the paper's PVC tube
 

@@ -11,12 +11,12 @@ import pytest
 from pages import BALLS, CAPSULE, CYLINDER, PIPE, ROUNDED, TIPPE, nutating
 
 import spincyl as sc
-from spincyl._film import reel
-from spincyl._frames import _shown as prepared
-from spincyl._frames import _Stage, frames
-from spincyl._shadow import _LAMPS, caster, shadows
-from spincyl._shape import lathe, marks, parts, profiles, rotations
-from spincyl._view import _edges
+from spincyl._pages.view import _edges
+from spincyl._studio.film import reel
+from spincyl._studio.frames import _shown as prepared
+from spincyl._studio.frames import _Stage, frames
+from spincyl._studio.shadow import _LAMPS, caster, shadows
+from spincyl._studio.shape import lathe, marks, parts, profiles, rotations
 
 SCALE = sc.Scale(radius=7.9375e-3)
 FALLING = sc.State(1.3, 0.0, 0.0, 0.0)
@@ -376,7 +376,7 @@ def test_a_long_film_is_cut_and_says_so_and_how_much_of_it_is_done(tmp_path):
 
 
 def test_a_large_film_is_warned_of(tmp_path, monkeypatch):
-    monkeypatch.setattr("spincyl._film._LARGE", 1e3)
+    monkeypatch.setattr("spincyl._studio.film._LARGE", 1e3)
     with pytest.warns(
         UserWarning, match=r"film.gif: 0 MB; size=, fps= or seconds= make it smaller, and .mp4"
     ):

@@ -10,6 +10,7 @@ ROOT = pathlib.Path(__file__).parents[1]
 SRC = ROOT / "src"
 SOURCES = sorted(SRC.glob("**/*.rs"))
 
+
 def name(path):
     return path.relative_to(SRC).as_posix()
 
@@ -151,7 +152,7 @@ USE = re.compile(r"^\s*(?:pub(?:\([^)]*\))? )?use ((?:\w+|\{)[^;]*);", re.M)
 INLINE = re.compile(r"(?<![\w:$])(?:crate|super|self)(?:::\w+)+")
 
 
-def layers():
+def layers_of_src():
     """The layers in the order of the map in lib.rs: each may use those before it."""
     text = (SRC / "lib.rs").read_text("utf-8")
     return ["error", *dict.fromkeys(re.findall(r"^//! \| `(\w+)` \|", text, re.M)), "python"]
@@ -192,7 +193,11 @@ def uses():
     front = front_door()
     for module, path in HOMES.items():
         text = "\n".join(line for _, line in code(path))
-        trees = [(found.start(1), tree) for found in USE.finditer(text) for tree in paths(re.sub(r"\s+", "", found[1]))]
+        trees = [
+            (found.start(1), tree)
+            for found in USE.finditer(text)
+            for tree in paths(re.sub(r"\s+", "", found[1]))
+        ]
         inline = [(found.start(), found[0].split("::")) for found in INLINE.finditer(USE.sub("", text))]
         for at, words in trees + inline:
             found = resolved(words, module, front)
@@ -201,7 +206,7 @@ def uses():
 
 
 def test_every_folder_is_a_layer_of_the_map():
-    assert sorted(layers()) == sorted({module[0] for module in HOMES})
+    assert sorted(layers_of_src()) == sorted({module[0] for module in HOMES})
     assert all(path.parent != SRC for module, path in HOMES.items() if module != ("error",))
 
 
@@ -214,10 +219,12 @@ def test_every_public_module_is_on_the_map():
 
 
 def test_no_layer_uses_a_later_one():
-    order = {layer: rank for rank, layer in enumerate(layers())}
+    order = {layer: rank for rank, layer in enumerate(layers_of_src())}
     found = list(uses())
     assert len(found) > 1000
-    against = [f"{'::'.join(a)}:{line} uses {'::'.join(b)}" for a, line, b in found if order[b[0]] > order[a[0]]]
+    against = [
+        f"{'::'.join(a)}:{line} uses {'::'.join(b)}" for a, line, b in found if order[b[0]] > order[a[0]]
+    ]
     assert not against, "\n".join(against)
 
 
@@ -229,7 +236,10 @@ def test_no_layer_uses_a_later_one():
         ("crate::ensemble::Job", ("many", "motions")),
         ("super::lossy::free", ("motions", "path", "lossy", "free")),
         ("super::super::Ask", ("motions",)),
-        ("walk::Walk", ("motions", "path", "slide", "walk") if ("motions", "path", "slide", "walk") in HOMES else None),
+        (
+            "walk::Walk",
+            ("motions", "path", "slide", "walk") if ("motions", "path", "slide", "walk") in HOMES else None,
+        ),
         ("core::f64", None),
     ],
 )
@@ -274,9 +284,13 @@ def test_no_modules_use_each_other_in_a_circle():
     assert not circle(asks), sorted("::".join(module) for module in circle(asks))
 
 
-def test_the_laws_do_not_know_what_they_are_compiled_for():
-    places = [f"{name(path)}:{number}" for path in SOURCES for number, line in path_lines(path) if "wasm32" in line]
-    assert not [place for place in places if place.startswith("laws/")], places
+def test_only_numbers_and_methods_know_what_they_are_compiled_for():
+    # A browser has no clock; what else is short there has one flag, which build.rs sets.
+    def places(flag):
+        return {name(path) for path in SOURCES for _, line in path_lines(path) if flag in line}
+
+    assert places("wasm32") == {"methods/beat.rs"}
+    assert {place.split("/")[0] for place in places("short_code")} == {"numbers", "methods"}
 
 
 def path_lines(path):
@@ -299,32 +313,90 @@ def test_the_name_of_a_constant_stands_once_in_a_layer():
     assert not twice, twice
 
 
-WRAPPER = ROOT / "python" / "spincyl"
+# The layers of the package for Python.
+
+PACKAGE = ROOT / "python" / "spincyl"
+CORE = "spincyl._core"
+TRIGONOMETRY = re.compile(r"a?(?:rc)?(?:sin|cos|tan)h?2?|hypot|sincos")
 
 
-def wrapped():
-    """The modules of the wrapper, by name; the front door, which leads to all of them, is none of them."""
-    files = [path for path in WRAPPER.rglob("*.py") if path != WRAPPER / "__init__.py"]
-    names = (path.relative_to(WRAPPER.parent).with_suffix("").parts for path in files)
-    return {".".join(words).removesuffix(".__init__"): path for words, path in zip(names, files, strict=True)}
+def layers():
+    """The layers that the front door lists, from below; "." is the wrapper, "__init__" the front door."""
+    return re.findall(r"^# (\S+) {2,}\S", (PACKAGE / "__init__.py").read_text("utf-8"), re.M)
+
+
+def modules_of_python():
+    """All modules of the package by name; "spincyl" is the front door."""
+    names = ((path, path.relative_to(PACKAGE.parent).with_suffix("").parts) for path in PACKAGE.rglob("*.py"))
+    return {".".join(words).removesuffix(".__init__"): path for path, words in names}
+
+
+def layer(module):
+    """The layer of a module."""
+    first = module.split(".")[1] if "." in module else "__init__"
+    return "cli" if first == "__main__" else first if first in layers() else "."
 
 
 def asked(text, known):
-    """The modules that a module imports, wherever it does; for its types alone it may know any."""
+    """The modules that a module imports, wherever it does, or names in a text; for its types alone it may know any."""
     tree = ast.parse(text)
     hints = [x for x in ast.walk(tree) if isinstance(x, ast.If) and ast.unparse(x.test) == "TYPE_CHECKING"]
     unseen = {id(x) for hint in hints for line in hint.body for x in ast.walk(line)}
     for x in ast.walk(tree):
         names = []
         if isinstance(x, ast.ImportFrom):
+            assert not x.level, f"line {x.lineno}: write the whole name of a module"
             whole = [f"{x.module}.{name.name}" for name in x.names]
             names = [name if name in known else x.module for name in whole]
         elif isinstance(x, ast.Import):
             names = [name.name for name in x.names]
-        elif isinstance(x, ast.Call) and ast.unparse(x.func).endswith("import_module"):
-            names = [arg.value for arg in x.args if isinstance(arg, ast.Constant)]
+        elif isinstance(x, ast.Constant) and x.value != "spincyl":  # of import_module, or of files
+            names = [x.value]
         if id(x) not in unseen:
             yield from (name for name in names if name in known)
+
+
+def python_asks():
+    """What each module asks for; the front door leads to all that is below it."""
+    known = modules_of_python()
+    names = {*known, CORE}
+    asks = {name: {*asked(path.read_text("utf-8"), names)} - {name} for name, path in known.items()}
+    place = layers().index("__init__")
+    asks["spincyl"] |= {name for name in known if layers().index(layer(name)) < place}
+    return asks
+
+
+def against(asks):
+    """Imports against the order of the layers."""
+    order = {name: place for place, name in enumerate(layers())}
+    pairs = ((name, other) for name, others in asks.items() for other in others)
+    return [f"{name} asks {other}" for name, other in pairs if order[layer(name)] < order[layer(other)]]
+
+
+def code_lines(text):
+    """How many lines have code: without empty lines, comments and docstrings."""
+    blocks = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
+    docs = set()
+    for x in ast.walk(ast.parse(text)):
+        if isinstance(x, blocks) and ast.get_docstring(x, clean=False) is not None:
+            docs |= set(range(x.body[0].lineno, x.body[0].end_lineno + 1))
+    lines = enumerate(text.splitlines(), 1)
+    return sum(bool(re.match(r"\s*[^\s#]", line)) and number not in docs for number, line in lines)
+
+
+def trigonometry(text):
+    """The functions, by name, that call a sine or the like."""
+    tree = ast.parse(text)
+    inner = [x for x in ast.walk(tree) if isinstance(x, ast.FunctionDef)]
+    for x in ast.walk(tree):
+        word = x.attr if isinstance(x, ast.Attribute) else x.id if isinstance(x, ast.Name) else ""
+        if TRIGONOMETRY.fullmatch(word):
+            yield next((f.name for f in reversed(inner) if x in [*ast.walk(f)]), "")
+
+
+def test_every_folder_of_the_package_is_a_layer():
+    folders = {path.parent.relative_to(PACKAGE).as_posix() for path in PACKAGE.rglob("*.py")}
+    assert sorted(folders | {"__init__"}) == sorted(layers())
 
 
 @pytest.mark.parametrize(
@@ -334,27 +406,132 @@ def asked(text, known):
         "def f():\n    from spincyl import _body",
         "import spincyl._body",
         "import_module('spincyl._body')",
+        "files('spincyl._body')",
         "if TYPE_CHECKING:\n    pass\nelse:\n    from spincyl._body import Body",
     ],
 )
 def test_an_import_is_known_wherever_it_stands(line):
-    assert {*asked(line, {"spincyl._body"})} == {"spincyl._body"}
+    assert {*asked(line, {"spincyl", "spincyl._body"})} == {"spincyl._body"}
     assert not [*asked("if TYPE_CHECKING:\n    from spincyl._body import Body", {"spincyl._body"})]
 
 
-def test_the_modules_of_the_wrapper_import_in_one_direction():
-    known = wrapped()
-    asks = {name: {*asked(path.read_text("utf-8"), known)} - {name} for name, path in known.items()}
-    assert sum(map(len, asks.values())) > 300
-    assert {"spincyl._body", "spincyl._motion", "spincyl._loss", "spincyl._drift"} <= set(asks)
-    # what was measured is drawn, and drawings of losses are of what was measured
-    measured = {name for name in known if name.startswith(("spincyl.data", "spincyl.plot"))}
-    assert circle(asks) <= measured, sorted(circle(asks) - measured)
+@pytest.mark.parametrize(
+    ("module", "line"),
+    [
+        ("_input.numbers", "from spincyl import _core"),
+        ("_input.numbers", "def f():\n    from spincyl._scale import Scale"),
+        ("_motion", "def f():\n    import spincyl"),
+        ("_motion", "import spincyl as sc"),
+        ("_drift", "from spincyl import view"),
+        ("_drift", "def f():\n    from spincyl import plot"),
+        ("_drift", "from spincyl.sweep._common import in_si"),
+        ("sweep._roll", "from spincyl._studio.poses import span"),
+        ("_studio.frames", "files('spincyl._pages')"),
+        ("data._compare", "def f():\n    from spincyl.plot import comparison"),
+        ("plot._motions", "from spincyl._pages.view import view"),
+        ("_pages.play", "import spincyl"),
+        ("report", "from spincyl.cli import main"),
+    ],
+)
+def test_an_import_against_the_layers_is_seen(module, line):
+    names = {*modules_of_python(), CORE}
+    assert f"spincyl.{module}" in names
+    assert against({f"spincyl.{module}": {*asked(line, names)}})
 
 
-def test_no_file_of_the_wrapper_is_longer_than_450_lines():
-    lines = {name: len(path.read_text("utf-8").splitlines()) for name, path in wrapped().items()}
-    assert not {name: count for name, count in lines.items() if count > 450}
+@pytest.mark.parametrize(
+    ("module", "line"),
+    [
+        ("_body", "from spincyl import _core"),
+        ("_body", "from spincyl._input import numbers"),
+        ("_roll", "def f():\n    from spincyl._ellipsoid import Ellipsoid"),
+        ("plot._losses", "def f():\n    from spincyl.data import LossFit"),
+        ("cli._play", "from spincyl import play"),
+        ("__main__", "from spincyl.cli import main"),
+    ],
+)
+def test_an_import_along_the_layers_is_none_against_them(module, line):
+    names = {*modules_of_python(), CORE}
+    assert {*asked(line, names)}
+    assert not against({f"spincyl.{module}": {*asked(line, names)}})
+
+
+def hidden(text):
+    """Whether modules are loaded by names that stand nowhere in the text."""
+    calls = [x for x in ast.walk(ast.parse(text)) if isinstance(x, ast.Call)]
+    loads = [x for x in calls if ast.unparse(x.func).split(".")[-1] in ("import_module", "__import__")]
+    return any(not isinstance(arg, ast.Constant) for x in loads for arg in x.args)
+
+
+def test_only_three_places_load_a_module_by_a_name_that_they_are_given():
+    assert hidden("importlib.import_module(f'spincyl.{x}')") and not hidden("import_module('spincyl.plot')")
+    found = {name for name, path in modules_of_python().items() if hidden(path.read_text("utf-8"))}
+    assert found == {"spincyl", "spincyl._upward", "spincyl._input.numbers"}
+
+
+def test_no_module_imports_from_a_layer_above_its_own():
+    asks = python_asks()
+    assert sum(map(len, asks.values())) > 400
+    assert not against(asks)
+
+
+def test_modules_in_a_circle_are_seen():
+    assert circle({"a": {"b"}, "b": {"c"}, "c": {"b"}, "d": {"a"}}) == {"b", "c"}
+    assert not circle({"a": {"b"}, "b": {"c"}})
+
+
+def test_no_modules_of_the_package_import_each_other_in_a_circle():
+    assert not circle(python_asks())
+
+
+def test_each_method_of_a_layer_above_has_one_function_and_each_function_its_method():
+    from spincyl._upward import HOMES, above
+
+    methods = set()
+    for path in modules_of_python().values():
+        methods |= set(re.findall(r"\babove\(\"([\w.]+)\"\)", path.read_text("utf-8")))
+    assert methods == set(HOMES)
+    assert all(callable(above(method)) for method in methods)
+
+
+def test_lines_of_code_are_neither_empty_nor_comments_nor_docstrings():
+    text = '"""A module.\n\nOf two.\n"""\n\n# why\nx = 1  # that\n\n\ndef f():\n    """It."""\n    return """a\nb"""\n'
+    assert code_lines(text) == 4
+
+
+def test_the_wrapper_is_thin_and_no_file_is_long():
+    texts = {name: path.read_text("utf-8") for name, path in modules_of_python().items()}
+    assert not {name: n for name, text in texts.items() if (n := len(text.splitlines())) > 450}
+    top = [path.read_text("utf-8") for path in PACKAGE.glob("*.py")]
+    assert len(top) > 20
+    assert sum(map(code_lines, top)) <= 3000
+
+
+@pytest.mark.parametrize(
+    ("line", "name"),
+    [
+        ("def f(x):\n    return np.sin(x)", "f"),
+        ("def f(x):\n    return math.atan2(x, 1)", "f"),
+        ("class A:\n    def f(self):\n        return np.hypot(1, 2)", "f"),
+        ("from numpy import arccos\ny = arccos(0.5)", ""),
+        ("law = np.tan", ""),
+    ],
+)
+def test_trigonometry_is_known_by_its_names(line, name):
+    assert [*trigonometry(line)] == [name]
+
+
+def test_what_is_no_trigonometry_is_not_taken_for_it():
+    assert not [*trigonometry("x = np.since(1) + math.inf + distance(2) + np.pi + cost")]
+
+
+def test_the_wrapper_leaves_trigonometry_to_the_core():
+    found = {
+        f"{path.stem}.{name}"
+        for path in PACKAGE.glob("*.py")
+        for name in trigonometry(path.read_text("utf-8"))
+    }
+    assert not found
 
 
 # What is promised.

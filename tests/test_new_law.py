@@ -10,12 +10,13 @@ import pytest
 
 import spincyl as sc
 from spincyl import _core, loss
+from spincyl._contact import CODES
 from spincyl.cli import _losses
 
 ROOT = Path(__file__).parents[1]
 PACKAGE = Path(sc.__file__).parent
 (PAGE,) = PACKAGE.rglob("play.state.js")
-LAWS = [(name, parameter) for name, parameter, _ in _core.loss_laws()]
+LAWS = [(name, parameter) for name, (parameter, _) in zip(CODES["Law"], _core.loss_laws(), strict=True)]
 
 
 def typed(name):

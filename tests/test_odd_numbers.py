@@ -10,9 +10,9 @@ import odd
 import pytest
 
 import spincyl as sc
-from spincyl import _units
+from spincyl._input import units
+from spincyl._input.threads import thread_count
 from spincyl.cli import main
-from spincyl.sweep._common import thread_count
 
 FAMILY, BALL = sc.Body.solid(np.array([0.9, 1.5])), sc.Body.ball(0.0, 0.4, 0.4)
 STONES = sc.Ellipsoid.uniform([[1.0, 0.6, 0.5], [1.0, 0.5, 0.4]])
@@ -141,11 +141,11 @@ def test_shapes_that_do_not_fit_are_told_with_their_names():
 @pytest.mark.parametrize(
     "exponent", ["e9999999", "e999999999999999999999", "e-9999999", "e-999999999999999999999"]
 )
-@pytest.mark.parametrize("unit", [*_units._KINDS.values(), "angle"])
+@pytest.mark.parametrize("unit", [*units._KINDS.values(), "angle"])
 def test_a_text_with_an_exponent_beyond_all_numbers_is_zero_or_refused(exponent, unit):
-    read = _units.angle if unit == "angle" else _units.quantity(unit)
+    read = units.angle if unit == "angle" else units.quantity(unit)
     for sign in ("", "-"):
-        for name in ("deg", "rad") if unit == "angle" else _units._UNITS[unit]:
+        for name in ("deg", "rad") if unit == "angle" else units._UNITS[unit]:
             text = f"{sign}1{exponent}{name}"
             if "e-" in exponent:
                 assert read(text) == 0.0
@@ -153,7 +153,7 @@ def test_a_text_with_an_exponent_beyond_all_numbers_is_zero_or_refused(exponent,
                 assert np.isinf(read(text))  # which whoever takes an angle refuses by name
             else:
                 with pytest.raises(
-                    _units.ArgumentTypeError, match=f"^'{re.escape(text)}': expected an? {unit} of less"
+                    units.ArgumentTypeError, match=f"^'{re.escape(text)}': expected an? {unit} of less"
                 ):
                     read(text)
     with pytest.raises(
@@ -177,13 +177,13 @@ def test_a_text_with_an_exponent_beyond_all_numbers_is_zero_or_refused(exponent,
     ],
 )
 def test_what_is_no_whole_number_is_refused(text):
-    with pytest.raises(_units.ArgumentTypeError, match=f"^'{re.escape(text)}'"):
-        _units.whole(text)
+    with pytest.raises(units.ArgumentTypeError, match=f"^'{re.escape(text)}'"):
+        units.whole(text)
 
 
 def test_whole_numbers_are_read_as_decimals_have_them():
     for text in ("1e6", "2.5e1", "1000000000000000.0", "-3e0", "0e99", "10.00"):
-        assert _units.whole(text) == Decimal(text)
+        assert units.whole(text) == Decimal(text)
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ from pages import CAN, CYLINDER, DISK, PIPE, arrow, at, clock, nutating, picture
 from scipy import ndimage
 
 import spincyl as sc
-from spincyl._shape import BLUE, ORANGE
+from spincyl._studio.shape import BLUE, ORANGE
 
 #: A browser whose pictures come when the test says so, with the times that it says.
 DRIVEN = """

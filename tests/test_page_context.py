@@ -6,8 +6,8 @@ from pages import near, nutating, picture
 from playing import LAPTOP, PHONE, ask, settled, state
 
 import spincyl as sc
-from spincyl._shape import BLUE, ORANGE
-from spincyl._view._joined import _tight
+from spincyl._pages.joined import _tight
+from spincyl._studio.shape import BLUE, ORANGE
 
 NO_WEBGL = """{ const plain = HTMLCanvasElement.prototype.getContext;
 HTMLCanvasElement.prototype.getContext = function (kind, ...how) { return kind === "webgl2" ? null : plain.call(this, kind, ...how); }; }"""

@@ -7,7 +7,7 @@ import pytest
 from pages import clock, near, picture
 
 import spincyl as sc
-from spincyl._poses import knots, pace, span
+from spincyl._studio.poses import knots, pace, span
 
 DISK, PIPE = sc.Body.solid(0.0852), sc.Body.tube(6.0, bore=0.8)  # Euler's disk, the paper's tube
 SIZE = sc.Scale(radius=0.0375, mass=0.44)
@@ -182,7 +182,7 @@ def test_a_motion_is_heard_whatever_its_end(motion, tmp_path):
 
 
 def test_what_comes_round_faster_than_samples_show_is_heard_as_its_mean():
-    from spincyl._sound import _beat
+    from spincyl._studio.sound import _beat
 
     slow, fast = (_beat(step * np.arange(1000.0)) for step in (0.01, 50.0))
     assert slow.max() == pytest.approx(1.0) and slow.min() == pytest.approx(np.exp(-4.0), rel=1e-3)

@@ -7,7 +7,7 @@ import pytest
 from pages import PIPE, clock, near, nutating, picture
 
 import spincyl as sc
-from spincyl._view._slip import forces
+from spincyl._pages.slip import forces
 
 RED, GREY = (0.75, 0.12, 0.18), (0.43, 0.45, 0.50)
 STICKS = 29.922072959

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 import spincyl as sc
-from spincyl._play import _LEAN, _SCRIPTS, CORES
-from spincyl._scenes import body_of, losses_of, scenes, state_of, table_of
-from spincyl._view._joined import script, style
+from spincyl._pages.joined import script, style
+from spincyl._pages.play import _LEAN, _SCRIPTS, CORES
+from spincyl._pages.words import body_of, losses_of, scenes, state_of, table_of
 from spincyl.cli import main
 
 TUBE = sc.Body.tube(6.0, bore=0.8)
@@ -39,7 +39,7 @@ def test_the_page_holds_its_script_and_the_core_that_is_asked_for_in_little_more
         style(["play.css"]),
         script(_SCRIPTS if friction else _LEAN),
     ) and '<canvas id="map"' in shown
-    assert core == gzip.decompress(files("spincyl._view").joinpath(CORES[friction]).read_bytes())
+    assert core == gzip.decompress(files("spincyl._pages").joinpath("cores", CORES[friction]).read_bytes())
     assert core.startswith(b"\0asm")
     # seven bits in eight, and a shell that unpacks it
     small = [zlib.compress(what, 9) for what in (core, (look + shown + text).encode())]

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 import spincyl as sc
-from spincyl._play import CORES
-from spincyl._view._deflated import packed
-from spincyl._view._joined import text
+from spincyl._pages.deflated import packed
+from spincyl._pages.joined import text
+from spincyl._pages.play import CORES
 
 CHANCE = np.random.default_rng(7)
-VIEW = files("spincyl._view")
+COMMITTED = files("spincyl._pages").joinpath("cores")
 #: Bytes of all kinds: each way in which deflate can tell the next ones is taken.
 KINDS = {
     "nothing": b"",
@@ -25,8 +25,8 @@ KINDS = {
     "short periods": b"".join(CHANCE.bytes(n) * 40 for n in range(1, 60)),
     "records of which one byte changes": np.arange(9000, dtype="<u4").tobytes(),
     "numbers": np.sin(np.arange(4000.0)).tobytes(),
-    "the lean core": gzip.decompress(VIEW.joinpath(CORES[0]).read_bytes()),
-    "the whole core": gzip.decompress(VIEW.joinpath(CORES[1]).read_bytes()),
+    "the lean core": gzip.decompress(COMMITTED.joinpath(CORES[0]).read_bytes()),
+    "the whole core": gzip.decompress(COMMITTED.joinpath(CORES[1]).read_bytes()),
 }
 #: Two pieces out of a text, as the loader takes them, or what it says of a torn one.
 OPEN = """async text => {

@@ -8,8 +8,8 @@ from pages import near, picture
 from playing import DRIVEN, PHONE, ask, settled, state
 
 import spincyl as sc
-from spincyl._scenes import scenes
-from spincyl._shape import BLUE, IVORY, ORANGE, marks, profiles
+from spincyl._pages.words import scenes
+from spincyl._studio.shape import BLUE, IVORY, ORANGE, marks, profiles
 
 TUBE = sc.Body.tube(6.0, bore=0.8)
 #: Keeps what moves by itself from where it was drawn.
@@ -245,7 +245,7 @@ def test_bodies_look_as_they_do_everywhere_else(opened):
             assert mine["colour"] == pytest.approx(theirs.colour)
         for mine, theirs in zip(seen["marks"], marks(body), strict=True):
             assert np.allclose(np.reshape(mine["places"], (-1, 3)), theirs.vertices, atol=1e-12), body
-            if body.fillet:  # of a sharp wall `_shape` keeps the order of older pages
+            if body.fillet:  # of a sharp wall `shape` keeps the order of older pages
                 assert np.allclose(np.reshape(mine["normals"], (-1, 3)), theirs.normals, atol=1e-12)
             assert mine["colour"] == pytest.approx(theirs.colour)
             at, normals, which = (np.reshape(mine[k], (-1, 3)) for k in ("places", "normals", "triangles"))

@@ -7,7 +7,7 @@ import pytest
 from playing import LAPTOP, PHONE, ask, details, settled, state
 
 import spincyl as sc
-from spincyl._scenes import body_of, scenes, state_of
+from spincyl._pages.words import body_of, scenes, state_of
 
 TUBE = sc.Body.tube(6.0, bore=0.8)
 

@@ -344,7 +344,7 @@ def test_what_killed_writers_left_behind_is_removed(store):
 @pytest.mark.parametrize("step", range(12))
 def test_a_save_that_dies_while_it_is_laid_out_begins_again(tmp_path, monkeypatch, step):
     """Dies as a kill does: nothing is cleaned up, and what is half written stays."""
-    from spincyl import _written
+    from spincyl._input import files
 
     count = iter(range(100))
 
@@ -357,8 +357,8 @@ def test_a_save_that_dies_while_it_is_laid_out_begins_again(tmp_path, monkeypatc
         os.replace(self, target)
 
     with monkeypatch.context() as patch:
-        patch.setattr(_written.Path, "replace", replace)
-        patch.setattr(_written.Path, "unlink", lambda *_, **__: None)
+        patch.setattr(files.Path, "replace", replace)
+        patch.setattr(files.Path, "unlink", lambda *_, **__: None)
         with pytest.raises(Killed):
             sc.sweep.save(lazy(), tmp_path / "a")
     saved, said = quietly(tmp_path / "a")

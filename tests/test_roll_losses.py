@@ -231,7 +231,7 @@ def test_a_motion_with_losses_shows_them():
 
 
 def test_files_have_the_work_lost(tmp_path):
-    from spincyl._files import columns, writer_of
+    from spincyl.cli._files import columns, writer_of
 
     m = rolled(want=("pose", "force"))
     assert np.array_equal(columns(m, None)["work_lost"], m.work_lost)

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 import spincyl as sc
-from spincyl import _shape, _surface
-from spincyl._shape import kind, landing, marks, parts, profiles, reach
+from spincyl._studio import shape
+from spincyl._studio import surface as surfaces
+from spincyl._studio.shape import kind, landing, marks, parts, profiles, reach
 
 COIN, CAN, TUBE = (
     sc.Body.solid(0.2, fillet=0.05),
@@ -47,7 +48,7 @@ SAGITTA = 1 - np.cos(np.pi / 128)
 
 def surface(body):
     """Corners of the triangles of all but the marks, (n, 3, 3)."""
-    return np.concatenate([part.vertices[part.triangles] for part in map(_shape.lathe, profiles(body))])
+    return np.concatenate([part.vertices[part.triangles] for part in map(shape.lathe, profiles(body))])
 
 
 def moments(body):
@@ -89,8 +90,8 @@ def test_its_moments_of_inertia_by_the_divergence_theorem_are_those_of_the_body(
 def test_twice_as_many_facets_have_a_quarter_of_the_error(name, monkeypatch):
     body, errors = UNIFORM[name], []
     for quarter in (8, 16, 32):
-        monkeypatch.setattr(_shape, "_QUARTER", quarter)
-        monkeypatch.setattr(_surface, "_AROUND", 4 * quarter)
+        monkeypatch.setattr(shape, "_QUARTER", quarter)
+        monkeypatch.setattr(surfaces, "_AROUND", 4 * quarter)
         _, _, (i1, _, i3) = moments(body)
         errors.append([float(body.i1) - i1, float(body.i3) - i3])
     errors = np.array(errors)
@@ -115,7 +116,7 @@ def test_the_volumes_of_ball_capsule_and_two_balls_are_those_of_archimedes():
 @pytest.mark.parametrize("name", ALL)
 def test_the_lowest_point_of_what_is_drawn_is_the_contact_at_every_inclination(name):
     body = ALL[name]
-    places = np.concatenate([part.vertices for part in map(_shape.lathe, profiles(body))])
+    places = np.concatenate([part.vertices for part in map(shape.lathe, profiles(body))])
     theta = np.linspace(1e-3, landing(body) - 1e-3, 200)
     s, c, rho = np.sin(theta), np.cos(theta), float(body.fillet)
     # z = sin(theta) e1 + cos(theta) e3, and a place of the body has x along e1 where its psi is 0
@@ -126,7 +127,7 @@ def test_the_lowest_point_of_what_is_drawn_is_the_contact_at_every_inclination(n
 
 @pytest.mark.parametrize("body", [COIN, CAN, TUBE, CAPSULE, BALLS, APART, STEM, HAT, SHOULDER, GENERAL])
 def test_at_the_inclination_where_it_lands_a_second_place_touches_the_table(body):
-    *_, other = (x for x in map(_shape.lathe, profiles(body)) if x.name in ("wall", "upper ball", "stem"))
+    *_, other = (x for x in map(shape.lathe, profiles(body)) if x.name in ("wall", "upper ball", "stem"))
     s, c, rho = np.sin(landing(body)), np.cos(landing(body)), float(body.fillet)
     high = other.vertices[other.vertices[:, 2] > 0]
     depth = -(high[:, 0] * s + high[:, 2] * c).min()
@@ -136,7 +137,7 @@ def test_at_the_inclination_where_it_lands_a_second_place_touches_the_table(body
 @pytest.mark.parametrize("name", ALL)
 def test_normals_point_out_and_are_those_of_the_round_body_not_of_its_facets(name):
     for profile in profiles(ALL[name]):
-        part = _shape.lathe(profile)
+        part = shape.lathe(profile)
         corners, normals = part.vertices[part.triangles], part.normals[part.triangles]
         assert np.allclose(np.linalg.norm(part.normals, axis=1), 1.0)
         flat = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -157,7 +158,7 @@ def test_normals_point_out_and_are_those_of_the_round_body_not_of_its_facets(nam
 
 def height(body, places):
     """How far above the round surface of a body (without bore, stem and rod) places are."""
-    middle, wall, fillet, rim, _ = _shape.skin(body)
+    middle, wall, fillet, rim, _ = shape.skin(body)
     r, z = np.hypot(places[..., 0], places[..., 1]), places[..., 2] - middle
     if kind(body) == "balls":
         return np.hypot(r, np.abs(z) - wall) - fillet

@@ -13,7 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import spincyl as sc
-from spincyl._array import Floats
+from spincyl._input.numbers import Floats
 
 PIPE, HOOP, DISK = sc.Body.tube(6.0, bore=0.8), sc.Body.tube(0.0, bore=1.0), sc.Body.solid(0.375)
 COIN, TIPPE = sc.Body.solid(0.17, fillet=0.05), sc.Body.ball(-0.3, 0.45, 0.42)

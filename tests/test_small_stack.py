@@ -60,7 +60,7 @@ def test_every_call_lives_in_a_thread_with_a_small_stack():
 
 ROOMY = """
 import os, resource, threading, numpy as np, spincyl as sc
-from spincyl.sweep._common import is_roomy
+from spincyl._input.threads import is_roomy
 
 body, state = sc.Body.solid(np.linspace(0.5, 3, 500)), sc.State(1.2, 0.3, 0.4, 0.5)
 found = lambda: sc.sweep.roll(body, state, 20.0, tol=1e-12, beyond=True).theta.values

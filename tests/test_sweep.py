@@ -9,7 +9,7 @@ import nutating_cylinder
 import pytest
 
 import spincyl as sc
-from spincyl.sweep._common import thread_count
+from spincyl._input.threads import thread_count
 
 THETA, ELL = np.linspace(-0.1, 1.7, 61), np.linspace(-0.1, 3, 43)
 

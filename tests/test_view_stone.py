@@ -11,11 +11,11 @@ from pages import SENT, arrow, clock, near, nutating, picture, sent
 from scipy.spatial.transform import Rotation
 
 import spincyl as sc
-from spincyl._poses import knots, seen
-from spincyl._shape import BLUE, IVORY, ORANGE, lathe, marks, parts, profiles
-from spincyl._stone_shape import height
-from spincyl._view._slip import forces
-from spincyl._view._stone import turns_back
+from spincyl._pages.slip import forces
+from spincyl._pages.stone import turns_back
+from spincyl._studio.poses import knots, seen
+from spincyl._studio.shape import BLUE, IVORY, ORANGE, lathe, marks, parts, profiles
+from spincyl._studio.stone_shape import height
 
 # the small stone of docs/stones.md; a toy of 40 cm that is cut; an egg that rises
 TWISTED = [[0.02, -0.012, 0.0], [-0.012, 0.2, 0.0], [0.0, 0.0, 0.21]]

@@ -16,7 +16,7 @@ import pytest
 import spincyl as sc
 
 HOME = Path(__file__).parents[1]
-VIEW = HOME / "python/spincyl/_view"
+COMMITTED = HOME / "python/spincyl/_pages/cores"
 ANEW = HOME / "target/cores"
 ENDLESS, NONE = np.inf, np.nan
 HALF = np.pi / 2
@@ -32,11 +32,13 @@ def sources():
 
 
 def test_the_committed_core_was_built_from_these_sources():
-    made = json.loads((VIEW / "core.json").read_text())
+    made = json.loads((COMMITTED / "core.json").read_text())
     assert made["sources"] == sources(), "core.wasm.gz is older than src: run `make web`"
 
 
-@pytest.fixture(scope="module", params=[VIEW, ANEW] if ANEW.exists() else [VIEW], ids=lambda of: of.name)
+@pytest.fixture(
+    scope="module", params=[COMMITTED, ANEW] if ANEW.exists() else [COMMITTED], ids=lambda of: of.name
+)
 def ask(request):
     path = request.param / "core.friction.wasm.gz"
     return lambda *questions: core.ask(path.read_bytes(), questions)
@@ -47,7 +49,7 @@ def test_the_lean_core_gives_the_same_answers_but_knows_no_friction():
     asked = [map_asked, ("tube", (2.5, 0.0, 0.0)), ("start", (*state, 0.0, 0.0, 0.0, ENDLESS, 20.0, 9)),
              ("follow", (9, 0.0, 20.0)), ("start", (*state, 0.0, 0.0, 2.0, 0.3, 20.0, 9))]  # fmt: skip
     lean, full = (
-        core.ask((VIEW / name).read_bytes(), asked) for name in ("core.wasm.gz", "core.friction.wasm.gz")
+        core.ask((COMMITTED / name).read_bytes(), asked) for name in ("core.wasm.gz", "core.friction.wasm.gz")
     )
     assert [x.code for x in lean] == [0, 0, 0, 0, 12] and full[-1].code == 0
     for one, other in zip(lean[:-1], full[:-1], strict=True):

@@ -16,7 +16,7 @@ import pytest
 from saving import JOBS, filmed, scene, shown
 
 import spincyl as sc
-from spincyl._written import replaced
+from spincyl._input.files import replaced
 
 HERE = Path(__file__).parent
 PARTS = ".spincyl-*"
@@ -237,7 +237,7 @@ def test_what_goes_to_the_output_goes_where_the_output_goes(tmp_path):
 
 FORBIDDEN = """
 import os
-from spincyl._written import replaced
+from spincyl._input.files import replaced
 if not os.getuid():
     os.setgid(65534), os.setuid(65534)
 os.close(os.open("../mine.html", os.O_CREAT, 0o444))
@@ -297,9 +297,9 @@ SOURCES = sorted(Path(sc.__file__).parent.rglob("*.py"))
 WRITERS = {*"write_text write_bytes savefig savetxt savez_compressed savez to_netcdf to_csv".split()}
 #: What may: to a stream, to memory, and where nothing is written over.
 ALLOWED = {
-    ("_files.py", "np.savetxt(file, table, **how)"),
-    ("_written.py", "path.open('ab')"),
-    ("_written.py", "path.open('wb')"),
+    ("cli/_files.py", "np.savetxt(file, table, **how)"),
+    ("_input/files.py", "path.open('ab')"),
+    ("_input/files.py", "path.open('wb')"),
     ("cli/_output.py", "path.open('ab')"),
     ("plot/_style.py", "figure.savefig(made, format=path.suffix[1:].lower(), dpi=dpi)"),
     ("sweep/_save.py", "(store.marks / 'lock').open('ab')"),

@@ -16,9 +16,9 @@ import tomllib
 from pathlib import Path
 
 HOME = Path(__file__).parents[1]
-VIEW = HOME / "python/spincyl/_view"
+COMMITTED = HOME / "python/spincyl/_pages/cores"
 CORES = {"core.wasm.gz": "--no-default-features", "core.friction.wasm.gz": "--all-features"}
-RECORD = VIEW / "core.json"
+RECORD = COMMITTED / "core.json"
 TARGET = "wasm32-unknown-unknown"
 MISSING = f"the live page keeps its committed cores: `rustup target add {TARGET}` to build it"
 FLAGS = ["-C", "target-feature=+simd128", "-C", "link-arg=--compress-relocations"]
@@ -79,7 +79,7 @@ def crates():
 
 def main(to=None):
     """Builds and packs; the committed cores get their record."""
-    folder = Path(to) if to else VIEW
+    folder = Path(to) if to else COMMITTED
     if to:
         folder.mkdir(parents=True, exist_ok=True)
         for name in CORES:

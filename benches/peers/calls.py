@@ -1,4 +1,5 @@
-"""Single calls from Python: one rate beside one sine, one motion to t = 20 beside integrators; and how sweeps scale."""
+"""Times of single calls from Python: one rate beside one sine, one motion to t = 20 beside integrators, and
+sweeps."""
 
 import subprocess
 import sys
@@ -15,7 +16,7 @@ MANY = 200
 
 
 def repeated(run, n=MANY):
-    """Often enough for the clock."""
+    """A job that calls `run` n times, long enough for the clock."""
 
     def many():
         for _ in range(n - 1):
@@ -83,7 +84,7 @@ print(*(after - before for before, after in zip([began, *at], at)))
 
 
 def first_calls():
-    """Rows (what, seconds) of a fresh process: what is imported, and what the first call of each kind needs besides."""
+    """Rows (what, CPU seconds) of a fresh process: the import, and the first and second call of each kind."""
     runs = [subprocess.run([sys.executable, "-c", FIRST], capture_output=True, check=True) for _ in range(3)]
     least = np.min([[float(x) for x in run.stdout.split()] for run in runs], axis=0)
     names = ("import spincyl", "first roll", "second roll", "first sweep.roll", "second sweep.roll")

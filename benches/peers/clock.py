@@ -1,4 +1,5 @@
-"""Rounds that alternate the contestants, so that what else the machine does falls on all of them; and tables."""
+"""Rounds that alternate the contestants, so that other work on the machine affects all of them; and
+tables."""
 
 import importlib.util
 import time
@@ -46,7 +47,7 @@ def table(head, rows):
 
 
 def cheapest(points, error, mine):
-    """(cost, contestant) of spincyl's, or the peers', cheapest setting whose error is at most this."""
+    """(cost, contestant) of the cheapest setting of spincyl, or of the peers, whose error is at most this."""
     fit = [
         (cost, name)
         for name, rows in points.items()
@@ -57,7 +58,7 @@ def cheapest(points, error, mine):
 
 
 def compared(job, points, errors, unit):
-    """Rows (job, error at most, spincyl, the cheapest peer, who it is, ratio) where both reach the error."""
+    """Rows (job, error at most, spincyl, the cheapest peer, its name, ratio) where both reach the error."""
     rows = []
     for error in errors:
         here, there = cheapest(points, error, True), cheapest(points, error, False)

@@ -1,7 +1,8 @@
-"""Job C: 20,000 random starts, five in six of which end: when, and how, on one thread.
+"""Job C: the ends of 20,000 random starts, five in six of which have one, and their times, on one thread.
 
-Shapes from 0.1 to 3, inclinations from 0.1 to 1.5 and angular velocities of the normal distribution, of bodies that press on the
-table at first; to t = 20, or to lift-off (N = 0), the landing of the other rim (theta = pi/2) or of the face.
+Shapes from 0.1 to 3, inclinations from 0.1 to 1.5 and normally distributed angular velocities, of bodies that
+press on the table at the start; to t = 20, or to lift-off (N = 0), the landing of the other rim (theta =
+pi/2) or of the face.
 """
 
 import sys
@@ -40,7 +41,8 @@ def draw(count, seed=5):
 
 
 def equations(hy, polynomial):
-    """heyoka's equations, and what is zero at lift-off, at the side and at the face, in this order."""
+    """heyoka's equations, and the expressions that vanish at lift-off, at the side and at the face, in this
+    order."""
     system = heyoka_jobs.system(hy, polynomial)
     theta, _, w2, _ = (x for x, _ in system[:4])
     s, c = (system[4][0], system[5][0]) if polynomial else (hy.sin(theta), hy.cos(theta))
@@ -56,12 +58,13 @@ def parameters(ell, kind=float):
 
 
 def kind_of(code):
-    """Which end heyoka's outcome means: its event's number is negative, and small."""
+    """The kind of end for an outcome of heyoka; the code of an event is a small negative number."""
     return (LIFT, SIDE, FACE)[-code - 1] if -100 < code < 0 else DONE
 
 
 def heyoka_alone(ell, start, tol, wide=False):
-    """What finds kind, time and last state (n, 6), one motion at a time; `wide`: in 80-bit arithmetic."""
+    """A job that computes kind, time and last state (n, 6), one motion at a time; `wide`: in 80-bit
+    arithmetic."""
     import heyoka as hy
 
     kind = np.longdouble if wide else float
@@ -90,7 +93,7 @@ def heyoka_alone(ell, start, tol, wide=False):
 
 
 def heyoka_lanes(ell, start, tol, lanes=8):
-    """The same eight at a time."""
+    """As `heyoka_alone`, eight motions at a time."""
     import heyoka as hy
 
     system, zeros = equations(hy, polynomial=True)
@@ -137,7 +140,7 @@ def of_spincyl(ell, start, tol):
 
 
 def table_of(found):
-    """(n, 6) kind, time, last state of whatever a contestant returned."""
+    """Kind, time and last state (n, 6) from the result of any contestant."""
     if isinstance(found, np.ndarray):
         return found
     names = ("status", "end", "theta", "w1", "w2", "w3")
@@ -145,7 +148,8 @@ def table_of(found):
 
 
 def judged(found, truth):
-    """Wrong kinds, and the errors of times of ends and of states at T where the kind is right."""
+    """The number of wrong kinds, and the errors of times of ends and of states at T where the kind is
+    right."""
     right = found[:, 0] == truth[:, 0]
     ended = right & (truth[:, 0] != DONE)
     times = np.abs(found[ended, 1] - truth[ended, 1])
@@ -219,7 +223,8 @@ def measure(quick):
 
 
 def by_percentile(points):
-    """As everywhere, but the error is that of 99 %: of 20,000 starts some graze, which nobody tells well."""
+    """As for the other jobs, but with the 99th percentile of the error: of 20,000 starts some graze an end,
+    which no contestant resolves well."""
     from clock import compared
 
     return compared("random starts (99 %)", points, (1e-4, 1e-6, 1e-8, 1e-10), "us")

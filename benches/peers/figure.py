@@ -1,4 +1,4 @@
-"""Speed against error of every job, small multiples: right is more exact, low is faster."""
+"""Speed against error of every job, in small panels: farther right is more exact, lower is faster."""
 
 COLOURS = {
     "spincyl": "#0072b2",
@@ -8,11 +8,11 @@ COLOURS = {
     "NumPy": "#cc79a7",
 }
 MARKS = "os^vDP"
-LINEAR = "map"  # the errors there are all of a size
+LINEAR = "map"  # its errors are of similar size
 
 
 def look(name, seen):
-    """Colour by library, marker by what it does there."""
+    """Colour by library, marker by contestant of that library."""
     library = next((x for x in COLOURS if name.startswith(x)), "")
     mark = seen.setdefault(library, {})
     return COLOURS.get(library, "#000000"), MARKS[mark.setdefault(name, len(mark)) % len(MARKS)]

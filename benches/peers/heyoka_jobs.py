@@ -24,7 +24,7 @@ def system(hy, polynomial):
 
 
 def first_states(start):
-    """(n, 7): with sine, cosine and cotangent."""
+    """States (n, 7), with sine, cosine and cotangent."""
     s, c = np.sin(start[:, 0]), np.cos(start[:, 0])
     return np.concatenate([start, np.stack([s, c, c / s], axis=1)], axis=1)
 
@@ -47,7 +47,7 @@ def reference(ell, start):
 
 
 def eight(ell, start, tol, lanes=8):
-    """What finds the final states at t = 20, eight at a time."""
+    """A job that computes the final states at t = 20, eight motions at a time."""
     import heyoka as hy
 
     first, of, found = first_states(start), coefficients(ell), np.empty((ell.size, 4))
@@ -65,7 +65,7 @@ def eight(ell, start, tol, lanes=8):
 
 
 def alone(ell, start, tol):
-    """The same for one motion."""
+    """As `eight`, for the first motion alone."""
     import heyoka as hy
 
     first, of = first_states(start), coefficients(ell)
@@ -80,10 +80,11 @@ def alone(ell, start, tol):
 
 
 def refilled(ta, lanes, first, pars, until, ended):
-    """Motions eight at a time to their ends, by a batch integrator with events; a lane that is done takes the next motion.
+    """Motions eight at a time to their ends, by a batch integrator with events; a lane that is done takes the
+    next one.
 
-    `ended(code, time)` says what an outcome means. Each is told as (motion, code, time, lane, rounds of steps so far), while
-    its state stands in the lane.
+    `ended(code, time)` says whether an outcome is an end. Each end is yielded as (motion, code, time, lane,
+    rounds of steps so far) while its state is still in the lane.
     """
     n, steps = len(first), 0
     lane, todo, left = [k if k < n else -1 for k in range(lanes)], lanes, min(n, lanes)

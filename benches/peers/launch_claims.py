@@ -1,9 +1,9 @@
-"""Whether the errors that a sweep claims for launches hold: each of many launches beside heyoka in 80-bit arithmetic.
+"""Claimed errors of a sweep of launches, against heyoka in 80-bit arithmetic.
 
     python benches/peers/launch_claims.py [--count 10000]        needs heyoka; some minutes
 
-The launches are those of slip.py, of which those count that slip once and then roll. An error is the worst of t, theta,
-w1, w2, w3 and heat where slipping ends, a ratio that error over the claim.
+The launches are those of slip.py that slip once and then roll. An error is the worst of t, theta, w1, w2, w3
+and heat where slipping ends, a ratio that error over the claim.
 """
 
 import argparse

@@ -1,15 +1,17 @@
-"""spincyl beside NumPy, numba, SciPy and heyoka, whichever are installed, in one run: speed, error and ratios.
+"""spincyl beside NumPy, numba, SciPy and heyoka, whichever are installed, in one run: speed, error and
+ratios.
 
     python benches/peers/main.py [--docs] [--only JOB ...] [--quick] [--also PYTHON ...] [--narrow]
 
-Jobs: maps (grid and scattered points), motions (ensembles that go on), endings (random starts, most of which end),
-launches (with friction), whirrs (with losses), calls (single calls). `--docs` writes what was measured into
-docs/benchmarks.md, README.md and the figure; with `--only` it takes the last run of the other jobs, which is kept in
-target/peers.json, so that `--only` without a name writes all again and measures nothing. `--quick`: small jobs, to see that everything works. `--also`: other interpreters whose numba takes part in
-the maps (one with Intel's SVML: numba 0.61.2 and intel-cmplr-lib-rt). Times are the least of rounds that alternate the
-contestants; those of motions on one thread are its CPU time.
-`--narrow`: this run is of a build with lanes of AVX2 alone (`SPINCYL_COMPILED_LANES=one pip wheel .`); its times and
-ratios are kept in target/peers-narrow.json and stand in columns of their own. The others keep their registers.
+Jobs: maps (grid and scattered points), motions (ensembles that go on), endings (random starts, most of which
+end), launches (with friction), whirrs (with losses), calls (single calls). `--docs` writes the results into
+docs/benchmarks.md, README.md and the figure. With `--only` the results of the other jobs are those of their
+last run, which target/peers.json keeps, so that `--only` without a name writes everything again and measures
+nothing. `--quick`: small jobs, to see that everything works. `--also`: other interpreters whose numba takes
+part in the maps (one with Intel's SVML: numba 0.61.2 and intel-cmplr-lib-rt). Times are the least of rounds
+that alternate the contestants; those of motions on one thread are its CPU time. `--narrow`: this run is of a
+build with lanes of AVX2 alone (`SPINCYL_COMPILED_LANES=one pip wheel .`); its times and ratios are kept in
+target/peers-narrow.json and get columns of their own. The peers keep AVX-512.
 """
 
 import argparse
@@ -19,7 +21,7 @@ import re
 import sys
 import time
 
-sys.path.insert(1, str(pathlib.Path(__file__).parents[1]))  # after this folder: maps judge by benches/map.py
+sys.path.insert(1, str(pathlib.Path(__file__).parents[1]))  # after this folder, for maps.py
 import calls
 import endings
 import maps
@@ -39,7 +41,7 @@ JOBS = {
 }
 KEPT, NARROW = ROOT / "target" / "peers.json", ROOT / "target" / "peers-narrow.json"
 HEAD = ("job", "error at most", "spincyl", "AVX2", "best peer", "which", "times as fast", "AVX2")
-# what the README quotes: the best case, the general one, and what slips or loses energy, won or lost
+# the rows in the README: the best case, the general one, and slips and losses, whoever is faster
 QUOTED = (
     ("near-steady", 1e-6),
     ("near-steady", 1e-12),
@@ -65,7 +67,8 @@ def put(path, name, text):
 
 
 def rows(found):
-    """The rows of all jobs, with what a build with AVX2 alone took and was worth where that was measured."""
+    """The rows of all jobs, with the time and the ratio of a build with AVX2 alone where that was
+    measured."""
     kept = json.loads(NARROW.read_text()) if NARROW.exists() else {}
     narrow = {(row[0], row[1]): row for told in kept.values() for row in told["best"]}
     found = [row for told in found.values() for row in told["best"]]
@@ -78,7 +81,7 @@ def rows(found):
 
 
 def write(found):
-    """The pages and the figure."""
+    """Writes the pages and the figure."""
     docs = ROOT / "docs" / "benchmarks.md"
     for name, told in found.items():
         put(docs, name, told["text"])
@@ -113,7 +116,7 @@ def main():
         if told is None:
             print(f"\n{name}: there is no script that measures them")
             continue
-        # as the next run will read it
+        # in the form in which the next run reads it
         kept[name] = json.loads(json.dumps(told))
         print(f"\n## {name}, measured in {time.perf_counter() - began:.0f} s\n\n{told['text']}", flush=True)
         keeper.parent.mkdir(exist_ok=True)

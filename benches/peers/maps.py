@@ -16,7 +16,7 @@ import spincyl as sc
 
 
 def elsewhere(pythons):
-    """What numba says in other interpreters, which do not take part in the rounds."""
+    """The results of numba in other interpreters, which do not take part in the rounds."""
     found = []
     for python in pythons:
         library = pathlib.Path(python).parents[1] / "lib"

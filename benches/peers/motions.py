@@ -36,14 +36,14 @@ def of_numba(ell, start, step):
 
 
 def states_of(found):
-    """(n, 4) of whatever a contestant returned."""
+    """Final states (n, 4) from the result of any contestant."""
     if isinstance(found, np.ndarray):
         return found
     return np.stack([found[name].to_numpy() for name in ("theta", "w1", "w2", "w3")], axis=1)
 
 
 def contestants(ell, start, few):
-    """{(name, setting): (what to run, how many motions that are, which of them)}."""
+    """{(name, setting): (job, number of its motions, slice of those with a truth)}."""
     n, part, some = ell.size, slice(None, None, 8), slice(0, None, EVERY)
     jobs = {
         ("spincyl", tol): (of_spincyl(ell, start, tol=tol), n, some)
@@ -70,7 +70,7 @@ def contestants(ell, start, few):
 
 
 def told(name, tol, found, off):
-    """A row of who answered, and of errors true and claimed."""
+    """A row with the shares of the methods, and the true and claimed errors."""
     share = np.bincount(found["method"], minlength=5) / found["method"].size
     claimed = found["error"].to_numpy()
     ratio = (off / claimed[::EVERY]).max()

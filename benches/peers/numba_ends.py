@@ -1,4 +1,5 @@
-"""numba's part of job C: RK4 over one motion at a time, sine and cosine as state; an end is sought inside its step."""
+"""numba's part of job C: RK4 over one motion at a time, sine and cosine as state; ends are located within a
+step."""
 
 import math
 
@@ -52,7 +53,7 @@ def run(of, start, h, until, found):
             kind = ended(z, r)
             t = (n + 1) * h
             if kind:
-                # the last step again, ever shorter: where the first of its ends is
+                # bisection of the last step, for the first end in it
                 low, high = 0.0, h
                 for _ in range(45):
                     middle = (low + high) / 2

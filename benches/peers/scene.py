@@ -1,4 +1,5 @@
-"""The jobs that all contestants do: the map's axes and points, the ensemble, its reference, the clock."""
+"""The jobs that all contestants do: the axes and points of the map, the ensembles, the launches; and a
+timer."""
 
 import time
 
@@ -24,16 +25,16 @@ def axes(side=4000):
 
 
 def points(count=16_000_000):
-    """Scattered ones."""
+    """Inclinations and aspect ratios of scattered points."""
     random = np.random.default_rng(12345)
     return random.uniform(1e-3, np.pi / 2 - 1e-3, count), random.uniform(0.05, 3.0, count)
 
 
 def ensemble(kick, count=65_536, one_body=False):
-    """ell (n,) and theta, w1, w2, w3 (n, 4) of solid cylinders tilted at `kick` out of a steady state.
+    """ell (n,) and theta, w1, w2, w3 (n, 4) of solid cylinders, with w2 = `kick` added to a steady state.
 
-    A lattice that any language can build. With `one_body` they all have ell = 1.5. Each of the four lies in one
-    piece, as a State holds it; who wants rows copies them before the clock runs.
+    A lattice that any language can build. With `one_body` they all have ell = 1.5. Each of the four columns
+    is contiguous, as a State holds it; a contestant that needs rows copies them before its time is taken.
     """
     i = np.arange(count, dtype=np.int64)
     ell = np.full(count, 1.5) if one_body else 0.5 + 2.5 * (i + 0.5) / count
@@ -47,7 +48,7 @@ def ensemble(kick, count=65_536, one_body=False):
 
 
 def coefficients(ell):
-    """A, B, C and a/J, ell/J, b/J, 1/J of docs/physics.md, for a solid cylinder; (7, n)."""
+    """p, q, r and al/J, k/J, b/J, 1/J of docs/physics.md, section 6, for a solid cylinder; (7, n)."""
     i1, i3 = 0.25 + ell * ell / 3, 0.5
     d, j = i1 * i3 + i1 + i3 * ell * ell, i1 + 1 + ell * ell
     rows = [i3 * ell / d, i3 * (i3 + 1) / d, i1 / d, (i1 + ell * ell) / j, ell / j, (i3 + 1) / j, 1 / j]
@@ -78,7 +79,7 @@ def launches(count=10_000):
 
 
 def launched(w1, x, mu):
-    """The same of one's own w1, launch numbers and mu."""
+    """As `launches`, for given w1, launch numbers x and mu."""
     ell, i1, i3 = TUBE.values()
     w1, x, mu = (np.atleast_1d(np.asarray(k, dtype=float)) for k in (w1, x, mu))
     w3, zero = x * ell / (i3 * w1), np.zeros(w1.size)

@@ -20,7 +20,7 @@ def rates(_, y, k):
 
 
 def finals(ell, start, tol):
-    """What finds the final states at t = 20."""
+    """A job that computes the final states at t = 20."""
     from scipy.integrate import solve_ivp
 
     of = coefficients(ell).T.tolist()
@@ -37,7 +37,7 @@ def finals(ell, start, tol):
 
 
 def ends(ell, start, tol):
-    """What finds kind, time and last state of motions that end: (n, 6)."""
+    """A job that computes kind, time and last state (n, 6) of motions that end."""
     from scipy.integrate import solve_ivp
 
     of = np.concatenate([coefficients(ell), ell[None]]).T.tolist()

@@ -1,4 +1,4 @@
-"""Launches and whirrs, which scripts of their own measure: what they print, and its tables as points of the figure."""
+"""Launches and whirrs, which other scripts measure: their output, and its tables as points of the figure."""
 
 import pathlib
 import re
@@ -46,7 +46,7 @@ def contestants(rows):
 
 
 def measure(script, title, quick, count):
-    """None if there is no such script."""
+    """Runs a script and reads its tables; None if there is no such script."""
     if not (HERE / script).exists():
         return None
     wanted = ["--count", str(count // 20 if quick else count), "--quick"]

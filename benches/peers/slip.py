@@ -9,12 +9,12 @@ in which |u| decays exponentially towards the end, so that the end is a simple r
 the singularity. In t itself an integrator can jump over it. Events: a small |u|, and then one linear step
 to u = 0; N0 = 0, lift-off; cos theta = 0, the other end lands. The heat comes from the energy.
 
-Errors are the worst of t, theta, w1, w2, w3 and heat where u = 0 for the first time, against heyoka in
-80-bit arithmetic, which is tested against heyoka at 113 bits. A launch may pass u = 0 by: of 400 launches 5
-come closer than 1e-6, 2 closer than 1e-10 and one (number 5562) as near as 1e-15, before they slip on for
-another round. A first end found there is wrong by 1 or more, although the rolling that follows later is the
-same; the column `wrong` counts errors above 1e-3, `max` leaves them out. One is below what doubles can tell.
-Times are least CPU times of one thread.
+Errors are the worst of t, theta, w1, w2, w3 and heat where u = 0 for the first time, against heyoka in 80-bit
+arithmetic, which is tested against heyoka at 113 bits. A launch may pass close to u = 0 and slip on for
+another round: of 400 launches 5 come closer than 1e-6, 2 closer than 1e-10 and one (number 5562) as near as
+1e-15, which doubles cannot tell from u = 0. If its first end is taken to be there, the error is 1 or more,
+although the rolling that follows later is the same; the column `wrong` counts errors above 1e-3, `max` leaves
+them out. Times are least CPU times of one thread.
 """
 
 import argparse
@@ -74,7 +74,8 @@ def finish(first, last, mu):
 
 
 def system(hy, wide=False):
-    """Equations, and what is zero at |u| = par[1], at lift-off and where the other end lands."""
+    """Equations, and the expressions that vanish at |u| = par[1], at lift-off and where the other end
+    lands."""
     mu, small = hy.par[0], hy.par[1]
     g, z, w1, w2, w3, uh, u2, t = hy.make_vars("g", "z", "w1", "w2", "w3", "uh", "u2", "t")
     i1, i3 = (hy.par[2], hy.par[3]) if wide else (I1, I3)
@@ -84,7 +85,7 @@ def system(hy, wide=False):
 
     s, c = over(ELL * g + z, 1 + ELL * ELL), over(ELL * z - g, 1 + ELL * ELL)
     om = w1 / s
-    floor = 0.0 if wide else 1e-60  # for heyoka misses a few of the ends, and then 0/0 would follow
+    floor = 0.0 if wide else 1e-60  # heyoka misses a few of the ends, after which 0/0 would follow
     j, zw, r = i3 * w3 - i1 * (c * om), z * w2, hy.sqrt(uh * uh + u2 * u2 + floor)
     turn = w1 * j
     br, lift = g * r - mu * (z * uh), i1 - i1 * (zw * w2) + g * turn
@@ -140,7 +141,7 @@ def reference(first, mu, bits=64, small=1e-17):
 
 
 def cause(code, state, small):
-    """The event that heyoka's outcome means; 0 also where it missed the end and fell asleep at u = 0."""
+    """The event of an outcome of heyoka; 0 also where it missed the end and stays at u = 0."""
     return -code - 1 if -100 < code < 0 else 0 if math.hypot(state[5], state[6]) < small else -1
 
 
@@ -207,7 +208,7 @@ class Alone:
 
 
 class Compiled:
-    """numba's."""
+    """numba's integrator, of slip_numba.py."""
 
     def __init__(self, tol, small):
         from slip_numba import LANES, sweep
@@ -275,10 +276,12 @@ class Scipy:
 
 
 class Spincyl:
-    """spincyl's sweep until the tube rolls (or, with `whole`, to t = 200), with an error claimed for every launch.
+    """spincyl's sweep until the tube rolls (or, with `whole`, to t = 200), with an error claimed for every
+    launch.
 
-    The others stop where slip first ends, even if it goes on in another direction, and claim nothing. Errors are
-    those of launches with two phases, slipping and rolling."""
+    The others stop where slip first ends, even if it goes on in another direction, and claim no error. Errors
+    are those of launches with two phases, slipping and rolling.
+    """
 
     def __init__(self, tol, whole=False):
         self.body = sc.Body.tube(ELL, 0.8)

@@ -80,8 +80,9 @@ step = nb.njit(fastmath=True, error_model="numpy")(space["step"])
 def sweep(first, friction, tol, small, out, kind):
     """Fills out (n, 8) and kind (n,) with the state and the cause of each end; returns the steps of a lane.
 
-    The ends of steps are tested: the first one below `small` is close enough, and lift-off and the landing of
-    the other end are reported where they are found, at most a step late."""
+    Ends are tested after each step: the first |u| below `small` is close enough, and lift-off and the landing
+    of the other end are reported at most a step late.
+    """
     n, todo, left, steps = first.shape[0], 0, LANES, 0
     k, error = np.zeros((12, 8, LANES)), np.zeros((3, LANES))
     y, between, after = np.zeros((8, LANES)), np.zeros((8, LANES)), np.zeros((8, LANES))

@@ -2,15 +2,16 @@
 
     python benches/peers/stone.py [--rounds 7]
 
-The stone (semi-axes 20, 3 and 2 cm, the centre of mass 1 cm above the table, I/M = 2, 16 and 17 cm^2, I12 = -0.2 cm^2)
-spins at -5 rad/s, pushed by half a degree about both axes, and turns back. SciPy and heyoka solve the same equations
-of rolling for the vertical and the angular velocity; those of SciPy are written for plain Python numbers, which are faster
-here than arrays, and those of heyoka are expressions that it compiles, with the solution of the three linear equations by
-Cramer's rule. heyoka is asked for the state at the end; making its integrator is not counted.
+The stone (semi-axes 20, 3 and 2 cm, the centre of mass 1 cm above the table, I/M = 2, 16 and 17 cm^2, I12 =
+-0.2 cm^2) spins at -5 rad/s, tilted by half a degree about both axes, and reverses its spin. SciPy and heyoka
+solve the same equations of rolling for the vertical and the angular velocity; those of SciPy are written for
+plain Python numbers, which are faster here than arrays, and those of heyoka are expressions that it compiles,
+with the solution of the three linear equations by Cramer's rule. heyoka computes the state at the end; the
+time in which its integrator is made does not count.
 
-Errors are the worst number of the vertical and the angular velocity at the end, against heyoka in 80-bit arithmetic at
-1e-18, where that is installed, else against spincyl's own finest steps. Times are least CPU times of one thread, of rounds
-that alternate the contestants.
+Errors are the worst number of the vertical and the angular velocity at the end, against heyoka in 80-bit
+arithmetic at 1e-18, where that is installed, else against spincyl's own finest steps. Times are least CPU
+times of one thread, of rounds that alternate the contestants.
 """
 
 import argparse
@@ -25,7 +26,7 @@ UNIT = 20.0  # cm
 SECOND = (UNIT / 981.0) ** 0.5
 AXES = (1.0, 0.15, 0.1)
 I11, I22, I33, I12 = (x / UNIT**2 for x in (2.0, 16.0, 17.0, -0.2))
-LOW = -1.0 / UNIT  # the centre of mass, counted from the centre
+LOW = -1.0 / UNIT  # the centre of mass, from the centre of the ellipsoid
 SPIN, PUSH, END = -5.0 * SECOND, np.radians(0.5), 5.0 / SECOND
 TOLERANCES = (1e-6, 1e-8, 1e-10, 1e-12)
 
@@ -115,7 +116,7 @@ def by_heyoka(tol, wide=False):
 
 
 def least(runs, rounds):
-    """The least CPU time of each, in seconds, by rounds that alternate them."""
+    """The least CPU time of each job, in seconds, by rounds that alternate them."""
     best = dict.fromkeys(runs, np.inf)
     for name, run in runs.items():
         run()

@@ -52,7 +52,7 @@ def energy(theta, w1, w2, w3):
 
 
 def finish(state, last, at):
-    """t, theta, w1, w2, w3 and the energy that is lost (n, 6) of the last numbers."""
+    """t, theta, w1, w2, w3 and the energy that is lost (n, 6), from the last states."""
     _, _, cot, w1, w2, w3 = last.T
     theta = np.arctan(1 / cot)
     lost = energy(*state.T) - energy(theta, w1, w2, w3)
@@ -60,7 +60,8 @@ def finish(state, last, at):
 
 
 def system(hy, wide=False):
-    """Equations, and what is zero where the contact stops and at lift-off; psi' is negative on the way."""
+    """Equations, and the expressions that vanish where the contact stops and at lift-off; before, psi' <
+    0."""
     g, z, cot, w1, w2, w3 = hy.make_vars("g", "z", "cot", "w1", "w2", "w3")
     eps = hy.par[0]
     ell, i1, i3 = (hy.par[k] for k in (1, 2, 3)) if wide else (ELL, I1, I3)

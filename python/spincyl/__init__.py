@@ -5,6 +5,20 @@ rim radius R, mass M and gravity g are 1, so lengths are in R, times in sqrt(R/g
 them into metres and seconds, and the motions of a body that is `measured` are in SI. Angles are in radians.
 """
 
+# The layers from below, one a line. A module imports from its own layer and from those before it, wherever an
+# import stands; only for types may it know any other. `tests/test_house.py` reads this table.
+#
+# _input     numbers, units, words, threads, whole files: no physics, and nothing else of spincyl
+# .          the thin wrapper of `_core`: bodies, states, motions, laws of friction and loss
+# sweep      maps of steady states, and many motions at once
+# _studio    what bodies and motions look and sound like
+# data       what was measured, and what fits it
+# plot       pictures, also of what was measured
+# _pages     pages for a browser: recorded motions, and the core itself
+# __init__   this front door, which finds each name and the function behind each method in `_upward`
+# report     speed against error
+# cli        the command line, and `__main__`
+
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
@@ -20,6 +34,7 @@ from spincyl._scale import Scale
 from spincyl._state import State
 from spincyl._swing import Swing, swing
 from spincyl._throw import flicked, launch_number, pressed, thrown
+from spincyl._upward import HOMES
 
 if TYPE_CHECKING:
     from spincyl import data, loss, plot, sweep
@@ -27,10 +42,10 @@ if TYPE_CHECKING:
     from spincyl._ellipsoid import Ellipsoid, Rocking
     from spincyl._ellipsoid_motion import EllipsoidMotion
     from spincyl._ellipsoid_state import EllipsoidState
-    from spincyl._exposure import exposure
-    from spincyl._play import Play, play
-    from spincyl._scene import Scene, scene
-    from spincyl._view import View, view
+    from spincyl._pages.play import Play, play
+    from spincyl._pages.view import View, view
+    from spincyl._studio.exposure import exposure
+    from spincyl._studio.scene import Scene, scene
 
 __version__ = "0.1.0"
 __all__ = [
@@ -88,14 +103,28 @@ _LATER = {
     "EllipsoidMotion": "_ellipsoid_motion",
     "EllipsoidState": "_ellipsoid_state",
     "Rocking": "_ellipsoid",
-    "exposure": "_exposure",
-    "play": "_play",
-    "Play": "_play",
-    "scene": "_scene",
-    "Scene": "_scene",
-    "view": "_view",
-    "View": "_view",
+    "exposure": "_studio.exposure",
+    "play": "_pages.play",
+    "Play": "_pages.play",
+    "scene": "_studio.scene",
+    "Scene": "_studio.scene",
+    "view": "_pages.view",
+    "View": "_pages.view",
 }
+
+
+# and so are the functions behind methods of nouns that a layer above theirs carries out
+HOMES.update(
+    {
+        "Body.roll": ("spincyl._roll", "roll"),
+        "Comparison.plot": ("spincyl.plot", "comparison"),
+        "Drift.plot": ("spincyl.plot", "drift"),
+        "LossFit.plot": ("spincyl.plot", "losses"),
+        "Motion.plot": ("spincyl.plot", "motion"),
+        "Motion.sound": ("spincyl._studio.sound", "sound"),
+        "card": ("spincyl._studio.cards", "card"),
+    }
+)
 
 
 def __getattr__(name: str) -> Any:
@@ -107,15 +136,6 @@ def __getattr__(name: str) -> Any:
     found = getattr(import_module(f"spincyl.{room}"), name)
     globals()[name] = found
     return found
-
-
-def _card(self: Any) -> str:
-    """What a notebook shows of a noun; `_html` knows all nouns, and none of them knows it."""
-    return str(import_module("spincyl._html").card(self))
-
-
-for _noun in (Body, Motion, Scale, State, Swing):
-    setattr(_noun, "_repr_html_", _card)  # noqa: B010 (mypy knows no such attribute)
 
 
 def __dir__() -> list[str]:

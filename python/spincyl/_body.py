@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self, overload
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import (
+from spincyl._input.equality import compared
+from spincyl._input.numbers import (
     Reals,
     Result,
+    alike,
     elementwise,
     fitting,
     is_scalar,
@@ -24,16 +26,15 @@ from spincyl._array import (
     si,
     turns_per_second,
 )
-from spincyl._equal import compared
+from spincyl._input.reprs import is_lazy
 from spincyl._laws import Laws
-from spincyl._repr import FIELDS, body, is_lazy
+from spincyl._repr import FIELDS, body
 from spincyl._scale import Scale, dubious
 from spincyl._state import State
-from spincyl._units import alike
+from spincyl._upward import above
 
 if TYPE_CHECKING:
     from spincyl._motion import Motion
-
 
 # looked up once: a single rate costs little more than these
 _rate_of_one, _float64 = _core.rate_of_one, np.float64
@@ -143,9 +144,7 @@ class Body(Laws):
         depth = ell if is_scalar(fillet) and fillet == 0 else ell - fillet
         theta_end: Reals = np.nan
         if is_lazy(fillet) or np.any(np.asarray(fillet) == 1):
-            # a capsule lands on its other side; NaN where there is none
-            with np.errstate(invalid="ignore"):
-                theta_end = np.pi / 2 * np.sqrt(2.0 * ((fillet == 1) & (depth > 0)) - 1.0)
+            theta_end = _core.capsule_end(ell, fillet)
         # the moments of a tube follow from its bore
         return cls(depth, np.nan, np.nan, bore, fillet, theta_end)
 
@@ -258,9 +257,10 @@ class Body(Laws):
         """The same body in natural units: without its scale."""
         return self if self.scale is None else self._natural
 
-    if TYPE_CHECKING:  # `_roll`, which knows bodies and motions, gives it
-
-        def roll(self, state: State, t: Reals, **how: Any) -> "Motion": ...
+    def roll(self, state: State, t: Reals, **how: Any) -> "Motion":
+        """How it moves on from a state: `spincyl.roll` of this body, in seconds if it is measured."""
+        found: Motion = above("Body.roll")(self, state, t, **how)
+        return found
 
     # Steady states with the centre at rest.
 
@@ -388,10 +388,11 @@ class Body(Laws):
         w1, w3 = (f(theta, precession, *numbers) for f in (_core.circular_w1, _core.circular_w3))
         return State(theta, w1, w1 * 0.0, w3)
 
-    # Python's own questions.
-
     def __repr__(self) -> str:
         return body(self)
+
+    def _repr_html_(self) -> str:
+        return str(above("card")(self))
 
     def _sized(self, what: str) -> Scale:
         """Its scale, or AttributeError that says how it gets one."""

@@ -1,9 +1,9 @@
 """A motion as labelled arrays of xarray's, and as a table of pandas'."""
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
-from spincyl._array import extra
 from spincyl._contact import named
+from spincyl._input.numbers import extra
 from spincyl._phases import told
 from spincyl._scale import unit
 
@@ -14,7 +14,8 @@ if TYPE_CHECKING:
     from spincyl._motion import Motion
 
 #: Of what has several components: their axis, their names on it, and those of columns.
-_AXES = {
+Components: TypeAlias = dict[str, tuple[str, list[str], list[str]]]
+AXES: Components = {
     "w": ("axis", ["e1", "e2", "e3"], ["w1", "w2", "w3"]),
     "contact_point": ("plan", ["x", "y"], ["contact_x", "contact_y"]),
     "centre": ("space", ["x", "y", "z"], ["centre_x", "centre_y", "centre_z"]),
@@ -22,18 +23,6 @@ _AXES = {
     "orientation": ("quaternion", ["x", "y", "z", "w"], [f"orientation_{axis}" for axis in "xyzw"]),
     "slip": ("direction", ["along the lean", "across"], ["slip_along", "slip_across"]),
 }
-
-
-#: The same of a stone, whose axes are those of the ellipsoid.
-_STONE = {
-    "vertical": ("axis", ["1", "2", "3"], ["n1", "n2", "n3"]),
-    "w": ("axis", ["1", "2", "3"], ["w1", "w2", "w3"]),
-    "slip": ("plan", ["x", "y"], ["slip_x", "slip_y"]),
-}
-
-
-def _axes(m: "Motion") -> dict[str, tuple[str, list[str], list[str]]]:
-    return _AXES | _STONE if "vertical" in m._extra else _AXES
 
 
 def wanted(m: "Motion") -> dict[str, tuple[Any, str]]:
@@ -49,14 +38,14 @@ def wanted(m: "Motion") -> dict[str, tuple[Any, str]]:
 def columns(m: "Motion") -> dict[str, tuple[Any, str]]:
     """The same in columns (n,)."""
     found: dict[str, tuple[Any, str]] = {}
-    axes = _axes(m)
+    axes = m._axes
     for name, (values, said) in wanted(m).items():
         parts = zip(axes[name][2], values.T, strict=True) if name in axes else [(name, values)]
         found |= {part: (x, said) for part, x in parts}
     return found
 
 
-def table(m: "Motion") -> "pandas.DataFrame":
+def frame(m: "Motion") -> "pandas.DataFrame":
     """Everything that was wanted of a motion as a table by times, with units."""
     lib: Any = extra("pandas", "sweep")
     told_ = columns(m)
@@ -71,23 +60,21 @@ def labelled(m: "Motion") -> "xarray.Dataset":
     """Everything that was wanted of a motion, with units."""
     lib: Any = extra("xarray", "sweep")
     data: dict[str, Any] = {}
-    axes = _axes(m)
+    axes = m._axes
     coords: dict[str, Any] = {"t": ("t", m.t, {"units": unit("t", m.scale)[1]})}
     for name, (values, said) in wanted(m).items():
         dims = ("t", axes[name][0]) if name in axes else ("t",)
         data[name] = dims, values, {"units": said}
         if name in axes:
             coords[axes[name][0]] = axes[name][1]
-    attrs = {
+    attrs: dict[str, Any] = {
         "status": m.status.name.lower(),
         "message": m.message,
         "contact": named(m.contact),
         "method": m.method,
         "error": m.error,
     }
-    attrs |= {name: getattr(m.body, name) for name in ("ell", "i1", "i3") if hasattr(m.body, name)}
-    if "vertical" in m._extra:
-        attrs["body"] = repr(m.body)
+    attrs |= m._about()
     if m.scale is not None:
         attrs |= {"radius": m.scale.radius, "mass": m.scale.mass, "gravity": m.scale.gravity}
     if m.losses is not None:

@@ -7,16 +7,26 @@ from typing import Any, TypeVar
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Reals, Result, elementwise, is_scalar, kept, made, reals, refuse, several, si
 from spincyl._body import Body
-from spincyl._equal import key
-from spincyl._repr import call
+from spincyl._input.equality import key
+from spincyl._input.numbers import (
+    Reals,
+    Result,
+    elementwise,
+    is_scalar,
+    kept,
+    made,
+    reals,
+    refuse,
+    several,
+    si,
+)
+from spincyl._input.reprs import call
 from spincyl._scale import Scale, other, scale_of
 from spincyl._state import State, numbers
 
-#: Name of each law with its place among the coefficients, and exponents, in the order of the core.
-_PLACES = {name: place for place, (name, _, _) in enumerate(_core.loss_laws())}
-_EXPONENTS = [exponent for _, _, exponent in _core.loss_laws()]
+#: Name of the coefficient and exponent of each law, in the order of the core.
+_LAWS = dict(_core.loss_laws())
 _MOST = 1e6
 _Kind = TypeVar("_Kind", bound="Law")
 _EXPECTED = "expected a positive number: a loss takes energy"
@@ -35,10 +45,8 @@ class Loss:
     @property
     def _coefficients(self) -> list[Reals]:
         """The coefficient of each law in the order of the core, 0 of what is absent."""
-        found: list[Reals] = [0.0] * len(_PLACES)
-        for law in self.laws:
-            found[law._place] = law.coefficient
-        return found
+        own = {law._parameter: law.coefficient for law in self.laws}
+        return [own.get(name, 0.0) for name in _LAWS]
 
     @elementwise
     def power(self, body: Body, state: State, normal: Reals = 1.0) -> Result:
@@ -110,11 +118,6 @@ class Law(Loss):
         object.__setattr__(self, name, kept(found))
 
     @property
-    def _place(self) -> int:
-        """Its place among the coefficients of the core, which knows it by the name of its class."""
-        return _PLACES[type(self).__name__]
-
-    @property
     def _parameter(self) -> str:
         """The name of the coefficient."""
         return fields(self)[0].name  # type: ignore[arg-type]
@@ -133,7 +136,7 @@ class Law(Loss):
     @property
     def exponent(self) -> float | None:
         """The power of the time that is left as which theta of a thin disk falls; None if it never stops."""
-        return _EXPONENTS[self._place]
+        return _LAWS[self._parameter]
 
     @property
     def laws(self) -> "tuple[Law, ...]":

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from spincyl._array import Floats, is_scalar
+from spincyl._input.numbers import Floats, is_scalar
 from spincyl._loss import made_law
 
 _WHY = {

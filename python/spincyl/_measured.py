@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from spincyl._array import Floats, Reals, number, reals, si, within
 from spincyl._body import Body
+from spincyl._input.numbers import Floats, Reals, number, reals, si, within
 from spincyl._scale import Scale, dubious, unit
 
 if TYPE_CHECKING:

@@ -1,28 +1,29 @@
 """Motion: how a body rolls, slides or slips on from a state."""
 
-import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from spincyl import _core
-from spincyl._array import Floats, Reals, si
-from spincyl._asked import Asked, Want, chosen, times_of
+from spincyl._asked import Asked, Want, chosen, crossing, times_of
 from spincyl._body import Body
-from spincyl._contact import AnyContact, named, table
+from spincyl._contact import AnyContact, named
 from spincyl._ending import Ending, Event
-from spincyl._equal import compared
+from spincyl._input.equality import compared
+from spincyl._input.numbers import Floats, Reals, si
+from spincyl._labelled import AXES, Components, frame, labelled
 from spincyl._measured import in_si, natural_time, speaking, told
 from spincyl._phases import Phase, phases, slipping
 from spincyl._scale import Scale
 from spincyl._state import State
 from spincyl._swing import single, single_slip
 from spincyl._told import message
+from spincyl._upward import above
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -127,6 +128,7 @@ class Motion:
     _extra: dict[str, Any]
     _phases: tuple[Phase, ...] | None = None
     _natural: "Motion | None" = None  # what a motion in SI was found as
+    _axes: ClassVar[Components] = AXES
 
     @property
     def scale(self) -> Scale | None:
@@ -248,8 +250,6 @@ class Motion:
 
     def to_xarray(self) -> "xarray.Dataset":
         """Everything that was wanted, labelled, with units; needs spincyl[sweep]."""
-        from spincyl._labelled import labelled
-
         return labelled(self)
 
     def to_dataframe(self) -> "pandas.DataFrame":
@@ -257,9 +257,7 @@ class Motion:
 
         ``attrs["units"]`` has the unit of each column and of the index.
         """
-        from spincyl._labelled import table
-
-        return table(self)
+        return frame(self)
 
     def wanting(self, *want: Want | Iterable[Want], t: Reals | None = None) -> "Motion":
         """The same motion with more of it, or at other times `t`, computed anew if it has to be.
@@ -312,9 +310,8 @@ class Motion:
 
     def plot(self, axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
         """Draw inclination, path and contact force: see `spincyl.plot.motion`."""
-        import spincyl
-
-        return spincyl.plot.motion(self, axes)
+        drawn: list[Axes] = above("Motion.plot")(self, axes)
+        return drawn
 
     def sound(
         self,
@@ -349,9 +346,8 @@ class Motion:
         OSError
             If it cannot be written. A file that is there stays until the new one is complete.
         """
-        from spincyl._sound import sound
-
-        return sound(self, path, seconds, scale, rate)
+        written: Path = above("Motion.sound")(self, path, seconds, scale, rate)
+        return written
 
     def _told(self, name: str, values: Floats) -> Floats:
         """Numbers in natural units in those of the motion."""
@@ -363,6 +359,25 @@ class Motion:
         angle: Floats = 2 * np.pi * turns + rest
         return angle
 
+    # What a motion of another kind of body says otherwise.
+
+    @property
+    def _by_steps(self) -> bool:
+        """Whether all of it was found by steps within a tolerance."""
+        return self.losses is not None
+
+    @property
+    def _doubt(self) -> str:
+        """Until when it is known, in words; empty of a motion that is known to its end."""
+        return ""
+
+    def _about(self) -> dict[str, Any]:
+        """The body, as a labelled result has it."""
+        return {name: getattr(self.body, name) for name in ("ell", "i1", "i3")}
+
+    def _repr_html_(self) -> str:
+        return str(above("card")(self))
+
     def __repr__(self) -> str:
         wanted = "".join(f", {name}" for name in self._extra)
         return f"<Motion of {self.body!r}: {self.t.size} times, theta, w{wanted}; {self.message}>"
@@ -370,25 +385,9 @@ class Motion:
 
 def rolled(body: Body, state: State, asked: Asked, numbers: tuple[_Six, _Four] | None = None) -> Motion:
     """The motion that was asked for, without a warning; `numbers` are those of body and state, if known."""
-    times, t0, step, tol, _, contact, mu, beyond, want, restitution, losses = asked
     of, start = numbers or single(body, state)
-    # options that are the default do not cross, since telling them would take longer than a short motion may
-    options: dict[str, Any] = {"t0": t0} if t0 else {}
-    if contact != "rolling" or mu != math.inf:
-        options["table"], options["coefficients"] = table(contact, mu)
-    if step is not None or tol is not None:
-        options |= {"step": step, "tol": tol}
-    if want:
-        options |= {"pose": "pose" in want, "force": "force" in want}
-    if beyond:
-        options["beyond"] = True
-    if state.slip is not None:
-        options["slip"] = single_slip(state)
-    if losses is not None:
-        options["losses"] = losses._coefficients
-    if restitution is not None:
-        options["restitution"] = 0.0
-    found = _core.roll(of, start, times, options)
+    slip = None if state.slip is None else single_slip(state)
+    found = _core.roll(of, start, asked.times, crossing(asked, slip))
     status = ENDINGS[found["status"]]
     event = None
     if "event" in found:
@@ -398,7 +397,7 @@ def rolled(body: Body, state: State, asked: Asked, numbers: tuple[_Six, _Four] |
     found |= {
         "body": body,
         "start": state,
-        "contact": contact,
+        "contact": asked.contact,
         "status": status,
         "event": event,
         "_asked": asked,

@@ -5,8 +5,8 @@ from typing import Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
 
-from spincyl._array import number
 from spincyl._contact import AnyContact, Coulomb, Viscous
+from spincyl._input.numbers import number
 from spincyl._state import State, gripping
 
 Kind: TypeAlias = Literal["rolling", "slipping"]

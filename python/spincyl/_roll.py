@@ -2,15 +2,15 @@
 
 import warnings
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, Any, TypeGuard, overload
 
 import numpy as np
 
-from spincyl._array import Reals, number, si, warn
 from spincyl._asked import Method, Want, ask, times_of
 from spincyl._body import Body
 from spincyl._contact import AnyContact, fitting
 from spincyl._ending import Ending, ErrorWarning
+from spincyl._input.numbers import Reals, number, si, warn
 from spincyl._measured import in_si, natural_time, speaking
 from spincyl._motion import Motion, rolled
 from spincyl._state import State
@@ -25,6 +25,15 @@ if TYPE_CHECKING:
 
 class StepWarning(UserWarning):
     """A fixed step is so large that it takes a part of the nutation away, or blurs the precession."""
+
+
+def is_stone(body: object) -> TypeGuard["Ellipsoid"]:
+    """Whether this is a stone and no body of revolution: what stones need is loaded where it may be one."""
+    if type(body) is Body:
+        return False
+    from spincyl._ellipsoid import Ellipsoid
+
+    return isinstance(body, Ellipsoid)
 
 
 @overload
@@ -168,7 +177,7 @@ def roll(
     >>> sc.roll(hoop, thrown, 20.0, contact=sc.Coulomb(0.25)).phases
     ((0, 'slipping'), (10, 'rolling'))
     """
-    if type(body) is not Body and hasattr(body, "rocking"):
+    if is_stone(body):
         from spincyl import _ellipsoid_motion as stones
 
         given: dict[str, Any] = {
@@ -180,19 +189,20 @@ def roll(
             "mu": mu,
         }
         given |= {"want": want, "beyond": beyond, "restitution": restitution, "losses": losses}
-        stone: Any = body
-        found = stones.roll(stone, state, t, **given)  # type: ignore[arg-type]  # it refuses another state
+        found = stones.roll(body, state, t, **given)  # type: ignore[arg-type]  # it refuses another state
         if found._doubt:
             why = f"beyond, its estimated error comes to {found.error:.2g}"
             warn(f"the motion is {found._doubt} (known_until): {why}", ErrorWarning)
         return found
-    start: State = state  # type: ignore[assignment]  # `single` refuses another
-    numbers = single(body, start)
-    scale, seconds, given_step = body.scale, t, step
+    # `single` refuses others
+    one: Body = body  # type: ignore[assignment]
+    start: State = state  # type: ignore[assignment]
+    numbers = single(one, start)
+    scale, seconds, given_step = one.scale, t, step
     if losses is not None and scale is not None:
         from spincyl._loss import made_law
 
-        made_law(losses, body)
+        made_law(losses, one)
     if scale is not None:
         fitting(contact, scale)
         seconds = si("t", t, "second")
@@ -202,10 +212,10 @@ def roll(
         )
     with speaking(scale):
         asked = ask(start, t, t0, step, tol, method, contact, mu, beyond, want, restitution, losses)
-        m = rolled(body if scale is None else body.natural, start, asked, numbers)
+        m = rolled(one if scale is None else one.natural, start, asked, numbers)
     if scale is not None:
         step = None if step is None else number("step", si("step", given_step, "second"))
-        m = in_si(m, body, times_of(seconds), step)
+        m = in_si(m, one, times_of(seconds), step)
     if m.status == Ending.BOUNDED:
         at = f"t = {m.event.time:.6g}" + (" s" if scale is not None else "") if m.event else "its start"
         told = f"given up at {at}: the motion slips and rolls by turns too often, or hardly advances"
@@ -216,12 +226,3 @@ def roll(
             why = "more than 0.3 rad of precession or 0.5 rad of nutation in a step"
         warnings.warn(f"step = {step!r}: {why}; {m.advice:.2e} would do, or tol=", StepWarning, stacklevel=2)
     return m
-
-
-def _moved(self: Body, state: State, t: Reals, **how: Any) -> Motion:
-    """How it moves on from a state: `spincyl.roll` of this body, in seconds if it is measured."""
-    return roll(self, state, t, **how)
-
-
-_moved.__name__, _moved.__qualname__ = "roll", "Body.roll"
-Body.roll = _moved  # type: ignore[method-assign]

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, overload
 
 from spincyl import _core
-from spincyl._array import Reals, Result, elementwise, number, reals, si
-from spincyl._equal import compared
+from spincyl._input.equality import compared
+from spincyl._input.numbers import Reals, Result, elementwise, number, reals, si
+from spincyl._upward import above
 
 if TYPE_CHECKING:
     from spincyl._body import Body
@@ -108,6 +109,9 @@ class Scale:
     def turns(self, angular_velocity: Reals) -> Result:
         """Turns per second of an angular velocity in sqrt(g/R)."""
         return reals("angular_velocity", angular_velocity) * self._units[3]
+
+    def _repr_html_(self) -> str:
+        return str(above("card")(self))
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Scale, (self.radius, self.mass, self.gravity)

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import (
+from spincyl._input.equality import compared
+from spincyl._input.numbers import (
     Reals,
     Result,
     elementwise,
@@ -19,9 +20,9 @@ from spincyl._array import (
     reals,
     si,
 )
-from spincyl._equal import compared
-from spincyl._repr import call, is_lazy, text
+from spincyl._input.reprs import call, is_lazy, text
 from spincyl._scale import Scale, scale_of
+from spincyl._upward import above
 
 if TYPE_CHECKING:
     from spincyl._body import Body
@@ -144,6 +145,9 @@ class State:
     def __repr__(self) -> str:
         four = {"theta": self.theta, "w1": self.w1, "w2": self.w2, "w3": self.w3}
         return call("State", **four, **({} if self.slip is None else {"slip": self.slip}))
+
+    def _repr_html_(self) -> str:
+        return str(above("card")(self))
 
     @property
     def _numbers(self) -> tuple[Reals, Reals, Reals, Reals]:

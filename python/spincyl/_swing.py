@@ -5,12 +5,13 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import is_scalar, made
 from spincyl._body import Body
 from spincyl._contact import Contact, code
-from spincyl._equal import compared
+from spincyl._input.equality import compared
+from spincyl._input.numbers import is_scalar, made
 from spincyl._scale import Scale
 from spincyl._state import State, gripping, numbers
+from spincyl._upward import above
 
 
 @compared
@@ -34,6 +35,9 @@ class Swing(NamedTuple):
     def nutation(self) -> float:
         """Angular frequency, 2 pi over the period."""
         return 2 * np.pi / self.period
+
+    def _repr_html_(self) -> str:
+        return str(above("card")(self))
 
 
 def swing(body: Body, state: State, contact: Contact = "rolling") -> Swing:

@@ -5,7 +5,8 @@ from collections.abc import Callable
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import (
+from spincyl._body import Body
+from spincyl._input.numbers import (
     Reals,
     Result,
     elementwise,
@@ -18,7 +19,6 @@ from spincyl._array import (
     si,
     turns_per_second,
 )
-from spincyl._body import Body
 from spincyl._scale import Scale, scale_of
 from spincyl._state import State, numbers
 

@@ -23,7 +23,7 @@ def message(m: "Motion") -> str:
     errors = f"error about {m.error:.1e}{pose}{force}"
     if m.method == "dop853":
         phases = told(m._phases or (), _second(m))
-        return "; ".join(filter(None, (why, phases, _how(m), errors, getattr(m, "_doubt", ""))))
+        return "; ".join(filter(None, (why, phases, _how(m), errors, m._doubt)))
     return f"{why}; found {_how(m)}, {errors}"
 
 
@@ -40,7 +40,7 @@ def _second(m: "Motion") -> str:
 
 
 def _how(m: "Motion") -> str:
-    if m.losses is not None or "vertical" in m._extra:
+    if m._by_steps:
         return f"found by steps within {m._setting:g}"
     if m._phases is not None:
         return how_found(m._phases, m._setting)

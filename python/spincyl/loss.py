@@ -29,8 +29,8 @@ from typing import Self, TypeVar
 
 import numpy as np
 
-from spincyl._array import Reals, Result, fitting
 from spincyl._body import Body
+from spincyl._input.numbers import Reals, Result, fitting
 from spincyl._loss import Law, Loss, Sum, arm, over, positive, sized, units
 from spincyl._scale import Scale
 

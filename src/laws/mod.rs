@@ -1,4 +1,4 @@
-//! The laws of physics: bodies, their states, the forces of a table, and what takes energy from a motion.
+//! The laws of physics: bodies, their states, the forces of a table, and the losses of energy.
 
 pub mod body;
 pub mod contact;

@@ -7,9 +7,9 @@
 //! smooth: below the centre at rest,   (x, y) - g (cos phi, sin phi) = const
 //! axes of the body = Rz(phi) Ry(-theta) Rz(psi)
 //! ```
-//! Motions start at phi = psi = 0 with the contact point at the origin: e2 = y, and e1 leans toward +x. Angles are kept
-//! as whole turns and a remainder, so that a long motion loses no digits of the direction: `rest` is exact to 1e-16
-//! beyond the error of the angle itself.
+//! Motions start at phi = psi = 0 with the contact point at the origin: e2 = y, and e1 leans toward +x.
+//! Angles are kept as whole turns and a remainder, so that a long motion loses no digits of the direction:
+//! `rest` adds 1e-16 to the error of the angle.
 
 use super::body::Body;
 use super::state::State;
@@ -38,7 +38,7 @@ impl Angle {
         Self { turns, rest }.settled()
     }
 
-    /// The same angle with the remainder brought back into [-pi, pi].
+    /// The same angle with the remainder in [-pi, pi].
     pub(crate) fn settled(self) -> Self {
         if self.rest.abs() <= PI {
             return self;

@@ -63,9 +63,9 @@ impl State {
         Vector3::new(self.w1, self.w2, self.w3)
     }
 
-    /// gamma: angle from the symmetry axis to the angular velocity, in [0, pi]; 0 of a body at rest.
+    /// gamma: angle from the symmetry axis to the angular velocity, in [0, pi]; 0 for a body at rest.
     pub fn gamma(&self) -> f64 {
-        // The sum turns -0 into 0.
+        // Adding 0 turns -0 into 0, so that the angle is 0 and not pi.
         self.w1.hypot(self.w2).atan2(self.w3 + 0.0)
     }
 
@@ -85,8 +85,9 @@ impl State {
         self.point_velocity(body, Vector3::zeros())
     }
 
-    /// Speed of the point O opposite to the contact point, beyond the centre; O of a sharp tube is the uppermost point
-    /// of its upper rim. The speed is zero where the centre is at rest, and the eye then sees a letter at O.
+    /// Speed of the point O opposite to the contact point, beyond the centre; O of a sharp tube is the
+    /// uppermost point of its upper rim. Where the centre is at rest this speed is zero, and a symbol painted
+    /// at O seems to stand still.
     pub fn speed_o(&self, body: &Body) -> f64 {
         self.point_velocity(body, -self.contact_arm(body)).norm()
     }
@@ -97,9 +98,9 @@ impl State {
         self.point_velocity(body, Vector3::new(-arm.x, 0.0, arm.z)).norm()
     }
 
-    /// Radius |psi'/phi'| of the circle on the table along which the contact point runs, in units of the circle of
-    /// contact on the body (R for a sharp rim). Where the centre rests, this is also the number of letters per turn
-    /// that seem to stand still, seen from above.
+    /// Radius |psi'/phi'| of the circle on the table along which the contact point runs, in units of the
+    /// circle of contact on the body (R for a sharp rim). Where the centre rests, this is also the number of
+    /// still symbols per turn, seen from above.
     pub fn contact_radius(&self) -> f64 {
         (self.spin() / self.precession()).abs()
     }
@@ -117,7 +118,7 @@ impl State {
         Vector3::new(-rim.radius(angle), 0.0, -rim.depth(angle))
     }
 
-    /// Velocity of the body's point at `p` from the centre, while the contact point rests.
+    /// Velocity of the body's point at `p` from the centre of mass, while the contact point rests.
     fn point_velocity(&self, body: &Body, p: Vector3<f64>) -> Vector3<f64> {
         self.angular_velocity().cross(&(p - self.contact_arm(body)))
     }

@@ -7,13 +7,13 @@
 //!           Q = -u0/(1 + ell^2/I1 + 1/I3) within +-mu J (cos beta + f sin beta),   u0 = u where Q = 0
 //! launch number   x = I3 w1 w3/ell,   it rises where x > 1
 //! ```
-//! The axis of the body is horizontal. A finger presses on the upper rim, at the angle beta from its top, with the
-//! impulse J; it drags the surface downwards with the coefficient of friction f. The table holds that end from below
-//! and exerts the horizontal impulse Q, at most mu of the table times the vertical impulse: Q lets that end roll or, if
-//! that needs more, is the largest impulse against its slip. The other end bears nothing during the push, so that every
-//! horizontal impulse acts at the end under the finger: v_2 = -(I1/ell) w1, whatever the finger does. The impulses are
-//! those of Newton's and Euler's equations; the launch is that of Jackson et al., Am. J. Phys. 87, 85 (2019), Sec. I.
-//!
+//! The axis of the body is horizontal. A finger presses on the upper rim, at the angle beta from its top,
+//! with the impulse J, and drags the surface downwards with the coefficient of friction f. The table supports
+//! that end. Its horizontal impulse Q makes that end roll or, if this needs too much friction, is mu of the
+//! table times the vertical impulse, against the slip. The other end bears nothing during the push, so that
+//! every horizontal impulse acts at the end under the finger: v_2 = -(I1/ell) w1 for any push. The impulses
+//! are those of Newton's and Euler's equations; the launch is that of Jackson et al., Am. J. Phys. 87, 85
+//! (2019), Sec. I.
 //! Error: 8 ulp of the largest term; a test of `throw` compares with a three-dimensional model.
 
 use super::body::Body;
@@ -24,7 +24,8 @@ use core::f64::consts::{FRAC_PI_2, PI};
 
 /// The largest impulse, velocity or coefficient of friction that is accepted.
 const MOST: f64 = 1e100;
-/// What rounding makes of theta = pi/2 and of w2 = 0 at most.
+/// Largest deviation from theta = pi/2 and from w2 = 0 that is taken for rounding; beyond it a body has no
+/// launch number.
 const LEVEL: f64 = 1e-9;
 
 /// The state of a body thrown on edge (a hoop, a coin, or a can on its side), and the slip of its rim along e_h and e2.
@@ -104,8 +105,8 @@ pub fn recoil(body: &Body, w1: f64) -> f64 {
 
 /// x = I3 w1 w3/ell of a body on its side, which rises on its lower rim where x > 1, and on the other where x < -1.
 ///
-/// NaN of a body that is not on its side, theta = pi/2 with w2 = 0 up to rounding. The number x is without friction along
-/// the axis; [`landing::launch`] includes this friction.
+/// NaN for a body that is not on its side (theta = pi/2 and w2 = 0, up to rounding). The number x leaves out
+/// friction along the axis; [`landing::launch`] includes it.
 pub fn launch_number(body: &Body, y: &State) -> f64 {
     let lies = (y.theta - FRAC_PI_2).abs() <= LEVEL && y.w2.abs() <= LEVEL;
     if lies { body.i3() * y.w1 * y.w3 / body.ell() } else { f64::NAN }

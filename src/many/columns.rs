@@ -1,6 +1,8 @@
-//! Columns of numbers: each column has the length n, or is a single number for all rows.
+//! Columns: those that are read have the length n each, or are a single number for all rows; those that are
+//! filled fall into blocks of rows.
 
-/// The number of rows.
+use crate::error::{Error, room};
+
 pub(crate) fn rows<'a>(mut columns: impl Iterator<Item = &'a [f64]>) -> usize {
     columns.find(|x| x.len() != 1).map_or(1, <[f64]>::len)
 }
@@ -10,7 +12,59 @@ pub(crate) fn fit<'a>(mut columns: impl Iterator<Item = &'a [f64]>, count: usize
     columns.all(|x| x.len() == 1 || x.len() == count)
 }
 
-/// The number of a column in a row.
+/// The number in a row of a column.
 pub(crate) fn at(column: &[f64], row: usize) -> f64 {
     column[if column.len() == 1 { 0 } else { row }]
+}
+
+/// Columns to be filled, which can be parted at a row.
+pub(crate) trait Split: Sized {
+    /// The first `rows` rows, and the others.
+    fn split(self, rows: usize) -> (Self, Self);
+}
+
+impl<T> Split for &mut [T] {
+    fn split(self, rows: usize) -> (Self, Self) {
+        self.split_at_mut(rows)
+    }
+}
+
+impl<C: Split> Split for Option<C> {
+    fn split(self, rows: usize) -> (Self, Self) {
+        self.map(|columns| columns.split(rows)).unzip()
+    }
+}
+
+impl<C: Split, const N: usize> Split for [C; N] {
+    fn split(self, rows: usize) -> (Self, Self) {
+        let mut later: [Option<C>; N] = [const { None }; N];
+        let mut places = later.iter_mut();
+        let first = self.map(|column| {
+            let (first, rest) = column.split(rows);
+            if let Some(place) = places.next() {
+                *place = Some(rest);
+            }
+            first
+        });
+        (first, later.map(|rest| rest.expect("as many as there are columns")))
+    }
+}
+
+/// A block of rows: the first row, the number of rows, and their part of the columns.
+pub(crate) struct RowBlock<C> {
+    pub first: usize,
+    pub count: usize,
+    pub out: C,
+}
+
+/// The columns in blocks of `size` rows.
+pub(crate) fn blocks<C: Split>(out: C, count: usize, size: usize) -> Result<Vec<RowBlock<C>>, Error> {
+    let (mut rest, mut blocks) = (Some(out), room(count.div_ceil(size))?);
+    for first in (0..count).step_by(size) {
+        let count = size.min(count - first);
+        let (out, after) = rest.split(count);
+        rest = after;
+        blocks.extend(out.map(|out| RowBlock { first, count, out }));
+    }
+    Ok(blocks)
 }

@@ -8,13 +8,13 @@ use crate::motions::Path;
 use crate::motions::followed::Followed;
 use crate::motions::stone::check;
 use crate::motions::stone::followed;
-use crate::motions::stone::known::Noted;
+use crate::motions::stone::known::Recorded;
 use crate::motions::stone::turns::Reversals;
 use crate::motions::{Ask, Motion, Moving, Start};
 use core::cell::RefCell;
 
-/// The numbers of one motion: its stone, the vertical and w of its start, its slip, and the coefficients of friction where
-/// these are its own.
+/// The numbers of one motion: its stone, the vertical, w and slip of its start, and its own coefficients of
+/// friction, if any.
 #[derive(Debug, Clone, Copy)]
 pub struct StoneRow {
     /// The numbers of the stone, as [`Ellipsoid::of_numbers`] takes them.
@@ -23,24 +23,25 @@ pub struct StoneRow {
     pub state: [f64; 6],
     /// The slip at the start.
     pub slip: [f64; 2],
-    /// The coefficient of sliding friction and the static one, or c and any number.
+    /// The coefficients of sliding and of static friction, or c of viscous friction and any number; None for
+    /// those of `ask`.
     pub coefficients: Option<[f64; 2]>,
 }
 
-/// The end of one motion of many.
+/// The result of one motion of many.
 #[derive(Debug, Clone, Copy)]
 pub struct StoneSummary {
-    /// The status: that of an [`Ending`](crate::motions::Ending), 5 for a stone or a start that does not exist, or 8 for a
-    /// motion that was given up.
+    /// The status: that of an [`Ending`](crate::motions::Ending), 5 for a stone or a start that does not
+    /// exist, or 8 for a motion that was given up.
     pub status: u8,
     /// The numbers, in the order of [`NAMES`](Self::NAMES).
     pub numbers: [f64; 13],
 }
 
 impl StoneSummary {
-    /// The names of the numbers: the last vertical and angular velocity, the time of the end, the spin then, how often
-    /// the spin has turned back, the time at which it did first, the heat, the estimated error, and the time up to which
-    /// the motion is known.
+    /// The names of the numbers: the last vertical and angular velocity, the time of the end, the spin then,
+    /// the number of reversals of the spin, the time of the first reversal, the heat, the estimated error,
+    /// and the time up to which the motion is known.
     pub const NAMES: [&str; 13] = [
         "n1",
         "n2",
@@ -62,13 +63,13 @@ impl StoneSummary {
     }
 }
 
-/// Follows `count` stones, each given by `row`, to the last of the times. `go_on` hears the share that is done; if it
-/// returns false, the result is None.
+/// Follows `count` stones, each given by `row`, to the last of the times. `go_on` is called with the finished
+/// share of the work; if it returns false, the result is None.
 ///
-/// A spin that has turned back has passed zero and come to at least a tenth of the spin of the start, in the other
-/// direction; the time of its reversal is that of the last zero before, to about 1e-4 of the time of a nod. Reversals are
-/// counted if `turns` says so, as long as the motion is known, and then it is known as long as its claimed error is
-/// at most the spin that counts, too. A spin of less than 1e-12 at the start has no direction.
+/// The spin reverses when it has passed zero and reached at least a tenth of the initial spin in the other
+/// direction; the time of the reversal is that of the last zero before, to about 1e-4 of the time of a nod.
+/// Reversals are counted if `turns` is true, as long as the motion is known; the motion then also counts as
+/// unknown where its estimated error exceeds that tenth. An initial spin of less than 1e-12 has no direction.
 ///
 /// # Errors
 /// Those of [`roll`](crate::motions::stone::roll) for times or options that make no sense, and too little memory.
@@ -92,7 +93,6 @@ pub fn many(
     Ok(done.then_some(all))
 }
 
-/// The summary of one motion.
 fn one(
     row: &StoneRow,
     times: &[f64],
@@ -107,11 +107,11 @@ fn one(
     if let Some(own) = row.coefficients {
         ask.table = ask.table.with_coefficients(own);
     }
-    let noted = RefCell::new(Noted {
+    let recorded = RefCell::new(Recorded {
         turns: turns.then(|| Reversals::of(state.spin(), state.fastest())),
-        ..Noted::default()
+        ..Recorded::default()
     });
-    let found = match followed(&stone, &start, &times[times.len() - 1..], &ask, &noted, still) {
+    let found = match followed(&stone, &start, &times[times.len() - 1..], &ask, &recorded, still) {
         Ok(found) => found,
         Err(Error::Painleve { .. }) => return StoneSummary::none(crate::motions::Ending::Painleve as u8),
         Err(Error::OutOfRange { .. } | Error::Inertia { .. }) => return StoneSummary::none(INVALID),
@@ -122,7 +122,7 @@ fn one(
         return StoneSummary::none(BOUNDED);
     };
     let end = found.motion.event.map_or(times[times.len() - 1], |e| e.time);
-    let turns = noted.into_inner().turns.map(|turns| turns.times);
+    let turns = recorded.into_inner().turns.map(|turns| turns.times);
     let count = turns.as_ref().map_or(f64::NAN, |turns| turns.len() as f64);
     let first = turns.iter().flatten().next().map_or(f64::NAN, |[t, _]| *t);
     let ([a, b, c], [d, e, f]) = (last.vertical, last.w);

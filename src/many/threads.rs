@@ -7,20 +7,20 @@ use crate::error::spare_for;
 use crate::methods::beat::{Beat, EVERY};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::time::Duration;
 
-/// The bytes that a thread may reserve at its first small allocation, its stack included. If they are missing, the
-/// failure is in code that cannot return an error.
+/// The bytes that a thread may reserve at its first small allocation, its stack included. If they are
+/// missing, no thread is started, since code that cannot return an error would fail.
 const ARENA: usize = 80 << 20;
 
-/// The stack of a thread of this module. The stack of the caller may be as small as 64 KiB, which does not hold the frames
-/// of lanes of many motions.
+/// The stack of a thread of this module. The stack of the caller may be as small as 64 KiB, which does not
+/// hold the frames of lanes of many motions.
 const STACK: usize = 2 << 20;
 
-/// Does `work` on every block, on `threads` workers, one of which is the calling thread. The calling thread asks
-/// `go_on`, with the share of blocks done, about fifty times a second; `work` may ask its second argument in between.
-/// Returns whether all blocks are done. Where fewer threads can be had, fewer do the work; if one panics, all stop, and
-/// the panic passes on to the caller.
+/// Calls `work` with every block, on `threads` workers, one of which is the calling thread. The calling
+/// thread calls `go_on`, with the share of blocks done, about fifty times a second; `work` may call its
+/// second argument in between to learn whether to go on. Returns whether all blocks are done. Fewer threads
+/// are used where the system does not give so many; if one panics, all stop, and the panic passes on to the
+/// caller.
 pub(crate) fn share<B: Send>(
     blocks: Vec<B>,
     threads: usize,
@@ -30,8 +30,9 @@ pub(crate) fn share<B: Send>(
     among(blocks, (threads, true), go_on, work)
 }
 
-/// [`share`] for work that needs a large stack: the calling thread only asks `go_on`, unless its stack is `roomy` too, or
-/// no other thread can be had. Threads take longer to start than a few hundred motions take.
+/// [`share`] for work that needs a large stack: the calling thread only calls `go_on`, unless its stack is
+/// `roomy` too, or no other thread can be started. Threads take longer to start than a few hundred motions
+/// take.
 pub(crate) fn share_aside<B: Send>(
     blocks: Vec<B>,
     (threads, roomy): (usize, bool),
@@ -97,8 +98,8 @@ fn among<B: Send>(
     !stop.into_inner()
 }
 
-/// Wakes the caller when its own thread ends. If that thread panics, all threads stop, since no other one would do the lost
-/// block.
+/// Wakes the calling thread when the thread that holds it ends. If that thread panics, all threads stop,
+/// since no other one would do the lost block.
 struct Alarm<'a>(&'a AtomicBool, &'a std::thread::Thread);
 
 impl Drop for Alarm<'_> {
@@ -113,6 +114,7 @@ impl Drop for Alarm<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::time::Duration;
 
     #[test]
     fn every_block_is_done_once_by_any_number_of_threads() {
@@ -131,7 +133,7 @@ mod tests {
         for threads in [1, 3] {
             let all = share_aside((0..50).collect(), (threads, false), &mut |_| true, |_: usize, _| {
                 assert_ne!(std::thread::current().id(), caller);
-                // Most of the stack is there.
+                // Three quarters of the stack can be used.
                 let frame = std::hint::black_box([1u8; STACK / 4 * 3]);
                 assert_eq!(frame[frame.len() - 1], 1);
             });

@@ -3,19 +3,22 @@
 //! ```text
 //! F(u) = integral of f from 0 to u,   f = sum c_k T_k(v) on a piece,   v in [-1, 1]
 //! ```
-//! A piece is halved until the last terms of its series are rounding errors (Clenshaw and Curtis 1960, in pieces). The
-//! uncertainty of the integral over a piece is the sum of the terms left out and of the noise that the function states
-//! of itself.
+//! A piece is halved until the last terms of its series are rounding errors (Clenshaw and Curtis 1960, in
+//! pieces). The uncertainty of the integral over a piece is the sum of the omitted terms and of the noise
+//! that the function reports.
 
 use std::sync::OnceLock;
 
 const NODES: usize = 24;
-/// A series is complete if its last terms are below this, relative to its scale; the terms of its integral are 48 times
-/// smaller, so that the integral is good to 1e-16.
+/// A series is complete if its last terms are below this, relative to its scale. The terms of its integral
+/// are 48 times smaller, so that the integral is accurate to 1e-16. Below the rounding errors the halving
+/// would not end.
 const COMPLETE: f64 = 4e-15;
-/// The greatest number of pieces, above what the worst saddle needs.
+/// The integral is given up beyond this number of pieces; the slowest passage of an unstable steady state
+/// needs fewer.
 const PIECES: usize = 1000;
-/// The greatest noise of a function up to which its series may count as complete at the level of that noise.
+/// Largest relative noise that loosens the test of completeness: with more, the series of a noisy function
+/// would count as complete unresolved.
 const NOISE: f64 = 1e-2;
 
 #[derive(Debug, Clone)]
@@ -38,7 +41,7 @@ pub(crate) struct Antiderivative<const M: usize> {
     pub doubt: [f64; M],
 }
 
-/// cos(k u_j) at the midpoints u_j, with j as the first index: the terms of one sample lie side by side.
+/// cos(k u_j) at the midpoints u_j; j is the first index, so that the terms of one sample lie side by side.
 fn cosines() -> &'static [[f64; NODES]; NODES] {
     static TABLE: OnceLock<[[f64; NODES]; NODES]> = OnceLock::new();
     TABLE.get_or_init(|| {
@@ -106,7 +109,8 @@ impl<const M: usize> Antiderivative<M> {
         Some(whole)
     }
 
-    /// The piece from `left` to `right`, and the uncertainty of its integrals; none if the piece is too long.
+    /// The piece from `left` to `right`, and the uncertainty of its integrals; None if the series is not
+    /// complete.
     fn made(
         f: &mut impl FnMut(f64) -> Sample<M>,
         left: f64,
@@ -168,7 +172,7 @@ impl<const M: usize> Antiderivative<M> {
         &self.pieces[self.pieces.partition_point(|p| p.right < u).min(self.pieces.len() - 1)]
     }
 
-    /// The start of the piece with `u`, and the integrals up to there.
+    /// The start of the piece that contains `u`, and the integrals from 0 to that start.
     pub fn begun(&self, u: f64) -> (f64, [f64; M]) {
         let piece = self.piece(u);
         (piece.left, piece.before)
@@ -188,7 +192,7 @@ impl<const M: usize> Antiderivative<M> {
         piece.doubt_before + (after - piece.doubt_before) * (0.5 * (1.0 + piece.scaled(u))).clamp(0.0, 1.0)
     }
 
-    /// The u within the range where the first integral, which grows, has the given value.
+    /// The u at which the first integral, which increases, has the given value.
     pub fn inverse(&self, value: f64) -> f64 {
         let next = self.pieces.partition_point(|p| p.before[0] <= value);
         let piece = &self.pieces[next.saturating_sub(1)];

@@ -1,13 +1,13 @@
-//! The times at which long work asks its caller whether to go on.
+//! Limits how often long computations ask their caller whether to go on.
 
 use std::time::Duration;
 #[cfg(not(all(target_arch = "wasm32", target_os = "unknown")))]
 use std::time::Instant;
 
-/// The time between two questions to the caller.
+/// The time between two calls of the caller.
 pub(crate) const EVERY: Duration = Duration::from_millis(20);
 
-/// Says when to ask the caller: about fifty times a second, or at every query where the platform has no clock, as in a
+/// A timer that is due about fifty times a second, or at every query where the platform has no clock, as in a
 /// browser's WebAssembly.
 pub(crate) struct Beat {
     #[cfg(not(all(target_arch = "wasm32", target_os = "unknown")))]

@@ -4,10 +4,11 @@
 //! P_n(z_i) = 0,   w_i = 2/((1 - z_i^2) P_n'(z_i)^2),   int_-1^1 f dz = sum w_i f(z_i)
 //! error about |a_(n-2)| + |a_(n-1)|,   a_k = (k + 1/2) sum w_i P_k(z_i) f(z_i)
 //! ```
-//! The quadrature is exact for polynomials up to the power 2 n - 1 (Abramowitz and Stegun 25.4.29). The nodes are
-//! symmetric, so that the even part of f gives the even coefficient and the odd part the odd one. Where f is analytic its
-//! Legendre coefficients fall geometrically, and the rule is twice as good as the series it stands for: its error is
-//! about the square of the last coefficients over the first. Error of the nodes: 4 ulp; the tests at the end check it.
+//! The quadrature is exact for polynomials up to the power 2 n - 1 (Abramowitz and Stegun 25.4.29). The nodes
+//! are symmetric, so that one of the last two coefficients follows from the even part of f and the other from
+//! its odd part. Where f is analytic its Legendre coefficients fall geometrically, and the quadrature has
+//! about twice the digits of the truncated series: its error is about the square of the last coefficients
+//! over the first. Error of the nodes: 4 ulp; the tests at the end check it.
 
 use core::f64::consts::PI;
 
@@ -72,7 +73,7 @@ mod tests {
                 let found = sum(&|node| 2.0 * node.weight * node.x.powi(k));
                 assert!((found * f64::from(k + 1) / 2.0 - 1.0).abs() < 1e-13, "{count} {k}: {found}");
             }
-            // x^k has no Legendre coefficient beyond k, and P_(n-2) is its own coefficient.
+            // x^k has no Legendre coefficient beyond k, and that of P_(n-2) itself is 1.
             let even = sum(&|node| 2.0 * node.even * node.x.powi(4));
             let odd = sum(&|node| 2.0 * node.odd * node.x.powi(5));
             assert!(even.abs() < 1e-12 && odd.abs() < 1e-12, "{count}: {even} {odd}");

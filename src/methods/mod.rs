@@ -1,4 +1,7 @@
-//! Methods of numerical mathematics: none knows physics.
+//! Numerical methods, without any physics.
+
+/// Whether the code is to be short rather than fast, as in a page: what exists in several copies for speed exists once.
+pub(crate) const SHORT_CODE: bool = cfg!(short_code);
 
 pub(crate) mod antiderivative;
 pub(crate) mod beat;

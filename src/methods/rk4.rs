@@ -4,10 +4,13 @@
 //! y(t + h) = y + h (k1 + 2 k2 + 2 k3 + k4)/6
 //! k1 = f(y),   k2 = f(y + h k1/2),   k3 = f(y + h k2/2),   k4 = f(y + h k3)
 //! ```
-//! The method is that of Kutta 1901. The module knows no physics: `f` is any rate of N numbers that does not depend on
-//! time. The error of a smooth motion at a fixed time goes as h^4, and a test of `integrators` measures 4.00 +- 0.05.
-//! The updates are compensated (Kahan 1965): the rounding error of one sum is added to the next, so the round-off of n
-//! steps grows as the square root of n from a few ulp of one step's change, not of the sum.
+//! The method is that of Kutta 1901. `f` gives the derivatives of N numbers and does not depend on time. The
+//! error of a smooth motion at a fixed time goes as h^4, and a test of `integrators` measures 4.00 +- 0.05.
+//! The updates are compensated (Kahan 1965): the rounding error of one sum is added to the next, so the
+//! round-off of n steps grows as the square root of n from a few ulp of one step's change, not of the sum.
+
+use super::rk8::plus;
+use crate::numbers::Real;
 
 /// The change of `y` over one step `h`, where `k1 = f(y)` is known.
 #[inline(always)]
@@ -20,15 +23,35 @@ pub fn increment<Y, const N: usize>(
 where
     Y: From<[f64; N]> + Into<[f64; N]>,
 {
-    let (mut k, mut sum) = (*k1, *k1);
-    for (ahead, weight) in [(0.5, 2.0), (0.5, 2.0), (1.0, 1.0)] {
-        k = f(&Y::from(core::array::from_fn(|i| y[i] + ahead * h * k[i]))).into();
-        sum = core::array::from_fn(|i| sum[i] + weight * k[i]);
-    }
-    sum.map(|sum| h / 6.0 * sum)
+    change(|y: &[f64; N]| f(&Y::from(*y)).into(), y, k1, h)
 }
 
-/// Numbers, and the part that rounding has taken from them so far.
+/// The same of plain arrays of numbers, single or in lanes.
+#[inline(always)]
+pub(crate) fn change<T: Real, const N: usize>(
+    mut f: impl FnMut(&[T; N]) -> [T; N],
+    y: &[T; N],
+    k1: &[T; N],
+    h: f64,
+) -> [T; N] {
+    let number = |x: f64| y[0].splat(x);
+    let (mut k, mut sum, mut there) = (*k1, *k1, *y);
+    for (ahead, weight) in [(0.5, 2.0), (0.5, 2.0), (1.0, 1.0)] {
+        for i in 0..N {
+            there[i] = k[i].mac(number(ahead * h), y[i]);
+        }
+        k = f(&there);
+        for i in 0..N {
+            sum[i] = k[i].mac(number(weight), sum[i]);
+        }
+    }
+    for sum in &mut sum {
+        *sum = number(h / 6.0) * *sum;
+    }
+    sum
+}
+
+/// Numbers, and the rounding errors of the sums that led to them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Compensated<const N: usize> {
     /// The numbers.
@@ -38,7 +61,7 @@ pub struct Compensated<const N: usize> {
 }
 
 impl<const N: usize> Compensated<N> {
-    /// These numbers, from which rounding has taken nothing yet.
+    /// These numbers, without rounding errors so far.
     pub fn new(y: [f64; N]) -> Self {
         Self { y, carry: [0.0; N] }
     }
@@ -47,14 +70,8 @@ impl<const N: usize> Compensated<N> {
     #[inline(always)]
     #[must_use]
     pub fn plus(&self, change: &[f64; N]) -> Self {
-        let mut next = *self;
-        for i in 0..N {
-            let change = change[i] + self.carry[i];
-            next.y[i] = self.y[i] + change;
-            let part = next.y[i] - self.y[i];
-            next.carry[i] = (self.y[i] - (next.y[i] - part)) + (change - part);
-        }
-        next
+        let (y, carry) = plus(&self.y, &self.carry, change);
+        Self { y, carry }
     }
 }
 

@@ -6,10 +6,10 @@
 //! h next   = 0.9 h error^(-1/8)
 //! ```
 //! The method is in Prince and Dormand 1981; the coefficients and the error are those of Hairer, Noersett and Wanner,
-//! Solving Ordinary Differential Equations I (1993), II.5 and II.10 (DOP853). The module knows no physics: `f` writes
-//! the rate of N numbers, single or eight in lanes, which does not depend on time. The stages are called in their
-//! order, each with a state within the step. A part of a step is a step of its own from the same k_1, so that an event
-//! within a step is found with the accuracy of the step, not with that of an interpolation.
+//! Solving Ordinary Differential Equations I (1993), II.5 and II.10 (DOP853). `f` writes the derivatives of N
+//! numbers, single or in lanes, and does not depend on time. The stages are called in their order, each with
+//! a state within the step. A part of a step is computed as a separate step from the same k_1, so that an
+//! event within a step is located with the accuracy of the step, not with that of an interpolation.
 //!
 //! Error: the error of a pendulum goes as h^8; the tests at the end run it.
 
@@ -23,8 +23,9 @@ pub(crate) struct Step<T, const N: usize> {
 }
 
 impl<T: Real, const N: usize> Step<T, N> {
-    /// The error above, where `per(i)` is one over the tolerance of number `i`; `count` is N for a mean square over the
-    /// numbers, or 1 for a sum. Overflow gives NaN, since an error of 0 would pass for the best of steps.
+    /// The error of the step by the formula above; `per(i)` is one over the tolerance of number `i`, and
+    /// `count` is N for a mean square over the numbers, or 1 for a sum. Overflow gives NaN, since an error of
+    /// 0 would accept the step.
     #[inline(always)]
     pub fn error(&self, per: impl Fn(usize) -> T, count: f64) -> T {
         let number = |x: f64| self.change[0].splat(x);
@@ -38,8 +39,10 @@ impl<T: Real, const N: usize> Step<T, N> {
         fifth / square.sqrt() + number(0.0) * square
     }
 
-    /// A factor for the error of a step within `tol` where the first `count` numbers hardly move in a unit of time: an
-    /// error is then held to a share of that motion, since from an unstable rest both grow together. Rounding is spared.
+    /// A factor of at least 1 for the error of a step in which the first `count` numbers change by less than
+    /// 1/`HARDLY` per unit of time. Near an unstable equilibrium errors grow as fast as the motion itself, so
+    /// that an error is then held relative to the motion. No tolerance becomes smaller than `ROUNDING` by
+    /// this.
     #[inline(always)]
     pub fn strictness(&self, tol: T, count: usize, time: usize) -> T {
         let number = |x: f64| tol.splat(x);
@@ -50,13 +53,14 @@ impl<T: Real, const N: usize> Step<T, N> {
     }
 }
 
-/// Numbers that move by less than one over this number in a unit of time hardly move.
+/// [`Step::strictness`] divides the tolerance where no number changes by 1/`HARDLY` per unit of time.
 const HARDLY: f64 = 100.0;
-/// An error of a step below this is rounding.
+/// The smallest tolerance that [`Step::strictness`] leaves; an error below this is rounding.
 const ROUNDING: f64 = 3e-15;
 
-/// Whether a step with quick rates loops: an unoptimised program is slow in any case, and compiled often.
-pub(crate) const LOOPS: bool = cfg!(debug_assertions);
+/// Whether the stages of a step form a loop, unless a flow chooses otherwise: only without optimisation,
+/// where a short compilation matters more than a fast program.
+pub(crate) const LOOPS: bool = cfg!(any(debug_assertions, short_code));
 
 /// The number of stages of a step; the weights number the stages from 0 on.
 pub(crate) const STAGES: usize = 12;
@@ -111,7 +115,7 @@ fn weighted<T: Real, const N: usize, const M: usize>(
     sum
 }
 
-/// The stages whose numbers y are near the solution, with their shares of the step.
+/// The stages whose numbers y approximate the solution, each with its time as a share of the step.
 pub(crate) const LOOKS: [(usize, f64); 3] = [(5, 1.0 / 3.0), (9, 0.6), (10, 6.0 / 7.0)];
 
 /// The numbers y of a stage, from the rates of the stages before it.
@@ -147,12 +151,12 @@ pub(crate) fn step<const LOOP: bool, T: Real, const N: usize>(
 ) -> Step<T, N> {
     k[0] = *k1;
     if LOOP {
-        // Eleven inlined copies of the rates in lanes would be most of the work of the compiler.
+        // Eleven inlined copies of the rates in lanes would take most of the time of the compiler.
         for stage in 1..STAGES {
             f(&place(stage, y, h, k), &mut k[stage]);
         }
     } else {
-        // In a loop, vector reads would wait for numbers that were written one by one.
+        // In a loop, a vector load would wait for numbers that were just stored one by one.
         macro_rules! each {
             ($($stage:literal)*) => { $(f(&place($stage, y, h, k), &mut k[$stage]);)* };
         }
@@ -181,7 +185,8 @@ pub(crate) fn plus<T: Real, const N: usize>(y: &[T; N], carry: &[T; N], change: 
     (sum, left)
 }
 
-/// The factor by which the step may grow after this error, where 1 is allowed: 0.9 error^(-1/8) within [0.3, 5].
+/// The factor by which the step may grow after this error, where 1 is allowed: 0.9 error^(-1/8) within [0.3,
+/// 5].
 #[inline(always)]
 pub(crate) fn growth<T: Real>(error: T) -> T {
     let one = |x: f64| error.splat(x);

@@ -12,7 +12,7 @@
 use crate::numbers::Sum;
 use core::ops::{Add, Mul, Sub};
 
-/// The highest degree, which is that of the boundary of stability of a rounded rim.
+/// The highest degree: the polynomial of the boundary of stability of a rounded rim has it.
 const MOST: usize = 16;
 
 /// A few numbers in ascending order.
@@ -130,24 +130,45 @@ fn middle(low: f64, high: f64) -> f64 {
     }
 }
 
-/// A polynomial in T = tan theta of degree three at most, with coefficients of 104 bits.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Cubic([Sum<f64>; 4]);
+/// A number that the coefficients of a [`Cubic`] can be.
+pub(crate) trait Coefficient: Copy + From<Sum<f64>> {
+    fn plus(self, other: Self) -> Self;
+    /// `self + a b`.
+    fn plus_product(self, a: Self, b: Self) -> Self;
+}
 
-impl Cubic {
-    pub const T: Self = Self([ZERO, Sum { hi: 1.0, lo: 0.0 }, ZERO, ZERO]);
+impl Coefficient for Sum<f64> {
+    fn plus(self, other: Self) -> Self {
+        Sum::plus(self, other)
+    }
+    fn plus_product(self, a: Self, b: Self) -> Self {
+        Sum::plus(Sum::plus(self, a.times(b.hi)), a.times(b.lo))
+    }
+}
+
+/// A polynomial in T = tan theta of degree three at most, by default with coefficients of 104 bits.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Cubic<C = Sum<f64>>(pub [C; 4]);
+
+impl<C: Coefficient> Cubic<C> {
+    /// The polynomial T.
+    pub fn tangent() -> Self {
+        Self([ZERO, Sum { hi: 1.0, lo: 0.0 }, ZERO, ZERO].map(C::from))
+    }
 
     /// A constant polynomial.
     pub fn of(x: impl Into<Sum<f64>>) -> Self {
-        Self([x.into(), ZERO, ZERO, ZERO])
+        Self([x.into(), ZERO, ZERO, ZERO].map(C::from))
     }
+}
 
+impl Cubic {
     /// The angles theta in (0, pi/2) where the polynomial vanishes, in ascending order.
     pub fn angles(&self) -> impl Iterator<Item = f64> {
         let up = self.0;
         let mut down = up;
         down.reverse();
-        // T = 1 lies at the end of both unit intervals, so that one sum decides for both.
+        // T = 1 is the end of the unit interval both of T and of 1/T, so that one sign serves for both.
         let at_one = sign(value(&up, 1.0).hi);
         let low = if at_one == 0.0 { in_unit_interval(&up) } else { in_unit_interval_with_end(&up, at_one) };
         let high =
@@ -248,14 +269,14 @@ impl Mul for &Trig {
     }
 }
 
-impl Add for Cubic {
+impl<C: Coefficient> Add for Cubic<C> {
     type Output = Self;
     fn add(self, other: Self) -> Self {
         Self(core::array::from_fn(|k| self.0[k].plus(other.0[k])))
     }
 }
 
-impl Sub for Cubic {
+impl<C: Coefficient> Sub for Cubic<C> {
     type Output = Self;
     fn sub(self, other: Self) -> Self {
         self + other * Self::of(-1.0)
@@ -263,13 +284,13 @@ impl Sub for Cubic {
 }
 
 /// The product of two polynomials whose degrees add up to three at most.
-impl Mul for Cubic {
+impl<C: Coefficient> Mul for Cubic<C> {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
-        let mut out = [ZERO; 4];
+        let mut out = [C::from(ZERO); 4];
         for (i, a) in self.0.iter().enumerate() {
             for (j, b) in other.0.iter().enumerate().take(4 - i) {
-                out[i + j] = out[i + j].plus(a.times(b.hi)).plus(a.times(b.lo));
+                out[i + j] = out[i + j].plus_product(*a, *b);
             }
         }
         Self(out)
@@ -324,7 +345,7 @@ mod tests {
 
     #[test]
     fn a_cubic_has_its_planted_angles_also_at_a_slope_of_one() {
-        let line = |root: f64| Cubic::T - Cubic::of(root);
+        let line = |root: f64| Cubic::<Sum<f64>>::tangent() - Cubic::of(root);
         for roots in
             [[0.5, 1.0, 3.0], [1.0 - f64::EPSILON, 1.0 + f64::EPSILON, 1e9], [1e-9, 1.0 - 1e-16, 2.0]]
         {
@@ -332,7 +353,7 @@ mod tests {
             assert_eq!(angles.len(), 3, "{roots:?}: {angles:?}");
             assert!(angles.iter().zip(roots).all(|(a, r)| (a - r.atan()).abs() <= f64::EPSILON * a));
         }
-        let none = Cubic::T * Cubic::T + Cubic::of(1.0);
+        let none = Cubic::<Sum<f64>>::tangent() * Cubic::<Sum<f64>>::tangent() + Cubic::of(1.0);
         assert_eq!((none * line(-2.0)).angles().count(), 0);
     }
 

@@ -13,13 +13,14 @@ pub(crate) fn crossing(
     mut fb: f64,
 ) -> f64 {
     for i in 0..200 {
-        // Regula falsi halves the weight of an end that stays (Illinois); every fourth step takes the middle.
+        // Regula falsi: the value at an end that stays is halved (Illinois), and every fourth step bisects.
         let middle = 0.5 * (a + b);
         let x = if i % 4 == 3 { middle } else { b - fb * ((b - a) / (fb - fa)) };
         let (low, high) = (a.min(b), a.max(b));
         let inside = |x: f64| low < x && x < high;
         let x = if inside(x) { x } else { middle };
-        // A zero at the end `b` has no sign, and its neighbours would be taken for an end with the sign of `fa`.
+        // At an exact zero the search stops: a zero has no sign, so the next comparison of signs would be
+        // wrong.
         if !inside(x) || fb == 0.0 || fb.is_nan() {
             break;
         }

@@ -1,59 +1,75 @@
-//! Motions that conserve energy, by the first integrals or by an integrator that is judged by them.
+//! Motions that conserve energy, by the first integrals, or by an integrator whose error they show.
 
 use super::ask::check;
+use super::course::Course;
 use super::exact::{self, Swing};
 use super::exactly::{follow, quickly};
 use super::judge::pressed;
 use super::limits::Limits;
-use super::rk4::course::{Course, Stepping};
-use super::rk4::guard::{Guard, guard};
 use super::rk4::stepped;
+use super::within::within;
 use super::{Ask, Method, Motion, Start};
 use crate::error::Error;
 use crate::laws::body::Body;
+use crate::methods::SHORT_CODE;
 
-/// Tolerance of the integrator that replaces a missing exact solution.
+/// Tolerance of the integrator where the first integrals lose all their digits.
 const FALLBACK: f64 = 1e-12;
 
-/// The motion of a body that conserves energy, by the first integrals or by an integrator that is judged by them.
+/// The motion of a body that conserves energy, by the method of `ask`.
 pub(super) fn conserved(
     body: &Body,
-    &Start { state: ref start, time: t0, .. }: &Start,
+    start: &Start,
     times: &[f64],
     ask: &Ask,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Option<Motion>, Error> {
-    exact::check(body, start)?;
-    let span = check(ask, t0, times)?;
-    if let Some(motion) = quickly(body, start, t0, times, ask)? {
-        return Ok(Some(motion));
+    if ask.method == Method::Exact {
+        return by_first_integrals(body, start, times, ask, go_on);
     }
-    let way = if span < 0.0 { -1.0 } else { 1.0 };
-    let swing = Swing::new(body, start, ask.table.contact(), ask.pose).ok();
-    let limits = Limits::new(body, &ask.table);
-    let swing = swing.as_ref();
-    let exact = swing.filter(|s| s.error(span).is_finite());
-    let course = Course { start, span, times, t0, pose: ask.pose, unguarded: swing.is_none() };
-    let stepping = match ask.method {
-        Method::Step(step) => Some(Stepping::Fixed(way * step.abs())),
-        Method::Tolerance(tol) => Some(Stepping::Within(tol)),
+    exact::check(body, &start.state)?;
+    let course = Course::of(body, start, times, ask.pose, check(ask, start.time, times)?);
+    let swing = Swing::new(body, course.start, ask.table.contact(), ask.pose).ok();
+    let (limits, swing) = (Limits::new(body, &ask.table), swing.as_ref());
+    let found = match ask.method {
+        Method::Step(step) => stepped(&course, swing, &limits, ask, step.abs(), go_on)?,
+        Method::Tolerance(tol) => within(&course, swing, &limits, ask, tol, go_on)?,
         Method::Exact => None,
     };
-    let guarded = match ask.method {
-        Method::Step(step) => guard(&course, swing, &limits, step.abs())?,
-        _ => Guard::default(),
-    };
-    let found = match (stepping, exact) {
-        (None, Some(swing)) => follow(swing, &course, &limits, ask.beyond, go_on)?,
-        _ => {
-            let stepping = stepping.unwrap_or(Stepping::Within(FALLBACK));
-            stepped(body, &course, swing, &limits, stepping, ask, go_on)?
-        }
-    };
-    let Some(mut motion) = found else { return Ok(None) };
-    (motion.step_loss, motion.advice, motion.coarse) = (guarded.loss, guarded.advice, guarded.coarse);
-    if ask.force {
-        return pressed(motion, ask.table.contact(), body, go_on);
+    with_forces(found, body, ask, go_on)
+}
+
+/// The motion by the first integrals, or by steps where these lose their digits.
+pub(super) fn by_first_integrals(
+    body: &Body,
+    start: &Start,
+    times: &[f64],
+    ask: &Ask,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<Option<Motion>, Error> {
+    exact::check(body, &start.state)?;
+    let course = Course::of(body, start, times, ask.pose, check(ask, start.time, times)?);
+    if !SHORT_CODE && let Some(motion) = quickly(body, course.start, course.t0, times, ask)? {
+        return Ok(Some(motion));
     }
-    Ok(Some(motion))
+    let swing = Swing::new(body, course.start, ask.table.contact(), ask.pose).ok();
+    let (limits, swing) = (Limits::new(body, &ask.table), swing.as_ref());
+    let found = match swing.filter(|swing| swing.error(course.span).is_finite()) {
+        Some(swing) => follow(swing, &course, &limits, ask.beyond, go_on)?,
+        None if SHORT_CODE => return Err(Error::Lost { theta: start.state.theta }),
+        None => within(&course, swing, &limits, ask, FALLBACK, go_on)?,
+    };
+    with_forces(found, body, ask, go_on)
+}
+
+fn with_forces(
+    found: Option<Motion>,
+    body: &Body,
+    ask: &Ask,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<Option<Motion>, Error> {
+    match found {
+        Some(motion) if ask.force => pressed(motion, ask.table.contact(), body, go_on),
+        found => Ok(found),
+    }
 }

@@ -1,13 +1,11 @@
 //! Motions by their first integrals: a quick method where nothing ends a motion, and a method that watches for ends.
 
-#[cfg(target_arch = "wasm32")]
-use super::Start;
+use super::course::Course;
 use super::exact::Swing;
 use super::exact::lanes::{QuickMotion, QuickTask, quick};
 use super::judge::pressed;
 use super::limits::{self, Limits};
-use super::rk4::course::Course;
-use super::{Ask, Ending, Event, Method, Motion};
+use super::{Ask, Event, Method, Motion};
 use crate::error::{Error, copied, room};
 use crate::laws::body::Body;
 use crate::laws::state::State;
@@ -61,13 +59,13 @@ pub(crate) fn follow(
     beyond: bool,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Option<Motion>, Error> {
-    let way = if course.span < 0.0 { -1.0 } else { 1.0 };
+    let way = course.way();
     let event = limits::first_event(swing, limits, way).filter(|e| e.time.abs() <= course.span.abs());
     let last = match event {
-        Some(e) if !beyond || e.ending == Ending::Face => e.time.abs(),
+        Some(e) if e.ends(beyond) => e.time.abs(),
         _ => swing.landing(way).map_or(f64::INFINITY, |(t, _)| t),
     };
-    let count = course.times.partition_point(|t| (t - course.t0).abs() <= last);
+    let count = course.count(last);
     let mut motion = Motion::empty(count, course.pose)?;
     motion.event = event.map(|e| Event { time: course.t0 + e.time, ..e });
     let every = (count / 16).max(1);
@@ -103,23 +101,4 @@ pub(crate) fn follow(
     }
     motion.times = copied(&course.times[..count])?;
     Ok(Some(motion))
-}
-
-/// A motion by the first integrals alone, without forces, for a page with little code; `Lost` where these fail.
-#[cfg(target_arch = "wasm32")]
-pub(crate) fn exactly(
-    body: &Body,
-    &Start { state: ref start, time: t0, .. }: &Start,
-    times: &[f64],
-    ask: &Ask,
-    go_on: &mut dyn FnMut() -> bool,
-) -> Result<Option<Motion>, Error> {
-    let span = super::ask::check(ask, t0, times)?;
-    let swing = Swing::new(body, start, ask.table.contact(), ask.pose)?;
-    if !swing.error(span).is_finite() {
-        return Err(Error::Lost { theta: start.theta });
-    }
-    let limits = Limits::new(body, &ask.table);
-    let course = Course { start, span, times, t0, pose: ask.pose, unguarded: false };
-    follow(&swing, &course, &limits, ask.beyond, go_on)
 }

@@ -1,7 +1,9 @@
-//! Motions: what a body or a stone does from a start on, exactly, by steps, or along its steady states.
+//! Motions of bodies and stones from a start: by the first integrals, by steps, or as a slow drift along
+//! steady states.
 
 pub(crate) mod ask;
 mod conserved;
+mod course;
 #[cfg(feature = "many")]
 pub mod drift;
 pub mod exact;
@@ -18,6 +20,7 @@ mod result;
 mod rk4;
 pub(crate) mod stone;
 pub(crate) mod walk;
+mod within;
 
 pub use ask::{Ask, Method, Start};
 pub use moving::Moving;

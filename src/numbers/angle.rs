@@ -162,8 +162,8 @@ pub(crate) fn sin_cos<T: Real>(theta: T) -> (T, T) {
     (side(sin, cos), side(cos, sin) * theta.select_lt(most, one, zero - one))
 }
 
-/// The angle in [0, pi/2] whose sine and cosine have the ratio of `y` to `x`, both not negative; 0 if both vanish. The
-/// error is at most 3 ulp.
+/// The angle in [0, pi/2] whose tangent is `y` over `x`, both not negative; 0 if both vanish. The error is at
+/// most 3 ulp.
 #[inline(always)]
 pub(crate) fn arctan2<T: Real>(y: T, x: T) -> T {
     let (zero, quarter) = (y.splat(0.0), y.splat(core::f64::consts::FRAC_PI_4));
@@ -174,7 +174,7 @@ pub(crate) fn arctan2<T: Real>(y: T, x: T) -> T {
     let above = upper.select_lt(small, small - large, small);
     let below = upper.select_lt(small, small + large, large);
     let r = above / below.max(y.splat(f64::MIN_POSITIVE));
-    // The coefficients are from Chebyshev interpolation of atan(r)/r in r^2, within 4e-18.
+    // The coefficients come from Chebyshev interpolation of atan(r)/r in r^2; their error is 4e-18.
     let series = horner(
         r * r,
         &[

@@ -1,6 +1,6 @@
-//! Enumerations whose numbers stand in arrays.
+//! Enumerations whose values are stored in arrays as numbers.
 
-/// An enumeration with all of its values, and the way from a number in an array back to the value.
+/// An enumeration with a list of its values, and the conversion of a number in an array to the value.
 macro_rules! coded {
     ($(#[$about:meta])* pub enum $Name:ident { $($(#[$doc:meta])* $Value:ident = $code:literal,)+ }) => {
         $(#[$about])*

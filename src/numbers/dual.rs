@@ -36,7 +36,7 @@ impl<T: Real> Real for Dual<T> {
     #[inline(always)]
     fn sqrt(self) -> Self {
         let root = self.value.sqrt();
-        // The root of a constant zero has the derivative 0.
+        // A constant zero has the slope 0, and so has its root; 0/0 would be NaN.
         Self { value: root, slope: self.slope / (root + root).max(root.splat(f64::MIN_POSITIVE)) }
     }
     #[inline(always)]

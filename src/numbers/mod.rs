@@ -23,8 +23,8 @@ pub(crate) use wide::{LANES, Pair};
 use fearless_simd::Level;
 use std::sync::LazyLock;
 
-/// The best SIMD level of this machine for which lanes are compiled, found once; None if the environment says
-/// `SPINCYL_LANES=off`.
+/// The best SIMD level of this machine for which lanes are compiled; None if `SPINCYL_LANES=off` is set in
+/// the environment.
 static LEVEL: LazyLock<Option<Level>> = LazyLock::new(|| {
     let off = std::env::var_os("SPINCYL_LANES").is_some_and(|set| set == "off");
     if off || !cfg!(lanes_of_eight) { None } else { best() }
@@ -41,12 +41,11 @@ fn best() -> Option<Level> {
     Level::new().as_avx2().map(Level::Avx2)
 }
 
-/// The level in [`LEVEL`].
 pub(crate) fn level() -> Option<Level> {
     *LEVEL
 }
 
-/// AVX2, if this machine has it; the other instructions of AVX-512 are of no use for a few numbers.
+/// AVX2, if this machine has it. AVX-512 would not speed up computations with a few numbers.
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 pub(crate) fn registers() -> Option<fearless_simd::x86::Avx2> {
     level().and_then(Level::as_avx2)
@@ -62,8 +61,9 @@ pub(crate) fn registers() -> Option<()> {
 pub(crate) const IN_REGISTERS: bool =
     cfg!(all(any(target_arch = "x86", target_arch = "x86_64"), lanes_of_eight));
 
-/// Evaluates `$lanes` on a processor with AVX-512, AVX2 or NEON, compiled for it, where `$simd` is the token that makes
-/// lanes; evaluates `$alone` on any other. Each further level would compile all of this code once more.
+/// Evaluates `$lanes`, compiled for AVX-512, AVX2 or NEON, on a processor that has it, with the token
+/// `$simd`, which makes lanes; evaluates `$alone` on any other. There are no more levels, since each compiles
+/// all of this code once more.
 macro_rules! in_lanes {
     ($level:expr, $simd:pat => $lanes:expr, else $alone:expr) => {
         match $level {
@@ -110,7 +110,8 @@ pub(crate) fn larger(error: f64, other: f64) -> f64 {
     if error.is_nan() || other <= error { error } else { other }
 }
 
-/// Forces a closure to be inlined where it is called; a closure that is bound to a name is not inlined.
+/// Returns the closure. Rust accepts `#[inline(always)]` on a closure that is an argument, not on one bound
+/// by `let`.
 #[inline(always)]
 pub(crate) fn here<F>(f: F) -> F {
     f

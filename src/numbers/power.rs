@@ -1,4 +1,4 @@
-//! Polynomials and power series as arrays of their terms, lowest power first.
+//! Polynomials and power series as arrays of coefficients, lowest power first.
 
 use super::real::Real;
 
@@ -13,7 +13,7 @@ pub(crate) fn horner<T: Real>(series: &[T], x: T) -> T {
     sum
 }
 
-/// Divides a series by (x - root) in place, which leaves the last term unused, and returns the remainder.
+/// Divides a series by (x - root) in place and returns the remainder; the last coefficient becomes 0.
 #[inline(always)]
 pub(crate) fn divide<T: Real>(series: &mut [T], root: T) -> T {
     let mut carry = root.splat(0.0);
@@ -23,8 +23,9 @@ pub(crate) fn divide<T: Real>(series: &mut [T], root: T) -> T {
     carry
 }
 
-/// Adds to `sum`, the product of two series that grow term by term, what their terms `k` contribute; then the term `k`
-/// of the product is complete. No sum waits for the one before it, unlike in a sum over the pairs of one term.
+/// Adds to `sum`, the growing product of two series, all products of a coefficient `k` with one up to `k`;
+/// coefficient `k` of `sum` is then complete. These additions do not wait for each other, unlike those of a
+/// sum over all pairs of one coefficient.
 #[inline(always)]
 pub(crate) fn multiply_on<T: Real, const N: usize>(sum: &mut [T; N], a: &[T; N], b: &[T; N], k: usize) {
     let (of_a, of_b) = (a[k], b[k]);
@@ -48,7 +49,7 @@ pub(crate) fn square_on<T: Real, const N: usize>(sum: &mut [T; N], a: &[T; N], k
     }
 }
 
-/// The term `k` of the product of a polynomial and a series, added to `sum`.
+/// `sum` plus coefficient `k` of the product of the polynomial `of` and a series.
 #[inline(always)]
 pub(crate) fn term<T: Real, const A: usize>(of: &[T; A], series: &[T], k: usize, sum: T) -> T {
     (0..A.min(k + 1)).fold(sum, |sum, j| of[j].fma(series[k - j], sum))

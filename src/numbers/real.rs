@@ -1,4 +1,4 @@
-//! Real numbers for computations: every equation of this library is written over the trait of this file.
+//! Real numbers: every equation of this library is written over the trait of this file.
 //!
 //! An equation is written once over [`Real`] and serves a single state, eight states in lanes, a state with twice the
 //! digits, and a state with a derivative. Every operation of single numbers and of lanes is correctly rounded (the fused
@@ -42,7 +42,8 @@ pub(crate) trait Real:
     /// Returns `yes` where `self < other`, `no` elsewhere (also for NaN).
     fn select_lt(self, other: Self, yes: Self, no: Self) -> Self;
 
-    /// `self * b + c`, rounded once where the numbers have an instruction for it.
+    /// `self * b + c`, rounded once for single numbers and lanes; a product and a sum for other kinds of
+    /// numbers.
     #[inline(always)]
     fn fma(self, b: Self, c: Self) -> Self {
         self * b + c
@@ -55,7 +56,6 @@ pub(crate) trait Real:
         self.fma(b, c)
     }
 
-    /// Absolute value.
     #[inline(always)]
     fn abs(self) -> Self {
         self.select_lt(self.splat(0.0), -self, self)
@@ -85,7 +85,8 @@ pub(crate) trait Lane: Real {
         self.splat(0.0).any_lt(self)
     }
 
-    /// Does rare work in a function that is kept apart from frequent work and compiled for the same lanes.
+    /// Does rare work in a function that is compiled separately, for the same lanes, so that frequent work
+    /// stays compact.
     fn aside<R>(self, work: impl FnOnce() -> R) -> R;
 }
 

@@ -1,4 +1,5 @@
-//! Truncated power series in one variable; a [`Tape`](super::tape::Tape) gives those of the solution of an equation.
+//! Truncated power series in one variable; a [`Tape`](super::tape::Tape) computes those of the solution of an
+//! equation.
 //!
 //! ```text
 //! x(t) = a_0 + a_1 t + a_2 t^2 + ...
@@ -22,7 +23,7 @@ impl Series {
         Self { at }
     }
 
-    /// The series of the coefficients below `known`.
+    /// The first `known` coefficients of a series; the others are 0.
     pub fn first(of: &[f64; TERMS], known: usize) -> Self {
         let mut at = *of;
         at[known..].fill(0.0);
@@ -40,7 +41,7 @@ impl Series {
         self.at.iter().rev().fold(0.0, |sum, a| sum * t + a)
     }
 
-    /// The same function as a series about `t`.
+    /// The series of the same function in powers of the distance from `t`.
     pub fn about(&self, t: f64) -> Self {
         let mut at = self.at;
         for k in 0..TERMS {
@@ -57,7 +58,7 @@ impl Series {
         Self { at: core::array::from_fn(at) }
     }
 
-    /// The coefficients below `known` of the product of two series.
+    /// The first `known` coefficients of the product of two series.
     pub fn times(&self, b: &Self, known: usize) -> Self {
         let mut at = [0.0; TERMS];
         for (n, to) in at[..known].iter_mut().enumerate() {

@@ -1,6 +1,6 @@
 //! Numbers whose SIMD lanes belong to bodies or motions that are computed side by side; this module contains no physics.
 //!
-//! A single number is the case of one lane, so that what is written for lanes also serves machines without them.
+//! A single number is the case of one lane, so that code for lanes also serves machines without SIMD.
 
 use super::{LANES, Lane, Pair};
 use fearless_simd::{ExtractToken, Simd, SimdBase, SimdFloat, f32x8, f32x16, f64x8};
@@ -19,7 +19,7 @@ pub(crate) trait SideBySide: Lane {
 
 /// Numbers that can be rounded to single precision.
 pub(crate) trait Narrow: SideBySide {
-    /// As many numbers in single precision.
+    /// The vector of as many numbers in single precision.
     type Single: Copy;
 
     /// The number rounded to single precision.
@@ -139,7 +139,7 @@ impl<T: SideBySide> SideBySide for Pair<T> {
     }
 }
 
-/// Two vectors of doubles become one vector of single numbers.
+/// Two vectors in double precision become one vector in single precision.
 impl<S: Simd> Narrow for Pair<f64x8<S>> {
     type Single = f32x16<S>;
 
@@ -175,7 +175,8 @@ pub(crate) fn zero<S: Simd>(simd: S) -> f64x8<S> {
     <f64x8<S> as SimdBase<S>>::splat(simd, 0.0)
 }
 
-/// The numbers of `x` from `start` on, NaN beyond its end; if `x` has one number, that number in all lanes.
+/// The numbers of `x` from `start` on, and NaN after the last; if `x` has one number, that number in all
+/// lanes.
 #[inline(always)]
 pub(crate) fn load<T: SideBySide>(like: T, x: &[f64], start: usize) -> T {
     if x.len() == 1 {

@@ -4,8 +4,8 @@
 //! hi + lo,   |lo| <= ulp(hi)/2                          Dekker 1971, Knuth TAOCP 4.2.2
 //! sin x, cos x   Taylor series (Abramowitz and Stegun 4.3.65-66) on |x| <= pi/4, pi/2 and pi taken off first
 //! ```
-//! These sums serve where rounding must not intervene: in a difference on which a whole motion depends. Error: sums and
-//! products 2^-102 of the larger operand, quotients 2^-100; sine and cosine 2^-101, absolute: the tests at the end
+//! They serve where a difference of nearly equal numbers decides a whole motion. Error: sums and products
+//! 2^-102 of the larger operand, quotients 2^-100; sine and cosine 2^-101, absolute: the tests at the end
 //! check it.
 
 use super::real::{Real, operators};
@@ -42,7 +42,8 @@ impl<T: Real> Sum<T> {
     }
 
     /// The sum of two unevaluated sums; relative error 2^-104 of the larger.
-    #[inline(always)]
+    #[cfg_attr(short_code, inline(never))]
+    #[cfg_attr(not(short_code), inline(always))]
     pub fn plus(self, other: Self) -> Self {
         let high = Self::of(self.hi, other.hi);
         let low = Self::of(self.lo, other.lo);
@@ -51,10 +52,27 @@ impl<T: Real> Sum<T> {
     }
 
     /// The product of this sum and a number; relative error 2^-104.
-    #[inline(always)]
+    #[cfg_attr(short_code, inline(never))]
+    #[cfg_attr(not(short_code), inline(always))]
     pub fn times(self, x: T) -> Self {
         let high = Self::product(self.hi, x);
         Self::ordered(high.hi, self.lo.fma(x, high.lo))
+    }
+
+    #[cfg_attr(short_code, inline(never))]
+    #[cfg_attr(not(short_code), inline(always))]
+    fn by(self, b: Self) -> Self {
+        let high = Self::product(self.hi, b.hi);
+        Self::ordered(high.hi, self.hi.fma(b.lo, self.lo.fma(b.hi, high.lo)))
+    }
+
+    /// The quotient; relative error 2^-100.
+    #[cfg_attr(short_code, inline(never))]
+    #[cfg_attr(not(short_code), inline(always))]
+    fn over(self, b: Self) -> Self {
+        let hi = self.hi / b.hi;
+        let rest = self.plus(b.times(-hi));
+        Self::ordered(hi, rest.hi / b.hi)
     }
 }
 
@@ -69,20 +87,12 @@ operators!(
     (a, b),
     a.plus(b),
     a.plus(-b),
-    {
-        let high = Self::product(a.hi, b.hi);
-        Self::ordered(high.hi, a.hi.fma(b.lo, a.lo.fma(b.hi, high.lo)))
-    },
-    {
-        // The quotient is good to 2^-100.
-        let hi = a.hi / b.hi;
-        let rest = a.plus(b.times(-hi));
-        Self::ordered(hi, rest.hi / b.hi)
-    },
+    a.by(b),
+    a.over(b),
     Self { hi: -a.hi, lo: -a.lo }
 );
 
-/// Every equation over [`Real`] can therefore be evaluated with twice the digits.
+/// With this implementation every equation over [`Real`] can be evaluated with twice the digits.
 impl<T: Real> Real for Sum<T> {
     #[inline(always)]
     fn splat(self, x: f64) -> Self {
@@ -119,7 +129,8 @@ impl<T: Real> Real for Sum<T> {
 /// pi/2 minus the double nearest to it, in two parts.
 const HALF_PI: [f64; 2] = [6.123_233_995_736_766e-17, -1.497_384_904_859_169_8e-33];
 
-/// Sine and cosine of an angle in [0, pi], 1 - sine and 1 - |cosine|; the last two have a relative error of 2^-100.
+/// [sine, cosine, 1 - sine, 1 - |cosine|] of an angle in [0, pi]; the last two have a relative error of
+/// 2^-100.
 #[inline(always)]
 pub(crate) fn sin_cos_falls<T: Real>(theta: T) -> [Sum<T>; 4] {
     let near = Sum { hi: theta, lo: theta.splat(0.0) };
@@ -159,12 +170,12 @@ pub(crate) fn sin_cos(theta: f64) -> [Sum<f64>; 2] {
     [sin, cos]
 }
 
-/// Sine, cosine and 1 - cosine of a small angle.
+/// [sine, cosine, 1 - cosine] of a small angle.
 #[inline(always)]
 fn series<T: Real>(x: Sum<T>) -> [Sum<T>; 3] {
     let square = -(x * x);
     let one = x.splat(1.0);
-    // The terms x^n/n! go down to 2^-104.
+    // The last term of each series, x^n/n!, is below 2^-104.
     let (mut sin, mut cos, mut fall) = (one, one, one);
     for n in (1..15).rev() {
         let even = f64::from(2 * n);
@@ -196,7 +207,7 @@ mod tests {
                 assert!(miss.hi.abs() < 8.0 * UNIT, "{theta}: {:e}", miss.hi);
             }
         }
-        // 1 - sin and 1 - |cos| have digits of their own, as (1 - cos) (1 + cos) = sin^2 shows.
+        // 1 - sin and 1 - |cos| keep their digits where they are small: (1 - cos) (1 + cos) = sin^2 shows it.
         for theta in [1e-9, 0.7, 0.9, FRAC_PI_2 - 1e-9, 2.3, 2.4, PI - 1e-9] {
             let [s, c, sin_fall, cos_fall] = sin_cos_falls(theta);
             assert_eq!([s, c], sin_cos(theta));

@@ -1,14 +1,14 @@
-//! Power series of all numbers of a law, one order after the other, from a record of its operations.
+//! Power series of all numbers in a law, computed order by order from a record of its operations.
 //!
 //! ```text
 //! (a b)_n = sum a_j b_(n-j),   (a/b)_n = (a_n - sum_(j<n) (a/b)_j b_(n-j))/b_0,   (r r)_n = a_n for r = sqrt(a)
 //! n > 0   if x_n grows by h, every coefficient n grows by h times the derivative, at t = 0, with respect to x
 //! ```
-//! A law that is evaluated once with the numbers of a [`Tape`] leaves its operations there. A [`Player`] repeats them: the
-//! coefficients of one order follow from those of lower orders and from those of the given numbers, so that a law of
-//! differential equations gives the series of its own solution in one run. The formulas are recurrences of automatic
-//! differentiation (Griewank and Walther 2008, ch. 13). Error: a few roundings of the largest product in each
-//! coefficient.
+//! Evaluating a law once with the numbers of a [`Tape`] records its operations. A [`Player`] repeats them on
+//! power series: the coefficients of one order follow from those of lower orders and of the given numbers, so
+//! that a law of differential equations gives the series of its own solution in one run. The formulas are
+//! recurrences of automatic differentiation (Griewank and Walther 2008, ch. 13). Error: a few roundings of
+//! the largest product in each coefficient.
 
 use super::real::{Real, operators};
 use super::series::{Series, TERMS};
@@ -20,20 +20,20 @@ use core::ops::Range;
 enum Op {
     Given,
     Constant(f64),
-    /// Two numbers, each times a constant.
+    /// The sum of two operands, each multiplied by a constant.
     Sum([u16; 2], [f64; 2]),
-    /// A number times a constant, and another constant more.
+    /// The operand times the first constant, plus the second constant.
     Affine(u16, [f64; 2]),
     Product([u16; 2]),
     Quotient([u16; 2]),
     Root(u16),
     Rounded(u16),
-    /// The third number where the first is less than the second at t = 0, else the fourth.
+    /// The third operand where the first is less than the second at t = 0, else the fourth.
     Picked([u16; 4]),
 }
 
 impl Op {
-    /// The same operation with other operands.
+    /// The same operation, with `to` applied to the index of each operand.
     fn with(self, mut to: impl FnMut(u16) -> u16) -> Self {
         match self {
             Self::Given | Self::Constant(_) => self,
@@ -48,24 +48,25 @@ impl Op {
     }
 }
 
-/// The operations of a law.
+/// The recorded operations of a law.
 #[derive(Debug, Default)]
 pub(crate) struct Tape {
     ops: RefCell<Vec<Op>>,
 }
 
-/// A number of a law that is recorded: a constant, or one more than a multiple of the result of an operation.
+/// A number in a recorded law: `scale` times the result of an operation, plus `shift`; or the constant
+/// `shift`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Taped<'a> {
     tape: &'a Tape,
     of: Option<u16>,
-    /// The multiple of the result, and the constant; 0 and the constant without a result.
+    /// The factor of the result, 0 for a constant.
     scale: f64,
     shift: f64,
 }
 
 impl Tape {
-    /// A number that the player is given.
+    /// A number whose series the player receives.
     pub fn given(&self) -> Taped<'_> {
         let mut ops = self.ops.borrow_mut();
         ops.push(Op::Given);
@@ -81,7 +82,8 @@ impl Tape {
         Taped { tape: self, of: Some(result), scale: 1.0, shift: 0.0 }
     }
 
-    /// The result of an operation; laws repeat many of them.
+    /// The index of an operation; one that is already recorded is not recorded again, since laws repeat many
+    /// of them.
     fn result(&self, op: Op) -> u16 {
         let mut ops = self.ops.borrow_mut();
         let known = ops.iter().rposition(|known| *known == op);
@@ -91,8 +93,8 @@ impl Tape {
         }) as u16
     }
 
-    /// The operations that give `first`, and those that give `then` beside them; the order of the given numbers and of
-    /// the results is kept.
+    /// A player of the operations that `first` needs, and of those that only `then` needs, with the given
+    /// numbers and the results in the order of the arguments.
     pub fn player(&self, given: &[Taped], first: &[Taped], then: &[Taped]) -> Player {
         let ids = |of: &[Taped]| of.iter().map(|x| x.index()).collect::<Vec<u16>>();
         let (given, first, then) = (ids(given), ids(first), ids(then));
@@ -136,7 +138,7 @@ impl Tape {
 }
 
 impl Taped<'_> {
-    /// The operation whose result is this number.
+    /// The index of an operation whose result is this number; records one if necessary.
     fn index(self) -> u16 {
         match self.of {
             None => self.tape.result(Op::Constant(self.shift)),
@@ -145,7 +147,7 @@ impl Taped<'_> {
         }
     }
 
-    /// The operation whose result is this number over the constant that comes second.
+    /// The index of an operation and a constant, whose product is this number.
     fn factor(self) -> (u16, f64) {
         match self.of {
             Some(i) if self.shift == 0.0 => (i, self.scale),
@@ -153,10 +155,12 @@ impl Taped<'_> {
         }
     }
 
+    #[inline(never)]
     fn scaled(self, k: f64) -> Self {
         if k == 0.0 { self.splat(0.0) } else { Self { scale: k * self.scale, shift: k * self.shift, ..self } }
     }
 
+    #[inline(never)]
     fn sum(self, b: Self) -> Self {
         let shift = self.shift + b.shift;
         match (self.of, b.of) {
@@ -172,6 +176,12 @@ impl Taped<'_> {
         }
     }
 
+    #[inline(never)]
+    fn less(self, b: Self) -> Self {
+        self.sum(b.scaled(-1.0))
+    }
+
+    #[inline(never)]
     fn times(self, b: Self) -> Self {
         match (self.of, b.of) {
             (_, None) => self.scaled(b.shift),
@@ -183,6 +193,7 @@ impl Taped<'_> {
         }
     }
 
+    #[inline(never)]
     fn over(self, b: Self) -> Self {
         let Some(_) = b.of else {
             return Self { scale: self.scale / b.shift, shift: self.shift / b.shift, ..self };
@@ -192,9 +203,10 @@ impl Taped<'_> {
     }
 }
 
-operators!(['a] Taped<'a>, (a, b), a.sum(b), a.sum(b.scaled(-1.0)), a.times(b), a.over(b), a.scaled(-1.0));
+operators!(['a] Taped<'a>, (a, b), a.sum(b), a.less(b), a.times(b), a.over(b), a.scaled(-1.0));
 
 impl Real for Taped<'_> {
+    #[inline(never)]
     fn splat(self, x: f64) -> Self {
         self.tape.number(x)
     }
@@ -219,14 +231,15 @@ impl Real for Taped<'_> {
     }
 }
 
-/// The series of a number, and its derivative at t = 0 with respect to one quantity.
+/// The power series of a number, and its derivative at t = 0 with respect to the quantity that
+/// [`Player::lean`] chooses.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Row {
     pub at: [f64; TERMS],
     pub slope: f64,
 }
 
-/// Repeats the operations of a law with power series.
+/// Repeats the recorded operations of a law on power series.
 #[derive(Debug)]
 pub(crate) struct Player {
     rows: Vec<Row>,
@@ -236,7 +249,7 @@ pub(crate) struct Player {
     results: [Vec<u16>; 2],
 }
 
-/// The terms of a product that contain neither the first nor the last coefficient of a factor.
+/// The sum of a_j b_(n-j) over 0 < j < n.
 #[inline(always)]
 fn between(a: &Row, b: &Row, n: usize) -> f64 {
     let (a, b) = (&a.at[1..n], &b.at[1..n]);
@@ -249,7 +262,7 @@ impl Player {
         self.rows[i].at[n] = x;
     }
 
-    /// Sets the derivative of the given number `i`, which otherwise is 0.
+    /// Sets the derivative of the given number `i` with respect to the chosen quantity; the default is 0.
     pub fn lean(&mut self, i: usize, slope: f64) {
         self.rows[i].slope = slope;
     }
@@ -259,34 +272,35 @@ impl Player {
         &self.rows[i].at
     }
 
-    /// The first result `i`.
+    /// The result `i` of `first`.
     #[inline(always)]
     pub fn result(&self, i: usize) -> &Row {
         &self.rows[self.results[0][i] as usize]
     }
 
-    /// The coefficients below `known` of the later result `i`.
+    /// The first `known` coefficients of the result `i` of `then`.
     pub fn later(&self, i: usize, known: usize) -> Series {
         Series::first(&self.rows[self.results[1][i] as usize].at, known)
     }
 
-    /// The values of the first results at t = 0, and their derivatives.
+    /// Computes the values of `first` at t = 0 and their derivatives.
     pub fn begin(&mut self) {
         self.at_first(self.first.clone());
     }
 
-    /// The coefficients `n` > 0 of the first results.
+    /// Computes the coefficients `n` > 0 of `first`.
     pub fn go_on(&mut self, n: usize) {
         self.order(self.first.clone(), n);
     }
 
-    /// The coefficients below `known` of the later results.
+    /// Computes the first `known` coefficients of `then`.
     pub fn finish(&mut self, known: usize) {
         self.at_first(self.then.clone());
         (1..known).for_each(|n| self.order(self.then.clone(), n));
     }
 
-    /// Lets the coefficient `n` > 0 of the quantity of the derivatives grow by `h`.
+    /// Adds `h` to the coefficient `n` > 0 of the chosen quantity, and updates that coefficient of all
+    /// results of `first`.
     pub fn turn(&mut self, n: usize, h: f64) {
         for row in &mut self.rows[..self.first.end] {
             row.at[n] += row.slope * h;
@@ -315,7 +329,7 @@ impl Player {
                 }
                 Op::Root(a) => {
                     let root = at(a).0.sqrt();
-                    // The root of a constant zero has the derivative 0.
+                    // A constant zero has the derivative 0, and so has its root; 0/0 would be NaN.
                     (root, at(a).1 / (root + root).max(f64::MIN_POSITIVE))
                 }
                 Op::Rounded(a) => (at(a).0.round_ties_even(), 0.0),
@@ -326,7 +340,7 @@ impl Player {
     }
 
     fn order(&mut self, range: Range<usize>, n: usize) {
-        // The compiler then knows that all rows are long enough.
+        // With this bound the compiler omits the checks of the indices of rows.
         let n = n.min(TERMS - 1);
         for (i, op) in range.clone().zip(&self.ops[range]) {
             let (rows, to) = self.rows.split_at_mut(i);
@@ -360,7 +374,7 @@ mod tests {
     use super::super::dual::Dual;
     use super::*;
 
-    /// Every operation, of numbers, constants, and numbers that a constant has been added to.
+    /// A law with every operation, on given numbers, on constants, and on sums of the two.
     fn law<T: Real>([a, b]: [T; 2]) -> Vec<T> {
         let (half, two) = (a.splat(0.5), a.splat(2.0));
         let most = a.max(b.splat(0.1)).min(two * b);
@@ -376,7 +390,7 @@ mod tests {
 
     const GIVEN: [[f64; 6]; 2] = [[0.7, -1.3, 0.4, 2.0, -0.1, 0.9], [1.9, 0.3, -2.2, 0.6, 1.1, -0.5]];
 
-    /// A player of the law, with series of these numbers, of which the derivatives are those by the first.
+    /// A player of the law on these two series, with derivatives with respect to the first number.
     fn played([a, b]: [[f64; 6]; 2]) -> Player {
         let tape = Tape::default();
         let given = [tape.given(), tape.given()];

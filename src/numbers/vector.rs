@@ -2,13 +2,11 @@
 
 use super::real::Real;
 
-/// The scalar product.
 #[inline(always)]
 pub(crate) fn dot<T: Real>(a: [T; 3], b: [T; 3]) -> T {
     a[0].mac(b[0], a[1].mac(b[1], a[2] * b[2]))
 }
 
-/// The vector product.
 #[inline(always)]
 pub(crate) fn cross<T: Real>(a: [T; 3], b: [T; 3]) -> [T; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
@@ -32,7 +30,7 @@ impl<T: Real> Symmetric<T> {
         [dot([a, f, e], v), dot([f, b, d], v), dot([e, d, c], v)]
     }
 
-    /// The solution x of `self x = v`, by Cramer's rule, of a matrix that is positive.
+    /// The solution x of `self x = v` for a positive definite matrix, by Cramer's rule.
     #[inline(always)]
     pub fn solve(&self, v: [T; 3]) -> [T; 3] {
         let (adjugate, det) = self.adjugate();
@@ -40,7 +38,7 @@ impl<T: Real> Symmetric<T> {
         adjugate.times(v).map(|x| x * per)
     }
 
-    /// The inverse of a matrix that is positive.
+    /// The inverse of a positive definite matrix.
     pub fn inverse(&self) -> Self {
         let (adjugate, det) = self.adjugate();
         let per = det.splat(1.0) / det;

@@ -53,7 +53,7 @@ fn apart<S: Simd, R>(simd: S, work: impl FnOnce() -> R) -> R {
     simd.vectorize(work)
 }
 
-/// Two reals side by side: the operations of one fill the waiting time of the other.
+/// Two numbers side by side: while the processor waits for a result of one, it works on the other.
 #[derive(Clone, Copy)]
 pub(crate) struct Pair<T>(pub T, pub T);
 

@@ -1,7 +1,7 @@
 //! Many motions: the functions read and fill columns by name.
 
 use super::columns::{FilledColumns, GivenColumns, STATE, codes};
-use super::options::table_of;
+use super::options::{MotionAsked, table_of};
 use super::watch::Watch;
 use crate::laws::loss::{COUNT, Law};
 use crate::many::motions::{Job, MotionOutput, MotionStarts, SUMMARIES, Summary, roll_among};
@@ -15,7 +15,7 @@ const SLIP: [&str; 2] = ["slip_along", "slip_across"];
 /// The names of the coefficients of a table: mu or c, and the static one.
 const TABLE: [&str; 2] = ["coefficient", "static"];
 
-/// Name, unit and description of the columns that are no summaries.
+/// Name, unit and description of the columns that are not summaries.
 const LABELS: [[&str; 3]; 9] = [
     ["theta", "rad", "inclination"],
     ["w1", "sqrt(g/R)", "w1, along the horizontal axis of the lean"],
@@ -28,13 +28,13 @@ const LABELS: [[&str; 3]; 9] = [
     ["status", "1", "code of spincyl.sweep.Status"],
 ];
 
-/// Name, unit and words of every column of a result.
+/// Name, unit and description of every column of a result.
 #[pyfunction]
 pub fn columns() -> Vec<[&'static str; 3]> {
     Summary::ALL.into_iter().map(Summary::label).chain(LABELS).collect()
 }
 
-/// The names of the summaries that motions on a table of this kind have, with losses or without.
+/// The names of the summaries of motions on a table of this kind, with losses or without.
 #[pyfunction]
 pub fn summaries(table: u8, loses: bool) -> PyResult<Vec<&'static str>> {
     let rubs = table_of(table)?.rubs();
@@ -42,30 +42,16 @@ pub fn summaries(table: u8, loses: bool) -> PyResult<Vec<&'static str>> {
     Ok(of.map(|summary| summary.label()[0]).collect())
 }
 
-/// The options of all motions, which Python gives by name.
-#[derive(FromPyObject)]
-#[pyo3(from_item_all)]
-pub struct EnsembleAsked {
-    table: u8,
-    mu: f64,
-    tol: f64,
-    step: Option<f64>,
-    beyond: bool,
-    restitution: Option<f64>,
-    stop_at_rolling: bool,
-    /// Whether states are wanted at all times, not only at the end.
-    spread: bool,
-}
-
-/// Fills the columns of `out` from those of `given`, by name, of length n or 1: the numbers of bodies and states and,
-/// if present, of slips, tables and losses (by their parameters). States are n times the times if `spread` is asked. The
-/// calling thread is one of the `threads` if the second number says that its stack is large.
+/// Fills the columns of `out` from those of `given`, by name; a given column has n numbers or one. These are
+/// the numbers of bodies and states and, if present, of slips, tables and losses (by their parameters). With
+/// `spread` a column of states has n times as many numbers as there are times. `threads` has the number of
+/// threads, and whether the calling thread is one of them, for which its stack must be large.
 #[pyfunction]
 pub fn ensemble<'py>(
     py: Python<'py>,
     given: Bound<'py, PyDict>,
     times: PyReadonlyArray1<'py, f64>,
-    asked: EnsembleAsked,
+    asked: MotionAsked,
     out: Bound<'py, PyDict>,
     threads: (usize, bool),
     progress: Option<Py<PyAny>>,
@@ -78,11 +64,12 @@ pub fn ensemble<'py>(
         coefficients: given.some(TABLE)?,
         losses: given.some::<COUNT>(Law::ALL.map(Law::parameter))?,
     };
+    let table = table_of(asked.table)?;
     let job = Job {
-        table: table_of(asked.table)?,
-        mu: asked.mu,
+        table,
+        mu: if table.rubs() { f64::INFINITY } else { asked.coefficients[0] },
         times: times.as_slice()?,
-        tol: asked.tol,
+        tol: asked.tol.ok_or_else(|| PyValueError::new_err("no option tol"))?,
         step: asked.step,
         beyond: asked.beyond,
         restitution: asked.restitution,

@@ -4,7 +4,7 @@ use super::{of_state, or_nan};
 use crate::laws::loss::{COUNT, Law, Losses};
 use pyo3::prelude::*;
 
-/// How many inputs `power` has: coefficients, normal force, state, body.
+/// Number of inputs of `power`: coefficients, normal force, state and body.
 pub const INPUTS: usize = COUNT + 1 + 4 + super::BODY;
 
 /// The power of the losses; NaN if a coefficient is invalid.
@@ -25,8 +25,8 @@ fn losses_of(x: &[f64]) -> (Losses, f64) {
     (Losses { coefficients: core::array::from_fn(|i| x[i]) }, x[COUNT])
 }
 
-/// The laws in the order of their coefficients: name, name of the coefficient, and exponent of the end of a thin disk.
+/// The laws in the order of their coefficients: the coefficient's name, and the exponent of the end of a thin disk.
 #[pyfunction]
-pub fn loss_laws() -> [(String, &'static str, Option<f64>); COUNT] {
-    Law::ALL.map(|law| (format!("{law:?}"), law.parameter(), law.exponent()))
+pub fn loss_laws() -> [(&'static str, Option<f64>); COUNT] {
+    Law::ALL.map(|law| (law.parameter(), law.exponent()))
 }

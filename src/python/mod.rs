@@ -1,5 +1,6 @@
 //! The Python module `spincyl._core` converts arguments, releases the GIL and maps the error; it computes nothing.
 
+mod codes;
 mod columns;
 mod drift;
 mod ensemble;
@@ -11,6 +12,8 @@ mod sweep;
 mod ufunc;
 mod watch;
 
+use crate::laws::contact::landing::two_rims;
+use crate::laws::contact::slip::{self, centre_velocity};
 use crate::laws::throw;
 use crate::states::steady::MOST;
 use crate::states::{stability, steady};
@@ -28,10 +31,9 @@ impl From<Error> for PyErr {
     }
 }
 
-/// How many numbers a body has: ell, i1, i3, bore, fillet, theta_end.
+/// Number of inputs that describe a body: ell, i1, i3, bore, fillet, theta_end.
 pub const BODY: usize = 6;
 
-/// The body with these numbers.
 fn body_of(x: &[f64]) -> Result<Body, Error> {
     let &numbers = x.first_chunk::<BODY>().expect("a body is six numbers");
     Body::of_numbers(numbers)
@@ -46,7 +48,7 @@ thread_local! {
     static LAST: std::cell::Cell<Option<([u64; BODY], Body)>> = const { std::cell::Cell::new(None) };
 }
 
-/// A function of a body; `x` begins with the numbers of the body, and the result is NaN if there is no such body.
+/// A function of a body; `x` begins with the numbers of the body, and the result is NaN if these are invalid.
 fn of_body(x: &[f64], f: impl Fn(&Body) -> f64) -> f64 {
     or_nan(body_of(x).map(|body| f(&body)))
 }
@@ -54,6 +56,16 @@ fn of_body(x: &[f64], f: impl Fn(&Body) -> f64) -> f64 {
 /// A function of a state and a body: `x` has theta, w1, w2, w3, then the numbers of the body.
 fn of_state(x: &[f64], f: impl Fn(&State, &Body) -> f64) -> f64 {
     of_body(&x[4..], |body| f(&state_of(x), body))
+}
+
+/// Two numbers of a state with a slip: `x` has theta, w1, w2, w3, the slip, then the numbers of the body.
+fn of_slip(x: &[f64], f: impl Fn(&Body, &State, [f64; 2]) -> [f64; 2]) -> [f64; 2] {
+    body_of(&x[6..]).map_or([f64::NAN; 2], |body| f(&body, &state_of(x), [x[4], x[5]]))
+}
+
+/// The inclination at which a capsule lands on its other side; NaN of a tube that is none, whose end follows from its shape.
+fn capsule_end(tube: &Body) -> f64 {
+    if tube.is_ball() && tube.ell() > 0.0 { tube.theta_end() } else { f64::NAN }
 }
 
 fn state_of(x: &[f64]) -> State {
@@ -212,14 +224,38 @@ static LAWS: &[ArrayFunction] = &[
     ArrayFunction {
         name: "energy_slip",
         inputs: 12,
-        value: Value::One(|x| {
-            of_body(&x[6..], |b| crate::laws::contact::slip::energy(b, &state_of(x), [x[4], x[5]]))
-        }),
+        value: Value::One(|x| of_body(&x[6..], |b| slip::energy(b, &state_of(x), [x[4], x[5]]))),
     },
+    ArrayFunction { name: "centre_along", inputs: 12, value: Value::One(|x| of_slip(x, centre_velocity)[0]) },
+    ArrayFunction {
+        name: "centre_across",
+        inputs: 12,
+        value: Value::One(|x| of_slip(x, centre_velocity)[1]),
+    },
+    ArrayFunction {
+        name: "rests",
+        inputs: 10,
+        value: Value::One(|x| of_state(x, |y, b| f64::from(u8::from(steady::rests(b, y))))),
+    },
+    ArrayFunction {
+        name: "two_rims",
+        inputs: 6,
+        value: Value::One(|x| of_body(x, |b| f64::from(u8::from(two_rims(b).is_ok())))),
+    },
+    ArrayFunction {
+        name: "capsule_end",
+        inputs: 2,
+        value: Value::One(|x| or_nan(Body::rounded_tube(x[0], 0.0, x[1]).map(|b| capsule_end(&b)))),
+    },
+    ArrayFunction { name: "stone_tilted", inputs: 3, value: Value::Pick(stone::tilted) },
+    ArrayFunction { name: "stone_inclinations", inputs: 4, value: Value::Pick(stone::inclinations) },
+    ArrayFunction { name: "stone_spin", inputs: 6, value: Value::One(stone::spin) },
+    ArrayFunction { name: "stone_lever", inputs: stone::STONE + 4, value: Value::Pick(stone::lever) },
+    ArrayFunction { name: "stone_slip", inputs: stone::STONE + 7, value: Value::Pick(stone::slip) },
     ArrayFunction {
         name: "painleve",
         inputs: 7,
-        value: Value::One(|x| of_body(&x[1..], |b| crate::laws::contact::slip::painleve(b, x[0]))),
+        value: Value::One(|x| of_body(&x[1..], |b| slip::painleve(b, x[0]))),
     },
     ArrayFunction { name: "precession", inputs: 4, value: Value::One(|x| state_of(x).precession()) },
     ArrayFunction { name: "spin", inputs: 4, value: Value::One(|x| state_of(x).spin()) },
@@ -262,7 +298,9 @@ mod _core {
     use super::*;
 
     #[pymodule_export]
-    use super::drift::{drift_ask, drift_check, drift_ends, drift_stops};
+    use super::codes::codes;
+    #[pymodule_export]
+    use super::drift::{drift_ask, drift_check, drift_stops};
     #[pymodule_export]
     use super::ensemble::{columns, ensemble, summaries};
     #[pymodule_export]
@@ -270,11 +308,11 @@ mod _core {
     #[pymodule_export]
     use super::motion::{roll, swing};
     #[pymodule_export]
-    use super::options::tables;
+    use super::options::motion_options;
     #[pymodule_export]
     use super::stone::{
-        check_stone, check_stones, egg, rattleback, rocking, spin_limits, stone_energies, stone_moments,
-        stone_names, stones, uniform_stone,
+        check_stone, check_stones, egg, rattleback, rocking, spin_limits, stone_columns, stone_energies,
+        stone_moments, stone_names, stones, uniform_stone,
     };
     #[pymodule_export]
     use super::sweep::{areas, extrema, portrait};
@@ -292,7 +330,7 @@ mod _core {
     fn rate_of_one(theta: f64, ell: f64, i1: f64, i3: f64, bore: f64, fillet: f64, theta_end: f64) -> f64 {
         let numbers = [ell, i1, i3, bore, fillet, theta_end];
         let bits = numbers.map(f64::to_bits);
-        // Most callers ask for the same body many times.
+        // The body of the last call is reused, since most callers ask for many rates of one body.
         let known = LAST.get().filter(|(of, _)| *of == bits);
         let Some((_, body)) = known.or_else(|| body_of(&numbers).ok().map(|body| (bits, body))) else {
             return f64::NAN;
@@ -303,20 +341,19 @@ mod _core {
         steady::rate(&body, theta)
     }
 
-    /// i1 and i3 of a body, or ValueError naming the value and the inequality.
+    /// i1 and i3 of a body, or ValueError with the invalid value and the inequality.
     #[pyfunction]
     fn check_body(body: [f64; BODY]) -> PyResult<(f64, f64)> {
         let body = body_of(&body)?;
         Ok((body.i1(), body.i3()))
     }
 
-    /// ell, i1, i3 and theta_end (NaN: the one that follows from the shape) of a tube from half its length, its bore
-    /// and its fillet, or ValueError naming the value and the range.
+    /// ell, i1, i3 and theta_end (NaN if it follows from the other numbers) of a tube from half its length,
+    /// its bore and its fillet, or ValueError with the invalid value and the range.
     #[pyfunction]
     fn check_tube(half_length: f64, bore: f64, fillet: f64) -> PyResult<(f64, f64, f64, f64)> {
         let body = Body::rounded_tube(half_length, bore, fillet)?;
-        let capsule = body.is_ball() && body.ell() > 0.0;
-        Ok((body.ell(), body.i1(), body.i3(), if capsule { body.theta_end() } else { f64::NAN }))
+        Ok((body.ell(), body.i1(), body.i3(), capsule_end(&body)))
     }
 
     /// i1 and theta_end of two balls, or ValueError.
@@ -326,7 +363,7 @@ mod _core {
         Ok((body.i1(), body.theta_end()))
     }
 
-    /// Checks a ball: ValueError naming the value and the range.
+    /// Checks a ball: raises ValueError with the invalid value and the range.
     #[pyfunction]
     fn check_ball(offset: f64, i1: f64, i3: f64) -> PyResult<()> {
         Body::ball(offset, i1, i3)?;

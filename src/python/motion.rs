@@ -5,8 +5,6 @@ use super::options::{MotionAsked, contact_of};
 use super::stone::{STONE, stone_of};
 use super::watch::Watch;
 use crate::error::room;
-use crate::laws::contact::{Contact, TableKind};
-use crate::laws::loss::{COUNT, Losses};
 use crate::laws::stone::{Ellipsoid, StoneState};
 use crate::motions::exact::Swing;
 use crate::motions::motion;
@@ -18,20 +16,20 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::intern;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyString};
+use pyo3::types::PyDict;
 
-/// The numbers of an array for Python, row by row.
+/// An array for Python, with its numbers row by row.
 struct NamedArray {
     pub name: &'static str,
     pub numbers: Vec<f64>,
-    /// How many numbers a row has; 0 for an array without rows.
+    /// Number of columns; 0 for a one-dimensional array.
     pub width: usize,
 }
 
-/// How many rows are written between two calls of `go_on`.
+/// Number of rows that are written between two calls of `go_on`.
 const ROWS: usize = 1 << 12;
 
-/// The arrays of a motion for Python, row by row, as long as `go_on` does not say to stop.
+/// The arrays of a motion for Python, row by row, written as long as `go_on` returns true.
 struct ToldRows<'a> {
     count: usize,
     columns: Vec<NamedArray>,
@@ -59,9 +57,8 @@ impl ToldRows<'_> {
     }
 }
 
-/// A state whose motions Python can have.
+/// A state whose motions can be converted to arrays for Python.
 trait Told: Moving + Sized {
-    /// The body in such a state.
     type Body;
     /// Adds the arrays of the states, poses and forces.
     fn tell(m: &Motion<Self>, body: &Self::Body, rows: &mut ToldRows<'_>) -> Result<(), Error>;
@@ -124,7 +121,7 @@ impl Told for StoneState {
     }
 }
 
-/// The arrays of a motion for Python; None if `go_on` says to stop.
+/// The arrays of a motion for Python; None if `go_on` returns false.
 fn columns<S: Told>(
     m: &Motion<S>,
     body: &S::Body,
@@ -148,22 +145,23 @@ fn columns<S: Told>(
     Ok(rows.goes_on.then_some(rows.columns))
 }
 
-/// A body of revolution, or a stone, by its numbers.
+/// The numbers of a body of revolution, or of a stone.
 #[derive(FromPyObject)]
 pub enum AnyBody {
     Rim((f64, f64, f64, f64, f64, f64)),
     Stone([f64; STONE]),
 }
 
-/// The numbers of a state of either.
+/// The numbers of a state of a body of revolution, or of a stone.
 #[derive(FromPyObject)]
 pub enum AnyState {
     Rim((f64, f64, f64, f64)),
     Stone([f64; 6]),
 }
 
-/// The motion of a body or of a stone; `asked` may have t0, slip, table with its two coefficients, losses (of each law),
-/// step, tol (neither: as accurately as doubles allow), beyond, restitution, pose, force.
+/// The motion of a body or of a stone. `asked` may have t0, slip, table with its two coefficients, losses (of
+/// each law), step, tol, beyond, restitution, pose, force; without step and tol the motion is computed as
+/// accurately as doubles allow.
 #[pyfunction]
 pub fn roll<'py>(
     py: Python<'py>,
@@ -189,7 +187,7 @@ pub fn roll<'py>(
     }
 }
 
-/// Finds a motion without the lock of Python, and tells it.
+/// Computes a motion with the GIL released, and converts it to a dictionary.
 fn found<'py, S: Told + Send + Sync>(
     py: Python<'py>,
     body: &S::Body,
@@ -274,14 +272,14 @@ fn dictionary<'py, S: Moving>(
     Ok(out)
 }
 
-/// The arrays that every motion has; the others are those that were asked for.
+/// The arrays that go into the dictionary itself; all others go into its `_extra`.
 const FIELDS: [&str; 3] = ["t", "theta", "w"];
 
-/// The largest number of rows that are copied.
+/// The largest number of rows that are copied; longer arrays are handed over.
 const FEW: usize = 64;
 
-/// Period, least and greatest theta, phi and psi per period, drift per period and its circle's radius, error of the
-/// period; the last five NaN where there is no period.
+/// Period, least and greatest theta, phi and psi per period, drift per period and its circle's radius, error
+/// of the period. The last five are NaN for a motion without a period.
 #[pyfunction]
 pub fn swing(body: [f64; BODY], state: [f64; 4], contact: u8) -> PyResult<[f64; 8]> {
     let swing = Swing::new(&Body::of_numbers(body)?, &State::from(state), contact_of(contact)?, true)?;

@@ -6,14 +6,15 @@ use super::watch::Watch;
 use crate::Error;
 use crate::laws::stone::{Ellipsoid, StoneState};
 use crate::many::stones::{StoneRow, StoneSummary, many};
+use crate::states::steady::MOST;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// How many numbers a stone has: three semi-axes, the moments 11, 22, 33, 23, 13 and 12, the offset, and theta_end.
+/// Number of inputs that describe a stone: three semi-axes, the moments 11, 22, 33, 23, 13 and 12, the
+/// offset, theta_end.
 pub const STONE: usize = 13;
 
-/// The stone with these numbers.
 pub fn stone_of(x: &[f64; STONE]) -> Result<Ellipsoid, Error> {
     Ellipsoid::of_numbers(*x)
 }
@@ -23,30 +24,73 @@ fn told(stone: &Ellipsoid) -> ([f64; STONE], f64) {
     (stone.numbers(), stone.unit())
 }
 
+/// The first of several results of an elementwise function; the others are NaN.
+fn first<const N: usize>(found: [f64; N]) -> [f64; MOST] {
+    core::array::from_fn(|k| found.get(k).copied().unwrap_or(f64::NAN))
+}
+
+/// A function of a stone, whose numbers `x` begins with; NaN if there is no such stone.
+fn of_stone<const N: usize>(x: &[f64], f: impl Fn(&Ellipsoid, &[f64]) -> [f64; N]) -> [f64; MOST] {
+    let stone = x.first_chunk().map(stone_of);
+    stone.and_then(Result::ok).map_or([f64::NAN; MOST], |stone| first(f(&stone, &x[STONE..])))
+}
+
+fn state(x: &[f64]) -> StoneState {
+    StoneState { vertical: [x[0], x[1], x[2]], w: [x[3], x[4], x[5]] }
+}
+
+/// The vertical of a stone that is tilted: `x` has pitch and roll.
+pub fn tilted(x: &[f64]) -> [f64; MOST] {
+    first(StoneState::spinning(0.0, x[0], x[1]).vertical)
+}
+
+/// The angles from a vertical to the axes of a stone.
+pub fn inclinations(x: &[f64]) -> [f64; MOST] {
+    first(StoneState { vertical: [x[0], x[1], x[2]], w: [0.0; 3] }.inclinations())
+}
+
+/// The angular velocity about the vertical: `x` has the vertical and w.
+pub fn spin(x: &[f64]) -> f64 {
+    state(x).spin()
+}
+
+/// From the centre of mass to the lowest point: `x` has the numbers of a stone and a vertical.
+pub fn lever(x: &[f64]) -> [f64; MOST] {
+    of_stone(x, |stone, y| stone.lowest_point([y[0], y[1], y[2]]))
+}
+
+/// The slip of a stone whose centre of mass rests: `x` has the numbers of the stone, a vertical and w.
+pub fn slip(x: &[f64]) -> [f64; MOST] {
+    of_stone(x, |stone, y| stone.slip(&state(y), [0.0; 2]))
+}
+
 /// The names of the numbers of a stone.
 #[pyfunction]
 pub fn stone_names() -> [&'static str; STONE] {
     Ellipsoid::NAMES
 }
 
-/// How many numbers a stone is given by: three semi-axes, the tensor of inertia row by row, the offset, and theta_end.
+/// Number of inputs from which a stone is made: three semi-axes, the tensor of inertia row by row, the
+/// offset, theta_end.
 const GIVEN: usize = 16;
 
-/// The stone that is given by these numbers, with lengths in any unit.
+/// The stone with these numbers, with lengths in any unit.
 fn given_stone(numbers: &[f64; GIVEN]) -> Result<Ellipsoid, Error> {
     let [a, b, c, tensor @ .., x, y, z, end] = *numbers;
     let [i, j, k, l, m, n, o, p, q] = tensor;
     Ellipsoid::new([a, b, c], [[i, j, k], [l, m, n], [o, p, q]], [x, y, z])?.with_edge(end)
 }
 
-/// The numbers of a stone that is given in any unit of length, its largest semi-axis there, and how far out its mass lies.
+/// The numbers of a stone that is given in any unit of length, its largest semi-axis in that unit, and its
+/// `Ellipsoid::reach`.
 #[pyfunction]
 pub fn check_stone(numbers: [f64; GIVEN]) -> PyResult<([f64; STONE], f64, f64)> {
     let stone = given_stone(&numbers)?;
     Ok((stone.numbers(), stone.unit(), stone.reach()))
 }
 
-/// The same of many stones, a row of each: its numbers, its unit and how far out its mass lies; NaN of what is no stone.
+/// As `check_stone`, for many stones, one in each row: its numbers, its largest semi-axis and its reach; NaN
+/// where the stone is invalid.
 #[pyfunction]
 pub fn check_stones<'py>(
     py: Python<'py>,
@@ -121,6 +165,33 @@ pub fn stone_energies(stone: [f64; STONE], states: Vec<[f64; 8]>, smooth: bool) 
         stone.energy_slipping(&state, [u, v], smooth)
     };
     Ok(states.iter().map(energy).collect())
+}
+
+/// Unit and description of each number of a motion among many, in the order of `StoneSummary::NAMES`.
+const STONE_LABELS: [[&str; 2]; StoneSummary::NAMES.len()] = [
+    ["1", "vertical along axis 1 at the end"],
+    ["1", "vertical along axis 2 at the end"],
+    ["1", "vertical along axis 3 at the end"],
+    ["sqrt(g/a)", "angular velocity along axis 1 at the end"],
+    ["sqrt(g/a)", "angular velocity along axis 2 at the end"],
+    ["sqrt(g/a)", "angular velocity along axis 3 at the end"],
+    ["sqrt(a/g)", "time of the end"],
+    ["sqrt(g/a)", "angular velocity about the vertical at the end"],
+    ["1", "how often the spin has turned back"],
+    ["sqrt(a/g)", "time at which the spin first turned back"],
+    ["M g a", "heat of friction"],
+    ["1", "estimated error of the worst number of the state"],
+    ["sqrt(a/g)", "time up to which the motion is known"],
+];
+
+/// Name, unit and description of every number of a motion among many.
+#[pyfunction]
+pub fn stone_columns() -> Vec<[&'static str; 3]> {
+    StoneSummary::NAMES
+        .into_iter()
+        .zip(STONE_LABELS)
+        .map(|(name, [unit, about])| [name, unit, about])
+        .collect()
 }
 
 /// Follows many stones from many starts to the last of the times, and writes the wanted columns.

@@ -13,7 +13,7 @@ use super::watch::Watch;
 /// The names of the inputs of a map.
 const AXES: [&str; 4] = ["theta", "ell", "bore", "fillet"];
 
-/// The array of this name that is filled, if `out` has it.
+/// The array of this name in `out`, to be filled; None if there is none.
 fn filled<'py, T: Element>(
     out: &Bound<'py, PyDict>,
     name: &str,
@@ -26,7 +26,7 @@ fn slice<'a, T: Element>(array: &'a mut Option<PyReadwriteArray1<'_, T>>) -> PyR
     Ok(array.as_mut().map(|a| a.as_slice_mut()).transpose()?)
 }
 
-/// Opens the arrays of a map for `fill`; all numbers are of one kind of float.
+/// Opens the arrays of a map for `fill`; all its floating-point arrays have one precision.
 fn with_portrait<F: Element + Cell>(
     out: &Bound<'_, PyDict>,
     fill: impl FnOnce(sweep::Portrait<'_, F>) -> PyResult<()>,
@@ -43,7 +43,7 @@ fn with_portrait<F: Element + Cell>(
     })
 }
 
-/// The tubes of a map, None for a tube that does not exist; None for the whole map if `watch` says to stop.
+/// The tubes of a map, None for a tube with invalid numbers; None for the whole map after Ctrl-C.
 fn tubes(of: [&[f64]; 3], watch: &mut Watch) -> Result<Option<Vec<Option<Body>>>, Error> {
     let [half, bore, fillet] = of;
     let mut tubes = room(half.len())?;
@@ -56,7 +56,7 @@ fn tubes(of: [&[f64]; 3], watch: &mut Watch) -> Result<Option<Vec<Option<Body>>>
     Ok(Some(tubes))
 }
 
-/// Fills the arrays `out` of a map by name, of (theta, body), or of scattered points, from inputs by name.
+/// Fills the arrays `out` of a map over (theta, body), or of scattered points, from the columns `given`.
 #[pyfunction]
 pub fn portrait<'py>(
     py: Python<'py>,
@@ -92,7 +92,8 @@ pub fn portrait<'py>(
     run(py, given.all(AXES)?, &out, scattered, threads, Watch::new(progress))
 }
 
-/// The number of inclinations in each region, and the sum of their weights: (body, number and sum, code of the region).
+/// The number of inclinations in each region, and the sum of their weights, as an array with the axes body,
+/// number or sum, code of the region.
 #[pyfunction]
 pub fn areas<'py>(
     py: Python<'py>,
@@ -114,8 +115,8 @@ pub fn areas<'py>(
     Ok(PyArray1::from_vec(py, found.unwrap_or_default().into_flattened().into_flattened()))
 }
 
-/// Least and greatest values with their places (value, index of theta, index of the body), of the wanted among the
-/// squared rate, both kappas and the energy.
+/// Minimum and maximum, each as (value, index of theta, index of the body), of those of the squared rate,
+/// both kappas and the energy that are `wanted`.
 #[pyfunction]
 pub fn extrema<'py>(
     py: Python<'py>,

@@ -22,7 +22,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyCapsule, PyTuple};
 use std::sync::OnceLock;
 
-/// The largest number of inputs of a law: those of a loss, and the axis of its couple.
+/// The largest number of inputs of a function: those of a loss, and the axis of its couple.
 const MOST: usize = super::loss::INPUTS + 1;
 
 /// A quantity of the steady state with the centre at rest, computed in lanes.
@@ -56,7 +56,6 @@ impl Quantity {
     }
 }
 
-/// The computation of an elementwise function.
 pub enum Value {
     /// A quantity of theta and a body, computed in lanes.
     AtRest(Quantity),
@@ -66,7 +65,6 @@ pub enum Value {
     Pick(fn(&[f64]) -> [f64; steady::MOST]),
 }
 
-/// An elementwise function with its name.
 pub struct ArrayFunction {
     pub name: &'static str,
     pub inputs: usize,
@@ -159,7 +157,8 @@ unsafe extern "C" fn inner(
         }),
         Value::Pick(f) => pick(&run, f),
     };
-    // NaN is a regular answer here: the floating-point flags are cleared, so that NumPy's casts do not warn of them.
+    // NaN is a regular result here: the floating-point flags are cleared, so that NumPy's casts do not warn
+    // of it.
     if let Some(api) = API.get() {
         // SAFETY: the function changes the processor's flags and nothing else.
         unsafe { (api.clear_flags)() };
@@ -167,12 +166,12 @@ unsafe extern "C" fn inner(
     if done { 0 } else { -1 }
 }
 
-/// Approximate time of one element, in nanoseconds.
+/// Approximate time of one element, in nanoseconds, by which the checks for Ctrl-C are spaced.
 const AT_REST: u64 = 20;
 const ONE: u64 = 200;
 const PICKED: u64 = 10_000;
 
-/// Runs a long loop in parts and looks for Ctrl-C before each part; returns whether all parts are done.
+/// Runs a long loop in parts and checks for Ctrl-C before each part; returns whether all parts are done.
 fn in_parts(run: &Loop, each: u64, work: impl Fn(&Loop)) -> bool {
     const PART: isize = 1 << 10;
     for first in (0..run.count).step_by(PART as usize) {
@@ -264,8 +263,8 @@ const NO_FLAGS: c_int = 1 << 1;
 /// NumPy's slot `NPY_METH_strided_loop`.
 const STRIDED_LOOP: c_int = 5;
 
-/// The functions of NumPy's ufunc table that the numpy crate lacks, read from their places in the table, and two kinds
-/// of numbers.
+/// The functions of NumPy's ufunc table that the numpy crate lacks, read from their places in the table; and
+/// NumPy's types of double and uint8.
 struct Api {
     clear_flags: unsafe extern "C" fn(),
     add_loop: unsafe extern "C" fn(*mut PyObject, *mut Spec) -> c_int,
@@ -315,13 +314,12 @@ unsafe extern "C" fn promote(
     0
 }
 
-/// The kind of number of a law's input `k`; the last `k` is the output.
+/// The NumPy type of input `k` of a function; the last `k` is the output.
 fn dtype<'a>(api: &'a Api, law: &ArrayFunction, k: usize) -> &'a Py<PyAny> {
     let code = k == law.inputs && matches!(law.value, Value::AtRest(Quantity::Region));
     if code { &api.byte } else { &api.double }
 }
 
-/// The NumPy ufunc of a law.
 pub fn make<'py>(py: Python<'py>, law: &'static ArrayFunction) -> PyResult<Bound<'py, PyAny>> {
     let api = api(py)?;
     // NumPy keeps the name and the data for as long as the ufunc lives, that is for the life of the process.

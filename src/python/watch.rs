@@ -1,13 +1,13 @@
-//! Long work asks Python about fifty times a second whether to go on.
+//! Long work checks for Ctrl-C, and reports its progress, about fifty times a second.
 
 use pyo3::prelude::*;
 use std::cell::Cell;
 use std::time::{Duration, Instant};
 
-/// The time between two questions.
+/// The time between two checks.
 const ASK: Duration = Duration::from_millis(20);
 
-/// Looks for Ctrl-C, and reports the finished share of the work to `progress`.
+/// Checks for Ctrl-C, and reports the finished share of the work to `progress`.
 pub struct Watch {
     progress: Option<Py<PyAny>>,
     asked: Instant,
@@ -19,7 +19,7 @@ impl Watch {
         Self { progress, asked: Instant::now(), interrupt: None }
     }
 
-    /// Whether to go on; frequent calls are cheap, because Python is asked at most once in `ASK`.
+    /// Whether to go on; frequent calls are cheap, because Python is called at most once in `ASK`.
     pub fn still(&mut self) -> bool {
         self.asked.elapsed() < ASK || self.go_on(f64::NAN)
     }
@@ -43,7 +43,7 @@ impl Watch {
     }
 }
 
-/// The work between two looks at the clock, in nanoseconds or so.
+/// Approximate work, in nanoseconds, between two readings of the clock.
 const UNASKED: u64 = 1_000_000;
 
 thread_local! {
@@ -51,8 +51,8 @@ thread_local! {
     static ASKED: Cell<Option<Instant>> = const { Cell::new(None) };
 }
 
-/// Whether a ufunc's loop is to go on with work of about `work` nanoseconds; if not, Python's error is set. The loop
-/// itself keeps nothing from one call to the next.
+/// Whether the loop of a ufunc is to go on with work of about `work` nanoseconds; if not, Python's error is
+/// set. The time of the last check is kept here, because the loop keeps no data between its calls.
 pub fn still(work: u64) -> bool {
     let done = DONE.get() + work;
     DONE.set(done);
@@ -67,6 +67,6 @@ fn ask() -> bool {
         return true;
     }
     ASKED.set(Some(now));
-    // The interpreter is shutting down if this is None, and nobody will see the result.
+    // The interpreter is shutting down if this is None, and the result will not be used.
     Python::try_attach(|py| py.check_signals().map_err(|e| e.restore(py)).is_ok()).unwrap_or(true)
 }

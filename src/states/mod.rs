@@ -1,4 +1,5 @@
-//! States that last: steady states, and whether they are stable.
+//! Steady states, and their stability.
 
+pub(crate) mod rocking;
 pub mod stability;
 pub mod steady;

@@ -1,11 +1,12 @@
-//! Beside a fold the rate is flat, and m = n + d A cos may be a small rest of n: the rate keeps its digits all the same.
+//! Next to a fold the rate is stationary, and m = n + d A cos may be a small difference: the rate keeps its
+//! digits there.
 
 use crate::ULP;
 use crate::common::number;
 use spincyl::{Body, steady, sweep};
 use std::f64::consts::PI;
 
-/// A row of tests/reference/folds.py: where, the rate as a sum of two doubles, kappa_c, and n over m.
+/// A row of tests/reference/folds.py: body, inclination, rate as a sum of two doubles, kappa_c, and n over m.
 struct Row {
     body: Body,
     theta: f64,
@@ -70,8 +71,8 @@ fn maps_beside_folds_have_the_rates_of_single_states_in_both_precisions() {
 
 #[test]
 fn at_a_fold_of_a_sharp_rim_n_is_less_than_four_times_m() {
-    // d ell s = -c n m there, and n = c - ell s: with y = n/c, y^2 >= -d below the band, and above it n and m are
-    // of one sign with d c; so n/m <= 1/(1 - sqrt(-d)), where -d <= 1/2
+    // at a fold d ell s = -c n m, and n = c - ell s. With y = n/c, y^2 >= -d below the forbidden band; above
+    // it n, m and d c have the same sign. So n/m <= 1/(1 - sqrt(-d)), where -d <= 1/2
     let mut most: f64 = 0.0;
     for k in 0..20_000 {
         let part = |x: f64| (f64::from(k) * x).fract();

@@ -1,7 +1,7 @@
 //! Many motions at once, next to where the inclination turns back.
 //!
-//! There the rate of the inclination is the root of a difference of two numbers that are almost equal: taken from the
-//! inclination it would have half of its digits.
+//! There the rate of the inclination is the root of a difference of two almost equal numbers; computed from
+//! the inclination it would have half of its digits.
 
 use crate::common::many::Many;
 use crate::common::{BOTH, any_body, any_state, distance, numbers};
@@ -10,7 +10,8 @@ use spincyl::ensemble::{Answer, Job};
 use spincyl::exact::Swing;
 use spincyl::{Body, Contact, State};
 
-/// The largest difference between many motions and one, over what both claim; None where the lanes do not answer.
+/// The difference of a motion in lanes and the single one, over the sum of their claimed errors; None if no
+/// lane computed it.
 fn share(body: &Body, y: &State, contact: Contact, t: f64) -> Option<f64> {
     let swing = Swing::new(body, y, contact, false).ok()?;
     let many =
@@ -34,7 +35,8 @@ fn two_motions_that_fresh_seeds_found_keep_the_digits_of_their_rate() {
 
 #[test]
 fn a_swing_of_many_panels_claims_the_roundings_of_all_of_them() {
-    // a fresh seed found it: from 6 to 173 degrees, and a claim that was five times too small after two periods
+    // found by a random test: from 6 to 173 degrees, and a claim that was five times too small after two
+    // periods
     let body = Body::new(3.8418816469838872, 0.1, 0.03647048537898937).unwrap();
     let (theta, w1, w3) = (3.0139791555068944, -2.6123408118855647, -5.294493679643214);
     let y = State { theta, w1, w2: 0.0, w3 };
@@ -50,7 +52,8 @@ fn a_swing_of_many_panels_claims_the_roundings_of_all_of_them() {
 proptest! {
     #![proptest_config(crate::common::cases(640))]
 
-    /// A wide swing takes up to ten panels, and each of them goes on with the roundings of those before it.
+    /// A wide swing takes up to ten panels, and each of them continues with the rounding errors of those
+    /// before it.
     #[test]
     fn next_to_a_turning_point_many_are_as_exact_as_one(
         body in any_body(), y in any_state(), halves in 1..7u8, early in -9.0..-2.0f64, before in any::<bool>(),

@@ -1,4 +1,5 @@
-//! Integers of 4096 bits, and how many zeros a polynomial of them has: exact, by the rule of Descartes.
+//! Integers of 4096 bits, and the exact number of zeros of a polynomial with such coefficients, by the rule
+//! of Descartes.
 
 const LIMBS: usize = 64;
 
@@ -125,16 +126,17 @@ fn reversed(p: &[Big]) -> Polynomial {
     p.iter().rev().copied().collect()
 }
 
-/// How often the signs of the coefficients change.
+/// The number of changes of sign among the coefficients.
 fn changes(p: &[Big]) -> usize {
     let signs: Vec<i32> = p.iter().map(Big::sign).filter(|s| *s != 0).collect();
     signs.windows(2).filter(|s| s[0] != s[1]).count()
 }
 
-/// How many zeros a polynomial has in (0, 1), if they are simple: None where two of them agree to more than 200 bits.
+/// The number of zeros of a polynomial in (0, 1) if they are simple; None if two of them agree to more than
+/// 200 bits.
 ///
-/// Descartes: at most as many as the signs of (t + 1)^n p(1/(t + 1)) change, and as many but for an even number; so
-/// none or one where that says 0 or 1, and otherwise the two halves are asked (Vincent, Collins and Akritas).
+/// Descartes: it is the number of changes of sign of (t + 1)^n p(1/(t + 1)), or less by an even number. So 0
+/// or 1 change decides; otherwise the interval is halved (Vincent, Collins and Akritas).
 pub fn zeros_in_unit_interval(p: &[Big]) -> Option<usize> {
     // zeros at 0 are outside
     let low = p.iter().position(|x| x.sign() != 0)?;
@@ -146,7 +148,7 @@ fn count(p: &[Big], depth: u32) -> Option<usize> {
         few @ (0 | 1) => Some(few),
         _ if depth == 0 => None,
         _ => {
-            // 2^n p(t/2), and from there the upper half
+            // 2^n p(t/2) is the polynomial on the lower half; its shift by 1 is that on the upper half
             let n = p.len() - 1;
             let lower: Polynomial = p.iter().enumerate().map(|(i, x)| x.up(n - i)).collect();
             let mut upper = shifted(&lower);
@@ -159,7 +161,7 @@ fn count(p: &[Big], depth: u32) -> Option<usize> {
     }
 }
 
-/// The same in (1, infinity).
+/// The number of zeros in (1, infinity), under the same conditions.
 pub fn zeros_beyond_one(p: &[Big]) -> Option<usize> {
     let top = p.iter().rposition(|x| x.sign() != 0)?;
     zeros_in_unit_interval(&reversed(&p[..=top]))
@@ -181,14 +183,14 @@ fn zeros_are_counted_as_they_are_planted() {
         zeros_beyond_one(&of(&[(1.0, 2.0), (5.0, 4.0), (7.0, 1.0), (1.0, 1.0), (-2.0, 1.0)])),
         Some(2)
     );
-    // apart by 2^-60
+    // two zeros at a distance of 2^-60
     let near = 2f64.powi(60);
     let close = product(
         &of(&[(1.0, 2.0)]),
         &[Big::scaled(-near, 0).plus(&Big::scaled(-2.0, 0)), Big::scaled(2.0 * near, 0)],
     );
     assert_eq!(zeros_in_unit_interval(&close), Some(2));
-    // 1 + t^2, and a zero that is double
+    // 1 + t^2, and a double zero
     assert_eq!(zeros_in_unit_interval(&[Big::scaled(1.0, 0), Big::ZERO, Big::scaled(1.0, 0)]), Some(0));
     assert_eq!(zeros_in_unit_interval(&of(&[(1.0, 3.0), (1.0, 3.0)])), None);
     assert_eq!(Big::scaled(-0.75, 2), Big::scaled(3.0, 0).negative());

@@ -1,4 +1,4 @@
-//! How motions end, and what is refused before they begin: rows D8, D9, D10, D12 of docs/hard-cases.md.
+//! How motions end, and starts that are refused: rows D8, D9, D10, D12 of docs/hard-cases.md.
 
 use crate::common::{by, distance, motions, moved, numbers, state, wander, wild};
 use spincyl::contact::Table;
@@ -26,7 +26,7 @@ fn d9_d10_events_come_at_their_time() {
             assert_eq!((event.ending, motion.ending()), (ending, ending), "{method:?}");
             assert!((event.time - r.t).abs() <= allowed, "{} {method:?}: {:e}", r.scene, event.time - r.t);
             assert!(distance(&event.state, &r.values) <= 10.0 * allowed, "{:?} {:?}", event.state, r.values);
-            // nothing beyond it is returned, unless asked for
+            // no state after the event is returned, unless `beyond` is set
             assert_eq!((motion.times.len(), motion.states.len()), (2, 2));
             assert_eq!((motion.poses.unwrap().len(), motion.forces.unwrap().len()), (2, 2));
             let beyond = moved(&r.body, &r.start, &times, Ask { beyond: true, ..scene }).unwrap();
@@ -50,7 +50,7 @@ fn d8_a_head_on_fall_lands_on_the_face() {
             .map(|i| {
                 let v = top * (f64::from(i) + 0.5) / f64::from(n);
                 let x = 0.3 - v * v;
-                // height(0.3) - height(x), without cancelling
+                // height(0.3) - height(x), without cancellation
                 let (mid, half) = (0.5 * (0.3 + x), 0.5 * v * v);
                 let drop = 2.0 * half.sin() * (mid.cos() - ell * mid.sin());
                 2.0 * v / (2.0 * drop / (body.i1() + 1.0 + ell * ell)).sqrt()
@@ -70,7 +70,7 @@ fn d8_a_head_on_fall_lands_on_the_face() {
             assert!((event.state.w2 - speed).abs() < 1e-11 && event.state.theta == 0.0);
             assert!(motion.states.iter().all(|y| numbers(y).iter().all(|x| x.is_finite()) && y.theta > 0.0));
             assert!(method != Method::Exact || motion.method == method, "{}", motion.error);
-            // beyond a landed face there is nothing, asked for or not
+            // after a face has landed there are no states, even if `beyond` is set
             let beyond = moved(&body, &y, &times, Ask { beyond: true, ..by(method) }).unwrap();
             assert_eq!(beyond.states.len(), motion.states.len());
         }
@@ -79,7 +79,7 @@ fn d8_a_head_on_fall_lands_on_the_face() {
 
 #[test]
 fn a_body_thrown_up_lands_later_and_has_come_from_the_table_earlier() {
-    // rising at first: up to the turning point and back, as long as down from there twice and less
+    // the times to the landings after and before the start add up to two falls from the turning point
     for (ell, theta, speed) in [(0.3, 0.3, 0.2), (1.0, 0.2, 0.1)] {
         let body = Body::solid(ell).unwrap();
         let swing = Swing::new(&body, &state(theta, 0.0, -speed, 0.0), Contact::Rolling, false).unwrap();
@@ -92,7 +92,7 @@ fn a_body_thrown_up_lands_later_and_has_come_from_the_table_earlier() {
         assert!((down.w2 - landed.w2).abs() < 1e-13 && (up.w2 + landed.w2).abs() < 1e-13 && down.w2 > 0.0);
         assert!((swing.state(after - fallen).theta - top).abs() < 1e-14);
     }
-    // a coin leaning over to the other side lands on its other face
+    // a coin that leans to the other side lands on its other face
     let coin = Body::solid(0.0).unwrap();
     let (time, landed) = Swing::new(&coin, &state(PI - 0.3, 0.0, 0.0, 0.0), Contact::Rolling, false)
         .unwrap()
@@ -141,7 +141,7 @@ fn a_margin_that_dips_right_after_the_start_is_seen() {
             assert_eq!(event.map(|e| e.ending), Some(Ending::Slip), "{method:?}");
         }
     }
-    // starts just before a peak of the friction demand, mu just below the peak
+    // starts just before a peak of the friction demand, with mu just below the peak
     let mut r = wander(5);
     let mut checked = 0;
     for _ in 0..2000 {
@@ -169,7 +169,7 @@ fn an_integrator_that_stays_on_an_unstable_state_does_not_claim_to_be_right() {
     let balanced = state(1f64.atan2(2.5), 0.0, 0.0, 0.0);
     for (contact, t, off) in [(Contact::Smooth, 24.0, 1.3e-6), (Contact::Rolling, 60.0, 5.1e-4)] {
         let scene = Ask { table: contact.into(), pose: true, ..Ask::default() };
-        // these doubles are not quite balanced: the exact motion falls by what another model found, 36 digits
+        // these doubles are not quite balanced, so that the body falls; `off` is from a model with 36 digits
         let exact = moved(&body, &balanced, &[t], scene).unwrap();
         let fallen = (exact.states[0].theta - balanced.theta).abs();
         assert!(
@@ -184,7 +184,7 @@ fn an_integrator_that_stays_on_an_unstable_state_does_not_claim_to_be_right() {
 #[test]
 fn d9_grazing_the_side() {
     let body = Body::solid(2.5).unwrap();
-    // a swing up to pi/2 + graze, turned round: found from its upper turning point
+    // the upper turning point is pi/2 + graze, and the start lies a quarter period before it
     for (graze, hits) in [(1e-9, true), (-1e-9, false)] {
         let top = state(FRAC_PI_2 + graze, 1.6, 0.0, 4.0);
         let swing = Swing::new(&body, &top, Contact::Rolling, false).unwrap();
@@ -195,7 +195,7 @@ fn d9_grazing_the_side() {
             let event = motion.event.filter(|e| e.ending == Ending::Side);
             assert_eq!(event.is_some(), hits, "{method:?}, {graze}: {motion:?}");
             if let Some(e) = event {
-                // the top comes a quarter period later; the side a little before: sqrt(2 graze/w2')
+                // the body is at pi/2 before that turning point, by the time sqrt(2 graze/w2')
                 let rate = rolling::derivative(&body, &top).w2;
                 let expected = 0.25 * swing.period() - (2.0 * graze / rate).sqrt();
                 assert!((e.time - expected).abs() < 1e-8, "{method:?}: {} {expected}", e.time);
@@ -247,7 +247,7 @@ fn d10_without_friction_coefficient_rolling_never_slips_and_with_none_at_once() 
         assert_eq!((kicked.ending, kicked.time), (Ending::Slip, 0.0));
         assert!(at(&rest.kicked(0.05), f64::INFINITY).is_none());
     }
-    // ordinary numbers leave the model: a friction coefficient of 4, and nearly a lift-off
+    // an ordinary start that leaves the model: rolling needs a coefficient of 4, and N almost vanishes
     let swing = Swing::new(&body, &rest.kicked(0.3), Contact::Rolling, false).unwrap();
     let most = (0..400)
         .map(|i| {
@@ -298,13 +298,13 @@ fn d12_what_makes_no_sense_is_refused_by_name_before_any_work() {
         }
     }
     let body = Body::solid(1.0).unwrap();
-    // no steps: the start
+    // at time 0 a motion is at its start
     for method in [Method::Exact, Method::Step(1e-3), Method::Tolerance(1e-9)] {
         let motion = moved(&body, &good, &[0.0, 0.0], by(method)).unwrap();
         assert_eq!(motion.states, [good, good]);
         assert_eq!((motion.event, motion.error), (None, 0.0));
     }
-    // somebody interrupts
+    // an interrupted motion returns nothing
     let stopped = roll_with(&body, good, &[1e5], &by(Method::Step(1e-6)), || false).unwrap();
     assert!(stopped.is_none());
 }
@@ -329,7 +329,7 @@ fn without_choices_a_motion_rolls_from_the_first_of_its_times() {
 
 #[test]
 fn a_nearly_flat_start_at_rest_lifts_off_when_it_does() {
-    // once DONE, with no times, no event and no error
+    // once this returned no times, no event and no error
     let body = Body::new(10.546343820392982, 286.35101802047467, 0.1818848111866759).unwrap();
     let y = state(3.865140946119193e-06, 5.882624766680439e-07, 0.0, 17.96860430677607);
     for beyond in [false, true] {
@@ -344,7 +344,7 @@ fn a_nearly_flat_start_at_rest_lifts_off_when_it_does() {
 
 #[test]
 fn an_event_claims_what_rounding_makes_of_it() {
-    // a slip whose friction is a difference of numbers a million times as large: found once 1.5e-11 too late
+    // the friction is a difference of numbers a million times as large: the event was once 1.5e-11 late
     let body = Body::new(677.4606718539745, 0.0012135351426975996, 5.704211882778903e-06).unwrap();
     let y = state(0.00011610786680656975, 0.2969581567039679, -0.003377231906356726, 201.17747235318797);
     let m = moved(
@@ -361,7 +361,7 @@ fn an_event_claims_what_rounding_makes_of_it() {
         "{off:e}, claimed {:e}",
         m.error
     );
-    // the other rim lands from just below: half an ulp of the inclination is a time
+    // from just below pi/2, half an ulp of the inclination shifts the time of the landing
     for below in [1e-3, 1e-6, 1e-9] {
         let y = state(FRAC_PI_2 - below, 0.0, -1e-3, 0.0);
         let m = moved(&Body::solid(1.0).unwrap(), &y, &[1.0], Ask::default()).unwrap();
@@ -373,7 +373,7 @@ fn an_event_claims_what_rounding_makes_of_it() {
 
 #[test]
 fn a_tolerance_invents_no_end() {
-    // a near-flat passage: a step that errs by 1e-3 saw a body lift off where none does
+    // a nearly flat passage: steps with an error of 1e-3 once gave a lift-off that does not happen
     let body = Body::tube(0.2947734093393377, 0.15168578916528275).unwrap();
     let y = state(0.703578010474226, 0.00010315400909723418, 0.23710004093643627, 0.0);
     let mut r = wander(23);

@@ -1,4 +1,4 @@
-//! Motions that end, many at once: in lanes they end as they do alone.
+//! The ends of many motions at once: in lanes they are those of single motions.
 
 use crate::common::many::Many;
 use crate::common::{distance, moved, numbers, wander, wild};
@@ -7,7 +7,7 @@ use spincyl::ensemble::{Answer, Job, Summary};
 use spincyl::motion::{Ask, Ending};
 use spincyl::{Body, Contact, State};
 
-/// Random starts of solid cylinders that press on the table, of which five in six end.
+/// Random starts of solid cylinders with N > 0; five in six of these motions end.
 fn pressing(count: usize, slower: f64) -> Vec<(Body, State)> {
     let mut r = wander(5);
     let mut normal = move || {
@@ -26,7 +26,7 @@ fn pressing(count: usize, slower: f64) -> Vec<(Body, State)> {
     all
 }
 
-/// Compares every motion with itself alone; the share in lanes.
+/// Compares every motion with the single motion from its start; returns the share that lanes computed.
 fn as_alone(all: &[(Body, State)], job: &Job<'_>) -> f64 {
     let many = Many::of(all).run(job, 2);
     let ask = Ask { table: Table::of(job.table.contact(), job.mu), beyond: job.beyond, ..Ask::default() };
@@ -86,7 +86,7 @@ fn backwards_they_end_as_well() {
 
 #[test]
 fn starts_that_nobody_would_choose_end_as_they_do_alone() {
-    // at rest, almost at rest, of one decimal, beyond a right angle, lifted; sharp and rounded; rolling and smooth
+    // `wild` starts: at rest, almost at rest, with one decimal, beyond a right angle; rolling and smooth
     let mut r = wander(11);
     let all: Vec<_> = (0..4000).map(|_| wild(&mut r)).collect();
     let times = [10.0];
@@ -118,7 +118,8 @@ fn bodies_that_do_not_spin_fall_flat_or_on_their_side() {
 
 #[test]
 fn motions_that_touch_the_end_of_contact_are_right_on_either_side_of_it() {
-    // the scale of the spin at which a motion just lifts off, by halving; then a little less and a little more
+    // bisection for the factor of w at which a motion just lifts off; then starts a little below and above
+    // that
     let times = [20.0];
     let lifts =
         |body: &Body, y: &State| moved(body, y, &times, Ask::default()).unwrap().ending() == Ending::LiftOff;
@@ -156,7 +157,7 @@ fn what_sums_up_a_motion_is_the_same_in_lanes_and_alone() {
         lanes += 1;
         let swing = Swing::new(body, start, Contact::Rolling, true).unwrap();
         let end = many.sum(Summary::End, i);
-        // five thousand places on the way
+        // five thousand samples of the motion
         let (mut low, mut high, mut least, mut most) = (start.theta, start.theta, f64::INFINITY, 0f64);
         for k in 0..=5_000 {
             let y = swing.state(end * f64::from(k) / 5_000.0);
@@ -173,13 +174,13 @@ fn what_sums_up_a_motion_is_the_same_in_lanes_and_alone() {
                 many.sum(kind, i)
             );
         };
-        // between two of them a little more happens
+        // between two samples the extremes may be a little larger
         let energy = 1.0 + rolling::energy(body, start);
         close(Summary::ThetaMin, low, 1e-5 * energy);
         close(Summary::ThetaMax, high, 1e-5 * energy);
         close(Summary::NormalMin, least, 1e-3 * energy);
         assert!(many.sum(Summary::NormalMin, i) <= least + 1e-9);
-        // where hardly anything presses the friction that is needed has a peak that no look finds
+        // where N is small the friction coefficient has a peak that is narrower than the sampling
         let needed = many.sum(Summary::FrictionCoefficientMax, i);
         assert!(needed >= most * (1.0 - 1e-9) || many.status[i] == Ending::LiftOff as u8);
         if least > 0.1 {

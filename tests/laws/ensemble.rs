@@ -13,7 +13,7 @@ use spincyl::exact::Swing;
 use spincyl::motion::{Ask, Ending, Method};
 use spincyl::{Body, Contact, State, contact, rk4, rolling, stability, steady};
 
-/// Kicks out of steady states: narrow, wide and very wide swings.
+/// Starts by a kick out of steady states: narrow, wide and very wide swings.
 fn kicked(count: usize) -> Vec<(Body, State)> {
     let mut random = wander(7);
     (0..count)
@@ -27,7 +27,7 @@ fn kicked(count: usize) -> Vec<(Body, State)> {
         .collect()
 }
 
-/// Kicks out of steady states of rounded bodies: coins, cans, tubes, fat disks, balls.
+/// Starts by a kick out of steady states of rounded bodies: coins, cans, tubes, fat disks, balls.
 fn kicked_rounded(count: usize) -> Vec<(Body, State)> {
     let mut r = wander(29);
     let mut all = Vec::new();
@@ -50,7 +50,7 @@ fn kicked_rounded(count: usize) -> Vec<(Body, State)> {
     all
 }
 
-/// Lighter kicks, of tubes that need not be stable.
+/// Starts by lighter kicks, of tubes that need not be stable.
 fn kicked_softly(count: usize) -> Vec<(Body, State)> {
     let mut r = wander(31);
     let mut all = Vec::new();
@@ -67,7 +67,7 @@ fn kicked_softly(count: usize) -> Vec<(Body, State)> {
 
 #[test]
 fn every_motion_in_lanes_has_the_state_that_is_claimed() {
-    // against forty digits; those that are one at a time have their own tests
+    // the references have forty digits; single motions have tests of their own
     let mut lanes = 0;
     for r in motions().into_iter().filter(|r| r.kind == "state") {
         for tol in [1e-6, 1e-10, 1e-13] {
@@ -169,7 +169,7 @@ fn the_extremes_are_those_of_a_dense_look() {
                     found[3].max(f.friction_coefficient()),
                 ];
             }
-            // a look every 2e-3 of the span misses an extreme by the square of that
+            // samples every 2e-3 of the span miss an extreme by the square of that
             let kinds =
                 [Summary::ThetaMin, Summary::ThetaMax, Summary::NormalMin, Summary::FrictionCoefficientMax];
             for (k, kind) in kinds.into_iter().enumerate() {
@@ -189,7 +189,7 @@ fn the_extremes_are_those_of_a_dense_look() {
 fn c4_c5_no_bit_depends_on_threads_neighbours_or_place() {
     let times = [3.0, 20.0];
     for (step, count, more) in [(None, 600, 1200), (Some(0.02), 100, 100)] {
-        // a sharp body between two rounded ones, in the same eight lanes; and many sharp ones
+        // sharp bodies between rounded ones in the same eight lanes, and many sharp ones
         let mixed = kicked_rounded(count).into_iter().zip(kicked_softly(count));
         let mut all: Vec<_> = mixed.flat_map(|(a, b)| [a, b]).collect();
         all.extend(kicked(more));
@@ -263,13 +263,13 @@ fn rk4_in_lanes_is_rk4() {
         let two = rk4::integrate(f, rk4::integrate(f, *y, 0.01, 250), 0.005, 1);
         for (j, alone) in [one, two].into_iter().enumerate() {
             let y = many.at(i, j);
-            // sine and cosine are carried: an RK4 of its own, with an error of the same size
+            // lanes integrate sine and cosine: another RK4, with an error of the same size
             let off = distance(&y, &numbers(&alone));
             assert!(off <= 4.0 * many.error[i] + 1e-13, "{body:?}: {off} {}", many.error[i]);
         }
     }
     assert!(lanes > 100, "{lanes}");
-    // sixteenth parts of the error with half the step, where it is well above that of the first integrals
+    // half the step has a sixteenth of the error, where that is well above the error of exact motions
     let exact = Many::of(&all).run(&Job { beyond: true, ..Job::new(&times) }, 1);
     let fine = Many::of(&all).run(&Job { step: Some(0.005), beyond: true, ..Job::new(&times) }, 1);
     let clear = (0..all.len()).filter(|i| fine.error[*i] > 50.0 * exact.error[*i]);
@@ -295,7 +295,7 @@ fn what_makes_no_sense_is_refused_or_marked() {
         &[(7, f64::NAN)],
         &[(8, f64::INFINITY)],
     ];
-    // a rim is not below the centre of mass, a ball is not outside of itself
+    // refused: a centre of mass below the circle of the rim, or outside a ball
     let of_balls: [&[(usize, f64)]; 7] = [
         &[(3, -0.1)],
         &[(3, 1.5)],
@@ -336,7 +336,7 @@ fn what_makes_no_sense_is_refused_or_marked() {
 
 #[test]
 fn a_body_released_at_rest_falls() {
-    // once it stayed where it was, for ever and in silence, in lanes and by the quick way of a single motion
+    // once it stayed at rest for ever, in lanes and by the quick solution of a single motion
     let body = Body::solid(0.31).unwrap();
     for w2 in [0.0, 1e-300, -1e-300, 1e-30, -1e-12] {
         let y = State { theta: 1.1, w1: 1.2, w2, w3: -0.6 };
@@ -347,7 +347,7 @@ fn a_body_released_at_rest_falls() {
         assert!((event.time - 0.951_470_255_67).abs() < 1e-10);
         assert!((lanes.sum(Summary::End, 0) - event.time).abs() < 1e-13);
     }
-    // wide, and entered next to where it turns: half the digits of its phase were lost
+    // a wide swing that starts next to its turning point: half the digits of its phase were lost
     let body = Body::solid(2.8057204670343325).unwrap();
     let y = State { theta: 0.2718205029824101, w1: 0.10806715919341818, w2: 0.0, w3: 0.3032062403632308 };
     let lanes = Many::of(&[(body, y)]).run(&Job { beyond: true, ..Job::new(&[7.0]) }, 1);
@@ -373,7 +373,7 @@ fn starts_at_rest_or_almost_go_the_way_of_an_integrator_by_every_route() {
         let there = truth.states.len();
         assert!(exact.states.len() == there && posed.states.len() == there, "{y:?}");
         let Some(there) = truth.states.first() else { continue };
-        // the integrator's error is estimated: several times that, and what a saddle makes of it
+        // the error of the integrator is an estimate: several times that, and its growth at a saddle
         let allowed = |claimed: f64| 10.0 * claimed + 4.0 * truth.error + 1e-12;
         for (y1, claimed) in
             [(exact.states[0], exact.error), (posed.states[0], posed.error), (lanes.last(0), lanes.error[0])]
@@ -388,13 +388,13 @@ fn starts_at_rest_or_almost_go_the_way_of_an_integrator_by_every_route() {
     assert!(by_lanes.iter().all(|n| *n > 120), "{by_lanes:?} by lanes");
 }
 
-/// Whether a steady state is at a time where it was, within its claim.
+/// Whether a steady state is unchanged at a time, within its claim.
 fn stays(body: &Body, y: &State, t: f64) -> bool {
     let many = Many::of(&[(*body, *y)]).run(&Job { beyond: true, ..Job::new(&[t]) }, 1);
     distance(&many.last(0), &numbers(y)) <= many.error[0]
 }
 
-/// A long pipe loses the digits of its balance in the height of its centre, which is hundreds of times what balances.
+/// For a long pipe the balance is a difference hundreds of times smaller than the height of its centre.
 #[test]
 fn a_long_pipe_that_leans_almost_balanced_stays() {
     for (ell, theta) in
@@ -418,7 +418,7 @@ proptest! {
             if many.method[0] != Answer::Lanes as u8 {
                 continue;
             }
-            // the integrator's error is estimated; where a face lands it stops just before it
+            // the error of the integrator is an estimate; a face that lands is compared at its landing
             let (there, claimed) = if sharp(&body) && many.status[0] == Ending::Face as u8 {
                 let swing = Swing::new(&body, &y, contact, false).unwrap();
                 let (time, landed) = swing.landing(1.0).unwrap();
@@ -426,7 +426,7 @@ proptest! {
             } else {
                 let ask = Ask { table: contact.into(), beyond: true, ..by(Method::Tolerance(1e-12)) };
                 let alone = moved(&body, &y, &times, ask).unwrap();
-                // a face that lands at the time that is asked for has landed for one of them
+                // if a face lands at the requested time, only one of the two may have landed
                 let Some(there) = alone.states.first() else {
                     prop_assert!(!sharp(&body));
                     continue;

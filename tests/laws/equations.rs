@@ -1,4 +1,4 @@
-//! The equations of motion: contact, Newton and Euler, energy, and what remains where the rim becomes sharp or a ball.
+//! The equations of motion: contact, Newton and Euler, energy, and the limits of a sharp rim and of a ball.
 
 use crate::common::{BOTH, any_ball, any_body, any_rim, any_state, newton_euler, numbers};
 use crate::{Place, ULP, place, sharp};
@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use proptest::prelude::*;
 use spincyl::{Body, Contact, State, contact, newton, rolling};
 
-/// Sizes of w1', w2', w3' as the reduced equations write them, and of N, F2, Fh: sums of what their terms measure.
+/// Sizes of w1', w2', w3' by the reduced equations, and of N, F2, Fh: the sums of the sizes of their terms.
 struct Sizes {
     rates: [f64; 3],
     force: [f64; 3],
@@ -47,7 +47,7 @@ fn sizes(contact: Contact, body: &Body, y: &State) -> Sizes {
     }
 }
 
-/// The same of Newton's and Euler's equations under that force.
+/// The same sizes by Newton's and Euler's equations under that force.
 fn newtonian(contact: Contact, body: &Body, y: &State) -> [f64; 3] {
     let Place { s, c, radius, depth, height, lever, .. } = place(body, y.theta);
     let ([normal, along, across], turn) = (sizes(contact, body, y).force, (c / s * y.w1).abs());
@@ -68,15 +68,15 @@ fn along_axes(f: &contact::Force, s: f64, c: f64) -> Vector3<f64> {
     Vector3::new(s * f.normal + c * f.across, f.along, c * f.normal - s * f.across)
 }
 
-/// The derivative is that of the three-dimensional model.
+/// Checks the derivative against the three-dimensional model.
 fn obeys_the_model(body: &Body, y: &State) -> Result<(), TestCaseError> {
     for contact in BOTH {
         let (dy, model) = (numbers(&contact.derivative(body, y)), newton_euler(body, y, contact));
-        // the model solves for all three at once: its largest term, and the condition of its matrix
+        // the error of the model: its largest term, times the condition of its matrix
         let allowed = if sharp(body) {
             1e-12 * (1.0 + model.amax() + y.w1.powi(2) / y.theta.sin()) * (1.0 + body.ell().powi(2))
         } else {
-            // its w x I w is a difference of products of this size
+            // w x I w in the model is a difference of products of this size
             let turning = y.w1.powi(2) + y.w2.powi(2) + y.w3.powi(2);
             let size = 1.0 + newtonian(contact, body, y).iter().sum::<f64>() + turning;
             let spread = (body.i1() + 1.0 + (1.0 + body.ell()).powi(2)) / body.i1().min(body.i3());
@@ -91,7 +91,7 @@ fn obeys_the_model(body: &Body, y: &State) -> Result<(), TestCaseError> {
 
 #[test]
 fn a_ball_that_spins_fast_and_hardly_turns_obeys_the_model() {
-    // a fresh seed drew it: what rounding takes from the model's w x I w is more than what is left of it
+    // found by a random test: the rounding error of w x I w in the model is larger than w x I w
     let body = Body::ball(0.0, 3.9922199990950036, 4.123084507024178).unwrap();
     let y = State { theta: 2.0512027084600573, w1: 0.016430142653861318, w2: 0.0, w3: 4.9827450332560455 };
     obeys_the_model(&body, &y).unwrap();
@@ -99,14 +99,15 @@ fn a_ball_that_spins_fast_and_hardly_turns_obeys_the_model() {
 
 #[test]
 fn a_centre_at_rest_runs_along_no_circle_and_one_without_precession_along_a_line() {
-    // a fresh seed drew the first of them: nothing over nothing was no number
+    // found by a random test: 0/0 gave NaN
     for body in [Body::solid(0.0).unwrap(), Body::solid(1.3).unwrap(), Body::balls(1.0).unwrap()] {
         let radius = |w3: f64| State { theta: 0.1, w1: 0.0, w2: 0.0, w3 }.centre_radius(&body);
         assert_eq!([radius(0.0), radius(0.5)], [0.0, f64::INFINITY]);
     }
 }
 
-/// No product of a force and velocities; sums of sizes, since squares of 1e-250 are zero.
+/// The contact force has no power and accelerates the centre. Sizes are sums, since the square of 1e-250 is
+/// zero.
 fn does_no_work_and_moves_the_centre(body: Body, y: State) -> Result<(), TestCaseError> {
     let Place { s, c, radius, depth, .. } = place(&body, y.theta);
     let (f, dy) = (contact::force(Contact::Rolling, &body, &y), rolling::derivative(&body, &y));
@@ -134,7 +135,7 @@ fn does_no_work_and_moves_the_centre(body: Body, y: State) -> Result<(), TestCas
 
 #[test]
 fn a_turn_of_next_to_nothing_needs_no_force_that_does_work() {
-    // A fresh seed drew it: the square of so slow a turn is zero.
+    // Found by a random test: the square of so slow a turn is zero.
     let body = Body::rounded(1.607507919465114, 0.1, 0.005, 0.01).unwrap();
     let y = State { theta: 0.1, w1: 0.0, w2: -2.2241753219590923e-250, w3: 0.0 };
     does_no_work_and_moves_the_centre(body, y).unwrap();
@@ -272,7 +273,7 @@ proptest! {
         prop_assert!((y.centre_velocity(&body) - centre).norm() <= 1e-13 * (1.0 + ell) * w.norm());
         prop_assert!(close(y.speed_o(&body), speed(Vector3::new(1.0, 0.0, ell))));
         prop_assert!(close(y.speed_x(&body), speed(Vector3::new(1.0, 0.0, -ell))));
-        // a body that does not precess goes straight on
+        // a body that does not precess runs straight
         let radius = y.centre_radius(&body);
         prop_assert!(radius >= 0.0 && (y.w1 == 0.0 || close(radius * y.precession().abs(), centre.y.abs())));
     }
@@ -298,7 +299,7 @@ proptest! {
     fn an_edge_far_smaller_than_an_atom_is_sharp(
         ell in 0.0..3.0f64, i1 in 0.1..2.0f64, share in 0.1..2.0f64, y in any_state(), exponent in -300.0..-20.0f64,
     ) {
-        // two ways through the equations, one body
+        // the formulas of a sharp and of a rounded rim for the same body
         let sharp = Body::new(ell, i1, share * i1).unwrap();
         let round = Body::rounded(ell, i1, share * i1, 10f64.powf(exponent)).unwrap();
         for contact in BOTH {
@@ -323,7 +324,8 @@ proptest! {
                 let (a, b) = (contact.derivative(&body(rho), &y), contact.derivative(&sharp, &y));
                 Vector3::from(rates(&a)) - Vector3::from(rates(&b))
             };
-            // what is left of twice the half is of second order: a thousandth of the fillet leaves a millionth of it
+            // change - 2 (change at half the fillet) is of second order: a thousandth of the fillet, a
+            // millionth of it
             let left = |rho: f64| (change(rho) - 2.0 * change(0.5 * rho)).norm();
             let noise = 64.0 * ULP * sizes(contact, &sharp, &y).rates.iter().sum::<f64>();
             prop_assert!(left(fine) <= 4e-6 * left(fillet) + noise, "{} {}", left(fine), left(fillet));

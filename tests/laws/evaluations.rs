@@ -1,4 +1,4 @@
-//! Guards of speed: what a motion costs, counted in evaluations of its equations, which is the same on every machine.
+//! Guards of speed: the cost of a motion in evaluations of its equations, which is the same on every machine.
 
 use spincyl::contact::{Friction, Table};
 use spincyl::loss::{Law, Losses};
@@ -12,8 +12,8 @@ fn followed(body: &Body, start: Start, until: f64, ask: Ask, tol: f64) -> Motion
     roll_with(body, start, &[until], &ask, || true).unwrap().unwrap()
 }
 
-/// Euler's disk from 0.3 rad, with a nutation, to its end or to t = 60, costs at most so many evaluations at each
-/// tolerance.
+/// Checks that Euler's disk from 0.3 rad, with a nutation, to its end or to t = 60, costs at most so many
+/// evaluations at each tolerance.
 fn whirrs(losses: Losses, ending: Ending, most: [u64; 3]) {
     let body = Body::solid(0.0128 / 0.0751).unwrap();
     let start = steady::state(&body, 0.3).unwrap().kicked(0.05);
@@ -26,7 +26,8 @@ fn whirrs(losses: Losses, ending: Ending, most: [u64; 3]) {
 
 #[test]
 fn a_whirr_costs_what_its_turns_cost_under_every_law() {
-    // Between 110 and 130 rad of precession, 250 under rolling resistance, and 570 in air, where it does not end.
+    // The precession is 110 to 130 rad, 250 under rolling resistance, and 570 in air, where the whirr does
+    // not end.
     let of = Losses::of;
     whirrs(of(Law::DryContour, 3.4e-3), Ending::Stops, [1_500, 2_400, 3_500]);
     whirrs(of(Law::ViscousContour, 7.5e-4), Ending::Face, [1_600, 2_800, 4_500]);

@@ -22,7 +22,7 @@ fn d15_the_exact_solution_is_that_of_newton_and_euler_within_its_claim() {
         let swing = Swing::new(&r.body, &r.start, r.contact, true).unwrap();
         let (y, name) = (swing.state(r.t), format!("{} {:?} at t = {}", r.scene, r.contact, r.t));
         let (error, claimed) = (distance(&y, &r.values), swing.error(r.t));
-        // conditioning: what a period's last digit does to the phase
+        // conditioning: the last digit of the period, times the number of periods, is lost in the phase
         let growth = if sharp { 1.0 + r.t } else { (r.t / 20.0).max(1.0) };
         let (share, allowed) = if sharp { (10.0, 2e-14) } else { (1.0, 1e-12) };
         assert!(
@@ -32,7 +32,7 @@ fn d15_the_exact_solution_is_that_of_newton_and_euler_within_its_claim() {
         let (pose, claimed) = (swing.pose(r.t).unwrap(), swing.pose_error(r.t));
         let whole = |x: f64| x - TAU * (x / TAU).round();
         let (phi, psi) = (pose.phi.radians() - r.values[4], pose.psi.radians() - r.values[5]);
-        // by which half turn phi and psi jump at a pole is nothing that the body could tell
+        // phi and psi jump by half a turn at a pole; its sign has no meaning, so that whole turns are ignored
         let angles = if r.kind == "pole" { [whole(phi), whole(phi + psi)] } else { [phi, psi] };
         let path = [pose.contact_point.x - r.values[6], pose.contact_point.y - r.values[7]];
         let turns = [r.values[4].abs(), r.values[5].abs()];
@@ -98,7 +98,7 @@ fn a_motion_entered_elsewhere_and_followed_back_is_where_it_was_within_both_clai
         let there = swing.state(t);
         let Ok(again) = Swing::new(&body, &there, contact, false) else { continue };
         let back = again.state(-t);
-        // what the error of each number handed over makes of the way back: near a saddle that is much more
+        // the effect of the errors of the state `there` on the way back, which is large near a saddle
         let handed: f64 = (0..4)
             .map(|i| {
                 let mut moved = numbers(&there);
@@ -109,7 +109,7 @@ fn a_motion_entered_elsewhere_and_followed_back_is_where_it_was_within_both_clai
             .sum();
         let claim = swing.error(t) + again.error(-t);
         let error = distance(&back, &numbers(&y));
-        // past that nothing is left to hold
+        // beyond this no digits are left to compare
         assert!(
             error <= claim + 2.0 * handed || claim + handed > 1e-5,
             "{body:?} {y:?} {contact:?} t = {t}: {error:e}, claimed {claim:e}, handed over {handed:e}"
@@ -159,7 +159,7 @@ fn an_unstable_state_is_left_at_the_rate_of_growth() {
     let gone = |t: f64| (swing.state(t).theta - theta).abs();
     let growth = (gone(5.0 / (-kappa).sqrt()) / gone(4.0 / (-kappa).sqrt())).ln();
     assert!((growth - 1.0).abs() < 1e-3, "{growth}");
-    // what it is given is known to all digits, however long it lingers, and so is the motion
+    // the start is exact, so that the claim stays small however long the body lingers
     let (long, nothing) = (swing.error(30.0 / (-kappa).sqrt()), swing.error(1.0));
     assert!(nothing < 1e-14 && (nothing..1e-12).contains(&long), "{nothing:e} {long:e}");
 }
@@ -194,7 +194,7 @@ fn d17_a_motion_at_a_billion_costs_what_it_costs_at_twenty() {
         assert!(error <= swing.error(r.t), "claimed {:e}", swing.error(r.t));
     }
     assert!(rows.iter().filter(|r| r.t == 1e9).count() == 2);
-    // the cost is that of the start and one inversion: the same number of places looked at
+    // the cost at any time is that of the start and one inversion of t(u)
     let swing = Swing::new(&rows[0].body, &rows[0].start, rows[0].contact, true).unwrap();
     let time = |t: f64| {
         let best = (0..200).map(|i| {
@@ -222,7 +222,7 @@ fn d16_angles_keep_their_digits_over_a_billion_radians() {
     let rest = turns.mul_add(-TAU, hi) + lo - turns * 2.4492935982947064e-16;
     assert_eq!(pose.phi.turns, turns);
     assert!((pose.phi.rest - rest).abs() < 1e-9, "{} {rest}", pose.phi.rest);
-    // a motion with a nutation: no better than its period is known, and said so
+    // with a nutation the angle is only as good as the period, and the claim includes that
     let body = Body::solid(1.0).unwrap();
     let y = steady::state(&body, 0.5).unwrap().kicked(0.3);
     let swing = Swing::new(&body, &y, Contact::Rolling, true).unwrap();
@@ -236,8 +236,8 @@ fn d16_angles_keep_their_digits_over_a_billion_radians() {
 
 #[test]
 fn a_motion_that_lingers_at_a_saddle_is_right_to_the_digits_that_its_inputs_leave() {
-    // lingering.csv has motions on, at and towards unstable steady states, to 240 bits, and what half an ulp of the inputs
-    // moves them by: up to all there is, after they have lingered
+    // lingering.csv has motions on, near and towards unstable steady states, to 240 bits, and their change by
+    // half an ulp of the inputs, which may be as large as the motion after a long stay
     let (mut checked, mut spoilt) = (0, 0);
     for line in include_str!("../reference/lingering.csv").lines().skip(1) {
         let mut words = line.split(',');

@@ -11,7 +11,7 @@ struct Reference {
     row: String,
     theta: f64,
     body: Body,
-    /// Relative error of a rate, which the reference knows to 106 bits.
+    /// The rate to 106 bits, as a sum of two doubles.
     rate: [f64; 2],
     kappa_c: f64,
     kappa: [(Contact, f64); 2],
@@ -53,7 +53,7 @@ fn n1_n2_n4_n7_the_rate_is_right_to_two_ulp_and_its_conditioning() {
             (sum, count, worst) = (sum + error, count + 1.0, worst.max(error));
         }
     }
-    // the roundings of m, of the square and of its root are left in well-conditioned states
+    // in well-conditioned states only the roundings of m, of the square and of its root remain
     assert!(worst < 1.8 && sum / count < 0.45, "worst {worst}, mean {}", sum / count);
 }
 
@@ -86,7 +86,7 @@ fn n3_at_the_critical_point_the_rate_is_one_over_the_root_of_the_sine_or_undeter
         let flagged = region(&body, theta) == Region::Undetermined;
         assert!(if flagged { rate.is_nan() } else { (rate * theta.sin().sqrt() - 1.0).abs() < 4.0 * ULP });
     }
-    // so close to n = 0 that 54 digits could not tell
+    // so close to n = 0 that a sine and a cosine of 54 bits would not decide
     let near = Body::new(1.0, 1.0, 1.0).unwrap();
     let sides = [std::f64::consts::FRAC_PI_4.next_down(), std::f64::consts::FRAC_PI_4];
     assert!(sides.iter().all(|x| region(&near, *x) != Region::Forbidden));
@@ -108,7 +108,7 @@ fn n6_four_ulp_inside_the_forbidden_band_there_is_no_number() {
         let body = Body::solid(10f64.powf(f64::from(k) / 10.0)).unwrap();
         let (low, high) =
             (body.theta_balance().min(body.theta_limit()), body.theta_balance().max(body.theta_limit()));
-        // 1 + 4 ulp of rounding in the edges themselves
+        // the edges are rounded, too; six doubles further inside the band is certain
         let (mut inside_low, mut inside_high) = (low, high);
         for _ in 0..6 {
             (inside_low, inside_high) = (inside_low.next_up(), inside_high.next_down());
@@ -164,7 +164,7 @@ fn n10_three_states_of_one_rate() {
     for (found, expected) in three.iter().zip([1.12132566, 1.29800591, 1.55932823]) {
         assert!((found - expected).abs() < 5e-9, "{three:?}");
     }
-    // at rate 1 exactly the third lies on its side, which is no inclination below pi/2
+    // at rate 1 the third state lies on its side, which is not counted
     assert_eq!(steady::count(&body, 1.0), Some(2));
     assert_eq!(steady::count(&body, 1f64.next_down()), Some(3));
     assert_eq!(steady::count(&body, 1f64.next_up()), Some(2));
@@ -182,7 +182,7 @@ fn an_inverse_that_makes_no_sense_has_no_count() {
         "at rest: balanced"
     );
     assert_eq!(steady::count(&Body::solid(0.0).unwrap(), 0.0), Some(0), "a thin disk at rest lies or stands");
-    // far outside the ordinary: a needle, a needle's coin, a whirr
+    // extreme bodies and rates
     for (ell, rate) in [(1e150, 0.5), (1e-8, 1e100), (1e8, 1e-8), (3.0, 1e140), (1e-300, 2.0)] {
         let body = Body::solid(ell).unwrap();
         let count = steady::count(&body, rate).unwrap();
@@ -203,7 +203,7 @@ fn an_inverse_that_makes_no_sense_has_no_count() {
 
 #[test]
 fn a_fold_at_45_degrees_is_found_once() {
-    // d = -(1 - ell)^2/(1 + ell) puts it there, rounding shakes it by a few last bits
+    // d = -(1 - ell)^2/(1 + ell) puts the fold there; rounding moves it by a few last bits
     let mut checked = 0;
     for k in 1..400 {
         let ell = 0.1 + 0.002 * f64::from(k);

@@ -31,7 +31,7 @@ fn d1_rk4_is_of_fourth_order() {
         let orders: Vec<f64> =
             errors.windows(2).filter(|e| e[1] > floor).map(|e| (e[0] / e[1]).log2()).collect();
         let off: Vec<f64> = orders.iter().rev().map(|o| (o - 4.0).abs()).collect();
-        // the next power of the step adds less and less, until only rounding is left
+        // the part of the next power of the step shrinks, until only rounding is left
         let fourth = if sharp(&body) {
             off.iter().filter(|o| **o <= 0.05).count() >= 5
         } else {
@@ -51,7 +51,7 @@ fn d2_a_stable_steady_state_is_held() {
     }
 }
 
-/// Relative energy error after n steps of 1e-3 near a steady state, least over the last few.
+/// Relative energy error after n steps of 1e-3 near a steady state.
 fn drift(n: u64) -> f64 {
     let body = Body::solid(2.5).unwrap();
     let y = steady::state(&body, 1.3).unwrap().kicked(0.01);
@@ -75,7 +75,7 @@ fn d3_long_a_billion_steps() {
     }
 }
 
-/// Both linear integrals: the solution of their linear system, carried to one inclination by the exact motion.
+/// The two linear integrals hold if w1 and w3 are those of the exact motion at the same inclination.
 #[test]
 fn d14_energy_and_both_linear_integrals_hold_along_rk4() {
     for (ell, theta, kick) in [(1.0, 0.5, 0.3), (2.5, 1.3, 0.05), (0.17, 0.2, 0.05)] {
@@ -84,7 +84,7 @@ fn d14_energy_and_both_linear_integrals_hold_along_rk4() {
         for contact in BOTH {
             let end = rk4::integrate(|y| contact.derivative(&body, y), y, 2e-4, 100_000);
             let swing = Swing::new(&body, &y, contact, false).unwrap();
-            // the exact motion at the same inclination has the same w1 and w3
+            // Newton's iteration for the time of that inclination
             let mut t = 20.0;
             for _ in 0..30 {
                 let here = swing.state(t);
@@ -128,7 +128,7 @@ fn d13_forward_and_backward_is_no_way() {
 
 #[test]
 fn d4_round_off_grows_as_the_root_of_the_number_of_steps() {
-    // steps so small that the method's own error is below rounding; many starts, so that a mean is one
+    // steps so small that the error of the method is below rounding, and enough starts for a mean
     let body = Body::solid(1.0).unwrap();
     let mean = |n: u64| {
         let starts = 24;
@@ -143,7 +143,7 @@ fn d4_round_off_grows_as_the_root_of_the_number_of_steps() {
     };
     let (few, many) = (mean(1_000), mean(64_000));
     let exponent = (many / few).ln() / 64f64.ln();
-    // compensated: energy's own evaluation hides the growth until it is past a few ulp
+    // with compensated sums, growth by a few ulp is hidden by the rounding of the energy itself
     assert!(exponent < 0.65, "{few:e} {many:e}: {exponent}");
 }
 
@@ -253,7 +253,7 @@ fn d6_a_nearly_flat_body_turns_by_the_fixed_angle() {
             1e-4
         };
         assert!((turn / limit - 1.0).abs() <= allowed, "{}: {turn} {limit}", r.scene);
-        // the angle of turn as an integrator finds it
+        // the same angle by integration
         for (tol, allowed) in [(1e-9, 1e-6), (1e-12, 1e-9)] {
             let scene = Ask { method: Method::Tolerance(tol), pose: true, beyond: true, ..Ask::default() };
             let motion = moved(&r.body, &r.start, &[r.t], scene).unwrap();
@@ -359,7 +359,7 @@ fn near_the_flat_an_integrator_invents_no_end_and_loses_none() {
     for i in 0..600 {
         let (i1, fillet) = (0.3 + 1.7 * r(), if r() < 0.6 { 0.0 } else { 0.05 + 0.85 * r() });
         let body = Body::rounded(2.5 * r(), i1, i1 * (0.2 + 1.7 * r()), fillet).unwrap();
-        // it rises from the table, comes back, and passes it as flat as it began
+        // the body rises from the table, comes back, and passes it as flat as at its start
         let theta = 10f64.powf(-7.0 + 5.5 * r());
         let w1 = theta * (2.0 * r() - 1.0) * 10f64.powf(-3.0 + 3.7 * r());
         let y = state(theta, w1, -0.6 * r(), 4.0 * r() - 2.0);

@@ -1,4 +1,4 @@
-//! Random runs that leave the model say so, and those that do not leave it do not.
+//! Random motions that leave the model end with an event, and others do not.
 
 use crate::common::{by, moved, wander, wild};
 use spincyl::contact::Table;
@@ -8,7 +8,8 @@ use spincyl::motion::{Ask, Ending, Method, Start, roll_with};
 use spincyl::{Body, Contact, Error, State, contact};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Whether the exact motion leaves the model before `t`, by more than `margin`, as seen at many times.
+/// The first of 400 sampled times up to `t` at which the exact motion has left the model by more than
+/// `margin`.
 fn leaves(swing: &Swing, body: &Body, contact: Contact, t: f64, margin: f64) -> Option<f64> {
     (0..=400).map(|i| t * f64::from(i) / 400.0).find(|t| {
         let y = swing.state(*t);
@@ -49,7 +50,7 @@ fn random_runs(count: u64) -> [u64; 4] {
                     && motion.error < 1e-6
                     && e.time > 0.0
                 {
-                    // an alarm must be one: the event is where the exact motion is at that limit
+                    // an event must not be a false alarm: the exact motion is at that limit then
                     let near = swing.state(e.time);
                     let normal = contact::force(contact, &body, &near).normal;
                     let true_alarm = match e.ending {
@@ -77,7 +78,7 @@ fn a_run_that_leaves_the_model_says_so() {
     );
 }
 
-/// A slip that hardly begins is over before its series is, where its speed, and a margin with it, vanishes to rounding.
+/// A grazing slip ends while its series holds, where its speed, and a margin with it, is zero up to rounding.
 #[test]
 fn a_slip_that_hardly_begins_takes_no_tiny_steps_to_its_end() {
     let (ell, i1, i3) = (6.0, 12.41, 0.82);

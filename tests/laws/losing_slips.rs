@@ -1,4 +1,4 @@
-//! Slips of a body that loses energy besides.
+//! Slips of a body that also loses energy by other laws.
 
 use crate::common::{numbers, path_of};
 use crate::losses::{follow, quarters, total};
@@ -9,7 +9,7 @@ use spincyl::{Body, State, steady};
 
 #[test]
 fn a_drilling_that_friction_holds_stays_held_where_a_slip_begins() {
-    // a fresh seed drew it: the couple jumped, and the sum of energy and work lost by 1e-4
+    // found by a random test: the couple jumped, and the sum of energy and work lost by 1e-4
     let body = Body::new(3f64.sqrt() / 2.0, 0.5, 0.5).unwrap();
     let start = State {
         theta: 1.0458800923827123,
@@ -29,7 +29,7 @@ fn a_drilling_that_friction_holds_stays_held_where_a_slip_begins() {
         assert!((1..4).contains(&i) == (drilling(y).abs() < 1e-14), "{i}: {:e}", drilling(y));
     }
     assert!(path_of(&motion).slip[1] == [0.0; 2] && path_of(&motion).slip[2] != [0.0; 2]);
-    // The limit of a couple that grows from zero within a speed of 1e-6.
+    // The reference is the limit of a couple that grows from zero up to a drilling rate of 1e-6.
     let rates = |y: &[f64; 6]| {
         let at = State::from([y[0], y[1], y[2], y[3]]);
         let losses = Losses::of(Law::Drilling, length * (drilling(&at).abs() / 1e-6).tanh().max(1e-30));
@@ -57,7 +57,7 @@ fn a_drilling_that_friction_holds_stays_held_where_a_slip_begins() {
 
 #[test]
 fn a_contact_that_has_settled_while_it_slips_wins_no_energy_beyond_its_claim() {
-    // a fresh seed drew it: in the last five thousandths before the face lands the sum loses 3e-10
+    // found by a random test: in the last 0.005 before the face lands the sum loses 3e-10
     let body = Body::new(0.8660254037844386, 0.5273592346445681, 0.5547184692891364).unwrap();
     let start = State {
         theta: 0.6119842337571192,
@@ -79,7 +79,8 @@ fn a_contact_that_has_settled_while_it_slips_wins_no_energy_beyond_its_claim() {
 
 #[test]
 fn rolling_that_gives_way_as_the_contact_turns_round_loses_no_energy_and_wins_none() {
-    // the couple of dry friction jumps there, and with it the friction that rolling needs
+    // where the contact turns round, the couple of dry friction jumps, and so does the friction that rolling
+    // needs
     let body = Body::rounded(0.0, 0.34, 0.41, 0.77).unwrap();
     let losses = Losses::of(Law::DryContour, 0.1) + Losses::of(Law::ViscousContour, 0.1);
     let mut turned = 0;
@@ -91,7 +92,7 @@ fn rolling_that_gives_way_as_the_contact_turns_round_loses_no_energy_and_wins_no
         for (i, t) in path.times.iter().enumerate() {
             assert!((sum(i) - sum(0)).abs() < 1e-12, "mu {mu} w3 {w3} t {t}: {}", sum(i) - sum(0));
         }
-        // where a slip begins with psi' = 0 up to rounding
+        // slips that begin with psi' = 0 up to rounding
         let at_once = |phase: &&path::Phase| {
             let begins = phase.kind == path::Kind::Slipping && phase.time > 0.0 && phase.slip == [0.0; 2];
             begins && phase.state.spin().abs() < 1e-11
@@ -103,7 +104,7 @@ fn rolling_that_gives_way_as_the_contact_turns_round_loses_no_energy_and_wins_no
 
 #[test]
 fn a_face_falls_onto_the_table_while_friction_holds_its_drilling() {
-    // a fresh seed drew it: the contact along the rim stops ever faster, which an integrator alone cannot follow
+    // found by a random test: psi' falls ever faster near the table, which an integrator alone cannot follow
     let body = Body::new(3f64.sqrt() / 2.0, 0.5, 0.5).unwrap();
     let start = State {
         theta: 0.8532422093183292,
@@ -128,7 +129,8 @@ fn a_face_falls_onto_the_table_while_friction_holds_its_drilling() {
 
 #[test]
 fn a_held_drilling_is_held_in_the_rougher_run_as_well_where_a_slip_begins() {
-    // fresh seeds drew them: moved by more than rounding, w_z was not at rest, and the slip began in another direction
+    // found by random tests: from a start moved by more than rounding, w_z was not 0, and the slip went
+    // another way
     let drilling =
         |length: f64, film: f64| Losses::of(Law::Drilling, length) + Losses::of(Law::AirFilm, film);
     let (a, b) = (
@@ -161,13 +163,13 @@ fn coin(start: &State, arm: f64, mu: f64, times: &[f64]) -> Motion {
 
 #[test]
 fn a_coin_that_slips_in_every_nod_comes_down_to_its_face() {
-    // The direction of its slips settles a thousand times faster than they end; a series follows them.
+    // The direction of a slip settles a thousand times faster than the slip ends; a series follows it.
     let body = Body::solid(1.0 / 12.0).unwrap();
     let start = steady::state(&body, 0.0175).unwrap();
     let motion = coin(&start, 0.05, 0.5, &[0.0, 20.0, 47.0]);
     let won = (total(&body, &motion, 2) - total(&body, &motion, 0)).abs();
     assert!(won < motion.error && motion.error < 1e-8, "{won:e} {:e}", motion.error);
-    // The turns below 1e-13 are not followed: where they lead is known to less than 1e-7, and that is claimed.
+    // The motion below 1e-13 rad is extrapolated; the claim of the landing includes that error, below 1e-7.
     let motion = coin(&start, 0.05, 0.5, &[0.0, 20.0, 47.0, 1000.0]);
     assert_eq!(motion.event.unwrap().ending, Ending::Face);
     assert!(path_of(&motion).phases.len() > 1_800 && motion.error < 1e-7, "{:e}", motion.error);
@@ -175,13 +177,13 @@ fn a_coin_that_slips_in_every_nod_comes_down_to_its_face() {
 
 #[test]
 fn a_whirr_that_slips_lands_where_its_turns_lead() {
-    // theta falls as the square of the time that is left, and so do two states tell the end, however the body slips
+    // theta falls as the square of the time that is left, so that two states give the time of the end
     for (arm, mu) in [(0.05, 0.5), (0.05, 0.1), (0.02, 0.3)] {
         let body = Body::solid(1.0 / 12.0).unwrap();
         let start = steady::state(&body, 0.0175).unwrap();
         let end = coin(&start, arm, mu, &[0.0, 1000.0]).event.unwrap();
         assert_eq!(end.ending, Ending::Face);
-        // Over a whole nod, the mean of the root of theta falls in a straight line.
+        // Averaged over a nod, the root of theta falls linearly in time.
         let mean = |left: f64| {
             let nods = (0..400).map(|i| end.time - left * (1.0 - 1e-3 * f64::from(i)));
             let motion = coin(&start, arm, mu, &[0.0].into_iter().chain(nods).collect::<Vec<f64>>());
@@ -189,7 +191,7 @@ fn a_whirr_that_slips_lands_where_its_turns_lead() {
         };
         let ratio = mean(0.02) / mean(0.01);
         assert!((ratio - 2.0).abs() < 0.01, "arm {arm}, mu {mu}: {ratio}");
-        // The claim holds between tolerances.
+        // The claim holds for other tolerances, too.
         let losses = Losses::of(Law::RollingResistance, arm / 12.0);
         for tol in [1e-10, 1e-12] {
             let table = Friction::coulomb(mu);

@@ -1,4 +1,4 @@
-//! Losses: what they take in every state, what they do to a motion, and how that ends.
+//! Losses: their power in every state, their effect on a motion, and its end.
 
 use crate::common::{any_rounded, any_state, numbers, ordinary_tube, path_of};
 use proptest::prelude::*;
@@ -28,19 +28,19 @@ fn largest(numbers: impl IntoIterator<Item = f64>) -> f64 {
     numbers.into_iter().fold(1.0, |most, x| most.max(x.abs()))
 }
 
-/// A path, by default rolling, at these times.
+/// A motion at these times on this table.
 pub fn follow(body: &Body, start: &State, losses: Losses, times: &[f64], on: impl Into<Table>) -> Motion {
     let ask = Ask { losses, ..Ask::on(on) };
     roll_with(body, start, times, &ask, || true).unwrap().unwrap()
 }
 
-/// Energy, what was lost and the heat of slip at the i-th time.
+/// The sum of energy, work lost and heat of slip at the i-th time.
 pub(crate) fn total(body: &Body, motion: &Motion, i: usize) -> f64 {
     let path = path_of(motion);
     slip::energy(body, &motion.states[i], path.slip[i]) + path.work_lost[i] + path.dissipated[i]
 }
 
-/// The sum of the slopes of the energy of a body that slips, in its state and its slip.
+/// The sum of the slopes of the energy of a slipping body with respect to its state and slip.
 fn slopes(body: &Body, motion: &Motion, i: usize) -> f64 {
     let (y, [along, across]) = (numbers(&motion.states[i]), path_of(motion).slip[i]);
     let all = [y[0], y[1], y[2], y[3], along, across];
@@ -52,7 +52,7 @@ fn slopes(body: &Body, motion: &Motion, i: usize) -> f64 {
     (0..6).map(|k| (moved(k, 1e-6) - moved(k, -1e-6)).abs() / 2e-6).sum()
 }
 
-/// Every quarter, to ten.
+/// Forty times, a quarter of a unit of time apart.
 pub(crate) fn quarters() -> Vec<f64> {
     (0..40).map(|i| 0.25 * f64::from(i)).collect()
 }
@@ -61,8 +61,8 @@ pub const ROLLS: Table = Table::Rolling { mu: f64::INFINITY };
 
 #[test]
 fn a_rolling_ball_whose_drilling_stops_wins_no_energy() {
-    // a fresh seed drew it: one of two places beside the stop was the stop to the last bit, and the search ran back to the
-    // start of the step
+    // found by a random test: one of two places beside the stop was the stop to the last bit, so that the
+    // search ran back to the start of the step
     let body = Body::rounded(0.0, 0.4, 0.4, 1.0).unwrap();
     let start = State {
         theta: 0.9613147179139898,
@@ -78,7 +78,7 @@ fn a_rolling_ball_whose_drilling_stops_wins_no_energy() {
 
 #[test]
 fn rolling_resistance_has_its_whole_couple_down_to_the_slowest_speed_and_never_more() {
-    // a fresh seed drew 2e-165, whose square is zero
+    // found by a random test with 2e-165, whose square is zero
     let body = Body::solid(0.5).unwrap();
     for w2 in [1.0, -1e-3, 1e-150, -2e-154, 9e-155, -2e-165, 1e-300, 5e-324, 0.0] {
         let y = State { theta: 2.3, w1: 0.0, w2, w3: 0.0 };
@@ -167,10 +167,9 @@ proptest! {
         let losses = possible(&body, losses);
         let ask = Ask { losses, ..Ask::on(table) };
         let path = match roll_with(&body, start, &quarters(), &ask, || true) {
-            // what sticks and slips thousands of times, or all but lies flat, is refused by name
+            // a slip without a unique force, and a body that lies almost flat, are refused
             Err(Error::Painleve { .. }) => return Ok(()),
             Err(Error::Lost { theta }) if theta.sin() < 1e-3 => return Ok(()),
-            // and so is a body that drills on while its rolling is held at rest: the next test
             path => path.unwrap().unwrap(),
         };
         if losses.is_none() {
@@ -247,7 +246,7 @@ fn rolling_resistance_holds_a_body_that_all_but_balances() {
         let start = State { theta: can.theta_balance() + off, w1: 0.0, w2: 0.0, w3: 0.0 };
         follow(&can, &start, Losses::of(Law::RollingResistance, 5e-3), &[0.0, 50.0], ROLLS).event.unwrap()
     };
-    // g = sqrt(1 + ell^2) sin(off) against delta
+    // at the edge the lever sqrt(1 + ell^2) sin(off) of the weight is delta
     let edge = 5e-3 / can.ell().hypot(1.0);
     assert_eq!((held(0.99 * edge).ending, held(0.99 * edge).time), (Ending::Stops, 0.0));
     for off in [1.01 * edge, -1.01 * edge] {
@@ -258,7 +257,7 @@ fn rolling_resistance_holds_a_body_that_all_but_balances() {
 
 #[test]
 fn a_can_that_rocks_comes_to_rest_by_rolling_resistance_or_falls() {
-    // thrown up towards its balance, too slowly to pass it: it stops, and rocks back
+    // thrown up towards its balance, too slowly to pass it, it stops and rocks back
     let can = Body::solid(2.5).unwrap();
     let start = State { theta: 0.2, w1: 0.0, w2: -0.08, w3: 0.0 };
     let losses = Losses::of(Law::RollingResistance, 1e-3);
@@ -287,7 +286,8 @@ fn a_contact_point_that_is_turned_round_goes_on_the_other_way() {
 
 #[test]
 fn dry_friction_stops_a_contact_that_viscous_friction_has_all_but_stopped() {
-    // however little of it there is: what turns the contact of a falling face vanishes with theta
+    // even a tiny dry friction does, since the couple that turns the contact of a falling face vanishes with
+    // theta
     let disk = Body::solid(0.17).unwrap();
     let start = steady::state(&disk, 0.2).unwrap();
     let viscous = Losses::of(Law::ViscousContour, 5e-3);
@@ -301,13 +301,13 @@ fn dry_friction_stops_a_contact_that_viscous_friction_has_all_but_stopped() {
         assert!(stops.time < lands.time && lands.time - stops.time < 0.1, "{stops:?}");
         shares.push(stops.state.theta / eps);
     }
-    // what it takes to hold the contact goes as theta, so that theta where it stops goes as eps
+    // the couple that holds the contact goes as theta, so that theta at the stop goes as eps
     assert!(shares.iter().all(|share| (share / shares[0] - 1.0).abs() < 0.01), "{shares:?}");
 }
 
 #[test]
 fn a_contact_that_has_settled_loses_what_it_loses() {
-    // energy and work lost, from before it settles to the landing
+    // the sum of energy and work lost, from before the contact settles to the landing
     let disk = Body::solid(0.17).unwrap();
     let start = steady::state(&disk, 0.2).unwrap();
     let laws = [
@@ -373,7 +373,7 @@ fn a_table_too_smooth_for_a_body_that_loses_energy_lets_it_slip() {
 
 #[test]
 fn what_is_lost_slowly_is_lost_as_the_first_integrals_drift() {
-    // a thousandth of a loss leaves the motion within a thousandth of the exact one
+    // the deviation from the exact motion is proportional to the loss
     let can = Body::solid(2.5).unwrap();
     let start = steady::state(&can, 1.3).unwrap().kicked(0.05);
     let times = hundred(20.0);

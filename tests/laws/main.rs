@@ -1,6 +1,6 @@
-//! What holds at every body and every state, and the motions, ends and drifts that are known: one room of physics to a file.
+//! Laws that hold for every body and state, and known motions, ends and drifts: one subject per file.
 //!
-//! All of them are one program, since the compiler would take as long again for each of several.
+//! All files are one program, since the compiler would take as long for each of several.
 
 mod beside_folds;
 mod beside_turns;

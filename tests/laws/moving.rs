@@ -61,7 +61,7 @@ fn halving_the_fillet_halves_what_it_changes_of_a_motion() {
                 assert!(two.abs() < 100.0 * fillet);
             }
         }
-        // and some of it does change
+        // and the fillet does change the motion
         let changed = at(1e-4).iter().zip(&sharp).filter(|(a, b)| (*a - *b).abs() > 1e-6).count();
         assert!(changed >= 8, "{changed}");
     }
@@ -93,8 +93,8 @@ fn a_smooth_table_moves_a_rounded_body_as_it_moves_a_sharp_one_of_the_size_of_it
     }
 }
 
-/// pi sqrt(1 + a^2/(I1 + H^2)): what a body that rocks turns by as it passes flat. Srinivasan, Ruina, Phys. Rev. E 78,
-/// 066609 (2008), for a sharp can.
+/// A body that rocks turns by pi sqrt(1 + a^2/(I1 + H^2)) as it passes flat. Srinivasan, Ruina, Phys. Rev. E
+/// 78, 066609 (2008), for a sharp can.
 #[test]
 fn a_rocking_body_turns_by_a_fixed_angle_at_every_pass() {
     let turn = |body: &Body| {
@@ -114,7 +114,7 @@ fn a_rocking_body_turns_by_a_fixed_angle_at_every_pass() {
     let ball = Body::ball(-0.2, 0.3, 0.4).unwrap();
     assert!((turn(&ball) - PI).abs() < 1e-15);
     for (body, theta) in [(rounded_disk(), 0.3), (sharp, 0.3), (can, 0.2), (torus, 0.5), (ball, 0.7)] {
-        // from rest but for a precession that vanishes: what the rest of the swing turns by vanishes with it
+        // from rest with a small precession, with which the turn in the rest of the swing vanishes
         for w1 in [1e-3, 1e-4, 1e-5] {
             let swing = Swing::new(&body, &state(theta, w1, 0.0, 0.0), Contact::Rolling, true).unwrap();
             let [phi, _] = swing.angles_per_period().unwrap();
@@ -138,17 +138,17 @@ fn rounded_bodies_land_where_they_can() {
         let event = at(&can, state(1.2, 0.1, -0.2, 0.1), 10.0, method).event.unwrap();
         assert_eq!(event.ending, Ending::Side, "{method:?}");
         assert!((event.state.theta - FRAC_PI_2).abs() < allowed && event.state.w2 < 0.0);
-        // and with a cap that lands at 1.4
+        // a cap that lands at 1.4
         let capped = can.with_theta_end(1.4).unwrap();
         let event = at(&capped, state(1.2, 0.1, -0.2, 0.1), 10.0, method).event.unwrap();
         assert_eq!((event.ending, event.state.theta), (Ending::Side, 1.4), "{method:?}");
-        // upright on its face: J theta'^2/2 is what it falls by
+        // it falls on its face: J theta'^2/2 is the energy of the fall
         let event = at(&can, state(0.3, 0.0, 0.0, 0.0), 10.0, method).event.unwrap();
         let drop = rolling::energy(&can, &state(0.3, 0.0, 0.0, 0.0)) - 1.0;
         let j = can.i1() + can.rim().powi(2) + 1.0;
         assert_eq!((event.ending, event.state.theta), (Ending::Face, 0.0), "{method:?}");
         assert!((event.state.w2 - (2.0 * drop / j).sqrt()).abs() < 1e-9, "{method:?}");
-        // a torus goes through its side, and lands on its other face
+        // a torus passes its side, and lands on its other face
         let through = at(&torus, state(1.5, 1.2, -0.3, 0.2), 0.5, method);
         assert!(through.event.is_none() && through.states[0].theta > FRAC_PI_2, "{method:?}");
         let event = at(&torus, state(1.6, 0.0, 0.0, 0.0), 20.0, method).event.unwrap();
@@ -175,13 +175,13 @@ fn a_ball_goes_through_both_poles_without_an_end() {
                 assert!((contact.energy(&ball, y) - start).abs() < 1e-13 * (1.0 + start.abs()), "{y:?}");
                 assert!(y.theta >= 0.0 && y.theta <= PI && y.w1.abs() < 1e-12 && y.w3.abs() < 1e-12);
             }
-            // a plane motion: J theta'^2/2 + h, and the period its quadrature, through the pole as through any point
+            // a plane motion passes the pole like any other point
             let swing = Swing::new(&ball, &y, contact, false).unwrap();
             let [low, high] = swing.turning_points();
             assert!(low == 0.0 && (high < PI) == (y.w2 == 0.0), "{low} {high}");
         }
     }
-    // a pendulum on a ball: from rest at 1.2, sqrt(J/(2 (h(1.2) - h))) d theta, in theta = 1.2 sin u
+    // the period of this pendulum by quadrature: sqrt(J/(2 (h(1.2) - h))) d theta, with theta = 1.2 sin u
     let swing = Swing::new(&ball, &state(1.2, 0.0, 0.0, 0.0), Contact::Rolling, false).unwrap();
     let n = 4000;
     let quarter: f64 = (0..n)
@@ -196,7 +196,7 @@ fn a_ball_goes_through_both_poles_without_an_end() {
         * FRAC_PI_2
         / f64::from(n);
     assert!((swing.period() / (2.0 * quarter) - 1.0).abs() < 1e-12, "{} {}", swing.period(), 2.0 * quarter);
-    // with a cap it does not get that far
+    // with a cap the motion ends before
     let capped = ball.with_theta_end(1.3).unwrap();
     let motion = moved(&capped, &state(1.2, 0.0, -2.0, 0.0), &[5.0], Ask::default()).unwrap();
     assert_eq!(motion.event.map(|e| (e.ending, e.state.theta)), Some((Ending::Side, 1.3)));
@@ -231,7 +231,7 @@ proptest! {
 
 #[test]
 fn the_angles_of_a_ball_jump_together_where_it_passes_its_pole() {
-    // phi + psi at the lower pole, phi - psi at the upper one: either way the body has gone on turning smoothly
+    // phi and psi jump by half a turn against each other, so that the body turns smoothly
     let ball = Body::ball(-0.2, 0.3, 0.4).unwrap();
     for contact in BOTH {
         let swing = Swing::new(&ball, &state(1.2, 0.0, -2.0, 0.0), contact, true).unwrap();

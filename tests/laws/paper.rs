@@ -37,7 +37,7 @@ fn a_disk_on_edge_needs_half_a_radius_of_thickness_on_a_smooth_table() {
     assert!((threshold - 0.4765).abs() < 5e-5);
     let near = |ell: f64| at_rest(&solid(ell), FRAC_PI_2 - 1e-7, Contact::Smooth);
     assert!(near(threshold + 1e-6) > 0.0 && near(threshold - 1e-6) < 0.0);
-    // rolling needs none: a hoop on edge, a thin disk
+    // rolling needs no thickness: a coin on edge is stable
     for ell in [1e-6, 0.1, 0.3] {
         assert!(at_rest(&solid(ell), FRAC_PI_2, Contact::Rolling) > 0.0);
     }
@@ -83,7 +83,7 @@ fn a_tall_cylinder_has_its_energy_ridge_at_a_quarter_radian() {
     assert!((ridge[0] - 0.251184).abs() < 5e-7 && ridge[1].is_nan(), "{ridge:?}");
 }
 
-/// [J, Fig. 1]: the PVC tube shows six still letters a turn when it lies nearly flat.
+/// [J, Fig. 1]: the PVC tube shows six still symbols a turn when it lies nearly flat.
 #[test]
 fn the_pvc_tube_shows_six_letters() {
     let tube = Body::from_metres(15.875e-3, 0.8 * 15.875e-3, 95.25e-3, 0.0).unwrap();
@@ -112,7 +112,8 @@ fn the_two_criteria_disagree_on_an_eighth_of_the_map() {
 
 #[test]
 fn an_upright_coin_rolls_stably_above_a_third_and_slides_stably_above_one() {
-    // the textbook result for a thin disk, v^2 > g R/3: w3^2 > I1/(I3 (I3 + 1)); on ice, as a top, I1/I3^2
+    // the textbook result for a thin disk, v^2 > g R/3: w3^2 > I1/(I3 (I3 + 1)); as a top, without friction,
+    // I1/I3^2
     let coin = solid(0.0);
     let upright = |w3| State { theta: FRAC_PI_2, w1: 0.0, w2: 0.0, w3 };
     for (law, threshold) in [

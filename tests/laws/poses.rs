@@ -1,4 +1,4 @@
-//! Where the body is and what holds it: row D18 of docs/hard-cases.md, and laws of the contact.
+//! Poses and contact forces: row D18 of docs/hard-cases.md, and laws of the contact.
 
 use crate::common::rim::sharp;
 use crate::common::{
@@ -79,7 +79,8 @@ fn integrated_and_exact_states_and_poses_of_rounded_bodies_agree() {
     }
 }
 
-/// How far a pose is from four numbers: phi, psi, and the contact point; where a reference has none, the angles.
+/// The largest difference of a pose from phi, psi and the contact point of a reference, where it has these
+/// numbers.
 fn off(pose: &Pose, values: &[f64]) -> f64 {
     let found = [pose.phi.radians(), pose.psi.radians(), pose.contact_point.x, pose.contact_point.y];
     found.iter().zip(values).map(|(a, b)| (a - b).abs()).filter(|x| !x.is_nan()).fold(0.0, f64::max)
@@ -147,7 +148,8 @@ fn the_body_touches_the_table_and_the_contact_point_does_not_slide() {
             let (t, h) = (0.41 * f64::from(k), 1e-5);
             let (y, pose) = (swing.state(t), swing.pose(t).unwrap());
             let turn = pose.orientation(&y);
-            // the lowest point of the circle of the rim, the fillet below it, and the velocity of the matter there
+            // the lowest point of the circle of the rim, the contact point below it, and the velocity of the
+            // body there
             let up = turn.inverse() * Vector3::z();
             let across = Vector3::new(-up.x, -up.y, 0.0).normalize();
             let arm = turn * (across * body.rim() - Vector3::z() * body.ell()) - Vector3::z() * body.fillet();
@@ -235,7 +237,7 @@ fn what_is_not_wanted_is_not_there() {
     let bare = moved(&body, &y, &[1.0, 2.0], Ask::default()).unwrap();
     assert!(bare.poses.is_none() && bare.forces.is_none() && bare.pose_error.is_nan());
     let all = moved(&body, &y, &[1.0, 2.0], Ask { pose: true, force: true, ..Ask::default() }).unwrap();
-    // found another way without a pose, and the same
+    // without a pose the states are computed by another method, and agree
     for (a, b) in all.states.iter().zip(&bare.states) {
         assert!(distance(a, &numbers(b)) <= all.error + bare.error && bare.error < 1e-12);
     }
@@ -257,7 +259,7 @@ proptest! {
         for ((t, found), pose) in motion.times.iter().zip(&motion.states).zip(motion.poses.as_ref().unwrap()) {
             let exact = swing.state(*t);
             let size = 1.0 + numbers(&exact).iter().fold(0f64, |a, x| a.max(x.abs()));
-            // a motion next to a saddle, or to flat, magnifies what the integrator misses
+            // near a saddle, or near flat, a motion magnifies the error of the integrator
             let low = y.theta.sin().min(exact.theta.sin());
             let lowest = low.min(swing.turning_points()[0].sin().max(1e-3));
             let allowed = 1e-7 * size.powi(2) / if sharp { low } else { lowest } + 1e5 * swing.error(*t);
@@ -282,7 +284,7 @@ proptest! {
 
 #[test]
 fn a_path_that_is_turned_by_almost_nothing_a_period_keeps_its_digits() {
-    // a precession of one turn and 1e-6 a period: the rest of a turn is what sums over the periods
+    // a precession of one turn and 1e-6 per period: only the excess over the turn sums over the periods
     let body = Body::new(0.0, 203428.96412048728, 0.4237592903145259).unwrap();
     let y = state(2.7, -2.654091292825407, -0.1, 1.8673114905120078);
     let times = [0.22924120743507784, 2.5];

@@ -21,7 +21,7 @@ fn the_moments_of_rounded_tubes_are_those_of_integrals_over_their_height() {
         let [half, bore, fillet, i1, i3, excess] = x[..] else { panic!("six numbers") };
         let body = Body::rounded_tube(half, bore, fillet).unwrap();
         assert_eq!((body.ell(), body.fillet(), body.rim()), (half - fillet, fillet, 1.0 - fillet));
-        // half an ulp more: the reference is read as a double
+        // half an ulp more, since the reference is read as a double
         assert!((body.i1() / i1 - 1.0).abs() <= 5.0 * ULP, "{half} {bore} {fillet}: {} {i1}", body.i1());
         assert!((body.i3() / i3 - 1.0).abs() <= 5.0 * ULP, "{half} {bore} {fillet}: {} {i3}", body.i3());
         assert!((body.excess() - excess).abs() <= 9.0 * ULP * (1.0 + excess.abs()), "{half} {bore} {fillet}");

@@ -1,4 +1,4 @@
-//! Bodies that come to rest, stand, or leave a rest that does not last: what ends there, and what is claimed of it.
+//! Bodies that come to rest, or leave an unstable rest: how the motion ends, and the errors that it claims.
 
 use crate::losses::ROLLS;
 use core::f64::consts::FRAC_PI_2;
@@ -9,7 +9,7 @@ use spincyl::{Body, State, steady};
 
 #[test]
 fn a_ball_that_drills_on_while_resistance_holds_its_rolling_stops_whatever_the_tolerance() {
-    // a fresh seed drew it: unequal moments drive the rolling that resistance stops, which no step resolved
+    // found by a random test: unequal moments drive the rolling that resistance stops, which no step resolved
     let body = Body::rounded(0.0, 0.1, 0.005, 1.0).unwrap();
     let start = State { theta: 1.0009553921895131, w1: 0.38977109408965055, w2: 0.0, w3: 0.0 };
     let found = [1e-6, 1e-8, 1e-10, 1e-12, 1e-14].map(|tol| {
@@ -32,7 +32,7 @@ fn a_ball_that_drills_on_while_resistance_holds_its_rolling_stops_whatever_the_t
     }
 }
 
-/// A rolling ball that spins about the vertical, with any axis called its own: rolls for v/((5/7) k g), then spins on.
+/// A uniform ball with any axis as e3 rolls for the time v/((5/7) k g), and then spins about the vertical.
 #[test]
 fn a_uniform_ball_rolls_out_and_spins_on_whatever_axis_is_called_its_own() {
     let ball = Body::rounded(0.0, 0.4, 0.4, 1.0).unwrap();
@@ -53,7 +53,7 @@ fn a_uniform_ball_rolls_out_and_spins_on_whatever_axis_is_called_its_own() {
 
 #[test]
 fn a_weighted_ball_that_is_let_go_rocks_to_rest_and_stays_there() {
-    // the turning points of a planar model of its own, integrated by SciPy at 1e-12
+    // the time and place of the stop by a separate planar model, integrated by SciPy at 1e-12
     let ball = Body::rounded(-0.3, 0.5, 0.3, 1.0).unwrap();
     let start = State { theta: 1.0, w1: 0.0, w2: 0.0, w3: 0.0 };
     let friction = Table::Rubs(Friction::coulomb(0.3));
@@ -88,7 +88,8 @@ fn a_disk_on_its_edge_that_spins_about_the_vertical_does_not_roll() {
 
 #[test]
 fn a_disk_all_but_on_its_edge_falls_as_it_claims_whatever_the_tolerance() {
-    // theta at t = 17 by a model of its own in 80 bits; the start is unstable, and its errors grow a billionfold
+    // theta at t = 17 by a separate model in 80 bits; the start is unstable, and its errors grow a
+    // billionfold
     let disk = Body::solid(0.0).unwrap();
     let scenes = [
         (0.15531088651889635, -1.5606182395595831, 8.199832e-10, 1.5631342956508019),
@@ -131,7 +132,7 @@ fn a_slipping_ball_that_rolling_resistance_stops_has_one_time_of_its_stop() {
         for b in &found[..i] {
             let (one, other, both) = (a.event.unwrap(), b.event.unwrap(), a.error + b.error);
             assert!((one.time - other.time).abs() < 2.0 * both, "{one:?}, {other:?}: {both:e}");
-            // The drilling goes on to the very end, and so is part of the last state.
+            // The drilling does not stop before the end, so that w3 of the last state is compared, too.
             assert!((one.state.w3 - other.state.w3).abs() < 2.0 * both, "{one:?}, {other:?}: {both:e}");
         }
     }
@@ -140,7 +141,7 @@ fn a_slipping_ball_that_rolling_resistance_stops_has_one_time_of_its_stop() {
 
 #[test]
 fn a_face_that_only_comes_nearer_takes_as_long_to_each_inclination_as_its_exponential_says() {
-    // rolling resistance and air leave w2 ~ s at the end: theta falls by e in the time theta/w2, whatever it is
+    // rolling resistance and air leave w2 ~ s at the end: theta falls by e in the constant time theta/w2
     let disk = Body::solid(0.0128 / 0.0751).unwrap();
     let start = steady::state(&disk, 0.3).unwrap().kicked(0.05);
     let losses = Losses::of(Law::RollingResistance, 0.0119) + Losses::of(Law::AirQuadratic, 0.0298);
@@ -150,7 +151,7 @@ fn a_face_that_only_comes_nearer_takes_as_long_to_each_inclination_as_its_expone
     };
     let end = at(&[0.0, 100.0]).event.unwrap();
     assert_eq!(end.ending, Ending::Face);
-    // It is followed to 1e-10, and lands ten of these times after 1e-12.
+    // The integration ends at 1e-10 rad, and the face counts as landed ten of these times after 1e-12 rad.
     let time = 1e-10 / end.state.w2;
     for theta in [2e-10f64, 3e-10] {
         let left = time * ((theta / 1e-12).ln() + 10.0);

@@ -32,7 +32,7 @@ fn frictions() -> impl Strategy<Value = Friction> {
     ]
 }
 
-/// A, L, g, g' and the height of the centre, typed here from the drawing.
+/// A, L, g, g' and the height of the centre, written independently of the library.
 fn shape(body: &Body, theta: f64) -> [f64; 5] {
     let (s, c) = theta.sin_cos();
     let (ell, rho) = (body.ell(), body.fillet());
@@ -61,7 +61,7 @@ proptest! {
         prop_assert!(near(v_h_rate - turn * v_2, f.across), "{} {}", v_h_rate - turn * v_2, f.across);
         prop_assert!(near(v_2_rate + turn * v_h, f.along), "{} {}", v_2_rate + turn * v_h, f.along);
         prop_assert!(near(1.0 + g * dy.w2 - slope * y.w2 * y.w2, f.normal));
-        // about the vertical and about the axis of symmetry
+        // the angular momenta about the vertical and about the axis of symmetry
         let vertical = body.i1() * (dy.w1 * s - y.w1 * c * y.w2) + body.i3() * (dy.w3 * c + y.w3 * s * y.w2);
         prop_assert!(near(vertical, g * f.along), "{vertical} {}", g * f.along);
         prop_assert!(near(body.i3() * dy.w3, -radius * f.along));
@@ -103,7 +103,7 @@ proptest! {
     fn a_hoop_slides_rolls_and_returns_as_the_closed_form_says(
         v in 0.1..4.0f64, back in 0.0..4.0f64, mu in 0.5..1.5f64, bore in 0.0..1.0f64,
     ) {
-        // a hoop that hardly turns for long is unstable: these are short
+        // a hoop that turns slowly is unstable, so that these motions are short
         let hoop = Body::tube(0.0, bore).unwrap();
         let i3 = hoop.i3();
         let start = State { theta: FRAC_PI_2, w1: 0.0, w2: 0.0, w3: -back };
@@ -142,7 +142,7 @@ fn a_ball_keeps_jelletts_constant_and_a_rough_table_rolls() {
         assert!(off.fold(0f64, f64::max) < 1e-13, "{friction:?}");
         assert_eq!(path.event, None);
     }
-    // what holds everything is rolling
+    // static friction without limit is rolling
     let body = Body::solid(1.5).unwrap();
     let start = State { theta: 1.1, w1: 0.6, w2: 0.0, w3: 0.9 };
     let rough = Ask::on(Friction::Coulomb { mu: 0.5, fixed: f64::INFINITY });
@@ -171,7 +171,7 @@ proptest! {
 
 #[test]
 fn static_friction_alone_holds_a_contact_at_rest() {
-    // No sliding friction: once it slips, the body moves as on a smooth table.
+    // Without sliding friction a body that slips would move as on a smooth table.
     let body = Body::tube(6.0, 0.8).unwrap();
     let start = spincyl::steady::state(&body, 1.4).unwrap().kicked(0.05);
     let roll = |ask: &Ask| roll_with(&body, start, &[0.0, 5.0], ask, || true).unwrap().unwrap();
@@ -205,7 +205,7 @@ fn what_makes_no_sense_is_refused_by_name() {
     assert_eq!(name(Friction::coulomb(0.3), [0.0, 1e300], &[1.0]), "slip across");
     assert_eq!(name(Friction::coulomb(0.3), [1.0, 0.0], &[-1.0]), "t");
     assert_eq!(name(Friction::coulomb(0.3), [1.0, 0.0], &[]), "t");
-    // a light rod that leans forward and is pushed: no force, or more than one
+    // a light rod that leans forward and is pushed has no force, or more than one
     let light = Body::new(1.0, 0.02, 0.01).unwrap();
     let limit = slip::painleve(&light, 1.0);
     let pushed = roll_with(
@@ -227,7 +227,7 @@ fn a_tube_that_slips_in_every_nod_is_not_said_to_jam() {
     let ask = Ask { method: Method::Tolerance(1e-8), ..Ask::on(Friction::coulomb(mu)) };
     let to = |t: f64| roll_with(&tube, Start { slip, ..start.into() }, &[t], &ask, || true);
     assert!(path_of(&to(1e3).unwrap().unwrap()).phases.len() > 100);
-    // What is given up returns what is known up to there.
+    // A motion that is given up returns its phases up to there.
     let far = to(2e5).unwrap().unwrap();
     let event = far.event.unwrap();
     assert!(event.ending == Ending::Bounded && event.time > 1e4, "{event:?}");
@@ -260,7 +260,7 @@ fn launches(count: usize) -> [Vec<f64>; 4] {
     [w1, w3, slip, (0..count).map(|i| 0.1 + 0.3 * share(i, 211)).collect()]
 }
 
-/// Their ends, claims and status, of so many times.
+/// The ends, claims and status of these launches, computed together.
 fn together(of: &[Vec<f64>; 4], times: &[f64], threads: usize) -> (Vec<Vec<f64>>, Vec<f64>, Vec<u8>) {
     let tube = Body::tube(6.0, 0.8).unwrap();
     let [w1, w3, slip, mu] = of;
@@ -297,7 +297,7 @@ fn side_by_side_a_slip_has_the_same_bits_whatever_its_neighbours() {
         assert!(found.iter().zip(&again).all(|(a, b)| bits(a) == bits(b)) && codes == status);
         assert_eq!(bits(&claims), bits(&error));
     }
-    // in another order, and some of them alone
+    // in another order, and fewer of them
     let order: Vec<usize> = (0..700).map(|i| (i * 387) % 700).step_by(7).collect();
     let some = all.clone().map(|x| order.iter().map(|i| x[*i]).collect::<Vec<_>>());
     let (again, ..) = together(&some, &[60.0], 1);
@@ -327,7 +327,7 @@ fn side_by_side_a_slip_is_what_it_is_alone() {
         for (k, x) in <[f64; 4]>::from(y).into_iter().enumerate() {
             assert!((found[k][i] - x).abs() <= claim, "{i}: {k}: {} {x} {claim}", found[k][i]);
         }
-        // an energy is off by a speed times what that is off by
+        // the error of an energy is that of a speed, times the speed
         let (heat, fastest) =
             ((found[6 + Summary::Dissipated as usize][i] - path_of(&path).heat).abs(), 6.0 * w1 + w3);
         assert!(heat <= claim * fastest, "{i}: {heat:e} {claim:e}");

@@ -1,4 +1,4 @@
-//! Kappa: the tilting law along its line, the independent model, and where it has no meaning.
+//! Kappa: the tilting law along its line, the independent model, and states that have none.
 
 use crate::common::{BOTH, any_rim, newton_euler, numbers, tube_or_rounded};
 use crate::{Place, ULP, condition, place, sharp, steady_end};
@@ -8,8 +8,8 @@ use spincyl::exact::Swing;
 use spincyl::stability::{self, Region, at_rest, region};
 use spincyl::{Body, Contact, State, rolling, steady};
 
-/// Kappa of a circular steady state by the line of the tilting law, section 4 of docs/physics.md; and the sum of the
-/// sizes of its terms.
+/// Kappa of a circular steady state by the tilting law along its line, section 4 of docs/physics.md; and the
+/// sum of the sizes of its terms.
 fn kappa(contact: Contact, body: &Body, y: &State) -> [f64; 2] {
     let Place { s, c, radius, depth: [depth, deep], height: [height, _], lever, slope, .. } =
         place(body, y.theta);
@@ -74,7 +74,7 @@ fn jacobian(body: &Body, y: &State, contact: Contact, h: f64) -> Matrix4<f64> {
 
 #[test]
 fn where_the_tilting_hardly_depends_on_the_spin_a_spin_of_thousands_is_steady_to_six_digits() {
-    // a fresh seed drew this capsule: at its inclination w3 counts so little that the circle needs -6665 of it
+    // found by a random test: here w3 hardly changes the tilting, so that the circle needs w3 = -6665
     let body = Body::rounded(9.304747504488454, 1.4773267187219636, 1.2761430566512073, 1.0).unwrap();
     let circle = steady::circular(&body, 0.5788089687270598 * steady_end(&body), 0.3).unwrap();
     for faster in [0.0, 0.5, 1.0] {
@@ -102,7 +102,7 @@ proptest! {
         {
             let [expected, size] = kappa(contact, &body, &rest);
             prop_assert!((found - expected).abs() <= 64.0 * ULP * size, "{contact:?}: {found} {expected}, size {size}");
-            // the closed form knows the rate, the state its two numbers
+            // the closed form uses the rate, and kappa of a state uses w1 and w3
             let quick = at_rest(&body, theta, contact);
             let allowed = (64.0 + 32.0 * (1.0 + condition(&body, theta))) * ULP * size;
             prop_assert!((quick - expected).abs() <= allowed, "{contact:?}: {quick} {expected}, size {size}");
@@ -133,7 +133,7 @@ proptest! {
                 Contact::Rolling => stability::rolling(&body, &y),
                 Contact::Smooth => stability::smooth(&body, &y),
             };
-            // the steps err by step^4, rounding by the condition of the model over the step
+            // the difference quotients have an error of step^4, and the rounding of the model over the step
             let spread = (body.i1() + 1.0 + (1.0 + body.ell().abs()).powi(2)) / body.i1().min(body.i3());
             let general = (1e-8 + 64.0 * ULP / step * spread) * spread;
             let allowed = if sharp(&body) { 1e-7 } else { general } * size;
@@ -150,11 +150,11 @@ proptest! {
         let theta = (u * steady_end(&body)).min(3.1);
         let circle = steady::circular(&body, theta, precession).unwrap();
         prop_assert!(!stability::rolling(&body, &circle).is_nan());
-        // steady to six digits is steady, to five it is not
+        // a state that is steady to six digits counts as steady, to five it does not
         for (shift, steady) in [(1e-7, true), (-1e-7, true), (1e-4, false), (-1e-4, false)] {
             prop_assert_eq!(!stability::rolling(&body, &circle.kicked(shift)).is_nan(), steady);
         }
-        // and so is another spin: what it adds to the tilting, beside the largest term of the tilting
+        // another spin counts as steady by its share of the largest term of the tilting
         let Place { s, c, radius, depth: [depth, _], .. } = place(&body, theta);
         let faster = State { w3: circle.w3 + 1.0, ..circle };
         let (w1, w3, ct) = (faster.w1, faster.w3, c / s);
@@ -181,7 +181,7 @@ proptest! {
         let theta = u * steady_end(&body);
         let (found, rate) = (region(&body, theta), steady::rate(&body, theta));
         prop_assert!(found != Region::Invalid);
-        // a tube rolls stably wherever it does on a smooth table
+        // a tube that is stable on a smooth table is stable when rolling
         prop_assert!(!sharp(&body) || found != Region::StableSmooth);
         prop_assert_eq!(matches!(found, Region::Forbidden | Region::Undetermined), rate.is_nan());
         if !rate.is_nan() {
@@ -228,7 +228,7 @@ fn a_ball_sleeps_on_its_pole_above_the_spin_that_routh_found() {
                 let y = State { theta: 1e-4, w1: spin * s, w2: 0.0, w3: spin * c };
                 Swing::new(&body, &y, contact, false).unwrap().turning_points()[1]
             };
-            // from 1e-4 it rises to about 1e-4 over the root of what the spin has too much, or of order 1
+            // from 1e-4 the ball leans little above the critical spin, and by an angle of order 1 below
             assert!(
                 high(1.02 * critical) < 1e-2 && high(0.98 * critical) > 0.3,
                 "{body:?} {contact:?}: {}",

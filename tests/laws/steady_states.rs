@@ -19,7 +19,7 @@ proptest! {
         // the centre rests
         prop_assert!((radius * y.w3 - depth * y.w1).abs() <= 16.0 * ULP * (radius * y.w3.abs() + deep * y.w1.abs()));
         prop_assert!(y.w2 == 0.0 && (!sharp(&body) || y.w3 == body.ell() * y.w1));
-        // what is left is what the errors of the rate make of the terms that balance
+        // the rate has an error, and so have the terms that balance
         let turning = (body.i1() * c / s * y.w1 * y.w1).abs() + body.i3() * y.w1 * y.w3.abs();
         let allowed = (32.0 + 8.0 * (1.0 + condition(&body, theta))) * ULP * (turning + lever[1]);
         for contact in BOTH {
@@ -76,7 +76,7 @@ proptest! {
         let close = |a: f64, b: f64| (a - b).abs() <= 1e-13 * (1.0 + b.abs());
         prop_assert!(y.speed_o(&body) <= 1e-13 * (1.0 + y.w3));
         prop_assert!(close(y.speed_x(&body), 2.0 * body.ell() * y.w1));
-        // the angular velocity points at O, the angular momentum at thetaInf
+        // the angular velocity leads from the axis to O, the angular momentum to thetaInf
         prop_assert!(close(y.gamma(), body.theta_balance()) && close(y.beta(&body), body.theta_limit()));
         let (s, c) = y.theta.sin_cos();
         let lever = body.ell() * s - c;
@@ -93,7 +93,7 @@ proptest! {
         let end = share * steady_end(&body);
         let (cut, theta) = (body.with_theta_end(end).unwrap(), u * end);
         let rate = steady::rate(&body, theta);
-        // a sharp rim that ends before pi/2 goes the way of a rounded one
+        // a sharp rim that ends before pi/2 is computed as a rounded one
         let allowed = 6.0 * (1.0 + condition(&body, theta)) * ULP * rate;
         prop_assert!((steady::rate(&cut, theta) - rate).abs() <= allowed || rate.is_nan(), "{rate}");
         prop_assert!(steady::rate(&cut, end.next_up()).is_nan() && steady::state(&cut, end.next_up()).is_err());
@@ -120,7 +120,7 @@ proptest! {
         prop_assert!(steady::folds(&body).iter().all(|x| x.is_nan()));
         let all = steady::inclinations(&body, rate);
         prop_assert!(all[1].is_nan() && steady::count(&body, rate).is_none_or(|n| n == usize::from(!all[0].is_nan())));
-        // cos theta = ell (rate^2 - 1)/(d rate^2): the cosine is known to what is left of the difference
+        // cos theta = ell (rate^2 - 1)/(d rate^2): the cosine has the digits of the difference
         let lost = 32.0 * ULP * (ell / d).abs() * (1.0 + square.recip()) * (1.0 + condition(&body, theta));
         let near_end = (theta - body.theta_end()).abs() < lost / theta.sin() + 1e-7;
         prop_assert!((all[0].cos() - c).abs() <= lost + 4.0 * ULP || near_end, "{all:?} for {theta}");
@@ -197,7 +197,7 @@ fn on_its_side_every_body_turns_at_the_critical_rate() {
     for (body, allowed) in tubes.into_iter().chain(rounded) {
         assert!((steady::rate(&body, FRAC_PI_2) - 1.0).abs() < allowed, "{body:?}");
     }
-    // without height there is no such rate: Omega~^2 = a/(a + d)
+    // for ell = 0 the rate at pi/2 is another one: Omega~^2 = a/(a + d)
     let torus = Body::rounded(0.0, 0.5 * 0.36 + 0.625 * 0.16, 0.36 + 0.75 * 0.16, 0.4).unwrap();
     assert_eq!(torus.theta_end(), PI);
     let square = 0.6 / (0.6 + torus.excess());
@@ -225,7 +225,7 @@ fn a_tube_is_critical_where_its_moments_agree() {
         let fillet: f64 = fillet;
         let (sharp, round) =
             (Body::critical_aspect(0.0, 0.0).unwrap(), Body::critical_aspect(0.0, fillet).unwrap());
-        // the edge that is taken off is of second order
+        // the effect of a rounded edge is of second order in the fillet
         assert!((round - sharp).abs() <= fillet * fillet + 4.0 * ULP, "{fillet}: {round} {sharp}");
     }
 }

@@ -14,7 +14,7 @@ fn turned(moments: [f64; 3], [about_3, about_1]: [f64; 2]) -> [[f64; 3]; 3] {
     let turn = nalgebra::Rotation3::from_axis_angle(&Vector3::z_axis(), about_3)
         * nalgebra::Rotation3::from_axis_angle(&Vector3::x_axis(), about_1);
     let tensor = turn.matrix() * Matrix3::from_diagonal(&moments.into()) * turn.matrix().transpose();
-    // Rounding may leave the two halves different.
+    // Rounding may leave the tensor slightly unsymmetric.
     let half = 0.5 * (tensor + tensor.transpose());
     [0, 1, 2].map(|i| [0, 1, 2].map(|j| half[(i, j)]))
 }
@@ -81,7 +81,7 @@ fn rolls_with_friction_without_limit(stone: &Ellipsoid, start: StoneState) -> Re
 
 #[test]
 fn friction_without_limit_presses_a_stone_that_would_lift_off_without_any() {
-    // A fresh seed drew it.
+    // Found by a random test.
     let inertia = [
         [0.3032112727482966, 0.0, 0.0],
         [0.0, 0.3109762259583708, 0.07282362977310915],
@@ -122,15 +122,16 @@ proptest! {
         };
         let path = motion.path.as_ref().unwrap();
         let poses = motion.poses.as_ref().unwrap();
-        // The energy from places: the velocity of the centre is the difference of centres a moment apart.
+        // The energy in the laboratory; the velocity of the centre follows from the slip.
         for (i, (y, pose)) in motion.states.iter().zip(poses).enumerate() {
             let w = pose.orientation * Vector3::from(y.w);
             let point = Vector3::new(pose.contact_point.x, pose.contact_point.y, 0.0);
             let arm = point - Vector3::from(pose.centre);
-            // The slip stands along the axes of the smallest turn from upright.
+            // The slip is given along the laboratory axes of a stone that the smallest turn from upright has
+            // brought here.
             let upright = pose.orientation.inverse() * Vector3::z();
             prop_assert!((upright - Vector3::from(y.vertical)).norm() < 1e-12);
-            // An angle from its cosine would have half the digits next to upright.
+            // An angle by its cosine would have half the digits next to upright.
             let half = nalgebra::Quaternion::from_parts(1.0 + upright.z, upright.cross(&Vector3::z()));
             let tilt = nalgebra::UnitQuaternion::new_normalize(half);
             let slip = pose.orientation * (tilt.inverse() * Vector3::new(path.slip[i][0], path.slip[i][1], 0.0));
@@ -256,7 +257,7 @@ proptest! {
         for i in 2..poses.len() {
             prop_assert!((way(i)[0] - way(1)[0]).abs() + (way(i)[1] - way(1)[1]).abs() < 1e-10 + 10.0 * motion.pose_error.min(1e-3));
         }
-        // On a smooth table it turns alike, and its centre stands.
+        // On a smooth table the stone turns in the same way, and its centre rests.
         let smooth = rolled(&stone, start, &TIMES, &Ask { pose: true, ..Ask::on(Contact::Smooth) });
         for (a, b) in motion.states.iter().zip(&smooth.states) {
             let off = apart(a, b);
@@ -274,7 +275,7 @@ proptest! {
         let found = stone::rolling(&stone, start, &TIMES, 10f64.powf(tol), || true).unwrap();
         let (rows, error) = found.unwrap();
         let (poses, forces) = (motion.poses.unwrap(), motion.forces.unwrap());
-        // Claims are estimates from two runs: `stone_claims` found them 4.7 times too small at most.
+        // Claims are estimates from two runs: in `stone_claims` errors are up to 4.7 times larger.
         let off = error + motion.error + motion.pose_error;
         for (i, y) in motion.states.iter().enumerate() {
             let row = &rows[i];
@@ -287,7 +288,7 @@ proptest! {
     }
 }
 
-/// The small stone, which turns back one way much sooner than the other.
+/// A rattleback that reverses much sooner in one direction than in the other.
 fn small() -> Ellipsoid {
     let inertia = [[0.02, -0.012, 0.0], [-0.012, 0.2, 0.0], [0.0, 0.0, 0.21]];
     Ellipsoid::new([1.0, 0.3, 0.2], inertia, [0.0, 0.0, -0.07]).unwrap()
@@ -330,7 +331,7 @@ fn a_pushed_spin_grows_as_its_eigenvalue_says() {
     for (spin, mode, push) in [(-0.6, 1, 1e-12), (0.6, 0, 1e-9)] {
         let rate = stone.rocking(spin).unwrap().growth[mode];
         let ask = Ask::default();
-        // Both times are long enough for the other mode to have died, and whole periods of the growing one.
+        // After either time the other mode has died, and the growing one has made whole periods.
         let period = std::f64::consts::TAU / stone.rocking(spin).unwrap().frequency[mode];
         let begin = (35.0 / period).round() * period;
         let (t1, t2) = (begin, begin + (10.0 / period).round() * period);
@@ -403,7 +404,7 @@ fn a_stone_falls_on_its_edge_and_lifts_off_where_it_is_thrown_about() {
     let motion = rolled(&half, start, &[0.0, 20.0], &Ask::default());
     assert_eq!(motion.ending(), Ending::Face);
     assert!((motion.event.unwrap().state.theta() - half.theta_end()).abs() < 1e-12);
-    // Fast enough about a horizontal axis the normal force vanishes.
+    // If it spins fast enough about a horizontal axis the normal force vanishes.
     let egg = Ellipsoid::egg(0.6, 1.0, 0.0).unwrap();
     let start = StoneState { vertical: [1.0, 0.0, 0.0], w: [0.0, 3.0, 0.0] };
     let motion = rolled(&egg, start, &[0.0, 20.0], &Ask { force: true, ..Ask::default() });
@@ -420,7 +421,7 @@ fn a_stone_at_rest_on_its_end_or_turned_over_stays_or_falls() {
         assert_eq!(motion.states[1], still);
         assert!((motion.forces.unwrap()[1].z - 1.0).abs() < 1e-15);
     }
-    // On its long end it stands in the equations, and falls at the least push.
+    // On its long end it is in unstable balance, and falls at the least push.
     let pushed = StoneState { vertical: [1.0, 0.0, 0.0], w: [0.0, 1e-9, 0.0] };
     let motion = rolled(&pebble, pushed, &[0.0, 30.0], &Ask { beyond: true, ..Ask::default() });
     assert!(motion.states[1].vertical[0] < 0.999);

@@ -1,4 +1,4 @@
-//! The errors that motions of stones claim.
+//! The claimed errors of motions of stones.
 
 use crate::common::cases;
 use crate::stone::{TIMES, any_start, any_stone, apart};
@@ -7,10 +7,10 @@ use spincyl::contact::{Friction, Table};
 use spincyl::motion::{Ask, Method};
 use spincyl::stone::{self, Ellipsoid, StoneState};
 
-/// What a claim is asked for: a stone, its start, a coefficient of friction, whether it slips, and log10 of a tolerance.
+/// A case: a stone, its start, a coefficient of friction, whether it slips, and log10 of a tolerance.
 type Asked = (Ellipsoid, StoneState, f64, bool, f64);
 
-/// The largest difference of a motion and one of this tolerance, over the sum of what both claim.
+/// The largest difference of a motion and one of this tolerance, over the sum of their claims.
 fn beyond_claims(&(ref stone, start, mu, slips, tol): &Asked) -> f64 {
     let table = if slips { Friction::coulomb(mu).into() } else { Table::default() };
     let ask = Ask { table, ..Ask::default() };
@@ -41,7 +41,7 @@ proptest! {
 
 #[test]
 fn a_stone_drawn_once_lies_next_to_its_claim() {
-    // It lay 3 % beyond.
+    // The difference was 3 % larger than the claim.
     let inertia = [
         [0.11281683048048702, -0.043712480719867504, -0.009848165769554098],
         [-0.043712480719867504, 0.19929025216232527, 0.023592801082846535],
@@ -60,8 +60,8 @@ fn a_stone_drawn_once_lies_next_to_its_claim() {
 
 #[test]
 fn rough_motions_of_stones_end_where_fine_ones_do() {
-    // Fresh seeds drew them: between two steps the contact let go, and held again for the square of a negative force, or
-    // the force fell below zero and rose again.
+    // Found by random tests: within a step static friction failed and, since forces enter squared, seemed to
+    // hold again at a negative N; or N fell below zero and rose again.
     let drawn = [
         (
             [0.9872981515532196, 0.5284546301266001, 1.0],

@@ -1,5 +1,5 @@
-//! Maps, scattered points and surveys, of sharp and of rounded bodies: against single calls, and against the maps that
-//! surveys do not make.
+//! Maps, scattered points and surveys, of sharp and of rounded bodies: compared with single calls, and
+//! surveys with maps.
 
 use crate::common::rim::{condition, sharp, steady_end};
 use crate::common::{any_rounded, ordinary_tube, tube_or_rounded};
@@ -15,7 +15,8 @@ struct Map {
 }
 
 impl Map {
-    /// Filled by a function of a whole portrait. One place calls it: the lanes are compiled for every caller.
+    /// A map filled by `fill`. Only this function calls `fill`, since the lanes are compiled for every
+    /// caller.
     fn filled(size: usize, fill: impl FnOnce(sweep::Portrait<'_>) -> bool) -> Self {
         let mut map = Self { numbers: core::array::from_fn(|_| vec![7.0; size]), region: vec![9; size] };
         let [rate, rolling, smooth, energy] = &mut map.numbers;
@@ -35,13 +36,13 @@ impl Map {
         Self::filled(size, |out| sweep::portrait(theta, bodies, out, threads, |_| true).unwrap())
     }
 
-    /// Of inclinations, half lengths, bores and fillets.
+    /// The map of scattered points: inclinations, half lengths, bores and fillets.
     fn scattered(columns: [&[f64]; 4], count: usize, threads: usize) -> Self {
         Self::filled(count, |out| sweep::points(columns, out, threads, |_| true).unwrap())
     }
 
     fn bits(&self, i: usize) -> [u64; 5] {
-        // one NaN is as good as another
+        // every NaN counts as the same
         let bits = |x: f64| if x.is_nan() { u64::MAX } else { x.to_bits() };
         let [a, b, c, d] = self.numbers.each_ref().map(|x| bits(x[i]));
         [a, b, c, d, self.region[i].into()]
@@ -66,7 +67,7 @@ impl Single {
     }
 }
 
-/// The rate alone.
+/// The rates of a map of rates alone.
 fn single_rates(theta: &[f64], bodies: &[Option<Body>], threads: usize) -> Vec<f32> {
     let mut rate = vec![7f32; theta.len() * bodies.len()];
     let out = sweep::Portrait { rate: Some(&mut rate[..]), ..Default::default() };
@@ -74,13 +75,13 @@ fn single_rates(theta: &[f64], bodies: &[Option<Body>], threads: usize) -> Vec<f
     rate
 }
 
-/// One NaN is as good as another.
+/// The bits of a number, with the same ones for every NaN.
 fn bits(x: f32) -> u32 {
     if x.is_nan() { u32::MAX } else { x.to_bits() }
 }
 
-/// How far a single number is off a double, in ulp of 2^-24; infinite where only one of them is a number, or where the
-/// range of single numbers ends and it is not the double rounded.
+/// The error of a single-precision number against a double, in ulp of 2^-24; outside the range of normal
+/// numbers 0 if it is the double rounded, else infinite.
 fn off(single: f32, double: f64) -> f64 {
     let rounded = double as f32;
     if rounded.is_normal() && single.is_normal() {
@@ -89,8 +90,8 @@ fn off(single: f32, double: f64) -> f64 {
     if bits(single) == bits(rounded) { 0.0 } else { f64::INFINITY }
 }
 
-/// Bodies of any length, thin and critical ones and none at all among them, and inclinations near to where the rate of
-/// one of them begins, ends or turns, or that are tiny, upright, flat or none at all.
+/// Bodies of any length, also thin, critical and missing ones; and inclinations near those where the rate of
+/// one of them begins, ends or turns, or that are tiny, upright, flat or NaN.
 fn hard_places() -> (Vec<f64>, Vec<Option<Body>>) {
     let powers = [-300, -30, -15, -8, -3, -1, 0, 1, 3, 8, 15, 28, 30, 75, 150].map(|k| 10f64.powi(k));
     let ordinary = (0..120).map(|i| 0.025 * f64::from(i));
@@ -137,7 +138,7 @@ fn near_folds_and_edges_and_at_any_scale_the_single_rate_is_that_of_doubles_what
     }
 }
 
-/// The same of one point by single calls; its energy, which has none, as given.
+/// The bits of one point by single calls; its energy, for which there is no call, is given.
 fn alone(body: Option<Body>, theta: f64, energy: f64) -> [u64; 5] {
     let bits = |x: f64| if x.is_nan() { u64::MAX } else { x.to_bits() };
     let Some(body) = body else { return [u64::MAX, u64::MAX, u64::MAX, u64::MAX, 0] };
@@ -185,7 +186,7 @@ proptest! {
         for k in 0..alone.len() {
             let found = single.numbers.each_ref().map(|x| x[k]);
             let doubles = map.numbers.each_ref().map(|x| x[k]);
-            // what else is asked for changes nothing
+            // the rate does not depend on the other quantities that are computed
             prop_assert_eq!(bits(alone[k]), bits(found[0]));
             let sharp = bodies[k % bodies.len()].is_some_and(|body| body.fillet() == 0.0);
             for (found, double) in found.into_iter().zip(doubles).skip(usize::from(sharp)) {
@@ -257,7 +258,7 @@ proptest! {
             prop_assert_eq!(*area, counted, "{:?}", bodies[j]);
         }
         let found = sweep::extrema(&theta, &bodies, [true; 4], threads, |_| true).unwrap().unwrap();
-        // of the rate alone they are found another way
+        // the extrema of the rate alone are computed by another method
         let alone = sweep::extrema(&theta, &bodies, [true, false, false, false], threads, |_| true).unwrap().unwrap();
         prop_assert_eq!(alone[0], found[0]);
         for (map, ends) in map.numbers.iter().zip(found) {

@@ -1,4 +1,4 @@
-//! A thin disk that whirrs: how fast it turns at last, how that ends, and how its nodding dies away, law by law.
+//! The whirr of a thin disk under each law: its fastest precession, its end, and the decay of its nutation.
 
 use crate::losses::{ROLLS, follow};
 use spincyl::contact::lossy;
@@ -6,7 +6,8 @@ use spincyl::loss::{Law, Losses};
 use spincyl::motion::{Ending, Event};
 use spincyl::{Body, Contact, steady};
 
-/// The fastest precession of a thin disk from a steady state, in the last share of its way, and how that ends.
+/// The fastest precession of a thin disk from a steady state, in the last `share` of its motion, and the end
+/// of the motion.
 fn fastest(law: Law, coefficient: f64, theta: f64, share: f64) -> (f64, Event) {
     let coin = Body::solid(0.0).unwrap();
     let start = steady::state(&coin, theta).unwrap();
@@ -15,14 +16,14 @@ fn fastest(law: Law, coefficient: f64, theta: f64, share: f64) -> (f64, Event) {
     let times: Vec<f64> =
         (1..=40_000).rev().map(|i| end.time * (1.0 - share * f64::from(i) / 40_000.0)).collect();
     let path = follow(&coin, &start, losses, &times, ROLLS);
-    // where it lies it turns no more
+    // a disk that lies flat has no precession
     let aloft = path.states.iter().filter(|y| y.theta > 0.0);
     (aloft.fold(0f64, |most, y| most.max(y.precession().abs())), end)
 }
 
 #[test]
 fn a_dry_whirr_ends_where_gravity_outruns_the_barrier() {
-    // Omega_max = 1.81 eps^(-1/2) of the thin disk, N -> 1/5, and the contact point stops above the table
+    // Omega_max = 1.81 eps^(-1/2) for the thin disk, N -> 1/5, and the contact point stops before theta = 0
     let coin = Body::solid(0.0).unwrap();
     for eps in [1e-2f64, 3e-3, 1e-3] {
         let (found, event) = fastest(Law::DryContour, eps, 0.3, 1.0);
@@ -51,7 +52,7 @@ fn the_fastest_turn_goes_with_the_power_of_each_law() {
 
 #[test]
 fn nutation_dies_away_as_each_law_says() {
-    // A ~ theta^q of a thin disk near flat, to 4 per cent of theta's own change
+    // A ~ theta^q for a thin disk near flat, with q to 6 per cent
     let coin = Body::solid(0.0).unwrap();
     let amplitude = |law: Law, coefficient: f64, low: f64| {
         let start = steady::state(&coin, 0.02).unwrap();
@@ -61,7 +62,7 @@ fn nutation_dies_away_as_each_law_says() {
         let steady: Vec<f64> = (0..60_000).map(|i| end * f64::from(i) / 60_000.0).collect();
         let path = follow(&coin, &kicked, losses, &steady, ROLLS);
         let thetas: Vec<f64> = path.states.iter().map(|y| y.theta).collect();
-        // half of the difference of a greatest theta and the mean of the least ones about it
+        // amplitudes: half the difference of an extreme of theta and the mean of its neighbours
         let turns: Vec<(f64, f64)> =
             thetas.windows(3).filter(|w| (w[1] - w[0]) * (w[2] - w[1]) < 0.0).map(|w| (w[1], 0.0)).collect();
         let waves: Vec<(f64, f64)> = turns

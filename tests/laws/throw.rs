@@ -48,12 +48,12 @@ fn energy(body: &Body, y: &State, slip: [f64; 2]) -> f64 {
     0.5 * (centre_velocity(body, y, slip).norm_squared() + angular_velocity(y).dot(&spin(body, y)))
 }
 
-/// Angular momentum about a point from the centre, of velocities.
+/// Angular momentum about a point, given from the centre, of a body whose centre has the velocity v.
 fn about(body: &Body, y: &State, v: Vector3<f64>, point: Vector3<f64>) -> Vector3<f64> {
     spin(body, y) - point.cross(&v)
 }
 
-/// Angular velocity and velocity of the centre after a landing, as seen before it.
+/// State and velocity of the centre after a landing, along the axes before it.
 fn back(body: &Body, end: &Landed) -> (State, Vector3<f64>) {
     let v = centre_velocity(body, &end.state, end.slip);
     match end.outcome {
@@ -97,11 +97,11 @@ proptest! {
         let body = Body::tube(ell, bore).unwrap();
         let (y, slip) = thrown(&body, v, w0).unwrap();
         prop_assert_eq!((y.theta, y.w1, y.w2, y.w3, slip[0]), (FRAC_PI_2, 0.0, 0.0, -w0, 0.0));
-        // the centre moves with v; what friction at the bottom leaves is the momentum about it, v + I3 w3
+        // the centre moves with v, and friction conserves the momentum about the bottom, v + I3 w3
         let centre = slip[1] - ell * y.w1 + y.w3;
         let last = (centre + body.i3() * y.w3) / (1.0 + body.i3());
         prop_assert!((last - (v - body.i3() * w0) / (1.0 + body.i3())).abs() <= 1e-14);
-        // the heat is what the body loses until it rolls with that velocity
+        // the heat is the energy lost until the body rolls with that velocity
         let rolling = on_its_side(0.0, 0.0, last);
         let heat = energy(&body, &y, slip) - energy(&body, &rolling, [0.0, 0.0]);
         let exact = body.i3() * (v + w0) * (v + w0) / (2.0 * (1.0 + body.i3()));
@@ -119,21 +119,21 @@ proptest! {
         let (out, along) = (Vector3::new(0.0, s, c), Vector3::new(0.0, c, -s));
         let push = j * (finger * along - out);
         let size = 1e-13 * (1.0 + j) * (1.0 + finger) * (1.0 + 1.0 / body.i3() + body.ell().powi(2) / body.i1());
-        // nothing leaves the table, and nothing acts along the axis
+        // no end leaves the table, and no force acts along the axis
         prop_assert!(v.x == 0.0 && v.z == 0.0 && y.w2 == 0.0 && slip[0] == 0.0);
-        // about the lowest point of the end that is pressed the table has no moment
+        // the table has no moment about the lowest point of the pressed end
         let point = rims(&body)[1];
         let arm = Vector3::new(-body.ell(), 0.0, 0.0) + out - point;
         let moment = about(&body, &y, v, point) - arm.cross(&push);
         prop_assert!(moment.norm() <= size * (1.0 + body.ell()), "{moment}");
-        // what the table adds: friction against the slip of that end, or enough to stop it
+        // the impulse of the table: friction against the slip of that end, or enough to stop it
         let drag = v.y - push.y;
         let borne = -push.z;
         let after = point_velocity(&body, &y, v, 1).y;
         prop_assert!(drag.abs() <= table * borne + size, "{drag} {borne}");
         prop_assert!(after * drag <= size * (after.abs() + drag.abs()), "{after} {drag}");
         prop_assert!(after.abs() <= size || (drag.abs() - table * borne).abs() <= size, "{after} {drag}");
-        // what the finger does is more than what is left of it
+        // the energy is the work of the finger and of the table
         let work = push.dot(&(v + angular_velocity(&y).cross(&(arm + point)))) / 2.0 + drag * after / 2.0;
         prop_assert!((energy(&body, &y, slip) - work).abs() <= size * (1.0 + j) * (1.0 + body.ell()).powi(2));
         prop_assert!((v.y + body.i1() / body.ell() * y.w1).abs() <= size * (1.0 + body.i1() / body.ell()));
@@ -147,14 +147,14 @@ proptest! {
     ) {
         let y = on_its_side(w1, w2, w3);
         let end = land(&body, &y, slip, mu);
-        // friction next to ell may leave two outcomes, and the search gives up once in 1e5 times
+        // near mu = ell there may be two outcomes, and the search fails once in 1e5 cases
         prop_assume!(!matches!(end, Err(Error::Landing { .. })));
         let end = end.unwrap();
         let (last, after) = back(&body, &end);
         let size = 1e-11 * (1.0 + body.ell()).powi(3) * (1.0 + 1.0 / body.i3() + 1.0 / body.i1());
         let gained = energy(&body, &end.state, end.slip) - energy(&body, &y, slip);
         prop_assert!(gained <= size && (gained + end.lost).abs() <= size, "{gained} {}", end.lost);
-        // the impulses at both rims follow from what changed
+        // the impulses at both rims follow from the changes
         let v = after - centre_velocity(&body, &y, slip);
         let turned = spin(&body, &last) - spin(&body, &y);
         // r x J over both rims: z gives the difference of Q2, y that of P, x the sum of Q2 once more
@@ -174,12 +174,12 @@ proptest! {
             let moment = arm.cross(&Vector3::new(0.0, q[1 - k], p[1 - k]));
             prop_assert!((gain - moment).norm() <= size * (1.0 + body.ell()), "{gain} {moment}");
         }
-        // no end goes down, and one that goes up had no impulse
+        // no rim moves down, and the impulse at a rim that rises is zero
         for k in [0, 1] {
             let u = point_velocity(&body, &last, after, k);
             let rising = u.z;
             prop_assert!(rising >= -size && (rising <= size || p[k] <= size), "{k}: {rising} {p:?}");
-            // what friction there is at a rim across the axis is against the slip that is left
+            // the friction across the axis at a rim is against the slip that remains
             prop_assert!(q[k] * u.y <= size, "{k}: {} {u}", q[k]);
         }
     }
@@ -256,7 +256,7 @@ fn landings_and_presses_are_those_of_the_three_dimensional_model() {
             "lands" => {
                 let y = on_its_side(x[0], x[1], x[2]);
                 let end = land(&body, &y, [x[3], x[4]], x[5]).unwrap_or_else(|e| panic!("{line}: {e}"));
-                // a body that lies may rise at once on its other rim, too; the model tells only who stays
+                // a body that lies may rise at once on its other rim; the model only gives which rims stay
                 let (mut last, mut slip) = (end.state, end.slip);
                 if end.outcome == Outcome::Changes && x[6] == 0.0 {
                     (last, slip) = mirrored(&body, &last, slip);

@@ -1,4 +1,4 @@
-//! Inclinations of a rate, folds, ridges and boundaries of stability: each is what it says, and none is missing.
+//! Inclinations of a rate, folds, ridges and boundaries of stability: each is right, and none is missing.
 
 use crate::big::{self, Big};
 use crate::common::{any_body, any_fillet, any_rim, tube_or_rounded};
@@ -8,10 +8,10 @@ use spincyl::stability::{at_rest, boundaries};
 use spincyl::{Body, Contact, rolling, steady};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Finer than the doubles of the exact counts.
+/// 2^SHIFT makes integers of all doubles in the exact counts.
 const SHIFT: u32 = 110;
 
-/// How many steady inclinations a rate has, in exact arithmetic; None where two of them are one.
+/// The number of steady inclinations of a rate, in exact arithmetic; None if two of them coincide.
 ///
 /// With t = tan(theta/2), q = 1 + t^2, s = 2 t/q and c = (1 - t^2)/q: the zeros of
 /// q^3 (I3 n A - rate^2 s (I3 n + (I1 - I3) c A)).
@@ -28,14 +28,14 @@ fn exact_count(body: &Body, rate: f64) -> Option<usize> {
     let s = [zero, number(2.0)];
     let c = [one, zero, one.negative()];
     let scale = |x: &Big, p: &[Big]| big::product(&[*x], p);
-    // every term has the same power of 2^SHIFT in the end: one for each factor, two for the square
+    // all terms must have the same power of 2^SHIFT: each factor has one, the square of the rate two
     let polynomial = if body.ell() == 0.0 {
         // n = a, m = a + d A once the cosine that they share is divided out
         let radius = big::sum(&scale(&a, &q), &scale(&rho, &s));
         let left = big::product(&scale(&i3, &scale(&a, &q)), &radius);
         let m = big::sum(&scale(&i3, &scale(&a, &q)), &scale(&excess, &radius));
         let right = scale(&square, &big::product(&s, &m));
-        // left has one and the same factors but for the square of the rate, which counts twice
+        // the square of the rate has two factors 2^SHIFT, so that the left side needs one more
         let left = scale(&one, &left);
         big::sum(&left, &big::negative(&right))
     } else {
@@ -104,8 +104,8 @@ fn parted(body: &Body, low: f64, high: f64) -> bool {
     signs(low) != signs(high)
 }
 
-/// The inclinations of a rate have that rate, if they are no worse conditioned than `most`; and so have their states, which
-/// are steady.
+/// Checks that the inclinations of a rate have that rate, if they are no worse conditioned than `most`, and
+/// that their states are steady and have it, too.
 fn have(body: &Body, rate: f64, most: f64) -> Result<(), TestCaseError> {
     for (x, y) in steady::inclinations(body, rate).iter().zip(steady::states(body, rate)) {
         if x.is_nan() {
@@ -113,9 +113,9 @@ fn have(body: &Body, rate: f64, most: f64) -> Result<(), TestCaseError> {
             continue;
         }
         let (back, k) = (steady::rate(body, *x), condition(body, *x));
-        // of equal moments every rate is that of theta0, which no double is
+        // for equal moments theta0 has every rate, but no double is exactly theta0
         let any = body.excess() == 0.0 && (x - body.theta_balance()).abs() <= 4.0 * ULP;
-        // 2 (1 + k) is the rate's own, and theta within 3 ulp of the root moves it by 3 k; at a fold by nothing
+        // the rate has an error of 2 (1 + k), and theta within 3 ulp of the root adds 3 k; at a fold 0
         let allowed = 8.0 * (1.0 + k) * ULP * rate;
         prop_assert!(any || k > most || (back - rate).abs() <= allowed, "{x}: {back}, {k}");
         prop_assert_eq!((y.theta, y.w2), (*x, 0.0));
@@ -131,7 +131,7 @@ fn have(body: &Body, rate: f64, most: f64) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-/// Every turn of a law along a fine grid, however slight, is near one of the points, and there it is flat.
+/// Checks that every extremum of a law on a fine grid, however slight, is near one of the points.
 fn every_turn_is_known(body: &Body, points: &[f64], law: impl Fn(f64) -> f64) -> Result<(), TestCaseError> {
     let step = FRAC_PI_2 / 4000.0;
     let mut turns = 0;
@@ -184,7 +184,7 @@ proptest! {
         let (all, count) = (steady::inclinations(&body, rate), steady::count(&body, rate).unwrap());
         prop_assert!(all[..count].is_sorted() && all[count..].iter().all(|x| x.is_nan()));
         let gap = all.iter().filter(|x| !x.is_nan()).fold(f64::INFINITY, |gap, x| gap.min((x - theta).abs()));
-        // at a fold the rate is flat
+        // at a fold the rate is stationary
         let allowed = if sharp(&body) { 8.0 } else { 16.0 } * theta * ULP * (1.0 + 1.0 / k);
         prop_assert!(gap <= allowed || k < 1e-6, "{gap:e} from {theta}: {all:?}, {k:e}");
     }
@@ -204,13 +204,13 @@ proptest! {
             let size = (at.c / at.s).abs() + body.fillet() * at.c.abs() / at.radius + x * lost;
             let left = 2.0 * condition(&body, *x) / x;
             prop_assert!(left <= 256.0 * ULP * size * lost || body.ell() == 0.0, "{x}: {left:e}, {size:e}, {lost:e}");
-            // and it turns: both neighbours have more of it, or both less
+            // the rate has an extremum: both neighbours have a larger one, or both a smaller one
             let h = (1e-4 * x).min(0.5 * (steady_end(&body) - x));
             let [a, b, c] = [x - h, *x, x + h].map(rate);
             let clear = (a - b).abs().min((c - b).abs()) > 64.0 * ULP * b * lost;
             prop_assert!(!clear || (a - b) * (c - b) > 0.0 || parted(&body, x - h, x + h), "{x}: {a} {b} {c}");
         }
-        // the way it goes along a grid: one and the same from an end of the branch or a fold to the next
+        // along a grid the rate is monotonic between folds and ends of the branch
         let points: Vec<f64> = grid(&body, 3000).collect();
         let mut way = 0.0;
         for x in points.windows(2) {
@@ -250,7 +250,7 @@ proptest! {
             let gap = others.fold(x.min(steady_end(&body) - x), |gap, r| gap.min((r - x).abs()));
             let h = 0.01 * gap;
             let [a, b, c] = [energy(x - h), energy(*x), energy(x + h)];
-            // an extreme: both neighbours lie on one side, or the branch ends between
+            // an extremum: both neighbours lie on one side, or the branch ends between
             let sure = 256.0 * ULP * b * (1.0 + condition(&body, x - h) + condition(&body, x + h));
             let one_side = (a - b) * (c - b) > 0.0 || (a - b).abs().min((c - b).abs()) <= sure;
             prop_assert!(one_side || parted(&body, x - h, x + h) || h < 1e-6, "{x} of {ridge:?}: {a} {b} {c}");
@@ -275,7 +275,7 @@ proptest! {
                     "{contact:?} between {} and {}: {a} {b}, {found:?}", x[0], x[1]
                 );
             }
-            // on either side of each kappa has the other sign
+            // kappa has opposite signs on the two sides of each boundary
             for b in found.iter().filter(|_| sharp(&body)) {
                 let ends = [body.theta_balance(), body.theta_limit(), FRAC_PI_2];
                 let others = found.iter().copied().filter(|x| x != b).chain(ends);
@@ -338,7 +338,7 @@ proptest! {
             at.c * at.radius * body.excess() - at.lever[0]
         };
         prop_assert!(m(limit * (1.0 - 1e-12)) > 0.0 && m(limit * (1.0 + 1e-12)) < 0.0);
-        // a rate beyond all others has it, on one side or the other
+        // very large rates have an inclination next to it, on one side or the other
         if (body.theta_balance() / limit - 1.0).abs() > 1e-6 {
             let far = steady::inclinations(&body, 1e7);
             prop_assert!(far.iter().any(|x| (x / limit - 1.0).abs() < 1e-7), "{far:?} {limit}");
@@ -352,7 +352,7 @@ proptest! {
     ) {
         let sharp = Body::tube(ell, bore).unwrap();
         let round = Body::rounded(ell, sharp.i1(), sharp.i3(), 10f64.powf(exponent)).unwrap();
-        // the moments are rounded: so is the excess
+        // built from the rounded moments, so that its excess is rounded, too
         let same = Body::new(ell, sharp.i1(), sharp.i3()).unwrap();
         let theta = u * FRAC_PI_2;
         let (a, b, k) = (steady::rate(&same, theta), steady::rate(&round, theta), condition(&same, theta));
@@ -368,7 +368,8 @@ proptest! {
         };
         let (a, b) = (steady::inclinations(&same, speed), steady::inclinations(&round, speed));
         prop_assert!(near(a, b, 4.0 * ULP * FRAC_PI_2), "{a:?} {b:?}");
-        // folds, ridges and boundaries that nearly meet may part: as many of them, and a clear one is the same
+        // the numbers of folds, ridges and boundaries agree, and also their places, less well where they may
+        // nearly meet
         let clear = if same.excess().abs() > 1e-3 { 1e-9 } else { 1e-3 };
         for points in [steady::folds as fn(&Body) -> [f64; steady::MOST], steady::ridge] {
             let (a, b) = (points(&same), points(&round));

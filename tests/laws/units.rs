@@ -1,4 +1,4 @@
-//! Scales, kicks, and what is said of a kappa.
+//! Scales, kicks, and the two rates of a kappa.
 
 use crate::common::any_state;
 use proptest::prelude::*;

@@ -15,7 +15,8 @@ struct Scene {
 }
 
 impl Scene {
-    /// Disks and tubes, sharp and rounded, from rest and turning, on every law alone and on all of them.
+    /// Disks and tubes, sharp and rounded, from rest and turning, under each law alone, under all and under
+    /// none.
     fn of(count: usize) -> Self {
         let (mut bodies, mut states, mut losses) =
             <([Vec<f64>; 5], [Vec<f64>; 4], [Vec<f64>; COUNT])>::default();
@@ -44,7 +45,7 @@ impl Scene {
         Losses { coefficients: core::array::from_fn(|law| self.losses[law][i]) }
     }
 
-    /// Ends, sums and claims, and status.
+    /// The ends, sums, claims and status.
     fn run(&self, on: TableKind, times: &[f64], threads: usize) -> (Vec<Vec<f64>>, Vec<u8>) {
         let count = self.states[0].len();
         let starts = MotionStarts {
@@ -93,7 +94,7 @@ fn side_by_side_a_body_loses_what_it_loses_alone_and_ends_as_it_does() {
                 continue;
             };
             let path = path.unwrap();
-            // either claims within a factor of ten, as `benches/losses_claims.py` has it
+            // each claim holds within a factor of ten, as `benches/losses_claims.py` has it
             let claim = 10.0 * (found[CLAIM][i] + path.error);
             if claim.is_infinite() {
                 continue;

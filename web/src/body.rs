@@ -14,13 +14,14 @@ impl Desk {
         self.take(tube(half, bore, fillet)?)
     }
 
-    /// Sets any body of revolution by ell, I1, I3, fillet and the end of its lean, where NaN stands for the default.
+    /// Sets any body of revolution by ell, I1, I3, fillet and theta_end; a theta_end of NaN stands for the
+    /// default.
     pub fn body(&mut self, [ell, i1, i3, fillet, theta_end]: [f64; 5]) -> Answer {
         let body = Body::rounded(ell, i1, i3, fillet)?;
         self.take(if theta_end.is_nan() { body } else { body.with_theta_end(theta_end)? })
     }
 
-    /// The half length of the critical tube.
+    /// Writes the half length of the critical tube.
     pub fn critical(&mut self, [bore, fillet]: [f64; 2]) -> Answer {
         self.out.push(Body::critical_aspect(bore, fillet)?);
         Ok(())

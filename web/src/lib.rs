@@ -3,9 +3,10 @@
 //! ```text
 //! code = call(numbers)     new Float64Array(memory.buffer, out(), len())     made anew after every call
 //! ```
-//! No call takes a pointer, so that only the attribute that names an export is unsafe. Every refusal is a code with a
-//! meaning ([`Refusal`]); every number is the result of a public function of `spincyl`. `exports` names the calls of
-//! WebAssembly; as a Rust library the crate has [`Desk`], by which a native program asks the same questions.
+//! No call takes a pointer, so that only the attribute that names an export is unsafe. Every refusal is a
+//! code with a meaning ([`Refusal`]); every number is the result of a public function of `spincyl`. `exports`
+//! names the calls of WebAssembly; as a Rust library the crate has [`Desk`], with which a native program
+//! makes the same calls.
 //!
 //! `tests/test_web.py` compares the two: codes are equal, and motions agree within the error that they state.
 
@@ -27,7 +28,7 @@ pub use refusal::Refusal;
 use spincyl::Body;
 use spincyl::loss::Losses;
 
-/// The body that the page asks about, its motion, and the last answer.
+/// The current body, its losses and its motion, and the last answer.
 #[derive(Debug, Default)]
 pub struct Desk {
     /// The numbers of the last answer.

@@ -12,7 +12,7 @@ impl Desk {
     /// the least inclination.
     pub fn map(&mut self, [w, h, low, high, from, to, bore, fillet]: [f64; 8]) -> Answer {
         let (w, h) = (count("w", w, MOST)?, count("h", h, MOST)?);
-        // A range with a NaN does not ascend either.
+        // A NaN in the range fails this comparison, too.
         let ascend = from < to && from.is_finite() && to.is_finite();
         if !ascend {
             return Err(Refusal::Range { name: "theta", value: to, expected: "theta_lo < theta_hi" });

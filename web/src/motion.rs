@@ -28,7 +28,7 @@ pub(crate) struct Row {
     pub lost: f64,
 }
 
-/// The motion that the page asks about.
+/// The current motion.
 #[derive(Debug, Clone)]
 pub(crate) enum Kept {
     Exact {
@@ -73,8 +73,8 @@ impl Desk {
         Ok(())
     }
 
-    /// Begins a motion from theta, w, slip, the table (0 rolling, 1 smooth, 2 dry, 3 wet) with its mu or c, the last
-    /// time, and the number of rows of a motion that is integrated.
+    /// Begins a motion from theta, w, slip, the table (0 rolling, 1 smooth, 2 Coulomb, 3 viscous) with its mu
+    /// or c, the last time, and the number of rows of a motion that is integrated.
     pub fn start(&mut self, [theta, w1, w2, w3, u_h, u_2, table, mu, t, n]: [f64; 10]) -> Answer {
         self.motion = None;
         let (body, n) = (self.set_body()?, count("n", n, MOST)?);

@@ -14,12 +14,12 @@ use std::f64::consts::{PI, TAU};
 
 /// The tolerance of a step of the integrator, which is enough for a page.
 const TOL: f64 = 1e-11;
-/// The number of times that the core may ask whether to go on; the core asks every 256 steps.
+/// The motion is given up after this many times 256 steps, which is too much work for a page.
 const LOOKS: u32 = 40;
 /// No motion is started from a row whose face is nearer to the table than this angle.
 const FLAT: f64 = 1e-6;
 
-/// The request for a motion that is integrated, and the rows and phases that have been found.
+/// The request for a motion that is integrated, and its rows and phases.
 #[derive(Debug, Clone)]
 pub(crate) struct Walked {
     body: Body,

@@ -9,7 +9,7 @@ import os
 import sys
 from collections.abc import Sequence
 
-from spincyl._units import joined
+from spincyl._input.units import joined
 from spincyl.cli._options import parser
 
 __all__ = ["main"]

@@ -15,12 +15,12 @@ from typing import Any
 import numpy as np
 
 from spincyl import Body, Motion, Scale, State, StepWarning, roll
-from spincyl._array import extra
 from spincyl._contact import AnyContact, Coulomb, Viscous
-from spincyl._files import columns, needed, write_csv, writer_of
+from spincyl._input.files import replaced
+from spincyl._input.numbers import extra
+from spincyl._input.units import Metres, Seconds
 from spincyl._measured import doubt, speaking
-from spincyl._units import Metres, Seconds
-from spincyl._written import replaced
+from spincyl.cli._files import columns, needed, write_csv, writer_of
 from spincyl.cli._losses import losses_of
 from spincyl.cli._output import Working, folder, writable
 from spincyl.cli._tell import (

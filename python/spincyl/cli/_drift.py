@@ -13,10 +13,10 @@ import numpy as np
 
 import spincyl
 from spincyl import Scale
-from spincyl._array import Floats, extra
-from spincyl._files import needed, write_csv
-from spincyl._units import angle, whole
+from spincyl._input.numbers import Floats, extra
+from spincyl._input.units import angle, whole
 from spincyl.cli._commands import body_of
+from spincyl.cli._files import needed, write_csv
 from spincyl.cli._losses import TEXT as LAWS
 from spincyl.cli._losses import losses_of, option
 from spincyl.cli._output import Working, writable

@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 
 from spincyl import Body, Coulomb, Scale, State, flicked, launch_number, pressed, roll
-from spincyl._measured import speaking
-from spincyl._units import (
+from spincyl._input.units import (
     MetresPerSecond,
     NewtonSeconds,
     Seconds,
@@ -20,6 +19,7 @@ from spincyl._units import (
     time,
     whole,
 )
+from spincyl._measured import speaking
 from spincyl.cli._commands import body_of, delivered, natural, recipient
 from spincyl.cli._losses import TEXT as LAWS
 from spincyl.cli._losses import losses_of, option

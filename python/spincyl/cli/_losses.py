@@ -6,8 +6,8 @@ from functools import partial
 from typing import Any, NamedTuple
 
 from spincyl import Scale, loss
+from spincyl._input.units import has_unit, quantity
 from spincyl._loss import Law, Loss, sized
-from spincyl._units import has_unit, quantity
 
 #: The kind of the quantity that each law takes in SI units.
 _KINDS: dict[type[Law], str] = {

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from typing import Any
 
 from spincyl import __version__
-from spincyl._units import angle, part, quantity, time, whole
+from spincyl._input.units import angle, part, quantity, time, whole
 from spincyl.cli import _commands, _drift, _flick, _losses, _play
 
 _BODY = """\

@@ -9,8 +9,8 @@ from pathlib import Path
 
 from spincyl import play
 from spincyl._contact import AnyContact, Coulomb, Viscous
-from spincyl._scenes import paper_tube
-from spincyl._units import angle
+from spincyl._input.units import angle
+from spincyl._pages.words import paper_tube
 from spincyl.cli._commands import body_of
 from spincyl.cli._losses import losses_of, option
 from spincyl.cli._output import writable

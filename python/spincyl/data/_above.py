@@ -13,9 +13,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from spincyl._array import Floats, is_scalar, number, reals
 from spincyl._body import Body
-from spincyl._equal import compared
+from spincyl._input.equality import compared
+from spincyl._input.numbers import Floats, is_scalar, number, reals
 from spincyl._scale import Scale, scale_of
 from spincyl.data._columns import Columns
 from spincyl.data._report import counted, section, variables

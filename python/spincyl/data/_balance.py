@@ -15,8 +15,8 @@ from typing import NamedTuple
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Floats, extra
 from spincyl._body import Body
+from spincyl._input.numbers import Floats, extra
 from spincyl._state import State
 
 _ROUNDED = 1e-10  # of the errors that points may have: those of exact ones, which are rounded

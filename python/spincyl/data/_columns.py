@@ -4,8 +4,8 @@ from collections import Counter
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from spincyl._array import Floats
-from spincyl._equal import key
+from spincyl._input.equality import key
+from spincyl._input.numbers import Floats
 
 #: What is a unit where it stands alone.
 UNITS = frozenset(

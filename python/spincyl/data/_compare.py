@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from spincyl._array import Floats, Reals, extra, number, reals
 from spincyl._body import Body, one_body
-from spincyl._equal import compared
+from spincyl._input.equality import compared
+from spincyl._input.numbers import Floats, Reals, extra, number, reals
+from spincyl._upward import above
 from spincyl.data._balance import Balance, Fit, with_ratio
 from spincyl.data._report import counted, section, variables, written
 from spincyl.data._spindown import leaning
@@ -46,9 +47,17 @@ class Comparison(NamedTuple):
         )
 
     def _repr_html_(self) -> str:
-        from spincyl import _html
+        from spincyl._studio.cards import drawing, framed, span
 
-        return _html.comparison(self)
+        rows = [
+            ("body", repr(self.body)),
+            ("points", f"{len(self.theta)}, θ from {span(self.theta)}"),
+            ("I₁/I₃ that fits", f"{self.ratio:.6g} ± {self.ratio_err:.2g}"),
+            ("I₁/I₃ as built", f"{self.expected:.6g}"),
+            ("χ² per degree of freedom", f"{self.chi2:.3g}"),
+        ]
+        middle = self.theta[np.argsort(self.theta)[len(self.theta) // 2]]
+        return framed("Comparison", rows, drawing(self.body, middle, "θ"))
 
     @property
     def fitted(self) -> Body:
@@ -57,13 +66,11 @@ class Comparison(NamedTuple):
 
     def plot(self, ax: "Axes | None" = None) -> "Axes":
         """Draw the measurement with its error bars, the body's branches and the fitted ones."""
-        from spincyl.plot import comparison
-
-        if self.factor == 1:
-            return comparison(self, ax)
-        ax = comparison(self._replace(rate=self.rate / self.factor), ax)
-        ax.set_xlabel(rf"{ax.get_xlabel()}, measured over {self.factor:.4g}")
-        return ax
+        shown = self if self.factor == 1 else self._replace(rate=self.rate / self.factor)
+        drawn: Axes = above("Comparison.plot")(shown, ax)
+        if self.factor != 1:
+            drawn.set_xlabel(rf"{drawn.get_xlabel()}, measured over {self.factor:.4g}")
+        return drawn
 
     def report(self) -> str:
         """What was fitted, with errors and correlation, as lmfit writes it."""

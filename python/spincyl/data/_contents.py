@@ -3,7 +3,7 @@
 from os import PathLike
 from typing import IO
 
-from spincyl._array import path_of
+from spincyl._input.numbers import path_of
 
 #: How many bytes a file may hold, and all that a zip file unpacks to, together: more of them are refused.
 MOST_BYTES = 100_000_000

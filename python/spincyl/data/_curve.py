@@ -13,10 +13,12 @@ from typing import Any
 
 import numpy as np
 
-from spincyl._array import Floats
 from spincyl._body import Body
+from spincyl._drift import drift
+from spincyl._input.numbers import Floats
 from spincyl._loss import sized
-from spincyl._shape import steepest
+from spincyl._studio.shape import steepest
+from spincyl.loss import ViscousContour
 
 #: Coefficients are this small when a drift is tabulated, so that no law is over where the points are.
 _UNIT = 1e-9
@@ -50,8 +52,6 @@ class Curve:
 
     def drift(self, coefficients: Sequence[float] | Floats, theta: float) -> Any:
         """The drift itself, from an inclination on, with all that it warns of."""
-        from spincyl import drift
-
         law, rested = self.law(coefficients), self.rested(coefficients, theta)
         start: Any = theta
         if rested != theta:
@@ -150,6 +150,4 @@ def goes_down(body: Body, centre: str, theta: float) -> bool:
     if centre == "rest":  # to where the energy is less
         low, high = (body.energy(body.steady(theta * (1 + sign * 1e-5))) for sign in (-1, 1))
         return bool(low < high)
-    from spincyl import drift, loss
-
-    return float(drift(body.natural, theta, loss.ViscousContour(_UNIT), centre=centre).ends_at_theta) < theta
+    return float(drift(body.natural, theta, ViscousContour(_UNIT), centre=centre).ends_at_theta) < theta

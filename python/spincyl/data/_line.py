@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from spincyl._array import Floats
+from spincyl._input.numbers import Floats
 
 
 class Line(NamedTuple):

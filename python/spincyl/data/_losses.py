@@ -7,8 +7,8 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from spincyl._array import Floats, Reals, extra
 from spincyl._body import Body
+from spincyl._input.numbers import Floats, Reals, extra
 from spincyl.data._curve import Curve
 from spincyl.data._line import line
 from spincyl.data._lossfit import FittedLoss, LossFit, Refused, called, in_si

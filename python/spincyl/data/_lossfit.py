@@ -5,10 +5,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from spincyl._array import Floats
 from spincyl._body import Body
-from spincyl._equal import compared
+from spincyl._input.equality import compared
+from spincyl._input.numbers import Floats
 from spincyl._loss import Loss
+from spincyl._upward import above
 from spincyl.data._line import Line
 from spincyl.data._report import section, variables, written
 
@@ -152,9 +153,8 @@ class LossFit(NamedTuple):
 
     def plot(self, axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
         """Draw data with fits, residuals, and the log-log line: see `spincyl.plot.losses`."""
-        from spincyl.plot import losses
-
-        return losses(self, axes)
+        drawn: list[Axes] = above("LossFit.plot")(self, axes)
+        return drawn
 
     def __repr__(self) -> str:
         best, told = self.best, "" if self.told_apart else ", not told apart from others"
@@ -162,7 +162,7 @@ class LossFit(NamedTuple):
         return f"<LossFit: {repr(best)[1:-1]}{told}; {len(self.t)} points, {kept}>"
 
     def _repr_html_(self) -> str:
-        from spincyl._html import drawing, framed
+        from spincyl._studio.cards import drawing, framed
 
         rows = [("body", repr(self.body))]
         for fit in self.fits:
@@ -214,7 +214,10 @@ def _stops(found: FittedLoss) -> str:
     if math.isinf(found.stops_at):
         return "never stops"
     unit = "" if found.drift.body.scale is None else " s"
-    return f"stops at {found.stops_at:.5g} +- {found.stops_at_err:.2g}{unit}"
+    # as many decimals as two digits of the error have: more would be rounding
+    error = f"{found.stops_at_err:.2g}"
+    decimals = max(0, 1 - math.floor(math.log10(float(error)))) if 0 < found.stops_at_err < math.inf else 4
+    return f"stops at {found.stops_at:.{decimals}f} +- {error}{unit}"
 
 
 def cells(found: FittedLoss) -> tuple[str, str, str, str, str, str]:

@@ -13,7 +13,7 @@ from pathlib import Path, PurePosixPath
 
 import numpy as np
 
-from spincyl._array import Floats
+from spincyl._input.numbers import Floats
 from spincyl.data._columns import Columns
 from spincyl.data._contents import MOST_BYTES, contents, limited
 from spincyl.data._encoding import not_packed_project

@@ -6,14 +6,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from spincyl import _core
-from spincyl._array import Floats, Reals, is_scalar, number, one_of, radians_per_second, reals, si
 from spincyl._body import Body
-from spincyl._shape import steepest
+from spincyl._contact import CODES
+from spincyl._input.numbers import Floats, Reals, is_scalar, number, one_of, radians_per_second, reals, si
+from spincyl._studio.shape import steepest
 from spincyl.data._curve import branches, goes_down
 from spincyl.data._report import counted
 
-LAWS = tuple(name for name, _, _ in _core.loss_laws())
+LAWS = tuple(CODES["Law"])
 CENTRES = ("rest", "rolling")
 _SHARE = 0.01  # of a value, that it errs by as long as nothing is known
 

@@ -6,7 +6,7 @@ from os import PathLike
 
 import numpy as np
 
-from spincyl._array import Floats
+from spincyl._input.numbers import Floats
 from spincyl.data._columns import UNITS, Columns
 from spincyl.data._contents import MOST_BYTES, contents
 from spincyl.data._encoding import decoded, legible

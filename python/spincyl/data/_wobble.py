@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from spincyl._array import Floats, Reals, number, reals
-from spincyl._equal import compared
+from spincyl._input.equality import compared
+from spincyl._input.numbers import Floats, Reals, number, reals
 
 _TURNS = 8  # in a window
 _PER_OCTAVE = 24  # filters

@@ -4,8 +4,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from spincyl._array import extra, made
 from spincyl._drift import Drift
+from spincyl._input.numbers import extra, made
 from spincyl._loss import titled
 from spincyl.plot._style import BLUE, ORANGE, new_axes, sized
 

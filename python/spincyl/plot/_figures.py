@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from spincyl._array import extra, flag, one_of, path_of
 from spincyl._body import Body
 from spincyl._contact import Contact, Coulomb, Viscous
+from spincyl._input.numbers import extra, flag, one_of, path_of
+from spincyl._input.threads import callback
 from spincyl._roll import roll
 from spincyl._state import State
 from spincyl._swing import swing
@@ -17,11 +18,10 @@ from spincyl.plot._frame import frame
 from spincyl.plot._maps import branches, energy, pieces, portrait
 from spincyl.plot._motions import exposure, motion
 from spincyl.plot._style import BLACK, BLUE, GREEN, ORANGE, STABLE, UNSTABLE, saved, sized, title
-from spincyl.sweep._common import callback
 
 if TYPE_CHECKING:
     from spincyl._motion import Motion
-    from spincyl._shape import Letter
+    from spincyl._studio.shape import Letter
 
 SUFFIXES = (".png", ".pdf", ".svg")
 

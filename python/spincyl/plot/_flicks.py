@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from spincyl._array import extra
+from spincyl._input.numbers import extra
 from spincyl.plot._style import FORBIDDEN, SMOOTH, UNSTABLE, new_axes, sized
 from spincyl.sweep._flicks import Outcome
 

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from spincyl._array import Floats
+from spincyl._input.numbers import Floats
 from spincyl.plot._style import BLACK, BLUE, GREEN, ORANGE, PURPLE, new_axes, sized
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from spincyl._array import extra, made
+from spincyl._input.numbers import extra, made
 from spincyl.plot._style import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, own_ticks, sized
 
 if TYPE_CHECKING:

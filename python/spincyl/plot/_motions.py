@@ -5,16 +5,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from spincyl import _exposure
-from spincyl._array import extra, made, number, within
 from spincyl._contact import Coulomb, Viscous, named
 from spincyl._ellipsoid_motion import EllipsoidMotion
+from spincyl._input.numbers import extra, made, number, within
 from spincyl._loss import titled
 from spincyl._motion import Motion
 from spincyl._phases import rubs
-from spincyl._poses import pace, span
 from spincyl._scale import unit as unit_of
-from spincyl._shape import steepest
+from spincyl._studio.exposure import exposure as photograph
+from spincyl._studio.exposure import frame
+from spincyl._studio.poses import pace, span
+from spincyl._studio.shape import steepest
 from spincyl._told import ends
 from spincyl.plot._style import BLACK, BLUE, ORANGE, RED, new_axes, own_ticks, sized
 
@@ -255,8 +256,8 @@ def exposure(
     gamma = within("gamma", gamma, 0.01, 100.0)
     width = how.pop("width", None)
     width = None if width is None else number("width", width)
-    half = (_exposure.frame(m, seconds, how.get("scale")) if width is None else width) / 2
-    light = _exposure.exposure(m, seconds, width=2 * half, **how)
+    half = (frame(m, seconds, how.get("scale")) if width is None else width) / 2
+    light = photograph(m, seconds, width=2 * half, **how)
     ax = new_axes(ax)
     brightest = np.percentile(light[light > 0], 99.7) if light.any() else 1.0
     ax.imshow(

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 import numpy as np
 
-from spincyl._array import extra
 from spincyl._contact import Contact
-from spincyl._written import replaced
+from spincyl._input.files import replaced
+from spincyl._input.numbers import extra
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

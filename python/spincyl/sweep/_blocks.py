@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from spincyl._array import extra, number, reals
+from spincyl._input.numbers import extra, number, reals
 from spincyl.sweep import _records
 
 if TYPE_CHECKING:

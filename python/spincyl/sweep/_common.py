@@ -1,56 +1,15 @@
-"""What the sweeps share: threads, blocks of dask arrays, targets."""
+"""What the sweeps share: blocks of dask arrays, targets, units."""
 
 import math
-import os
-import threading
 import warnings
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from importlib.metadata import version
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 
 from spincyl._scale import Scale, si_of
-
-try:
-    import resource
-except ImportError:  # not on Windows
-    resource = None  # type: ignore[assignment]
-
-Progress: TypeAlias = Callable[[float], object]
-_BORN = os.getpid()
-
-
-def is_roomy() -> bool:
-    """Whether the calling thread has a stack of some MiB: the main one, with the usual limit."""
-    # the main thread of a forked child was any thread of its parent
-    if resource is None or os.getpid() != _BORN or threading.current_thread() is not threading.main_thread():
-        return False
-    limit: int = resource.getrlimit(resource.RLIMIT_STACK)[0]
-    return limit == resource.RLIM_INFINITY or limit >= 4 << 20
-
-
-def thread_count(threads: int | None) -> int:
-    """How many threads: as asked, as RAYON_NUM_THREADS says, or every core this process may use."""
-    if threads is None:
-        cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-        asked = os.environ.get("RAYON_NUM_THREADS", "") or "0"
-        if not (asked.isascii() and asked.isdigit() and int(asked[:9]) <= 4096):
-            raise ValueError(f"RAYON_NUM_THREADS = {asked!r}: expected 1 to 4096, or 0 for every core")
-        threads = int(asked) or cores
-    if isinstance(threads, bool) or not isinstance(threads, int | np.integer):
-        raise TypeError(f"threads: expected a whole number, not {type(threads).__name__}")
-    if not 1 <= threads <= 4096:
-        raise ValueError(f"threads = {threads!r}: expected 1 to 4096")
-    return int(threads)
-
-
-def callback(progress: Progress | None) -> Progress | None:
-    """`progress` if it can be called, or TypeError."""
-    if progress is not None and not callable(progress):
-        raise TypeError(f"progress: expected something to call, not {type(progress).__name__}")
-    return progress
 
 
 def is_lazy(*values: object) -> bool:

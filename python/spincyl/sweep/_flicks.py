@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from spincyl._array import Reals, extra, floats, is_scalar, made, reals
 from spincyl._body import Body, one_body
 from spincyl._contact import AnyContact, Coulomb, Viscous
+from spincyl._input.numbers import Reals, extra, floats, is_scalar, made, reals
 from spincyl._throw import flicked
 from spincyl.sweep._labels import Status, flags
 from spincyl.sweep._roll import roll

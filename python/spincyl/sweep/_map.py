@@ -8,21 +8,22 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Floats, Reals, extra, fitting, floats, in_columns, is_scalar, radians, reals, words
 from spincyl._body import Body
-from spincyl._laws import Region
-from spincyl.sweep._common import (
-    Progress,
-    apart,
-    callback,
-    in_si,
-    is_lazy,
-    many_blocks,
-    signature,
-    target,
-    targets,
-    thread_count,
+from spincyl._input.numbers import (
+    Floats,
+    Reals,
+    extra,
+    fitting,
+    floats,
+    in_columns,
+    is_scalar,
+    radians,
+    reals,
+    words,
 )
+from spincyl._input.threads import Progress, callback, thread_count
+from spincyl._laws import Region
+from spincyl.sweep._common import apart, in_si, is_lazy, many_blocks, signature, target, targets
 
 if TYPE_CHECKING:
     import xarray

@@ -15,8 +15,8 @@ from hashlib import blake2b
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from spincyl._array import path_of
-from spincyl._written import replaced
+from spincyl._input.files import replaced
+from spincyl._input.numbers import path_of
 
 #: The record, in the folder of every array of a store, where zarr looks for nothing; and beside it.
 RECORD, BESIDE = "spincyl.json", "job.json"

@@ -16,10 +16,10 @@ from uuid import uuid4
 
 import numpy as np
 
-from spincyl._array import extra
-from spincyl._written import replaced
+from spincyl._input.files import replaced
+from spincyl._input.numbers import extra
+from spincyl._input.threads import Progress, callback
 from spincyl.sweep import _records
-from spincyl.sweep._common import Progress, callback
 from spincyl.sweep._records import Record, Store, checksum, naming
 
 if TYPE_CHECKING:

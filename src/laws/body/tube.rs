@@ -104,7 +104,8 @@ mod tests {
     use super::super::Body;
     use crate::numbers::Sum;
 
-    /// Compares d times 6 (1 + q^2) with integers: ell = i / 2^30 and q = j / 2^30 are exact, 1 + q^2 is no double.
+    /// Compares d times 6 (1 + q^2) with integers: ell = i / 2^30 and q = j / 2^30 are exact, and 1 + q^2 is
+    /// not a double.
     #[test]
     fn the_excess_is_exact_to_a_hundred_bits_near_the_critical_shape() {
         let unit = f64::from(1 << 30);

@@ -5,7 +5,7 @@
 //!   u_2,low = u_2,   u_2,up = u_2 - 2 ell w1
 //! lying, w2 = 0      N_low, N_up = (1 +- (I3 w1 w3 - Fh)/ell)/2,   Fh = the friction of both along e_h
 //!   it rises where   I3 w1 w3 - Fh > ell,   Fh = -mu u_h/|u|, or of a rim that sticks w1 (ell w1 - w3) within +-mu
-//! landing, w2 = -W   impulses P_low, P_up >= 0 and Q with |Q| <= mu P, plastic, of a mass at rest no more than before:
+//! landing, w2 = -W   plastic: impulses P_low, P_up >= 0 and Q with |Q| <= mu P
 //!   both stay        P_low + P_up = ell W,   P_up - P_low = (I1 W + Qh)/ell,            w2 -> 0
 //!   it rocks over    P_low = 0,   P_up = ell (2 I1 W + Qh)/(I1 + ell^2),                 w2 -> -W + (ell P_up - Qh)/I1
 //!   u_h  -> u_h + Qh - (change of w2),   u_2 -> u_2 + a Q2 + b (Q2 of the other rim),   a, b = 1 + 1/I3 +- ell^2/I1
@@ -91,8 +91,9 @@ pub fn normals(body: &Body, y: &State, slip: [f64; 2], mu: f64) -> [f64; 2] {
 
 /// The plastic landing of the other rim at theta = pi/2, with w2 <= 0, on a table with the friction `mu`.
 ///
-/// With w2 = 0 no impact happens, and only the motion that follows is found. Friction may allow two consistent outcomes
-/// or none, which is an error; in 1e-5 of all cases the search finds no outcome, which is an error, too.
+/// With w2 = 0 there is no impact, and only the motion that follows is determined. Friction may allow two
+/// consistent outcomes or none, which is an error; in 1e-5 of all cases the search finds no outcome, which is
+/// an error, too.
 pub fn land(body: &Body, y: &State, slip: [f64; 2], mu: f64) -> Result<Landed, Error> {
     two_rims(body)?;
     let most = 1e100;
@@ -109,7 +110,8 @@ pub fn land(body: &Body, y: &State, slip: [f64; 2], mu: f64) -> Result<Landed, E
     };
     let lies = Impact { body, y: *y, slip, mu, both: true }.solved();
     let rocks = if y.w2 < 0.0 { Impact { body, y: *y, slip, mu, both: false }.solved() } else { None };
-    // Where the lower rim only just stays, both solutions are the same motion up to rounding.
+    // Where the lower rim barely stays, both solutions are the same motion up to rounding, and one is
+    // dropped.
     let rocks = rocks.filter(|(after, _)| lies.is_none() || after.w2 < SAME * y.w2);
     match (lies, rocks) {
         (Some((y, slip)), None) => {
@@ -149,7 +151,7 @@ fn energy(body: &Body, y: &State, [along, across]: [f64; 2]) -> f64 {
     0.5 * (forth * forth + aside * aside + up * up + turning)
 }
 
-/// An impact under the supposition that both rims stay (`both`), or that the lower rim leaves the table.
+/// An impact on the assumption that both rims stay (`both`), or that the lower rim leaves the table.
 struct Impact<'a> {
     body: &'a Body,
     y: State,
@@ -186,9 +188,9 @@ impl Impact<'_> {
         (State { w1, w2, w3, ..y }, slips.map(|across| [along, across]))
     }
 
-    /// The state and the slip of the lower rim after the impact, if the supposition is consistent.
+    /// The state and the slip of the lower rim after the impact, if the assumption is consistent.
     ///
-    /// Friction impulses are moved against the slip that remains and limited to mu P, until nothing changes.
+    /// Each friction impulse is moved against the remaining slip and limited to mu P, until nothing changes.
     fn solved(&self) -> Option<(State, [f64; 2])> {
         if self.excluded() {
             return None;
@@ -199,7 +201,7 @@ impl Impact<'_> {
             [if self.both { 2.0 } else { 1.0 + 1.0 / (i1 + ell * ell) }, 1.0 + 1.0 / i3, ell * ell / i1];
         let across = if self.both { (rims * straight).max(rims * turning) } else { straight + turning };
         let step = 1.0 / across.max(along);
-        // The rounding error of the slips is relative to this velocity, as an impulse.
+        // This velocity, as an impulse, is the scale of the rounding errors of the slips.
         let other = (2.0 * ell * self.y.w1).abs();
         let velocity = step * self.slip[0].abs().max(self.slip[1].abs()).max(other).max(-self.y.w2);
         let mut q: Impulses = [[0.0; 2]; 2];
@@ -224,9 +226,10 @@ impl Impact<'_> {
         None
     }
 
-    /// Whether no friction up to mu can make the supposition consistent, by the criterion at the head of this module.
+    /// Whether no friction up to mu can make the assumption consistent, by the criterion at the head of this
+    /// module.
     ///
-    /// From mu = (I1 + ell^2)/ell on the criterion says nothing.
+    /// For mu >= (I1 + ell^2)/ell the criterion excludes nothing.
     fn excluded(&self) -> bool {
         let (ell, i1) = (self.body.ell(), self.body.i1());
         let (square, reach) = (ell * ell, self.mu * ell);
@@ -247,5 +250,6 @@ impl Impact<'_> {
 /// An impulse or a speed that is smaller than this fraction of another one counts as zero.
 const SAME: f64 = 1e-12;
 
-/// The largest number of steps of the search for the impulses; some tens are usual, I3 = 0.001 takes thousands.
+/// The largest number of steps of the search for the impulses: some tens are usual, I3 = 0.001 takes
+/// thousands.
 const STEPS: usize = 100_000;

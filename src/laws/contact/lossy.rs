@@ -22,15 +22,15 @@ use crate::laws::newton;
 use crate::laws::state::State;
 use crate::numbers::Real;
 
-/// The longest step relative to the time in which the couples along the contour stop psi'. A step of eighth order damps up
-/// to six of these times.
+/// Longest step, in units of the time in which the couples along the contour stop psi'. A step of eighth
+/// order is stable up to about six of these times.
 pub(crate) const DAMPED: f64 = 5.0;
 
-/// The motion that dry friction holds.
+/// The motion that dry friction holds at rest, or that is prescribed.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Held<T> {
     Nothing,
-    /// The spin psi', which is made to change at this rate; the rate is 0 for psi' at rest.
+    /// The spin psi', which changes at this rate; the rate is 0 while dry friction holds psi' at 0.
     Contour(T),
     /// The drilling: w_z = 0.
     Drilling,
@@ -50,7 +50,6 @@ pub(crate) struct Acted<T> {
     pub w: [T; 3],
     /// The contact force N, F2, Fh.
     pub force: [T; 3],
-    /// The power that is lost.
     pub power: T,
     /// The couple lambda or nu that holds a motion, and the largest that friction can exert.
     pub held: [T; 2],
@@ -70,16 +69,17 @@ impl<T: Real> Lossy<T> {
         slope * Self::yielding(&of, angle) * of.per_d / (angle.0 * angle.0)
     }
 
-    /// The longest time step at which the steps damp a psi' that the couples along the contour stop ever faster near the
-    /// table: longer ones would only keep up the errors of the steps, which those couples turn into forces.
+    /// The longest time step for which psi' stays damped ([`DAMPED`]). Near the table the couples along the
+    /// contour stop psi' ever faster; after longer steps the errors of psi' would stay, and the couples would
+    /// turn them into forces.
     #[inline(always)]
     pub fn damped(&self, angle: (T, T), spin: T) -> T {
         let radius = self.rates.reduced().shape.rim.radius(angle);
         angle.0.splat(DAMPED) / self.stiffness(angle, self.losses.slope(angle.0.abs(), radius, spin))
     }
 
-    /// dt/dsigma at this speed of rolling and rocking together. Rolling resistance takes about delta/J from the speed
-    /// in a unit of time; in sigma the speed vanishes as exp(-sigma).
+    /// dt/dsigma where rolling and rocking together have this speed. Rolling resistance takes about delta/J
+    /// from the speed in a unit of time; in sigma the speed vanishes as exp(-sigma).
     #[inline(always)]
     pub fn pace(&self, angle: (T, T), speed: T) -> T {
         let inertia = self.rates.reduced().inertia(
@@ -95,7 +95,7 @@ impl<T: Real> Lossy<T> {
         [(of.b * m1 + of.k * m3).mac(of.per_d, d1), (of.k * m1 + of.al * m3).mac(of.per_d, d3)]
     }
 
-    /// The response at sine and cosine of theta, phi' = w1/s, and w.
+    /// The response of the body at the sine and cosine of theta, phi' = w1/s, and w.
     #[inline(always)]
     pub fn at(&self, angle: (T, T), precession: T, w: [T; 3], held: Held<T>) -> Acted<T> {
         let ((s, c), [w1, w2, w3], reduced) = (angle, w, self.rates.reduced());
@@ -119,7 +119,7 @@ impl<T: Real> Lossy<T> {
             let pressed = normal / (one - lever * couple.pressed[1] * per_inertia);
             normal = s.splat(0.0).select_lt(normal, pressed, normal);
         }
-        // After a lift-off nothing presses the body on the table.
+        // After a lift-off no force presses the body on the table, and the laws have no normal force.
         let pressing = normal.max(s.splat(0.0));
         let [mut m1, m2, mut m3] = couple.under(pressing);
         let tilting = if tilts { m2.mac(per_inertia, d2) } else { d2 };
@@ -163,7 +163,7 @@ impl Lossy<f64> {
         Self { rates: contact.rates(body), losses: Couples::of(losses, |x| x) }
     }
 
-    /// The response in a state in which no motion is held.
+    /// The response in a state in which dry friction holds nothing.
     pub fn in_state(&self, y: &State) -> Acted<f64> {
         let angle = y.theta.sin_cos();
         self.at(angle, y.w1 / angle.0, [y.w1, y.w2, y.w3], Held::Nothing)

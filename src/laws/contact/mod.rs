@@ -4,9 +4,10 @@
 //! rolling   the contact point rests            smooth   the force is vertical
 //! friction demand   |F_horizontal| = hypot(F2, Fh),   coefficient needed   |F_horizontal|/N
 //! ```
-//! [`rolling`] and [`smooth`] give the force of each table from its own condition; `reduced` has the equations of
-//! motion without the contact force, and [`newton`](super::newton) moves a body under any force. Rolling holds while
-//! N > 0 and |F_horizontal| <= mu N: the friction demand is only compared with mu N, never limited to it.
+//! [`rolling`] and [`smooth`] give the force of each table from its own condition; `reduced` has the
+//! equations of motion without the contact force, and [`newton`](super::newton) those under any force.
+//! Rolling holds while N > 0 and |F_horizontal| <= mu N: the friction demand is only compared with mu N,
+//! never limited to it.
 //!
 //! Error: 64 ulp of the largest term, by comparison with the three-dimensional model (a test of `laws` runs it).
 
@@ -38,9 +39,11 @@ pub enum Contact {
     Smooth = 1,
 }
 
-/// If the factor 1 - eps of the normal force of a slip is closer to 0 than this, the force counts as infinite.
+/// A slip whose factor 1 - eps of the normal force is closer to 0 than this is refused: the force counts as
+/// infinite.
 pub(crate) const JAMMED: f64 = 1e-6;
-/// A face has landed if its angle to the table is below this, in radians: on any table the gap is below an atom.
+/// A face has landed if its angle to the table is below this, in radians: the gap is then smaller than an
+/// atom.
 pub(crate) const FLAT: f64 = 1e-10;
 
 impl Contact {
@@ -93,10 +96,10 @@ pub(crate) fn force_at(of: &Reduced<f64>, y: &State, dy: &State, angle: (f64, f6
     Force { normal, along, across }
 }
 
-/// The margin of friction that holds, mu N |mu N| - F^2, from N and F^2.
+/// The margin of static friction, mu N |mu N| - F^2, from N and F^2.
 ///
-/// It falls with N beyond zero, so that no step from a contact that holds past the lift-off takes it for one that holds
-/// again.
+/// It keeps falling where N turns negative, so that a step across the lift-off does not find a contact that
+/// holds again. The last term keeps it positive where mu and F both vanish.
 #[inline(always)]
 pub(crate) fn grip<T: Real>(mu: T, normal: T, square: T) -> T {
     let most = mu * normal;

@@ -10,9 +10,10 @@
 //!           r = A I1 a/D,   t = A (I3 L - I1 rho c)/D
 //! smooth:   al = I1,  b = I3,  k = 0,  J = I1 + g^2,  J'/2 = g g',   p = r = t = 0,   q = I3/I1
 //! ```
-//! For a sharp rim, where A, L, J and D are constant, the equations are in Chaplygin 1897, Appell and Korteweg 1900;
-//! for a torus the same elimination gives them. They are written once over [`Real`]: a property of `laws` says that at
-//! every state they agree with [`newton`](crate::laws::newton) under the contact force.
+//! For a sharp rim, where A, L, J and D are constant, the equations are in Chaplygin 1897, Appell and
+//! Korteweg 1900; for a torus the same elimination gives them. They are written once over [`Real`]: a
+//! property of `laws` checks that they agree with [`newton`](crate::laws::newton) under the contact force at
+//! every state.
 //!
 //! Error: a few roundings of the terms written above.
 
@@ -94,7 +95,8 @@ impl<T: Real> Reduced<T> {
         }
     }
 
-    /// The moment b - k^2/al of a body for which `round` is false, as a sum: I3 + A^2 I1/al when it rolls.
+    /// The moment b - k^2/al of a body for which `round` is false, without a difference: I3 + A^2 I1/al when
+    /// it rolls.
     #[inline(always)]
     pub fn axial(&self, of: &Coefficients<T>) -> T {
         match self.contact {
@@ -120,13 +122,15 @@ impl<T: Real> Reduced<T> {
         turning + (height + height)
     }
 
-    /// The derivatives of w1 and w3 with respect to the inclination.
+    /// The derivatives of w1 and w3 with respect to the inclination, along a motion: their lines w1(theta),
+    /// w3(theta).
     #[inline(always)]
     pub fn lines(&self, of: &Coefficients<T>, (s, c): (T, T), w1: T, w3: T) -> [T; 2] {
         [of.q * w3 - of.p * w1 - c / s * w1, of.r * w1 + of.t * w3]
     }
 
-    /// `tilting` and its derivative with respect to the inclination along the lines w1 and w3, by dual numbers.
+    /// `tilting` and its derivative with respect to the inclination along the lines of w1 and w3, by dual
+    /// numbers.
     #[inline(always)]
     pub fn tilting_along(&self, (s, c): (T, T), w1: T, w3: T) -> Dual<T> {
         let [w1_slope, w3_slope] = self.lines(&self.at((s, c)), (s, c), w1, w3);
@@ -175,7 +179,7 @@ impl<T: Real> Rates<T> {
         Self { of, scaled, lever: [shape.rim.a * weight, shape.rim.ell * weight] }
     }
 
-    /// The equations from which these rates are made.
+    /// The equations from which these rates are computed.
     #[inline(always)]
     pub fn reduced(&self) -> &Reduced<T> {
         &self.of

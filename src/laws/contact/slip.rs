@@ -130,15 +130,15 @@ impl<T: Real> Slipping<T> {
         Self { losses, ..self }
     }
 
-    /// The response where a couple `push` h/s along the contour makes psi' change at this rate, with dt/dsigma and
-    /// `push`. Neither the normal force nor friction depends on this couple.
+    /// The response with a couple `push` h/s along the contour that makes psi' change at this rate; also
+    /// dt/dsigma and `push`. Neither the normal force nor friction depends on this couple.
     pub fn settled(&self, (s, c): (T, T), w: [T; 3], u: [T; 2], rate: T) -> (SlipResponse<T>, T, T) {
         let &Shape { rim, i1, i3 } = &self.shape;
         let (mut at, pace) = self.at((s, c), w, u);
         let [d1, _, d3] = at.w;
         let off = s * (s * d3 - c * d1 - w[0] / s * w[1] - s * rate);
-        let (push, more1, more3) = if self.losses.as_ref().is_some_and(Couples::drill_held) {
-            // The drilling stays held, which takes a couple about the vertical more.
+        let (push, more1, more3) = if self.losses.as_ref().is_some_and(Couples::holds_drilling) {
+            // To keep the drilling at rest takes one more couple, about the vertical.
             let (more1, more3) = (c / s * off, -off);
             let twist = s * i1 * more1 + c * i3 * more3;
             at.held[0] = at.held[0] + twist;
@@ -193,7 +193,7 @@ impl<T: Real> Slipping<T> {
         }
         let mut dw = [t1 * self.per_i1, t2 * self.per_i1, t3 * self.per_i3];
         let mut held = [w1.splat(0.0), w1.splat(1.0)];
-        if let Some(losses) = self.losses.as_ref().filter(|losses| losses.drill_held()) {
+        if let Some(losses) = self.losses.as_ref().filter(|losses| losses.holds_drilling()) {
             // Neither the normal force nor friction depends on a couple about the vertical.
             let off = s * dw[0] + c * dw[2] - w2 * (c * w1 - s * w3);
             let (give1, give3) = (s * self.per_i1, c * self.per_i3);
@@ -210,7 +210,7 @@ impl<T: Real> Slipping<T> {
         (SlipResponse { w: dw, u: du, free, room, force, held }, size * (per * s * left))
     }
 
-    /// The response where slip begins in the direction `way`, or without friction where `way` is zero.
+    /// The response where a slip begins in the direction `way`, or without friction where `way` is zero.
     #[inline(always)]
     pub fn towards(&self, angle: (T, T), w: [T; 3], u: [T; 2], way: [T; 2]) -> SlipResponse<T> {
         let one = self.strength.splat(1.0);
@@ -227,12 +227,13 @@ impl<T: Real> Slipping<T> {
     /// The response in a state and dt/dsigma there; under dry friction `u` must not be zero.
     #[inline(always)]
     pub fn at(&self, angle: (T, T), w: [T; 3], u: [T; 2]) -> (SlipResponse<T>, T) {
-        let one = self.strength.splat(1.0);
-        if !self.dry {
-            return self.with(angle, w, u, (u, one, one));
+        // `with` is inlined, so that it is called in one place.
+        let (mut size, mut sum) = (self.strength.splat(1.0), self.strength.splat(1.0));
+        if self.dry {
+            size = u[0].mac(u[0], u[1] * u[1]).sqrt();
+            sum = size + self.soft;
         }
-        let speed = u[0].mac(u[0], u[1] * u[1]).sqrt();
-        self.with(angle, w, u, (u, speed, speed + self.soft))
+        self.with(angle, w, u, (u, size, sum))
     }
 
     /// Writes the derivatives of sine, cosine, w, u, time and, as the ninth number, heat with respect to sigma.
@@ -272,7 +273,8 @@ impl Slipping<f64> {
         })
     }
 
-    /// mu_P(theta), the coefficient of friction from which on some direction of slip leaves no unique force.
+    /// mu_P(theta), the smallest coefficient of friction at which some direction of slip leaves no unique
+    /// force.
     pub fn painleve(&self, angle: (f64, f64)) -> f64 {
         let (lever, rim) = (self.shape.rim.lever(angle), &self.shape.rim);
         (self.shape.i1 + lever * lever) / (lever * rim.height(angle)).abs()
@@ -295,6 +297,12 @@ impl Slipping<f64> {
 /// mu_P(theta) of a body: from this coefficient of friction on, some slip leaves no unique contact force.
 pub fn painleve(body: &Body, theta: f64) -> f64 {
     Slipping::of(&body.shape(), 1.0, true).painleve(theta.sin_cos())
+}
+
+/// Horizontal velocity of the centre of a body that slips with u = (along the lean, across), along the same directions.
+/// With u = 0 it is that of a contact point at rest.
+pub fn centre_velocity(body: &Body, y: &State, slip: [f64; 2]) -> [f64; 2] {
+    Slipping::of(&body.shape(), 1.0, true).centre(y.theta.sin_cos(), [y.w1, y.w2, y.w3], slip)
 }
 
 /// Kinetic and potential energy of a body that slips with u = (along the lean, across), in M g R.

@@ -1,4 +1,4 @@
-//! A contact point with zero slip: whether it sticks, slips off or lifts off, or whether the laws do not decide.
+//! A contact point with zero slip: whether it sticks, slips off or lifts off, or whether that is not unique.
 //!
 //! ```text
 //! sticks     N_roll > 0 and |F_roll| <= mu_s N_roll
@@ -6,12 +6,12 @@
 //! f (1 - eps cos alpha) = (1 - eps cos alpha)(B_2 cos alpha - B_h sin alpha)
 //!                       - N0 sin alpha (mu (D_2 - D_h) cos alpha + g h/I1)
 //!                       + N0 (cos alpha (L mN_1/I1 - A mN_3/I3) + sin alpha h mN_2/I1)         losses
-//! D_h = 1 + h^2/I1,   D_2 = 1 + L^2/I1 + A^2/I3,   B = u' without friction and without what N tilts
+//! D_h = 1 + h^2/I1,   D_2 = 1 + L^2/I1 + A^2/I3,   B = u' without friction and without the tilting by N
 //! ```
-//! The direction of a small slip obeys |u| alpha' = f(alpha), so that slip begins, as it ends, where f vanishes: at
-//! roots of a quartic in tan(alpha/2), none of which is missed. Below 0.9 mu_P(theta) each of 87,500 random states has
-//! one answer; above, and for bodies with little transverse inertia, all are listed, and more than one is refused
-//! (Painleve 1895).
+//! The direction of a small slip obeys |u| alpha' = f(alpha), so that a slip begins, and ends, in a direction
+//! where f vanishes: a root of a quartic in tan(alpha/2), all of which are computed. Below 0.9 mu_P(theta)
+//! each of 87,500 random states has one consistent behaviour. Above, and for bodies with little transverse
+//! inertia, all of them are counted, and more than one is an error (Painleve 1895).
 //!
 //! Error: alpha is known to 1e-15 divided by the slope of f.
 
@@ -38,14 +38,14 @@ pub(crate) enum Standstill {
     Undefined,
 }
 
-/// From this fraction of mu_P on, all answers are searched for.
+/// From this fraction of mu_P on, more than one behaviour may be consistent, and all are counted.
 const DOUBTFUL: f64 = 0.9;
-/// A growth rate of the speed below this is rounding.
+/// A growth rate of the speed below this counts as zero, since it is a rounding error.
 const STILL: f64 = 1e-11;
-/// A growth rate below this is rounding where static friction has just ceased to hold, at a rounded time.
+/// The same limit where static friction has just ceased to hold, at a time that is rounded.
 const JUST: f64 = 1e-8;
 
-/// A contact point at rest, with the forces on it: what decides whether it sticks.
+/// The forces at a contact point at rest, which decide whether it sticks.
 pub(crate) struct HeldContact<F: Fn(f64) -> Option<f64>> {
     /// The coefficients of sliding and of static friction.
     pub mu: [f64; 2],
@@ -53,11 +53,11 @@ pub(crate) struct HeldContact<F: Fn(f64) -> Option<f64>> {
     pub free: f64,
     /// The normal force and the friction that keep the contact point at rest.
     pub held: [f64; 2],
-    /// The direction against that friction.
+    /// The direction opposite to that friction.
     pub against: f64,
     /// Whether more than one force may obey the law of friction.
     pub doubtful: bool,
-    /// How a slip begins.
+    /// The rates at which a slip begins.
     pub onset: Onset,
     /// The growth rate of the speed of a slip along alpha; None where the normal force is not positive.
     pub growth: F,
@@ -74,7 +74,8 @@ impl<F: Fn(f64) -> Option<f64>> HeldContact<F> {
     pub fn decides(&self) -> Standstill {
         let &Self { mu: [mu, fixed], free, held: [normal, friction], doubtful, .. } = self;
         let holds = |mu: f64| normal > 0.0 && friction <= mu * normal;
-        // Static friction may press a contact point on the table that sliding friction would let go.
+        // Sticking is tested before lift-off: with static friction N can be positive where it is not with
+        // sliding friction.
         if !doubtful && holds(fixed) {
             return Standstill::Sticks;
         }
@@ -83,7 +84,7 @@ impl<F: Fn(f64) -> Option<f64>> HeldContact<F> {
         }
         let mut ways = self.ways();
         if !doubtful {
-            // Rounding may split one direction into several; the one of the fastest growth is taken.
+            // Rounding may split one direction into several; that of the fastest growth is used.
             let best = ways.into_iter().max_by(|a, b| a.1.total_cmp(&b.1));
             return best.filter(|way| way.1 > -STILL).map_or(Standstill::Undefined, |(alpha, growth)| {
                 Standstill::Slips { alpha, growth: growth.max(0.0) }
@@ -92,7 +93,8 @@ impl<F: Fn(f64) -> Option<f64>> HeldContact<F> {
         ways.retain(|way| way.1 > STILL);
         let lifts = usize::from(free <= 0.0);
         if holds(fixed) {
-            // A contact point that static but not sliding friction can hold may also slip off in one direction.
+            // A contact point that only static friction can hold may also slip off in one direction: it
+            // sticks.
             let allowed = usize::from(!holds(mu));
             return if lifts + ways.len() > allowed { Standstill::Undefined } else { Standstill::Sticks };
         }
@@ -107,7 +109,8 @@ impl<F: Fn(f64) -> Option<f64>> HeldContact<F> {
     pub fn lets_go(mut self) -> Standstill {
         let [mu, fixed] = self.mu;
         if fixed == mu {
-            // Friction is continuous here: slip begins against it, and the growth of the speed starts from zero.
+            // The two coefficients agree: the slip begins against the friction, and the growth of its speed
+            // starts from zero.
             let another = self.doubtful && (self.free <= 0.0 || self.ways().iter().any(|way| way.1 > JUST));
             let slips = Standstill::Slips { alpha: self.against, growth: 0.0 };
             return if another { Standstill::Undefined } else { slips };
@@ -120,7 +123,7 @@ impl<F: Fn(f64) -> Option<f64>> HeldContact<F> {
     }
 }
 
-/// Finds the behaviour of a contact point whose slip is zero.
+/// The behaviour of a contact point whose slip is zero.
 pub(crate) fn standstill(body: &Body, y: &State, friction: &Friction, losses: &Losses) -> Standstill {
     let Friction::Coulomb { mu, fixed } = *friction else { return Standstill::Sticks };
     rest(body, y, (friction, [mu, fixed]), losses).decides()
@@ -132,7 +135,7 @@ pub(crate) fn let_go(body: &Body, y: &State, friction: &Friction, losses: &Losse
     rest(body, y, (friction, [mu, fixed]), losses).lets_go()
 }
 
-/// The contact point of a rim at rest.
+/// The forces at the contact point of a rim at rest.
 fn rest(
     body: &Body,
     y: &State,
@@ -161,7 +164,8 @@ fn rest(
     }
 }
 
-/// The force that keeps the contact point at rest, and the ways of the losses if the drilling is at rest, too.
+/// The force that keeps the contact point at rest, and the signs of the dry losses if the drilling is at
+/// rest, too.
 fn rolling(body: &Body, y: &State, losses: &Losses) -> (Force, Option<Ways>) {
     if losses.is_none() {
         return (force(Contact::Rolling, body, y), None);
@@ -177,10 +181,10 @@ fn rolling(body: &Body, y: &State, losses: &Losses) -> (Force, Option<Ways>) {
         law.losses.ways = Some(ways);
         law.at((s, c), y.precession(), w, held)
     };
-    let mut ways = Ways { contour, drill_held: true, ..Ways::default() };
+    let mut ways = Ways { contour, holds_drilling: true, ..Ways::default() };
     let mut acted = under(ways, Held::Drilling);
     if !holds(acted.held) {
-        ways = Ways { drilling: -acted.held[0].signum(), drill_held: false, ..ways };
+        ways = Ways { drilling: -acted.held[0].signum(), holds_drilling: false, ..ways };
         acted = under(ways, Held::Nothing);
     }
     let [normal, along, across] = acted.force;
@@ -207,11 +211,11 @@ pub(crate) struct Onset {
 }
 
 impl Onset {
-    /// All directions in (-pi, pi] in which f vanishes, so that a vanishing slip keeps its direction.
+    /// All directions in (-pi, pi] in which f vanishes: those that a vanishing slip keeps.
     fn directions(&self) -> Vec<f64> {
         let &Self { mu, free, eps: [eps_1, eps_2], bare: [b_1, b_2], pressed: [p_1, p_2], pulled } = self;
         let [apart, skew] = [mu * (pulled[1] - pulled[0]), mu * pulled[2]];
-        // The zeros in (0, pi) are those of f; the zeros in (-pi, 0) are found with the sign of the sine changed.
+        // The zeros in (0, pi) are those of f; for the zeros in (-pi, 0) the sine changes its sign.
         let value = |(s, c): (f64, f64)| {
             let pushed = free * (c * p_2.hi - skew * (c * c - s * s));
             (1.0 - eps_1 * c - eps_2 * s) * (b_2 * c - b_1 * s) - free * s * (apart * c + p_1.hi) + pushed
@@ -246,7 +250,7 @@ impl Onset {
     }
 }
 
-/// How the slip of a rim begins, along e_h and e2.
+/// The rates at which the slip of a rim begins, along e_h and e2.
 fn onset(slipping: &Slipping<f64>, angle: (f64, f64), w: [f64; 3], free: f64) -> Onset {
     let crate::laws::body::Shape { rim, i1, i3 } = slipping.shape;
     let (lever, height) = (rim.lever(angle), rim.height(angle));
@@ -260,8 +264,9 @@ fn onset(slipping: &Slipping<f64>, angle: (f64, f64), w: [f64; 3], free: f64) ->
     let at = slipping.towards(angle, w, [0.0; 2], [0.0; 2]);
     let (more, mut aside) = (-(height * pressed[1] / i1), depth * pressed[0] / i1 - radius * pressed[2] / i3);
     let mut pulled = depth * depth / i1 + radius * radius / i3;
-    if slipping.losses.is_some_and(|losses| losses.drill_held()) {
-        // The couple that holds the drilling takes what a force and the pressed couple would turn about the vertical.
+    if slipping.losses.is_some_and(|losses| losses.holds_drilling()) {
+        // The couple that holds the drilling cancels the turn about the vertical by a force and by the
+        // pressed couple.
         let (s, c) = angle;
         let turned = s * depth / i1 - c * radius / i3;
         let light = s * s / i1 + c * c / i3;

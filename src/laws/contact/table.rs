@@ -15,7 +15,7 @@ pub enum Table {
     },
     /// The table is frictionless.
     Smooth,
-    /// A law of friction says whether the contact point slips.
+    /// A law of friction decides whether the contact point slips.
     Rubs(Friction),
 }
 

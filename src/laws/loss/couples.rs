@@ -101,7 +101,7 @@ pub(crate) struct Ways<T = f64> {
     /// The sign of w2 of a body that only rocks, otherwise 0; in lanes no body only rocks.
     pub rocking: f64,
     /// Whether dry friction holds the drilling of a body that slips, by the couple about the vertical that this needs.
-    pub drill_held: bool,
+    pub holds_drilling: bool,
 }
 
 /// The losses in the form that the equations of motion use, of one body or of eight in lanes.
@@ -200,7 +200,7 @@ impl<T: Real> Couples<T> {
             contour: number(ways.contour),
             drilling: number(ways.drilling),
             rocking: ways.rocking,
-            drill_held: ways.drill_held,
+            holds_drilling: ways.holds_drilling,
         });
         // In lanes the compiler would not inline the closure of an array's `map`.
         let mut coefficients = [number(self.coefficients[0]); COUNT];
@@ -300,8 +300,8 @@ impl<T: Real> Couples<T> {
 
     /// Whether dry friction holds the drilling of a body that slips.
     #[inline(always)]
-    pub fn drill_held(&self) -> bool {
-        self.ways.as_ref().is_some_and(|ways| ways.drill_held)
+    pub fn holds_drilling(&self) -> bool {
+        self.ways.as_ref().is_some_and(|ways| ways.holds_drilling)
     }
 
     /// Whether this law is present.

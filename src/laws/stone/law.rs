@@ -15,8 +15,8 @@
 //! ellipsoid to the centre of mass. These are Newton's and Euler's equations with the force of the contact eliminated
 //! (Kane and Levinson 1982 for rolling); the slip is that of [`contact::slip`](crate::laws::contact::slip).
 //!
-//! Error: a few roundings of the terms written above; `tests/laws/stone.rs` and the references of 25 digits, which come
-//! from equations in the laboratory, run it.
+//! Error: a few roundings of the terms written above; `tests/laws/stone.rs` checks it, with references of 25
+//! digits from equations in the laboratory.
 
 use crate::laws::contact::JAMMED;
 use crate::numbers::Real;
@@ -52,9 +52,10 @@ pub(crate) struct StoneResponse<T> {
     pub w: [T; 3],
     /// The contact force along the axes of the body.
     pub force: [T; 3],
-    /// The normal force N without friction, times a positive factor; where this number vanishes the stone lifts off.
+    /// The normal force N without friction, times a positive factor; the stone lifts off where this number
+    /// vanishes.
     pub free: T,
-    /// The factor of N, less [`JAMMED`]; where this number vanishes no unique force exists.
+    /// The factor of N minus [`JAMMED`]; where this number vanishes no unique force exists.
     pub room: T,
 }
 
@@ -69,7 +70,7 @@ impl<T: Real> StoneLaw<T> {
         Self { squares, inertia, inverse, offset, strength, soft, dry }
     }
 
-    /// The same law over other numbers.
+    /// The same law with numbers of another type.
     pub fn map<U: Real>(&self, f: impl Fn(T) -> U) -> StoneLaw<U> {
         let &Self { squares, inertia, offset, strength, dry, .. } = self;
         StoneLaw::new(squares.map(&f), Symmetric(inertia.0.map(&f)), offset.map(&f), f(strength), dry)
@@ -130,7 +131,7 @@ impl<T: Real> StoneLaw<T> {
         }
     }
 
-    /// The response of a stone whose contact point slips with `u`, and dt/dsigma.
+    /// The response of a stone whose contact point slips with `u`; also dt/dsigma.
     #[inline(always)]
     pub fn slipping(&self, at: &Touching<T>, w: [T; 3], u: [T; 3]) -> (StoneResponse<T>, T) {
         let one = u[0].splat(1.0);
@@ -163,7 +164,8 @@ impl<T: Real> StoneLaw<T> {
     }
 }
 
-/// The axes of the laboratory along those of a body with the unit quaternion (w, x, y, z); the third is the vertical.
+/// The axes of the laboratory, the third of which is the vertical, along those of a body with the unit
+/// quaternion (w, x, y, z).
 #[inline(always)]
 pub(crate) fn laboratory<T: Real>([w, x, y, z]: [T; 4]) -> [[T; 3]; 3] {
     let (ww, xx, yy, zz) = (w * w, x * x, y * y, z * z);
@@ -175,7 +177,7 @@ pub(crate) fn laboratory<T: Real>([w, x, y, z]: [T; 4]) -> [[T; 3]; 3] {
     ]
 }
 
-/// The rate of the unit quaternion of a body that turns with `v` along its own axes.
+/// The rate of the unit quaternion of a body with the angular velocity `v` along its own axes.
 #[inline(always)]
 pub(crate) fn turning<T: Real>([w, x, y, z]: [T; 4], [a, b, c]: [T; 3]) -> [T; 4] {
     let half = w.splat(0.5);
@@ -187,7 +189,7 @@ pub(crate) fn turning<T: Real>([w, x, y, z]: [T; 4], [a, b, c]: [T; 3]) -> [T; 4
     ]
 }
 
-/// A horizontal vector along the axes of the body.
+/// The horizontal vector with these components in the laboratory, along the axes of the body.
 #[inline(always)]
 pub(crate) fn across<T: Real>(lab: &[[T; 3]; 3], [a, b]: [T; 2]) -> [T; 3] {
     plus(lab[0].map(|x| x * a), b, lab[1])

@@ -6,9 +6,9 @@
 //! half       the lower half of it: d = (0, 0, -3 a3/8), the moments about d, and an edge that lands at pi/2
 //! theta      the inclination of axis 3, cos theta = n3
 //! ```
-//! Natural units: the mass, the largest semi-axis and gravity are 1. A body here has no relation to a
-//! [`Body`](crate::Body), which is a body of revolution with three first integrals; a stone has one, its energy, so that
-//! its motion is always integrated.
+//! Natural units: the mass, the largest semi-axis and gravity are 1. An ellipsoid is not a
+//! [`Body`](crate::Body), which is a body of revolution with three first integrals; a stone has one, its
+//! energy, so that its motion is always integrated.
 //!
 //! Sources: Walker, Sci. Am. 241(4), 172 (1979); Kane and Levinson, Int. J. Non-Linear Mech. 17, 175 (1982); Moffatt and
 //! Shimomura, Nature 416, 385 (2002), for the rising egg.
@@ -22,7 +22,7 @@ use core::f64::consts::{FRAC_PI_2, PI};
 use law::StoneLaw;
 pub use state::{StonePose, StoneState};
 
-/// An ellipsoid with any inertia, whose edge lands where its axis 3 leans by `theta_end`, if it has an edge.
+/// An ellipsoid with any inertia. If it has an edge, the edge lands at the inclination `theta_end` of axis 3.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ellipsoid {
     pub(crate) axes: [f64; 3],
@@ -32,7 +32,7 @@ pub struct Ellipsoid {
     unit: f64,
 }
 
-/// Lengths of semi-axes.
+/// Allowed lengths of the semi-axes.
 const AXES: (f64, f64) = (1e-30, 1e30);
 /// Allowed excess of a principal moment over the sum of the two others, from rounding.
 const ROUNDED: f64 = 1e-12;
@@ -50,7 +50,7 @@ impl Ellipsoid {
         stone.checked(stone.moments())
     }
 
-    /// The same of principal moments that are not checked yet.
+    /// The ellipsoid of [`new`](Self::new), without the check of its principal moments.
     fn shaped(axes: [f64; 3], inertia: [[f64; 3]; 3], offset: [f64; 3]) -> Result<Self, Error> {
         for axis in axes {
             within("axes", axis, AXES, "three semi-axes, 1e-30 <= a <= 1e30")?;
@@ -82,7 +82,7 @@ impl Ellipsoid {
         Ok(Self { axes, inertia, offset, theta_end: PI, unit })
     }
 
-    /// Refuses principal moments that no body has.
+    /// Returns an error for principal moments that no body has.
     fn checked(self, moments: [f64; 3]) -> Result<Self, Error> {
         let [a, b, c] = moments;
         let (least, most, square) = (a.min(b).min(c), a.max(b).max(c), self.unit * self.unit);
@@ -127,7 +127,7 @@ impl Ellipsoid {
         within("twist", twist, (-1e6, 1e6), "an angle in radians")?;
         let (s, co) = twist.sin_cos();
         let mut across = (a - b) * s * co;
-        // A quarter or a half of a turn leaves no twist.
+        // A twist by a quarter or half of a turn is none; only rounding is left.
         if across.abs() <= 4.0 * f64::EPSILON * (a - b).abs() {
             across = 0.0;
         }
@@ -207,21 +207,31 @@ impl Ellipsoid {
         moments
     }
 
-    /// A state upright but for small angles, which spins about the vertical: the vertical is turned about axis 2 by
-    /// `pitch` and then about axis 1 by `roll` (radians).
+    /// The state of [`StoneState::spinning`], whatever the stone.
     pub fn spinning(&self, spin: f64, pitch: f64, roll: f64) -> StoneState {
-        let ((sp, cp), (sr, cr)) = (pitch.sin_cos(), roll.sin_cos());
-        let vertical = [-sp, cp * sr, cp * cr];
-        StoneState { vertical, w: vertical.map(|x| spin * x) }
+        StoneState::spinning(spin, pitch, roll)
     }
 
-    /// Kinetic and potential energy in M g a, of a contact point that rests (or on a smooth table, of a centre of mass
-    /// without a horizontal velocity), with heights above the table.
+    /// The lowest point where this unit vector points upward, counted from the centre of mass.
+    pub fn lowest_point(&self, vertical: [f64; 3]) -> [f64; 3] {
+        self.law(0.0, false).touching(vertical, [0.0; 3]).r
+    }
+
+    /// The slip of the contact point, where `centre` is the horizontal velocity of the centre of mass: both along the axes
+    /// x and y of the laboratory in which the stone has turned from upright by the smallest angle.
+    pub fn slip(&self, y: &StoneState, centre: [f64; 2]) -> [f64; 2] {
+        let lab = law::laboratory(y.orientation());
+        let turned = cross(y.w, self.lowest_point(y.vertical));
+        core::array::from_fn(|i| centre[i] + dot(lab[i], turned))
+    }
+
+    /// Kinetic and potential energy in M g a, of a stone whose contact point rests (or on a smooth table,
+    /// whose centre of mass has no horizontal velocity), with heights above the table.
     pub fn energy(&self, y: &StoneState, smooth: bool) -> f64 {
         self.energy_slipping(y, [0.0; 2], smooth)
     }
 
-    /// The same of a contact point that slips.
+    /// The energy of a stone whose contact point slips with `slip`.
     pub(crate) fn energy_slipping(&self, y: &StoneState, slip: [f64; 2], smooth: bool) -> f64 {
         let law = self.law(0.0, false);
         let at = law.touching(y.vertical, y.w);
@@ -229,7 +239,7 @@ impl Ellipsoid {
             let lab = law::laboratory(y.orientation());
             return law.energy(&at, y.w, law::across(&lab, slip));
         }
-        let v = crate::numbers::vector::cross(y.w, at.r);
+        let v = cross(y.w, at.r);
         let up = dot(v, at.n);
         law.energy(&at, y.w, core::array::from_fn(|i| v[i] - up * at.n[i]))
     }

@@ -1,7 +1,7 @@
 //! States and poses of a stone.
 
 use crate::numbers::vector::dot;
-use nalgebra::{Point2, Quaternion, UnitQuaternion, Vector3};
+use nalgebra::{Point2, Quaternion, UnitQuaternion};
 
 /// The vertical and the angular velocity of a stone, along the axes of the ellipsoid.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -13,6 +13,14 @@ pub struct StoneState {
 }
 
 impl StoneState {
+    /// A nearly upright state that spins about the vertical: the vertical is turned about axis 2 by `pitch`
+    /// and then about axis 1 by `roll` (radians).
+    pub fn spinning(spin: f64, pitch: f64, roll: f64) -> Self {
+        let ((sp, cp), (sr, cr)) = (pitch.sin_cos(), roll.sin_cos());
+        let vertical = [-sp, cp * sr, cp * cr];
+        Self { vertical, w: vertical.map(|x| spin * x) }
+    }
+
     /// The angular velocity about the vertical.
     pub fn spin(&self) -> f64 {
         dot(self.vertical, self.w)
@@ -30,8 +38,8 @@ impl StoneState {
         [y.hypot(z).atan2(x), z.hypot(x).atan2(y), x.hypot(y).atan2(z)]
     }
 
-    /// The orientation of a start: of all that have this vertical, the one of the smallest turn from upright. It is a
-    /// quaternion (w, x, y, z); upside down it is a half turn about axis 1.
+    /// The initial orientation: the smallest turn from upright that gives this vertical, as a quaternion (w,
+    /// x, y, z). Upside down it is a half turn about axis 1.
     pub(crate) fn orientation(&self) -> [f64; 4] {
         let [x, y, z] = self.vertical;
         let across = x.hypot(y);

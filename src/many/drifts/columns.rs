@@ -1,10 +1,10 @@
-//! The starts of many drifts and the arrays for their answers, as columns.
+//! The starts of many drifts and the arrays for their results, as columns.
 
 use crate::error::Error;
 use crate::laws::body::Body;
 use crate::laws::loss::{COUNT, Losses};
 use crate::laws::state::State;
-use crate::many::columns::{at, fit, rows};
+use crate::many::columns::{Split, at, fit, rows};
 use crate::motions::drift::rest::Rest;
 use crate::motions::drift::{Drift, End, check};
 
@@ -35,7 +35,7 @@ pub struct DriftStarts<'a> {
 /// The code of a start without a drift; the codes of [`End`] are smaller.
 pub const NO_DRIFT: u8 = 255;
 
-/// The arrays for the answers.
+/// The arrays for the results.
 #[derive(Debug)]
 pub struct DriftOutput<'a> {
     /// The time of the end: infinite if the drift never ends, NaN for a start without a drift.
@@ -46,22 +46,22 @@ pub struct DriftOutput<'a> {
     pub ended: &'a mut [u8],
 }
 
-impl<'a> DriftOutput<'a> {
-    pub(crate) fn split(self, at: usize) -> (Self, Self) {
-        let (stops_at, later_stops) = self.stops_at.split_at_mut(at);
-        let (ends_at_theta, later_theta) = self.ends_at_theta.split_at_mut(at);
-        let (ended, later_ended) = self.ended.split_at_mut(at);
-        (
-            Self { stops_at, ends_at_theta, ended },
-            Self { stops_at: later_stops, ends_at_theta: later_theta, ended: later_ended },
-        )
+impl Split for DriftOutput<'_> {
+    fn split(self, count: usize) -> (Self, Self) {
+        let (stops_at, later_stops) = self.stops_at.split(count);
+        let (ends_at_theta, later_theta) = self.ends_at_theta.split(count);
+        let (ended, later_ended) = self.ended.split(count);
+        let later = Self { stops_at: later_stops, ends_at_theta: later_theta, ended: later_ended };
+        (Self { stops_at, ends_at_theta, ended }, later)
     }
+}
 
+impl DriftOutput<'_> {
     pub(crate) fn put(&mut self, i: usize, (end, theta, time): (End, f64, f64)) {
         (self.stops_at[i], self.ends_at_theta[i], self.ended[i]) = (time, theta, end as u8);
     }
 
-    /// Notes a start without a drift.
+    /// Writes NaN and [`NO_DRIFT`] for start `i`, which has no drift.
     pub(crate) fn refuse(&mut self, i: usize) {
         (self.stops_at[i], self.ends_at_theta[i], self.ended[i]) = (f64::NAN, f64::NAN, NO_DRIFT);
     }

@@ -1,8 +1,8 @@
 //! Many drifts at once: every body has its own start and its own losses, and lanes and threads share the work.
 //!
-//! The answers are the times and the kinds of the ends; a drift that the lanes cannot answer is computed alone, as
-//! `Drift` does. This choice depends on the drift alone, so that the result has the same bits for any number of threads
-//! and for any other drifts in the call.
+//! The results are the times and the kinds of the ends. A drift that the lanes cannot compute is computed
+//! alone, as `Drift` does. This choice depends on the drift alone, so that the result has the same bits for
+//! any number of threads and for any other drifts in the call.
 //!
 //! Error: that of a single drift; a property of `drift` compares the two.
 
@@ -12,17 +12,18 @@ mod rolling_lanes;
 
 pub use columns::{Centre, DriftOutput, DriftStarts, NO_DRIFT as INVALID};
 
+use super::columns::{RowBlock, blocks};
 use super::threads::share;
 use crate::error::{Error, room, spare};
 use crate::motions::drift::{Drift, DriftState};
 use crate::numbers::{LANES, level};
 
-/// Number of drifts in a block.
+/// Number of drifts in a block, the work that a thread takes at a time.
 const DRIFTS_PER_BLOCK: usize = 4096;
 
-/// Fills `out` on `threads` workers, of which the calling thread is one. The calling thread asks `go_on` about fifty
-/// times a second with the fraction of the work that is done. Returns whether all drifts are done; if not, the contents
-/// are unspecified. The error is `Memory`.
+/// Fills `out` on `threads` workers, of which the calling thread is one. The calling thread calls `go_on`
+/// about fifty times a second with the fraction of the work that is done. Returns whether all drifts are
+/// done; if not, the contents are unspecified. The error is `Memory`.
 ///
 /// # Panics
 /// The function panics if columns differ in length (apart from single numbers), or if an array of `out` does not fit
@@ -50,19 +51,13 @@ fn all(
         "an array does not fit"
     );
     spare()?;
-    let (mut rest, mut blocks) = (out, room(count.div_ceil(DRIFTS_PER_BLOCK))?);
-    for first in (0..count).step_by(DRIFTS_PER_BLOCK) {
-        let here = DRIFTS_PER_BLOCK.min(count - first);
-        let (cut, after) = rest.split(here);
-        blocks.push((first, here, cut));
-        rest = after;
-    }
-    Ok(share(blocks, threads, go_on, |(first, here, mut out), still| {
+    let blocks = blocks(out, count, DRIFTS_PER_BLOCK)?;
+    Ok(share(blocks, threads, go_on, |RowBlock { first, count, mut out }, still| {
         if starts.centre == Centre::Rolling {
             return rolling_lanes::stops(level(), starts, first, &mut out, still);
         }
         let (round, sharp): (Vec<usize>, Vec<usize>) =
-            (first..first + here).partition(|i| starts.is_rounded(*i));
+            (first..first + count).partition(|i| starts.is_rounded(*i));
         for (rows, round) in [(sharp, false), (round, true)] {
             for (k, eight) in rows.chunks(LANES).enumerate() {
                 if k % 16 == 15 && !still() {
@@ -74,7 +69,8 @@ fn all(
     }))
 }
 
-/// Answers at most eight drifts with the centre at rest, all on sharp rims or all on rounded ones.
+/// Computes the ends of at most eight drifts with the centre at rest, all on sharp rims or all on rounded
+/// ones.
 fn at_rest(starts: &DriftStarts<'_>, eight: &[usize], round: bool, first: usize, out: &mut DriftOutput<'_>) {
     let mut rows = [starts.row(eight[0]); LANES];
     for (row, i) in rows.iter_mut().zip(eight) {
@@ -108,7 +104,7 @@ pub enum Question {
     Stable,
 }
 
-/// Number of values of an answer.
+/// Number of values of the answer to a question.
 pub const WIDTH: usize = 5;
 
 /// Answers the question with the value `x[k]` for the drift with the index `of[k]`, for all k: [`WIDTH`] numbers each,

@@ -1,11 +1,12 @@
-//! Drifts with the centre at rest, eight at a time, if they go to the face or to the side without a ridge on the way.
+//! Drifts with the centre at rest, eight at a time, if they go to the face or to the side without crossing a
+//! ridge.
 //!
 //! ```text
 //! t = D sum W_k p w_k^(p-1) E'/P,   theta_k = theta_e + D w_k^p          sixteen nodes of Gauss, and twelve; 32 and 24
 //! ```
-//! The exponent p is 1 on the way to the side; on the way to the face it is 2 if a single law gives half-integer powers
-//! of theta, else 4. The lanes answer where n and m are not small at the start, E' is not small beside its terms at any
-//! node, and the two rules agree.
+//! The exponent p is 1 for a drift to the side. For a drift to the face it is 2 if a single law gives
+//! half-integer powers of theta, else 4. The lanes have a result where n and m are not small at the start, E'
+//! is not small beside its terms at any node, and the two rules agree.
 
 use super::columns::DriftRow;
 use crate::laws::body::{Shape, beyond};
@@ -41,13 +42,13 @@ fn rules(fine: usize, coarse: usize) -> Vec<GaussNode> {
     all
 }
 
-/// Fraction of their terms below which n, m and E' count as small.
+/// Fraction of their terms below which n, m and E' count as small, and the lanes give no result.
 const SMALL: f64 = 0.02;
 
 /// Relative difference up to which the two rules agree; the fine rule then has 4/3 as many digits as the coarse one.
 const AGREE: f64 = 2e-11;
 
-/// The goal of a row: its end and inclination, the exponent p, and whether the time is finite.
+/// The goal of a row: its end and inclination, the exponent p, and whether the time to the end is finite.
 #[derive(Debug, Clone, Copy)]
 struct DriftGoal {
     end: End,
@@ -56,7 +57,7 @@ struct DriftGoal {
     finite: bool,
 }
 
-/// The ends of eight drifts, with their inclinations and times; None where the lanes have no answer.
+/// The ends of eight drifts, with their inclinations and times; None where the lanes have no result.
 pub(crate) fn stops<const ROUND: bool>(
     level: Option<Level>,
     rows: &[DriftRow; LANES],
@@ -87,7 +88,7 @@ pub(crate) fn stops<const ROUND: bool>(
     }
     core::array::from_fn(|k| {
         let task = tasks[k]?;
-        // The time is NaN where the lanes have no answer.
+        // The time is NaN where the lanes have no result.
         if times[k].is_nan() || times[k] <= 0.0 {
             return None;
         }
@@ -96,7 +97,7 @@ pub(crate) fn stops<const ROUND: bool>(
     })
 }
 
-/// The goal of a row; None if the lanes cannot take it.
+/// The goal of a row; None if the lanes cannot compute this drift.
 fn task(row: &DriftRow) -> Option<DriftGoal> {
     let [ell, i1, i3, _, rho, most] = row.body;
     let theta = row.state[0];
@@ -163,13 +164,13 @@ impl Packed {
             theta: rows.each_ref().map(|row| row.state[0]),
             goal: task(&|t| t.goal, 0.0),
             power: task(&|t| t.power, 1.0),
-            // A drift that never stops has no time on which the rules can agree.
+            // The time of a drift that never stops is infinite, and the rules need not agree on it.
             agree: task(&|t| if t.finite { AGREE } else { f64::MAX }, 0.0),
         }
     }
 }
 
-/// The times to the ends; NaN where the lanes have no answer, and any number in lanes without a goal.
+/// The times to the ends; NaN where the lanes have no result, and any number in lanes without a goal.
 #[inline(always)]
 fn times<T: SideBySide, const ROUND: bool>(like: T, packed: &Packed, nodes: &[GaussNode]) -> T {
     let shape = Shape::of(packed.shape.each_ref().map(|x| like.load(x)));
@@ -184,7 +185,7 @@ fn times<T: SideBySide, const ROUND: bool>(like: T, packed: &Packed, nodes: &[Ga
         power.select_lt(number(1.5), number(*linear), high)
     };
     let reach = theta - goal;
-    // On the way down E' is positive.
+    // E' is positive where the inclination falls.
     let way = zero.select_lt(reach, one, -one);
     let mut least = one;
     let mut sum = [zero; 2];

@@ -1,7 +1,7 @@
-//! Drifts of rolling bodies in SIMD lanes, which are refilled.
+//! Drifts of rolling bodies in SIMD lanes; a lane whose drift has left it takes the next one.
 //!
-//! A lane follows its drift up to the step in which the drift may end. Then the drift takes this step alone, as a single
-//! drift does, and finds its end there. A drift that goes on comes into a lane again.
+//! A lane follows its drift up to the step in which the drift may end. That step is taken outside the lanes,
+//! as for a single drift, and finds the end. A drift that does not end there enters a lane again.
 
 use super::columns::{DriftOutput, DriftRow, DriftStarts};
 use crate::error::Error;
@@ -20,8 +20,8 @@ use crate::numbers::in_lanes;
 use crate::numbers::side_by_side::{MOST as LANES, SideBySide, zero};
 use fearless_simd::Level;
 
-/// Number of margins in a lane: those of a single drift, the begin of the tail or the end of the precession, and the
-/// place where the inclination is counted from the other end.
+/// Number of margins in a lane: those of a single drift, the beginning of the tail or the end of the
+/// precession, and the inclination at which counting changes to the other end of [0, pi].
 const DRIFT_MARGINS: usize = rolling::DRIFT_MARGINS + 2;
 
 const _: () = assert!(4 + COUNT + DRIFT_NUMBERS <= NUMBERS);
@@ -33,7 +33,6 @@ struct DriftKind {
     present: [bool; COUNT],
 }
 
-/// Bodies in lanes that drift.
 #[derive(Clone, Copy)]
 struct DriftLanes<T> {
     of: Circular<T>,
@@ -44,7 +43,7 @@ struct DriftLanes<T> {
 }
 
 impl<T: SideBySide> DriftLanes<T> {
-    /// Arbitrary bodies, before the first drift.
+    /// Placeholder bodies for lanes without a drift.
     #[inline(always)]
     fn new(zero: T, kind: DriftKind) -> Self {
         let one = zero.splat(1.0);
@@ -143,7 +142,6 @@ struct Drifts<'a, 'b, 'c> {
 }
 
 impl Drifts<'_, '_, '_> {
-    /// The next drift, from its start.
     fn next(&mut self) -> Option<DriftTask> {
         loop {
             let i = *self.rows.next()?;
@@ -202,8 +200,8 @@ fn begin(row: &DriftRow) -> Result<(Rolling<'static>, Numbers<f64>), Error> {
     Rolling::begin(&body, &State::from(row.state), &row.losses)
 }
 
-/// Answers the drifts from `first` on, as many as `out` has room for. Drifts under the same laws share their lanes: a law
-/// without a coefficient would not change a drift, but its rates may overflow.
+/// Computes the ends of the drifts from `first` on, for all rows of `out`. Only drifts under the same laws
+/// share their lanes: a law with the coefficient 0 would not change a drift, but its rates may overflow.
 pub(crate) fn stops(
     level: Option<Level>,
     starts: &DriftStarts<'_>,

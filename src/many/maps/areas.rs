@@ -11,10 +11,11 @@ use core::f64::consts::FRAC_PI_2;
 /// The sums of the weights of the inclinations at which each body is in each [`Region`], for each set of weights
 /// (weights of 1 give a count). The result is row-major (body, set, code), with eight codes.
 ///
-/// `theta` ascends. No map is made. For a sharp rim bisection finds the changes of sign, and every inclination is
-/// evaluated if a sign is in doubt; for a rounded rim the curves between the regions are solved for, and single
-/// inclinations are evaluated only around them. The sums equal those of the map; two tests of `sweep` check it.
-/// `threads`, `go_on` and the error are as for [`portrait`](super::portrait); None if the work is not finished.
+/// `theta` ascends. The map itself is not computed. For a sharp rim bisection finds the changes of sign, and
+/// every inclination is evaluated if a sign is in doubt; for a rounded rim the curves between the regions are
+/// solved for, and single inclinations are evaluated only around them. The sums equal those of the map; two
+/// tests of `sweep` check it. `threads`, `go_on` and the error are as for [`portrait`](super::portrait); None
+/// if the work is not finished.
 ///
 /// # Panics
 /// Panics if theta and weights differ in length, or theta does not ascend.
@@ -54,7 +55,8 @@ pub fn areas<const SETS: usize>(
     Ok(all.then_some(areas))
 }
 
-/// The inclinations, the sums of their weights up to each, and the index and tangents of the ones in (0, pi/2].
+/// The inclinations, the sums of their weights up to each, and the first index and the tangents of those in
+/// (0, pi/2].
 struct Grid<'a, const SETS: usize> {
     theta: &'a [f64],
     sums: &'a [[f64; SETS]],
@@ -62,13 +64,14 @@ struct Grid<'a, const SETS: usize> {
     tangents: &'a [f64],
 }
 
-/// Bodies in a block of `areas`: most bodies take half a microsecond, some as long as their part of a map.
+/// Number of bodies in a block of `areas`: most bodies take half a microsecond, some as long as their part of
+/// a map.
 const SURVEYED: usize = 256;
 
-/// Number of inclinations on each side of a change that are evaluated one by one.
+/// Number of inclinations that are evaluated one by one on each side of a computed change of region.
 const AROUND: usize = 2;
 
-/// The areas of one body; `asked` is scratch room for the ranges of inclinations that are evaluated.
+/// The areas of one body; `asked` is a buffer for the ranges of inclinations that are evaluated.
 fn areas_of<const SETS: usize>(
     &Grid { theta, sums, first, tangents }: &Grid<'_, SETS>,
     body: Option<&Body>,

@@ -6,7 +6,8 @@ use crate::numbers::side_by_side::SideBySide;
 /// steady state at all.
 pub type Extrema = Option<[(f64, usize, usize); 2]>;
 
-/// The minimum of x and of -x in each lane, with its place: the number of the group of bodies in lanes, row by row.
+/// The minimum of x and of -x in each lane, each with its place: the index of the group of lanes, counted row
+/// by row.
 #[derive(Clone, Copy)]
 pub(super) struct Best<T>([(T, T); 2]);
 

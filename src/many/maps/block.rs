@@ -1,36 +1,39 @@
-//! A part of a map with its arrays of doubles or of single numbers. The kind is decided where numbers are stored, so
-//! that the computation is compiled once for both kinds, apart from the rate of a sharp rim.
+//! A part of a map with its arrays in double or in single precision. The precision matters only where numbers
+//! are stored, so that the computation is compiled once for both, apart from the rate of a sharp rim.
 
 use super::Portrait;
+use crate::many::columns::Split;
 use crate::numbers::Narrow;
 use crate::numbers::side_by_side::MOST;
 use crate::states::stability::{SteadyPoint, Wanted};
 
-/// An array of doubles or of single numbers.
+/// An array in double or in single precision.
 #[derive(Debug)]
 pub enum Slot<'a> {
     Double(&'a mut [f64]),
     Single(&'a mut [f32]),
 }
 
-impl<'a> Slot<'a> {
+impl Split for Slot<'_> {
+    fn split(self, count: usize) -> (Self, Self) {
+        match self {
+            Self::Double(x) => {
+                let (first, rest) = x.split(count);
+                (Self::Double(first), Self::Double(rest))
+            }
+            Self::Single(x) => {
+                let (first, rest) = x.split(count);
+                (Self::Single(first), Self::Single(rest))
+            }
+        }
+    }
+}
+
+impl Slot<'_> {
     fn len(&self) -> usize {
         match self {
             Self::Double(x) => x.len(),
             Self::Single(x) => x.len(),
-        }
-    }
-
-    fn split_at(self, at: usize) -> (Self, Self) {
-        match self {
-            Self::Double(x) => {
-                let (first, rest) = x.split_at_mut(at);
-                (Self::Double(first), Self::Double(rest))
-            }
-            Self::Single(x) => {
-                let (first, rest) = x.split_at_mut(at);
-                (Self::Single(first), Self::Single(rest))
-            }
         }
     }
 
@@ -74,7 +77,7 @@ impl Part for Option<Slot<'_>> {
     }
 }
 
-/// Stores the lanes that fit; with `gaps` only those that are known.
+/// Stores the lanes that fit; with `gaps` only those that are `known`.
 #[inline(always)]
 fn put<T: Narrow, F>(
     out: &mut [F],
@@ -100,20 +103,18 @@ pub(crate) struct Block<'a> {
     region: Option<&'a mut [u8]>,
 }
 
+impl Split for Block<'_> {
+    fn split(self, points: usize) -> (Self, Self) {
+        let (numbers, later) = self.numbers.split(points);
+        let (region, later_region) = self.region.split(points);
+        (Self { numbers, region }, Self { numbers: later, region: later_region })
+    }
+}
+
 impl<'a> Block<'a> {
     pub(super) fn of<F: super::Cell>(out: Portrait<'a, F>) -> Self {
         let numbers = [out.rate, out.kappa_rolling, out.kappa_smooth, out.energy].map(|x| x.map(F::slot));
         Self { numbers, region: out.region }
-    }
-
-    /// The first `points` of each array, and the rest.
-    pub(super) fn split(self, points: usize) -> (Self, Self) {
-        let (mut first, mut rest) = ([const { None }; 4], [const { None }; 4]);
-        for ((first, rest), x) in first.iter_mut().zip(&mut rest).zip(self.numbers) {
-            (*first, *rest) = x.map(|x| x.split_at(points)).unzip();
-        }
-        let (region, later) = self.region.map(|x| x.split_at_mut(points)).unzip();
-        (Self { numbers: first, region }, Self { numbers: rest, region: later })
     }
 
     pub(super) fn fits(&self, points: usize) -> bool {
@@ -135,7 +136,6 @@ impl<'a> Block<'a> {
         matches!(&self.numbers, [Some(_), None, None, None]) && self.region.is_none()
     }
 
-    /// The quantities that are wanted at each point.
     #[inline(always)]
     pub(super) fn wanted(&self) -> Wanted {
         let [rate, rolling, smooth, energy] = self.numbers.each_ref().map(Option::is_some);
@@ -143,7 +143,7 @@ impl<'a> Block<'a> {
         Wanted { rate, squared: false, single, rolling, smooth, energy, region: self.region.is_some() }
     }
 
-    /// Stores the first `count` points at `start`; with `gaps` only the quantities that are known.
+    /// Stores the first `count` points at `start`; with `gaps` only the quantities that are not NaN.
     #[inline(always)]
     pub(super) fn put<T: Narrow>(&mut self, start: usize, count: usize, found: &SteadyPoint<T>, gaps: bool) {
         let [rate, rolling, smooth, energy] = &mut self.numbers;
@@ -160,7 +160,7 @@ impl<'a> Block<'a> {
             out.store(start, count, found.smooth, gaps);
         }
         if let Some(out) = &mut self.region {
-            // A body of the other kind of rim has the code 0, `Region::Invalid`.
+            // In the lane of a body with the other kind of rim the code is 0, `Region::Invalid`.
             put(&mut out[start..start + count], found.region, gaps, |code| code > 0.0, |code| code as u8);
         }
     }

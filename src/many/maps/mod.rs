@@ -11,6 +11,7 @@ mod block;
 mod rates;
 mod survey;
 
+use super::columns::{RowBlock, Split, blocks, fit, rows};
 use super::threads::share;
 use crate::error::{Error, room, spare};
 use crate::laws::body::Body;
@@ -25,11 +26,12 @@ pub use areas::areas;
 pub use best::Extrema;
 pub use survey::extrema;
 
-/// Points in a block: a thread takes one block at a time, and between blocks the caller is asked whether to go on.
+/// Number of points in a block: a thread takes one block at a time, and between blocks the caller decides
+/// whether to go on.
 const POINTS_PER_BLOCK: usize = 1 << 16;
 
-/// A number in which a map can be stored: a double, or a single number, whose rates are within 1.51 ulp of 2^-24 of
-/// those of doubles.
+/// A number in which a map can be stored: in double precision, or in single precision, where the relative
+/// error of a rate is at most 1.51 times 2^-24.
 pub trait Cell: sealed::Slotted {}
 
 impl Cell for f64 {}
@@ -144,7 +146,7 @@ pub(super) struct Columns {
     pub rounded: Option<Vec<Rounded<[f64; LANES]>>>,
 }
 
-/// The bodies in columns; None if `go_on` says to stop.
+/// The bodies in columns; None if `go_on` returns false.
 fn gathered(
     bodies: &[Option<Body>],
     only_rate: bool,
@@ -201,7 +203,7 @@ fn near<C>(columns: &[C]) -> impl Iterator<Item = (usize, &[C])> {
     columns.chunks(group).enumerate().map(move |(i, some)| (i * group * LANES, some))
 }
 
-/// Fills one block of a map; with `gaps` only the points that are known.
+/// Fills one block of a map; with `gaps` only the points that are not NaN in these columns.
 fn fill_at(
     level: Option<Level>,
     theta: &[f64],
@@ -257,8 +259,8 @@ pub fn points<F: Cell>(
     mut go_on: impl FnMut(f64) -> bool,
 ) -> Result<bool, Error> {
     let columns = [theta, ell, bore, fillet];
-    let count = columns.iter().map(|x| x.len()).find(|n| *n != 1).unwrap_or(1);
-    assert!(columns.iter().all(|x| x.len() == 1 || x.len() == count), "columns of different lengths");
+    let count = rows(columns.into_iter());
+    assert!(fit(columns.into_iter(), count), "columns of different lengths");
     let out = Block::of(out);
     assert!(out.fits(count), "an array does not fit");
     points_of(columns, count, out, threads, &mut go_on)
@@ -273,15 +275,10 @@ fn points_of(
     go_on: &mut dyn FnMut(f64) -> bool,
 ) -> Result<bool, Error> {
     spare()?;
-    let (mut rest, mut blocks) = (out, room(count.div_ceil(POINTS_PER_BLOCK))?);
-    for first in (0..count).step_by(POINTS_PER_BLOCK) {
-        let here = POINTS_PER_BLOCK.min(count - first);
-        let (block, after) = rest.split(here);
-        blocks.push((columns.map(|x| if x.len() == 1 { x } else { &x[first..first + here] }), here, block));
-        rest = after;
-    }
+    let blocks = blocks(out, count, POINTS_PER_BLOCK)?;
     let level = level();
-    Ok(share(blocks, threads, go_on, |(columns, count, block), _| {
+    Ok(share(blocks, threads, go_on, |RowBlock { first, count, out: block }, _| {
+        let columns = columns.map(|x| if x.len() == 1 { x } else { &x[first..first + count] });
         in_lanes!(
             level,
             simd => scatter_lanes(zero(simd), columns, count, block),
@@ -317,8 +314,8 @@ fn scatter<T: Narrow>(like: T, columns: [&[f64]; 4], count: usize, mut block: Bl
     }
 }
 
-/// The tubes from `start` on. Those with rounded edges are computed apart, because moments with twice the digits are much
-/// code.
+/// The tubes from `start` on. Those with rounded edges have their own function, because moments with twice
+/// the digits are much code.
 #[inline(always)]
 fn tubes<T: SideBySide>(like: T, of: [&[f64]; 3], start: usize) -> Column<T> {
     if of[2] == [0.0] {

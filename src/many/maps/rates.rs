@@ -12,7 +12,7 @@ use crate::states::steady::{
 use core::f64::consts::FRAC_PI_2;
 use fearless_simd::{Level, Simd, SimdBase, f32x16, f64x8};
 
-/// Machines without SIMD lanes have no columns of the numbers of the rate alone.
+/// The message of an unreachable branch: without SIMD lanes there are no columns for the rate alone.
 const ALONE: &str = "columns of the rate need lanes";
 
 /// The numbers of eight bodies that enter the rate: ell, and the inertia excess as a sum.
@@ -76,7 +76,6 @@ fn both<S: Simd>(like: f64x8<S>, [one, other]: [&[f64; LANES]; 2]) -> Pair<f64x8
     Pair(like.load(one), like.load(other))
 }
 
-/// Fills some rows of a map with the rate.
 pub(super) fn rows_at(
     level: Option<Level>,
     theta: &[f64],
@@ -107,7 +106,7 @@ fn rows<S: Simd>(like: f64x8<S>, theta: &[f64], columns: &[Lean], width: usize, 
                     }
                 }
                 Slot::Single(out) => {
-                    // Two columns of doubles fill one vector of single numbers.
+                    // Two columns of doubles fill one vector of single-precision numbers.
                     let (theta, angle) = (Pair(theta, theta), quick_angle(Pair(theta, theta)));
                     let (whole, rest) = out[part].as_chunks_mut::<{ 2 * LANES }>();
                     let (full, last) = columns.split_at(2 * whole.len());
@@ -130,7 +129,8 @@ pub(super) fn extremes_at(level: Option<Level>, theta: &[f64], columns: &[Lean],
     in_lanes!(level, simd => extremes(zero(simd), theta, columns, width), else unreachable!("{ALONE}"))
 }
 
-/// Number of rows that are examined together; all are skipped if no inclination between their ends can be extreme.
+/// Number of rows whose columns are examined together: a column is skipped if no inclination between the
+/// first and the last row can be extreme.
 const RUN: usize = 16;
 
 #[inline(always)]
@@ -177,7 +177,8 @@ pub(super) fn scatter<S: Simd>(like: f64x8<S>, columns: [&[f64]; 3], count: usiz
     if let Slot::Single(out) = out {
         return scatter_single(Pair(like, like), columns, out);
     }
-    // Whole groups of bodies with one bore share its division; groups of one body share the whole excess.
+    // Groups of eight points with one bore share the division in their moments; with one body they share the
+    // whole excess.
     let begun = match out {
         Slot::Double(out) if bore.len() == 1 && theta.len() == count => {
             let (out, bore) = (out.as_chunks_mut::<LANES>().0, like.splat(bore[0]));

@@ -1,5 +1,5 @@
-//! The extrema of the quantities of a map, without the map: extrema are kept block by block, so that no array as large
-//! as a map is ever held.
+//! The extrema of the quantities of a map, kept block by block, so that no array as large as a map is ever
+//! stored.
 
 use super::best::{Best, Extrema};
 use super::rates::{Lean, extremes_at};
@@ -127,7 +127,6 @@ fn extrema_of<C: Sync>(
     }))
 }
 
-/// The extrema of one block.
 #[inline(always)]
 fn extremes<T: Narrow, C: Stored>(
     like: T,

@@ -1,11 +1,11 @@
-//! The starts of an ensemble and the arrays for its answers, as columns.
+//! The starts of an ensemble and the arrays for its results, as columns.
 
 use super::{Answer, INVALID};
-use crate::error::{Error, room};
+use crate::error::Error;
 use crate::laws::body::Body;
 use crate::laws::loss::{COUNT, Losses};
 use crate::laws::state::State;
-use crate::many::columns::{at, fit, rows};
+use crate::many::columns::{Split, at, fit, rows};
 use crate::motions::Start;
 use crate::numbers::codes::coded;
 
@@ -94,12 +94,11 @@ impl<'a> MotionStarts<'a> {
         fit(self.columns(), self.len())
     }
 
-    /// Whether the rim of the body has a fillet.
     pub(super) fn is_rounded(&self, i: usize) -> bool {
         at(self.bodies[3], i) != 0.0
     }
 
-    /// The body of motion `i`, or the error that refuses it.
+    /// The body of motion `i`, or the error of an invalid body.
     pub(super) fn body(&self, i: usize) -> Result<Body, Error> {
         let [ell, i1, i3, fillet, theta_end] = self.bodies.map(|x| at(x, i));
         Body::of_numbers([ell, i1, i3, f64::NAN, fillet, theta_end])
@@ -150,13 +149,13 @@ coded! {
         Phases = 10,
         /// Time at which the last phase of rolling begins; NaN if no phase rolls, as are the next four numbers.
         RollingTime = 11,
-        /// The inclination at that time.
+        /// The inclination at the time `RollingTime`.
         RollingTheta = 12,
-        /// The angular velocity w1 at that time.
+        /// The angular velocity w1 at the time `RollingTime`.
         RollingW1 = 13,
-        /// The angular velocity w2 at that time.
+        /// The angular velocity w2 at the time `RollingTime`.
         RollingW2 = 14,
-        /// The angular velocity w3 at that time.
+        /// The angular velocity w3 at the time `RollingTime`.
         RollingW3 = 15,
     }
 }
@@ -210,7 +209,7 @@ impl Summary {
     }
 }
 
-/// The arrays for the answers; an answer whose array is `None` is not computed.
+/// The arrays for the results; a result whose array is `None` is not computed.
 #[derive(Debug)]
 pub struct MotionOutput<'a> {
     /// theta, w1, w2, w3, row-major (motion, time); NaN after the end of a motion.
@@ -233,53 +232,24 @@ pub struct MotionOutput<'a> {
     pub status: &'a mut [u8],
 }
 
-/// Columns of one kind; None if they are not wanted.
-type Wished<'a, const N: usize> = Option<[&'a mut [f64]; N]>;
-
-/// The first `at` numbers of each column, and the rest of each column.
-fn parted<const N: usize>(columns: Wished<'_, N>, at: usize) -> (Wished<'_, N>, Wished<'_, N>) {
-    let Some(columns) = columns else { return (None, None) };
-    let mut later = [const { None }; N];
-    let mut rests = later.iter_mut();
-    let first = columns.map(|x| {
-        let (first, rest) = x.split_at_mut(at);
-        if let Some(place) = rests.next() {
-            *place = Some(rest);
-        }
-        first
-    });
-    (Some(first), Some(later.map(Option::unwrap_or_default)))
-}
-
-/// Columns of one block of motions.
-pub(super) struct BlockColumns<'a> {
-    pub first: usize,
-    pub count: usize,
+/// Columns of a block of motions, with the number of times of each.
+pub(super) struct TimedOutput<'a> {
     pub out: MotionOutput<'a>,
+    pub times: usize,
 }
 
-impl<'a> MotionOutput<'a> {
-    /// Output of errors, methods and status codes alone.
-    pub fn new(error: &'a mut [f64], method: &'a mut [u8], status: &'a mut [u8]) -> Self {
-        let summary = [const { None }; SUMMARIES];
-        Self { states: None, slips: None, last: None, last_slip: None, summary, error, method, status }
-    }
-
-    /// The columns of the first `count` motions, and those of the other motions.
-    fn split(self, count: usize, times: usize) -> (Self, Self) {
-        let (states, later_states) = parted(self.states, count * times);
-        let (slips, later_slips) = parted(self.slips, count * times);
-        let (last, later_last) = parted(self.last, count);
-        let (last_slip, later_last_slip) = parted(self.last_slip, count);
-        let mut later_summary = [const { None }; SUMMARIES];
-        let mut summary = [const { None }; SUMMARIES];
-        for (i, x) in self.summary.into_iter().enumerate() {
-            (summary[i], later_summary[i]) = x.map(|x| x.split_at_mut(count)).unzip();
-        }
-        let (error, later_error) = self.error.split_at_mut(count);
-        let (method, later_method) = self.method.split_at_mut(count);
-        let (status, later_status) = self.status.split_at_mut(count);
-        let later = Self {
+impl Split for TimedOutput<'_> {
+    fn split(self, count: usize) -> (Self, Self) {
+        let (out, times) = (self.out, self.times);
+        let (states, later_states) = out.states.split(count * times);
+        let (slips, later_slips) = out.slips.split(count * times);
+        let (last, later_last) = out.last.split(count);
+        let (last_slip, later_last_slip) = out.last_slip.split(count);
+        let (summary, later_summary) = out.summary.split(count);
+        let (error, later_error) = out.error.split(count);
+        let (method, later_method) = out.method.split(count);
+        let (status, later_status) = out.status.split(count);
+        let later = MotionOutput {
             states: later_states,
             slips: later_slips,
             last: later_last,
@@ -289,23 +259,16 @@ impl<'a> MotionOutput<'a> {
             method: later_method,
             status: later_status,
         };
-        (Self { states, slips, last, last_slip, summary, error, method, status }, later)
+        let out = MotionOutput { states, slips, last, last_slip, summary, error, method, status };
+        (Self { out, times }, Self { out: later, times })
     }
+}
 
-    /// The columns of each block of motions.
-    pub(super) fn blocks(
-        self,
-        (count, times): (usize, usize),
-        size: usize,
-    ) -> Result<Vec<BlockColumns<'a>>, Error> {
-        let (mut rest, mut blocks) = (self, room(count.div_ceil(size))?);
-        for first in (0..count).step_by(size) {
-            let here = size.min(count - first);
-            let (out, after) = rest.split(here, times);
-            blocks.push(BlockColumns { first, count: here, out });
-            rest = after;
-        }
-        Ok(blocks)
+impl<'a> MotionOutput<'a> {
+    /// Output of errors, methods and status codes alone.
+    pub fn new(error: &'a mut [f64], method: &'a mut [u8], status: &'a mut [u8]) -> Self {
+        let summary = [const { None }; SUMMARIES];
+        Self { states: None, slips: None, last: None, last_slip: None, summary, error, method, status }
     }
 
     pub(super) fn fits(&self, count: usize, times: usize) -> bool {
@@ -355,7 +318,7 @@ impl<'a> MotionOutput<'a> {
         self.tell(i, Answer::None, status, f64::NAN);
     }
 
-    /// Writes NaN for motion `i`, whose body or start is refused.
+    /// Writes NaN for motion `i`, whose body or start is invalid.
     pub(super) fn refuse(&mut self, i: usize, times: usize) {
         self.blank(i, times, INVALID);
     }

@@ -24,7 +24,7 @@ use crate::numbers::in_lanes;
 use crate::numbers::side_by_side::{SideBySide, zero};
 use fearless_simd::Level;
 
-/// Writes the answers of motion `i`.
+/// Writes the results of motion `i`.
 fn put(out: &mut MotionOutput<'_>, i: usize, found: &Followed, times: &[f64]) {
     if let Some(event) = found.motion.event.filter(|event| event.ending == Ending::Bounded) {
         out.blank(i, times.len(), BOUNDED);
@@ -110,7 +110,8 @@ impl<'a> MotionBlock<'a> {
         let mut walks = all.walks.into_iter();
         for i in 0..count {
             let (Some(fine), Some(rough)) = (walks.next(), walks.next()) else { return Ok(()) };
-            // The error estimate needs both runs; without the second run a single motion has no answer either.
+            // The error estimate needs both runs; if the second run fails, a single motion has no result
+            // either.
             match fine.and_then(BodyWalk::done).and_then(|found| Ok((found, rough.and_then(BodyWalk::done)?)))
             {
                 Ok((mut found, rough)) => {

@@ -1,4 +1,4 @@
-//! Motions in SIMD lanes: the choice of the series for each motion, and the answers from the series.
+//! Motions in SIMD lanes: the choice of the series for each motion, and the results from the series.
 
 use super::ends::{Marches, can};
 use super::rows::{StartLanes, in_a_row};
@@ -30,11 +30,12 @@ static TOOLS: LazyLock<Tools> = LazyLock::new(|| Tools {
 const TERMS: [usize; 6] = [8, 12, 20, 36, 52, 72];
 const MOST_PARTS: usize = 56;
 
-/// Number of series that a motion which may end tries: a march to its end costs less than the longer series.
+/// Number of series that are tried for a motion that may end: a march to its end costs less than the longer
+/// series.
 const SHORT: usize = 3;
 
-/// The index in `TERMS` of the shortest series that may answer a swing of this width (the larger |y| of its ends) with
-/// an error below `tol`; None for a swing that is too wide for one series.
+/// The index in `TERMS` of the shortest series that may have an error below `tol` for a swing of this width
+/// (the larger |y| of its ends); None for a swing that is too wide for one series.
 fn room(width: f64, tol: f64) -> Option<usize> {
     TERMS.iter().position(|terms| 1e4 * width.powi(*terms as i32 - 1) < tol)
 }
@@ -43,8 +44,8 @@ fn room(width: f64, tol: f64) -> Option<usize> {
 const TIMES_PER_BREATH: usize = 64;
 
 impl MotionBlock<'_> {
-    /// Answers the motions that the series and the marches can answer, on the best lanes of this machine; returns the
-    /// other motions.
+    /// Computes the motions for which a series or a march is precise enough, on the best lanes of this
+    /// machine; returns the other motions.
     pub fn run(
         &self,
         level: Option<Level>,
@@ -88,7 +89,8 @@ impl MotionBlock<'_> {
         left
     }
 
-    /// Answers motions by one series each, all on sharp rims or all on rounded ones; returns the other motions.
+    /// Computes motions by one series each, all on sharp rims or all on rounded ones; returns the other
+    /// motions.
     pub(super) fn answered<T: SideBySide>(
         &self,
         like: T,
@@ -141,12 +143,13 @@ impl MotionBlock<'_> {
         left
     }
 
-    /// The number of the series in `TERMS` that may answer the motions of this job.
+    /// How many of the series in `TERMS` are tried for the motions of this job.
     fn series(&self, round: bool) -> usize {
         if !self.job.beyond && can(self.job, round) { SHORT } else { TERMS.len() }
     }
 
-    /// The motions sorted by the series that may answer them, and the motions that no series may answer.
+    /// The motions sorted by the shortest series that may be precise enough, and the motions that are too
+    /// wide for any.
     fn sorted<T: SideBySide>(
         &self,
         like: T,
@@ -173,9 +176,9 @@ impl MotionBlock<'_> {
         (kernels, refused)
     }
 
-    /// Writes the answers of the motions for which the series promises the error. A motion whose error is too large goes to
-    /// `next`, the motions of the next longer series, if there is one. All other motions go to `left`, since a longer series
-    /// does not tell whether they leave the model.
+    /// Writes the results of the motions for which the series is precise enough. A motion with too large an
+    /// error goes to `next`, the motions of the next longer series, if there is one. The other motions, those
+    /// that may leave the model, go to `left`, since a longer series does not find out whether they do.
     fn take<T: SideBySide>(
         &self,
         swings: &dyn Swung<T>,
@@ -207,8 +210,8 @@ impl MotionBlock<'_> {
         }
     }
 
-    /// Writes the states at all times, by the series or by RK4 steps, and returns the greatest error of each lane, NaN
-    /// where the series does not promise the error; None if `go_on` says to stop.
+    /// Writes the states at all times, by the series or by RK4 steps, and returns the greatest error of each
+    /// lane, NaN where the series is not precise enough; None if `go_on` returns false.
     fn write_states<T: SideBySide>(
         &self,
         swings: &dyn Swung<T>,
@@ -268,8 +271,8 @@ impl MotionBlock<'_> {
         Some(worst)
     }
 
-    /// Writes the periods and the precessions that are wanted. Their errors count as those of the states: `worst` keeps
-    /// the greatest error of each lane, NaN where the series does not promise it.
+    /// Writes the periods and the precessions that are wanted. Their errors count as those of the states:
+    /// `worst` keeps the greatest error of each lane, NaN where the series is not precise enough.
     fn write_periods<T: SideBySide>(
         &self,
         swings: &dyn Swung<T>,
@@ -289,7 +292,8 @@ impl MotionBlock<'_> {
         put(Summary::PrecessionPerPeriod, &|| swings.precession_per_period());
     }
 
-    /// Writes the other sums, and returns which lanes surely stay in the model up to the last time, with a finite error.
+    /// Writes the other summaries, and returns which lanes have a finite error and certainly stay in the
+    /// model up to the last time.
     fn sure<T: SideBySide>(
         &self,
         swings: &dyn Swung<T>,
@@ -339,17 +343,17 @@ impl MotionBlock<'_> {
     }
 }
 
-/// Greatest error that is accepted of a series where rounding is most of the error.
+/// Greatest error above the tolerance that is accepted of a series, if at least half of it is rounding.
 const PROMISE: f64 = 1e-9;
 
-/// The error of a series if it is good enough, else NaN. Where rounding, `least`, is most of the error, no other method
-/// is better.
+/// The error of a series if it is small enough, else NaN. Where rounding, `least`, is most of the error, no
+/// other method would be more precise.
 fn promised(tol: f64, error: f64, least: f64) -> f64 {
     if error < tol || error < (2.0 * least).min(PROMISE) { error } else { f64::NAN }
 }
 
-/// An RK4 step that turns the precession and the nutation by less than this angle, in radians, is neither refused nor
-/// warned of.
+/// An RK4 step that turns the precession and the nutation by less than this angle, in radians, is small
+/// enough to be neither an error nor worth a warning.
 const CAREFUL: f64 = 0.25;
 
 #[cfg(test)]
@@ -358,7 +362,7 @@ mod tests {
     use super::*;
     use crate::laws::contact::TableKind;
 
-    /// All answers for some motions, as bits.
+    /// All results of some motions, as bits.
     fn bits(
         run: impl Fn(&MotionBlock<'_>, usize, &mut MotionOutput<'_>) -> Vec<usize>,
         (table, fillet): (TableKind, f64),

@@ -6,12 +6,12 @@
 //! alone    `motion::roll`, one motion at a time
 //! flows    motions with friction or losses, each with its own steps (`flows`)
 //! ```
-//! Motions without friction and losses are solved by first integrals, eight at a time, where the estimated error stays
-//! below the error that is asked for. A swing without an end takes one series; all other motions take a march
-//! (`ends`), which computes no more than lies before the end. A motion that neither of these answers within the error
-//! is computed alone: one random start in a thousand. The method is chosen for each motion by itself, so that the
-//! result has the same bits for any number of threads, any SIMD width and any other motions in the call. RK4 at a fixed
-//! step is used on request (`steps`).
+//! Motions without friction and losses are solved by first integrals, eight at a time, where the estimated
+//! error stays below the tolerance. A swing without an end takes one series; all other motions take a march
+//! (`ends`), which goes no farther than the end. A motion for which neither is precise enough is computed
+//! alone: one random start in a thousand. The method is chosen for each motion by itself, so that the result
+//! has the same bits for any number of threads, any SIMD width and any other motions in the call. RK4 at a
+//! fixed step is used on request (`steps`).
 
 mod columns;
 mod ends;
@@ -27,6 +27,7 @@ mod steps;
 mod swung;
 mod walks;
 
+use super::columns::{RowBlock, blocks};
 use super::threads::share_aside;
 use crate::error::{Error, spare, spare_for, within};
 use crate::laws::contact::{Contact, TableKind};
@@ -34,12 +35,12 @@ use crate::laws::loss::Losses;
 use crate::motions::ask::{check, check_flow, check_times_after};
 use crate::motions::{Ask, Method};
 use crate::numbers::codes::coded;
-use columns::BlockColumns;
+use columns::TimedOutput;
 pub use columns::{MotionColumns, MotionOutput, MotionStarts, SUMMARIES, Summary};
 use fearless_simd::Level;
 use std::sync::OnceLock;
 
-/// The questions and options that are the same for all motions of a call.
+/// The options that are the same for all motions of a call.
 #[derive(Debug, Clone, Copy)]
 pub struct Job<'a> {
     /// The kind of table of all motions.
@@ -84,7 +85,7 @@ impl<'a> Job<'a> {
         self.table.contact()
     }
 
-    /// The question for one motion, with its own coefficients of the table if it has any.
+    /// The options of one motion, with its own coefficients of the table if it has any.
     fn ask(&self, coefficients: Option<[f64; 2]>, losses: Losses) -> Ask {
         Ask {
             table: self.table.with(coefficients.unwrap_or([self.mu; 2])),
@@ -97,7 +98,7 @@ impl<'a> Job<'a> {
         }
     }
 
-    /// Refuses a job that makes no sense for any motion.
+    /// Returns an error for options that are invalid for every motion.
     fn check(&self, flows: bool, own_tables: bool) -> Result<(), Error> {
         let ask = self.ask(None, Losses::NONE);
         if !flows {
@@ -138,8 +139,8 @@ pub const INVALID: u8 = 5;
 /// Status of a motion that was given up, because it hardly advances or changes too often between slipping and rolling.
 pub const BOUNDED: u8 = 8;
 
-/// Number of motions in a block: small enough that the caller is asked often and the data of a block need little
-/// memory.
+/// Number of motions in a block: small enough that the caller is asked often whether to go on, and that a
+/// block needs little memory.
 const MOTIONS_PER_BLOCK: usize = 2048;
 /// Number of motions with friction or losses in a block: each needs more memory, but a block should keep the lanes
 /// filled.
@@ -167,7 +168,7 @@ pub fn roll(
     roll_among(starts, job, out, (threads, false), &mut go_on)
 }
 
-/// The function [`roll`], where the calling thread may be one of the workers if its stack is `roomy`: some MiB.
+/// The function [`roll`], where the calling thread is one of the workers if its stack is `roomy`: some MiB.
 pub(crate) fn roll_among(
     starts: &MotionStarts<'_>,
     job: &Job<'_>,
@@ -188,16 +189,16 @@ pub(crate) fn roll_among(
         spare()?;
         (MOTIONS_PER_BLOCK * 8 / times.max(1)).clamp(16, MOTIONS_PER_BLOCK)
     };
-    let blocks = out.blocks((count, times), size)?;
+    let blocks = blocks(TimedOutput { out, times }, count, size)?;
     let level = crate::numbers::level();
     let failed = OnceLock::new();
     let mut go_on = |share| failed.get().is_none() && go_on(share);
-    let all = share_aside(blocks, (threads, roomy), &mut go_on, |mut block, still| {
-        let work = MotionBlock { starts, job, first: block.first };
+    let all = share_aside(blocks, (threads, roomy), &mut go_on, |RowBlock { first, count, out }, still| {
+        let (work, mut out) = (MotionBlock { starts, job, first }, out.out);
         let done = match (flows, starts.losses.is_some()) {
-            (true, true) => work.flow::<10>(level, block.count, &mut block.out, still),
-            (true, false) => work.flow::<9>(level, block.count, &mut block.out, still),
-            _ => conserved(&work, level, &mut block, still),
+            (true, true) => work.flow::<10>(level, count, &mut out, still),
+            (true, false) => work.flow::<9>(level, count, &mut out, still),
+            _ => conserved(&work, level, (count, &mut out), still),
         };
         if let Err(e) = done {
             // The first error is reported, and later errors are dropped.
@@ -207,26 +208,26 @@ pub(crate) fn roll_among(
     failed.into_inner().map_or(Ok(all), Err)
 }
 
-/// Answers a block of motions by first integrals: in lanes, and one at a time where the lanes have no answer.
+/// Computes a block of motions by first integrals: in lanes, and one at a time where the lanes have no
+/// result.
 fn conserved(
     work: &MotionBlock<'_>,
     level: Option<Level>,
-    block: &mut BlockColumns<'_>,
+    (count, out): (usize, &mut MotionOutput<'_>),
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<(), Error> {
-    for i in work.run(level, block.count, &mut block.out, go_on) {
+    for i in work.run(level, count, out, go_on) {
         if !go_on() {
             return Ok(());
         }
-        single::roll(work, i, &mut block.out, go_on)?;
+        single::roll(work, i, out, go_on)?;
     }
     Ok(())
 }
 
-/// A block of motions.
 struct MotionBlock<'a> {
     starts: &'a MotionStarts<'a>,
     job: &'a Job<'a>,
-    /// The first motion of the block.
+    /// The index of the first motion of the block.
     first: usize,
 }

@@ -22,7 +22,7 @@ fn column<T: SideBySide>(like: T, of: &[f64], first: usize) -> T {
 #[derive(Clone, Copy)]
 pub(super) struct StartLanes<T> {
     pub shape: Shape<T>,
-    /// The inclination at which something else than the rim lands; pi if nothing else lands.
+    /// The inclination at which something other than the rim lands; pi if nothing else lands.
     pub theta_end: T,
     /// Whether the rims are rounded, which holds for all of the bodies or for none.
     pub round: bool,

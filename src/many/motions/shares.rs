@@ -1,5 +1,5 @@
-//! Guards of speed: how many motions the series, the marches and the single motions answer. These counts are the same on
-//! every machine, and they show a change that hands motions to a slower method.
+//! How many motions one series, the marches and single motions compute. These counts are the same on every
+//! machine, and they show a change that hands motions to a slower method.
 
 use super::{Job, MotionBlock, MotionOutput, MotionStarts};
 use crate::laws::body::Body;
@@ -33,7 +33,8 @@ fn starts(kick: f64) -> Starts {
     (bodies, states)
 }
 
-/// Motions of 2,048 that one series does not answer, and those that lanes do not answer at all; None without lanes.
+/// The number of motions of 2,048 that one series does not compute, and of those that the lanes do not
+/// compute; None without lanes.
 fn left((bodies, states): &Starts, tol: f64, beyond: bool) -> Option<[usize; 2]> {
     let starts =
         MotionStarts::new(bodies.each_ref().map(Vec::as_slice), states.each_ref().map(Vec::as_slice));
@@ -47,7 +48,8 @@ fn left((bodies, states): &Starts, tol: f64, beyond: bool) -> Option<[usize; 2]>
     Some([marched.len(), work.run(level, COUNT, &mut out, &mut || true).len()])
 }
 
-/// For each tolerance at most so many motions of 2,048 need more than a series, and more than lanes.
+/// Asserts, for each tolerance, upper bounds of the numbers of motions that need more than one series, and
+/// that need to be computed alone.
 fn holds(kick: f64, beyond: bool, most: [(f64, [usize; 2]); 4]) {
     let starts = starts(kick);
     for (tol, most) in most {

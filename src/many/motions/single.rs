@@ -1,4 +1,4 @@
-//! Single motions with their ends, for the starts that the lanes cannot answer.
+//! Single motions with their ends, for the starts for which the lanes have no result.
 
 use super::{Answer, Job, MotionBlock, MotionOutput, Summary};
 use crate::error::{Error, room};
@@ -24,8 +24,8 @@ struct SingleMotion {
     answer: Answer,
 }
 
-/// The motion by the first integrals for a job that goes on beyond events, so that only a landing of the face ends the
-/// motion. None if the error is not finite, or if `go_on` says no.
+/// The motion by the first integrals for a job that goes on beyond events, so that only a landing of the face
+/// ends it. None if the error is not finite, or if `go_on` returns false.
 fn unwatched(
     swing: &Swing,
     start: &State,
@@ -96,7 +96,7 @@ fn followed(
     }
 }
 
-/// Computes motion `i` of a block alone and writes its answers.
+/// Computes motion `i` of a block alone and writes its results.
 pub(super) fn roll(
     work: &MotionBlock<'_>,
     i: usize,
@@ -131,7 +131,7 @@ pub(super) fn roll(
     if let Some(swing) = &swing {
         out.put(Summary::Period, i, swing.period());
         out.put(Summary::PrecessionPerPeriod, i, swing.angles_per_period().map_or(f64::NAN, |[phi, _]| phi));
-        // The errors of both count as those of the states.
+        // The error of a motion includes those of period and precession.
         if swing.period().is_finite() {
             let timed = if out.wants(Summary::Period) { swing.period_error() } else { 0.0 };
             let turned = if turning { swing.precession_error() } else { 0.0 };
@@ -151,7 +151,7 @@ pub(super) fn roll(
         for (kind, value) in extremes.into_iter().zip(found.unwrap_or([f64::NAN; 4])) {
             out.put(kind, i, value);
         }
-        // Where contact ends the normal force vanishes, so that rolling would need infinite friction.
+        // At lift-off the normal force vanishes, so that rolling would need infinite friction.
         if ending == Ending::LiftOff {
             out.put(Summary::FrictionCoefficientMax, i, f64::INFINITY);
         }

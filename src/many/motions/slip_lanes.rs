@@ -22,7 +22,7 @@ pub(super) struct Slips<T> {
 }
 
 impl<T: SideBySide> Slips<T> {
-    /// Arbitrary bodies, before the first task.
+    /// Placeholder bodies for lanes without a task.
     pub fn new(zero: T, dry: bool) -> Self {
         let one = zero.splat(1.0);
         let shape = Shape::of([zero, one, one, zero]);
@@ -50,7 +50,7 @@ impl<T: SideBySide> Flows<T, 8, 5> for Slips<T> {
     fn margins(&self, y: &[T; 8], seen: &SlipResponse<T>) -> [T; 5] {
         let (mut speed, mut room) = (y[0].splat(1.0), seen.room);
         if self.law.dry {
-            // Under dry friction `seen.room` is proportional to the speed of the slip.
+            // Under dry friction `seen.room` has a factor |u|, the speed of the slip.
             let whole = y[5].mac(y[5], y[6] * y[6]).sqrt();
             (speed, room) = (whole - self.over, room / whole);
         }

@@ -9,7 +9,8 @@
 use super::Job;
 use super::rows::StartLanes;
 use crate::laws::contact::reduced::Rates;
-use crate::numbers::{Real, arctan2, sin_cos};
+use crate::methods::rk4::change;
+use crate::numbers::{Real, arctan2, here, sin_cos};
 
 /// Number of steps between two calls of `go_on`.
 const STEPS_PER_BREATH: u64 = 4096;
@@ -21,28 +22,18 @@ fn derivative<T: Real>(rates: &Rates<T>, [s, c, w1, w2, w3]: [T; 5]) -> [T; 5] {
     [-(c * w2), s * w2, d1, d2, d3]
 }
 
-/// The sum `from + by k`.
-#[inline(always)]
-fn ahead<T: Real>(k: &[T; 5], by: f64, from: &[T; 5]) -> [T; 5] {
-    let by = k[0].splat(by);
-    let mut sum = *from;
-    for (sum, k) in sum.iter_mut().zip(k) {
-        *sum = k.mac(by, *sum);
-    }
-    sum
-}
-
 /// The numbers after one step.
 #[inline(always)]
-fn advance<T: Real>(rates: &Rates<T>, y: [T; 5], h: f64) -> [T; 5] {
-    let k = derivative(rates, y);
-    let sum = ahead(&k, h / 6.0, &y);
-    let k = derivative(rates, ahead(&k, h / 2.0, &y));
-    let sum = ahead(&k, h / 3.0, &sum);
-    let k = derivative(rates, ahead(&k, h / 2.0, &y));
-    let sum = ahead(&k, h / 3.0, &sum);
-    let k = derivative(rates, ahead(&k, h, &y));
-    ahead(&k, h / 6.0, &sum)
+fn advance<T: Real>(rates: &Rates<T>, mut y: [T; 5], h: f64) -> [T; 5] {
+    let rate = here(
+        #[inline(always)]
+        |y: &[T; 5]| derivative(rates, *y),
+    );
+    let change = change(rate, &y, &rate(&y), h);
+    for (y, change) in y.iter_mut().zip(change) {
+        *y = *y + change;
+    }
+    y
 }
 
 /// Motions after `made` whole steps from the start.

@@ -1,5 +1,5 @@
-//! The answers of a series for motions in lanes, as a trait object: the code that asks is compiled once, and not once
-//! for each number of terms.
+//! The results of a series for motions in lanes, as a trait object: the code that uses them is compiled once,
+//! and not once for each number of terms.
 
 use crate::motions::exact::lanes::{Grip, Midpoints, Swings};
 use crate::numbers::side_by_side::{SideBySide, apart};

@@ -1,7 +1,8 @@
-//! Walks side by side: the queues of flows that wait for SIMD lanes, and the treatment of the results of a lane.
+//! Walks side by side, and the queues in which their flows wait for SIMD lanes.
 //!
-//! A flow waits in the queue of those flows that obey the same laws. A walk takes alone the steps that a lane cannot
-//! take: a few steps, or all steps to its end.
+//! A walk follows one motion through its phases; a flow is a phase that is integrated by steps. Each kind of
+//! flow has its own queue. Steps that a lane cannot take, a few or all to the end, are taken outside the
+//! lanes.
 
 use super::lossy_lanes::LossyKind;
 use crate::error::Error;
@@ -10,7 +11,7 @@ use crate::methods::flow::schedule::{STEPS_ALONE, Waiting, follow};
 use crate::methods::flow::{Spent, until_tired};
 use crate::motions::halt::TIME;
 use crate::motions::path::BodyWalk;
-use crate::motions::path::lossy::FALLS;
+use crate::motions::path::lossy::LOSSY_NUMBERS;
 use crate::motions::walk::{Pause, Phases, WalkStep};
 use crate::numbers::side_by_side::{MOST, SideBySide};
 use core::f64::consts::PI;
@@ -27,7 +28,7 @@ pub(super) struct FlowTask<const N: usize> {
     patience: u64,
 }
 
-/// The kind of a flow; all lanes of a set have flows of one kind.
+/// The kind of a flow; the flows in lanes at one time are all of one kind.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Among {
     /// Slips; `dry` says whether the friction is dry and keeps a direction where the slip vanishes, unlike viscous
@@ -54,7 +55,7 @@ fn place<const N: usize>(walk: &BodyWalk<'_, N>) -> Option<(Among, [f64; NUMBERS
     numbers[..4].copy_from_slice(&[body.ell(), body.i1(), body.i3(), body.fillet()]);
     if let Some(lossy) = walk.lossy() {
         let law = LossyKind { contact: walk.contact(), round: !body.is_sharp(), present: lossy.present() };
-        numbers[4..4 + FALLS].copy_from_slice(&lossy.numbers());
+        numbers[4..4 + LOSSY_NUMBERS].copy_from_slice(&lossy.numbers());
         return lossy.is_free().then_some((Among::Lossy(law), numbers));
     }
     let slide = &walk.of.slide;
@@ -101,8 +102,8 @@ impl<const N: usize> Walks<'_, N> {
         }
     }
 
-    /// Continues a walk alone after a lane has stopped: from the state of the lane, with the step that the lane would
-    /// have taken.
+    /// Continues a walk outside the lanes after its lane has stopped: from the state of the lane, with the
+    /// step that the lane would have taken.
     fn handle(
         &mut self,
         task: &FlowTask<N>,
@@ -130,7 +131,7 @@ struct Queued<'a, 'b, const N: usize> {
     go_on: &'a mut dyn FnMut() -> bool,
 }
 
-/// The last of the K numbers of a lane is the time, which is number `TIME` of a walk.
+/// The last of the K numbers of a lane is the time, which has the index `TIME` in a walk.
 impl<const N: usize, const K: usize, const M: usize> Waiting<K, M> for Queued<'_, '_, N> {
     fn enter(&mut self, k: usize) -> Option<Entry<K, M>> {
         let next = self.all.queues[self.queue].1.pop_front()?;

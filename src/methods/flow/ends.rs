@@ -1,45 +1,48 @@
 //! The first margin that fails within a step.
 //!
 //! ```text
-//! long step   clear by the cubics through both ends and three of its stages, else halved
-//! closely     so is any step in which a margin varies by as much as it has left, and it is halved until each margin is a
-//!             cubic that falls once or has one minimum
-//! zero        by Newton's iteration if the margin only falls, else between the lowest of some parts of the step
+//! long step   halved until its parts are short, unless cubics through both ends and three stages show that
+//!             all margins stay positive
+//! CLOSELY     a short step is halved, too, where a margin varies by as much as its value, until each margin
+//!             is a cubic that falls once or has one minimum
+//! zero        by Newton's iteration if the margin only falls, else from its values at quarters of the step
 //! ```
-//! A part of a step is a step of its own, so that a zero has the accuracy of the step. Looked at closely, a margin that fails
-//! for a moment within a step fails for any tolerance. The flow hears of a minimum that stays positive by a little. Error: that
-//! of the steps.
+//! A part of a step is computed as a separate step, so that a zero has the accuracy of the step. With
+//! `CLOSELY`, a margin that fails only for a moment within a step is found at any tolerance. A minimum that
+//! is positive but small is reported to the flow ([`Flow::grazed`]). Error: that of the steps.
 
 use super::{Flow, FlowPlace};
 use crate::methods::rk8::{self, Stages};
 use crate::methods::search::{crossing, least};
 use crate::numbers::Dual;
 
-/// A step over more than this share of the longest time may hide a fall and a rise of a margin.
+/// Within a step longer than this share of the longest step that turning and nutation allow, a margin may
+/// fall and rise again; such a step is searched for that.
 const LONG: f64 = 0.1;
-/// Number of parts of a step at which a margin is evaluated that may fail within the step.
+/// Number of parts of a step at whose ends a margin that may fail within the step is evaluated.
 const PARTS: usize = 4;
-/// Number of halvings of a part that is not long.
+/// Largest number of halvings of a part that is short already.
 const HALVINGS: u32 = 10;
-/// A margin is a cubic if it misses that in the middle by less than this share of its variation.
+/// A margin is taken for the cubic through both ends if it differs from that in the middle by less than this
+/// share of its variation. A larger share would miss zeros, a smaller one halves more steps.
 const CUBIC: f64 = 0.02;
 const MARGIN_ROUNDING: f64 = 1e-15;
 
-/// The outlook of the margins within a step.
+/// How the margins behave within a step.
 enum Outlook {
     /// All stay positive.
     Clear,
-    /// All stay positive but those that fall through zero once.
+    /// Each stays positive or falls through zero once.
     Falls,
-    /// A margin may fall and rise.
+    /// A margin may become negative and positive again.
     Unsure,
 }
 
 /// The margins at both ends of a step, and their rates in sigma.
 type Sides<'a, const M: usize> = (&'a [Dual<f64>; M], &'a [Dual<f64>; M]);
 
-/// The first margin that fails within a step of `h` from a place, and its zero as a share of the step. The time of the step
-/// is the longest that turning and nutation allow, divided by `calms`.
+/// The first margin that fails within a step of `h` from a place, and its zero as a share of the step.
+/// `calms` is the longest time step that turning and nutation allow, divided by the time of this step.
 pub(super) fn failed<F: Flow<M>, const M: usize, const N: usize>(
     flow: &F,
     (from, h): (&FlowPlace<N>, f64),
@@ -48,7 +51,8 @@ pub(super) fn failed<F: Flow<M>, const M: usize, const N: usize>(
     both: Sides<'_, M>,
 ) -> Option<(f64, usize)> {
     let long = LONG * calms;
-    // A margin that rises from zero, as after an end that a flow goes on from, may still be negative in the middle.
+    // A margin that rises from zero, as after an event that a flow passes, may still be negative in the
+    // middle.
     let closely = F::CLOSELY && both.0.iter().all(|margin| margin.value > 0.0);
     if M == 0 || long >= 1.0 && !closely {
         return failure(flow, (from, h), both);
@@ -63,25 +67,25 @@ pub(super) fn failed<F: Flow<M>, const M: usize, const N: usize>(
     }
 }
 
-/// The variation of a margin within a step of `h`, as its ends show it.
+/// An estimate of the variation of a margin within a step of `h`, from its values and slopes at both ends.
 fn variation(a: Dual<f64>, b: Dual<f64>, h: f64) -> f64 {
     (b.value - a.value).abs() + h * (a.slope.abs() + b.slope.abs())
 }
 
-/// Whether a margin falls and rises between two places.
+/// Whether a margin has a minimum between two places.
 fn is_least(a: Dual<f64>, b: Dual<f64>) -> bool {
     a.slope < 0.0 && b.slope >= 0.0
 }
 
-/// Whether a margin varies by as much as it has left, or is a number no longer.
+/// Whether the variation of a margin is as large as the smaller of its values at the ends, or NaN.
 fn is_near(a: Dual<f64>, b: Dual<f64>, h: f64) -> bool {
     let left = a.value.min(b.value) - variation(a, b, h);
     left.is_nan() || left <= 0.0
 }
 
-/// The outlook of the margins within a step, by the cubics through both ends and three of its stages. A margin that stays
-/// positive must do so if it dips twice as far as its cubics do.
-#[cfg_attr(target_arch = "wasm32", inline(never))]
+/// How the margins behave within a step, by the cubics through both ends and three of its stages. A margin
+/// counts as positive only if it would be even with a dip twice as deep as that of the cubics.
+#[cfg_attr(short_code, inline(never))]
 fn outlook<F: Flow<M>, const M: usize, const N: usize>(
     flow: &F,
     (from, h): (&FlowPlace<N>, f64),
@@ -117,8 +121,8 @@ fn outlook<F: Flow<M>, const M: usize, const N: usize>(
     if fallen.contains(&true) { Outlook::Falls } else { Outlook::Clear }
 }
 
-/// The first margin that fails within a step. It is halved until its parts are not longer than `long`, and then at most
-/// as often as the second number says, until each margin is plain.
+/// The first margin that fails within a step. The step is halved until its parts are at most `long`; these
+/// are halved up to `halvings` times, until no margin is `Wild`.
 fn in_halves<F: Flow<M>, const M: usize, const N: usize>(
     flow: &F,
     (from, h): (&FlowPlace<N>, f64),
@@ -153,18 +157,18 @@ fn in_halves<F: Flow<M>, const M: usize, const N: usize>(
     early.or_else(|| late().map(|(x, i)| (0.5 + 0.5 * x, i)))
 }
 
-/// How a margin bends within a part of a step.
+/// The shape of a margin within a part of a step.
 #[derive(Clone, Copy, PartialEq)]
 enum Bend {
     /// It stays positive.
     Clear,
-    /// It falls through zero once, or has one minimum.
+    /// It falls through zero once, or has one minimum, as its cubic does.
     Plain,
     Wild,
 }
 
-/// How a margin bends with these values and rates at the ends of a part of `h` and in its middle, and a bound of it from
-/// below where it is clear.
+/// The shape of a margin in a part of length `h`, from its values and slopes at the ends and in the middle;
+/// and a lower bound of the margin, which is used where it is clear.
 fn bend(a: Dual<f64>, middle: Dual<f64>, b: Dual<f64>, h: f64) -> (Bend, f64) {
     let (rise, last, change) = (h * a.slope, h * b.slope, b.value - a.value);
     let (p, q) = (3.0 * change - 2.0 * rise - last, rise + last - 2.0 * change);
@@ -182,13 +186,13 @@ fn bend(a: Dual<f64>, middle: Dual<f64>, b: Dual<f64>, h: f64) -> (Bend, f64) {
     }
     let count = extrema.into_iter().filter(|x| *x > 0.0).count();
     let once = count == 0 || count == 1 && !(a.slope < 0.0 && b.slope < 0.0);
-    // What is not a number, or only rounding, is no plainer in halves.
+    // Halving the part does not help if the difference is NaN or a rounding error.
     let cubic = off.is_nan() || off <= CUBIC * variation(a, b, h) + MARGIN_ROUNDING;
     (if cubic && (once || off.is_nan()) { Bend::Plain } else { Bend::Wild }, low)
 }
 
 /// The first margin that fails within a step, by the cubics through both ends.
-#[cfg_attr(target_arch = "wasm32", inline(never))]
+#[cfg_attr(short_code, inline(never))]
 fn failure<F: Flow<M>, const M: usize, const N: usize>(
     flow: &F,
     (from, h): (&FlowPlace<N>, f64),
@@ -223,8 +227,8 @@ fn failure<F: Flow<M>, const M: usize, const N: usize>(
     first
 }
 
-/// An estimate of how low a margin comes between the ends of a step of `h`, where it may fall and rise: on a cubic through
-/// both ends, or on a line along either slope.
+/// A lower bound of a margin between the ends of a step of `h`, as far as the margin is the cubic through
+/// both ends: each slope lowers that cubic by at most 4/27 of `h` times the slope.
 fn lowest(a: Dual<f64>, b: Dual<f64>, h: f64) -> f64 {
     let least = a.value.min(b.value);
     if !is_least(a, b) {
@@ -234,9 +238,10 @@ fn lowest(a: Dual<f64>, b: Dual<f64>, h: f64) -> f64 {
     cubic.min(least - 0.15 * h * (b.slope - a.slope))
 }
 
-/// The zero within [0, 1] of a margin that falls through zero once, by Newton's iteration from the zero of the cubic with
-/// the values and slopes of the margin at both ends. That cubic is almost exact, and an iteration that moves by `NEAR`
-/// leaves an error of the square of that. None where the iteration leads elsewhere.
+/// The zero within [0, 1] of a margin that falls through zero once, by Newton's iteration from the zero of
+/// the cubic with the values and slopes of the margin at both ends. That cubic is almost exact, and an
+/// iteration that moves by less than `NEAR` leaves an error of the square of that. None if the iteration
+/// leaves [0, 1] or does not converge.
 pub(super) fn only_zero(on: impl Fn(f64) -> Dual<f64>, [begin, rise, end, last]: [f64; 4]) -> Option<f64> {
     const NEAR: f64 = 1e-8;
     let (square, cube) = (3.0 * (end - begin) - 2.0 * rise - last, 2.0 * (begin - end) + rise + last);
@@ -256,8 +261,8 @@ pub(super) fn only_zero(on: impl Fn(f64) -> Dual<f64>, [begin, rise, end, last]:
     None
 }
 
-/// The first zero within [0, 1] of a margin that may fail in this interval, from its values at both ends; or the place of
-/// its minimum and that minimum.
+/// The first zero within [0, 1] of a margin that may fail in this interval, from its values at both ends;
+/// without a zero, the place of its minimum and the minimum.
 fn first_zero(on: impl Fn(f64) -> f64, begin: f64, end: f64) -> Result<f64, (f64, f64)> {
     let mut values = [begin; PARTS + 1];
     for k in 1..=PARTS {

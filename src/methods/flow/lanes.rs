@@ -1,14 +1,14 @@
 //! Flows in SIMD lanes: each lane takes its own steps, as long as no event can lie within them.
 //!
 //! ```text
-//! sure     every m_i > 0 at the start of a step, at three places within it and at its end, and also between these places,
-//!          where m_i falls on one side and rises on the other: there it lies above the chords of both sides, made longer;
-//!          and the step ends before the next time that is asked for
+//! sure   every margin m_i is positive at the start, at three stages and at the end of a step; between two of
+//!        these, where m_i may have a minimum, the extended chords of the intervals on both sides meet above
+//!        zero; and the step ends before the next requested time
 //! ```
-//! A lane does not take a step that is not sure; it reports this and keeps its state. Then a [`Flow`](super::Flow) of
-//! its own repeats the step and finds the end within it, so that one search for ends serves single flows and many. The
-//! equations are a [`Flows`], and [`schedule`](super::schedule) fills the lanes. The steps of a lane do not depend on
-//! the other lanes.
+//! A lane does not take a step that is not sure; it reports this and keeps its state. Then a single
+//! [`Flow`](super::Flow) repeats the step and locates the event within it, so that single flows and lanes
+//! share one search for events. The equations are a [`Flows`], and [`schedule`](super::schedule) fills the
+//! lanes. The steps of a lane do not depend on the other lanes.
 
 use super::{FROZEN, SHORTEST, SLOW, SOON, Spent};
 use crate::methods::rk8::{self, LOOKS};
@@ -23,29 +23,30 @@ pub(crate) const NUMBERS: usize = 32;
 pub(crate) trait Flows<T: SideBySide, const N: usize, const M: usize>: Copy {
     /// Intermediate results of the rates, from which the margins follow.
     type Seen;
-    /// Whether the stages of a step form a loop, for rates that take long beside it.
+    /// Whether the stages of a step form a loop: for rates so slow that the loop costs little beside them.
     const LOOPS: bool = rk8::LOOPS;
     fn of(numbers: &[T; NUMBERS], like: &Self) -> Self;
     fn rates(&self, y: &[T; N], rate: &mut [T; N]) -> Self::Seen;
     /// The margins, which must stay positive for a step to be sure.
     fn margins(&self, y: &[T; N], seen: &Self::Seen) -> [T; M];
-    /// The error of a step over the allowed error.
+    /// The error of a step divided by the allowed error.
     fn error(&self, tol: T, y: &[T; N], made: &rk8::Step<T, N>) -> T;
-    /// The numbers after a step, on the surface on which rounding and the errors of the steps do not leave them.
+    /// Moves the numbers after a step back to the surface of an invariant, from which rounding and step
+    /// errors lead away.
     #[inline(always)]
     fn kept(&self, y: [T; N]) -> [T; N] {
         y
     }
-    /// The speed to which the error is relative.
+    /// The speed to which the error of a step is relative: the largest speed, at least 1.
     fn fastest(&self, y: &[T; N]) -> T;
-    /// The longest step that the turning and the nodding of the body allow.
+    /// The longest time step that turning and nutation allow.
     fn calm(&self, y: &[T; N]) -> T;
-    /// The shortest step from a place that leads on.
+    /// The shortest step from a place: a lane with a shorter one is stuck.
     #[inline(always)]
     fn shortest(&self, y: &[T; N]) -> T {
         (y[0].splat(SOON) + y[N - 1]) * y[0].splat(SHORTEST)
     }
-    /// The longest step from a place.
+    /// The longest step that is allowed from a place.
     fn longest(&self, y: &[T; N], rate: &[T; N]) -> T;
 }
 
@@ -56,7 +57,7 @@ pub(crate) struct Entry<const N: usize, const M: usize> {
     pub numbers: [f64; NUMBERS],
     pub tol: f64,
     pub until: f64,
-    /// Number of steps that may hardly advance.
+    /// Number of crawling steps that are allowed.
     pub patience: u64,
 }
 
@@ -65,32 +66,33 @@ pub(crate) struct Entry<const N: usize, const M: usize> {
 pub(crate) enum LaneStatus {
     /// The lane takes the next step.
     Runs,
-    /// The next step may cross a margin, or steps hardly advance: the motion must be followed alone for a while.
+    /// The next step may cross a margin, or the lane is stuck: a single flow must take some steps.
     NeedsSingle,
-    /// The next step reaches the time that is asked for and crosses no margin: the motion must take this step alone.
+    /// The next step reaches the requested time and crosses no margin: a single flow must take this step.
     TimeReached,
 }
 
-// The status as a number in a lane; the number of a running lane is 0.
+// The status as a number in a lane, 0 in a running lane.
 const NEEDS_SINGLE: f64 = 1.0;
 const TIME_REACHED: f64 = 2.0;
 
-/// Number of evaluations after which a lane hands its motion over, for a check of the evaluations that are left.
+/// A lane that has evaluated its rates more often than this stops, so that the limit of the whole motion is
+/// checked.
 const TOIL_IN_LANES: f64 = 1e6;
 
-/// The progress of motions in their lanes.
+/// The progress of the motions in their lanes.
 #[derive(Clone, Copy)]
 struct Way<T, const N: usize, const M: usize> {
     y: [T; N],
     /// The parts of the numbers that rounding has taken from them.
     carry: [T; N],
     h: T,
-    /// The margins at the last place that was checked before the present place, and how far back it lies.
+    /// The margins at a place before the present one, and how far back that place lies.
     before: [T; M],
     back: T,
-    /// Number of steps that may still hardly advance.
+    /// Number of crawling steps that are still allowed.
     patience: T,
-    /// Number of evaluations.
+    /// Number of evaluations of the rates.
     made: T,
     /// The sum of the estimated errors of all steps, in units of the tolerance.
     erred: T,
@@ -110,15 +112,18 @@ fn at<T: SideBySide>(mask: T, yes: T, no: T) -> T {
     mask.splat(0.0).select_lt(mask, yes, no)
 }
 
-/// The share of the first step at which a margin is looked at before its start.
+/// A new lane gets an earlier place with margins, before its start by this share of its first step.
 const RETURN: f64 = 0.03;
-/// The share of the difference of two chords by which each is taken to be steeper.
+/// Each of two chords is made steeper by this share of the difference of their slopes, as a reserve. Without
+/// it a margin that bends unevenly could dip below zero unseen; a larger share stops more lanes than
+/// necessary.
 const STEEPER: f64 = 0.25;
 
-/// 1 where all margins stay positive in a step, else 0, also where one is NaN. The margins are those at a place `back` steps
-/// before the start, at the start, at the looks within the step, and at its end. Where a margin bends upwards it lies above
-/// the chords on both sides of it, made longer; the chords are taken to be steeper than they are, since it may bend
-/// elsewhere. Where its right side is not known, at the end of the step, the left side alone must suffice.
+/// 1 where all margins stay positive in a step, else 0, also where one is NaN. `places` are the margins
+/// `back` steps before the start, at the start, at the stages [`LOOKS`] and at the end. Between two places a
+/// convex margin lies above the extended chords of the intervals on both sides. These are made steeper
+/// (`STEEPER`), since a margin is not convex everywhere. In the last interval only the chord on the left is
+/// known.
 #[inline(always)]
 fn sure<T: Real, const M: usize>(places: [&[T; M]; LOOKS.len() + 3], back: T) -> T {
     let (zero, one) = (back.splat(0.0), back.splat(1.0));
@@ -196,7 +201,7 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
             y: entry.y,
             carry: [0.0; N],
             h: entry.step,
-            // `settle` finds a place before the start.
+            // `settle` computes a place before the start.
             before: [0.0; M],
             back: 0.0,
             patience: entry.patience as f64,
@@ -241,7 +246,7 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
                 let mut rate = way.y;
                 let seen = law.rates(&way.y, &mut rate);
                 let margins = law.margins(&way.y, &seen);
-                // A lane that starts has come from a little before, on a straight line.
+                // A lane that starts gets an earlier place on a straight line along its rates.
                 let fresh = way.h * zero.splat(RETURN);
                 let mut y = way.y;
                 for i in 0..N {
@@ -283,8 +288,8 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
         (self.way.y.map(|x| x.lane(k)), self.way.h.lane(k))
     }
 
-    /// The cost of lane `k` so far: the number of evaluations, the sum of the step errors, and how many more steps with
-    /// hardly any progress are allowed.
+    /// The cost of lane `k` so far: the number of evaluations, the sum of the step errors, and the number of
+    /// crawling steps that are still allowed.
     pub fn spent(&self, k: usize) -> Spent {
         let Way { made, patience, erred, .. } = &self.way;
         let patience = patience.lane(k).max(0.0) as u64;
@@ -338,7 +343,7 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
             let early = next[N - 1].select_lt(self.until, one, zero);
             let takes = good * sure * early;
 
-            // The longest step at the next place does not count for a step that is not taken.
+            // A step that is not taken is repeated, so that the longest step at its end does not matter.
             let grown = way.h * rk8::growth(error);
             let grown = at(takes, law.longest(&next, &rate).min(grown), grown);
             let calm = law.calm(&next);
@@ -367,7 +372,7 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
                 way.carry[i] = at(takes, carry[i], way.carry[i]);
                 self.rate[i] = at(takes, rate[i], self.rate[i]);
             }
-            // A step that is not sure keeps its length for the single motion.
+            // A step that is not sure keeps its length for the single flow.
             way.h = zero.select_lt(good - takes, way.h, grown);
             (way.patience, way.made) = (patience, way.made + zero.splat(12.0));
         }

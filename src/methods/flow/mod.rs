@@ -2,11 +2,11 @@
 //!
 //! ```text
 //! y' = f(y)   in a variable sigma of the flow's own, dt/dsigma > 0; the time t is one of the numbers
-//! margins that turn negative, also within a step, are found on parts of the step; so is the state at a requested time
+//! zeros of margins, also within a step, and states at requested times are computed on parts of a step
 //! ```
-//! [`rk8`] takes the steps. This module knows no physics: a [`Flow`] is a system of equations with margins that must
-//! stay positive, and [`ends`] finds where one fails. [`lanes`] takes the steps of many flows at a time, and [`schedule`]
-//! fills those lanes. Error: that of the steps.
+//! [`rk8`] takes the steps. A [`Flow`] is a system of equations with margins that must stay positive, and
+//! [`ends`] locates the first zero of a margin. [`lanes`] takes the steps of many flows at a time, and
+//! [`schedule`] fills those lanes. Error: that of the steps.
 
 mod ends;
 #[cfg(feature = "many")]
@@ -20,7 +20,7 @@ use crate::numbers::{Dual, IN_REGISTERS, here, in_registers};
 
 /// Number of steps between two calls of `go_on`.
 const BREATH: u64 = 256;
-/// A step of this length, relative to the elapsed time, is too short to lead on.
+/// A step shorter than this, relative to the elapsed time, is too short: rounding would swallow its advance.
 pub(crate) const SHORTEST: f64 = 1e-14;
 /// Time added to the elapsed time in that comparison, for fast changes right after the start.
 pub(crate) const SOON: f64 = 1e-9;
@@ -30,16 +30,19 @@ pub(crate) const FASTEST: f64 = 1e15;
 pub(crate) const SLOW: f64 = 0.01;
 /// A step also crawls if time advances by less than this share of that longest step.
 pub(crate) const FROZEN: f64 = 1e-6;
-/// A part of a step may have this many times the error of a step, since near the table the error comes from rounding.
+/// Largest error of the part of a step up to an event, in units of the allowed error. The error is large
+/// beyond a singularity, where the event is not real and the step is repeated; rounding errors near the table
+/// are smaller.
 const ROUNDED: f64 = 100.0;
 /// Largest number of crawling steps of one motion.
 pub(crate) const PATIENCE: u64 = 600_000;
-/// Largest number of evaluations of one motion; a long motion may take the second number for each unit of time.
+/// Largest number of evaluations of one motion; a long motion may take `TOIL_PER_TIME` for each unit of time.
 pub(crate) const TOIL: u64 = 8_000_000;
 const TOIL_PER_TIME: f64 = 40_000.0;
-/// Whether steps that are rare loop, and those of processors without AVX2, which keeps the compiler's work small.
+/// Whether the stages form a loop in parts of steps and on processors without AVX2, which shortens the
+/// compilation.
 const SPARES: bool = rk8::LOOPS || IN_REGISTERS;
-/// Number of crawling steps after which the flow is asked whether its steps are stuck.
+/// Number of crawling steps between two calls of [`Flow::stuck`].
 const TIRING: u64 = 20_000;
 
 /// Largest number of evaluations of a motion over the time `span`.
@@ -47,7 +50,8 @@ pub(crate) fn toil_of(span: f64) -> u64 {
     TOIL.max((TOIL_PER_TIME * span) as u64)
 }
 
-/// Number of crawling steps before the flow is asked again; `patience` is the number that is still allowed.
+/// Number of crawling steps before the next call of [`Flow::stuck`]; `patience` is the number that is still
+/// allowed.
 pub(crate) fn until_tired(patience: u64) -> u64 {
     (TIRING - PATIENCE.saturating_sub(patience) % TIRING).min(patience)
 }
@@ -70,7 +74,8 @@ pub(crate) struct Flown<H, const N: usize> {
     pub y: [f64; N],
     /// The next step.
     pub step: f64,
-    /// The rate in time at which the margin or the speed fell that ended the flow; infinite if none did.
+    /// The rate, in time, at which the margin or the speed fell whose zero ended the flow; infinite for other
+    /// ends.
     pub steep: f64,
     pub spent: Spent,
 }
@@ -81,7 +86,7 @@ pub(crate) struct Spent {
     pub evaluations: u64,
     /// The sum of the estimated errors of all steps, in units of the tolerance.
     pub erred: f64,
-    /// Number of steps that may still crawl.
+    /// Number of crawling steps that are still allowed.
     pub patience: u64,
 }
 
@@ -96,7 +101,7 @@ pub(crate) struct Steps {
     pub patience: u64,
     /// Largest number of evaluations.
     pub toil: u64,
-    /// Whether the steps before this flow have crawled.
+    /// Whether [`Flow::stuck`] is called before the first step, since the steps before this flow crawled.
     pub tired: bool,
 }
 
@@ -110,9 +115,9 @@ pub(crate) trait Flow<const M: usize>: Copy {
     const OVER: Self::Halt;
     /// The halt after the allowed number of steps.
     const PAUSE: Self::Halt;
-    /// The halt of a flow that is given up; without one this is an error.
+    /// The halt of a flow that exceeds its limits of work; if None, this is an error.
     const ENDLESS: Option<Self::Halt> = None;
-    /// Whether the stages of all steps form a loop, for rates that take long beside it.
+    /// Whether the stages of all steps form a loop: for rates so slow that the loop costs little beside them.
     const LOOPS: bool = rk8::LOOPS;
     /// Writes the rates of all numbers in sigma.
     fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]);
@@ -126,25 +131,25 @@ pub(crate) trait Flow<const M: usize>: Copy {
     fn error<const N: usize>(&self, y: &[f64; N], made: &rk8::Step<f64, N>) -> f64;
     /// The speed to which the error of a step is relative: the largest speed, at least 1.
     fn fastest<const N: usize>(&self, y: &[f64; N]) -> f64;
-    /// The cost of a step, in ordinary steps.
+    /// The number of ordinary steps for which a crawling step counts.
     fn effort(&self) -> u64 {
         1
     }
-    /// A first step that is short enough, since the next steps grow fast.
+    /// A cautious first step; the next steps grow fast.
     fn first<const N: usize>(&self, y: &[f64; N]) -> f64;
     /// The longest time step that turning and nutation allow.
     fn calm<const N: usize>(&self, y: &[f64; N]) -> f64;
-    /// The shortest step in sigma from a point that leads on.
+    /// The shortest step in sigma from a point: a flow with a shorter one is stuck.
     fn shortest<const N: usize>(&self, y: &[f64; N]) -> f64 {
         SHORTEST * (SOON + y[Self::TIME])
     }
-    /// The longest step in sigma from a point.
+    /// The longest step in sigma that is allowed from a point.
     fn longest<const N: usize>(&self, place: &FlowPlace<N>) -> f64;
     /// The halt of a flow that ends at this point, and the numbers at the halt, which may lie a little further on.
     fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Self::Halt, [f64; N])>;
-    /// The halt of a flow whose steps become too short; None where the reason is unknown.
+    /// The halt of a flow whose steps become too short or crawl; None where the reason is unknown.
     fn stuck<const N: usize>(&self, place: &FlowPlace<N>, margins: &[Dual<f64>; M]) -> Option<Self::Halt>;
-    /// The rate in time at which a speed falls whose end halts the flow at a point; infinite where no speed does.
+    /// The rate, in time, at which the speed falls whose zero is this halt; infinite for other halts.
     fn slows<const N: usize>(&self, _: Self::Halt, _: &FlowPlace<N>) -> f64 {
         f64::INFINITY
     }
@@ -152,44 +157,54 @@ pub(crate) trait Flow<const M: usize>: Copy {
     fn is_extrapolated(_: Self::Halt) -> bool {
         false
     }
-    /// The numbers that are written, from those of this flow.
+    /// The numbers of the output, from those of this flow.
     fn shown<const N: usize>(&self, y: &[f64; N]) -> [f64; N];
-    /// The numbers after a step, on the surface on which rounding and the errors of the steps do not leave them.
+    /// Moves the numbers after a step back to the surface of an invariant, from which rounding and step
+    /// errors lead away.
     #[inline(always)]
     fn kept<const N: usize>(&self, y: [f64; N]) -> [f64; N] {
         y
     }
-    /// Whether this flow looks at each step that is taken.
+    /// Whether [`Flow::passed`] is called.
     const LOOKS_ON: bool = false;
-    /// Looks at a step that is taken, from one point to the next, or to the end of the flow within the step. The step has
-    /// a length in sigma and its stages; the number is the length of the part that is taken, or of the whole step if
-    /// the flow ends at the last of the requested times.
+    /// Called for each step that is taken, with the step, the length in sigma of the part that is taken, and
+    /// the point at its end. The part ends where the flow ends; if that is at the last requested time, the
+    /// length is that of the whole step.
     #[inline(always)]
     fn passed<const N: usize>(&self, _: TakenStep<'_, N>, _: f64, _: &FlowPlace<N>) {}
-    /// Whether also short steps are searched for margins that fail for a moment.
+    /// Whether short steps, too, are searched for margins that fail for a moment.
     const CLOSELY: bool = false;
-    /// Hears of a point within a step near which margin `i` has a minimum, and of that minimum, which is positive and less
-    /// than the margin varies in the step.
+    /// Called with a point within a step near which margin `i` has a minimum, and with that minimum, which is
+    /// positive and less than the variation of the margin in the step.
     fn grazed<const N: usize>(&self, _: &[f64; N], _: usize, _: f64) {}
     /// The inclination that an error names.
     fn theta<const N: usize>(&self, y: &[f64; N]) -> f64;
 
+    /// Writes the rates, in a single copy where the code is to be short.
+    #[cfg_attr(short_code, inline(never))]
+    #[cfg_attr(not(short_code), inline(always))]
+    fn write_rates_here<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {
+        self.write_rates(y, all);
+    }
+
     #[inline(always)]
     fn rates<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
         let mut all = *y;
-        self.write_rates(y, &mut all);
+        self.write_rates_here(y, &mut all);
         all
     }
 
-    /// The margins, in a single copy for a page, which prefers that to a fast one.
-    #[cfg_attr(target_arch = "wasm32", inline(never))]
+    /// The margins; in WebAssembly a single copy of this function, since pages need small code more than fast
+    /// code.
+    #[cfg_attr(short_code, inline(never))]
     fn margins_at<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; M] {
         self.margins(place)
     }
 
-    /// A step; LOOP says whether its stages form a loop. A page prefers a single copy of this function to a fast one.
-    #[cfg_attr(target_arch = "wasm32", inline(never))]
-    #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
+    /// A step; LOOP says whether its stages form a loop. In WebAssembly there is a single copy of this
+    /// function.
+    #[cfg_attr(short_code, inline(never))]
+    #[cfg_attr(not(short_code), inline(always))]
     fn step<const LOOP: bool, const N: usize>(
         &self,
         from: &FlowPlace<N>,
@@ -198,7 +213,7 @@ pub(crate) trait Flow<const M: usize>: Copy {
     ) -> rk8::Step<f64, N> {
         let rates = here(
             #[inline(always)]
-            |y: &[f64; N], rate: &mut [f64; N]| self.write_rates(y, rate),
+            |y: &[f64; N], rate: &mut [f64; N]| self.write_rates_here(y, rate),
         );
         if LOOP || Self::LOOPS {
             rk8::step::<true, _, _>(rates, &from.y, &from.rate, h, stages)
@@ -282,7 +297,7 @@ pub(crate) trait Flow<const M: usize>: Copy {
         write: &mut dyn FnMut(&[f64; N]),
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Option<Flown<Self::Halt, N>>, Error> {
-        // The widest registers hold several numbers at a time and give the same bits.
+        // Compiled for AVX2 where the processor has it: several numbers in a register, and the same bits.
         in_registers!(
             self.run_here::<{ rk8::LOOPS }, N>(here, steps, times, write, go_on),
             else self.run_here::<SPARES, N>(here, steps, times, write, go_on)
@@ -343,7 +358,7 @@ pub(crate) trait Flow<const M: usize>: Copy {
             let after = FlowPlace { y, carry, rate: self.rates(&y) };
             if error.is_nan() || error > 1.0 || after.rate.iter().any(|x| x.is_nan()) {
                 h *= growth(error).min(0.7);
-                // A step that is NaN is not long enough either.
+                // A step that is NaN counts as too short.
                 if h.is_nan() || here.y.iter().any(|x| x.is_nan()) || h < self.shortest(&here.y) {
                     let Some(halt) = self.stuck(&here, &margins) else {
                         return Err(Error::Lost { theta: self.theta(&here.y) });
@@ -359,7 +374,7 @@ pub(crate) trait Flow<const M: usize>: Copy {
             let stop = match failure {
                 Some((x, i)) => {
                     length = x * h;
-                    // Across a singularity the failure lies elsewhere, as the error of this part shows.
+                    // Beyond a singularity the failure is not real, as a large error of this part shows.
                     let (part, y) = self.parted::<SPARES, N>(&here, length);
                     let off = self.error(&here.y, &part);
                     if (off.is_nan() || off > ROUNDED) && length > self.shortest(&here.y) {

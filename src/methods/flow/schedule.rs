@@ -4,12 +4,12 @@ use super::Spent;
 use super::lanes::{Entry, Flows, LaneStatus, Set};
 use crate::numbers::side_by_side::{MOST, SideBySide};
 
-/// Number of steps of a set of lanes between two checks of the status of the lanes.
+/// Largest number of steps of a set of lanes between two calls of `Waiting::go_on`.
 const BURST: usize = 64;
-/// Number of steps that a flow takes alone before it is put into a lane again.
+/// Number of steps that a flow takes outside the lanes before it gets a lane again.
 pub(crate) const STEPS_ALONE: u64 = 3;
 
-/// Flows of one kind that wait for lanes; the numbers of a flow are K, and its margins are M.
+/// Flows of one kind that wait for lanes, each with K numbers and M margins.
 pub(crate) trait Waiting<const K: usize, const M: usize> {
     /// The next flow, which gets lane `k`; None if no flow waits.
     fn enter(&mut self, k: usize) -> Option<Entry<K, M>>;
@@ -19,7 +19,7 @@ pub(crate) trait Waiting<const K: usize, const M: usize> {
     fn go_on(&mut self) -> bool;
 }
 
-/// Follows all flows that wait side by side, each until its lane stops running.
+/// Runs all waiting flows in lanes, each until its lane stops.
 pub(crate) fn follow<T: SideBySide, L: Flows<T, K, M>, const K: usize, const M: usize>(
     like: T,
     law: L,
@@ -30,7 +30,7 @@ pub(crate) fn follow<T: SideBySide, L: Flows<T, K, M>, const K: usize, const M: 
         let mut fresh = false;
         for (k, busy) in busy.iter_mut().enumerate().take(T::COUNT).filter(|(_, busy)| !**busy) {
             let Some(entry) = waiting.enter(k) else { break };
-            // A lane without a flow computes, too; its results are ignored.
+            // A lane without a flow computes as well; its results are ignored.
             let set = set.get_or_insert_with(|| Set::new(like, law, &entry));
             if !fresh {
                 set.keep();

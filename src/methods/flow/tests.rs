@@ -9,7 +9,8 @@ thread_local! {
     static EVALUATED: Cell<u64> = const { Cell::new(0) };
 }
 
-/// A flow of time in steps of 1; the margin of the face is a polynomial of time and falls through its first zero.
+/// A flow with steps of 1, in which only time changes; its first margin is a polynomial of time with these
+/// zeros.
 #[derive(Clone, Copy)]
 struct Clock {
     zeros: [f64; 3],
@@ -174,12 +175,12 @@ fn the_zero_of_a_margin_that_falls_takes_three_looks() {
         let found = only_zero(on, [begin.value, begin.slope, end.value, end.slope]).expect("a zero");
         assert!((found - zero).abs() < 1e-16 + 1e-15 * zero && looks.get() <= 3, "{zero}: {found}");
     }
-    // A slope that is wrong leads out of the step.
+    // With a wrong slope the iteration leaves the step.
     let wrong = |x: f64| Dual { value: 0.4 - x, slope: 0.1 };
     assert_eq!(only_zero(wrong, [0.5, -1.5, -0.5, -1.5]), None);
 }
 
-/// A clock in a lane, whose margin is a parabola of time with a zero at each of two times, raised by a number.
+/// A clock in a lane, whose margin (a - t) (b - t) + up is a parabola of time.
 #[cfg(feature = "many")]
 #[derive(Clone, Copy)]
 struct LaneClock<T>([T; 3]);
@@ -211,7 +212,7 @@ impl<T: crate::numbers::side_by_side::SideBySide> lanes::Flows<T, 2, 1> for Lane
     }
 }
 
-/// The time at which a lane with steps of 1 leaves such a clock, and why.
+/// The time at which a lane with steps of 1 leaves such a clock, and its status then.
 #[cfg(feature = "many")]
 fn left(zeros: [f64; 2], up: f64) -> (f64, lanes::LaneStatus) {
     let mut numbers = [0.0; lanes::NUMBERS];
@@ -234,7 +235,7 @@ fn a_lane_never_steps_over_an_end() {
             let (t, status) = left([first, first + wide], -1e-12);
             assert!(status == NeedsSingle && t <= first, "{first}, {wide}: {t}, {status:?}");
         }
-        // A margin that only comes down to a share of its height a step earlier ends no lane.
+        // A margin whose minimum is well above zero stops no lane.
         let (t, status) = left([first, first], 0.3);
         assert!(status == TimeReached && (t - 9.0).abs() < 1e-12, "{first}: {t}, {status:?}");
     }

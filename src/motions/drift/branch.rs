@@ -38,7 +38,7 @@ pub(crate) struct BranchAngle<T> {
 /// The slope of the energy, the lost power and the rotation at a place on the branch.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct BranchPoint<T> {
-    /// E', and the sum of the absolute values of its terms.
+    /// E', and the sum of the absolute values of its terms, to which its rounding error is proportional.
     pub slope: T,
     pub size: T,
     /// The power that is lost.
@@ -57,7 +57,7 @@ impl<T: Real> Branch<T> {
         BranchAngle { angle, n, m }
     }
 
-    /// The slope of the energy, the lost power and the rotation at a place; `ROUND` says whether the rim has a fillet.
+    /// E', the lost power and the rotation at a place; `ROUND` is true for rims with a fillet.
     #[inline(always)]
     pub fn at<const ROUND: bool>(&self, BranchAngle { angle, n, m }: BranchAngle<T>) -> BranchPoint<T> {
         let (Shape { rim, i1, i3 }, (s, c)) = (self.shape, angle);
@@ -117,7 +117,7 @@ impl Exact {
         let branch = Branch { shape: body.shape(), excess: body.excess(), losses };
         let mut rim = body.shape().map(Sum::from).rim;
         rim.a = body.rim_sum();
-        // One step of Newton's method doubles the digits of a zero.
+        // One step of Newton's method on a sum of two doubles doubles the digits of a zero.
         let better = |theta: f64, limit: bool| {
             if theta.is_nan() {
                 return theta.into();
@@ -135,7 +135,6 @@ impl Exact {
         Self { body: *body, branch, balance, limit }
     }
 
-    /// The place at an inclination.
     pub fn place(&self, theta: Sum<f64>) -> BranchAngle<f64> {
         self.place_at(theta, (self.balance - theta).hi)
     }

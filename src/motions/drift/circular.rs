@@ -9,11 +9,13 @@
 //! V = A w3 - L w1,   V' = rho (c w3 + s w1) + A f3 - L f1
 //! dx = dt R/(J kappa),   R^2 = (F/s)^2 + (J kappa Omega'/Omega)^2 + (J kappa w3')^2/(w1^2 + w3^2)
 //! ```
-//! The motion is of first order in the losses: these change w1 and w3, and theta follows so that nothing tilts. The
-//! equations themselves keep the state on the surface, S' = 0. Solving S = 0 for w3 instead would divide by I3 s + A h,
-//! which vanishes for a thin disk as theta -> 0, and for a displaced ball where h = -I3. In x, the length of the way in
-//! ln theta, ln Omega and w3, the equations are regular where theta turns, and where kappa vanishes, which is the end
-//! of the drift. Beyond the side the inclination is counted from pi, so that it keeps all its digits. The letters s, c,
+//! The motion is of first order in the losses: these change w1 and w3, and theta changes so that the tilting
+//! acceleration stays zero. The equations themselves keep the state on the surface, S' = 0. Solving S = 0 for
+//! w3 instead would divide by I3 s + A h, which vanishes for a thin disk as theta -> 0, and for a displaced
+//! ball where h = -I3. In x, the length of the path in ln theta, ln Omega and w3, the equations are regular
+//! where theta turns, and where kappa vanishes, which is the end of the drift. Beyond the side the
+//! inclination is counted from pi, so that it keeps all its digits. The letters s, c, rho, A, L, h and g are
+//! those of `body::rim`.
 //! rho, A, L, h and g are those of `body::rim`.
 //!
 //! Error: a few roundings of the terms written above; tests of `drift` compare kappa with that of `stability`, and the
@@ -66,9 +68,9 @@ impl<T: Real> Circular<T> {
         Circular { signs, ..Circular::new(&of.shape.map(number), of.round, losses) }
     }
 
-    /// The numbers after a step. For a ball a step of Newton's method towards the surface takes back the rounding,
-    /// because next to its pole all terms of S are small. Next to a face S is a small difference of large terms, which
-    /// the equations of motion keep more precisely.
+    /// The numbers after a step. For a ball one step of Newton's method back to the surface removes the
+    /// rounding error, since near the pole all terms of S are small. Near a face S is a small difference of
+    /// large terms, and the equations of motion keep S = 0 more precisely than this step would.
     #[inline(always)]
     pub fn kept(&self, y: &Numbers<T>, far: T) -> Numbers<T> {
         let (near, a) = (self.settled(y, far), self.of.shape.rim.a);

@@ -51,8 +51,8 @@ struct TimedLeg {
 pub(crate) struct DriftClock {
     path: ClockPath,
     legs: Vec<TimedLeg>,
-    /// The tail behind the last leg, if the goal is never reached: the time and the distance from the goal at its
-    /// start, the slowness times that distance, and the power.
+    /// The tail behind the last leg, if the goal is never reached: the time and the distance from the goal at
+    /// the start of the tail, the slowness times that distance, and the power.
     tail: Option<[f64; 4]>,
 }
 
@@ -99,13 +99,13 @@ impl ClockPath {
 const SLOWNESS_ROUNDINGS: f64 = 8.0;
 
 impl TimedLeg {
-    /// The time from the begin of the leg to x.
+    /// The time from the beginning of the leg to x.
     fn since(&self, x: f64) -> f64 {
         let [time] = self.time.at(x);
         if let ClockLeg::End { .. } = self.leg { self.time.total[0] - time } else { time }
     }
 
-    /// The x at a time from the begin of the leg.
+    /// The x at a time from the beginning of the leg.
     fn place(&self, since: f64) -> f64 {
         self.time.inverse(if let ClockLeg::End { .. } = self.leg {
             self.time.total[0] - since
@@ -137,7 +137,7 @@ impl DriftClock {
         if whole == 0.0 {
             return Some(clock);
         }
-        // The length from the rounded middle to the goal is exact, so that both legs meet.
+        // The length to the goal is computed in twice the digits, so that both legs meet.
         let middle = start + way * 0.5 * whole;
         let length = ((goal.theta - middle.into()).hi * way).max(0.0);
         let begin = ClockLeg::Begin { behind };
@@ -238,7 +238,7 @@ impl DriftClock {
     }
 }
 
-/// A way in x that is too short to make the time overflow.
+/// Length in x below which a leg is not halved when its quadrature fails: its time does not overflow.
 const SHALLOW: f64 = 1.0;
 
 /// The time at which the distance `left` remains in the tail, where the slowness goes as left^(-1 - power).

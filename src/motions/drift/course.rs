@@ -1,6 +1,7 @@
-//! The course of a drift that rolls: its steps, and the answers to questions about inclinations and times.
+//! The course of a drift that rolls: its steps, and the time at an inclination and the state at a time.
 //!
-//! A state within a step is found by parts of that step; a state of the tail follows from the powers of `tail`.
+//! A state within a step follows from a shorter step from the same start; a state of the tail follows from
+//! the powers of `tail`.
 //!
 //! Error: that of `rolling`.
 
@@ -47,7 +48,7 @@ impl DriftCourse {
         self.end
     }
 
-    /// The equations of a step, which counts the inclination as the step does.
+    /// The equations with the inclination counted as in this step.
     fn of(&self, step: &DriftStep) -> Rolling<'static> {
         self.of.counting_from(step.far)
     }
@@ -85,7 +86,6 @@ impl DriftCourse {
         }
     }
 
-    /// The state at a time.
     pub fn at_time(&self, t: f64) -> Option<DriftState> {
         let whole = self.end.2;
         if t.is_nan() || t < 0.0 || t > whole * (1.0 + SLACK) {

@@ -67,7 +67,7 @@ pub(crate) struct Goal {
     pub power: f64,
 }
 
-/// The first end on the way from `theta`, downwards or upwards.
+/// The first end that the inclination reaches from `theta`, downwards or upwards.
 pub(crate) fn goal(of: &Exact, losses: &Losses, theta: f64, down: bool) -> Goal {
     let body = &of.body;
     let range = body.range();

@@ -156,7 +156,7 @@ pub(crate) struct DriftState {
     pub friction_coefficient: f64,
 }
 
-/// Refuses losses and bodies for which no drift is computed.
+/// Returns an error for losses or a body without a drift.
 pub(crate) fn check(body: &Body, losses: &Losses) -> Result<(), Error> {
     losses.check_for(body)?;
     if losses.is_none() {

@@ -27,13 +27,14 @@ use core::f64::consts::PI;
 #[derive(Debug, Clone)]
 pub(crate) struct Rest {
     path: BranchPath,
-    /// The largest coefficient of the losses, with which the time is multiplied, so that no time overflows on the way.
+    /// The largest coefficient of the losses. The clock runs in the time multiplied by it, so that no time
+    /// overflows.
     most: f64,
     clock: DriftClock,
     stable_until: f64,
 }
 
-/// The branch on the way to the end of a drift.
+/// The branch up to the end of a drift.
 #[derive(Debug, Clone, Copy)]
 struct BranchPath {
     of: Exact,
@@ -45,7 +46,7 @@ struct BranchPath {
 impl BranchPath {
     #[inline(never)]
     fn at(&self, spot: &WayPoint) -> BranchPoint<f64> {
-        // On the way to theta0 the terms follow from the distance to theta0.
+        // Close to theta0 the terms keep their digits if they follow from the distance to theta0.
         self.of.at(match spot.left {
             Some(left) if self.goal.end == End::Balanced => self.of.place_at(spot.theta, self.way * left),
             _ => self.of.place(spot.theta),
@@ -89,7 +90,8 @@ impl Rest {
         if !several {
             return Err(Error::Lost { theta });
         }
-        // A loss that is next to nothing shows only where numbers overflow, next to the end, and is left out.
+        // A second, very small loss can make the time overflow next to the end, and has no effect elsewhere;
+        // so the smallest loss is left out.
         let least = losses.coefficients.iter().filter(|x| **x > 0.0).fold(most, |least, x| least.min(*x));
         let coefficients = losses.coefficients.map(|x| if x == least { 0.0 } else { x });
         Self::unwatched(body, theta, &Losses { coefficients })
@@ -109,7 +111,6 @@ impl Rest {
         self.clock.time(theta, &self.path.slowness()) / self.most
     }
 
-    /// The state at a time.
     pub fn at(&self, t: f64) -> Option<DriftState> {
         let spot = self.clock.spot_at(t * self.most)?;
         let theta = spot.theta.hi;

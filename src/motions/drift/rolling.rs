@@ -1,11 +1,11 @@
 //! The slow drift of a body that rolls without slipping and without nutation, as a flow.
 //!
 //! ```text
-//! (theta, Omega, w3, t) over the way x of `circular`
+//! (theta, Omega, w3, t) along the path x of `circular`
 //! kappa = 0,   theta = theta_end,   psi' = 0,   w_z = 0              margins that turn negative
 //! ```
-//! [`flow`](crate::methods::flow) takes the steps and finds the ends. The steps go on until the time per e-fold of the inclination
-//! is below rounding, or theta below 1e-140; `tail` describes the rest.
+//! [`flow`](crate::methods::flow) takes the steps and finds the ends. The steps go on until the time per
+//! e-fold of the inclination is below rounding, or theta below 1e-140; `tail` describes the rest.
 //!
 //! Error: 1e-10 of the time; up to 0.99 of the time also of theta, w1 and Omega, and of w3 over |w|. `test_late_drifts`
 //! compares the drift with 20 digits, and `benches/drifts.py` with DOP853 on (theta, w1, w3).
@@ -27,21 +27,23 @@ use std::cell::RefCell;
 /// Allowed error of a step, relative to the numbers.
 const TOLERANCE: f64 = 1e-13;
 
-/// The tail begins where the time per e-fold of the inclination falls below the fraction `LITTLE` of the time so far,
-/// and at the latest at the inclination `LAST`. In air alone, which lets the face come near for ever, it begins at the
-/// fraction `FACE_LANDED` of the first inclination. The condition on the time counts only below the inclination `LOW`.
+/// The tail begins where the time per e-fold of the inclination falls below the fraction `LITTLE` of the time
+/// so far, and at the latest at the inclination `LAST`. In air alone, where the face never lands, it begins
+/// at the fraction `FACE_LANDED` of the first inclination. The condition on the time counts only below the
+/// inclination `LOW`.
 const LITTLE: f64 = 1e-16;
 const LAST: f64 = 1e-140;
 const FACE_LANDED: f64 = 1e-11;
 const LOW: f64 = 1e-3;
 
-/// Inclination below which a few correct digits of the remaining time are enough.
+/// Inclination below which the tail replaces a step that is too short, since it is precise enough there.
 const NEARLY_FLAT: f64 = 1e-6;
 
-/// Inclination, in radians, above which the inclination is counted from the other end of [0, pi].
+/// Inclination, in radians, above which it is counted from the other end of [0, pi]; above pi/2, so that the
+/// counting does not change back and forth.
 pub(crate) const FROM_ABOVE: f64 = 1.8;
 
-/// Greatest number of steps of one drift.
+/// Greatest number of steps of one drift; a drift that needs more fails.
 pub(crate) const MOST: u64 = 5000;
 
 /// Lengths in x of the first step and of the longest step.
@@ -91,8 +93,8 @@ pub(crate) fn before_tail<T: Real, const N: usize>(y: &[T; N], rate: &[T; N], la
     early.min(y[0] - last)
 }
 
-/// The shortest step from an inclination: a step as short as this is limited by rounding alone. Nearly flat the tail is
-/// precise enough.
+/// The shortest step at an inclination: a shorter one would be limited by rounding alone. Below `NEARLY_FLAT`
+/// the limit is larger, since the tail is precise enough there.
 #[inline(always)]
 pub(crate) fn shortest<T: Real>(theta: T) -> T {
     theta.select_lt(theta.splat(NEARLY_FLAT), theta.splat(1e-4), theta.splat(1e-14))
@@ -133,7 +135,7 @@ pub(crate) struct Rolling<'a> {
     /// -1 where the inclination is counted from pi, else 1.
     pub far: f64,
     ball: bool,
-    /// The steps so far, where somebody keeps them.
+    /// The list in which the steps are stored, if any.
     steps: Option<&'a RefCell<Vec<DriftStep>>>,
 }
 
@@ -156,7 +158,8 @@ impl Rolling<'_> {
         let mut of = Circular::new(&body.shape(), !body.is_sharp(), Couples::of(losses, |x| x));
         // A body that precesses backwards drifts as its mirror image does.
         let (first, far) = turned([y.theta, rate.abs(), y.w3 * rate.signum(), 0.0], 1.0);
-        // Steps of Newton's method take the state from at least six correct digits to all digits.
+        // The given state is steady to at least six digits; steps of Newton's method make it steady to all
+        // digits.
         let start = (0..4).fold(first, |y, _| of.settled(&y, far));
         of.signs = of.at(&start, far).going.map(|x| if x < 0.0 { -1.0 } else { 1.0 });
         let dual = |value: f64| Dual { value, slope: 0.0 };
@@ -349,7 +352,7 @@ pub(crate) struct Margins<T> {
     side: T,
     /// 1 if a dry law ends the drift where the contact stops running, and where the drilling stops, else 0.
     dry: [T; 2],
-    /// 1 if only the drag of the air acts, which lets a face come near for ever, else 0.
+    /// 1 if only the drag of the air acts, so that the face never lands, else 0.
     airy: T,
     /// 1 if no loss depends on the inclination of a body that lies nearly flat, else 0.
     steady: T,
@@ -378,7 +381,7 @@ impl<T: Real> Margins<T> {
             }
         }
         Self {
-            // A body without another rim never comes to lie on one.
+            // A body without a second rim gets a limit above pi, which it never reaches.
             side: theta_end.select_lt(one.splat(PI), theta_end, one.splat(4.0)),
             dry: [dry, drilling].map(|x| zero.select_lt(x, one, zero)),
             airy: zero.select_lt(firm, zero, one),
@@ -387,8 +390,8 @@ impl<T: Real> Margins<T> {
         }
     }
 
-    /// A number that is positive until drilling friction stops the precession within a time below rounding, as that of a
-    /// coin that comes upright and rolls straight on.
+    /// A number that is positive until drilling friction would stop the precession within a time below
+    /// rounding. So ends the drift of a coin that comes upright and rolls straight on.
     #[inline(always)]
     pub fn turns_on<const N: usize>(&self, y: &[T; N], rate: &[T; N]) -> T {
         let [zero, one] = [0.0, 1.0].map(|x| y[0].splat(x));

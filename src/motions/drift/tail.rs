@@ -4,10 +4,10 @@
 //! powers   unit = theta |dt/dtheta|,   dt/dtheta ~ theta^(q - 1),   theta ~ (1 - q t/unit)^(1/q),   w1 ~ theta^p1,   w3 ~ theta^p3
 //! fade     w1, w3 ~ exp(-z),   t = int |dt/dz| dz,   ln theta = -int |dln theta/dz| dz
 //! ```
-//! Near a face or a pole all numbers go as powers of theta, and under rolling resistance theta itself goes as a high
-//! power of the time that is left. A body that spins fast on a nearly flat face keeps w1/w3 = A L/(I1 + L^2), whatever
-//! theta is: theta vanishes while the spin is still there, above all if the body is nearly a ball. Where no loss depends
-//! on theta, the rates then are functions of w3 alone, and the spin fades by them.
+//! Near a face or a pole all numbers go as powers of theta, and under rolling resistance theta itself goes as
+//! a high power of the remaining time. A body that spins fast on a nearly flat face keeps w1/w3 = A L/(I1 +
+//! L^2) at any theta: theta vanishes before the spin does, above all if the body is nearly a ball. Where no
+//! loss depends on theta, the rates then are functions of w3 alone, from which the decay of the spin follows.
 //!
 //! Error: 1e-12 of the time of a tail that takes some time. A test of `test_late_drifts` compares this time with the spin,
 //! which falls evenly, and with the three-dimensional model.
@@ -17,13 +17,13 @@ use crate::methods::antiderivative::{Antiderivative, Sample};
 use crate::methods::search;
 use crate::numbers::{Dual, Real, Sum};
 
-/// Exponent of the tail up to which, in air alone, the face never lands.
+/// Exponent of the remaining time up to which, in air alone, the face never lands.
 const SLOW: f64 = 0.02;
 
-/// Share of the time so far below which the time of the tail does not matter.
+/// Share of the time so far below which the time of the tail needs no precise exponent.
 const NOTHING: f64 = 1e-13;
 
-/// Greatest z of a spin that fades: what is left of it is a rounding error.
+/// Greatest z of a spin that fades: exp(-40) of it remains, a rounding error.
 const FADED: f64 = 40.0;
 
 /// The rest of a drift after its last step, up to a face that lands or a ball that stands on its pole.
@@ -56,8 +56,8 @@ pub(crate) struct TailPlace {
 }
 
 impl Tail {
-    /// The tail from numbers of a drift; `airy` says that only air acts, `fades` that the spin fades whatever theta
-    /// is. A tail that takes some time needs a precise exponent.
+    /// The tail from the numbers of a drift. `airy` is true if only air acts, `fades` if the spin decays
+    /// independently of theta. A tail that takes some time needs a precise exponent.
     pub fn new(of: &Circular<Dual<f64>>, y: &Numbers<f64>, far: f64, airy: bool, fades: bool) -> Self {
         let tail = Powers::of(powers(of, *y, far), airy);
         if tail.time() < NOTHING * y[3] {
@@ -85,7 +85,7 @@ impl Tail {
             let value = rates(z);
             Sample { value, scale: value, noise: 8.0 * f64::EPSILON }
         })?;
-        // In the end the spin falls evenly.
+        // Beyond `FADED` the spin falls at a constant rate, and the rest takes w3/w3'.
         let time = integrals.total[0] + rates(FADED)[0];
         Some(Self::Fade(integrals, time))
     }
@@ -166,7 +166,7 @@ fn powers<T: Real>(of: &Circular<Dual<T>>, y: Numbers<T>, far: T) -> [T; 4] {
     let (zero, one) = (far.splat(0.0), far.splat(1.0));
     let dual = |value: T, slope: T| Dual { value, slope };
     let far = dual(far, zero);
-    // A small exponent depends on how precisely the state is steady.
+    // A small exponent is precise only if the state is steady to all digits.
     let steady = (0..2).fold(y.map(|x| dual(x, zero)), |y, _| of.settled(&y, far)).map(|x| x.value);
     let rates = |slopes: Numbers<T>| {
         let y = core::array::from_fn(|i| dual(steady[i], slopes[i]));

@@ -21,7 +21,7 @@ use crate::numbers::{Sum, long_sin_cos};
 /// Number of terms of a series whose error is 1e-36 within half the reach.
 const CARRIED: usize = 44;
 
-/// A place on the way of a motion, to 32 digits.
+/// A place along a motion, to 32 digits.
 #[derive(Debug, Clone)]
 pub(super) struct Carried {
     /// s, c, P and n.
@@ -30,7 +30,7 @@ pub(super) struct Carried {
     tilting: Sum<f64>,
 }
 
-/// The start of a motion and what its continuation needs.
+/// The start of a motion, with the numbers that its continuation needs.
 #[derive(Debug, Clone)]
 pub(super) struct Origin {
     law: Reduced<Sum<f64>>,
@@ -56,8 +56,8 @@ impl Origin {
         &self.start
     }
 
-    /// The numbers of a place as the centre of a panel; the energy K that the spin and the height leave is a sum of
-    /// squares.
+    /// The numbers of a place as the centre of a panel. K, twice the energy less that of the height and of
+    /// the spin, is a sum of squares.
     pub fn centre(&self, place: &Carried) -> PanelCentre {
         let [s, c, p, n] = place.at;
         let (of, rim, w1) = (self.law.at((s, c)), &self.law.shape.rim, p / s);

@@ -1,4 +1,4 @@
-//! The error that an exact motion estimates of itself.
+//! The estimated error of an exact motion.
 //!
 //! ```text
 //! error = |state'| doubt of the time + |dstate/dx| uncertainty of the ends + rounding
@@ -11,7 +11,8 @@
 
 use super::{LegPoint, Swing, SwingPhase};
 
-/// Inclination below which a ball that goes through the vertical counts as passing its pole, in radians.
+/// A panel at a smaller sine of the inclination does not count in the growth of errors if the motion reaches
+/// a pole or a face.
 const NEAR_POLE: f64 = 1e-6;
 
 impl Swing {
@@ -86,7 +87,6 @@ impl Swing {
         size * (2.0 * f64::EPSILON + (high - low)) * growth
     }
 
-    /// Uncertainty of the time of a phase.
     pub(super) fn time_doubt(&self, phase: &SwingPhase, t: f64) -> f64 {
         let unfolded = |periods: f64, time: f64, spot: LegPoint| {
             let doubt = self.legs[spot.leg].doubt(spot.v);
@@ -122,7 +122,8 @@ impl Swing {
         })
     }
 
-    /// The greatest possible change of the state per unit of time, for a motion whose time is uncertain by `doubt`.
+    /// Greatest difference of states per unit of `doubt`, the uncertainty of the time; 0 where `doubt` is so
+    /// small that the rate of the state suffices.
     fn departure(&self, now: LegPoint, doubt: f64) -> f64 {
         let growth = self.lines.panels.iter().fold(0f64, |most, panel| {
             let (s, c) = self.lines.angle(panel.centre);

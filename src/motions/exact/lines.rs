@@ -18,7 +18,7 @@ use crate::laws::contact::{Contact, FLAT};
 use crate::laws::state::State;
 use core::f64::consts::{FRAC_PI_2, PI};
 
-/// Width in x below which a slow place is checked for the loss of digits.
+/// Width in x below which a slow place is checked for the loss of digits; a wider one keeps them.
 const NARROW: f64 = 0.03;
 /// Relative rounding error of the width above which the place is computed again in twice the digits.
 const REFINED: f64 = 1e-12;
@@ -29,10 +29,9 @@ const ENDS_REFINING: f64 = 1e-6;
 /// place that was passed.
 const TRIES: u32 = 3;
 
-/// Inclination below which a ball is taken to pass through its pole; the miss is less than other rounding errors.
+/// Inclination below which a ball is taken to pass exactly through its pole; the change is a rounding error.
 const POLE: f64 = 1e-13;
 
-/// One end of a swing.
 #[derive(Debug, Clone)]
 pub(super) struct SwingEnd {
     pub x: f64,
@@ -47,7 +46,7 @@ pub(super) struct Turning {
     pub rest: PanelTerms,
 }
 
-/// A least value of G on the way, its place in its panel, and its width.
+/// A minimum of G between the turning points, its place in its panel, and its width.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Slow {
     pub x: f64,
@@ -61,7 +60,8 @@ pub(super) struct Slow {
 pub(super) struct Lines {
     pub law: Reduced<f64>,
     poles: Poles,
-    /// x at the start (`origin`), tan(theta/2) there, and the x of `theta_end` relative to the start (`side`).
+    /// The x of the start (`origin`), tan(theta/2) there, and the x of `theta_end` relative to the start
+    /// (`side`).
     pub origin: f64,
     tangent: f64,
     pub side: f64,
@@ -75,7 +75,7 @@ pub(super) struct Lines {
     pub both: Option<Both>,
 }
 
-/// H as a power series, and what its rounding error depends on.
+/// H as a power series, and the numbers on which its rounding error depends.
 #[derive(Debug, Clone)]
 pub(super) struct Both {
     pub h: PanelTerms,
@@ -135,8 +135,8 @@ impl Lines {
             lines.ends[side] = lines.end(&from, way)?;
         }
         lines.slow.sort_by(|a, b| a.x.total_cmp(&b.x));
-        // One place may have been met on both sides of the start, or again after a closer look: the last panel knows it
-        // best.
+        // The same slow place may have been met on both sides of the start, or again by a computation in
+        // twice the digits. The latest panel has the most accurate one.
         lines.slow.dedup_by(|b, a| {
             let same = b.x - a.x < 4.0 * a.width.max(b.width);
             if same && b.panel > a.panel {
@@ -153,7 +153,7 @@ impl Lines {
         crate::numbers::in_registers!(Panel::new(&self.law, centre, reach, start))
     }
 
-    /// Follows the motion to its end on the side `way`, which is -1 or 1.
+    /// Follows the motion to its end at lower x (`way` = -1) or at higher x (`way` = 1).
     fn end(&mut self, from: &Origin, way: f64) -> Option<SwingEnd> {
         let face = way * -(0.5 * self.flat()).ln() - self.origin;
         let (mut panel, mut y) = (0, 0.0);
@@ -229,7 +229,7 @@ impl Lines {
         self.terms(panel, y, [s, c, value(p, y), value(n, y)])
     }
 
-    /// The size of the terms of G, where s, c, P and n are known.
+    /// The size of the terms of G, from s, c, P and n.
     pub fn terms(&self, panel: usize, y: f64, [s, c, p, n]: [f64; 4]) -> f64 {
         let (of, rim, m) = (self.law.at((s, c)), &self.law.shape.rim, n * s);
         let weight = s * s * self.panels[panel].size(y);
@@ -265,8 +265,8 @@ impl Lines {
         width < NARROW && !near && self.rounding(panel, local) > REFINED * size
     }
 
-    /// Whether the motion on its `way` turns near the place `x` or passes it, computed from the start in twice the
-    /// digits.
+    /// Whether the motion in the direction `way` turns near the place `x` or passes it, computed from the
+    /// start in twice the digits.
     fn settled(&mut self, from: &Origin, mut x: f64, way: f64) -> Option<Settled> {
         const ROUNDS: u32 = 4;
         for round in 1..=ROUNDS {
@@ -371,8 +371,9 @@ fn cotangent(theta: f64) -> f64 {
     }
 }
 
-/// Of a series with a least value near 0: where it is, if that is positive, else the zero before it on the `way`; whether
-/// it is positive; and the size that the place hangs on. None if there is no least value.
+/// Near a minimum of G close to 0: the place of the minimum if it is positive, else the first zero in the
+/// direction `way`; whether the motion passes, that is, whether it is positive; and the size of G with which
+/// its rounding error is compared. None without a minimum within 0.2.
 fn nature(g: &PanelTerms, way: f64) -> Option<(f64, bool, f64)> {
     let slope: PanelTerms =
         core::array::from_fn(|i| if i + 1 < ORDER { (i + 1) as f64 * g[i + 1] } else { 0.0 });

@@ -5,11 +5,12 @@
 //! dphi/dx = P sqrt(J/G),   dpsi/dx = (n s^2 - P c) sqrt(J/G)
 //! d(x + i y)/dx = e^(i phi) (i A dpsi/dx - rho s)      contact point: round the rim and its fillet
 //! ```
-//! The module `lines` gives P, n and G along x and the turning points. The module `stretch` gives a variable v in which
-//! these are smooth: one for the whole swing, or several where the motion lingers. `antiderivative` gives
-//! the integrals over half a swing, and the state at any time is one inversion of t(v). One period later theta, w1, w2
-//! and w3 are the same, phi and psi have grown by constants, and the contact path is turned by the first of them, so
-//! that whole periods are summed in closed form.
+//! The module `lines` gives P = w1 s, n = w3 and G as functions of x = ln tan(theta/2), and the turning
+//! points. The module `stretch` gives a variable v in which these are smooth: one for the whole swing, or
+//! several where the motion lingers. `antiderivative` gives the integrals over half a swing, and the state at
+//! any time takes one inversion of t(v). After one period theta, w1, w2 and w3 are the same, phi and psi have
+//! grown by constants, and the contact path is turned by the constant of phi, so that whole periods are
+//! summed in closed form.
 //!
 //! Error: the rounding error of G is propagated through the integrals, so that [`Swing::error`] is an estimate for this
 //! motion at that time, conditioning included. In the tests of `exact` the estimate is never below a tenth of the true
@@ -43,8 +44,10 @@ pub struct Swing {
     lines: Lines,
     /// The legs from the lower end to the upper one; empty for a steady state.
     legs: Vec<Leg>,
+    /// The integrals from the lower end to the upper one, half a nutation.
     whole: Sums,
-    /// Time since the lower turning point, negative before it; `at_start` is the place of the start.
+    /// Time of the start since the lower turning point, negative before it; `at_start` is the place of the
+    /// start.
     phase: f64,
     at_start: LegPoint,
     /// Squared nutation frequency of a steady state.
@@ -137,10 +140,11 @@ impl Leg {
     }
 }
 
-/// Relative uncertainty of P at a pole, and of the angle by which the turn of phi there differs from pi/2.
+/// Relative uncertainty that the error estimate assumes for P at a pole, and so for the angle by which the
+/// turn of phi there differs from pi/2.
 const PASSED: f64 = 1e-9;
 
-/// Refuses a body or a state with numbers outside the range in which motions are followed.
+/// Returns an error for a body or a state outside the range in which motions are computed.
 pub(crate) fn check(body: &Body, y: &State) -> Result<(), Error> {
     const SPEED: (f64, f64) = (-1e6, 1e6);
     within("ell", body.ell(), (-1.0, 1e6), "-1 < ell <= 1e6 for a motion")?;
@@ -231,7 +235,8 @@ impl Swing {
         if !pose {
             return Some(leg);
         }
-        // an angle's digits are counted from its terms, and from the time it takes
+        // The scale of an angle's rounding error is that of its terms, and a thousandth of the time, in case
+        // they are small.
         let terms = |at: &StretchPoint| {
             ((at.n * at.s * at.s).abs() + (at.p * at.c).abs() + 1e-3 * at.s * at.s) * weight(at)
         };
@@ -264,7 +269,7 @@ impl Swing {
         self.lines.at(&self.legs[spot.leg].stretch, spot.v)
     }
 
-    /// Time since the lower turning point on the way up.
+    /// Time from the lower turning point to a place, while the inclination rises.
     fn time_at(&self, spot: LegPoint) -> f64 {
         self.legs[spot.leg].time(spot.v)
     }
@@ -370,9 +375,9 @@ impl Swing {
         self.lines.flat() * at.s * self.inertia(&at).sqrt() / at.root
     }
 
-    /// The angle by which phi turns between that x and the point nearest to the pole: pi/2 less an angle whose sine is
-    /// the least inclination over that of x. This angle has few correct digits, but it cancels against the turn on the
-    /// rest of the way.
+    /// The angle by which phi turns between the outermost computed x and the point nearest to the pole: pi/2
+    /// less the arcsine of the least inclination over that at x. This angle has few correct digits, but it
+    /// cancels against the turn on the rest of the way.
     fn pole_turn(&self, upper: bool) -> f64 {
         let at = self.lines.at_face(upper);
         at.root.atan2(at.p * self.inertia(&at).sqrt())
@@ -402,7 +407,8 @@ impl Swing {
         }
     }
 
-    /// Time of the landing of the face, as a distance in the direction `way` of time, and the state then.
+    /// Time until the face lands, and the state then; `way` = -1 goes backward in time, where the time is
+    /// positive, too.
     pub fn landing(&self, way: f64) -> Option<(f64, State)> {
         let lands = self.lines.lands();
         if self.is_steady() || lands == [false; 2] {
@@ -418,8 +424,8 @@ impl Swing {
             [false, false] => return None,
         };
         let at = self.lines.at_face(upper);
-        // Between this x and the face the body only falls, so that the rest of the potential energy goes into the
-        // tilting.
+        // Between this x and the face the body only falls, so that its remaining potential energy becomes
+        // energy of the tilting.
         let inertia = self.lines.law.inertia(|| (0.0, at.c.signum()));
         let flat = self.lines.flat();
         let lever = self.lines.law.shape.rim.a;

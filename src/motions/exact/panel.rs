@@ -9,10 +9,12 @@
 //!          D n' = A (I1 a P + (I3 L - I1 rho c) m)
 //!          G = K s^2 - I1 P^2 - (A m - L P)^2,   K = 2 (E - h) - I3 n^2
 //! ```
-//! K is the energy that the spin about the axis and the height leave. Both hardly change where the axis is nearly
-//! vertical, and there K is small beside them: so K is given at the centre, and its further terms are those of n^2 and h
-//! alone, of the order of the change. These functions are analytic for |Im x| < pi/2, except at the zeros of D that a rounded rim may bring inside. The
-//! step to the next possible zero of G uses a bound on G'', so that no zero is stepped over.
+//! K is twice the energy less that of the height and of the spin about the axis. Where the axis is nearly
+//! vertical, K is a small difference of these large numbers, which hardly change. So the value of K at the
+//! centre is given, and the further terms of its series are those of n^2 and h alone, which are as small as
+//! the change. These functions are analytic for |Im x| < pi/2, except at the zeros of D that a rounded rim
+//! may bring inside. The step to the next possible zero of G uses a bound on G'', so that no zero is stepped
+//! over.
 //!
 //! Error: the rounding error of G is at most [`Panel::rounding`]; the tests of `exact` hold the motions to this.
 
@@ -28,12 +30,12 @@ pub(super) const ORDER: usize = 36;
 
 pub(super) type PanelTerms = [f64; ORDER];
 
-/// How well G and G' are known at the centre of a panel.
+/// Bounds of the errors of G and G' at the centre of a panel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Certainty {
     /// G and G' to epsilon times their terms.
     Rounded,
-    /// G to full relative precision and G' to 2^-100 of its terms, as at the start.
+    /// At the start of the motion: G to full relative precision, G' to 2^-100 of its terms.
     Start,
     /// G and G' to 2^-100 of their terms, carried from the start in twice the digits.
     Carried,
@@ -48,7 +50,7 @@ pub(super) struct Panel {
     pub p: PanelTerms,
     pub n: PanelTerms,
     pub g: PanelTerms,
-    /// K, the energy that the spin and the height leave.
+    /// K, twice the energy less that of the height and of the spin.
     pub k: PanelTerms,
     /// The size of the terms of which K is the sum at the centre, and its growth up to the reach.
     size: f64,
@@ -56,7 +58,6 @@ pub(super) struct Panel {
     pub known: Certainty,
 }
 
-/// The numbers at the centre of a panel.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PanelCentre {
     /// s, c, P and n.
@@ -181,7 +182,7 @@ pub(super) fn lines<T: Real, const N: usize>(law: &Reduced<T>, start: [T; 4]) ->
     [s, c, p, n, square, m]
 }
 
-/// Series of which only the first terms are known.
+/// Series with the first terms `start`; all other terms are 0.
 #[inline(always)]
 fn begun<T: Real, const N: usize>(start: [T; 4]) -> [[T; N]; 4] {
     start.map(|x| {
@@ -213,7 +214,7 @@ fn rounded_lines<T: Real, const N: usize>(law: &Reduced<T>, start: [T; 4]) -> [[
         multiply_on(&mut m, &s, &n, k);
         multiply_on(&mut s_c, &s, &c, k);
         multiply_on(&mut c_p, &c, &p, k);
-        // The squares in A^2 and rho c L add up to rho^2.
+        // The squares in A^2 and rho c L, rho^2 s^2 and rho^2 c^2, add up to rho^2.
         (d[k], feed[k]) = (d_s * s[k] + d_c * c[k] + d_square * square[k], feed_s * s[k] + feed_c * c[k]);
         (turn[k], radius[k]) = (turn_c * c[k], rho * s[k]);
         if k == 0 {

@@ -34,7 +34,7 @@ impl Swing {
         nodes
     }
 
-    /// Time to the first passage of a place, as a distance in the direction `way` of time.
+    /// Time until the motion first passes a place; positive also for `way` = -1, which goes backward in time.
     pub(crate) fn reached(&self, way: f64, place: f64) -> Option<f64> {
         if self.is_steady() {
             return Some(0.0);
@@ -57,40 +57,37 @@ impl Swing {
         [if meets(0.0) { 0.0 } else { start.min(now) }, if meets(top) { top } else { start.max(now) }]
     }
 
-    /// The body that moves.
     pub(crate) fn body(&self) -> &Body {
         &self.body
     }
 
-    /// The contact with the table.
     pub(crate) fn contact(&self) -> Contact {
         self.contact
     }
 
-    /// The state at time 0.
     pub(crate) fn start(&self) -> &State {
         &self.start
     }
 
-    /// The place of the start.
     pub(crate) fn start_place(&self) -> f64 {
         if self.is_steady() { 0.0 } else { self.along(self.at_start) }
     }
 
-    /// The state at a place on the way up.
+    /// The state at a place while the inclination rises.
     pub(crate) fn rising(&self, place: f64) -> State {
         if self.is_steady() { self.start } else { self.state_at(self.spot(place), true) }
     }
 
-    /// The place at which the body reaches `theta_end` and something else than the rim lands, if the swing gets there.
+    /// The place at which the body reaches `theta_end`, where something other than the rim lands; None if the
+    /// swing does not get there.
     pub(crate) fn side(&self) -> Option<f64> {
         let ([_, high], side) = (self.lines.range(), self.lines.side);
         let on = |(leg, of): (usize, &Leg)| of.stretch.v(side).map(|v| self.along(LegPoint { leg, v }));
         if side < high { self.legs.iter().enumerate().find_map(on) } else { None }
     }
 
-    /// The first time, as a distance in the direction `way`, at which the swing is at the place `below` or at the place
-    /// `above` its start; and the state then.
+    /// The first time at which the swing is at the place `below` or at the place `above` its start, and the
+    /// state then. The time is positive also for `way` = -1, backward in time.
     pub(crate) fn first(&self, way: f64, below: Option<f64>, above: Option<f64>) -> Option<(f64, State)> {
         if self.is_steady() {
             return None;

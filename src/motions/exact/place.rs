@@ -77,7 +77,7 @@ impl Swing {
                     Complex::from_polar(ends.sin() / half, middle)
                 };
                 let there = self.step(turn) * sum + Complex::from_polar(1.0, whole) * to;
-                // The laboratory axes are those of the start.
+                // Displacements are measured along the axes of the start.
                 let moved = (there - from) * Complex::from_polar(1.0, -start[0]);
                 Point2::new(moved.re + 0.0, moved.im + 0.0)
             }
@@ -131,8 +131,8 @@ impl Swing {
             + self.error(t) * self.lever()
     }
 
-    /// Greatest distance in R by which a radian moves the contact point; on a smooth table it circles below a centre
-    /// that may be high.
+    /// Bound of the distance, in R, by which a radian moves the contact point. On a smooth table this point
+    /// circles below the centre of mass, at a distance that grows with ell.
     fn lever(&self) -> f64 {
         if self.contact == Contact::Smooth { 1.0 + self.body.ell().abs() } else { 1.0 }
     }

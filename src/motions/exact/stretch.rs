@@ -1,16 +1,17 @@
-//! The way from one turning point to the other in stretches, each with a variable v in which time runs evenly.
+//! The swing from one turning point to the other in stretches, each with a variable v in which the time grows
+//! evenly.
 //!
 //! ```text
 //! whole   x = mid - amp cos u,                G = (x - xa)(xb - x) H       dx/du/sqrt(G) = 1/sqrt(H)
 //! end     d = w sinh^2 v,                     G = d R                      dx/dv/sqrt(G) = 2 sqrt(w) cosh v/sqrt(R)
 //! dip     d = w sinh v                                                     dx/dv/sqrt(G) = w cosh v/sqrt(G)
 //! face    d = v                                                            dx/dv/sqrt(G) = 1/sqrt(G)
-//! ```
-//! The distance d = |x - place| is measured from the end or from the slow place. A swing without a slow place is one
-//! stretch. Near an unstable steady state a body lingers: either it turns there, and w is the distance from the end to
-//! the next zero of G; or it passes a least value of G, and w is its width. Then half the way to the next slow place is
-//! a stretch: dt/dv is constant while the body lingers and changes only in the last three units of v, which runs to 19
-//! for w = 1e-16. The width w only chooses the variable, and its order of magnitude is enough.
+//! The distance d = |x - place| is measured from the end or from the slow place. A swing without a slow place
+//! is one stretch. Near an unstable steady state a body lingers: either it turns there, and w is the distance
+//! from the end to the next zero of G; or it passes a minimum of G, and w is its width. Then a stretch covers
+//! half the distance to the next slow place: dt/dv is constant while the body lingers and changes only in the
+//! last three units of v, which runs to 19 for w = 1e-16. The width w only chooses the variable, and its
+//! order of magnitude is enough.
 //!
 //! Error: [`StretchPoint::noise`], the relative rounding error of H, R or G, which is propagated through the integrals.
 
@@ -18,7 +19,8 @@ use super::lines::{Lines, Slow, Turning};
 use super::panel::{PanelTerms, taylor, value};
 use core::f64::consts::PI;
 
-/// Greatest widths of a slow end and of a dip, relative to the distance to the next place.
+/// An end gets its own stretches if its width is below this fraction of half the swing, a dip if it is below
+/// this fraction of the distance to the nearer end.
 const SLOW_END: f64 = 0.03;
 const SLOW_DIP: f64 = 0.2;
 
@@ -30,7 +32,7 @@ enum Map {
     Face,
 }
 
-/// A part of the way between the turning points.
+/// A part of the swing between the turning points.
 #[derive(Debug, Clone)]
 pub(super) struct Stretch {
     map: Map,
@@ -52,7 +54,6 @@ pub(super) struct Stretch {
     shift: f64,
 }
 
-/// The motion at one place.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct StretchPoint {
     /// ln tan(theta/2), relative to the start.
@@ -271,8 +272,8 @@ impl Lines {
         };
         let [s, c, p, n] = self.numbers(panel, x, y);
         let of = &self.panels[panel];
-        // Dividing G by a zero also divides its rounding error, so that close to the zero the reach replaces the
-        // distance.
+        // Dividing the series of G by (x - zero) divides its rounding error by the reach of the panel, not by
+        // the distance from the zero, which may be much smaller.
         let divided = from_low.is_some() || from_high.is_some();
         let reach = if divided { of.reach } else { 0.0 };
         let root = |end: Option<&Turning>| end.filter(|t| t.panel == panel).map_or(0.0, |t| t.local.abs());
@@ -357,8 +358,8 @@ impl Stretch {
         }
     }
 
-    /// The first cuts of [0, top], which separate the part that changes on the scale of x from the part where the
-    /// motion lingers.
+    /// The first cuts of the quadrature in [0, top], between the part that changes on the scale of x and the
+    /// part where the motion lingers.
     pub fn cuts(&self) -> Vec<f64> {
         let (top, slow) = (self.top, matches!(self.map, Map::End | Map::Dip));
         if slow && top > 6.0 { vec![0.0, top - 5.0, top - 2.0, top] } else { vec![0.0, top] }
@@ -368,12 +369,12 @@ impl Stretch {
         self.map == Map::Whole
     }
 
-    /// Uncertainty of the place of the end in x.
     pub fn shift(&self) -> f64 {
         self.shift
     }
 
-    /// Change of v per relative change of the distances, which a relative error of G/d causes; 0 on the way to a face.
+    /// The derivative of v with respect to ln d: a relative error of G/d is one of the distance d. It is 0 on
+    /// the way to a face.
     pub fn stiffness(&self, v: f64) -> f64 {
         match self.map {
             Map::Whole => 0.5 * v.sin(),

@@ -4,17 +4,17 @@ use crate::laws::contact::slip::Slipping;
 use crate::motions::halt::{loses, poses};
 use crate::motions::walk::slow::{SlowRates, SlowSlips, turned};
 use crate::motions::walk::{SlowLaw, SlowSeries};
-use crate::numbers::{Series, TERMS};
+use crate::numbers::Series;
 
-/// The slow slips of a body.
+/// The series of a body's slow slips.
 pub(crate) struct BodySlips {
     slips: SlowSlips<5>,
-    /// The place of the rate of the lost energy among the rates on which no other depends.
+    /// Index of the rate of the lost energy in [`SlowRates::more`].
     lost: Option<usize>,
 }
 
 impl BodySlips {
-    /// The slow slips of a body whose motion has `count` numbers.
+    /// The series for a motion with `count` numbers.
     pub fn of(law: &Slipping<f64>, tol: f64, count: usize) -> Self {
         let mut lost = None;
         let slips = SlowSlips::of(tol, |tape, [s, c, w1, w2, w3], slip, way| {
@@ -43,7 +43,8 @@ impl BodySlips {
 }
 
 impl<const N: usize> SlowLaw<N> for BodySlips {
-    fn follow(&mut self, y: &[f64; N], angle: Series, growth: f64, speed: f64) -> Option<SlowSeries<N>> {
+    #[inline(never)]
+    fn follow(&mut self, y: &[f64; N], angle: Series, growth: f64, speed: f64) -> Option<Box<SlowSeries<N>>> {
         let start = core::array::from_fn(|i| y[i]);
         let slow = self.slips.follow(start, (angle, growth), speed)?;
         let rate = |i: usize| self.slips.more(i);
@@ -63,11 +64,19 @@ impl<const N: usize> SlowLaw<N> for BodySlips {
             numbers[N - 1] = rate(lost).integral(y[N - 1]);
         }
         let (until, ends) = slow.until(&numbers[..9]);
-        Some(SlowSeries { numbers, from: y[7], until, ends, pays: slow.pays(until), angle: slow.angle })
+        Some(Box::new(SlowSeries {
+            numbers,
+            from: y[7],
+            until,
+            ends,
+            pays: slow.pays(until),
+            angle: slow.angle,
+        }))
     }
 }
 
-/// The first `terms` coefficients of the sine and the cosine of an angle that grows from `start` at this rate.
+/// The first `terms` coefficients of the sine and the cosine of an angle that grows from
+/// `start` at this rate.
 fn circle(start: f64, rate: &Series, terms: usize) -> [Series; 2] {
     let (sin, cos) = start.sin_cos();
     let (mut sine, mut cosine) = (Series::of(sin), Series::of(cos));

@@ -1,7 +1,7 @@
-//! Motions by RK4: the steps up to an event, and the judgement of a fixed step.
+//! Motions by RK4 with a fixed step: the check of the step, and the steps up to the end of the motion.
 
-pub(crate) mod course;
-pub(crate) mod guard;
-pub(crate) mod stepped;
+mod guard;
+mod stepped;
+mod steps;
 
 pub(crate) use stepped::stepped;

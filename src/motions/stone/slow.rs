@@ -8,7 +8,7 @@ use crate::motions::walk::{SlowLaw, SlowSeries};
 use crate::numbers::Series;
 use crate::numbers::vector::dot;
 
-/// The slow slips of a stone. The rates beside those of its numbers are those of the heat and of the contact point.
+/// The series of a stone's slow slips. Besides its numbers they have the heat and the contact point (x, y).
 pub(super) struct StoneSlips {
     slips: SlowSlips<7>,
 }
@@ -33,7 +33,14 @@ impl StoneSlips {
 }
 
 impl SlowLaw<ALL> for StoneSlips {
-    fn follow(&mut self, y: &[f64; ALL], angle: Series, growth: f64, speed: f64) -> Option<SlowSeries<ALL>> {
+    #[inline(never)]
+    fn follow(
+        &mut self,
+        y: &[f64; ALL],
+        angle: Series,
+        growth: f64,
+        speed: f64,
+    ) -> Option<Box<SlowSeries<ALL>>> {
         let start = core::array::from_fn(|i| y[i]);
         let slow = self.slips.follow(start, (angle, growth), speed)?;
         let mut numbers = [Series::of(1.0).integral(y[TIME]); ALL];
@@ -41,6 +48,13 @@ impl SlowLaw<ALL> for StoneSlips {
         numbers[8..10].copy_from_slice(&slow.slip);
         (0..3).for_each(|i| numbers[10 + i] = self.slips.more(i).integral(y[10 + i]));
         let (until, ends) = slow.until(&numbers[..11]);
-        Some(SlowSeries { numbers, from: y[TIME], until, ends, pays: slow.pays(until), angle: slow.angle })
+        Some(Box::new(SlowSeries {
+            numbers,
+            from: y[TIME],
+            until,
+            ends,
+            pays: slow.pays(until),
+            angle: slow.angle,
+        }))
     }
 }

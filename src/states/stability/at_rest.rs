@@ -318,7 +318,7 @@ impl<T: Real> Moments<T> {
         found
     }
 
-    /// The wanted quantities with the rate, in more digits, for any inclination, also tiny or outside (0, pi/2].
+    /// The wanted quantities, with more digits, for any inclination, also tiny or outside (0, pi/2].
     #[inline(always)]
     fn carefully(&self, theta: T, wanted: Wanted) -> SteadyPoint<T> {
         let angle = sincos(theta);
@@ -413,7 +413,7 @@ impl<T: Narrow> AtRest<T> for Rounded<T> {
     }
 }
 
-/// Bodies whose quantities at one inclination are wanted: on sharp rims or on rounded rims.
+/// The computation of quantities at one inclination, for bodies with sharp or with rounded rims.
 pub(crate) trait AtRest<T: Real> {
     /// Sine and cosine, to as many digits as these bodies need.
     type Angle;

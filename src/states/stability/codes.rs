@@ -1,4 +1,4 @@
-//! The regions of a map, found without evaluating most of its points.
+//! The regions of a map, computed without an evaluation of most of its points.
 //!
 //! For a sharp rim the changes of sign along the inclinations are found by bisection, as in `runs`; where a sign is in
 //! doubt, and for a rounded rim, every inclination is evaluated. The codes equal those of [`region`](super::region()):

@@ -13,7 +13,8 @@ pub(crate) trait Stored: Sync {
     fn load<T: Narrow>(&self, like: T, k: usize) -> Self::Of<T>;
 }
 
-/// The numbers of eight from number `k` on; a number with eight lanes or more takes them all.
+/// A number with the values of `eight` from `k` on in its lanes; one with eight lanes or more has all of
+/// them.
 #[inline(always)]
 fn part<T: Narrow>(like: T, eight: &[f64; LANES], k: usize) -> T {
     like.load(if T::COUNT < LANES { &eight[k..] } else { eight })

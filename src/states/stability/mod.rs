@@ -91,7 +91,7 @@ fn of_state(contact: Contact, body: &Body, y: &State) -> f64 {
         rim.ell * angle.0,
     ];
     let largest = terms.iter().fold(0f64, |a, t| a.max(t.abs()));
-    // The terms of an upright coin are only the rounding error of pi/2, which the bound EPSILON admits.
+    // For an upright coin all terms are rounding errors of pi/2, which the bound EPSILON admits.
     let rest = law.tilting(&of, angle, w1, w3);
     let balanced = rest.abs() <= (STEADY * largest).max(f64::EPSILON);
     let inside = y.theta > 0.0 && y.theta <= body.range();
@@ -115,9 +115,10 @@ pub(crate) fn stiffness(contact: Contact, body: &Body, y: &State) -> f64 {
 /// ```text
 /// rolling   n^2 = 4 ell (I1 + H^2)/(I3 + rho H)^2,   H = ell + rho         smooth   n^2 = 4 ell I1/I3^2
 /// ```
-/// The result is 0 for a ball that stands without spin (`ell <= 0`), and NaN for other bodies, which stand on a face.
-/// Error: 4 ulp. The horizontal part zeta of the axis obeys zeta'' = 2 i k n zeta' + (ell/J0) zeta; see Routh, Advanced
-/// Rigid Dynamics.
+/// The result is 0 for a ball that stands without spin (`ell <= 0`), and NaN for other bodies, which stand on
+/// a face. Error: 4 ulp. The horizontal part zeta of the axis obeys zeta'' = 2 i k n zeta' + (ell/J0) zeta
+/// with J0 = I1 + H^2 and k = (I3 + rho H)/(2 J0), with 0 in place of H on a smooth table; see Routh,
+/// Advanced Rigid Dynamics.
 pub fn standing_spin(body: &Body, contact: Contact) -> f64 {
     if !body.is_ball() {
         return f64::NAN;

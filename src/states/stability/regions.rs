@@ -4,6 +4,7 @@ use super::at_rest::Wanted;
 use super::column::Column;
 use super::region::Region;
 use crate::laws::body::Body;
+use crate::methods::SHORT_CODE;
 use crate::numbers::{LANES, in_lanes, in_registers, level};
 use fearless_simd::{Simd, SimdFrom, f64x8};
 
@@ -27,8 +28,8 @@ pub fn region(body: &Body, theta: f64) -> Region {
 
 /// The codes of the regions of a body at several inclinations.
 pub(crate) fn regions(body: &Body, theta: impl ExactSizeIterator<Item = f64>) -> Vec<u8> {
-    if cfg!(target_arch = "wasm32") {
-        // Lanes without a fused product are much code, and not faster.
+    if SHORT_CODE {
+        // WebAssembly has no fused product: lanes would be much code, and not faster.
         return theta.map(|x| region(body, x) as u8).collect();
     }
     let of = Column::of(body);

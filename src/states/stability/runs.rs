@@ -1,19 +1,47 @@
-//! Runs of ascending inclinations in one region, found without evaluating most of the inclinations.
+//! Runs of ascending inclinations in one region, without an evaluation of most of the inclinations.
 //!
 //! ```text
-//! n = 1 - ell T,   m = a - ell T,   w = T (ell + T),   T = tan theta,   a = I1/I3,   all over cos theta
-//! smooth:   sign kappa = sign m  sign [n (m^2 + a m + a^2 (1 + T^2)) - a m w]
-//! rolling:  sign kappa = sign m  sign [n X - I3 m w],   X of `boundaries` over I1/I3 - 1
+//! n = 1 - ell T,   m = a - ell T,   T = tan theta,   a = I1/I3,   both over cos theta
+//! sign kappa = (sign of m) (sign of the cubic in T of `boundaries`)
 //! ```
-//! A line changes its sign once, and a cubic at most once between two of its extrema: bisection in double precision
-//! finds the place among the inclinations. A value within 2^-44 of the sum of its terms' sizes (some sixty times its
-//! rounding error, here or in `kappa`) is in doubt, and the caller then has to evaluate every inclination of that body.
+//! A linear function changes its sign once, and a cubic at most once between two of its extrema, so that
+//! bisection in double precision locates the change among the inclinations. A value below 2^-44 of the sum of
+//! its terms' sizes (some sixty times its rounding error, here or in `kappa`) is in doubt, and the caller
+//! then has to evaluate every inclination of that body.
 
+use super::boundaries::cubic;
 use super::region::Region;
 use crate::laws::body::Body;
+use crate::laws::contact::Contact;
+use crate::methods::roots::{Coefficient, Cubic};
+use crate::numbers::Sum;
+use crate::states::steady;
 
-/// Relative to the sizes of its terms, a value is in doubt below this bound.
+/// The sign of a value below this share of its terms' sizes is in doubt. A smaller share could accept a sign
+/// that rounding errors cause; a larger one leaves more bodies to the caller.
 const VALUE_DOUBT: f64 = 1.0 / (1_u64 << 44) as f64;
+
+/// A number, and the sum of the sizes of its terms.
+#[derive(Clone, Copy)]
+struct Terms {
+    value: f64,
+    size: f64,
+}
+
+impl From<Sum<f64>> for Terms {
+    fn from(x: Sum<f64>) -> Self {
+        Self { value: x.hi, size: x.hi.abs() }
+    }
+}
+
+impl Coefficient for Terms {
+    fn plus(self, other: Self) -> Self {
+        Self { value: self.value + other.value, size: self.size + other.size }
+    }
+    fn plus_product(self, a: Self, b: Self) -> Self {
+        Self { value: self.value + a.value * b.value, size: self.size + a.size * b.size }
+    }
+}
 
 /// The coefficients of a cubic in T, and for each coefficient the sum of the sizes of its terms.
 struct Curve {
@@ -21,41 +49,13 @@ struct Curve {
     sizes: [f64; 4],
 }
 
+impl From<Cubic<Terms>> for Curve {
+    fn from(Cubic(all): Cubic<Terms>) -> Self {
+        Self { p: all.map(|x| x.value), sizes: all.map(|x| x.size) }
+    }
+}
+
 impl Curve {
-    fn line(start: f64, fall: f64) -> Self {
-        Self { p: [start, -fall, 0.0, 0.0], sizes: [start, fall, 0.0, 0.0] }
-    }
-
-    /// The cubic of kappa on a smooth table.
-    fn smooth(ell: f64, a: f64) -> Self {
-        let (square, flat) = (ell * ell, a * a);
-        let rest = (square + flat) - a;
-        let p = [3.0 * flat, -(3.0 + 4.0 * a) * a * ell, (1.0 + 4.0 * a) * square, -ell * rest];
-        let deep = (1.0 + 4.0 * a) * square + 2.0 * flat;
-        Self { p, sizes: [p[0], -p[1], deep, ell * (square + flat + a)] }
-    }
-
-    /// The cubic of kappa when rolling.
-    fn rolling(body: &Body) -> Self {
-        let (ell, i1, i3) = (body.ell(), body.i1(), body.i3());
-        let square = ell * ell;
-        let inverse = 1.0 / (i1 * i3 + i1 + i3 * square);
-        let (drag, lift) = (i3 * i3 * ell * inverse, (i1 + i3 * square) * inverse);
-        let (along, across) = (2.0 * i1 + square, ell * (1.0 - i3));
-        let x = [along + i1, across - drag * along + lift * ell, i1 - drag * across + lift * (i3 + 1.0)];
-        let wide = across.abs();
-        let size = [x[0], wide + drag * along + lift * ell, i1 + drag * wide + lift * (i3 + 1.0)];
-        let p =
-            [x[0], x[1] - ell * x[0] - i1 * ell, x[2] - ell * x[1] - (i1 - i3 * square), ell * (i3 - x[2])];
-        let sizes = [
-            size[0],
-            size[1] + ell * size[0] + i1 * ell,
-            size[2] + ell * size[1] + i1 + i3 * square,
-            ell * (i3 + size[2]),
-        ];
-        Self { p, sizes }
-    }
-
     /// Whether the cubic is negative at `t`; None if its sign is in doubt.
     #[inline(always)]
     fn negative(&self, t: f64) -> Option<bool> {
@@ -65,7 +65,7 @@ impl Curve {
     }
 
     /// The extrema of the cubic, the smaller one first; NaN where it has none.
-    fn turns(&self) -> [f64; 2] {
+    fn extrema(&self) -> [f64; 2] {
         let [_, p1, p2, p3] = self.p;
         let root = (p2 * p2 - 3.0 * p1 * p3).sqrt();
         let sum = -(p2 + root.copysign(p2));
@@ -73,14 +73,15 @@ impl Curve {
         if one < other { [one, other] } else { [other, one] }
     }
 
-    /// Notes in `changes` the places of `tangents` (ascending, not empty) from which on the cubic has another sign than
-    /// before, and returns whether the cubic is negative at the first; None if any sign is in doubt.
+    /// Adds to `changes` the indices in `tangents` (ascending, not empty) from which on the cubic has
+    /// another sign than before. Returns whether the cubic is negative at the first tangent; None if any
+    /// sign is in doubt.
     fn signs(&self, tangents: &[f64], changes: &mut Changes, which: u8) -> Option<bool> {
         let start = self.negative(tangents[0])?;
         let [one, other] = if self.sizes[2] == 0.0 && self.sizes[3] == 0.0 {
             [0; 2]
         } else {
-            self.turns().map(|turn| tangents.partition_point(|t| *t < turn))
+            self.extrema().map(|extremum| tangents.partition_point(|t| *t < extremum))
         };
         let mut before = start;
         for (from, to) in [(0, one), (one, other), (one.max(other), tangents.len())] {
@@ -106,7 +107,8 @@ impl Curve {
     }
 }
 
-/// Changes of sign in the order of their places; each of four curves changes its sign at most five times.
+/// The index of each change of sign, in ascending order, and the bit of its curve. Each of four curves
+/// changes its sign at most five times.
 struct Changes {
     all: [(usize, u8); 20],
     count: usize,
@@ -125,9 +127,10 @@ impl Changes {
     }
 }
 
-/// Calls `tell` with [`Region`], first place and end of each run. The body has a sharp rim and the range (0, pi/2];
-/// `tangents` are those of ascending inclinations. If a sign is in doubt, nothing is told and false is returned.
-pub(crate) fn runs(body: &Body, tangents: &[f64], mut tell: impl FnMut(Region, usize, usize)) -> bool {
+/// Calls `report` with the [`Region`], the first index and the end of each run, and returns true. The body has
+/// a sharp rim and the range (0, pi/2]; `tangents` are those of ascending inclinations. If a sign is in
+/// doubt, there is no call, and false is returned.
+pub(crate) fn runs(body: &Body, tangents: &[f64], mut report: impl FnMut(Region, usize, usize)) -> bool {
     if tangents.is_empty() {
         return true;
     }
@@ -137,7 +140,10 @@ pub(crate) fn runs(body: &Body, tangents: &[f64], mut tell: impl FnMut(Region, u
     if !(within(body.i1()) && within(body.i3()) && within(a) && (ell == 0.0 || within(ell))) {
         return false;
     }
-    let curves = [Curve::line(1.0, ell), Curve::line(a, ell), Curve::rolling(body), Curve::smooth(ell, a)];
+    let n = steady::shared::<Terms>(body);
+    let m = n + Cubic::of(body.excess_sum());
+    let [rolling, smooth] = [Contact::Rolling, Contact::Smooth].map(|contact| cubic(body, contact, false));
+    let curves = [n, m, rolling, smooth].map(Curve::from);
     let mut changes = Changes { all: [(0, 0); 20], count: 0 };
     let mut negative = 0u8;
     for (k, curve) in curves.iter().enumerate() {
@@ -147,16 +153,17 @@ pub(crate) fn runs(body: &Body, tangents: &[f64], mut tell: impl FnMut(Region, u
     let mut from = 0;
     for &(place, which) in &changes.all[..changes.count] {
         if place > from {
-            tell(region_of(negative), from, place);
+            report(region_of(negative), from, place);
             from = place;
         }
         negative ^= which;
     }
-    tell(region_of(negative), from, tangents.len());
+    report(region_of(negative), from, tangents.len());
     true
 }
 
-/// The region, from the bits that tell which of n, m and the polynomials of rolling and smooth kappa are negative.
+/// The region, from the bits that are set where n, m and the polynomials of rolling and smooth kappa are
+/// negative.
 fn region_of(negative: u8) -> Region {
     let [n, m, rolling, smooth] = [1, 2, 4, 8].map(|bit| negative & bit != 0);
     match (n == m, rolling == m, smooth == m) {

@@ -5,26 +5,27 @@
 //! folds, d rate/d theta = 0:     n^2 + d (1 + ell T^3) = 0
 //! ridge, d energy/d theta = 0:   (r + ell^2)/2 (n^2 + d (1 - 2 ell T - ell T^3)) + n m^2 = 0
 //! rounded, with n, m and A of `rounded`:
-//! folds:   n^2 a c + d A^2 (a c^3 + ell s^3) = 0;  for ell = 0  a^2 + d A^2 = 0;  none of a ball
+//! folds:   n^2 a c + d A^2 (a c^3 + ell s^3) = 0;  for ell = 0  a^2 + d A^2 = 0;  a ball has none
 //! ridge:   d/dtheta [n (I1 s^2 + I3 (L sigma)^2)/(2 I3 sigma m) + h] = 0,   sigma = s/A
 //! ```
 //! The equations of the folds and of the ridge follow from Eq. 15 of Jackson et al., Am. J. Phys. 87, 85 (2019) and from
 //! the energy E = (I1 + I3 ell^2) w1^2/2 + ell cos theta + sin theta of a body whose centre rests. They contain the
-//! moments only as the ratio I1/I3. A critical body (d = 0 exactly) has rate^2 = 1/sin theta; it has no fold, and its ridge is at n = -(1 + ell^2)/2.
+//! moments only as the ratio I1/I3. A critical body (d = 0 exactly) has rate^2 = 1/sin theta; it has no fold,
+//! and its ridge is at n = -(1 + ell^2)/2.
 //!
 //! Error: 16 ulp times the conditioning of the root in (ell, d), also where d is small.
 
 use super::Shares;
 use super::{MOST, rate};
 use crate::laws::body::Body;
-use crate::methods::roots::{Cubic, Trig};
+use crate::methods::roots::{Coefficient, Cubic, Trig};
 
 /// Beyond this aspect ratio (and its square for I1/I3) the coefficients would overflow.
 const TALLEST: f64 = 1e30;
 
 /// The polynomial n = 1 - ell T, which numerator and denominator of the squared rate share.
-pub(crate) fn shared(body: &Body) -> Cubic {
-    Cubic::of(1.0) - Cubic::of(body.ell()) * Cubic::T
+pub(crate) fn shared<C: Coefficient>(body: &Body) -> Cubic<C> {
+    Cubic::of(1.0) - Cubic::of(body.ell()) * Cubic::tangent()
 }
 
 /// Inclinations in (0, pi/2) of the folds, ascending, NaN after the last. At a fold the rate is stationary along the
@@ -38,7 +39,7 @@ pub fn folds(body: &Body) -> [f64; MOST] {
     if body.excess() == 0.0 {
         return [f64::NAN; MOST];
     }
-    let (n, d, t) = (shared(body), Cubic::of(body.excess_sum()), Cubic::T);
+    let (n, d, t) = (shared(body), Cubic::of(body.excess_sum()), Cubic::tangent());
     let ell = Cubic::of(body.ell());
     inclinations_of(body, n * n + d * (Cubic::of(1.0) + ell * t * t * t))
 }
@@ -51,7 +52,7 @@ pub fn ridge(body: &Body) -> [f64; MOST] {
     if !body.is_sharp() {
         return rounded_ridge(body);
     }
-    let (n, d, t) = (shared(body), Cubic::of(body.excess_sum()), Cubic::T);
+    let (n, d, t) = (shared(body), Cubic::of(body.excess_sum()), Cubic::tangent());
     let (one, ell) = (Cubic::of(1.0), Cubic::of(body.ell()));
     let half = (one + d + ell * ell) * Cubic::of(0.5);
     let cubic = if body.excess() == 0.0 {
@@ -98,8 +99,8 @@ fn rounded_ridge(body: &Body) -> [f64; MOST] {
     if body.ell() == 0.0 { with_side(body, found) } else { steady_ones(body, found) }
 }
 
-/// Adds pi/2, about which the rate is even where ell = 0 or d = 0, to the inclinations `found`, if the body goes beyond
-/// pi/2 and has a steady state there.
+/// Adds pi/2 to the inclinations `found` if the body can lean beyond pi/2 and has a steady state there: where
+/// ell = 0 or d = 0 the rate is even about pi/2, so that it is stationary there.
 fn with_side(body: &Body, mut found: Vec<f64>) -> [f64; MOST] {
     const SIDE: f64 = core::f64::consts::FRAC_PI_2;
     if body.range() > SIDE {

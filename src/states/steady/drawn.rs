@@ -1,9 +1,10 @@
-//! Tubes and inclinations with which the modules of steady states are checked.
+//! Random tubes and inclinations with which the modules of steady states are checked.
 
 use crate::Body;
 use core::f64::consts::FRAC_PI_2;
 
-/// A tube and an inclination: anywhere on the drawn map, or of any size and near an inclination where digits are lost.
+/// A tube and an inclination: anywhere on the map up to ell = 3, or of any size and near an inclination where
+/// digits are lost.
 pub fn drawn(i: u32) -> (Body, f64) {
     let part = |k: f64| (f64::from(i) * k).fract();
     let (u, v, w) =

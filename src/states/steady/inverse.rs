@@ -8,9 +8,10 @@
 //! d = 0:    theta0, and sin theta = a/(W - rho)
 //! ball:     cos theta = ell (W - 1)/(d W)
 //! ```
-//! The equations are Eq. 15 of Jackson et al., Am. J. Phys. 87, 85 (2019), without its denominators. A sharp rim has up
-//! to three roots in (0, 1), a rounded rim up to five in (0, infinity). The coefficients are formed and evaluated in
-//! 104 bits, so that two roots next to a fold are told from no root down to 1e-30 of the rate.
+//! The equations are Eq. 15 of Jackson et al., Am. J. Phys. 87, 85 (2019), without its denominators. A sharp
+//! rim has up to three roots in (0, 1), a rounded rim up to five in (0, infinity). The coefficients are
+//! formed and evaluated in 104 bits, so that even rates that differ from that of a fold by 1e-30 have the
+//! right number of roots.
 //!
 //! Residual: |rate(theta) - rate| <= 8 (1 + kappa_c) ulp of the rate. The rate itself has an error of
 //! 2 (1 + kappa_c) ulp; theta, within 3 ulp of the exact root, adds 3 kappa_c. Where kappa_c exceeds 2^45, no double
@@ -79,7 +80,7 @@ fn rounded(body: &Body, speed: f64) -> Option<[f64; MOST]> {
     let bend = d * rho * w;
     let k = a * (w + d * w - rho);
     let square = a * a;
-    // `far` says whether the motion goes on beyond pi/2; lying at pi/2 is not counted where it does not.
+    // `far` says whether the body can lean beyond pi/2; only then the state at pi/2 is counted.
     let far = body.range() > FRAC_PI_2;
     let found = if body.is_ball() {
         if d.hi == 0.0 {

@@ -169,6 +169,16 @@ pub fn state(body: &Body, theta: f64) -> Result<State, Error> {
     Ok(turning(body, theta, rate))
 }
 
+/// Whether a state is the steady one with the centre at rest at its inclination, in either sense of turning: to six digits
+/// of |w1| + |w3|. False where there is none.
+pub fn rests(body: &Body, y: &State) -> bool {
+    state(body, y.theta).is_ok_and(|own| {
+        let way = if y.w1 * own.w1 < 0.0 { -1.0 } else { 1.0 };
+        let off = (y.w1 - way * own.w1).abs() + y.w2.abs() + (y.w3 - way * own.w3).abs();
+        off <= 1e-6 * (own.w1.abs() + own.w3.abs())
+    })
+}
+
 /// The steady state with the centre at rest that has this rate: w3 = (L/A) w1.
 pub(crate) fn turning(body: &Body, theta: f64, rate: f64) -> State {
     let speed = rate / body.i3().sqrt();
@@ -213,7 +223,8 @@ pub fn circular(body: &Body, theta: f64, precession: f64) -> Result<State, Error
     let [radius, depth, height] =
         [shape.rim.radius((s, c)), shape.rim.depth((s, c)), shape.rim.height((s, c))];
     let lever = shape.i1 * c + height * depth;
-    // The balance in the head of this file is divided by Omega, here `precession`; theta -> 0 keeps its digits.
+    // The balance at the head of this file, divided by Omega, here `precession`; w3 keeps its digits for
+    // small theta.
     let w3 = if body.is_ball() {
         // For a ball n, A and w1 have the factor sin theta, which is divided out.
         (lever * precession - n / precession) / (shape.i3 + height * shape.rim.rho)

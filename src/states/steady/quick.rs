@@ -85,8 +85,9 @@ impl<T: Real> QuickTerms<T> {
     }
 }
 
-/// Whether the squared rate may be below `low` or above `high` in any lane, to forty bits and without a division: true
-/// wherever the square is outside, and also where cancellation leaves fewer digits than the bounds allow for.
+/// Whether the squared rate may be below `low` or above `high` in any lane, to forty bits and without a
+/// division. The result is true wherever the square is outside, and also where cancellation leaves too few
+/// digits to exclude it.
 #[inline(always)]
 pub(crate) fn may_pass<T: Lane>(angle: &Short<T>, ell: T, excess: T, [low, high]: [T; 2]) -> bool {
     let (s, c) = (angle.sin.hi, angle.cos.hi);
@@ -102,8 +103,9 @@ pub(crate) fn may_pass<T: Lane>(angle: &Short<T>, ell: T, excess: T, [low, high]
     less.any_lt(low * under) | (high * under).any_lt(over) | m.abs().any_lt(near) | n.abs().any_lt(near)
 }
 
-/// Whether the squared rate may pass the bounds at any inclination between the smaller `from` and the larger `to`: n
-/// and m fall between them. The answer is also false where none of these inclinations has a steady state.
+/// Whether the squared rate may pass the bounds at any inclination from the smaller `from` to the larger
+/// `to`; n and m decrease with the inclination. The result is false where none of these inclinations has a
+/// steady state.
 #[inline(always)]
 pub(crate) fn may_pass_between<T: Lane>(
     [from, to]: [&Short<T>; 2],

@@ -11,10 +11,11 @@
 //! Error of the rate: at most 2 (1 + kappa_c) ulp of 2^-53, kappa_c = |dlog rate/dlog theta|, plus 2^-100 |n/m|, for
 //! every double theta within the range of the body. Tests of `laws` and of `test_rounded_reference` check it.
 //!
-//! An error of sine and cosine consists of a rotation, which changes the rate by kappa_c, and of a common factor 1 + e.
-//! For a sharp rim that factor cancels, because n and m have the same degree in sine and cosine. For a rounded rim it
-//! changes log rate by e (d rho s c/m + a/A)/2, with |e| below 1/8 ulp. Next to folds, where kappa_c vanishes, m may be
-//! a thousand times smaller than d rho s c; m is then formed with twice the digits.
+//! An error of sine and cosine consists of a rotation, which changes the rate as an error of theta does, and
+//! of a common factor 1 + e. For a sharp rim that factor cancels, because n and m have the same degree in
+//! sine and cosine. For a rounded rim it changes log rate by e (d rho s c/m + a/A)/2, with |e| below 1/8 ulp.
+//! Next to folds, where kappa_c vanishes, m may be a thousand times smaller than d rho s c; m is then formed
+//! with twice the digits.
 
 use crate::laws::body::Rim;
 use crate::numbers::{Lane, Real, SinCos, Sum, long_sin_cos_falls};

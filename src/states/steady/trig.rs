@@ -3,7 +3,7 @@
 //! ```text
 //! a > 0:     n = a c - ell s,   m = n + d A c,   A = a + rho s,   sigma = s/A
 //! ell = 0:   n = a,             m = a + d A                        the cosine that they share divided out
-//! a = 0:     n = -ell,          m = d rho c - ell,   A = rho, s = 1  of sigma and of the rate: the sine divided out
+//! a = 0:     n = -ell,          m = d rho c - ell,   A = rho, and 1 for s in sigma: the sine divided out
 //! ```
 
 use crate::laws::body::Body;

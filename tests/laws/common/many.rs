@@ -1,10 +1,10 @@
-//! Many motions at once, as columns, and what is found of them.
+//! Many motions at once: their starts as columns, and the results.
 
 use super::numbers;
 use spincyl::ensemble::{Job, MotionOutput, MotionStarts, SUMMARIES, Summary, roll};
 use spincyl::{Body, State};
 
-/// Columns of bodies and states, and what was found.
+/// Columns of bodies and states, and the results of their motions.
 #[derive(Default)]
 pub struct Many {
     pub body: [Vec<f64>; 5],
@@ -67,7 +67,7 @@ impl Many {
         self.sums[kind as usize][i]
     }
 
-    /// Every bit of motion `i`.
+    /// The bits of all results of motion i.
     pub fn bits(&self, i: usize) -> Vec<u64> {
         let times = self.states[0].len() / self.error.len();
         let mut all: Vec<f64> =

@@ -1,4 +1,4 @@
-//! Generators of bodies and states, the independent model, and the motions that it found.
+//! Generators of bodies and states, the independent model, and reference motions of that model.
 
 pub mod many;
 pub mod rim;
@@ -9,7 +9,7 @@ use spincyl::motion::path::Path;
 use spincyl::motion::{Ask, Method, Motion, roll_with};
 use spincyl::{Body, Contact, Error, State, steady};
 
-/// So many cases of each property; those that failed have tests of their own.
+/// The number of cases of a property. Failures are not stored, since a case that failed becomes a test.
 pub fn cases(count: u32) -> ProptestConfig {
     ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(count) }
 }
@@ -33,7 +33,7 @@ pub fn any_fillet() -> impl Strategy<Value = f64> {
     prop_oneof![3 => 0.01..0.99f64, 2 => (-12.0..0.0f64).prop_map(|x| 10f64.powf(x)), 1 => Just(1.0)]
 }
 
-/// Bodies of any moments on rounded rims; of a third of them the moments agree, or almost.
+/// Bodies of any moments on rounded rims; in a third of them the moments are equal or almost equal.
 pub fn general_rounded() -> impl Strategy<Value = Body> {
     let ell = prop_oneof![4 => 0.0..3.0f64, 1 => Just(0.0), 1 => 3.0..30.0f64];
     let share = prop_oneof![4 => 0.05..2.0f64, 1 => Just(1.0), 1 => (-12.0..-3.0f64).prop_map(|x| 1.0 + 10f64.powf(x))];
@@ -65,7 +65,7 @@ pub fn any_rounded() -> impl Strategy<Value = Body> {
     prop_oneof![3 => general_rounded(), 3 => rounded_tube(), 2 => any_ball()]
 }
 
-/// Any body at all: two of three have a fillet.
+/// Any body; two of three have a fillet.
 pub fn any_rim() -> impl Strategy<Value = Body> {
     prop_oneof![2 => any_rounded(), 1 => any_body()]
 }
@@ -75,7 +75,7 @@ pub fn tube_or_rounded() -> impl Strategy<Value = Body> {
     prop_oneof![2 => any_rounded(), 1 => ordinary_tube()]
 }
 
-/// Any state, a third of them at rest or almost, a third of one decimal.
+/// Any state; a third of them tilt slowly or not at all, a third have one decimal.
 pub fn any_state() -> impl Strategy<Value = State> {
     let slow =
         (-300.0..-4.0f64, any::<bool>()).prop_map(|(x, up)| 10f64.powf(x) * if up { 1.0 } else { -1.0 });
@@ -137,7 +137,7 @@ pub fn hex(text: &str) -> f64 {
     sign * mantissa * 2f64.powi(exponent / 2) * 2f64.powi(exponent - exponent / 2)
 }
 
-/// A row of `reference/motion.csv`: a motion, and what the three-dimensional model found at time `t`.
+/// A row of `reference/motion.csv`: a motion, and its values at time `t` by the three-dimensional model.
 ///
 /// `values` of a "period": theta_min, theta_max, phi and psi per period (t is the period); of a "state":
 /// theta, w1, w2, w3, phi, psi, contact x, y, normal, friction; of an "event": theta, w1, w2, w3.
@@ -155,13 +155,13 @@ pub fn motions() -> Vec<Reference> {
     rows(include_str!("../../reference/motion.csv"), false)
 }
 
-/// The same of bodies on rounded rims, `reference/rounded_motion.csv`; a "pole" is the state of a ball that has passed
-/// its pole.
+/// Reference motions of bodies on rounded rims, `reference/rounded_motion.csv`; a "pole" is the state of a
+/// ball that has passed its pole.
 pub fn rounded_motions() -> Vec<Reference> {
     rows(include_str!("../../reference/rounded_motion.csv"), true)
 }
 
-/// And of both kinds of rim.
+/// Reference motions of both kinds of rim.
 pub fn all_motions() -> impl Iterator<Item = Reference> {
     motions().into_iter().chain(rounded_motions())
 }
@@ -205,7 +205,7 @@ pub fn rounded_disk() -> Body {
     Body::from_metres(75.1, 0.0, 13.0, 2.0).unwrap()
 }
 
-/// A body of each kind of rounded rim, and a motion of it.
+/// A body of each kind of rounded rim, and a state from which it starts.
 pub fn rounded_starts() -> [(Body, State); 5] {
     let can = Body::rounded_tube(1.0, 0.0, 0.1).unwrap();
     let fat = Body::rounded_tube(0.75, 0.0, 0.75).unwrap();
@@ -219,23 +219,23 @@ pub fn rounded_starts() -> [(Body, State); 5] {
     ]
 }
 
-/// The same of a sharp rim: a cylinder.
+/// A cylinder on a sharp rim, and a state from which it starts.
 pub fn sharp_start() -> (Body, State) {
     let body = Body::solid(1.0).unwrap();
     (body, steady::state(&body, 0.5).unwrap().kicked(0.3))
 }
 
-/// And of both.
+/// Starts on rounded rims and on a sharp rim.
 pub fn starts() -> impl Iterator<Item = (Body, State)> {
     rounded_starts().into_iter().chain([sharp_start()])
 }
 
-/// The motion at these times; what is wanted besides as given.
+/// The motion at these times, computed as `scene` asks.
 pub fn moved(body: &Body, y: &State, times: &[f64], scene: Ask) -> Result<Motion, Error> {
     roll_with(body, y, times, &scene, || true).map(|m| m.expect("nobody interrupts"))
 }
 
-/// What a motion with friction or losses has besides its states.
+/// The part of the result that only a motion with friction or losses has.
 pub fn path_of(motion: &Motion) -> &Path {
     motion.path.as_deref().expect("friction or losses")
 }
@@ -244,7 +244,7 @@ pub fn by(method: Method) -> Ask {
     Ask { method, ..Ask::default() }
 }
 
-/// Numbers that wander about [0, 1) without a pattern.
+/// Pseudo-random numbers in [0, 1).
 pub fn wander(k: u64) -> impl FnMut() -> f64 {
     let mut x = k.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;
     move || {
@@ -253,7 +253,7 @@ pub fn wander(k: u64) -> impl FnMut() -> f64 {
     }
 }
 
-/// Tilting at rest, or by 1e-300 to 1e-4, either way.
+/// A tilting rate of 0, or of 1e-300 to 1e-4 in size, with either sign.
 pub fn almost_at_rest(r: &mut impl FnMut() -> f64) -> f64 {
     let size = if r() < 0.5 { 10f64.powf(-300.0 * r()) } else { 10f64.powf(-4.0 - 14.0 * r()) };
     if r() < 0.4 {
@@ -265,8 +265,8 @@ pub fn almost_at_rest(r: &mut impl FnMut() -> f64) -> f64 {
     }
 }
 
-/// Starts of all kinds: wherever they are, at rest or almost, with numbers of one decimal, half lifted, beyond pi/2; and
-/// near steady states.
+/// Random starts of all kinds: at any inclination, also beyond pi/2, tilting slowly or not at all, with
+/// numbers of one decimal; and near steady states.
 pub fn wild(r: &mut impl FnMut() -> f64) -> (Body, State, Contact) {
     loop {
         let ell = if r() < 0.2 { 0.0 } else { 3.0 * r() };

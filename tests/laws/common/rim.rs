@@ -1,4 +1,4 @@
-//! Where a body touches the table, typed once more, and what that does to the rounding of a rate.
+//! The contact geometry of a rim, written independently of the library, and the conditioning of a rate.
 
 use spincyl::Body;
 use std::f64::consts::FRAC_PI_2;
@@ -6,7 +6,7 @@ use std::f64::consts::FRAC_PI_2;
 /// Half of the distance from 1 to the next double.
 pub const ULP: f64 = f64::EPSILON / 2.0;
 
-/// Sine, cosine, and where the body touches: A, L, h, g, g', each as a value and as the sum of the sizes of its terms.
+/// Sine, cosine, A; and L, h, g, g', each as a value and as the sum of the sizes of its terms.
 pub struct Place {
     pub s: f64,
     pub c: f64,
@@ -51,7 +51,7 @@ pub fn sharp(body: &Body) -> bool {
     body.fillet() == 0.0
 }
 
-/// Where the steady states of a body end.
+/// The largest inclination of steady states of a body.
 pub fn steady_end(body: &Body) -> f64 {
     if sharp(body) { FRAC_PI_2 } else { body.theta_end() }
 }

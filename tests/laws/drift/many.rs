@@ -1,4 +1,4 @@
-//! Many at once: the same as each alone, to the bit for any number of threads and neighbours.
+//! Many drifts at once: they are those of single drifts, and no bit depends on threads or neighbours.
 
 use super::apart;
 use crate::common;
@@ -6,7 +6,7 @@ use spincyl::drift::{Centre, DriftOutput, DriftStarts, INVALID, Question, WIDTH}
 use spincyl::loss::COUNT;
 use spincyl::{Body, State, steady};
 
-/// Columns of random starts; one in `wild` of them makes no sense.
+/// Columns of random starts; one in fifty has a negative coefficient.
 struct Many {
     centre: Centre,
     bodies: [Vec<f64>; 6],
@@ -33,7 +33,7 @@ impl Many {
             let y = if r() < 0.5 {
                 y
             } else {
-                // Half of the circles are far from the states whose centre rests.
+                // Half of the circular states are far from those whose centre rests.
                 let rate =
                     if r() < 0.5 { y.precession() * (0.9 + 0.2 * r()) } else { (4.0 * r() - 1.5).exp() };
                 steady::circular(&body, theta, rate).unwrap_or(y)
@@ -69,7 +69,7 @@ impl Many {
         }
     }
 
-    /// Those from `from` on, every `step`th.
+    /// Every `step`th start from `from` on.
     fn part(&self, from: usize, step: usize) -> Self {
         let cut = |x: &Vec<f64>| x.iter().skip(from).step_by(step).copied().collect::<Vec<_>>();
         Self {
@@ -81,7 +81,7 @@ impl Many {
     }
 }
 
-/// Times, inclinations and codes.
+/// The times, the inclinations and the codes of the ends.
 fn stopped(many: &Many, threads: usize) -> (Vec<f64>, Vec<f64>, Vec<u8>) {
     let n = many.states[0].len();
     let (mut times, mut thetas, mut ends) = (vec![0.0; n], vec![0.0; n], vec![0; n]);

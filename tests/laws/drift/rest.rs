@@ -5,10 +5,11 @@ use spincyl::drift::{Drift, End};
 use spincyl::loss::{Law, Losses};
 use spincyl::{Body, rolling, steady};
 
-/// Of the thin disk.
+/// The transverse moment of the thin disk.
 const I1: f64 = 0.25;
 
-/// Integral of `f` from 0 to x by Simpson's rule in v = theta^(1/4), a power of which all of these are analytic in.
+/// Integral of `f` from 0 to x by Simpson's rule in v = theta^(1/4), in which all these integrands are
+/// analytic.
 fn simpson(f: impl Fn(f64) -> f64, x: f64) -> f64 {
     let (n, top) = (4000, x.powf(0.25));
     let g = |i: u32| {
@@ -19,8 +20,8 @@ fn simpson(f: impl Fn(f64) -> f64, x: f64) -> f64 {
     (g(0) + sum + g(n)) * top / f64::from(n) / 3.0
 }
 
-/// The power that a law takes of a thin disk with Omega^2 = 1/(I1 sin theta), from the table of the laws, coefficient
-/// 1.
+/// The power that a law with coefficient 1 takes from a thin disk with Omega^2 = 1/(I1 sin theta), by the
+/// table of the laws.
 fn power(law: Law, theta: f64) -> f64 {
     let (s, c) = theta.sin_cos();
     let rate = 1.0 / (I1 * s).sqrt();
@@ -99,7 +100,7 @@ fn laws_together_add_their_rates_at_equal_inclination() {
     for (a, b) in [(0, 6), (1, 3), (2, 4), (5, 7), (0, 2)] {
         let (one, other) = (Losses::of(Law::ALL[a], 3e-3), Losses::of(Law::ALL[b], 7e-3));
         let drifts = [one, other, one + other].map(|x| drift(&body, 0.3, x));
-        // 1/time of a short way
+        // the mean rate over a short interval
         let speed = |d: &Drift| 1.0 / (d.time(0.2) - d.time(0.2001));
         let [x, y, both] = [speed(&drifts[0]), speed(&drifts[1]), speed(&drifts[2])];
         assert!(apart(x + y, both) < 1e-6, "{a} {b}");
@@ -176,7 +177,7 @@ fn a_tall_body_near_flat_takes_two_thirds_of_its_slope_longer() {
 
 #[test]
 fn energy_falls_by_the_power_at_every_inclination() {
-    // sharp and rounded, all branches: E(theta(t)) by central differences of an independent energy
+    // sharp and rounded bodies on all branches: E(theta(t)) by central differences of an independent energy
     let bodies = [
         (Body::solid(0.3).unwrap(), 0.2),
         (Body::solid(2.5).unwrap(), 0.2),
@@ -226,7 +227,7 @@ fn every_end_has_its_name_and_its_place() {
     assert_eq!(drift(&tall, 1.2, dry).ends_at_theta(), core::f64::consts::FRAC_PI_2);
     let short = tall.with_theta_end(1.4).unwrap();
     assert_eq!(drift(&short, 1.2, dry).ends_at_theta(), 1.4);
-    // a least energy on the edge branch
+    // a minimum of the energy along the branch
     let odd = Body::solid(0.875).unwrap();
     let lowest = steady::ridge(&odd).into_iter().filter(|x| x.is_finite()).collect::<Vec<_>>();
     let found = lowest.iter().map(|x| drift(&odd, x + 1e-3, dry)).find(|d| d.ended() == End::Lowest);
@@ -242,7 +243,8 @@ fn who_begins_at_the_limit_has_been_on_the_way_for_ever_if_little_is_lost() {
         let limit = body.theta_limit();
         let side = if body.excess() > 0.0 { 1.0 } else { -1.0 };
         for (law, power) in [(Law::DryContour, -0.5), (Law::AirLinear, 0.0), (Law::AirQuadratic, 0.5)] {
-            // time from a distance x of the limit to 0.05: goes with x^(j/2 - 1), P ~ Omega^j
+            // the time from a distance x of the limit to 0.05 goes as x^(j/2 - 1), where the power goes as
+            // Omega^j
             let at = |x: f64| drift(&body, limit + side * x, Losses::of(law, 1e-3)).time(limit + side * 0.05);
             let [a, b, c] = [at(1e-6), at(1e-8), at(1e-10)];
             let ratio = (c - b) / (b - a);

@@ -1,4 +1,4 @@
-//! Rolling: energies, the path that laws share, where it ends.
+//! Drifts of a rolling body: its energy, the path that contour laws share, its end.
 
 use super::{disk, drift, laws_of};
 use spincyl::drift::{Drift, End};
@@ -9,8 +9,8 @@ fn roll(body: &Body, y: &State, losses: Losses) -> Drift {
     Drift::rolling(body, y, &losses).unwrap_or_else(|e| panic!("{body:?} {y:?} {losses:?}: {e}"))
 }
 
-/// Starts of all kinds that are stable by rolling: on disks, tubes, rounded bodies and balls, centre at rest and on
-/// circles.
+/// Starts of all kinds that are stable when rolling: disks, tubes, rounded bodies and balls, with the centre
+/// at rest or on a circle.
 fn starts() -> Vec<(Body, State)> {
     let mut all = Vec::new();
     for (body, theta) in [
@@ -62,8 +62,8 @@ fn energy_falls_by_the_power_and_nothing_tilts_while_it_rolls() {
 
 #[test]
 fn what_the_losses_do_to_the_lines_of_the_motion_is_what_moves_it() {
-    // (w1', w3') less theta' times the slopes of the lines is the couple's part, from the three-dimensional model's
-    // mass matrix
+    // (w1', w3') without theta' times the slopes of the lines is the part of the couple, which the mass
+    // matrix of the three-dimensional model gives
     for (body, y) in starts() {
         for law in laws_of(&body) {
             let losses = Losses::of(law, 1e-3);
@@ -73,7 +73,7 @@ fn what_the_losses_do_to_the_lines_of_the_motion_is_what_moves_it() {
             let [before, here, after] = [t - h, t, t + h].map(|t| d.state(t).unwrap());
             let rate = |f: fn(&State) -> f64| (f(&after) - f(&before)) / (2.0 * h);
             let tilt = rate(|y| y.theta);
-            // the lines: how (w1, w3) change with theta when nothing is lost
+            // the slopes of the lines of (w1, w3) without losses
             let moved = rolling::derivative(&body, &here.kicked(1.0));
             let still = rolling::derivative(&body, &here);
             let (f1, f3) = (moved.w1 - still.w1, moved.w3 - still.w3);
@@ -123,7 +123,7 @@ fn rolling_ends_where_it_is_no_longer_stable_and_passes_a_ridge_unnoticed() {
     let high = roll(&body, &steady::state(&body, 0.3).unwrap(), dry);
     assert_eq!(high.ended(), End::Face);
     assert!(high.time(ridge).is_finite() && high.time(0.239) > 38.0 && high.time(0.239) < 42.0);
-    // solid ell = 2.5, theta = 1.2: 1.9 times as fast as with the centre at rest, by drilling 0.2 times
+    // dry contour drifts 1.9 times as fast as with the centre at rest, drilling 0.2 times
     for (law, ratio) in [(Law::DryContour, 1.9), (Law::Drilling, 0.2)] {
         let losses = Losses::of(law, 1e-3);
         let y = steady::state(&body, 1.2).unwrap();
@@ -150,7 +150,8 @@ fn rolling_ends_where_it_is_no_longer_stable_and_passes_a_ridge_unnoticed() {
 
 #[test]
 fn a_rolling_disk_takes_longer_than_one_whose_centre_rests() {
-    // Euler's disk, 0.2 to 0.004 rad: rolling takes longer by 4, 10, 11 and 12 %, by rolling resistance less by 2 %
+    // Euler's disk, 0.2 to 0.004 rad: rolling takes 4, 10, 11 and 12 % longer, with rolling resistance 2 %
+    // less
     let body = Body::solid(6.35 / 37.5).unwrap();
     let laws = [
         (Law::DryContour, 1.04),
@@ -195,7 +196,7 @@ fn rolling_from_an_unstable_or_unsteady_state_is_refused_by_name() {
 
 #[test]
 fn a_drift_ends_where_rolling_becomes_unstable_even_if_it_is_stable_again_soon_after() {
-    // kappa falls below zero and rises again within a long step
+    // within a long step kappa falls below zero and rises again
     for (ell, i1, theta, rate, coefficient) in [
         (
             2.147212621726398,
@@ -230,7 +231,7 @@ fn every_coin_that_drills_comes_upright_and_rolls_straight_on_or_leaves_its_stea
         let far = (d.ends_at_theta() - core::f64::consts::FRAC_PI_2).abs();
         if d.ended() == End::DrillingStops && far < 1e-7 {
             upright += 1;
-            // the precession fades at a constant rate, so that the way that is left tells the time that is left
+            // at the end the precession is proportional to the time that is left
             let [early, late] = [0.9998, 0.9999].map(|share| d.precession(share * d.stops_at()));
             assert!((early / late - 2.0).abs() < 0.01, "{early} {late}");
         }

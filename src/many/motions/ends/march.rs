@@ -1,4 +1,4 @@
-//! A queue of marches for SIMD lanes: a lane whose march is over takes up the next march.
+//! A queue of marches for SIMD lanes: a lane whose march is over takes the next march.
 
 use super::run::{Run, RunOutcome};
 use super::set::{MarchKind, PanelForces, RunLanes, extents, panels};
@@ -8,7 +8,7 @@ use crate::numbers::side_by_side::{MOST, SideBySide};
 /// Number of panels of a set of lanes between two calls of `go_on`.
 const PANELS_PER_BREATH: usize = 64;
 
-/// Computes panels of all runs until each run is over, or until `go_on` says no.
+/// Computes panels of all runs until each run is over, or until `go_on` returns false.
 fn queue<T: SideBySide, P: Copy>(
     runs: impl IntoIterator<Item = Run>,
     go_on: &mut dyn FnMut() -> bool,

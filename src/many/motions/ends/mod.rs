@@ -3,10 +3,10 @@
 //! ```text
 //! N = 32 terms, 16 nodes   ->   56 terms, 64 nodes   ->   56 terms, 320 nodes   ->   one at a time
 //! ```
-//! [`exact::lanes::march`](crate::motions::exact::lanes) has the panels. A march whose estimated error is larger than the error
-//! that is asked for is repeated with more terms and more nodes; one motion in a few hundred remains after that and is
-//! answered alone. The check of every start already tells whether a motion is over there, so that such motions cost
-//! nothing else.
+//! [`exact::lanes::march`](crate::motions::exact::lanes) has the panels. A march whose estimated error
+//! exceeds the tolerance is repeated with more terms and more nodes; one motion in a few hundred remains
+//! after that and is computed alone. A motion that is over at its start is found by the check of the start,
+//! and needs no march.
 
 mod march;
 mod run;
@@ -29,7 +29,8 @@ use set::{FEW, MANY, MarchKind};
 use std::sync::LazyLock;
 use summed::Summed;
 
-/// The error that the finest rule may have, whatever the tolerance: an error of rounding, as large as that of a motion alone.
+/// The finest rule may have this error under any tolerance: it is a rounding error, as large as that of a
+/// motion that is computed alone.
 const FINEST: f64 = 4e-12;
 
 /// The quadrature rules of the three marches.
@@ -38,17 +39,19 @@ static RULES: LazyLock<[Rule; 3]> = LazyLock::new(|| [16, 64, 320].map(Rule::new
 /// The cosine of the double next to pi/2.
 const RIGHT_ANGLE_COSINE: f64 = 6.123_233_995_736_766e-17;
 
-/// Coefficient of friction below which a motion that may slip is not followed in lanes.
+/// Coefficient of friction below which lanes do not compute a motion that may slip: its margin is a rounding
+/// error.
 const LEAST_GRIP: f64 = 1e-9;
 
-/// Square of w2 below which a start is taken as a turning point, from which it is at most about 1e-18 away in time.
+/// Square of w2 below which a start counts as a turning point, which is then at most about 1e-18 away in
+/// time.
 const AT_REST: f64 = 1e-36;
 
-/// Sine and cosine of an inclination that no body reaches.
+/// Sine and cosine of pi, an inclination that no body reaches.
 const NOWHERE: [f64; 2] = [0.0, -1.0];
 
-/// Sine and cosine of theta_end, the inclination at which something else than the rim lands; for most bodies it is a
-/// right angle.
+/// Sine and cosine of theta_end, the inclination at which something other than the rim lands; for most bodies
+/// it is a right angle.
 fn side_of(theta_end: f64) -> [f64; 2] {
     if theta_end == FRAC_PI_2 { [1.0, RIGHT_ANGLE_COSINE] } else { theta_end.sin_cos().into() }
 }
@@ -93,7 +96,7 @@ impl Marches<'_, '_> {
         if rung + 1 == RULES.len() { tol.max(FINEST) } else { tol }
     }
 
-    /// Answers the motions of the block that marches can answer; returns the other motions.
+    /// Computes the motions of the block for which marches are precise enough; returns the other motions.
     pub fn run<T: SideBySide>(
         &self,
         like: T,
@@ -167,7 +170,6 @@ impl Marches<'_, '_> {
         let time_way = if job.span() < 0.0 { -1.0 } else { 1.0 };
         let Begun { angle: (sin, cos), rate, over } = begun(&body, job.contact(), job.mu, &start, time_way);
         let over = over.filter(|_| !job.beyond);
-        // Under less friction the margin of slip is a rounding error.
         if over.is_none() && slips(job) && job.mu < LEAST_GRIP {
             return First::Unknown;
         }
@@ -198,8 +200,8 @@ impl Marches<'_, '_> {
         }
     }
 
-    /// Writes the answers of the solved motions, with their states at the times of the job; returns the motions whose
-    /// states are not found within the error.
+    /// Writes the results of the solved motions, with their states at the times of the job; returns the
+    /// motions whose states do not reach the tolerance.
     fn seek<T: SideBySide>(
         &self,
         like: T,
@@ -214,7 +216,7 @@ impl Marches<'_, '_> {
         for of in known {
             self.tell(of, out);
         }
-        // For a motion that ends, only the states before its end are sought.
+        // For a motion that ends, only the states before its end are computed.
         let all = out.states.is_some();
         let sought = |k: usize| {
             let end = known[k].end;
@@ -251,7 +253,7 @@ impl Marches<'_, '_> {
         again.iter().map(|slot| known[slot / times.len()].task.index).collect()
     }
 
-    /// Writes the answers of a solved motion that need no state at a time.
+    /// Writes the results of a solved motion that need no state at a time.
     fn tell(&self, of: &SolvedRun, out: &mut MotionOutput<'_>) {
         let (job, i) = (self.work.job, of.task.index);
         let way = if job.span() < 0.0 { -1.0 } else { 1.0 };
@@ -267,14 +269,15 @@ impl Marches<'_, '_> {
     }
 }
 
-/// The start of a motion: a task for a march, a motion that is over at once, or a start that marches cannot answer.
+/// The start of a motion: a task for a march, a motion that is over at once, or a start for which no march is
+/// possible.
 enum First {
     March(MarchTask),
     Over(MarchTask, EventState),
     Unknown,
 }
 
-/// Whether marches can answer a job: the margin of slip has no series for a rounded rim.
+/// Whether marches can compute a job: the margin of slip has no series for a rounded rim.
 pub(super) fn can(job: &Job<'_>, round: bool) -> bool {
     job.step.is_none() && !(round && slips(job))
 }

@@ -1,4 +1,4 @@
-//! The march of one motion to its end, or to a time: its place on the way, and its next panel.
+//! The march of one motion to its end, or to a time: how far it has come, and its next panel.
 //!
 //! ```text
 //! start -> first turning point (t1) -> back at the start (2 t1)
@@ -15,7 +15,7 @@ use crate::motions::exact::lanes::march::{Comes, Knot};
 use crate::numbers::larger;
 use core::f64::consts::PI;
 
-/// Greatest number of panels in one direction.
+/// Greatest number of panels in one direction; a march that needs more gives no result.
 const MOST: u32 = 48;
 
 /// A motion to be marched: its body, its start and its direction.
@@ -25,9 +25,10 @@ pub(super) struct MarchTask {
     pub index: usize,
     /// The body: ell, I1, I3 and fillet.
     pub shape: [f64; 4],
-    /// Sine and cosine of the inclination at which something else than the rim lands, or of a limit of the march.
+    /// Sine and cosine of the inclination at which something other than the rim lands, or of a limit of the
+    /// march.
     pub side: [f64; 2],
-    /// The inclination at which something else than the rim lands.
+    /// The inclination at which something other than the rim lands.
     pub theta_end: f64,
     pub start: Knot<f64>,
     /// 1 if the inclination grows, -1 if it falls.
@@ -36,19 +37,19 @@ pub(super) struct MarchTask {
     pub mu_square: f64,
 }
 
-/// A time at which the state of a motion is sought.
+/// A time at which the state of a motion is computed.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Target {
-    /// An index by which the caller knows the target.
+    /// An index by which the caller recognizes the target.
     pub slot: usize,
-    /// The time from the start of the march to the place, and whether the motion is on its way back there.
+    /// The time of a march from the start to the place of the motion at that time, and whether the motion
+    /// returns through this place from a turning point.
     pub time: f64,
     pub back: bool,
-    /// Factor by which the uncertainty of half a swing enters the sought time.
+    /// Factor by which the uncertainty of half a swing enters the time of the target.
     pub share: f64,
 }
 
-/// The march of a motion.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Run {
     pub task: MarchTask,
@@ -80,16 +81,14 @@ pub(super) struct PanelOutcome {
     pub knot: Knot<f64>,
 }
 
-/// The outcome of a march after a panel.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum RunOutcome {
-    /// The march goes on.
     On,
-    /// The motion has ended, or the sought time is reached.
+    /// The motion has ended, or the march has reached the time of its target.
     There(EventState),
     /// The motion does not end before the time up to which it is marched.
     Free(FreeMotion),
-    /// This march gives no answer.
+    /// This march gives no result.
     Unknown,
 }
 
@@ -113,7 +112,7 @@ pub(super) struct FreeMotion {
     pub late: f64,
     /// Inclinations of the first and of the second turning point; NaN for a turning point that has not been reached.
     pub turns: [f64; 2],
-    /// The precession on the way from the one turning point to the other, and its uncertainty.
+    /// The precession between the turning points, and its uncertainty.
     pub turn: [f64; 2],
 }
 
@@ -259,7 +258,7 @@ impl Run {
                 (self.time, self.knot) = (time, met.knot);
                 RunOutcome::On
             }
-            // A time that only rounding has put behind an end counts as the time of the end.
+            // A time that lies behind the end of the motion by rounding alone counts as the time of the end.
             Comes::Turn | Comes::Side | Comes::Face if left > 1e-12 * (1.0 + time) => RunOutcome::Unknown,
             _ => self.there(
                 met,
@@ -270,13 +269,13 @@ impl Run {
         }
     }
 
-    /// The outcome at an event or at a sought time; `share` is the factor of the march's uncertainty in the time,
-    /// `sign` is -1 on the way back, else 1.
+    /// The outcome at an event or at the time of the target; `share` is the factor of the march's uncertainty
+    /// in that time, and `sign` is -1 where the motion returns from a turning point, else 1.
     fn there(&self, met: &PanelOutcome, time: f64, share: f64, sign: f64) -> RunOutcome {
         let Knot { theta, w1, w3, .. } = met.knot;
         let (theta, time) = match met.comes {
             Comes::Side => (self.task.theta_end, time),
-            // From there the body only falls.
+            // From this inclination to the face the body falls at the speed `met.tilt`.
             Comes::Face => (if self.way > 0.0 { PI } else { 0.0 }, time + FLAT / met.tilt),
             _ => (theta, time),
         };

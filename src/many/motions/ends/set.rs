@@ -19,7 +19,7 @@ pub(super) struct MarchKind {
 /// Runs in lanes, or one result for each lane; a lane may be empty.
 pub(super) type RunLanes<R> = [Option<R>; MOST];
 
-/// The extremes of the forces in a panel, whether the way ends there, and the knot at the end of the panel.
+/// The extremes of the forces in a panel, whether the march ends in it, and the knot at the end of the panel.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PanelForces {
     pub normal: f64,
@@ -56,7 +56,7 @@ fn gathered(runs: &RunLanes<Run>, count: usize) -> Option<Rows<IN>> {
     Some(rows)
 }
 
-/// The inputs in lanes: the march, its knot, its direction and the time that is sought.
+/// The inputs in lanes: the march, its knot, its direction and the time that is left to the target.
 #[inline(always)]
 fn loaded<T: SideBySide>(like: T, kind: MarchKind, rows: &Rows<IN>) -> (March<T>, Knot<T>, T, T) {
     let shape =

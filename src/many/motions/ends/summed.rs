@@ -1,9 +1,9 @@
 //! The summary numbers of solved motions: extreme inclinations and forces, the period and the precession.
 //!
-//! The extreme inclinations follow from the turning points and the end of a motion. Along one motion the forces depend
-//! on the inclination alone: they are computed on the ways from the start to the least and to the greatest inclination.
-//! The period and the precession are those of the whole swing, even if the motion ends before: a separate march goes to
-//! both turning points.
+//! The extreme inclinations follow from the turning points and the end of a motion. Along one motion the
+//! forces depend on the inclination alone: they are computed between the start and the least, and between the
+//! start and the greatest inclination. The period and the precession are those of the whole swing, even if
+//! the motion ends before: a separate march goes to both turning points.
 
 use super::march::look;
 use super::run::{MarchTask, Run, RunOutcome};
@@ -22,7 +22,8 @@ pub(super) struct Summed<'a, 'b, 'c> {
 }
 
 impl Summed<'_, '_, '_> {
-    /// Writes the summary numbers that are wanted; returns the motions for which they are not found.
+    /// Writes the summary numbers that are wanted; returns the motions for which they do not reach the
+    /// tolerance.
     pub fn run<T: SideBySide>(
         &self,
         like: T,
@@ -68,7 +69,7 @@ impl Summed<'_, '_, '_> {
             (*normal, *friction) = (normal.min(seen.normal), friction.max(seen.friction));
         });
         for (of, [normal, mut friction]) in self.known.iter().zip(found) {
-            // Where contact ends the normal force vanishes, so that rolling would need infinite friction.
+            // At lift-off the normal force vanishes, so that rolling would need infinite friction.
             if of.end.is_some_and(|end| end.comes == Comes::LiftOff) {
                 friction = f64::INFINITY;
             }
@@ -77,14 +78,15 @@ impl Summed<'_, '_, '_> {
         }
     }
 
-    /// Writes the period and the precession of each motion; returns the motions for which they are not found.
+    /// Writes the period and the precession of each motion; returns the motions for which they do not reach
+    /// the tolerance.
     fn whole<T: SideBySide>(
         &self,
         like: T,
         out: &mut MotionOutput<'_>,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Vec<usize> {
-        // The errors of both count as those of the states.
+        // The error of a motion includes those of period and precession.
         let (timed, turned) = (out.wants(Summary::Period), out.wants(Summary::PrecessionPerPeriod));
         let sought = Sought { ends: false, slips: false, turns: turned };
         let kind = MarchKind { sought, ..self.kind };

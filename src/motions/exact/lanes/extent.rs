@@ -81,7 +81,6 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         [self.inclination(from), self.inclination(to)]
     }
 
-    /// The inclination at u.
     #[inline(always)]
     fn inclination(&self, u: T) -> T {
         let (_, cos) = sin_cos(u);
@@ -119,7 +118,8 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
             }
             (from, to) = ((place - width).max(first), (place + width).min(last));
         }
-        // The least value may lie between two samples, but the series resolves the function.
+        // Between two samples the function may dip by a small part of its range, since the series resolves
+        // it.
         if roughly { least - number(HIDDEN) * (most - least) } else { least }
     }
 }
@@ -160,12 +160,13 @@ impl<S: Simd, const N: usize, const K: usize> Swings<f64x8<S>, N, K> {
                 most = if value[k] > most { value[k] } else { most };
             }
         }
-        // The least value may lie between two samples, but the series resolves the function.
+        // As in `least_on`, the function may dip between two samples by a part of its range.
         least - HIDDEN * (most - least)
     }
 }
 
-/// Greatest dip of a [`Grip`] between two samples, as a fraction of its range.
+/// Greatest dip of a [`Grip`] between two samples, as a fraction of its range; a smaller one would miss an
+/// event.
 const HIDDEN: f64 = 0.25;
 
 /// A quantity that must stay large enough for a body to keep rolling.

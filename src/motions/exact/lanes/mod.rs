@@ -36,11 +36,11 @@ pub(crate) use extent::Grip;
 use series::{angle, balance, ending, lines, parabola, steepness, turned, turning_points};
 pub(crate) use single::{QuickMotion, QuickTask, quick};
 
-/// A series with room for fewer terms than this uses all of its room, so that the compiler unrolls its loops. One code
-/// with more room serves series of several lengths.
+/// Capacity from which on the number of terms is chosen at run time, so that one code serves series of
+/// several lengths. A series with less capacity always uses all of it, and the compiler unrolls its loops.
 const LONG: usize = 32;
 
-/// Cosines at the midpoints of equal parts of a half turn; K is the room for them.
+/// Cosines at the midpoints of equal parts of a half turn, with a capacity of K.
 #[derive(Debug, Clone)]
 pub(crate) struct Midpoints<const K: usize> {
     parts: usize,
@@ -62,7 +62,7 @@ impl<const K: usize> Midpoints<K> {
     }
 }
 
-/// Motions between their turning points, one in each lane of T, with room for N terms in y and K in u.
+/// Motions between their turning points, one in each lane of T, with a capacity of N terms in y and K in u.
 pub(crate) struct Swings<T, const N: usize, const K: usize> {
     /// Numbers of terms in y and in u.
     terms: [usize; 2],
@@ -97,7 +97,6 @@ struct LanePhase<T> {
     miss: T,
 }
 
-/// The uncertainties of a swing.
 struct Uncertainty<T> {
     /// Error of y caused by rounding of F; also the relative error of a long time.
     noise: T,
@@ -163,8 +162,8 @@ impl<T: Real, const K: usize> Clock<T, K> {
 }
 
 impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
-    /// The motions through (theta, w1, w2, w3) at time 0, from one series of so many terms about the start: N, or fewer
-    /// where N is at least `LONG`.
+    /// The motions through (theta, w1, w2, w3) at time 0, from one series of `terms` terms about the start;
+    /// of N terms where N is below `LONG`.
     #[inline(always)]
     pub fn near(points: &Midpoints<K>, terms: usize, law: Reduced<T>, start: [T; 4]) -> Self {
         let (n, parts) = (if N < LONG { N } else { terms.min(N) }, points.parts());
@@ -217,17 +216,18 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         let off = noise / weakest;
         let per_time = off + cut + misfit;
         let half = rate[0] * number(PI);
-        // The tail of the cosine series is extrapolated from pairs of last terms, for even and odd terms may fall
-        // differently.
+        // The tail of the cosine series is extrapolated from pairs of last terms, for even and odd terms may
+        // decrease at different rates.
         let pair =
             |k: usize| (rate[parts - k].abs() + rate[parts - k - 1].abs()).max(number(f64::MIN_POSITIVE));
         let (last, before, earlier) = (pair(1), pair(3), pair(5));
         let ratio = (last / before).max(before / earlier).max(number(0.1)).min(number(0.9));
         let series = number(4.0 / parts as f64) * last * ratio / (one - ratio);
-        // A swing needs zeros on both sides within reach, and F positive between them.
+        // A swing needs turning points on both sides within reach, and F positive between them.
         let nan = number(f64::NAN);
         let per_time = weakest.select_lt(zero, nan, reach.select_lt(number(0.9), per_time, nan));
-        // A start that is outside by rounding is taken as the end; two coinciding ends are valid only without a force.
+        // A start that is outside the turning points by rounding counts as one of them; two that coincide are
+        // valid only in a steady state, where F has no slope.
         let outside = zero - number(64.0) * off - number(4.0 * f64::EPSILON) * reach;
         let per_time = above.select_lt(outside, nan, below.select_lt(outside, nan, per_time));
         let apart = number(4.0 * f64::EPSILON) * reach;
@@ -281,12 +281,11 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         if K < LONG { K } else { self.terms[1].min(K) }
     }
 
-    /// A number with as many lanes, for making others.
+    /// A number with the same lanes, from which others can be splatted.
     pub fn like(&self) -> T {
         self.theta
     }
 
-    /// Period of the nutation.
     #[inline(always)]
     pub fn period(&self) -> T {
         self.rate[0] * self.theta.splat(TAU)

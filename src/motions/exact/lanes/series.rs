@@ -52,7 +52,6 @@ pub fn steepness<T: Real>(series: &[T], reach: T) -> T {
     sum
 }
 
-/// `x` to the power of `n`.
 #[inline(always)]
 pub fn power<T: Real>(x: T, n: usize) -> T {
     let (mut all, mut square, mut left) = (x.splat(1.0), x, n);
@@ -66,7 +65,7 @@ pub fn power<T: Real>(x: T, n: usize) -> T {
     all
 }
 
-/// The series of w1 and w3 in y, from their first terms; N is the room for terms.
+/// The series of w1 and w3 in y, from their first terms; N is the capacity.
 #[inline(always)]
 pub fn lines<T: Real, const N: usize>(law: &Reduced<T>, sin: T, cos: T, w: &mut [T], n: &mut [T]) {
     if law.round {

@@ -5,8 +5,8 @@
 //! R = F divided by both,   r1 = F(low)/(high - low),   r2 = F(high)/(high - low):   exactly 0 at a true zero
 //! eta = mid - amp cos phi,   dt/dphi = (2 s0/Q) sqrt(J/W)
 //! ```
-//! Where no zero of F is within reach the edge stands for it, at no loss of accuracy: dt/dphi is as steep as without
-//! the variable phi.
+//! Where F has no zero within reach, the edge of the panel takes its place. This costs no accuracy: dt/dphi
+//! is as smooth as dt/deta.
 
 use super::{Rule, here};
 use crate::laws::contact::reduced::Reduced;
@@ -19,7 +19,6 @@ const FOUR: [f64; 4] =
     [-0.861_136_311_594_052_6, -0.339_981_043_584_856_26, 0.339_981_043_584_856_26, 0.861_136_311_594_052_6];
 const WEIGHTS: [f64; 2] = [0.347_854_845_137_453_85, 0.652_145_154_862_546_2];
 
-/// The clock of a panel.
 pub(super) struct PanelClock<'a, T, const N: usize> {
     law: &'a Reduced<T>,
     sin: T,
@@ -27,7 +26,7 @@ pub(super) struct PanelClock<'a, T, const N: usize> {
     way: T,
     low: T,
     high: T,
-    /// -R as a series: F divided by both distances, its last two terms unused.
+    /// R as a series; its last two terms are not used.
     rest: [T; N],
     /// The remainders r1 and r2.
     left: [T; 2],
@@ -78,7 +77,7 @@ impl<'a, T: Lane, const N: usize> PanelClock<'a, T, N> {
         [(eta - self.low).max(least), (self.high - eta).max(least)]
     }
 
-    /// W, from the distances and the value of -R or R that `rest` has.
+    /// W, from the distances and the value `rest` of R.
     #[inline(always)]
     fn weight(&self, [above, below]: [T; 2], rest: T) -> T {
         let [r1, r2] = self.left;
@@ -182,8 +181,8 @@ impl<'a, T: Lane, const N: usize> PanelClock<'a, T, N> {
         [sum * width, from.splat(100.0) * width.abs() * tail * tail / size]
     }
 
-    /// The place where the time `target` is reached, if the whole way takes `whole`: Newton's method, with an integral
-    /// over the whole way at first and short ones between the steps.
+    /// The place that is reached at the time `target`, if `stop` is reached at the time `whole`. Newton's
+    /// method starts with an integral from `start` and adds short ones from step to step.
     #[inline(always)]
     pub fn sought(&self, rule: &Rule, [start, stop]: [T; 2], (target, whole): (T, T)) -> SoughtTime<T> {
         let number = here(

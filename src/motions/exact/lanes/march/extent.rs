@@ -1,4 +1,4 @@
-//! The least normal force and the greatest need of friction on the way to an inclination.
+//! The least normal force, and the greatest coefficient of friction that rolling needs, up to an inclination.
 
 use super::{Knot, March, here};
 use crate::laws::contact::force_of;
@@ -7,8 +7,8 @@ use crate::motions::exact::lanes::series::{angle, balance, lines, turned, unit};
 use crate::numbers::Lane;
 use crate::numbers::power::horner;
 
-/// Number of samples of a panel, and of refinements about the least of them: its place is found to 1e-6 of the panel,
-/// and the least value to the square of that.
+/// Number of samples of a panel, and of rounds that sample again about the least value: its place is found to
+/// 1e-6 of the panel or better, and the least value to the square of that.
 const SAMPLES: usize = 16;
 const ROUNDS: usize = 8;
 
@@ -19,7 +19,7 @@ pub(crate) struct Extent<T> {
     pub normal: T,
     /// The greatest coefficient of friction that rolling needs; infinite where the normal force is not positive.
     pub friction: T,
-    /// 1 if the way ends in this panel, else 0.
+    /// 1 if the given inclination lies in this panel, else 0.
     pub over: T,
     pub knot: Knot<T>,
 }

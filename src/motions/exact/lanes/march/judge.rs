@@ -84,7 +84,7 @@ impl<T: Lane> March<T> {
         let (law, angle) = (&self.law, (knot.sin, knot.cos));
         let &Reached { code, out, miss, steep, time, late, weakest, .. } = reached;
         let &JudgedState { tilt, jay, per_y, slopes: [w1_slope, w3_slope, force_slope], rate, .. } = there;
-        // The terms are taken at the end of the way where they are larger, since w1 grows towards small inclinations.
+        // The larger speeds of both places count, since w1 grows towards small inclinations.
         let (most_w1, most_w3) =
             (knot.w1.abs().max(there.knot.w1.abs()), knot.w3.abs().max(there.knot.w3.abs()));
         // F at this knot has the roundings of the earlier panels as well. They are independent, so that their squares add.

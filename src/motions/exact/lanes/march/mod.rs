@@ -32,13 +32,14 @@ use signs::{EtaSeries, FirstZero};
 /// Number of parts of a panel for events, and for the turning points, which are also sought a little beyond its reach.
 const PARTS: usize = 8;
 const MORE: usize = 10;
-/// Width of a part in eta.
+/// Width of a part in eta; the error of the cubics in `signs` goes as its fourth power.
 const WIDTH: f64 = 0.04;
 const REACH: f64 = WIDTH * PARTS as f64;
-/// Greatest error of a turning point from Newton's method at which it is divided out of F.
+/// Greatest error of Newton's method with which a turning point is divided out of F and counts as an event.
 const SURE: f64 = 1e-13;
 
-/// The start of a panel: the inclination, its sine and cosine, w1, w3 and F there, and the error of F by then.
+/// The start of a panel: the inclination, its sine and cosine, w1, w3 and F there, and the error of F
+/// accumulated so far.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Knot<T> {
     pub theta: T,
@@ -50,14 +51,14 @@ pub(crate) struct Knot<T> {
     pub doubt: T,
 }
 
-/// The outputs that a march asks of its panels, the same in all lanes.
+/// The outputs of each panel of a march, the same in all lanes.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Sought {
-    /// Whether the first end is sought; if not, a time is.
+    /// Whether the end of the motion is sought; if not, the state at a given time is.
     pub ends: bool,
     /// Whether slip counts as an end.
     pub slips: bool,
-    /// Whether the precession on the way is wanted.
+    /// Whether the precession along the panel is computed.
     pub turns: bool,
 }
 
@@ -88,7 +89,6 @@ impl Comes {
         self as u8 as f64
     }
 
-    /// The event of a number.
     pub fn of(code: f64) -> Self {
         Self::ALL.get(code as usize).copied().unwrap_or(Self::Unknown)
     }
@@ -97,16 +97,16 @@ impl Comes {
 /// The first event of a panel, and the state there.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Met<T> {
-    /// The number of what [`Comes`]; 9 where it is not known.
+    /// The number of the event, [`Comes::code`]; 9 where it is unknown.
     pub code: T,
     /// The time from the start of the panel to the event.
     pub time: T,
-    /// The error of that time, and the error of the state there at a given time.
+    /// The error of `time`, and the error of the state at the event.
     pub late: T,
     pub off: T,
     /// Bound of the rate of the state at the event.
     pub rate: T,
-    /// theta'| at the event.
+    /// |theta'| at the event.
     pub tilt: T,
     /// The angle by which phi has turned since the start of the panel, if it is wanted, and its error.
     pub turn: [T; 2],
@@ -158,7 +158,8 @@ struct Reached<T> {
 }
 
 impl<T: Lane> March<T> {
-    /// The panel that begins at a knot, with N terms; `way` is d, `target` the time that is sought.
+    /// The panel that begins at a knot, with N terms; `way` is d, `target` the time at which the state is
+    /// sought.
     #[inline(always)]
     pub fn panel<const N: usize>(
         &self,
@@ -295,7 +296,7 @@ impl<T: Lane> March<T> {
         let ahead = &ends.seen[0];
         let code = ahead.miss.select_lt(number(SURE), turns_back, never);
         next.meets(half.select_lt(ends.is_high, ends.high, never), code);
-        // The search ends where F might have a pair of zeros.
+        // Beyond a possible pair of zeros of F the event is unknown.
         next.meets(ahead.doubt, never);
         if sought.ends {
             let all = [(&of.press, Comes::LiftOff), (&of.grip, Comes::Slip)];

@@ -32,7 +32,6 @@ fn slope_term<T: Real, const A: usize>(of: &[T; A], series: &[T], k: usize, sum:
     sum
 }
 
-/// The polynomial times a number.
 #[inline(always)]
 fn scaled<T: Real, const A: usize>(mut of: [T; A], by: T) -> [T; A] {
     for term in &mut of {
@@ -41,7 +40,6 @@ fn scaled<T: Real, const A: usize>(mut of: [T; A], by: T) -> [T; A] {
     of
 }
 
-/// The sum of two polynomials.
 #[inline(always)]
 fn plus<T: Real, const A: usize>(mut of: [T; A], other: &[T; A]) -> [T; A] {
     for (term, other) in of.iter_mut().zip(other) {
@@ -109,7 +107,7 @@ pub(super) fn normal<T: Real, const N: usize>(
     }
 }
 
-/// The series X from the polynomial that stands alone, that which F' has, and that which F has.
+/// The series X from its three polynomials: the one that stands alone, the factor of F' and the factor of F.
 #[inline(always)]
 fn pressed<T: Real, const A: usize, const B: usize, const C: usize>(
     press: &mut [T],

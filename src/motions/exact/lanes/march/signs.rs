@@ -15,7 +15,7 @@
 use super::{MORE, PARTS, REACH, WIDTH, equals, here};
 use crate::numbers::{Lane, Real};
 
-/// Number of dips behind which a search continues.
+/// Number of dips behind which a search continues; behind more of them the zero is unknown.
 const DIPS: usize = 3;
 /// Greatest last step of Newton's method to the bottom of a dip; the error of the value is the square of the step.
 const REACHED: f64 = 1e-6;
@@ -38,7 +38,6 @@ pub(super) struct FirstZero<T> {
 /// The value and the slope of a series.
 type ValueSlope<T> = (T, T);
 
-/// A power series in eta.
 pub(super) struct EtaSeries<'a, T, const N: usize> {
     terms: &'a [T; N],
     /// Bound of the error of the cubics between two nodes.

@@ -1,0 +1,420 @@
+"""What comes in: numbers or arrays of real numbers, refused by name if anything else."""
+
+import math
+import os
+import sys
+import warnings
+from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
+from functools import wraps
+from inspect import signature
+from numbers import Real
+from os import PathLike
+from pathlib import Path
+from types import ModuleType
+from typing import Any, ParamSpec, TypeAlias, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+#: A number or an array of numbers; NumPy, pandas, xarray and dask arrays keep their kind.
+Reals: TypeAlias = Any
+#: What an elementwise function returns: a number for numbers, else an array of the inputs' kind.
+Result: TypeAlias = Any
+Floats = NDArray[np.float64]
+_Kind = TypeVar("_Kind")
+_Given = ParamSpec("_Given")
+_Found = TypeVar("_Found")
+
+
+def reals(name: str, value: Reals) -> Reals:
+    """`value` as something NumPy's ufuncs take, or TypeError naming the argument."""
+    if type(value) is float:
+        return value
+    if type(value) is not np.ndarray and is_quantity(value):
+        value = _magnitude(name, value, "radian", "a number in natural units, or an angle")
+    if type(value).__module__.startswith("polars."):  # whose types are none of NumPy's
+        value = value.to_numpy()
+    array = value if hasattr(value, "__array_ufunc__") else _ndarray(name, value)
+    kinds = _dtypes(array)
+    if kinds is None:  # pandas.NA speaks of ufuncs, but holds no number
+        raise TypeError(f"{name}: expected real numbers, not {type(value).__name__}")
+    for dtype in kinds:
+        if getattr(dtype, "kind", "O") in "US":
+            why = "a text with its unit stands for one number in SI, and this is in natural units or a list"
+            raise TypeError(f"{name}: expected real numbers, not texts: {why}")
+        if getattr(dtype, "kind", "O") not in "biuf" or dtype.itemsize > 8:
+            raise TypeError(f"{name}: expected real numbers of at most double precision, not {dtype}")
+    return float(array) if type(array) is np.ndarray and array.ndim == 0 else array
+
+
+def radians(name: str, value: Reals, expected: str | None = None, likely: float = math.pi) -> Reals:
+    """An angle in radians. What is beyond pi looks like degrees: a ValueError, in an array NaN and a warning.
+
+    Between `likely` and pi there is the warning alone. A lazy array is not looked into.
+    """
+    if type(value) is float and abs(value) <= likely:
+        return value
+    found = _read(name, value, "radian") if isinstance(value, str) else reals(name, value)
+    if is_scalar(found):
+        one = float(found)
+        if math.pi < abs(one) < math.inf:
+            if_degrees = f"; {one:g} degrees are np.radians({one:g}) or '{one:g}deg'"
+            raise ValueError(
+                f"{name} = {one!r}: expected {expected or f'-pi <= {name} <= pi'} (radians){if_degrees}"
+            )
+        if likely < abs(one) < math.inf:
+            _doubted(name, one)
+        return found
+    if getattr(found, "chunks", None) is not None:
+        return found
+    numbers = floats(found)
+    top = np.fmax.reduce(numbers, axis=None, initial=0.0), np.fmin.reduce(numbers, axis=None, initial=0.0)
+    if max(top[0], -top[1]) <= likely:
+        return found
+    size = np.abs(numbers)
+    odd = (size > likely) & (size < math.inf)
+    if odd.any():
+        _doubted(name, float(numbers[odd].flat[0]))
+    beyond = odd & (size > math.pi)
+    return found + np.where(beyond, np.nan, 0.0) if beyond.any() else found
+
+
+def _doubted(name: str, value: float) -> None:
+    told = f"{name} = {value:.6g} rad is {math.degrees(value):.4g} degrees"
+    warn(f"{told}: are these degrees? np.radians makes radians of them")
+
+
+def warn(why: str, kind: type[Warning] = UserWarning) -> None:
+    """A warning at the line that called this library."""
+    level, frame = 1, sys._getframe()
+    # labelled arrays call back what works on plain ones
+    within = "spincyl.", "xarray."
+    while frame.f_back and str(frame.f_globals.get("__name__")).startswith(within):
+        level, frame = level + 1, frame.f_back
+    warnings.warn(why, kind, stacklevel=level)
+
+
+def _own(value: Any) -> Any:
+    """A copy of an array, of which an axis that only repeats its numbers takes no room."""
+    if not isinstance(value, np.ndarray) or 0 not in value.strides:
+        return value.copy()
+    once = value[tuple(slice(None if step else 1) for step in value.strides)].copy()
+    return np.broadcast_to(once, value.shape)
+
+
+def kept(value: Reals) -> Reals:
+    """`value` as a field keeps it: a copy that its caller cannot change, read-only if it can be.
+
+    A lazy array stays as it is: it cannot be changed.
+    """
+    if type(value) is float or isinstance(value, np.generic) or not hasattr(value, "copy"):
+        return value
+    if getattr(value, "chunks", None) is not None:
+        return value
+    own = _own(value)
+    array = getattr(own, "data", own) if hasattr(own, "dims") else own
+    if isinstance(array, np.ndarray):
+        array.setflags(write=False)
+    return own
+
+
+def is_quantity(value: object) -> bool:
+    """Whether a number has a unit of pint's, which is not loaded for that."""
+    return hasattr(type(value), "m_as")
+
+
+def si(name: str, value: Reals, unit: str) -> Reals:
+    """`value` in a unit of SI that pint knows by this name; "120mm" and a quantity are converted to it."""
+    if isinstance(value, str):
+        return _read(name, value, unit)
+    return _magnitude(name, value, unit, f"a number or a quantity in {unit}") if is_quantity(value) else value
+
+
+def alike(measures: dict[str, Any]) -> None:
+    """ValueError where a text with its unit stands beside a bare number, which may be one in any unit."""
+    bare = [(name, x) for name, x in measures.items() if isinstance(x, Real) and x != 0]
+    if bare and any(isinstance(x, str) for x in measures.values()):
+        name, x = bare[0]
+        raise ValueError(f"{name} = {x!r}: give it a unit as well, as in '{x!r} mm'")
+
+
+def turns_per_second(name: str, value: Reals) -> Reals:
+    """A frequency in hertz; of a quantity in radians or degrees a time, the turns in a second."""
+    if isinstance(value, str):
+        return _read(name, value, "hertz")
+    if not is_quantity(value):
+        return value
+    root = dict(value.to_root_units().unit_items())
+    unit = "turn/second" if "radian" in root else "hertz"
+    return _magnitude(name, value, unit, "turns per second")
+
+
+def radians_per_second(name: str, value: Reals) -> Reals:
+    """An angular velocity in rad/s; a quantity in hertz is turns in a second."""
+    if isinstance(value, str):
+        return _read(name, value, "radian/second")
+    return 2 * np.pi * turns_per_second(name, value) if is_quantity(value) else value
+
+
+def _read(name: str, text: str, unit: str) -> float:
+    """What the command line reads in a text such as "120mm", or an error by name."""
+    from argparse import ArgumentTypeError
+
+    from spincyl._input import units
+
+    try:
+        return units.read(text, unit)
+    except (ArgumentTypeError, TypeError) as e:
+        kind = TypeError if isinstance(e, TypeError) else ValueError
+        raise kind(f"{name}: {e}") from None
+
+
+def _magnitude(name: str, value: Any, unit: str, expected: str) -> Reals:
+    try:
+        return value.m_as(unit)
+    except TypeError:  # pint's error of dimensions is one
+        raise TypeError(f"{name}: expected {expected}, not {value.units}") from None
+
+
+def _ndarray(name: str, value: object) -> NDArray[Any]:
+    try:
+        return np.asarray(value)
+    except (ValueError, TypeError) as e:  # a ragged list, or one of quantities
+        raise TypeError(f"{name}: expected real numbers, not {type(value).__name__} ({e})") from None
+
+
+def _dtypes(array: Any) -> Any:
+    """The types of an array's or a table's elements; None of what has none."""
+    return [array.dtype] if hasattr(array, "dtype") else getattr(array, "dtypes", None)
+
+
+def keywords(law: np.ufunc, given: dict[str, Any]) -> dict[str, Any]:
+    """Keywords of a ufunc, with `out` and `where` refused by name if they cannot be that.
+
+    pandas and xarray would put `where` in place by position, whatever its labels say.
+    """
+    out = given.get("out")
+    if isinstance(out, tuple) and len(out) != 1:
+        raise TypeError(f"out: expected an array to fill, not {len(out)} of them")
+    for array in out if isinstance(out, tuple) else (out,):
+        if array is None:
+            continue
+        if isinstance(array, np.ndarray) and not array.flags.writeable:
+            raise ValueError("out: expected an array to fill, not one that is read-only")
+        kinds = _dtypes(array) if hasattr(array, "__array_ufunc__") else None
+        if kinds is None:
+            raise TypeError(f"out: expected an array to fill, not {type(array).__name__}")
+        for dtype in kinds:
+            own = law.resolve_dtypes((np.dtype(np.float64),) * law.nin + (None,))[-1]
+            casting = given.get("casting", "same_kind")
+            # NumPy would cut the words of a number to the length of a text
+            fits = (
+                dtype.kind not in "SUmM" and np.can_cast(own, dtype, casting)
+                if isinstance(dtype, np.dtype)
+                else True
+            )
+            if not fits:
+                raise TypeError(f"out: {law.__name__} gives {own}, which {dtype} cannot hold")
+    if "where" in given:
+        where = given["where"]
+        where = _ndarray("where", where) if isinstance(where, list | bool | np.bool_) else where
+        plain = isinstance(where, np.ndarray) and not isinstance(where, np.ma.MaskedArray)
+        if not (plain or hasattr(where, "dask")) or hasattr(where, "dims") or where.dtype != np.bool_:
+            kind = getattr(where, "dtype", "") if plain else ""
+            what = f"{type(where).__name__} {kind}".rstrip()
+            raise TypeError(f"where: expected True, False or a NumPy array of bool, not {what}")
+    return given
+
+
+def floats(value: Reals) -> Floats:
+    """`value` as compiled functions read arrays: doubles, contiguous, aligned; copied only if it is not that.
+
+    What comes from a file, a network or another process may lie at any address. What is masked is NaN.
+    """
+    if isinstance(value, np.ma.MaskedArray):
+        value = np.ma.filled(value.astype(np.float64), np.nan)
+    array: Floats = np.require(value, np.float64, ["C", "A", "E"])
+    return array
+
+
+def in_columns(values: Iterable[Reals], shape: tuple[int, ...]) -> list[Floats]:
+    """`values` as columns of one length for compiled functions; a single number stays one beside a column."""
+    found = [
+        floats(x).reshape(-1) if np.size(x) == 1 else floats(np.broadcast_to(floats(x), shape)).reshape(-1)
+        for x in values
+    ]
+    count = math.prod(shape)
+    if count != 1 and all(x.size == 1 for x in found):
+        found[0] = np.full(count, found[0][0])
+    return found
+
+
+def is_scalar(*values: Reals) -> bool:
+    """Whether all of these are single numbers."""
+    return all(type(v) is float or np.ndim(v) == 0 for v in values)
+
+
+def number(name: str, value: object) -> float:
+    """A single real number, or TypeError naming the argument."""
+    if type(value) is float:
+        return value
+    array = reals(name, value)
+    if not is_scalar(array):
+        raise TypeError(f"{name}: expected a number, not an array of shape {np.shape(array)}")
+    return float(array)
+
+
+def whole(name: str, value: object, low: int, high: int) -> int:
+    """A whole number within bounds, or an error naming the argument."""
+    found = number(name, value)
+    if isinstance(value, bool) or found != np.floor(found) or not low <= found <= high:
+        raise ValueError(f"{name} = {value!r}: expected a whole number from {low} to {high}")
+    return int(found)
+
+
+def fitting(named: dict[str, Reals]) -> tuple[int, ...]:
+    """The shape as which they broadcast, named dimensions aside, or ValueError with the names and shapes."""
+    shapes = {name: np.shape(x) for name, x in named.items() if not hasattr(x, "dims")}
+    try:
+        return np.broadcast_shapes(*shapes.values())
+    except ValueError:
+        told = ", ".join(f"{name} {shape}" for name, shape in shapes.items() if shape)
+        raise ValueError(f"shapes do not fit: {told}") from None
+
+
+def elementwise(law: Callable[_Given, _Found]) -> Callable[_Given, _Found]:
+    """A function whose arguments broadcast: shapes that do not fit are named, and NumPy warns of nothing.
+
+    What overflows is infinite, and what is no number NaN, as the functions of the core have it.
+    """
+
+    @wraps(law)
+    def quiet(*args: _Given.args, **named: _Given.kwargs) -> _Found:
+        try:
+            with np.errstate(all="ignore"):
+                return law(*args, **named)
+        except ValueError:
+            given = signature(law).bind(*args, **named).arguments
+            if "self" in given:
+                own = given.pop("self")
+                given[type(own).__name__] = own
+            fitting({name: of_its_shape(x) for name, x in given.items()})
+            raise
+
+    return quiet
+
+
+def of_its_shape(*values: Any) -> Reals:
+    """An array of the shape as which values broadcast, those of bodies and states being their fields."""
+    fields: list[Any] = []
+    for value in values:
+        own = getattr(value, "_numbers", getattr(value, "_coefficients", None))
+        fields += own if isinstance(own, tuple | list) else (value,)
+    if any(hasattr(x, "dims") for x in fields):
+        return 0.0
+    try:
+        return np.broadcast_to(0.0, np.broadcast_shapes(*map(np.shape, fields)))
+    except ValueError:  # a ragged list, say, of which the error speaks
+        return 0.0
+
+
+def refuse(name: str, value: Reals, bad: Callable[[Any], Any], expected: str) -> None:
+    """ValueError that names the first value that is wrong; a lazy array is not looked into."""
+    if getattr(value, "chunks", None) is not None:
+        return
+    numbers = np.asarray(value, np.float64)
+    wrong = np.asarray(bad(numbers))
+    if wrong.any():
+        first = float(np.broadcast_to(numbers, wrong.shape)[wrong].flat[0])
+        raise ValueError(f"{name} = {first!r}: {expected}")
+
+
+def within(name: str, value: object, low: float, high: float, unit: str = "") -> float:
+    """A number in its range, or an error naming the argument."""
+    found = number(name, si(name, value, "radian") if unit == "radians" else value)
+    if not low <= found <= high:
+        raise ValueError(f"{name} = {found!r}: expected {low:g} to {high:g}{unit and f' ({unit})'}")
+    return found
+
+
+def made(name: str, value: object, kind: type[_Kind]) -> _Kind:
+    """What is of this class, or TypeError naming the argument."""
+    if not isinstance(value, kind):
+        like = f"{'an' if kind.__name__[0] in 'AEIO' else 'a'} {kind.__name__}"
+        raise TypeError(f"{name}: expected {like}, not {type(value).__name__}")
+    return value
+
+
+def one_of(name: str, value: Any, known: Sequence[object]) -> Any:
+    """One of a few words or numbers, or ValueError naming the argument."""
+    if not (value is None or isinstance(value, str | int | float | np.integer)) or value not in known:
+        *most, last = map(repr, known)
+        raise ValueError(f"{name} = {value!r}: expected {', '.join(most)} or {last}")
+    return value
+
+
+def words(name: str, value: str | Iterable[str], known: Sequence[str]) -> tuple[str, ...]:
+    """One word or several of those known, as a tuple, or an error naming the argument."""
+    try:
+        found = (value,) if isinstance(value, str) else tuple(value)
+    except TypeError:
+        raise TypeError(
+            f"{name}: expected one of {list(known)} or several, not {type(value).__name__}"
+        ) from None
+    for word in found:
+        if not isinstance(word, str) or word not in known:
+            raise ValueError(f"{name}: no such quantity {word!r}; there are {list(known)}")
+    return found
+
+
+def flag(name: str, value: object) -> bool:
+    """True or False, or TypeError naming the argument."""
+    if not isinstance(value, bool | np.bool_):
+        raise TypeError(f"{name}: expected True or False, not {type(value).__name__}")
+    return bool(value)
+
+
+def path_of(name: str, value: str | PathLike[str]) -> Path:
+    """The path of a file, or an error naming the argument."""
+    try:
+        found = Path(value)
+    except TypeError:
+        raise TypeError(f"{name}: expected the path of a file, not {type(value).__name__}") from None
+    try:
+        with suppress(OSError):  # which is told by who opens it
+            os.stat(found)
+    except ValueError as e:  # a zero in it, or half a character
+        raise ValueError(f"{name} = {str(found)!r}: no file can have this name ({e})") from None
+    return found
+
+
+def several(most: int, *values: Reals, name: str = "root") -> tuple[Reals, ...]:
+    """`values` with a new last axis and, as one more, the numbers 0, 1, ... along it.
+
+    For laws with up to `most` answers. xarray broadcasts by name: there the axis is called `name`.
+    """
+    named = next((v for v in values if hasattr(v, "dims")), None)
+    if named is not None:
+        return *values, type(named)(np.arange(float(most)), dims=name)
+    spread = (
+        v if is_scalar(v) else (v if hasattr(v, "dask") else np.asanyarray(v))[..., np.newaxis]
+        for v in values
+    )
+    return *spread, np.arange(float(most))
+
+
+def components(vectors: Reals) -> list[Reals]:
+    """The components of vectors (..., n), each an array or a number."""
+    return [vectors[..., i] for i in range(vectors.shape[-1])]
+
+
+def extra(module: str, name: str) -> ModuleType:
+    """An optional library, or ImportError naming the extra that installs it."""
+    from importlib import import_module
+
+    try:
+        return import_module(module)
+    except ImportError as e:
+        message = f"this needs {module.split('.', maxsplit=1)[0]}: pip install 'spincyl[{name}]'"
+        raise ImportError(message) from e

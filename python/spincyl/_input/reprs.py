@@ -1,0 +1,42 @@
+"""How numbers write themselves: single numbers as they were typed, many by their ends, as NumPy does."""
+
+from typing import Any
+
+import numpy as np
+
+from spincyl._input.numbers import Reals, is_scalar
+
+_FEW = 6
+
+
+def call(name: str, *plain: Reals, **named: Reals) -> str:
+    """A call that makes the thing, which Python can evaluate unless an array was shortened."""
+    words = [text(x) for x in plain] + [f"{key}={text(x)}" for key, x in named.items()]
+    line = f"{name}({', '.join(words)})"
+    return line if len(line) <= 110 else f"{name}({(',' + chr(10) + ' ' * (len(name) + 1)).join(words)})"
+
+
+def text(value: Reals) -> str:
+    """A number with all its digits, a few of them as a list, more of them by their ends and shape; pairs."""
+    if isinstance(value, tuple):
+        return f"({', '.join(map(text, value))})"
+    if is_scalar(value):
+        return repr(float(value))
+    kind = "array" if type(value) is np.ndarray else type(value).__name__
+    if is_lazy(value):
+        return f"<lazy {kind}, shape={tuple(value.shape)}>"
+    values = value if isinstance(value, np.ndarray) else np.asarray(value)
+    if values.size <= _FEW:
+        listed = repr(values.astype(np.float64).tolist())
+        return listed if kind == "array" else f"{kind}({listed})"
+    first, last = (", ".join(map(_short, ends)) for ends in (values.flat[:3], values.flat[-3:]))
+    return f"{kind}([{first}, ..., {last}], shape={values.shape})"
+
+
+def is_lazy(value: Any) -> bool:
+    """Whether to look at the numbers would mean to compute them."""
+    return getattr(value, "chunks", None) is not None
+
+
+def _short(x: Any) -> str:
+    return "--" if x is np.ma.masked else repr(float(f"{x:.6g}"))

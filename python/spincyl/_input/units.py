@@ -1,0 +1,188 @@
+"""Numbers as people write them, on the command line and in Python: 85deg, 85 deg, 85°, 16mm, 60s, 1e6."""
+
+import math
+import re
+from argparse import ArgumentTypeError
+from collections.abc import Callable, Sequence
+from decimal import Decimal
+
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?", re.I)
+_PLAIN_NEGATIVE = re.compile(r"-\d+|-\d*\.\d+")
+# by quantity and unit; what goes without a unit has the first one
+_UNITS = {
+    "length": {
+        "m": "1",
+        "cm": "1e-2",
+        "mm": "1e-3",
+        "um": "1e-6",
+        "µm": "1e-6",
+        "μm": "1e-6",
+        "in": "0.0254",
+    },
+    "mass": {"kg": "1", "g": "1e-3", "mg": "1e-6"},
+    "gravity": {"m/s2": "1", "m/s^2": "1", "m/s²": "1"},
+    "damping": {"Nms": "1"},
+    "drag": {"Nms2": "1", "Nms^2": "1"},
+    "viscosity": {"Pas": "1", "mPas": "1e-3", "uPas": "1e-6"},
+    "layer": {"C": "1"},
+    "friction over speed": {"s/m": "1"},
+    "impulse": {"Ns": "1", "mNs": "1e-3"},
+    "speed": {"m/s": "1", "cm/s": "1e-2", "mm/s": "1e-3"},
+    "frequency": {"Hz": "1", "turns/s": "1", "rad/s": "0.159154943091895335769"},
+    "angular velocity": {"rad/s": "1", "Hz": "6.28318530717958647693", "turns/s": "6.28318530717958647693"},
+    "duration": {"s": "1", "ms": "1e-3", "us": "1e-6", "µs": "1e-6", "μs": "1e-6", "min": "60"},
+}
+_DEGREES = ("deg", "°", "degrees", "degree")
+_NAMES = {unit for units in _UNITS.values() for unit in units} | {*_DEGREES, "rad"}
+
+
+class Seconds(float):
+    """A time that was given in seconds, not in units of sqrt(R/g)."""
+
+
+class Metres(float):
+    """A length that was given in metres, not in units of the outer radius."""
+
+
+class NewtonSeconds(float):
+    """An impulse that was given in newton seconds, not in units of M sqrt(g R)."""
+
+
+class MetresPerSecond(float):
+    """A speed that was given in metres per second, not in units of sqrt(g R)."""
+
+
+def joined(argv: Sequence[str]) -> list[str]:
+    """Words in which a unit is again at its number, and a negative power of ten at its option."""
+    words: list[str] = []
+    for word in argv:
+        last = words[-1] if words else ""
+        unknown = word.startswith("-") and _is_quantity(word) and not _PLAIN_NEGATIVE.fullmatch(word)
+        if word in _NAMES and _NUMBER.fullmatch(last):
+            words[-1] += word
+        elif unknown and last.startswith("--") and "=" not in last:
+            words[-1] += f"={word}"
+        else:
+            words.append(word)
+    return words
+
+
+def _is_quantity(word: str) -> bool:
+    found = _NUMBER.match(word)
+    return found is not None and word[found.end() :].strip() in {"", *_NAMES}
+
+
+def _parts(text: str) -> tuple[str, str]:
+    """The number and the unit."""
+    found = _NUMBER.match(text.strip())
+    if found is None:
+        raise ArgumentTypeError(f"{text!r} is no number")
+    return found.group(), text.strip()[found.end() :].strip()
+
+
+def has_unit(text: str) -> bool:
+    """Whether there is a unit after the number."""
+    return _parts(text)[1] != ""
+
+
+def angle(text: str) -> float:
+    """Radians of '1.3', '1.3rad', '85deg' or '85°'."""
+    number, unit = _parts(text)
+    value = float(number)
+    if unit in _DEGREES:
+        return value * (math.pi / 180)
+    if unit not in ("", "rad"):
+        raise ArgumentTypeError(f"{text!r}: expected an angle, as in 1.3, 1.3rad or 85deg")
+    if not unit and abs(value) > math.pi:
+        raise ArgumentTypeError(f"angles are radians; {number} degrees is {number}deg")
+    return value
+
+
+def _one(kind: str) -> str:
+    return f"{'an' if kind[0] in 'ai' else 'a'} {kind}"
+
+
+def quantity(kind: str) -> Callable[[str], float]:
+    """What reads a length, mass, gravity, frequency or duration."""
+    units = _UNITS[kind]
+
+    def read(text: str) -> float:
+        number, unit = _parts(text)
+        if unit not in {"", *units}:
+            known = ", ".join(filter(str.isascii, units))
+            raise ArgumentTypeError(f"{text!r}: expected {_one(kind)}, bare or in {known}")
+        factor = units[unit] if unit else "1"
+        try:
+            # in decimals, so that 15.875mm is what 0.015875 is
+            found = float(Decimal(number) * Decimal(factor))
+        except ArithmeticError:  # of an exponent that decimals do not have: infinite, or 0
+            found = float(number)
+        if math.isinf(found):
+            raise ArgumentTypeError(
+                f"{text!r}: expected {_one(kind)} of less than 1e308 in {next(iter(units))}"
+            )
+        return found
+
+    return read
+
+
+#: The kind of a quantity by the name that pint has for its unit of SI.
+_KINDS = {
+    "metre": "length",
+    "kilogram": "mass",
+    "second": "duration",
+    "hertz": "frequency",
+    "radian/second": "angular velocity",
+    "metre/second": "speed",
+    "second/metre": "friction over speed",
+    "metre/second**2": "gravity",
+    "newton*second": "impulse",
+    "newton*metre*second": "damping",
+    "newton*metre*second**2": "drag",
+    "pascal*second": "viscosity",
+}
+
+
+def read(text: str, unit: str) -> float:
+    """A text that ends in its unit as a number in this unit of SI; TypeError where one of both is missing."""
+    known = unit in _KINDS or unit == "radian"
+    if not known or _NUMBER.match(text.strip()) is None or not has_unit(text):
+        like = ", or a text with its unit as '16mm' or '85deg'" if known else ""
+        raise TypeError(f"expected real numbers{like}, not {text!r}")
+    return angle(text) if unit == "radian" else quantity(_KINDS[unit])(text)
+
+
+def _natural_or(kind: str, si: type[float]) -> Callable[[str], float]:
+    """What reads a number in natural units, or a quantity of this kind if it has a unit."""
+
+    def read(text: str) -> float:
+        number, unit = _parts(text)
+        return si(quantity(kind)(text)) if unit else float(number)
+
+    return read
+
+
+#: A time in sqrt(R/g), or Seconds if it has a unit.
+time = _natural_or("duration", Seconds)
+#: A length in outer radii, or Metres if it has a unit.
+part = _natural_or("length", Metres)
+#: An impulse in M sqrt(g R), or NewtonSeconds if it has a unit.
+impulse = _natural_or("impulse", NewtonSeconds)
+#: A speed in sqrt(g R), or MetresPerSecond if it has a unit.
+speed = _natural_or("speed", MetresPerSecond)
+
+
+def whole(text: str) -> int:
+    """A whole number, also as 1e6."""
+    try:
+        return int(text)
+    except ValueError:
+        number, unit = _parts(text)
+        try:
+            value = Decimal(number)
+            found = value.copy_abs() <= 10**15 and value == value.to_integral_value()
+        except ArithmeticError:  # of an exponent that decimals do not have
+            found = False
+        if unit or not found:
+            raise ArgumentTypeError(f"{text!r}: expected a whole number") from None
+        return int(value)

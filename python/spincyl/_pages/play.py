@@ -1,0 +1,368 @@
+"""A page to play with: the core itself, as WebAssembly, in one file that asks for nothing from anywhere."""
+
+import html
+import json
+from collections.abc import Iterable
+from contextlib import suppress
+from functools import cache
+from gzip import decompress
+from importlib.resources import files
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from spincyl._body import Body
+from spincyl._contact import AnyContact, fitting, named
+from spincyl._ellipsoid import Ellipsoid
+from spincyl._ellipsoid_motion import EllipsoidMotion
+from spincyl._input.files import replaced
+from spincyl._input.numbers import flag, made, path_of, si, within
+from spincyl._loss import Loss, made_law
+from spincyl._motion import Motion
+from spincyl._pages.deflated import packed
+from spincyl._pages.joined import filled, frame, line, script, style
+from spincyl._pages.words import (
+    body_of,
+    losses_of,
+    paper_tube,
+    scenes,
+    state_of,
+    table_of,
+    words_of_body,
+    words_of_loss,
+    words_of_state,
+    words_of_table,
+)
+from spincyl._roll import roll
+from spincyl._scale import Scale
+from spincyl._state import State
+from spincyl._studio.cards import drawing
+
+if TYPE_CHECKING:
+    #: Unknown while a notebook completes what is typed: jedi gives up a class with a property of Literal.
+    from spincyl._contact import AnyContact as Table
+
+#: The scripts in the order of reading: the renderer is that of the recorded page.
+_SCRIPTS = (
+    "play.core.js",
+    "play.state.js",
+    "play.stage.js",
+    "page.pose.js",
+    "play.shape.js",
+    "page.rounded.js",
+    "page.forces.js",
+    "page.context.js",
+    "page.gl.js",
+    "page.draw.js",
+    "page.exposure.js",
+    "page.eye.js",
+    "play.map.js",
+    "play.chart.js",
+    "play.said.js",
+    "play.run.js",
+    "play.sound.js",
+    "play.film.js",
+    "page.stone.js",
+    "play.stone.js",
+    "play.hands.js",
+)
+#: Of a page without friction, which has no stones.
+_LEAN = tuple(name for name in _SCRIPTS if "stone" not in name)
+_BODY = ("ell", "bore", "fillet", "i1", "i3", "end", "radius", "mass", "gravity")
+#: The core without friction and losses, and the one with them.
+CORES = "core.wasm.gz", "core.friction.wasm.gz"
+#: What a frame in a notebook may do, and how it looks.
+SANDBOX = "allow-scripts allow-downloads"
+FRAME = "width:100%;height:clamp(600px,100vh - 130px,900px);border:0"
+
+
+class Play:
+    """A page to play with; from `play`. Shows itself in a notebook.
+
+    With the extra `widget` (anywidget) the page in a notebook and this object follow each other: what is set
+    here moves the body, and what a hand does there is read here, however often the page is shown. Without it
+    they part when the page is shown.
+
+    Attributes
+    ----------
+    html : str
+        The page: complete, and asking for nothing from anywhere.
+    friction : bool
+        Whether the page knows friction and losses.
+    """
+
+    def __init__(self, told: dict[str, Any], title: str, friction: bool) -> None:
+        self.title, self.friction, self._told = title, friction, told
+        self._widget: Any = None
+
+    @property
+    def body(self) -> Body:
+        """The body; another may be set, whose state is then that at the same inclination."""
+        self._of_revolution()
+        return body_of(self._told)
+
+    @body.setter
+    def body(self, body: Body) -> None:
+        self._set(words_of_body(body), gone=(*_BODY, "w", "precession", "stone"))
+
+    @property
+    def theta(self) -> float:
+        """Inclination at the start, radians; another may be set."""
+        return float(self._told["theta"])
+
+    @theta.setter
+    def theta(self, theta: float) -> None:
+        self._set({"theta": within("theta", theta, 1e-3, np.pi, "radians")}, gone=("w", "precession"))
+
+    @property
+    def kick(self) -> float:
+        """Theta' given to the body at the start, in sqrt(g/R); another may be set."""
+        return float(self._told.get("kick", 0.0))
+
+    @kick.setter
+    def kick(self, kick: float) -> None:
+        self._set({"kick": within("kick", kick, -3, 3)})
+
+    @property
+    def state(self) -> State:
+        """Where the motion starts; another may be set."""
+        self._of_revolution()
+        return state_of(self._told)
+
+    @state.setter
+    def state(self, state: State) -> None:
+        self._set(words_of_state(state) | {"kick": 0.0}, gone=("precession",))
+
+    @property
+    def contact(self) -> "Table":
+        """The table; another may be set."""
+        return table_of(self._told)
+
+    @contact.setter
+    def contact(self, contact: AnyContact) -> None:
+        _needed(self.friction, contact, None, None if self._told.get("stone") else self.body)
+        self._set(words_of_table(contact))
+
+    @property
+    def losses(self) -> Loss | None:
+        """The law of loss, or None; another may be set."""
+        return losses_of(self._told)
+
+    @losses.setter
+    def losses(self, losses: Loss | None) -> None:
+        _needed(self.friction, "rolling", losses, None if self._told.get("stone") else self.body)
+        self._set(words_of_loss(losses) or {"law": "none"})
+
+    @property
+    def motion(self) -> Motion:
+        """The motion that is seen, as far as it is followed: exact where table and losses allow it.
+
+        Of a measured body in SI, as from `roll`, and of the rattleback, which is followed for 20 s.
+        """
+        if self._told.get("stone"):
+            return _rattling(self._told)
+        body = self.body
+        t = np.linspace(0.0, float(self._told["until"]) * body._second, 2001)
+        return roll(body, self.state, t, want=("pose", "force"), contact=self.contact, losses=self.losses)
+
+    def _of_revolution(self) -> None:
+        """Refuse where a stone is seen."""
+        if self._told.get("stone"):
+            raise ValueError("the page shows a rattleback, which is no body of revolution: see its motion")
+
+    def _set(self, words: dict[str, Any], gone: Iterable[str] = ()) -> None:
+        """Change what is told, here and on the page."""
+        self._told = {k: v for k, v in self._told.items() if k not in gone or k in words} | words
+        if self._widget is not None:
+            self._widget.state = self._told
+
+    def _heard(self, change: Any) -> None:
+        """What a hand has done on the page."""
+        self._told = {k: v for k, v in change["new"].items() if v is not None}
+
+    @property
+    def html(self) -> str:
+        """The page as text."""
+        picture = drawing(body_of(self._told), self.theta, "θ")
+        fields = {
+            "title": html.escape(self.title),
+            "style": style(["play.first.css"]),
+            "picture": picture,
+            "given": _json(self._told),
+            "packed": _packed(self.friction),
+            "loader": script(["page.night.js", "play.loader.js"]),
+        }
+        return filled("play.html", fields)
+
+    @property
+    def address(self) -> str:
+        """What follows the name of the page in its address, as in "#ell=2.5&theta=1.3"."""
+        words = {k: ",".join(map(repr, v)) if isinstance(v, list) else v for k, v in self._told.items()}
+        return "#" + "&".join(f"{name}={word}" for name, word in words.items())
+
+    def save(self, path: str | PathLike[str]) -> Path:
+        """Write the page (.html) and return its path; a file that is there stays until it is complete.
+
+        Raises
+        ------
+        ValueError
+            For any other suffix.
+        OSError
+            If it cannot be written.
+        """
+        path = path_of("path", path)
+        if path.suffix.lower() != ".html":
+            raise ValueError(f"path = {str(path)!r}: expected a name that ends in .html")
+        made = self.html.encode()
+        with replaced(path) as part:
+            part.write_bytes(made)
+        return path
+
+    def _repr_html_(self) -> str:
+        """The page in a frame that can run its script and nothing else, with a name if it follows."""
+        return frame(self.html, SANDBOX, FRAME, self._followed())
+
+    def _followed(self) -> str:
+        """The name of the frames that follow this object, or none where nobody passes on what is set."""
+        if self._widget is None:
+            with suppress(ImportError):
+                from spincyl._pages.widget import watched, widget
+
+                if watched():
+                    self._widget = widget(self._told, self._heard)
+        return "" if self._widget is None else str(self._widget.name)
+
+    def __repr__(self) -> str:
+        if self._told.get("stone"):
+            return "<Play of a rattleback, rolling; .save('play.html') writes the page>"
+        return f"<Play of {self.body!r}, {named(self.contact)}; .save('play.html') writes the page>"
+
+
+def play(
+    body: Body | None = None,
+    theta: float | None = None,
+    *,
+    state: State | None = None,
+    kick: float = 0.0,
+    contact: AnyContact = "rolling",
+    losses: Loss | None = None,
+    t: float | None = None,
+    slow: float = 20.0,
+    friction: bool = True,
+    title: str = "spincyl: a page to play with",
+) -> Play:
+    """A page in which the core itself runs: drag a point on the map, and the exact motion answers.
+
+    Parameters
+    ----------
+    body : Body, optional
+        A single one. Default: the tube of the paper, which is measured. Of a measured one (`measured`) the
+        page tells times in seconds and rates in hertz, too.
+    theta : float, optional
+        Inclination in radians of the steady state that it begins with; where there is none the body is let go
+        at rest. Default: 1.3, of the tube of the paper 89.5 degrees, or of the `state`.
+    state : State, optional
+        Any other state to begin with.
+    kick : float
+        theta' given to it, in sqrt(g/R), -3 to 3.
+    contact : {"rolling", "smooth"}, Coulomb or Viscous
+        Of Coulomb's law the page knows one coefficient: static = mu.
+    losses : Loss, optional
+        One law of `spincyl.loss`.
+    t : float
+        How long a motion is followed that is stepped, by friction or losses: 1 to 2000 sqrt(R/g); of a
+        measured body in seconds. Default: 60 sqrt(R/g).
+    slow : float
+        How many times slower than it moves it is shown, 1 to 1000; what is not measured moves as if R = 1 cm.
+    friction : bool
+        Whether the page is to know friction and losses. Without, it is a smaller file, with rubber and ice.
+    title : str
+        Of the page. A tab or a new line is shown as a space.
+
+    Returns
+    -------
+    Play
+        Shows itself in a notebook; `save("play.html")` writes one file that opens offline.
+
+    Raises
+    ------
+    ValueError
+        For a family of bodies, a number out of range, several losses, a `state` beside `theta` or `kick`,
+        friction or losses where `friction` is False, a title with a control character, half a surrogate pair
+        or a noncharacter: none can stand in HTML.
+    TypeError
+        For what is no body, state, table or loss.
+
+    Notes
+    -----
+    Needs WebAssembly with SIMD, WebGL 2 and DecompressionStream (Chrome 91, Firefox 113, Safari 16.4, or
+    later); elsewhere the page says so beside a picture. All that is set stands in its address,
+    "#ell=2.5&theta=1.3".
+
+    Examples
+    --------
+    >>> import spincyl as sc
+    >>> sc.play(sc.Body.tube(6.0, bore=0.8), 1.5)
+    <Play of Body.tube(6.0, bore=0.8), rolling; .save('play.html') writes the page>
+    """
+    friction = flag("friction", friction)
+    steep = 1.3
+    if body is None:
+        body, steep = paper_tube(), float(np.radians(89.5))
+    told = words_of_body(body)
+    if state is not None:
+        if theta is not None or not (type(kick) in (int, float) and kick == 0):
+            raise ValueError("state: give either a state or theta and kick, not both")
+        told |= words_of_state(state)
+    else:
+        theta = within("theta", steep if theta is None else theta, 1e-3, np.pi, "radians")
+        told |= {"theta": theta, "kick": within("kick", kick, -3, 3)}
+    if t is None:
+        told |= {"until": 60.0}
+    else:
+        unit = body._second
+        told |= {"until": within("t", si("t", t, "second"), unit, 2000 * unit) / unit}
+    told |= {"slow": within("slow", slow, 1, 1000)}
+    told |= words_of_table(contact) | words_of_loss(losses)
+    _needed(friction, contact, losses, body)
+    return Play(told, line("title", title), friction)
+
+
+def _rattling(words: dict[str, Any]) -> EllipsoidMotion:
+    """The motion of the rattleback that they tell, as long as the page follows it."""
+    stone = Ellipsoid.rattleback(words["stone"], twist=words["twist"]).in_metres(
+        gravity=words.get("gravity") or Scale.gravity
+    )
+    push, unit = np.radians(0.02), made("scale", stone.scale, Scale).seconds(1.0)
+    start = stone.spinning(words["spin"] * unit, pitch=push, roll=push)
+    motion = roll(stone, start, np.linspace(0.0, 20.0, 2401), want="pose")
+    assert isinstance(motion, EllipsoidMotion)
+    return motion
+
+
+def _needed(friction: bool, contact: AnyContact, losses: Loss | None, body: Body | None = None) -> None:
+    """Refuse what a page without friction does not know, and of a measured body what has no unit."""
+    if losses is not None:
+        made_law(losses, body)
+    if body is not None:
+        fitting(contact, body.scale)
+    if not friction and (losses is not None or not isinstance(contact, str)):
+        raise ValueError("friction = False: this table and losses need friction=True")
+
+
+def _json(what: Any) -> str:
+    """Text that cannot end the script it stands in."""
+    return json.dumps(what, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
+
+
+@cache
+def _packed(friction: bool) -> str:
+    """The core and all that is text, as the loader unpacks it."""
+    core = decompress(files("spincyl._pages").joinpath("cores", CORES[friction]).read_bytes())
+    presets = _json([{"name": name, "state": told} for name, told in scenes(friction)])
+    shown = filled("play.body.html", {"presets": presets})
+    return packed(
+        core, "\0".join([style(["play.css"]), shown, script(_SCRIPTS if friction else _LEAN)]).encode()
+    )

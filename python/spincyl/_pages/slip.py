@@ -1,0 +1,41 @@
+"""What a page shows of friction: phases, and at even times the slip and the forces on the contact."""
+
+from typing import Any
+
+import numpy as np
+
+from spincyl._ellipsoid_motion import EllipsoidMotion
+from spincyl._input.numbers import Floats
+from spincyl._motion import Motion
+from spincyl._phases import KINDS
+from spincyl._studio.poses import pace, span
+
+_IN_A_NUTATION, _FEWEST, _MOST = 48, 480, 6000
+
+
+def rubbing(m: Motion) -> dict[str, Any]:
+    """Phases as (time, code), and what `forces` finds at even times, in sixteen bits between bounds."""
+    first, last = span(m)
+    count = _IN_A_NUTATION * (last - first) / pace(m)
+    found = forces(m, np.linspace(first, last, int(np.clip(count, _FEWEST, _MOST))))
+    low, high = found.min(axis=0), found.max(axis=0)
+    whole = np.round((found - low) / np.where(high > low, high - low, 1.0) * 0xFFFF)
+    phases = [[phase.time, KINDS.index(phase.kind)] for phase in m.phases]
+    return {"phases": phases, "lows": low.tolist(), "highs": high.tolist(), "forces": (whole, "<u2")}
+
+
+def forces(m: Motion, t: Floats) -> Floats:
+    """Slip, friction and normal force at ascending times: u_h, u_2, F_h, F_2, N along a last axis.
+
+    Of a stone, slip and friction stand along the axes x and y of the laboratory.
+    """
+    there = m.wanting("pose", "force", t=t)
+    push = there.contact_force[:, :2] @ [1, 1j]
+    if isinstance(there, EllipsoidMotion):
+        # what the slip of a state is told along has been turned by this about the vertical
+        z, w = there.orientation[:, 2:].T
+        slip = (there.slip @ [1, 1j]) * np.exp(2j * np.arctan2(z, w))
+    else:
+        slip, push = there.slip @ [1, 1j], push * np.exp(-1j * there.phi)
+    found: Floats = np.column_stack([slip.real, slip.imag, push.real, push.imag, there.normal])
+    return found

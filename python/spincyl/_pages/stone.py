@@ -1,0 +1,69 @@
+"""What a page shows of a stone: its numbers, the surfaces that it stretches, and when the spin turns back."""
+
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from spincyl._ellipsoid import Ellipsoid
+from spincyl._ellipsoid_motion import EllipsoidMotion
+from spincyl._input.numbers import Floats
+from spincyl._motion import Motion
+from spincyl._pages.few import corners, packed_part
+from spincyl._studio.poses import seen
+from spincyl._studio.shape import Letter, Profile, marks, profiles, reach
+from spincyl._studio.stone_shape import turned_marks
+
+_SHARE = 0.1  # of the first spin, to which one comes that has turned back
+_BETWEEN = 8  # looks between two knots
+
+
+def stone(m: Motion) -> bool:
+    """Whether it is the motion of one."""
+    return isinstance(m, EllipsoidMotion)
+
+
+def numbers(m: EllipsoidMotion, t: Floats) -> dict[str, Any]:
+    """Those of the stone, and when it turns back; `ell` is half the length of a cylinder of its reach."""
+    far = reach(m.body)
+    return {
+        "ell": max(0.0, far * far - 1) ** 0.5,
+        "axes": np.asarray(m.body.axes).tolist(),
+        "offset": np.asarray(m.body.offset).tolist(),
+        "inertia": np.asarray(m.body.inertia).tolist(),
+        "back": turns_back(m, t),
+    }
+
+
+def turned(body: Ellipsoid, upper: Letter) -> dict[str, Any]:
+    """Its surface, and its marks."""
+    flat = turned_marks(body, upper)
+    return {
+        "turned": [*map(_stretched, profiles(body)), *(_stretched(p, mark=True) for p in flat)],
+        "marks": [] if flat else [packed_part(part) for part in marks(body, upper)],
+    }
+
+
+def _stretched(profile: Profile, **more: bool) -> dict[str, Any]:
+    """A surface that is turned, and how it is stretched."""
+    assert profile.stretch is not None
+    how = {"corners": corners(profile)} | profile.stretch._asdict() | more
+    return {"colour": profile.colour, "corners": how}
+
+
+def turns_back(m: EllipsoidMotion, t: Floats) -> list[float]:
+    """When the spin has passed zero and come to a tenth of the first spin in the other direction.
+
+    Looked for between times in order, of which a few show each rocking.
+    """
+    share = np.arange(_BETWEEN) / _BETWEEN
+    t = np.append((t[:-1, np.newaxis] + np.diff(t)[:, np.newaxis] * share).ravel(), t[-1])
+    (spin,) = seen(m, t, "spin")
+    far = np.flatnonzero(np.abs(spin) >= _SHARE * abs(spin[0])) if spin[0] else np.empty(0, int)
+    found = []
+    for before, after in pairwise(far):
+        if spin[before] * spin[after] < 0:
+            zeros = np.flatnonzero(np.sign(spin[before:after]) != np.sign(spin[before + 1 : after + 1]))
+            k = before + zeros[-1]
+            found.append(float(t[k] - spin[k] * (t[k + 1] - t[k]) / (spin[k + 1] - spin[k])))
+    return found

@@ -1,0 +1,145 @@
+"""Films: what a page shows, as MP4 by ffmpeg or as GIF by Pillow; `frames` draws it."""
+
+import subprocess
+import warnings
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from pathlib import Path
+from shutil import which
+from tempfile import TemporaryFile
+from typing import Any
+
+import numpy as np
+
+from spincyl._input.files import replaced
+from spincyl._input.numbers import extra, whole, within
+from spincyl._input.threads import Progress
+from spincyl._studio.frames import Reel, frames, pictures
+from spincyl._studio.poses import span
+
+_LONG = 10.0  # seconds of a film, if nobody says how many
+_LARGE = 20e6  # bytes
+_NEEDS = "a film in MP4 needs ffmpeg: pip install 'spincyl[film]', or the program ffmpeg on the search path"
+
+
+def reel(
+    view: Any,
+    edges: Sequence[dict[str, Any]],
+    suffix: str,
+    fps: int | None,
+    size: tuple[int, int] | None,
+    seconds: float | None = None,
+) -> Reel:
+    """What a page shows, as a film of this kind; or what is wrong with its measures."""
+    gif = suffix == ".gif"
+    fps = (25 if gif else 30) if fps is None else whole("fps", fps, 1, 240)
+    if gif and 100 % fps:
+        raise ValueError(f"fps = {fps}: frames of a GIF last whole hundredths of a second: 50, 25, 20 or 10")
+    size = ((640, 360) if gif else (1280, 720)) if size is None else size
+    if not isinstance(size, tuple | list) or len(size) != 2:
+        raise TypeError(f"size: expected width and height, not {size!r}")
+    sides = zip(("size: width", "size: height"), size, strict=True)
+    width, height = (whole(name, x, 64, 8192) for name, x in sides)
+    if suffix == ".mp4" and (width % 2 or height % 2):
+        raise ValueError(f"size = {size!r}: expected even numbers, which MP4 needs")
+    unit = 1.0 if view.scale is None else float(view.scale.seconds(1.0))
+    how = (unit, view._symbol, view._spun, view.slow, view.upper, fps, (width, height))
+    if seconds is None:
+        spans = [sorted(span(m)) for m in view.motions]
+        lasts = (max(b for _, b in spans) - min(a for a, _ in spans)) * view.slow * unit
+        if lasts > _LONG * (1 + 1e-9):
+            told = f"the film shows the first {_LONG:g} of {lasts:.3g} seconds; seconds= says how many"
+            warnings.warn(told, UserWarning, stacklevel=3)
+    return Reel(view.motions, view.labels, edges, *how, _LONG if seconds is None else seconds, view._colours)
+
+
+def film(what: Reel, path: Path, progress: Progress | None = None) -> None:
+    """Write the film, and say how much of it is done."""
+    write = _gif if path.suffix.lower() == ".gif" else _mp4
+    extra("matplotlib", "film")
+    program = _program() if write is _mp4 else ""
+    count = what.times.size  # what is too long is refused before anything is written
+
+    def shown() -> Iterator[np.ndarray]:
+        for k, picture in enumerate(frames(what), 1):
+            yield picture
+            if progress:
+                progress(k / count)
+
+    with replaced(path) as part:
+        write(what, shown(), part, program)
+    large = path.stat().st_size
+    if large > _LARGE:
+        how = "size=, fps= or seconds= make it smaller" + (", and .mp4 by far" if write is _gif else "")
+        warnings.warn(f"{path}: {large / 1e6:.0f} MB; {how}", UserWarning, stacklevel=3)
+
+
+def still(what: Reel, path: Path, t: float | None) -> None:
+    """Write the picture at a time, in the unit of the page."""
+    extra("matplotlib", "film")
+    from PIL import Image
+
+    spans = [sorted(span(m)) for m in what.motions]
+    first, last = (of(x) * what.unit for of, x in zip((min, max), zip(*spans, strict=True), strict=True))
+    t = first if t is None else within("t", t, first, last)
+    (picture,) = pictures(what._replace(slow=1), np.array([t / what.unit]))
+    with replaced(path) as part:
+        Image.fromarray(picture).save(part, "PNG")
+
+
+def _program() -> str:
+    """ffmpeg: the one that imageio brings, or the one on the search path."""
+    try:
+        from imageio_ffmpeg import get_ffmpeg_exe
+
+        return str(get_ffmpeg_exe())
+    except (ImportError, RuntimeError):
+        found = which("ffmpeg")
+    if found is None:
+        raise ImportError(_NEEDS)
+    return found
+
+
+def _mp4(what: Reel, pictures: Iterator[np.ndarray], path: Path, program: str) -> None:
+    """H.264 by ffmpeg, in the colours that every player knows."""
+    width, height = what.size
+    words = [program, "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24"]
+    words += ["-s", f"{width}x{height}", "-r", str(what.fps), "-i", "-", "-an"]
+    # players take what has no mark for BT.709, ffmpeg converts by BT.601 unless it is told
+    words += ["-vf", "scale=out_color_matrix=bt709:out_range=tv", "-c:v", "libx264", "-crf", "18"]
+    words += ["-pix_fmt", "yuv420p", "-colorspace", "bt709", "-color_primaries", "bt709"]
+    words += ["-color_trc", "bt709"]
+    words += ["-movflags", "+faststart", "-f", "mp4", str(path)]
+    with TemporaryFile() as said:
+        process = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=said)
+        assert process.stdin is not None
+        try:
+            with suppress(BrokenPipeError):  # it has ended, and says why
+                for picture in pictures:
+                    process.stdin.write(picture.tobytes())
+        except BaseException:
+            process.kill()
+            raise
+        finally:
+            with suppress(BrokenPipeError):
+                process.stdin.close()
+            code = process.wait()
+        if code:
+            said.seek(0)
+            told = said.read().decode(errors="replace").strip()
+            raise OSError(f"ffmpeg: {told or f'it ended with {code}'}")
+
+
+def _gif(what: Reel, pictures: Iterator[np.ndarray], path: Path, program: str) -> None:
+    """By Pillow, which comes with matplotlib; one palette for all frames, so that nothing flickers."""
+    from PIL import Image
+
+    count = what.times.size
+    some = what._replace(size=(what.size[0] // 2, what.size[1] // 2))
+    looks = np.concatenate(list(frames(some, np.unique(np.linspace(0, count - 1, 6).astype(int)))))
+    palette = Image.fromarray(looks).quantize(255, Image.Quantize.MEDIANCUT)
+    inked = (Image.fromarray(x).quantize(palette=palette, dither=Image.Dither.NONE) for x in pictures)
+    first = next(inked)
+    first.save(
+        path, "GIF", save_all=True, append_images=inked, duration=1000 // what.fps, loop=0, optimize=False
+    )

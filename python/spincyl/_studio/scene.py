@@ -1,0 +1,374 @@
+"""A scene with a known answer, for engines that simulate contacts.
+
+A body on a table with its initial velocities in SI units, and what must come of it: inclination, pose,
+energy, contact point and contact force from the exact solution, with the error of each.
+
+A body with a fillet is a core swollen by the fillet: all places within that distance of a smaller cylinder,
+of a line (a capsule), of two points or of one (balls). A table cannot tell it from the round body.
+"""
+
+import json
+import math
+from contextlib import ExitStack
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from spincyl._body import Body
+from spincyl._contact import Contact, Coulomb, Viscous, rolls
+from spincyl._ending import Ending
+from spincyl._input.files import replaced
+from spincyl._input.numbers import Floats, made, number, path_of, si, whole
+from spincyl._measured import speaking
+from spincyl._motion import Motion
+from spincyl._roll import roll
+from spincyl._scale import Scale, scale_of
+from spincyl._state import State, gripping
+from spincyl._studio.shape import kind, landing, profiles, rotations, skin
+
+#: Of the pieces of a profile, how many become one in a mesh that is only looked at.
+_PIECES = 4
+
+
+class Scene:
+    """A body on a table and what becomes of it; from `scene`.
+
+    Attributes
+    ----------
+    motion : Motion
+        The expected one, in natural units.
+    data : dict
+        What the JSON file has: body, table, start and expected values in SI units.
+    mjcf : str
+        The scene for MuJoCo, with its start as the keyframe "start".
+    """
+
+    def __init__(self, motion: Motion, scale: Scale, mu: float) -> None:
+        self.motion, self.scale, self.mu = motion, scale, mu
+
+    @property
+    def data(self) -> dict[str, Any]:
+        """Body, table, start and expected values: numbers, lists and text."""
+        m, scale, body = self.motion, self.scale, self.motion.body
+        metre, second, joule = scale.metres(1.0), scale.seconds(1.0), scale.joules(1.0)
+        weight = scale.mass * scale.gravity
+        moment = scale.mass * metre**2
+        position, velocity, w, turned = self._start()
+        smooth = m.contact == "smooth"
+        needed = 0.0 if smooth else friction_needed(body, m.start, float(m.t[-1]))
+        bore = None if np.isnan(body.bore) else body.bore * metre
+        return {
+            "format": "spincyl scene 1",
+            "units": "metres, kilograms, seconds, radians; z up; quaternions x, y, z, w",
+            "body": {
+                "shape": "cylinder on its lower rim",
+                "radius": metre,
+                "half_length": skin(body).half * metre,
+                "inner_radius": bore,
+                **self._round(),
+                "mass": scale.mass,
+                "inertia": [body.i1 * moment, body.i1 * moment, body.i3 * moment],
+                "axes": "principal, the third is that of symmetry; origin at the centre of mass",
+            },
+            "gravity": [0.0, 0.0, -scale.gravity],
+            "table": {"point": [0.0, 0.0, 0.0], "normal": [0.0, 0.0, 1.0], "friction": self.mu},
+            "start": {
+                "position": (position * metre).tolist(),
+                "orientation": turned.tolist(),
+                "velocity": (velocity * metre / second).tolist(),
+                "angular_velocity": (rotations(turned) @ w / second).tolist(),
+                "angular_velocity_in_body_axes": (w / second).tolist(),
+            },
+            "expected": {
+                "time": (m.t * second).tolist(),
+                "theta": m.theta.tolist(),
+                "energy": (m.energy * joule).tolist(),
+                "normal_force": (m.normal * weight).tolist(),
+                "contact_force": (m.contact_force * weight).tolist(),
+                "contact_point": (np.pad(m.contact_point, ((0, 0), (0, 1))) * metre).tolist(),
+                "position": (m.centre * metre).tolist(),
+                "orientation": m.orientation.tolist(),
+                "theta_is": "angle from the vertical to the axis of symmetry",
+                "energy_is": "kinetic and potential, from the table up",
+                "contact_force_is": "what the table exerts on the body, at the contact point",
+                "contact": m.contact,
+                "friction_coefficient_needed": needed,
+                "found": m.message,
+                "found_is": "how, with errors in natural units",
+            },
+            "error": {
+                "energy": self._energy_error() * joule,
+                "normal_force": m.force_error * weight,
+                "contact_force": (m.force_error + m.pose_error * float(m.friction.max())) * weight,
+                "theta": m.error,
+                "position": max(m.pose_error, m.error) * metre,
+                "contact_point": max(m.pose_error, m.error) * metre,
+                "angles": m.pose_error,
+                "error_is": "the largest of all times; angles are those of the orientation",
+            },
+        }
+
+    @property
+    def mjcf(self) -> str:
+        """The scene for MuJoCo. Contacts as stiff and friction as steady as its solver bears."""
+        body, scale = self.motion.body, self.scale
+        _, wall, fillet, rim, _ = skin(body)
+        if wall == 0 and rim > 0:
+            what = f", nor one to be swollen by fillet = {fillet!r}" if fillet else ""
+            raise ValueError(f"ell = {wall:g}: MuJoCo has no cylinder without thickness{what}")
+        second, metre = scale.seconds(1.0), scale.metres(1.0)
+        position, velocity, w, (x, y, z, real) = self._start()
+        moments = [scale.mass * metre**2 * x for x in (body.i1, body.i1, body.i3)]
+        table, shape, looks, pair = self._geometry()
+        places = [*(position * metre), real, x, y, z]
+        speeds = [*(velocity * metre / second), *(w / second)]
+        return f"""\
+<mujoco model="spincyl">
+  <option gravity="0 0 {-scale.gravity!r}" timestep="{5e-4 * second:.6g}" integrator="implicitfast"
+          cone="elliptic" impratio="1000" solver="Newton" iterations="100" tolerance="0"
+          noslip_iterations="30" noslip_tolerance="0">
+    <flag energy="enable"/>
+  </option>
+  <visual><global offwidth="1280" offheight="720"/></visual>
+{looks}  <worldbody>
+    <light pos="0 0 {10 * metre!r}" dir="0 0 -1" directional="true"/>
+{table}
+    <body name="body">
+      <freejoint/>
+      <inertial pos="0 0 0" mass="{scale.mass!r}" diaginertia="{_words(moments)}"/>
+{shape}
+    </body>
+  </worldbody>
+{pair}  <keyframe>
+    <key name="start" qpos="{_words(places)}" qvel="{_words(speeds)}"/>
+  </keyframe>
+</mujoco>
+"""
+
+    def _round(self) -> dict[str, Any]:
+        """What the data say of a body with a fillet, in place of what they say of a sharp one."""
+        body, metre = self.motion.body, float(self.scale.metres(1.0))
+        if not body.fillet > 0:
+            return {}
+        middle, wall, fillet, rim, _ = (x * metre for x in skin(body))
+        ends = [[0.0, 0.0, middle - wall], [0.0, 0.0, middle + wall]]
+        shape, core = {
+            "cylinder": ("cylinder with rounded edges on its lower rim", "cylinder"),
+            "capsule": ("capsule", "segment"),
+            "balls": ("two balls", "points"),
+            "ball": ("ball", "points"),
+        }[kind(body)]
+        return {
+            "shape": shape,
+            "fillet": fillet,
+            "height_over_rim": body.ell * metre,
+            "lands_at": landing(body),
+            "core": {"type": core, "radius": rim, "ends": ends[: 2 if wall else 1], "swollen_by": fillet},
+            "core_is": "the body is all that is within swollen_by of its core, without its bore, rod or stem",
+        }
+
+    def _geometry(self) -> tuple[str, str, str, str]:
+        """What MuJoCo is told of table and body: two geoms, what is only looked at, and their contact.
+
+        A cylinder with a fillet is a smaller one with a margin: its contact begins where plane and cylinder
+        are two fillets apart, half way between which MuJoCo puts the contact point. So the plane lies a
+        fillet deeper than the table. This is the true shape, without facets.
+        """
+        body, metre, second = self.motion.body, float(self.scale.metres(1.0)), self.scale.seconds(1.0)
+        stiff = f'solref="{-1e6 / second**2:.6g} {-1e3 / second:.6g}" solimp="0.9999 0.9999 0.001 0.5 2"'
+        touch = f'friction="{self.mu!r} 0 0" condim="3" {stiff}'
+        size = f'size="{20 * metre!r} {20 * metre!r} {metre!r}"'
+        table, margin, round_ = f'    <geom name="table" type="plane" {size} {touch}/>', "", ""
+        middle, wall, fillet, rim, _ = (x * metre for x in skin(body))
+        if fillet == 0:
+            geoms = [f'name="rim" type="cylinder" size="{_words([metre, body.ell * metre])}" {touch}']
+        elif rim == 0:
+            ends = [middle - wall, middle + wall] if kind(body) == "balls" else [middle]
+            capsule = kind(body) == "capsule"
+            size = _words([fillet, wall] if capsule else [fillet])
+            of = f'type="{"capsule" if capsule else "sphere"}" size="{size}"'
+            geoms = [
+                f'name="{name}" {of} pos="0 0 {z!r}" {touch}'
+                for name, z in zip(("rim", "other"), ends, strict=False)
+            ]
+        else:
+            seen, unseen = 'contype="0" conaffinity="0"', 'contype="0" conaffinity="0" group="3"'
+            deep = f'    <geom name="table" type="plane" pos="0 0 {-fillet!r}" {size} {unseen}/>'
+            table = f'    <geom name="top of the table" type="plane" {size} {seen}/>\n{deep}'
+            geoms = [
+                f'name="rim" type="cylinder" size="{_words([rim, wall])}" {unseen}',
+                f'name="looks" type="mesh" mesh="looks" mass="0" {seen}',
+            ]
+            places = " ".join(f"{x:.6g}" for x in (metre * _outside(body)).ravel())
+            round_ = f'  <asset><mesh name="looks" inertia="shell" vertex="{places}"/></asset>\n'
+            grip = f'friction="{self.mu!r} {self.mu!r} 0 0 0" condim="3" margin="{2 * fillet!r}" gap="0"'
+            margin = f'  <contact><pair geom1="table" geom2="rim" {grip} {stiff}/></contact>\n'
+        return table, "\n".join(f"      <geom {geom}/>" for geom in geoms), round_, margin
+
+    def save(self, path: str | PathLike[str]) -> list[Path]:
+        """Write `path`.json and, unless the body has no wall, `path`.xml (MJCF); returns their paths.
+
+        Files that are there stay until both new ones are complete.
+
+        Raises
+        ------
+        OSError
+            If a file cannot be written.
+        """
+        path = path_of("path", path)
+        stem = path.stem if path.suffix in {".json", ".xml"} else path.name
+        texts = {f"{stem}.json": json.dumps(self.data, indent=1, allow_nan=False) + "\n"}
+        if skin(self.motion.body).wall or self.motion.body.fillet == 1:
+            texts[f"{stem}.xml"] = self.mjcf
+        paths = [path.parent / name for name in texts]
+        with ExitStack() as all_:  # either is there, or neither
+            for part, text in zip(map(all_.enter_context, map(replaced, paths)), texts.values(), strict=True):
+                part.write_text(text, encoding="utf-8")
+        return paths
+
+    def _energy_error(self) -> float:
+        """A bound of what an error of the states makes of the energy, in natural units.
+
+        Every term of it has two angular velocities at most, and moments below J.
+        """
+        m = self.motion
+        inertia = 1 + (abs(m.body.ell) + m.body.fillet) ** 2 + m.body.i1 + m.body.i3
+        return float(m.error * inertia * (1 + 3 * np.abs(m.w).max()))
+
+    def _start(self) -> tuple[Floats, Floats, Floats, Floats]:
+        """Place, velocity, angular velocity along the body's axes, orientation, in natural units."""
+        m = self.motion
+        turned = m.orientation[0]
+        # at the start the body's axes are those that follow the tilt
+        w = m.w[0]
+        arm = m.centre[0] - np.append(m.contact_point[0], 0.0)
+        velocity = np.cross(rotations(turned) @ w, arm)  # the contact point is at rest
+        if m.contact == "smooth":
+            velocity[:2] = 0.0
+        return m.centre[0], velocity, w, turned
+
+    def __repr__(self) -> str:
+        last = self.scale.seconds(self.motion.t[-1])
+        return f"<Scene of {self.motion.body!r}, {last:.6g} s; .save('scene') writes it>"
+
+
+def scene(
+    body: Body,
+    state: State,
+    *,
+    scale: Scale | None = None,
+    seconds: float = 1.0,
+    points: int = 101,
+    mu: float = 1.0,
+    contact: Contact = "rolling",
+) -> Scene:
+    """A validation scene for contact engines: the start, and what must come of it.
+
+    Parameters
+    ----------
+    body : Body
+    state : State
+        Single ones, in the range of `roll`.
+    scale : Scale, optional
+        Default: that of a measured body; else a radius of one metre, a mass of one kilogram.
+    seconds : float
+        How long the motion is known for.
+    points : int
+        Times from 0 on at which it is known, at least 2.
+    mu : float
+        Coefficient of friction of the scene; of a smooth one 0, whatever is given.
+    contact : {"rolling", "smooth"}
+
+    Returns
+    -------
+    Scene
+        `data`, `mjcf`, `save("scene")`.
+
+    Raises
+    ------
+    ValueError
+        If the motion ends within the time, saying how: an engine then shows something else than rolling. For
+        a state that slips, and a law of friction: there is no scene of a body that slips, nor of a stone.
+
+    Notes
+    -----
+    examples/contact_engine.py runs MuJoCo on five such scenes and prints how far it deviates. A body with a
+    fillet is told as its core (`data["body"]["core"]`), which the fillet swells to the true shape.
+
+    Examples
+    --------
+    >>> import spincyl as sc
+    >>> body = sc.Body.solid(2.5)
+    >>> start = sc.scene(body, body.steady(1.3)).data["start"]
+    >>> [round(x, 6) for x in start["position"]]
+    [-2.141397, 0.0, 1.632305]
+    """
+    made("body", body, Body)
+    of = "a scene is of a body that rolls, or slides on a smooth table without friction"
+    if isinstance(contact, Coulomb | Viscous):
+        why = f"expected 'rolling' or 'smooth': {of}; mu= is what rolling may need"
+        raise ValueError(f"contact = {contact!r}: {why}")
+    rolling = rolls(contact)
+    gripping(state, f"{of}; sc.roll(..., contact=sc.Coulomb(mu)) has the motion of one that slips")
+    scale, body = scale_of(scale, body) or Scale(1.0), body.natural
+    scale.newtons(1.0)  # refuses an unknown mass
+    seconds, mu = number("seconds", si("seconds", seconds, "second")), number("mu", mu)
+    if not 0 < seconds < np.inf:
+        raise ValueError(f"seconds = {seconds!r}: expected a positive number")
+    points = whole("points", points, 2, 1_000_000)
+    if not 0 <= mu < np.inf:
+        raise ValueError(f"mu = {mu!r}: expected 0 or more, and finite")
+    until = seconds / float(scale.seconds(1.0))
+    if not until <= 1e9:
+        raise ValueError(
+            f"seconds = {seconds!r}: at most {1e9 * float(scale.seconds(1.0)):.3g} with this scale"
+        )
+    t = np.linspace(0.0, until, points)
+    with speaking(scale):
+        m = roll(body, state, t, want=("pose", "force"), contact=contact, mu=mu if rolling else np.inf)
+    if m.event is not None:
+        why = m.message.split(";")[0]
+        more = ""
+        if m.status == Ending.SLIP:
+            mu = enough(body, state, until, friction_needed(body, state, until))
+            more = "; no mu would do" if math.isinf(mu) else f"; mu = {mu:g} would do"
+        raise ValueError(f"{why} ({scale.seconds(m.event.time):.6g} s), before {seconds:g} s are over{more}")
+    return Scene(m, scale, mu if rolling else 0.0)
+
+
+def friction_needed(body: Body, state: State, until: float) -> float:
+    """The coefficient of friction that rolling takes up to a time, at 4001 places of it."""
+    m = roll(body, state, np.linspace(0.0, until, 4001), want="force")
+    return float(m.friction_coefficient.max(initial=0.0))
+
+
+def enough(body: Body, state: State, until: float, mu: float) -> float:
+    """A coefficient of friction from this one on with which it rolls so long; infinite if there is none.
+
+    What is needed may have peaks between the places that were looked at, and with more friction it may end
+    otherwise.
+    """
+    mu = 1.01 * mu
+    while mu < 1e12:
+        rounded = float(f"{mu:.3g}") if mu > 1 else math.ceil(1000 * mu) / 1000
+        end = roll(body, state, until, mu=rounded).status
+        if end != Ending.SLIP:
+            return rounded if end == Ending.DONE else math.inf
+        mu *= 2
+    return math.inf
+
+
+def _outside(body: Body) -> Floats:
+    """Places on the surface of a body, of which it is the hull; (n, 3)."""
+    wall = profiles(body)[0]
+    corners = np.array([*wall.corners[::_PIECES], wall.corners[-1]])
+    angle = np.linspace(0, 2 * np.pi, 48, endpoint=False)[:, np.newaxis]
+    r, z = corners.T
+    places: Floats = np.stack([r * np.cos(angle), r * np.sin(angle), z + 0 * angle], -1).reshape(-1, 3)
+    return places
+
+
+def _words(numbers: Any) -> str:
+    return " ".join(repr(float(x)) for x in numbers)

@@ -1,0 +1,89 @@
+"""The soft shadow of a body on the table: the shadows from some places of a round lamp lie over one another.
+
+The triangles that see such a place end at edges beyond which no triangle sees it: the outline of the shadow.
+"""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from spincyl._input.numbers import Floats
+from spincyl._studio.shape import Part
+
+#: How far the shadow of each place of the lamp falls aside for a height of one.
+_LAMPS = np.array(
+    [
+        (0.36 + far * math.cos(2.4 * k), 0.4 + far * math.sin(2.4 * k))
+        for k, far in enumerate(0.15 * np.sqrt((np.arange(12) + 0.5) / 12))
+    ]
+)
+#: How dark the full shadow is, the number of places of the lamp, and the share of each.
+DARK = 0.24
+LAMPS = len(_LAMPS)
+LAYER = 1 - (1 - DARK) ** (1 / LAMPS)
+
+
+class Caster(NamedTuple):
+    """A surface that throws a shadow."""
+
+    vertices: Floats  #: (n, 3)
+    triangles: np.ndarray  #: (m, 3) indices of vertices
+    mates: np.ndarray  #: (m, 3) the triangle beyond each edge; m where there is none
+
+
+def caster(parts: list[Part]) -> Caster:
+    """The surface of these parts."""
+    before = np.cumsum([0, *(len(part.vertices) for part in parts)])
+    triangles = np.concatenate([part.triangles + n for part, n in zip(parts, before, strict=False)])
+    begin, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
+    runs, back = begin * before[-1] + end, end * before[-1] + begin
+    order = np.argsort(runs)
+    found = order[np.searchsorted(runs, back, sorter=order) % runs.size]
+    mates = np.where(runs[found] == back, found // 3, len(triangles))
+    return Caster(np.concatenate([part.vertices for part in parts]), triangles, mates.reshape(-1, 3))
+
+
+def shadows(of: Caster, rotation: Floats, centre: Floats) -> list[list[Floats]]:
+    """The closed lines (n, 3) on the table round the shadow of each place of the lamp."""
+    places = of.vertices @ rotation.T + centre
+    corners = places[of.triangles]
+    flat = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    edges = np.stack([of.triangles, np.roll(of.triangles, -1, axis=1)], axis=2)
+    found = []
+    for lamp in _LAMPS:
+        sees = np.append(flat @ np.array([*-lamp, 1.0]) > 0, False)
+        rims = _closed(edges[sees[:-1, np.newaxis] & ~sees[of.mates]])
+        fallen = np.column_stack([places[:, :2] + places[:, 2:] * lamp, np.zeros(len(places))])
+        found.append([fallen[rim] for rim in rims])
+    return found
+
+
+def _closed(edges: np.ndarray) -> list[list[int]]:
+    """The closed lines of which directed edges (n, 2) are parts."""
+    after: dict[int, list[int]] = {}
+    for begin, end in edges.tolist():
+        after.setdefault(begin, []).append(end)
+    lines = []
+    while after:
+        first = at = next(iter(after))
+        line: list[int] = []
+        while at != first or not line:
+            line.append(at)
+            ends = after[at]
+            if len(ends) == 1:
+                del after[at]
+            at = ends.pop()
+        lines.append(line)
+    return lines
+
+
+def outline(lines: list[Floats]) -> Any:
+    """A path along closed lines (n, 2): filled, it darkens once where they overlap."""
+    from matplotlib.path import Path as Outline
+
+    corners = np.concatenate([np.concatenate([line, line[:1]]) for line in lines])
+    kinds = np.full(len(corners), Outline.LINETO, np.uint8)
+    ends = np.cumsum([len(line) + 1 for line in lines])
+    kinds[[0, *ends[:-1]]], kinds[ends - 1] = Outline.MOVETO, Outline.CLOSEPOLY
+    return Outline(corners, kinds)

@@ -1,0 +1,122 @@
+"""The sound of a whirr: a ring that is loudest each time the contact point comes round.
+
+    x = r(t) exp(b (cos(phi) - 1)),    r = what a few resonances make of noise, v^(1/2) strong
+
+v is how fast the contact moves along the body, round its rim by psi' A and over a fillet by rho theta'. phi
+turns the contact about the vertical, as heard by somebody who stands beside the table: one beat a turn, at
+phi'/(2 pi). The resonances are those of a steel disk or so; their pitch means nothing. Towards the end of a
+whirr psi' grows without bound: what comes round faster than the body rings makes it no louder, and beats that
+samples cannot show are heard as their mean.
+"""
+
+import math
+import wave
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from spincyl._ellipsoid_motion import EllipsoidMotion
+from spincyl._input.files import replaced
+from spincyl._input.numbers import Floats, number, path_of, si, whole
+from spincyl._scale import Scale, scale_of
+from spincyl._studio.poses import seen, span
+
+if TYPE_CHECKING:
+    from spincyl._motion import Motion
+
+#: Hertz, decay time in seconds, strength.
+_RESONANCES = ((1150.0, 0.030, 1.0), (2710.0, 0.020, 0.6), (4890.0, 0.012, 0.35))
+_SHARPNESS = 2.0
+_STILL = 1e-9  # of sqrt(g R): a contact that moves no faster along the body is at rest but for rounding
+_LOOKS = 2000  # a second, at which the pose is asked for
+_AFTER, _LONGEST = 0.25, 180.0  # seconds
+
+
+def sound(
+    m: "Motion", path: str | PathLike[str], seconds: float | None, scale: Scale | None, rate: int
+) -> Path:
+    """Write the sound of a motion as a WAV file."""
+    path = path_of("path", path)
+    if path.suffix.lower() != ".wav":
+        raise ValueError(f"path = {str(path)!r}: expected a name that ends in .wav")
+    if isinstance(m, EllipsoidMotion):
+        raise TypeError("body: expected a Body, whose contact runs round a rim, not an Ellipsoid")
+    scale, m = scale_of(scale, m.body), m.natural
+    if scale is None:
+        raise TypeError("scale: expected a Scale, which a measured body has, to make seconds of the times")
+    rate = whole("rate", rate, 8000, 192_000)
+    first, last = span(m)
+    if last < first:
+        raise ValueError("the motion runs backward in time: there is nothing to hear")
+    unit = float(scale.seconds(1.0))
+    lasting = (last - first) * unit
+    if seconds is not None:
+        wanted = number("seconds", si("seconds", seconds, "second"))
+        if not 0 < wanted <= lasting * (1 + 1e-9):
+            raise ValueError(
+                f"seconds = {wanted!r}: expected more than 0 and at most {lasting:.6g}, the motion's"
+            )
+        lasting = wanted
+    if lasting > _LONGEST:
+        raise ValueError(f"{lasting:.6g} s are too long to hear: give seconds=, at most {_LONGEST:g}")
+    found = _heard(m, first, unit, lasting, rate)
+    with replaced(path) as part, wave.open(str(part), "wb") as file:
+        file.setnchannels(1)
+        file.setsampwidth(2)
+        file.setframerate(rate)
+        file.writeframes(np.round(found * 32767).astype("<i2").tobytes())
+    return path
+
+
+def _heard(m: "Motion", first: float, unit: float, lasting: float, rate: int) -> Floats:
+    """The pressure at each sample, between -1 and 1, and a while of ringing after the end."""
+    looks = np.linspace(0.0, lasting, max(64, math.ceil(_LOOKS * lasting)))
+    phi, speed = _contact(m, first + looks / unit)
+    if not speed.max() > _STILL:
+        raise ValueError("there is nothing to hear: the point of contact does not move along the body")
+    speed = np.minimum(speed, 2 * math.pi * _RESONANCES[0][0] * unit)
+    t = np.arange(math.ceil((lasting + _AFTER) * rate)) / rate
+    scrape = np.random.default_rng(0).standard_normal(t.size)
+    scrape *= np.sqrt(np.interp(t, looks, speed)) * (t <= lasting)
+    ring: Floats = _through(scrape, rate)
+    ring *= _beat(np.interp(t, looks, phi))
+    most = float(np.abs(ring).max())
+    return ring * (0.9 / most) if most > 0 else ring
+
+
+def _contact(m: "Motion", times: Floats) -> tuple[Floats, Floats]:
+    """Where the contact is about the vertical, and how fast it moves along the body, at times."""
+    phi, theta, w = seen(m, times, "phi", "theta", "w")
+    s, c, fillet = np.sin(theta), np.cos(theta), m.body.fillet
+    # of a ball finite at its poles; where a face lies down there is none, and the last one before it stands
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        round_the_rim = (1 - fillet) * (w[:, 2] - w[:, 0] * c / s) if fillet < 1 else 0.0
+        speed = np.hypot(round_the_rim + fillet * (s * w[:, 2] - c * w[:, 0]), fillet * w[:, 1])
+    known = np.flatnonzero(np.isfinite(speed) & np.isfinite(phi) & (s > 0 if fillet < 1 else True))
+    if known.size == 0:
+        raise ValueError("there is nothing to hear: the body lies on its face")
+    nearest = known[np.clip(np.searchsorted(known, np.arange(speed.size), "right") - 1, 0, None)]
+    return phi[nearest], speed[nearest]
+
+
+def _beat(phi: Floats) -> Floats:
+    """How loud the ring is, by where the contact is; the mean where that is faster than samples show."""
+    step = np.abs(np.gradient(phi)) if phi.size > 1 else np.zeros(phi.size)
+    shown = np.clip(2 - step * 2 / math.pi, 0.0, 1.0)  # nothing of it from two samples a turn on
+    mean = math.exp(-_SHARPNESS) * float(np.i0(_SHARPNESS))
+    found: Floats = mean + shown * (np.exp(_SHARPNESS * (np.cos(phi) - 1)) - mean)
+    return found
+
+
+def _through(scrape: Floats, rate: int) -> Floats:
+    """What resonances that decay make of a force."""
+    t = np.arange(math.ceil(0.25 * rate)) / rate
+    answer = sum(
+        size * np.exp(-t / decay) * np.sin(2 * np.pi * hertz * t) for hertz, decay, size in _RESONANCES
+    )
+    whole_ = 2 ** math.ceil(math.log2(scrape.size + t.size))
+    spectrum = np.fft.rfft(scrape, whole_) * np.fft.rfft(answer, whole_)
+    found: Floats = np.fft.irfft(spectrum, whole_)[: scrape.size]
+    return found

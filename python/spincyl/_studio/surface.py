@@ -1,0 +1,127 @@
+"""Surfaces as triangles: what a polygon sweeps on a lathe, stretched where it is that of a stone."""
+
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from spincyl._input.numbers import Floats
+
+_AROUND = 128
+IVORY, SHADE, BLUE, ORANGE = (0.87, 0.85, 0.80), (0.72, 0.70, 0.66), (0.0, 0.36, 0.65), (0.80, 0.30, 0.0)
+
+
+class Stretch(NamedTuple):
+    """How a surface that was turned becomes that of a stone: along its axes by these factors, then aside."""
+
+    axes: tuple[float, float, float]
+    centre: tuple[float, float, float]
+    about: int = 2  #: which axis of the stone, counted from 0, is that of the lathe
+
+    def __call__(self, part: "Part") -> "Part":
+        """The same part, stretched."""
+        order = np.roll(np.arange(3), self.about - 2)
+        places, normals = (
+            part.vertices[:, order] * self.axes + self.centre,
+            part.normals[:, order] / self.axes,
+        )
+        size = np.linalg.norm(normals, axis=1, keepdims=True)
+        return part._replace(vertices=places, normals=normals / np.maximum(size, 1e-300))
+
+
+class Profile(NamedTuple):
+    """A piece of surface in one colour, as the polygon that sweeps it round the axis."""
+
+    name: str
+    colour: tuple[float, float, float]
+    corners: list[tuple[float, float]]  #: radius and height; outside is on the right of its direction
+    normals: list[tuple[float, float]] | None = None  #: the same of the normals; None: those of flat pieces
+    stretch: Stretch | None = None  #: of a stone
+
+
+class Part(NamedTuple):
+    """A piece of surface in one colour."""
+
+    name: str
+    colour: tuple[float, float, float]
+    vertices: Floats  #: (n, 3)
+    normals: Floats  #: (n, 3), outward
+    triangles: np.ndarray  #: (m, 3) indices, counter-clockwise from outside
+
+
+def lathe(profile: Profile) -> Part:
+    """The surface that a profile sweeps."""
+    return _turned(profile) if profile.stretch is None else profile.stretch(_turned(profile))
+
+
+def _turned(profile: Profile) -> Part:
+    """The same before it is stretched."""
+    angle = np.linspace(0, 2 * np.pi, _AROUND + 1)
+    circle = np.stack([np.cos(angle), np.sin(angle)], -1)
+    pieces = []
+    if profile.normals is not None:
+        ring, normal = (
+            np.stack([np.column_stack([r * circle, np.full(angle.shape, z)]) for r, z in pairs])
+            for pairs in (profile.corners, profile.normals)
+        )
+        return joined(profile.name, profile.colour, [strip(ring, normal)])
+    for (r0, z0), (r1, z1) in pairwise(profile.corners):
+        length = np.hypot(r1 - r0, z1 - z0)
+        if length == 0:
+            continue
+        out, up = (z1 - z0) / length, (r0 - r1) / length
+        ring = np.stack(
+            [np.column_stack([r * circle, np.full(angle.shape, z)]) for r, z in ((r0, z0), (r1, z1))]
+        )
+        normal = np.broadcast_to(np.column_stack([out * circle, np.full(angle.shape, up)]), ring.shape)
+        pieces.append(strip(ring, normal))
+    return joined(profile.name, profile.colour, pieces)
+
+
+def arc(
+    centre: tuple[float, float], radius: float, start: float, stop: float, pieces: int
+) -> tuple[list[tuple[float, float]], list[tuple[float, float]]]:
+    """Corners on a circle and their normals, from one latitude to another."""
+    angle = np.linspace(start, stop, pieces + 1)
+    across, up = np.cos(angle), np.sin(angle)
+    across[np.abs(angle) > np.pi / 2 - 1e-12] = 0.0  # a pole is a point
+    up[angle == 0] = 0.0
+    normals = list(zip(across.tolist(), up.tolist(), strict=True))
+    return [(centre[0] + radius * x, centre[1] + radius * z) for x, z in normals], normals
+
+
+def strip(rows: Floats, normals: Floats) -> tuple[Floats, Floats, np.ndarray]:
+    """Vertices, normals and triangles between rows of n points each, from below."""
+    n = rows.shape[1]
+    triangles = np.concatenate(
+        [
+            np.concatenate([np.stack([i, i + 1, i + n], -1), np.stack([i + 1, i + n + 1, i + n], -1)])
+            for i in (k * n + np.arange(n - 1) for k in range(len(rows) - 1))
+        ]
+    )
+    return rows.reshape(-1, 3), normals.reshape(-1, 3), triangles
+
+
+def joined(
+    name: str, colour: tuple[float, float, float], pieces: list[tuple[Floats, Floats, np.ndarray]]
+) -> Part:
+    """A part of such pieces, without the triangles that are a line."""
+    if not pieces:
+        return Part(name, colour, np.empty((0, 3)), np.empty((0, 3)), np.empty((0, 3), np.intp))
+    offsets = np.cumsum([0, *(len(vertices) for vertices, _, _ in pieces)])
+    triangles = np.concatenate([t + k for (_, _, t), k in zip(pieces, offsets, strict=False)])
+    vertices = np.concatenate([v for v, _, _ in pieces])
+    corners = vertices[triangles]
+    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=-1)
+    return Part(name, colour, vertices, np.concatenate([n for _, n, _ in pieces]), triangles[area > 1e-12])
+
+
+def rotations(q: Floats) -> Floats:
+    """Matrices (..., 3, 3) of unit quaternions (..., 4) in the order x, y, z, w."""
+    x, y, z, w = np.moveaxis(q, -1, 0)
+    rows = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+    ]
+    return np.moveaxis(np.array(rows), (0, 1), (-2, -1))

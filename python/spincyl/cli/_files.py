@@ -1,0 +1,102 @@
+"""Motions as files: tables, arrays, pictures, pages; what a file becomes follows from its suffix."""
+
+from collections.abc import Callable
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any, TextIO
+
+import numpy as np
+
+from spincyl._contact import named
+from spincyl._input.files import replaced
+from spincyl._input.numbers import extra
+from spincyl._labelled import columns as labelled_columns
+from spincyl._loss import titled
+from spincyl._motion import Motion
+from spincyl._scale import Scale
+
+
+def columns(m: Motion, scale: Scale | None) -> dict[str, np.ndarray]:
+    """Everything that was wanted of a motion, by name (n,); with a scale its times in seconds, too."""
+    told = {"t": m.t}
+    if scale is not None:
+        told["seconds"] = scale.seconds(m.t)
+    return told | {name: x for name, (x, _) in labelled_columns(m).items()}
+
+
+_PICTURES = (".png", ".pdf", ".svg")
+
+
+def writer_of(path: Path) -> Callable[[Motion, Scale | None, Path], None]:
+    """What writes a motion into a file of this suffix; ImportError if something it needs is missing."""
+    writers = {".csv": _write_csv, ".npz": _write_npz, ".nc": _write_nc}
+    writers |= dict.fromkeys(_PICTURES, _write_picture)
+    writers |= dict.fromkeys((".html", ".glb"), _write_view)
+    suffix = path.suffix.lower()
+    if suffix not in writers:
+        raise ValueError(f"-o {path}: expected a name that ends in {', '.join(writers)}")
+    needed(suffix)
+    return writers[suffix]
+
+
+def needed(suffix: str) -> None:
+    """Load what a file of this suffix takes to write, or ImportError naming it."""
+    if suffix in _PICTURES:
+        extra("matplotlib", "plot")
+    if suffix == ".nc":
+        extra("xarray", "sweep")
+        if not any(find_spec(name) for name in ("netCDF4", "h5netcdf", "scipy")):
+            raise ImportError("a .nc file needs netCDF4, h5netcdf or scipy: pip install scipy")
+
+
+def _write_csv(m: Motion, scale: Scale | None, path: Path) -> None:
+    write_csv(columns(m, scale), path)
+
+
+def write_csv(told: dict[str, Any], file: Path | TextIO) -> None:
+    """Columns of numbers with seventeen digits: what is read back is what was written."""
+    table = np.column_stack([np.ravel(x) for x in told.values()])
+    how: dict[str, Any] = {"fmt": "%.17g", "delimiter": ",", "header": ",".join(told), "comments": ""}
+    if not isinstance(file, Path):
+        np.savetxt(file, table, **how)
+        return
+    with replaced(file) as part:
+        np.savetxt(part, table, **how)
+
+
+def _write_npz(m: Motion, scale: Scale | None, path: Path) -> None:
+    about: dict[str, Any] = {
+        "status": int(m.status),
+        "message": m.message,
+        "error": m.error,
+        "contact": named(m.contact),
+    }
+    if m.losses is not None:
+        about["losses"] = repr(m.losses)
+    about["body"] = np.array([m.body.ell, m.body.i1, m.body.i3])
+    with replaced(path) as part:
+        np.savez_compressed(part, **about | columns(m, scale))
+
+
+def _write_nc(m: Motion, scale: Scale | None, path: Path) -> None:
+    data = m.to_xarray()
+    if scale is not None:
+        data = data.assign_coords(seconds=("t", scale.seconds(m.t), {"units": "s"}))
+    with replaced(path) as part:
+        data.to_netcdf(part)
+
+
+def _write_picture(m: Motion, scale: Scale | None, path: Path) -> None:
+    extra("matplotlib", "plot").use("agg")
+    from spincyl import plot
+    from spincyl.plot._style import saved
+
+    figure: Any = plot.motion(m)[0].figure
+    saved(figure, path)
+
+
+def _write_view(m: Motion, scale: Scale | None, path: Path) -> None:
+    from spincyl import view
+
+    about = f"{m.body!r}, {named(m.contact)}" + ("" if m.losses is None else f", {titled(m.losses)}")
+    view(m, labels=[about], title=about, scale=scale).save(path)
