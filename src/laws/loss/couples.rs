@@ -107,8 +107,8 @@ pub(crate) struct Ways<T = f64> {
 /// The losses in the form that the equations of motion use, of one body or of eight in lanes.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Couples<T> {
-    coefficients: [T; COUNT],
-    present: [bool; COUNT],
+    pub(super) coefficients: [T; COUNT],
+    pub(super) present: [bool; COUNT],
     /// The signs of the motions that dry friction resists, where a caller holds them fixed within a step.
     pub ways: Option<Ways<T>>,
 }
@@ -219,21 +219,6 @@ impl<T: Real> Couples<T> {
         Kinematics { signs: [ways.contour, ways.drilling], rocks, ..seen }
     }
 
-    /// The derivative of the couple along the contour with respect to psi'.
-    #[inline(always)]
-    pub fn slope(&self, s: T, radius: T, spin: T) -> T {
-        let mut slope = s.splat(0.0);
-        Law::each(
-            #[inline(always)]
-            |law| {
-                if law.is_soft() && self.has(law) {
-                    slope = slope + law.slope(self.coefficient(law), s, radius, spin);
-                }
-            },
-        );
-        slope
-    }
-
     /// The losses with these coefficients among the laws that are present, where `ways` holds signs fixed.
     #[inline(always)]
     pub fn among(coefficients: [T; COUNT], present: [bool; COUNT], ways: Option<Ways<T>>) -> Self {
@@ -326,42 +311,5 @@ impl<T: Real> Couples<T> {
                 .then(|| rolling.mac(rolling, seen.w[1] * seen.w[1])),
             self.has_root(Speed::Whole).then(|| seen.square()),
         ]
-    }
-
-    /// The couple of all laws.
-    #[inline(always)]
-    pub fn at(&self, seen: &Kinematics<T>) -> Couple<T> {
-        let zero = seen.spin.splat(0.0);
-        let mut couple = Couple { free: [zero; 3], pressed: [zero; 3] };
-        Law::each(
-            #[inline(always)]
-            |law| {
-                if self.has(law) {
-                    let to = if law.presses() { &mut couple.pressed } else { &mut couple.free };
-                    let unit = law.couple(seen);
-                    for i in 0..3 {
-                        to[i] = self.coefficient(law).mac(unit[i], to[i]);
-                    }
-                }
-            },
-        );
-        couple
-    }
-
-    /// The power that all laws take under a normal force.
-    #[inline(always)]
-    pub fn power(&self, seen: &Kinematics<T>, normal: T) -> T {
-        let mut power = normal.splat(0.0);
-        Law::each(
-            #[inline(always)]
-            |law| {
-                if self.has(law) {
-                    let unit = law.power(seen);
-                    let unit = if law.presses() { unit * normal } else { unit };
-                    power = self.coefficient(law).mac(unit, power);
-                }
-            },
-        );
-        power
     }
 }

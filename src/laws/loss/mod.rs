@@ -34,6 +34,7 @@ use crate::error::{Error, within};
 use crate::numbers::Real;
 use crate::numbers::codes::coded;
 use core::ops::Add;
+use couples::Couple;
 pub(crate) use couples::{
     Couples, GRACE, Kinematics, NEAR, SLACK, Ways, going, holds, mirrored, rolling_growth, rounded,
 };
@@ -92,21 +93,62 @@ macro_rules! laws {
             }
 
             /// The couple for a coefficient of 1, and for N = 1 if the law is dry.
-            #[inline(always)]
+            #[cfg(test)]
             fn couple<T: Real>(self, seen: &Kinematics<T>) -> [T; 3] {
                 match self { $(Self::$Law => $file::$Law::couple(seen),)+ }
             }
 
             /// The power for a coefficient of 1, and for N = 1 if the law is dry.
-            #[inline(always)]
+            #[cfg(test)]
             fn power<T: Real>(self, seen: &Kinematics<T>) -> T {
                 match self { $(Self::$Law => $file::$Law::power(seen),)+ }
             }
 
             /// The derivative of the couple along the contour with respect to psi'.
-            #[inline(always)]
+            #[cfg(test)]
             fn slope<T: Real>(self, coefficient: T, s: T, radius: T, spin: T) -> T {
                 match self { $(Self::$Law => $file::$Law::slope(coefficient, s, radius, spin),)+ }
+            }
+        }
+
+        /// The sums over all laws are written out, law by law: a loop with a `match` costs lanes and single motions
+        /// up to a tenth of their time.
+        impl<T: Real> Couples<T> {
+            /// The couple of all laws.
+            #[inline(always)]
+            pub fn at(&self, seen: &Kinematics<T>) -> Couple<T> {
+                let zero = seen.spin.splat(0.0);
+                let (mut free, mut pressed) = ([zero; 3], [zero; 3]);
+                $(if self.present[$code] {
+                    let unit = $file::$Law::couple(seen);
+                    let to = if $file::$Law::PRESSES { &mut pressed } else { &mut free };
+                    for i in 0..3 {
+                        to[i] = self.coefficients[$code].mac(unit[i], to[i]);
+                    }
+                })+
+                Couple { free, pressed }
+            }
+
+            /// The power that all laws take under a normal force.
+            #[inline(always)]
+            pub fn power(&self, seen: &Kinematics<T>, normal: T) -> T {
+                let mut power = normal.splat(0.0);
+                $(if self.present[$code] {
+                    let unit = $file::$Law::power(seen);
+                    let unit = if $file::$Law::PRESSES { unit * normal } else { unit };
+                    power = self.coefficients[$code].mac(unit, power);
+                })+
+                power
+            }
+
+            /// The derivative of the couple along the contour with respect to psi'.
+            #[inline(always)]
+            pub fn slope(&self, s: T, radius: T, spin: T) -> T {
+                let mut slope = s.splat(0.0);
+                $(if Law::$Law.is_soft() && self.present[$code] {
+                    slope = slope + $file::$Law::slope(self.coefficients[$code], s, radius, spin);
+                })+
+                slope
             }
         }
     };
