@@ -127,6 +127,7 @@ long: $(VENV)/.tested wheel core
 	$(BIN)/python benches/peers/launch_claims.py
 	HYPOTHESIS_PROFILE=fresh $(BIN)/pytest -m 'not page and not long' $$(grep -l hypothesis tests/test_*.py)
 	python3 tests/fresh.py --runs 10
+	nice -n 10 python3 tests/thresholds.py
 	cargo clippy -p spincyl-benches --all-targets -- -D warnings
 	cargo test --release --tests
 	cargo test --release --tests -- --ignored --nocapture --test-threads 1
