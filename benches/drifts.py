@@ -152,7 +152,7 @@ def stops_only(d, threads):
     out = {name: np.empty(d.stops_at.size) for name in ("stops_at", "ends_at_theta")}
     out["ended"] = np.empty(d.stops_at.size, np.uint8)
     began, worked = time.perf_counter(), time.process_time()
-    _core.drift_stops(d._columns, ("rest", "rolling").index(d.centre), out, threads)
+    _core.drift_stops(d._columns, d.centre, out, threads)
     return time.perf_counter() - began, time.process_time() - worked
 
 

@@ -1,12 +1,12 @@
 """What `roll` is asked for: times, settings, and what is wanted at each time."""
 
 import math
-from collections.abc import Iterable
-from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
 
-from spincyl._contact import AnyContact, code
+from spincyl._contact import AnyContact, code, table
 from spincyl._input.numbers import Floats, Reals, flag, floats, is_scalar, number, one_of, reals
 from spincyl._phases import check, rubs
 from spincyl._state import State
@@ -18,23 +18,54 @@ Method: TypeAlias = Literal["exact", "rk4"]
 #: What is computed if it is wanted.
 Want: TypeAlias = Literal["pose", "force"]
 WANTS: tuple[Want, ...] = ("pose", "force")
+NOTHING: frozenset[Want] = frozenset()
 _DOUBLE = np.dtype(np.float64)
 
 
 class Asked(NamedTuple):
-    """What `roll` was asked for."""
+    """What `roll` was asked for: of one motion, or of many, whose coefficients may be arrays."""
 
     times: Floats
-    t0: float
-    step: float | None
-    tol: float | None
-    method: Method | None
-    contact: AnyContact
-    mu: float
-    beyond: bool
-    want: frozenset[Want]
-    restitution: float | None
-    losses: "Loss | None"
+    t0: float = 0.0
+    step: float | None = None
+    tol: float | None = None
+    method: Method | None = None
+    contact: AnyContact = "rolling"
+    mu: float = math.inf
+    beyond: bool = False
+    want: frozenset[Want] = NOTHING
+    restitution: float | None = None
+    losses: "Loss | None" = None
+    stop_at: Literal["rolling"] | None = None
+    spread: bool = False  # whether the states of many are wanted at all times
+
+
+def crossing(asked: Asked, slip: Sequence[float] | None = None) -> dict[str, Any]:
+    """The options of one motion or of many, as the core takes them: the one place where they cross to it.
+
+    What is the default does not cross, since to tell it would take longer than a short motion may.
+    """
+    _, t0, step, tol, _, contact, mu, beyond, want, restitution, losses, stop_at, spread = asked
+    options: dict[str, Any] = {"t0": t0} if t0 else {}
+    if contact != "rolling" or mu != math.inf:
+        options["table"], options["coefficients"] = table(contact, mu)
+    if step is not None or tol is not None:
+        options |= {"step": step, "tol": tol}
+    if want:
+        options |= {"pose": "pose" in want, "force": "force" in want}
+    if beyond:
+        options["beyond"] = True
+    if slip is not None:
+        options["slip"] = slip
+    if losses is not None:
+        options["losses"] = losses._coefficients
+    if restitution is not None:
+        options["restitution"] = 0.0
+    if stop_at:
+        options["stop_at_rolling"] = True
+    if spread:
+        options["spread"] = True
+    return options
 
 
 def times_of(t: Reals) -> Floats:
@@ -53,8 +84,6 @@ def times_of(t: Reals) -> Floats:
 
 
 def choices(want: Want | Iterable[Want]) -> frozenset[Want]:
-    if type(want) is tuple and not want:
-        return frozenset()
     try:
         given = [want] if isinstance(want, str) else list(want)
     except TypeError:
@@ -97,7 +126,8 @@ def ask(
             )
         t0 = first if math.isfinite(first) else 0.0
     beyond = beyond if beyond is False else flag("beyond", beyond)
-    if isinstance(contact, str):
+    word = isinstance(contact, str)
+    if word:
         code(contact, rubs=True)
     elif not rubs(contact):
         raise TypeError(
@@ -108,14 +138,17 @@ def ask(
         one_of("method", method, ("exact", "rk4"))
     if step is not None and tol is not None:
         raise ValueError(f"step = {step!r} and tol = {tol!r}: give one of them")
-    if method == "rk4" and step is None and tol is None:
-        raise ValueError("method = 'rk4' needs step= or tol=, as in step=1e-3")
-    if method == "exact" and (step is not None or tol is not None):
-        raise ValueError("method = 'exact' takes neither step= nor tol=")
-    step = None if step is None else number("step", step)
-    tol = None if tol is None else number("tol", tol)
-    mu = number("mu", mu)
-    plain = isinstance(contact, str) and state.slip is None and restitution is None and losses is None
+    if step is not None or tol is not None:
+        if method == "exact":
+            raise ValueError("method = 'exact' takes neither step= nor tol=")
+        if method == "rk4" and step is None:
+            raise ValueError("method = 'rk4' takes step=; tol= is for steps of eighth order")
+        step = None if step is None else number("step", step)
+        tol = None if tol is None else number("tol", tol)
+    elif method == "rk4":
+        raise ValueError("method = 'rk4' needs step=, as in step=1e-3")
+    mu = mu if type(mu) is float else number("mu", mu)
+    plain = word and state.slip is None and restitution is None and losses is None
     if not plain:  # of the others there is something to refuse
         given = {"step": step, "method": method, "mu": None if mu == np.inf else mu, "beyond": beyond or None}
         given = {name: x for name, x in given.items() if x is not None}
@@ -124,5 +157,6 @@ def ask(
 
             _lossy.check(losses, times, t0, given)
         check(state, contact, restitution, given)
-    want = choices(want)
+    # the default is told by its type: to look at its words would take longer
+    want = NOTHING if type(want) is tuple and not want else choices(want)
     return Asked(times, t0, step, tol, method, contact, mu, beyond, want, restitution, losses)

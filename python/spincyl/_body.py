@@ -144,9 +144,7 @@ class Body(Laws):
         depth = ell if is_scalar(fillet) and fillet == 0 else ell - fillet
         theta_end: Reals = np.nan
         if is_lazy(fillet) or np.any(np.asarray(fillet) == 1):
-            # a capsule lands on its other side; NaN where there is none
-            with np.errstate(invalid="ignore"):
-                theta_end = np.pi / 2 * np.sqrt(2.0 * ((fillet == 1) & (depth > 0)) - 1.0)
+            theta_end = _core.capsule_end(ell, fillet)
         # the moments of a tube follow from its bore
         return cls(depth, np.nan, np.nan, bore, fillet, theta_end)
 

@@ -17,8 +17,10 @@ if TYPE_CHECKING:
 #: Contacts without friction laws of their own: what friction rolling needs, or none.
 Contact: TypeAlias = Literal["rolling", "smooth"]
 
-#: The code of each, of the laws of friction too.
-CODES = {name: code for code, name in enumerate(_core.tables())}
+#: Names and codes of the enumerations of the core.
+CODES = {name: dict(values) for name, values in _core.codes()}
+#: The code of each kind of table, of the laws of friction too.
+TABLES = CODES["Table"]
 
 
 class _Law:
@@ -154,22 +156,27 @@ def code(contact: object, rubs: bool = False) -> int:
     if not isinstance(contact, str) or contact not in ("rolling", "smooth"):
         last = ", 'smooth', sc.Coulomb(mu) or sc.Viscous(c)" if rubs else " or 'smooth'"
         raise ValueError(f"contact = {contact!r}: expected 'rolling'{last}")
-    return CODES[contact]
+    return TABLES[contact]
 
 
 def rolls(contact: object) -> bool:
     """Whether the contact rolls rather than slides, or ValueError."""
-    return code(contact) == CODES["rolling"]
+    return code(contact) == TABLES["rolling"]
 
 
 def table(contact: AnyContact, mu: float) -> tuple[int, tuple[float, float]]:
     """Code and coefficients of a table, as the core takes them; ValueError for arrays of them."""
     if isinstance(contact, str):
-        return CODES[contact], (mu, 0.0)
+        return TABLES[contact], (mu, 0.0)
     if not is_scalar(*contact._numbers):
         raise ValueError(f"contact = {contact!r}: expected single numbers, not arrays of them")
     first, second = contact._numbers
     return law(contact), (float(first), float(second))
+
+
+def kind(contact: AnyContact) -> AnyContact:
+    """A contact without coefficients of its own: those of many motions stand in columns."""
+    return contact if isinstance(contact, str) else type(contact)(0.0)
 
 
 def fitting(contact: AnyContact, scale: Scale | None) -> None:
@@ -183,7 +190,7 @@ def fitting(contact: AnyContact, scale: Scale | None) -> None:
 
 def law(contact: Friction) -> int:
     """The code of a law of friction."""
-    return CODES["coulomb" if isinstance(contact, Coulomb) else "viscous"]
+    return TABLES["coulomb" if isinstance(contact, Coulomb) else "viscous"]
 
 
 def named(contact: AnyContact) -> str:

@@ -17,6 +17,9 @@ __all__ = [
     "body_i3",
     "boundary_rolling",
     "boundary_smooth",
+    "capsule_end",
+    "centre_across",
+    "centre_along",
     "centre_radius",
     "check_ball",
     "check_balls",
@@ -27,13 +30,13 @@ __all__ = [
     "circular_state",
     "circular_w1",
     "circular_w3",
+    "codes",
     "columns",
     "contact_radius",
     "count",
     "critical_aspect",
     "drift_ask",
     "drift_check",
-    "drift_ends",
     "drift_stops",
     "egg",
     "energy",
@@ -55,6 +58,7 @@ __all__ = [
     "loss_couple",
     "loss_laws",
     "loss_power",
+    "motion_options",
     "nutation",
     "painleve",
     "portrait",
@@ -68,6 +72,7 @@ __all__ = [
     "rattleback",
     "recoil",
     "region",
+    "rests",
     "ridge",
     "rocking",
     "roll",
@@ -84,18 +89,24 @@ __all__ = [
     "steady_state",
     "steady_w1",
     "steady_w3",
+    "stone_columns",
     "stone_energies",
+    "stone_inclinations",
+    "stone_lever",
     "stone_moments",
     "stone_names",
+    "stone_slip",
+    "stone_spin",
+    "stone_tilted",
     "stones",
     "summaries",
     "swing",
-    "tables",
     "theta_balance",
     "theta_limit",
     "thrown",
     "thrown_slip",
     "thrown_w3",
+    "two_rims",
     "uniform_stone",
     "units",
 ]
@@ -155,6 +166,16 @@ loss_couple: np.ufunc
 nutation: np.ufunc
 painleve: np.ufunc
 growth_rate: np.ufunc
+centre_along: np.ufunc
+centre_across: np.ufunc
+rests: np.ufunc
+two_rims: np.ufunc
+capsule_end: np.ufunc
+stone_tilted: np.ufunc
+stone_inclinations: np.ufunc
+stone_spin: np.ufunc
+stone_lever: np.ufunc
+stone_slip: np.ufunc
 
 _Body: TypeAlias = tuple[float, float, float, float, float, float] | list[float]
 
@@ -198,7 +219,9 @@ def ensemble(
     threads: tuple[int, bool],
     progress: Callable[[float], object] | None,
 ) -> None: ...
+def codes() -> list[tuple[str, list[tuple[str, int]]]]: ...
 def columns() -> list[list[str]]: ...
+def motion_options() -> list[str]: ...
 def summaries(table: int, loses: bool) -> list[str]: ...
 def check_stone(numbers: Sequence[float]) -> tuple[list[float], float, float]: ...
 def check_stones(given: NDArray[np.float64]) -> NDArray[np.float64]: ...
@@ -207,6 +230,7 @@ def rattleback(
     axes: Sequence[float], moments: Sequence[float] | None, twist: float, offset: Sequence[float] | None
 ) -> tuple[list[float], float]: ...
 def egg(radius: float, half_length: float, offset: float) -> tuple[list[float], float]: ...
+def stone_columns() -> list[list[str]]: ...
 def stone_names() -> list[str]: ...
 def stone_moments(stone: Sequence[float]) -> list[float]: ...
 def rocking(stone: Sequence[float], spin: float) -> list[float]: ...
@@ -228,11 +252,10 @@ def roll(
     times: NDArray[np.float64],
     asked: dict[str, Any],
 ) -> dict[str, Any]: ...
-def tables() -> list[str]: ...
 def swing(body: _Body, state: tuple[float, float, float, float], contact: int) -> list[float]: ...
 def drift_ask(
     given: dict[str, NDArray[np.float64]],
-    centre: int,
+    centre: str,
     question: int,
     of: NDArray[np.uint64],
     x: NDArray[np.float64],
@@ -242,12 +265,11 @@ def drift_check(
     body: _Body,
     state: tuple[float, float, float, float] | list[float],
     losses: list[float],
-    centre: int,
+    centre: str,
 ) -> None: ...
-def drift_ends() -> list[str]: ...
 def drift_stops(
     given: dict[str, NDArray[np.float64]],
-    centre: int,
+    centre: str,
     out: dict[str, NDArray[Any]],
     threads: int,
 ) -> None: ...

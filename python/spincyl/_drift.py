@@ -9,6 +9,7 @@ import numpy as np
 
 from spincyl import _core
 from spincyl._body import Body
+from spincyl._contact import CODES
 from spincyl._input.equality import compared
 from spincyl._input.numbers import (
     Floats,
@@ -157,9 +158,8 @@ class Drift:
         asked = asked / self.body._second if question == 1 else asked
         order = np.argsort(of, kind="stable")
         out = np.empty((asked.size, 5))
-        code = _CENTRES.index(self.centre)
         threads = thread_count(None)
-        found_at = _core.drift_ask(self._columns, code, question, of[order], asked[order], threads)
+        found_at = _core.drift_ask(self._columns, self.centre, question, of[order], asked[order], threads)
         out[order] = found_at.reshape(-1, 5)
         seen, eps = (asked if question == 0 else out[:, 0]), self._columns["eps"]
         eps = eps[0] if eps.size == 1 else eps[of]
@@ -254,19 +254,18 @@ def drift(
     values = [*body._numbers, *four, *laws]
     shape = fitting({"body": of_its_shape(body), "theta": of_its_shape(state), "losses": of_its_shape(*laws)})
     columns = dict(zip(_COLUMNS, in_columns(values, shape), strict=True))
-    code = _CENTRES.index(centre)
     if shape == ():
         numbers = [float(x[0]) for x in columns.values()]
-        _core.drift_check(numbers[:6], numbers[6:10], numbers[10:], code)
+        _core.drift_check(numbers[:6], numbers[6:10], numbers[10:], centre)
     if given and centre == "rest":
         columns = _resting(body, state, columns, shape)
     count = int(np.prod(shape))
     stops, ends, codes = np.empty(count), np.empty(count), np.empty(count, np.uint8)
     out: dict[str, Any] = {"stops_at": stops, "ends_at_theta": ends, "ended": codes}
-    _core.drift_stops(columns, code, out, thread_count(threads))
+    _core.drift_stops(columns, centre, out, thread_count(threads))
     if body.scale is not None:
         stops = body.scale.seconds(stops)
-    names = np.array([*_core.drift_ends(), _NOBODY])
+    names = np.array([*CODES["Drift"], _NOBODY])
     known = names[np.minimum(codes, len(names) - 1)].reshape(shape)
     if not given and centre == "rest" and shape != ():
         state = body.steady(inclination)
@@ -297,13 +296,9 @@ def _resting(
     body: Body, state: State, columns: dict[str, Floats], shape: tuple[int, ...]
 ) -> dict[str, Floats]:
     """The same with no start where the centre of a given state does not rest, to six digits."""
-    own = body.steady(state.theta)
-    size = np.abs(own.w1) + np.abs(own.w3)
-    with np.errstate(invalid="ignore"):
-        way = np.where(np.asarray(state.w1) * own.w1 < 0, -1.0, 1.0)  # it may turn the other way round
-        off = np.abs(state.w1 - way * own.w1) + np.abs(state.w2) + np.abs(state.w3 - way * own.w3)
-        rests = np.broadcast_to(off <= 1e-6 * size, shape)
+    rests = np.broadcast_to(_core.rests(*state._numbers, *body._numbers) == 1, shape)
     if shape == () and not rests:
+        own = body.steady(state.theta)
         message = f"state = {state!r}: centre='rest' takes the state whose centre rests, {own!r}"
         raise ValueError(message)
     theta = np.where(rests.reshape(-1), columns["theta"], np.nan)

@@ -4,6 +4,7 @@ import math
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any, NamedTuple, Self
 
 import numpy as np
@@ -11,24 +12,27 @@ from numpy.typing import NDArray
 
 from spincyl import _core
 from spincyl._contact import AnyContact, Coulomb, Viscous, code
-from spincyl._ellipsoid_state import SIX, EllipsoidState, six, tensor, vectors
+from spincyl._ellipsoid_rows import SIX, blockwise, checked, made_by, parts, six
+from spincyl._ellipsoid_state import EllipsoidState, doubles, vectors
 from spincyl._input.equality import compared
 from spincyl._input.numbers import (
     Floats,
     Reals,
     Result,
+    components,
     fitting,
-    floats,
     kept,
     made,
     number,
     radians,
     reals,
     refuse,
+    several,
     si,
     turns_per_second,
     warn,
 )
+from spincyl._input.reprs import is_lazy
 from spincyl._scale import Scale, dubious
 from spincyl._slip import slip_of_stone
 
@@ -48,7 +52,8 @@ class Ellipsoid:
 
     Natural units: the mass M, gravity g and the largest semi-axis a are 1, in whatever unit the lengths were
     given. Fields may be arrays that broadcast over their leading axes: then this is a family of stones, and
-    all fields have its shape. What cannot be a stone is NaN there, and `Status.INVALID` in a sweep.
+    all fields have its shape. What cannot be a stone is NaN there, and `Status.INVALID` in a sweep. Of arrays
+    of dask the family is lazy, for a lazy sweep; other questions compute it.
 
     Parameters
     ----------
@@ -109,52 +114,33 @@ class Ellipsoid:
         if self.scale is not None and not isinstance(self.scale, Scale):
             raise TypeError(f"scale: expected a Scale, not {type(self.scale).__name__}")
         axes = vectors("axes", self.axes, 3)
-        inertia = floats(reals("inertia", self.inertia))
+        inertia = doubles(reals("inertia", self.inertia))
         if inertia.shape[-2:] != (3, 3) or inertia.ndim < 2:
             inertia = vectors("inertia", inertia, 3)[..., None] * np.eye(3)
         offset = vectors("offset", self.offset, 3)
-        theta_end = floats(reals("theta_end", self.theta_end)).reshape(np.shape(self.theta_end))
+        theta_end = doubles(reals("theta_end", self.theta_end)).reshape(np.shape(self.theta_end))
         lead = {"axes": axes[..., 0], "inertia": inertia[..., 0, 0], "offset": offset[..., 0]}
-        shape = fitting(lead | {"theta_end": theta_end})
-        inertia = inertia.reshape(*inertia.shape[:-2], 9)
-        parts = axes, inertia, offset, theta_end[..., None]
-        given = floats(np.concatenate([np.broadcast_to(x, (*shape, x.shape[-1])) for x in parts], axis=-1))
-        rows: Floats
-        if shape == ():
-            one, size, out = _core.check_stone(given.tolist())
-            rows = np.array([*one, size, out])
-        else:
-            rows = _core.check_stones(given.reshape(math.prod(shape), 16)).reshape(*shape, 15)
-        unit, reach = rows[..., 13][()], rows[..., 14]
-        if not self._doubted and np.any(reach > 1 + 1e-9):
+        fitting(lead | {"theta_end": theta_end})
+        rows = blockwise(checked, "(i),(j,k),(l),()->(m)", 18, axes, inertia, offset, theta_end)
+        *fields, unit, reach = parts(rows)
+        if not self._doubted and not is_lazy(reach) and np.any(reach > 1 + 1e-9):
             object.__setattr__(self, "_doubted", True)
             most = f"{float(np.nanmax(reach)):.3g} times what mass within the ellipsoid has at most"
             warn(f"inertia: {most}: is it per mass, in the unit of the semi-axes squared?")
-        fields = rows[..., :3], tensor(rows[..., 3:9]), rows[..., 9:12], rows[..., 12]
         for name, value in zip(("axes", "inertia", "offset", "theta_end"), fields, strict=True):
-            object.__setattr__(self, name, kept(value[()]))
+            object.__setattr__(self, name, kept(value))
         object.__setattr__(self, "_unit", self._unit * unit)
 
     @classmethod
     def _of(cls, make: Callable[..., Any], **given: Any) -> Self:
         """The stone, or a family, that a constructor of the core makes of single numbers or of arrays."""
-        widths = [np.shape(x)[-1:] if wide else () for x, wide in given.values()]
-        shape = fitting(
-            {name: x[..., 0] if wide else x for name, (x, wide) in given.items() if x is not None}
-        )
-        arrays = [
-            None if x is None else np.broadcast_to(np.asarray(x, np.float64), (*shape, *width))
-            for (x, _), width in zip(given.values(), widths, strict=True)
-        ]
-        found, units = np.full((*shape, 13), np.nan), np.full(shape, np.nan)
-        for i in np.ndindex(shape):
-            try:
-                found[i], units[i] = make(*(None if x is None else x[i].tolist() for x in arrays))
-            except ValueError:
-                if not shape:
-                    raise
-        numbers = found[..., :3], tensor(found[..., 3:9]), found[..., 9:12], found[..., 12]
-        return cls(*numbers, _unit=units[()])
+        there = {name: (x, wide) for name, (x, wide) in given.items() if x is not None}
+        fitting({name: x[..., 0] if wide else x for name, (x, wide) in there.items()})
+        each = partial(made_by, make=make, names=tuple(given), wide={name: x[1] for name, x in there.items()})
+        inputs = ",".join(f"({name})" if wide else "()" for name, (_, wide) in there.items())
+        rows = blockwise(each, f"{inputs}->(number)", 17, *(x for x, _ in there.values()))
+        *numbers, unit = parts(rows)
+        return cls(*numbers, _unit=unit)
 
     @classmethod
     def uniform(cls, axes: Reals) -> Self:
@@ -213,7 +199,7 @@ class Ellipsoid:
     def egg(cls, radius: Reals, half_length: Reals, offset: Reals = 0.0) -> Self:
         """A uniform spheroid, whose centre of mass lies `offset` above its centre along its axis (axis 3)."""
         given = {"radius": radius, "half_length": half_length, "offset": offset}
-        return cls._of(_core.egg, **{name: (floats(reals(name, x)), False) for name, x in given.items()})
+        return cls._of(_core.egg, **{name: (doubles(reals(name, x)), False) for name, x in given.items()})
 
     def in_metres(self, mass: float | None = None, *, gravity: float = 9.80665) -> Self:
         """The same stone, measured: the lengths that it was given are metres.
@@ -237,7 +223,7 @@ class Ellipsoid:
             If it is larger than 5 m, smaller than 0.1 mm, lighter than foam or heavier than osmium.
         """
         kilograms = math.nan if mass is None else number("mass", si("mass", mass, "kilogram"))
-        units = np.unique(self._unit)
+        units = np.unique(np.asarray(self._unit))
         units = units[~np.isnan(units)]
         if units.size != 1:
             raise ValueError(
@@ -260,8 +246,8 @@ class Ellipsoid:
     @property
     def shape(self) -> tuple[int, ...]:
         """That of a family; () of a single stone."""
-        a, i, d, end = (np.asarray(x) for x in (self.axes, self.inertia, self.offset, self.theta_end))
-        return np.broadcast_shapes(a.shape[:-1], i.shape[:-2], d.shape[:-1], end.shape)
+        a, i, d, end = (np.shape(x) for x in (self.axes, self.inertia, self.offset, self.theta_end))
+        return np.broadcast_shapes(a[:-1], i[:-2], d[:-1], end)
 
     @property
     def moments(self) -> Floats:
@@ -287,13 +273,8 @@ class Ellipsoid:
         pitch, roll = _tilt("pitch", pitch), _tilt("roll", roll)
         fitting({"spin": spin, "pitch": pitch, "roll": roll})
         with np.errstate(invalid="ignore"):  # of what is not finite comes no number
-            n = np.stack(
-                np.broadcast_arrays(
-                    -np.sin(pitch), np.cos(pitch) * np.sin(roll), np.cos(pitch) * np.cos(roll)
-                ),
-                axis=-1,
-            )
-            return EllipsoidState(n, n * np.asarray(spin)[..., None])
+            n = _core.stone_tilted(*several(3, pitch, roll))
+            return EllipsoidState(n, n * spin[..., None])
 
     def with_centre_velocity(self, state: EllipsoidState, x: Reals, y: Reals) -> EllipsoidState:
         """The state whose slip is the one that this horizontal velocity of the centre means.
@@ -317,8 +298,8 @@ class Ellipsoid:
         [0.0, -0.276]
         """
         made("state", state, EllipsoidState)
-        x, y = (floats(reals(name, value)) for name, value in (("x", x), ("y", y)))
-        n, w = np.asarray(state.vertical), np.asarray(state.w)
+        x, y = (doubles(reals(name, value)) for name, value in (("x", x), ("y", y)))
+        n, w = state.vertical, state.w
         states = np.broadcast_to(0.0, np.broadcast_shapes(n.shape[:-1], w.shape[:-1]))
         fitting({"body": np.broadcast_to(0.0, self.shape), "state": states, "x": x, "y": y})
         with np.errstate(all="ignore"):
@@ -359,17 +340,17 @@ class Ellipsoid:
         """Whether neither mode of rocking grows at this spin (...); see `rocking`."""
         return np.all(self.rocking(spin, hertz=hertz).growth <= 0, axis=-1)
 
-    def _spin(self, spin: Reals | None, hertz: Reals | None) -> Floats:
+    def _spin(self, spin: Reals | None, hertz: Reals | None) -> Reals:
         """A spin in sqrt(g/a), which is given as such or in turns per second."""
         if hertz is None:
-            return floats(reals("spin", spin))
+            return doubles(reals("spin", spin))
         if spin is not None:
             raise TypeError("spin, hertz: give one of them")
         if self.scale is None:
             raise ValueError(
                 "hertz: needs the size of the stone, as of in_metres(); or give spin= in sqrt(g/a)"
             )
-        return floats(reals("hertz", turns_per_second("hertz", hertz))) / self.scale._units[3]
+        return doubles(reals("hertz", turns_per_second("hertz", hertz))) / self.scale._units[3]
 
     def spin_limits(self) -> Floats:
         """The spins, sqrt(g/a), at which an upright spin becomes stable or unstable; of a single stone."""
@@ -379,13 +360,15 @@ class Ellipsoid:
         """(...) kinetic and potential energy, in M g a, with heights above the table; of a single stone."""
         made("state", state, EllipsoidState)
         smooth = not isinstance(contact, Coulomb | Viscous) and code(contact) == code("smooth")
-        n, w, u = np.asarray(state.vertical), np.asarray(state.w), state._pair
+        n, w, u = (np.asarray(x) for x in (state.vertical, state.w, state._pair))
         shape = np.broadcast_shapes(n.shape[:-1], w.shape[:-1], u.shape[:-1])
         rows = np.concatenate([np.broadcast_to(x, (*shape, x.shape[-1])) for x in (n, w, u)], axis=-1)
         found = _core.stone_energies(self._numbers, rows.reshape(-1, 8).tolist(), smooth)
         return np.array(found).reshape(shape)[()]
 
     def __repr__(self) -> str:
+        if self.shape:
+            return f"<Ellipsoid, a family of shape {self.shape}>"
         more: dict[str, Any] = {}
         if np.any(np.asarray(self.offset) != 0):
             more["offset"] = self.offset
@@ -394,8 +377,6 @@ class Ellipsoid:
         if self.scale is not None:
             more["scale"] = self.scale
         words = [f"{name}={np.asarray(x).tolist() if name != 'scale' else x!r}" for name, x in more.items()]
-        if self.shape:
-            return f"<Ellipsoid, a family of shape {self.shape}>"
         inertia = np.asarray(self.inertia)
         moments = np.diagonal(inertia) if (inertia == np.diag(np.diagonal(inertia))).all() else inertia
         return f"Ellipsoid({', '.join([str(np.asarray(self.axes).tolist()), str(moments.tolist()), *words])})"
@@ -415,16 +396,16 @@ class Ellipsoid:
 
     def _columns(self) -> list[Floats]:
         """The thirteen numbers of a family, each of its shape or of one number."""
-        inertia = np.asarray(self.inertia)
-        a, d = np.moveaxis(np.asarray(self.axes), -1, 0), np.moveaxis(np.asarray(self.offset), -1, 0)
-        return [*a, *(inertia[..., i, j] for i, j in SIX), *d, np.asarray(self.theta_end)]
+        inertia: Any = self.inertia
+        moments = (inertia[..., i, j] for i, j in SIX)
+        return [*components(self.axes), *moments, *components(self.offset), self.theta_end]
 
     def _each(self, law: Callable[..., Any], width: int, *given: Floats) -> Floats:
         """What the core finds of each stone of a family; of a single one its error, of others NaN."""
         if not self.shape and all(x.ndim == 0 for x in given):
             return np.array(law(self._numbers, *(float(x) for x in given)))
         fitting({"body": np.broadcast_to(0.0, self.shape), **dict(zip(("spin",), given, strict=False))})
-        columns = np.broadcast_arrays(*self._columns(), *given)
+        columns = np.broadcast_arrays(*map(np.asarray, self._columns()), *map(np.asarray, given))
         shape = columns[0].shape
         found = np.full((*shape, width), np.nan)
         for i in np.ndindex(shape):
@@ -437,6 +418,6 @@ class Ellipsoid:
         return found
 
 
-def _tilt(name: str, value: Reals) -> Floats:
+def _tilt(name: str, value: Reals) -> Reals:
     """An angle, which may be meant in degrees already beyond a right angle: a twist is of some degrees."""
-    return floats(radians(name, value, likely=math.pi / 2))
+    return doubles(radians(name, value, likely=math.pi / 2))

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from spincyl import _core
-from spincyl._asked import Asked, Method, Want, ask, chosen, times_of
-from spincyl._contact import AnyContact, fitting, table
+from spincyl._asked import Asked, Method, Want, ask, chosen, crossing, times_of
+from spincyl._contact import AnyContact, fitting
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._ellipsoid_state import EllipsoidState
 from spincyl._ending import Event
-from spincyl._input.numbers import Floats, Reals, made, si
+from spincyl._input.numbers import Floats, Reals, components, made, si
 from spincyl._measured import in_si, natural_time, speaking
 from spincyl._motion import ENDINGS, FRICTION, Motion, Number
 from spincyl._phases import phases, rubs
@@ -53,7 +53,7 @@ class EllipsoidMotion(Motion):
     @property
     def spin(self) -> Floats:
         """(n,) angular velocity about the vertical; it changes its sign where a rattleback turns back."""
-        found: Floats = np.einsum("ni,ni->n", self.vertical, self.w)
+        found: Floats = _core.stone_spin(*components(self.vertical), *components(self.w))
         return found
 
     @property
@@ -145,7 +145,7 @@ def roll(
 ) -> "EllipsoidMotion":
     """What `spincyl.roll` does with a stone."""
     made("state", state, EllipsoidState)
-    if state.slip is not None and not rubs(contact) and np.any(state._pair != 0):
+    if not rubs(contact) and state._slips:
         raise ValueError(f"state: slips, and contact={contact!r} has no law for that: contact=sc.Coulomb(mu)")
     if step is not None or method is not None:
         raise ValueError("step, method: a stone has no first integrals but its energy; give tol=, or none")
@@ -169,25 +169,11 @@ def roll(
 
 def rolled(body: Ellipsoid, state: EllipsoidState, asked: Asked) -> EllipsoidMotion:
     """The motion that was asked for, in natural units."""
-    code, coefficients = table(asked.contact, asked.mu)
     n, w, slip = (np.asarray(x) for x in (state.vertical, state.w, state._pair))
     if not n.ndim == w.ndim == slip.ndim == 1:
         raise ValueError("state: expected a single one; spincyl.sweep.roll takes many")
-    found: dict[str, Any] = _core.roll(
-        body._numbers,
-        [*n.tolist(), *w.tolist()],
-        asked.times,
-        {
-            "t0": asked.t0,
-            "slip": slip.tolist(),
-            "table": code,
-            "coefficients": coefficients,
-            "tol": asked.tol,
-            "beyond": asked.beyond,
-            "pose": "pose" in asked.want,
-            "force": "force" in asked.want,
-        },
-    )
+    start, own = [*n.tolist(), *w.tolist()], None if state.slip is None else slip.tolist()
+    found: dict[str, Any] = _core.roll(body._numbers, start, asked.times, crossing(asked, own))
     status = ENDINGS[found["status"]]
     event = None
     if "event" in found:

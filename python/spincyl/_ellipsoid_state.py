@@ -1,43 +1,34 @@
 """The state of a stone: its vertical, its angular velocity and its slip, or arrays of them."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
+from spincyl import _core
 from spincyl._input.equality import compared
-from spincyl._input.numbers import Floats, Reals, Result, floats, reals
-from spincyl._input.reprs import call
+from spincyl._input.numbers import Floats, Reals, Result, components, floats, reals, several
+from spincyl._input.reprs import call, is_lazy
 
 
-def vectors(name: str, value: Reals, *last: int) -> Floats:
+def doubles(value: Reals) -> Reals:
+    """Real numbers as doubles in memory, without the names of axes; a lazy array stays lazy."""
+    if not is_lazy(value):
+        return floats(value)
+    lazy = value.data if hasattr(value, "dims") else value
+    return lazy.astype(np.float64)
+
+
+def vectors(name: str, value: Reals, *last: int) -> Reals:
     """An array whose last axes have these lengths, or an error by name."""
-    array = np.array(floats(reals(name, value)), dtype=np.float64)
+    array = doubles(reals(name, value))
+    array = array if is_lazy(array) else np.array(array)
     if array.shape[array.ndim - len(last) :] != last or array.ndim < len(last):
         raise ValueError(
             f"{name}: expected an array of shape (..., {', '.join(map(str, last))}), not {array.shape}"
         )
-    array.setflags(write=False)
+    if not is_lazy(array):
+        array.setflags(write=False)
     return array
-
-
-SIX = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))
-
-
-def six(inertia: Floats) -> list[float]:
-    """The six numbers of a symmetric tensor."""
-    return [float(inertia[i, j]) for i, j in SIX]
-
-
-def tensor(six_each: Any) -> Floats:
-    """The tensors (..., 3, 3) of six numbers each."""
-    i = np.asarray(six_each, np.float64)
-    rows = [
-        [i[..., 0], i[..., 5], i[..., 4]],
-        [i[..., 5], i[..., 1], i[..., 3]],
-        [i[..., 4], i[..., 3], i[..., 2]],
-    ]
-    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
 
 
 @compared
@@ -45,7 +36,7 @@ def tensor(six_each: Any) -> Floats:
 class EllipsoidState:
     """The vertical and the angular velocity of a stone, along the axes of the ellipsoid, in natural units.
 
-    Arrays have their components along the last axis, and broadcast.
+    Arrays have their components along the last axis, and broadcast; those of dask stay lazy.
 
     Parameters
     ----------
@@ -86,7 +77,7 @@ class EllipsoidState:
     @property
     def spin(self) -> Result:
         """(...) angular velocity about the vertical, in sqrt(g/a)."""
-        return np.einsum("...i,...i->...", self.vertical, self.w)[()]
+        return _core.stone_spin(*components(self.vertical), *components(self.w))
 
     @property
     def theta(self) -> Result:
@@ -97,14 +88,18 @@ class EllipsoidState:
     @property
     def inclinations(self) -> Floats:
         """(..., 3) angles from the vertical to the axes of the ellipsoid, in radians."""
-        n = np.asarray(self.vertical)
-        across = [np.hypot(n[..., (i + 1) % 3], n[..., (i + 2) % 3]) for i in range(3)]
-        return np.stack([np.arctan2(across[i], n[..., i]) for i in range(3)], axis=-1)
+        found: Floats = _core.stone_inclinations(*several(3, *components(self.vertical)))
+        return found
 
     def __repr__(self) -> str:
         more = {} if self.slip is None else {"slip": self.slip}
         return call("EllipsoidState", vertical=self.vertical, w=self.w, **more)
 
     @property
-    def _pair(self) -> Floats:
-        return np.zeros(2) if self.slip is None else np.asarray(self.slip)
+    def _pair(self) -> Reals:
+        return np.zeros(2) if self.slip is None else self.slip
+
+    @property
+    def _slips(self) -> bool:
+        """Whether it has a slip that is not zero, or not known to be."""
+        return self.slip is not None and (is_lazy(self.slip) or bool(np.any(self.slip != 0)))

@@ -31,15 +31,13 @@ class Region(IntEnum):
 
 def _say_why(body: "Laws", state: State, kappa: Result) -> None:
     """Warn of states that are not steady since the body stands on more than a point; not of lazy ones."""
-    values = kappa, state.theta, body.ell, body.fillet, body.theta_end
-    if any(is_lazy(x) or hasattr(x, "dims") for x in values):
+    theta = state.theta
+    if any(is_lazy(x) or hasattr(x, "dims") for x in (kappa, theta, *body._numbers)):
         return
-    kappa, theta, ell, fillet, end = values
-    # a ball has a second rim only where it is said where that lands
-    two = (ell > 0) & ((end == np.pi / 2) | (np.isnan(end) & (fillet < 1)))
+    two = _core.two_rims(*body._numbers) == 1
     for place, standing, more in (
         ("pi/2", two & (theta == np.pi / 2), ": launch_number(body, state) says whether one of them rises"),
-        ("0", (fillet < 1) & (theta == 0), ""),
+        ("0", (body.fillet < 1) & (theta == 0), ""),
     ):
         if np.any(np.isnan(kappa) & standing):
             on = "both its rims" if more else "its whole face"

@@ -2,7 +2,7 @@
 
 import warnings
 from dataclasses import dataclass, fields
-from typing import Any, ClassVar, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -26,7 +26,7 @@ from spincyl._scale import Scale, other, scale_of
 from spincyl._state import State, numbers
 
 #: Name of the coefficient and exponent of each law, in the order of the core.
-_LAWS = _core.loss_laws()
+_LAWS = dict(_core.loss_laws())
 _MOST = 1e6
 _Kind = TypeVar("_Kind", bound="Law")
 _EXPECTED = "expected a positive number: a loss takes energy"
@@ -45,10 +45,8 @@ class Loss:
     @property
     def _coefficients(self) -> list[Reals]:
         """The coefficient of each law in the order of the core, 0 of what is absent."""
-        found: list[Reals] = [0.0] * len(_LAWS)
-        for law in self.laws:
-            found[law._place] = law.coefficient
-        return found
+        own = {law._parameter: law.coefficient for law in self.laws}
+        return [own.get(name, 0.0) for name in _LAWS]
 
     @elementwise
     def power(self, body: Body, state: State, normal: Reals = 1.0) -> Result:
@@ -102,7 +100,6 @@ class Loss:
 class Law(Loss):
     """A law with its coefficient."""
 
-    _place: ClassVar[int]  # among the coefficients of the core
     #: Whether its coefficient was given in SI, and for a body of which scale.
     _sized: "Scale | bool" = False
 
@@ -139,8 +136,7 @@ class Law(Loss):
     @property
     def exponent(self) -> float | None:
         """The power of the time that is left as which theta of a thin disk falls; None if it never stops."""
-        found: float | None = _LAWS[self._place][1]
-        return found
+        return _LAWS[self._parameter]
 
     @property
     def laws(self) -> "tuple[Law, ...]":

@@ -1,6 +1,5 @@
 """Motion: how a body rolls, slides or slips on from a state."""
 
-import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from os import PathLike
@@ -11,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spincyl import _core
-from spincyl._asked import Asked, Want, chosen, times_of
+from spincyl._asked import Asked, Want, chosen, crossing, times_of
 from spincyl._body import Body
-from spincyl._contact import AnyContact, named, table
+from spincyl._contact import AnyContact, named
 from spincyl._ending import Ending, Event
 from spincyl._input.equality import compared
 from spincyl._input.numbers import Floats, Reals, si
@@ -91,7 +90,8 @@ class Motion:
     event : Event or None
         The first thing that the model does not cover: its `ending`, `time` and `state`.
     method : str
-        "exact", "rk4" (a fixed step), "rk4 within tol" or, with friction or losses, "dop853".
+        "exact", "rk4" (a fixed step) or "dop853" (steps of eighth order within a tolerance, which friction and
+        losses always need).
     error : float
         Estimated absolute error: the largest of theta, w1, w2, w3 at any time, and of the event.
     pose_error : float
@@ -386,25 +386,9 @@ class Motion:
 
 def rolled(body: Body, state: State, asked: Asked, numbers: tuple[_Six, _Four] | None = None) -> Motion:
     """The motion that was asked for, without a warning; `numbers` are those of body and state, if known."""
-    times, t0, step, tol, _, contact, mu, beyond, want, restitution, losses = asked
     of, start = numbers or single(body, state)
-    # options that are the default do not cross, since telling them would take longer than a short motion may
-    options: dict[str, Any] = {"t0": t0} if t0 else {}
-    if contact != "rolling" or mu != math.inf:
-        options["table"], options["coefficients"] = table(contact, mu)
-    if step is not None or tol is not None:
-        options |= {"step": step, "tol": tol}
-    if want:
-        options |= {"pose": "pose" in want, "force": "force" in want}
-    if beyond:
-        options["beyond"] = True
-    if state.slip is not None:
-        options["slip"] = single_slip(state)
-    if losses is not None:
-        options["losses"] = losses._coefficients
-    if restitution is not None:
-        options["restitution"] = 0.0
-    found = _core.roll(of, start, times, options)
+    slip = None if state.slip is None else single_slip(state)
+    found = _core.roll(of, start, asked.times, crossing(asked, slip))
     status = ENDINGS[found["status"]]
     event = None
     if "event" in found:
@@ -414,7 +398,7 @@ def rolled(body: Body, state: State, asked: Asked, numbers: tuple[_Six, _Four] |
     found |= {
         "body": body,
         "start": state,
-        "contact": contact,
+        "contact": asked.contact,
         "status": status,
         "event": event,
         "_asked": asked,

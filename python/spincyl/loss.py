@@ -66,7 +66,6 @@ class DryContour(Law):
     """
 
     eps: Reals
-    _place = 0
 
     @classmethod
     def from_si(cls, eps: Reals, *, scale: Scale | Body) -> Self:
@@ -88,7 +87,6 @@ class ViscousContour(Law):
     """
 
     c: Reals
-    _place = 1
 
     @classmethod
     def from_si(cls, c: Reals, *, scale: Scale | Body) -> Self:
@@ -110,7 +108,6 @@ class RollingResistance(Law):
     """
 
     delta: Reals
-    _place = 2
 
     @classmethod
     def from_si(cls, delta: Reals, *, scale: Scale | Body) -> Self:
@@ -133,7 +130,6 @@ class Drilling(Law):
     """
 
     length: Reals
-    _place = 3
 
     @classmethod
     def from_si(cls, length: Reals, *, scale: Scale | Body) -> Self:
@@ -152,7 +148,6 @@ class AirLinear(Law):
     """
 
     b: Reals
-    _place = 4
 
     @classmethod
     def from_si(cls, b: Reals, *, scale: Scale | Body) -> Self:
@@ -171,7 +166,6 @@ class AirQuadratic(Law):
     """
 
     b2: Reals
-    _place = 5
 
     @classmethod
     def from_si(cls, b2: Reals, *, scale: Scale | Body) -> Self:
@@ -196,7 +190,6 @@ class AirFilm(Law):
     """
 
     viscosity: Reals
-    _place = 6
 
     @classmethod
     def from_si(cls, viscosity: Reals = _AIR, *, scale: Scale | Body) -> Self:
@@ -221,7 +214,6 @@ class BoundaryLayer(Law):
     """
 
     k: Reals
-    _place = 7
 
     @classmethod
     def from_si(

@@ -50,21 +50,21 @@ impl<C: Split, const N: usize> Split for [C; N] {
     }
 }
 
-/// Rows of columns: the first row, the number of rows, and their part of the columns.
-pub(crate) struct Rows<C> {
+/// A block of rows: the first row, the number of rows, and their part of the columns.
+pub(crate) struct RowBlock<C> {
     pub first: usize,
     pub count: usize,
     pub out: C,
 }
 
 /// The columns in blocks of `size` rows.
-pub(crate) fn blocks<C: Split>(out: C, count: usize, size: usize) -> Result<Vec<Rows<C>>, Error> {
+pub(crate) fn blocks<C: Split>(out: C, count: usize, size: usize) -> Result<Vec<RowBlock<C>>, Error> {
     let (mut rest, mut blocks) = (Some(out), room(count.div_ceil(size))?);
     for first in (0..count).step_by(size) {
         let count = size.min(count - first);
         let (out, after) = rest.split(count);
         rest = after;
-        blocks.extend(out.map(|out| Rows { first, count, out }));
+        blocks.extend(out.map(|out| RowBlock { first, count, out }));
     }
     Ok(blocks)
 }

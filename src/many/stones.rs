@@ -8,7 +8,7 @@ use crate::motions::Path;
 use crate::motions::followed::Followed;
 use crate::motions::stone::check;
 use crate::motions::stone::followed;
-use crate::motions::stone::known::Noted;
+use crate::motions::stone::known::Recorded;
 use crate::motions::stone::turns::Reversals;
 use crate::motions::{Ask, Motion, Moving, Start};
 use core::cell::RefCell;
@@ -107,11 +107,11 @@ fn one(
     if let Some(own) = row.coefficients {
         ask.table = ask.table.with_coefficients(own);
     }
-    let noted = RefCell::new(Noted {
+    let recorded = RefCell::new(Recorded {
         turns: turns.then(|| Reversals::of(state.spin(), state.fastest())),
-        ..Noted::default()
+        ..Recorded::default()
     });
-    let found = match followed(&stone, &start, &times[times.len() - 1..], &ask, &noted, still) {
+    let found = match followed(&stone, &start, &times[times.len() - 1..], &ask, &recorded, still) {
         Ok(found) => found,
         Err(Error::Painleve { .. }) => return StoneSummary::none(crate::motions::Ending::Painleve as u8),
         Err(Error::OutOfRange { .. } | Error::Inertia { .. }) => return StoneSummary::none(INVALID),
@@ -122,7 +122,7 @@ fn one(
         return StoneSummary::none(BOUNDED);
     };
     let end = found.motion.event.map_or(times[times.len() - 1], |e| e.time);
-    let turns = noted.into_inner().turns.map(|turns| turns.times);
+    let turns = recorded.into_inner().turns.map(|turns| turns.times);
     let count = turns.as_ref().map_or(f64::NAN, |turns| turns.len() as f64);
     let first = turns.iter().flatten().next().map_or(f64::NAN, |[t, _]| *t);
     let ([a, b, c], [d, e, f]) = (last.vertical, last.w);

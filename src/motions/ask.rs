@@ -1,4 +1,4 @@
-//! The options of a motion, and the checks that refuse senseless values.
+//! The options of a motion, and the checks that refuse values out of range.
 
 use crate::error::{Error, within};
 use crate::laws::contact::Table;
@@ -11,13 +11,13 @@ pub const FINE: f64 = 1e-14;
 /// The method that computes a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Method {
-    /// The first integrals, or an integrator within a tolerance where these lose all their digits. A motion that slips
-    /// or loses energy is integrated as accurately as doubles allow.
+    /// The first integrals, or an integrator within a tolerance where these lose all their digits. A motion
+    /// that slips or loses energy is integrated as accurately as doubles allow.
     #[default]
     Exact,
     /// RK4 with this fixed step; it is refused for a motion that slips or loses energy.
     Step(f64),
-    /// RK4 with steps whose errors are below this tolerance; an eighth-order method for a motion with slip or losses.
+    /// Steps of eighth order whose errors are below this tolerance.
     Tolerance(f64),
 }
 
@@ -30,16 +30,18 @@ pub struct Ask {
     pub losses: Losses,
     /// The method that computes the motion.
     pub method: Method,
-    /// Whether the motion goes on beyond events other than a landing of the face; with a law of friction it never does.
+    /// Whether the motion goes on beyond events other than a landing of the face; with a law of friction
+    /// it never does.
     pub beyond: bool,
-    /// The coefficient of restitution of a landing of the other rim. With 0 the rim does not bounce, and the motion
-    /// goes on; with `None` the motion ends there. Only `None` is allowed without a law of friction and without losses.
+    /// The coefficient of restitution of a landing of the other rim. With 0 the rim does not bounce, and the
+    /// motion goes on; with `None` the motion ends there. Only `None` is allowed without a law of friction
+    /// and without losses.
     pub restitution: Option<f64>,
     /// Whether the motion ends where the body begins to roll, on a table with a law of friction.
     pub stop_at_rolling: bool,
-    /// Whether poses are wanted.
+    /// Whether poses are computed.
     pub pose: bool,
-    /// Whether contact forces are wanted.
+    /// Whether contact forces are computed.
     pub force: bool,
 }
 
@@ -49,7 +51,8 @@ impl Ask {
         Self { table: table.into(), ..Self::default() }
     }
 
-    /// Whether energy is conserved and no law of friction acts, so that three first integrals determine the motion.
+    /// Whether energy is conserved and no law of friction acts, so that three first integrals
+    /// determine the motion.
     pub fn conserves(&self) -> bool {
         !self.table.rubs() && self.losses.is_none()
     }
@@ -60,7 +63,8 @@ impl Ask {
 pub struct Start<S = State> {
     /// The state at the start.
     pub state: S,
-    /// The slip of the contact point along the lean and across it; of a stone along x and y ([`stone::roll`](super::stone::roll)).
+    /// The slip of the contact point along the lean and across it; of a stone along x and y
+    /// ([`stone::roll`](super::stone::roll)).
     pub slip: [f64; 2],
     /// The time of the start.
     pub time: f64,
@@ -79,21 +83,22 @@ impl From<&State> for Start {
     }
 }
 
-/// Checks the options of a motion that conserves energy. Returns the signed span from the start to the last time.
+/// Checks the options of a motion that conserves energy. Returns the signed span from the start to
+/// the last time.
 pub(crate) fn check(ask: &Ask, t0: f64, times: &[f64]) -> Result<f64, Error> {
     ask.table.check()?;
     if let Some(value) = ask.restitution {
         let expected = "none, where neither friction nor losses let a motion go on";
         return Err(Error::OutOfRange { name: "restitution", value, expected });
     }
-    check_stop(ask)?;
+    check_stop_at_rolling(ask)?;
     let span = check_times(t0, times)?;
     check_method(ask.method, span)?;
     Ok(span)
 }
 
 /// Refuses to stop at rolling on a table without a law of friction.
-fn check_stop(ask: &Ask) -> Result<(), Error> {
+fn check_stop_at_rolling(ask: &Ask) -> Result<(), Error> {
     if ask.stop_at_rolling && !ask.table.rubs() {
         let expected = "no end where it begins to roll, on a table without a law of friction";
         return Err(Error::OutOfRange { name: "stop_at_rolling", value: 1.0, expected });
@@ -131,7 +136,7 @@ pub(crate) fn check_times_after(t0: f64, times: &[f64]) -> Result<(), Error> {
 pub(crate) fn check_flow(ask: &Ask) -> Result<f64, Error> {
     let expected = "0: the other rim lands without a bounce";
     within("restitution", ask.restitution.unwrap_or(0.0), (0.0, 0.0), expected)?;
-    check_stop(ask)?;
+    check_stop_at_rolling(ask)?;
     match ask.method {
         Method::Exact => Ok(FINE),
         Method::Tolerance(tol) => within("tol", tol, (FINE, 1e-1), "1e-14 <= tol <= 0.1"),

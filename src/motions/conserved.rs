@@ -1,4 +1,4 @@
-//! Motions that conserve energy, by the first integrals or by an integrator that is judged by them.
+//! Motions that conserve energy, by the first integrals, or by an integrator whose error they show.
 
 use super::ask::check;
 use super::course::Course;
@@ -13,7 +13,7 @@ use crate::error::Error;
 use crate::laws::body::Body;
 use crate::methods::SHORT_CODE;
 
-/// Tolerance of the integrator that replaces a missing exact solution.
+/// Tolerance of the integrator where the first integrals lose all their digits.
 const FALLBACK: f64 = 1e-12;
 
 /// The motion of a body that conserves energy, by the method of `ask`.

@@ -1,4 +1,5 @@
-//! A motion that conserves energy, before any method has computed it: its start, its times and its direction in time.
+//! The input of a motion that conserves energy, for any method: its start, its times and its
+//! direction in time.
 
 use super::Start;
 use crate::laws::body::Body;

@@ -6,7 +6,8 @@ use crate::laws::contact::{Contact, force};
 use crate::laws::state::State;
 use crate::methods::search;
 
-/// Least and greatest theta, least N, and greatest coefficient of friction needed, from the start to time `end`.
+/// Least and greatest theta, least N, and greatest coefficient of friction needed, from the start
+/// to time `end`.
 pub(crate) fn extremes(swing: &Swing, body: &Body, end: f64) -> [f64; 4] {
     let [from, to] = swing.passed(end);
     let mut nodes: Vec<f64> =

@@ -1,7 +1,8 @@
-//! A motion that is followed through phases, and its error from a second, rougher run.
+//! A motion through phases, and its error from a second run with a larger tolerance.
 //!
-//! The second run has a tolerance up to ten thousand times as large, which costs a third. The claimed error is the
-//! difference of the two runs, scaled by the ratio of the tolerances, times [`Moving::SAFETY`].
+//! The second run has a tolerance up to ten thousand times as large, and takes about a third of the time of
+//! the first. The claimed error is the difference of the two runs, scaled by the ratio of the tolerances,
+//! times [`Moving::SAFETY`].
 
 use super::{Ending, Kind, Motion, Moving, Path, Phase};
 use crate::error::Error;
@@ -15,34 +16,39 @@ pub(crate) struct Followed<S: Moving = State> {
     pub path: Path<S>,
 }
 
-/// The second run has `ROUGHER` times the tolerance of the first, at most `ROUGH`, but at least `BARELY` times as much.
+/// The second run has `ROUGHER` times the tolerance of the first, at most `ROUGH`, but at least `BARELY`
+/// times as much.
 const ROUGHER: f64 = 1e4;
 const BARELY: f64 = 32.0;
 const ROUGH: f64 = 1e-7;
-/// An end this near to the last time may be met by only one of the two runs.
+/// Where only one of the two runs has an end, this end may be this far from the last time, and the difference
+/// is claimed as an error. Farther from it the runs disagree, and the error is infinite.
 const LATE: f64 = 1e-6;
-/// Phases of two runs belong together if their times differ by less than this share of the time to the next one.
+/// Two phases of the two runs correspond to each other if the times of their beginnings differ by less than
+/// this share of the length of the shorter one.
 const TOGETHER: f64 = 0.3;
-/// A second run with more than this share of the evaluations has made much the same steps, with the same errors.
+/// A second run with more than this share of the evaluations of the first has made almost the same steps, so
+/// that the difference of the runs hides the errors of these steps.
 const ALIKE: f64 = 0.7;
-/// Share of the sum of all step errors that is claimed in any case.
+/// Share of the sum of all step errors that is claimed in any case, since two runs may agree by chance.
 const CHANCE: f64 = 0.1;
 /// Runs that differ by this share of the largest speed have parted, and their whole difference is claimed.
 const PARTED: f64 = 0.3;
 
-/// The tolerance of the second run, by which a path with the tolerance `tol` is judged.
+/// The tolerance of the second run, which shows the error of a path with the tolerance `tol`.
 pub(crate) fn rougher(tol: f64) -> f64 {
     (ROUGHER * tol).min(ROUGH).max(BARELY * tol)
 }
 
-/// The motion of a `run` with the tolerance `fine`, judged by a rougher one; None if a run is interrupted.
+/// The motion of a `run` with the tolerance `fine`, with its error from a rougher run; None if a run
+/// is interrupted.
 pub(crate) fn judged<S: Moving>(
     fine: f64,
     times: &[f64],
     mut run: impl FnMut(f64, &[f64]) -> Result<Option<Followed<S>>, Error>,
 ) -> Result<Option<Followed<S>>, Error> {
     let Some(mut found) = run(fine, times)? else { return Ok(None) };
-    // Of a motion that is given up, only the states before are judged.
+    // If the motion is given up, only its outputs up to that time are compared.
     let judged = if found.is_given_up() { found.motion.states.len() } else { times.len() };
     let Some(rough) = run(rougher(fine), &times[..judged])? else { return Ok(None) };
     found.judge(&rough, fine);
@@ -55,9 +61,10 @@ impl<S: Moving> From<Followed<S>> for Motion<S> {
     }
 }
 
-/// The phases of two runs up to the time `end` that belong together, and the length of the longest phase that only one of
-/// the runs has. Slipping and rolling alternate, so that a slip of one run only would set all later phases against wrong
-/// ones. Of two `whirrs` whose last turns are left out, one may have followed more turns than the other.
+/// The pairs of phases of two runs that correspond to each other, up to the time `end`, and the length of the
+/// longest phase that only one of the runs has. Pairs by number would all be wrong after a slip that only one
+/// run has. `whirrs`: the last turns of a whirr are left out, one run may have computed more turns than the
+/// other, and its additional phases at the end do not count.
 fn together<S>(runs: [&[Phase<S>]; 2], end: f64, whirrs: bool) -> (Vec<[&Phase<S>; 2]>, f64) {
     let (mut pairs, mut alone, mut at) = (Vec::new(), 0f64, [0; 2]);
     let lasts = |k: usize, i: usize| {
@@ -73,8 +80,8 @@ fn together<S>(runs: [&[Phase<S>]; 2], end: f64, whirrs: bool) -> (Vec<[&Phase<S
             at = at.map(|i| i + 1);
             continue;
         }
-        // The earlier phase stands alone, with the one after it where both runs are in phases of one kind. A slip that
-        // only goes on in another direction is no phase by itself.
+        // The earlier phase has no partner, and if both phases are of the same kind, neither has the one
+        // after it. A slip that only continues in another direction belongs to the slip before it.
         let k = usize::from(b.time < a.time || b.time == a.time && long[1] < long[0]);
         let goes_on = at[k] > 0 && runs[k][at[k] - 1].kind == runs[k][at[k]].kind;
         alone = alone.max(if goes_on { 0.0 } else { long[k] });
@@ -133,7 +140,7 @@ impl<S: Moving> Followed<S> {
         }
     }
 
-    /// Estimates the errors of this motion by a rougher one.
+    /// Estimates the errors of this motion from its difference from a rougher run.
     pub(crate) fn judge(&mut self, rough: &Self, tol: f64) {
         let claimed = (S::SAFETY * tol / rougher(tol)).min(1.0);
         let given_up = self.is_given_up();
@@ -183,14 +190,17 @@ impl<S: Moving> Followed<S> {
             });
         let rounding = 8.0 * f64::EPSILON * fastest;
         let motion = &mut self.motion;
-        // Two runs with the same steps do not show the error that each step is allowed.
+        // Two runs with the same steps do not show the error of these steps, so that at least one
+        // tolerance is claimed.
         let mut least =
             if self.path.slipping > 0.0 || motion.evaluations > 0 { rounding.max(tol) } else { rounding };
-        // The error goes as the eighth power of the step: steps that are hardly longer have hardly larger errors.
+        // The error of a step grows as the eighth power of its length: hardly longer steps have hardly
+        // larger errors.
         let ratio = rough.motion.evaluations as f64 / motion.evaluations.max(1) as f64;
         let alike = ratio > ALIKE.min(1.5 * (tol / rougher(tol)).powf(0.125));
-        // The errors of the steps grow along the motion like those of the other run, which have grown to the difference
-        // of both runs. Where that difference is small by chance, a part of the sum of the errors still remains.
+        // Step errors grow along the motion, by the same factor in both runs: in the rougher run from their
+        // sum to the difference of the runs. Steps that are not alike show their errors in that difference;
+        // as it may be small by chance, a share of their sum is claimed in addition.
         let grows = if rough.path.erred > 0.0 { (off / rough.path.erred).max(1.0) } else { 1.0 };
         least += self.path.erred * if alike { grows } else { CHANCE };
         least += alone;
@@ -199,10 +209,11 @@ impl<S: Moving> Followed<S> {
         let grown = |off: f64| off * (claimed * parted / (parted - off).max(0.0)).min(1.0);
         let settled = |claim: f64, off: f64| if ends { claim + grown(off) + least } else { f64::INFINITY };
         motion.error = settled(motion.error, off);
-        // The forces were judged for state errors of one tolerance; the actual state errors are larger.
+        // The errors of the forces were computed for states with errors of one tolerance; the states have
+        // larger errors.
         let larger = (grown(off) + least) / tol;
         motion.force_error = settled(motion.force_error * larger.max(1.0), pressed);
-        // The angles of a pose are known to a few roundings of their total turning.
+        // Rounding errors of the angles of a pose are proportional to these angles.
         let turning = motion.poses.iter().flatten().last().map_or(0.0, S::turning);
         motion.pose_error = settled(motion.pose_error, turned) + 32.0 * f64::EPSILON * turning;
     }
@@ -212,7 +223,7 @@ impl<S: Moving> Followed<S> {
 mod tests {
     use super::*;
 
-    /// Phases that roll and slip by turns, beginning to roll.
+    /// Phases that alternately roll and slip; the first one rolls.
     fn phases(times: &[f64]) -> Vec<Phase> {
         let state = State { theta: 1.0, w1: 0.0, w2: 0.0, w3: 0.0 };
         let kind = |i: usize| if i.is_multiple_of(2) { Kind::Rolling } else { Kind::Slipping };
@@ -233,7 +244,7 @@ mod tests {
             assert!(pairs.iter().all(|[a, b]| a.kind == b.kind && (a.time - b.time).abs() < 0.02));
             assert!((alone - 0.001).abs() < 1e-12, "{alone}");
         }
-        // What one run has at its end, and the other has not, is as long as it lasts; of whirrs that is left out.
+        // Phases at the end that only one run has count with their length; for whirrs they do not count.
         let (pairs, alone) = together([&ours[..5], &ours], 10.0, false);
         assert!(pairs.len() == 5 && alone == 2.0, "{} {alone}", pairs.len());
         assert_eq!(together([&ours[..5], &ours], 10.0, true).1, 0.0);

@@ -1,7 +1,8 @@
 //! The numbers of a motion that slips or loses energy, and the reasons for which its flow halts.
 //!
 //! ```text
-//! y = (s, c, w1, w2, w3, u_h, u_2, t, heat; phi, psi, x, y; lost)     poses and the lost energy where they are asked for
+//! y = (s, c, w1, w2, w3, u_h, u_2, t, heat; phi, psi, x, y; lost)
+//! pose and lost energy only if they are computed
 //! ```
 
 /// The reason for which a flow halts.
@@ -9,7 +10,7 @@
 pub(crate) enum Halt {
     /// The flow has reached the last time.
     Time,
-    /// The flow has made as many steps as were allowed.
+    /// The flow has made the largest number of steps that its caller allows.
     Pause,
     /// The contact point comes to rest on the table.
     Standstill,
@@ -26,11 +27,11 @@ pub(crate) enum Halt {
     Drilling,
     /// The rocking of a body that only rocks changes its direction.
     Rocking,
-    /// A couple that grows with psi' has almost stopped the contact point.
+    /// A couple that grows with psi' has almost stopped the contact point (see `path::settled`).
     Settles,
     /// The body neither rolls nor rocks any more; it may drill.
     Rests,
-    /// The steps hardly advance, or are too many.
+    /// Time hardly advances, or the steps are too many.
     Endless,
 }
 

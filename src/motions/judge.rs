@@ -1,4 +1,4 @@
-//! Errors of an integrated motion, from the exact motion where this exists, else from a rougher run.
+//! Errors of an integrated motion, from the exact motion where it exists, else from another run.
 
 use super::exact::Swing;
 use super::{Event, Motion, Moving};
@@ -19,8 +19,8 @@ pub(crate) fn pose_distance(a: &Pose, b: &Pose) -> f64 {
 /// Relative error of a number of a state from a few roundings.
 const ROUNDINGS: f64 = 4.0 * f64::EPSILON;
 
-/// The force `at` a state whose theta and w have the given errors, and the largest error of the numbers of that force:
-/// it comes from the given errors and from a few roundings of every number.
+/// The force `at` a state whose theta and w have the given errors, and the largest error of the numbers of
+/// that force: it comes from the given errors and from a few roundings of every number.
 pub(crate) fn doubted(y: &State, [theta, w]: [f64; 2], at: impl Fn(&State) -> Force) -> (Force, f64) {
     let numbers = |y: &[f64; 4]| {
         let force = at(&State::from(*y));
@@ -30,7 +30,8 @@ pub(crate) fn doubted(y: &State, [theta, w]: [f64; 2], at: impl Fn(&State) -> Fo
     (Force { normal, along, across }, off)
 }
 
-/// The numbers of a force `at` the numbers of a state with the errors `known`, and the largest error of that force.
+/// The numbers of a force `at` the numbers of a state with the errors `known`, and the largest error
+/// of that force.
 pub(crate) fn doubted_of<const K: usize>(
     of: &[f64; K],
     known: [f64; K],
@@ -56,7 +57,8 @@ pub(crate) fn force_distance(a: &Force, b: &Force) -> f64 {
     normal.abs().max(along.abs()).max(across.abs())
 }
 
-/// Judges an integrated motion by the exact motion at some of its times.
+/// Sets the error of an integrated motion from the exact motion at some of its times; at all if they are
+/// fewer than 256.
 pub(crate) fn judge(motion: &mut Motion, swing: &Swing, exact: Option<Event>, t0: f64) {
     let count = motion.times.len();
     let every = (count / 128).max(1);
@@ -81,21 +83,22 @@ pub(crate) fn judge(motion: &mut Motion, swing: &Swing, exact: Option<Event>, t0
         motion.error = motion.error.max(off + swing.error(t));
     }
     if every > 1 {
-        // Errors between the judged times may be larger.
+        // Errors at the other times may be larger.
         motion.error *= 2.0;
         motion.pose_error *= 2.0;
     }
 }
 
-/// Judges an integrated motion by a rougher run.
-pub(crate) fn compare(motion: &mut Motion, rough: &Motion) {
-    for (i, (a, b)) in motion.states.iter().zip(&rough.states).enumerate() {
+/// Sets the error of an integrated motion to its difference from another run with the same end,
+/// else to infinity.
+pub(crate) fn compare(motion: &mut Motion, other: &Motion) {
+    for (i, (a, b)) in motion.states.iter().zip(&other.states).enumerate() {
         motion.error = motion.error.max(a.distance(b));
-        if let (Some(poses), Some(others)) = (&motion.poses, &rough.poses) {
+        if let (Some(poses), Some(others)) = (&motion.poses, &other.poses) {
             motion.pose_error = motion.pose_error.max(pose_distance(&poses[i], &others[i]));
         }
     }
-    match (motion.event, rough.event) {
+    match (motion.event, other.event) {
         (None, None) => {}
         (Some(a), Some(b)) if a.ending == b.ending => {
             motion.error = motion.error.max(a.state.distance(&b.state)).max((a.time - b.time).abs());
@@ -104,7 +107,7 @@ pub(crate) fn compare(motion: &mut Motion, rough: &Motion) {
     }
 }
 
-/// Whether two runs have met the same end.
+/// Whether two solutions have the same end.
 pub(crate) fn same(a: &Event, b: &Event) -> bool {
     a.ending == b.ending && (a.time - b.time).abs() <= 1e-2 * (1.0 + b.time.abs())
 }

@@ -3,9 +3,9 @@
 //! ```text
 //! theta > 0,   theta < theta_end,   N > 0,   mu N - |F_horizontal| > 0
 //! ```
-//! Along one motion all of these are functions of the inclination alone, so that they have the same values on the way
-//! up and on the way down. The nearest places below and above the start at which an assumption fails are found, and the
-//! motion shows which of them comes first.
+//! Along one motion all of these are functions of the inclination alone, so that they have the same values on
+//! the way up and on the way down. So the nearest places below and above the start at which an assumption
+//! fails are computed, and the event is at the one that the motion reaches first.
 
 use super::exact::Swing;
 use super::{Ending, Event};
@@ -17,10 +17,11 @@ use crate::laws::state::State;
 use crate::methods::search;
 use core::f64::consts::PI;
 
-/// Rounding error of the friction demand, relative to the terms of which the demand is a difference.
+/// Allowance for rounding in the margin of slip, relative to the terms of which the friction demand is a
+/// difference. With a smaller one, rolling that needs mu N exactly could end by rounding alone.
 const GRIP: f64 = 16.0 * f64::EPSILON;
 
-/// A body on a table, with the margins that must stay positive, in the order of [`Ending`] from `Face` on.
+/// A body on a table, and the margins of its motion that must stay positive.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Limits {
     pub body: Body,
@@ -66,12 +67,14 @@ impl Limits {
         self.plain_grip(y, &self.rates.derivative(y, angle), angle)
     }
 
-    /// Margin of theta below theta_end, where the other rim or another part of the body lands; 1 without a theta_end.
+    /// Margin of theta below theta_end, where the other rim or another part of the body lands; 1
+    /// without a theta_end.
     pub fn side(&self, y: &State) -> f64 {
         if self.body.theta_end() < PI { self.body.theta_end() - y.theta } else { 1.0 }
     }
 
-    /// The margin that must stay positive so that this ending does not occur; 1 for an ending without a margin.
+    /// The margin that must stay positive so that this ending does not occur; 1 for an ending
+    /// without a margin.
     fn margin(&self, ending: Ending, y: &State) -> f64 {
         match ending {
             Ending::Side => self.side(y),
@@ -81,10 +84,11 @@ impl Limits {
         }
     }
 
-    /// Error of the time and the state of an event that comes from the rounding of the state.
+    /// Error of the time and the state of an event, from the rounding of the state.
     ///
-    /// Let d be the change of the margin m for an ulp of each of the four numbers. The time at which m vanishes has the
-    /// error d/|m'|, or the square root of 2 d/|m''| where m only grazes zero. The start itself is exact.
+    /// Let d be the change of the margin m for an ulp of each of the four numbers. The time at which m
+    /// vanishes has the error d/|m'|, or the square root of 2 d/|m''| where m only grazes zero. An event at
+    /// the start is exact.
     pub fn doubt(&self, event: &Event) -> f64 {
         let y = event.state;
         if event.time == 0.0 {
@@ -94,7 +98,7 @@ impl Limits {
         let look = |y: &State| {
             let (dy, here) = (self.rates.derivative(y, y.theta.sin_cos()), self.margin(event.ending, y));
             let (numbers, rates): ([f64; 4], [f64; 4]) = ((*y).into(), dy.into());
-            // Errors of w1 and w3 pass into each other, so that both have the same scale.
+            // An error of w1 becomes one of w3 and vice versa, so that both have the same scale.
             let turning = y.w1.abs().max(y.w3.abs());
             let scales = [y.theta.abs(), turning, y.w2.abs(), turning];
             let (mut drift, mut noise) = (0.0, 1.0);
@@ -175,9 +179,10 @@ pub(crate) fn first_event(swing: &Swing, limits: &Limits, way: f64) -> Option<Ev
 
 /// The nearest places below and above the start at which a margin of the half swing turns negative.
 ///
-/// The zero of the margin `plain`, which has no allowance for rounding, gives the place where `plain` changes its sign.
-/// The margin is evaluated at the nodes of the swing, which resolve the motion, and at `between` places between each
-/// two of them: the friction demand, with its quotient and square root, bends faster than the motion.
+/// The zero of the margin `plain`, which has no allowance for rounding, gives the place where `plain`
+/// changes its sign. The margin is evaluated at the nodes of the swing, which resolve the motion, and at
+/// `between` places between each two of them: the friction demand, with its quotient and square root, bends
+/// faster than the motion.
 fn violations(
     swing: &Swing,
     margin: impl Fn(f64) -> f64,
@@ -211,8 +216,8 @@ fn violations(
             }
             let next = if i > before { i + 1 } else { i.wrapping_sub(1) };
             let falls = |a: usize, b: usize| values[b] <= values[a];
-            // A minimum of the margin lies around a node, or between the start and the first node. The minimum is
-            // irrelevant where the margin is large in comparison with its variation.
+            // A minimum of the margin lies around a node, or between the start and the first node. The
+            // minimum is irrelevant where the margin is large in comparison with its variation.
             let dip = if before == here && !falls(here, i) {
                 let ahead = nodes[here] + 1e-4 * (nodes[i] - nodes[here]);
                 (1e4 * (values[here] - margin(ahead)) > values[here]).then_some(i)

@@ -1,4 +1,5 @@
-//! Motions: what a body or a stone does from a start on, exactly, by steps, or along its steady states.
+//! Motions of bodies and stones from a start: by the first integrals, by steps, or as a slow drift along
+//! steady states.
 
 pub(crate) mod ask;
 mod conserved;

@@ -1,14 +1,15 @@
 //! Motions: times, states, and the event that ends a motion.
 //!
-//! [`roll`] uses the first integrals ([`exact`](super::exact)) unless the caller asks for an integrator; an integrator also replaces
-//! the first integrals where these lose all their digits. Either way the assumptions of the model are watched:
+//! [`roll`] uses the first integrals ([`exact`](super::exact)) unless [`Ask`] chooses an integrator; an
+//! integrator also replaces the first integrals where these lose all their digits. Either way the assumptions
+//! of the model are checked along the motion:
 //!
 //! ```text
 //! theta > 0                 the face lands         theta < pi/2    the other rim lands (ell > 0)
 //! N > 0                     contact is kept        F <= mu N       rolling is kept, if a mu is given
 //! ```
-//! The first assumption that fails is the [`Event`] that ends the motion; states after the event are given only if the
-//! caller asks for them.
+//! The first assumption that fails is the [`Event`] that ends the motion; states after the event are computed
+//! only with [`Ask::beyond`].
 
 use super::conserved::conserved;
 use super::exact::Swing;
@@ -21,7 +22,8 @@ use crate::laws::state::State;
 
 /// The motion of `body`, which rolls from `start` at the first of the `times`, up to the event that ends it.
 ///
-/// The method is exact, without poses or forces; [`roll_with`] offers the other choices and has the same errors.
+/// The method is exact, without poses or forces; [`roll_with`] offers the other choices and has
+/// the same errors.
 ///
 /// ```
 /// use spincyl::{Body, roll, steady};
@@ -34,20 +36,21 @@ use crate::laws::state::State;
 /// # Ok::<(), spincyl::Error>(())
 /// ```
 pub fn roll(body: &Body, start: &State, times: &[f64]) -> Result<Motion, Error> {
-    let time = times.first().copied().filter(|t| t.is_finite()).unwrap_or(0.0); // The check then names `t`, not `t0`.
+    // The error for a first time that is not finite must name `t`, not `t0`.
+    let time = times.first().copied().filter(|t| t.is_finite()).unwrap_or(0.0);
     let start = Start { time, ..Start::from(start) };
     roll_with(body, start, times, &Ask::default(), || true).map(|m| m.expect("nobody interrupts"))
 }
 
-/// The motion of `body` from a start at the `times`, which are in order and on one side of the start; with a law of
-/// friction or losses no time lies before the start. A [`State`] is a start at time 0 without a slip. `ask` chooses the
-/// table, the losses, the method and the outputs.
+/// The motion of `body` from a start at the `times`, which are in order and on one side of the start; with a
+/// law of friction or losses no time lies before the start. A [`State`] is a start at time 0 without a slip.
+/// `ask` chooses the table, the losses, the method and the outputs.
 ///
-/// `go_on` is called about fifty times a second; if it returns false, the result is `Ok(None)`. Errors before any work:
-/// `OutOfRange` for a body, state, slip, time, step, tolerance or coefficient that makes no sense; `Step` for a fixed
-/// step with which fast precession or nutation would come out wrong unnoticed; `Painleve` for a start without a unique
-/// contact force. Errors at any time: `Memory` if there is too little memory for the outputs; for a body that slips or
-/// loses energy also the errors of [`path`].
+/// `go_on` is called about fifty times a second; if it returns false, the result is `Ok(None)`. Errors before
+/// any work: `OutOfRange` for a body, state, slip, time, step, tolerance or coefficient out of range; `Step`
+/// for a fixed step that is too long for fast precession or nutation; `Painleve` for a start without a unique
+/// contact force. Errors at any time: `Memory` if there is too little memory for the outputs; for a body that
+/// slips or loses energy also the errors of [`path`].
 ///
 /// ```
 /// use spincyl::{Body, State, contact::Friction, motion::{Ask, Start, roll_with}};
@@ -56,7 +59,8 @@ pub fn roll(body: &Body, start: &State, times: &[f64]) -> Result<Motion, Error> 
 /// let hoop = Body::tube(0.0, 1.0)?;
 /// let state = State { theta: std::f64::consts::FRAC_PI_2, w1: 0.0, w2: 0.0, w3: -3.0 };
 /// let start = Start { slip: [0.0, 2.0 + 3.0], ..state.into() };
-/// let motion = roll_with(&hoop, start, &[0.0, 20.0], &Ask::on(Friction::coulomb(0.25)), || true)?.expect("not interrupted");
+/// let ask = Ask::on(Friction::coulomb(0.25));
+/// let motion = roll_with(&hoop, start, &[0.0, 20.0], &ask, || true)?.expect("not interrupted");
 /// assert!((motion.states[1].w3 - -0.5).abs() < 1e-12); // the hoop rolls back
 /// let path = motion.path.expect("there is friction");
 /// assert!((path.phases[1].time - 5.0 / 0.5).abs() < 1e-12);
@@ -87,8 +91,8 @@ fn rolled(
     conserved(body, start, times, ask, go_on)
 }
 
-/// The first event of an exact motion that the model does not cover, from time 0 on; `mu` is the coefficient of
-/// friction of a body that rolls.
+/// The first event of an exact motion that the model does not cover, from time 0 on; `mu` is the coefficient
+/// of friction of a body that rolls.
 ///
 /// ```
 /// use spincyl::{Body, Contact, exact::Swing, motion, steady};
@@ -103,7 +107,8 @@ pub fn first_event(swing: &Swing, mu: f64) -> Option<Event> {
     limits::first_event(swing, &Limits::new(swing.body(), &Table::of(swing.contact(), mu)), 1.0)
 }
 
-/// The start of a motion: sine and cosine of theta, the rate of the state, and the ending if the motion ends there.
+/// The start of a motion: sine and cosine of theta, the rate of the state, and the ending if the
+/// motion ends there.
 pub(crate) struct Begun {
     pub angle: (f64, f64),
     pub rate: State,

@@ -1,4 +1,4 @@
-//! What a motion is made of: states, and the poses and forces of a body in such a state.
+//! The states of a moving body or stone, with the types of its poses and contact forces.
 
 use super::judge::{force_distance, pose_distance};
 use crate::laws::contact::Force;
@@ -6,9 +6,9 @@ use crate::laws::pose::Pose;
 use crate::laws::state::State;
 use core::fmt::Debug;
 
-/// A state of a moving body, which is a few numbers, with the kinds of its pose and of its contact force.
+/// A state of a moving body, as a few numbers, with the types of its pose and of its contact force.
 pub trait Moving: Copy + Debug + PartialEq {
-    /// Safety factor of an error that is claimed from the difference of two runs.
+    /// Safety factor of the error that is claimed from the scaled difference of two runs.
     const SAFETY: f64 = 30.0;
     /// The numbers of the state.
     type Numbers: AsRef<[f64]>;
@@ -23,7 +23,7 @@ pub trait Moving: Copy + Debug + PartialEq {
     fn fastest(&self) -> f64;
     /// The largest difference between the numbers of two poses.
     fn pose_distance(a: &Self::Pose, b: &Self::Pose) -> f64;
-    /// The whole turning, in radians, to which the angles of a pose are rounded.
+    /// The sum of the sizes of a pose's angles, in radians, to which their rounding errors are proportional.
     fn turning(pose: &Self::Pose) -> f64;
     /// The largest difference between the numbers of two forces.
     fn force_distance(a: &Self::Force, b: &Self::Force) -> f64;

@@ -1,4 +1,5 @@
-//! The result of a motion: times and states, the event that ended it, its phases, and the path of the contact point.
+//! The result of a motion: times and states, the event that ended it, its phases, and the path of the
+//! contact point.
 
 use super::Moving;
 use super::ask::Method;
@@ -11,10 +12,10 @@ use nalgebra::{UnitQuaternion, Vector3};
 coded! {
     /// The end of a motion. Its number is the status of a result.
     pub enum Ending {
-        /// The motion reached the last time asked for.
+        /// The motion reached the last requested time.
         Done = 0,
-        /// The face landed on the table (theta = 0 or pi). The body may still spin on its face, with the last w3; that spin is
-        /// not followed.
+        /// The face landed on the table (theta = 0 or pi). The body may still spin on its face, with the last
+        /// w3; that spin is not followed.
         Face = 1,
         /// The other rim landed: the body lies on its side (theta = pi/2, ell > 0).
         Side = 2,
@@ -26,7 +27,8 @@ coded! {
         Painleve = 6,
         /// The contact point stops, held by dry friction along the rim or by rolling resistance.
         Stops = 7,
-        /// The motion was given up at this time: slipping and rolling alternate too often, or it hardly advances.
+        /// The motion was given up at this time: slipping and rolling alternate too often, or it
+        /// hardly advances.
         Bounded = 8,
     }
 }
@@ -43,7 +45,8 @@ pub struct Event<S = State> {
 }
 
 impl<S> Event<S> {
-    /// Whether the event ends a motion: one that goes on `beyond` events is ended by a landing of the face only.
+    /// Whether the event ends the motion. A motion that continues `beyond` events ends only with a
+    /// landing of the face.
     pub(crate) fn ends(&self, beyond: bool) -> bool {
         !beyond || self.ending == Ending::Face
     }
@@ -52,23 +55,25 @@ impl<S> Event<S> {
 /// Times and states of a body, and the event that ended its motion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Motion<S: Moving = State> {
-    /// The times asked for, up to the event.
+    /// The requested times, up to the event.
     pub times: Vec<f64>,
     /// The state at each time.
     pub states: Vec<S>,
-    /// The pose at each time, if poses were asked for.
+    /// The pose at each time, if poses were requested.
     pub poses: Option<Vec<S::Pose>>,
-    /// The contact force at each time, if forces were asked for.
+    /// The contact force at each time, if forces were requested.
     pub forces: Option<Vec<S::Force>>,
     /// The first event that the model does not cover, if one happened before the last time.
     pub event: Option<Event<S>>,
-    /// The method that found the motion: `Exact`, `Step` or `Tolerance`.
+    /// The method that computed the motion: `Exact`, `Step` or `Tolerance`.
     pub method: Method,
-    /// Estimated error: the largest over all numbers of all states, and over the time and the state of the event.
+    /// Estimated error: the largest over all numbers of all states, and over the time and the
+    /// state of the event.
     pub error: f64,
     /// Estimated error of the poses: the largest over all of their numbers; NaN without poses.
     pub pose_error: f64,
-    /// Estimated error of the contact forces per weight: the largest over all of their numbers; NaN without forces.
+    /// Estimated error of the contact forces per weight: the largest over all of their numbers; NaN
+    /// without forces.
     pub force_error: f64,
     /// Predicted share of the nutation's amplitude that a fixed step takes away; 0 with the other methods.
     pub step_loss: f64,
@@ -120,7 +125,8 @@ impl<S: Moving> Motion<S> {
 }
 
 impl Motion {
-    /// The orientation at each time, if poses were asked for. It refers to the body's axes at the start, on either rim.
+    /// The orientation at each time, if poses were requested. It is that of the body's axes at the start,
+    /// whichever rim touches the table.
     pub fn orientations(&self) -> impl Iterator<Item = UnitQuaternion<f64>> {
         // A pose on the other rim describes the body after a half turn about its own first axis.
         let over = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), PI);
@@ -156,8 +162,9 @@ pub struct Phase<S = State> {
     pub slip: [f64; 2],
 }
 
-/// The slip, the phases and the losses of a motion. The motion's estimated error also covers the slips, and the times
-/// and states of the phases and of the end; the error of the heat is that error times the largest speed.
+/// The slip, the phases and the losses of a motion. The motion's estimated error also covers the slips,
+/// and the times and states of the phases and of the end; the error of the heat is that error times the
+/// largest speed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Path<S = State> {
     /// The slip at each time, along the lean and across it.
@@ -178,13 +185,13 @@ pub struct Path<S = State> {
     pub slipping: f64,
     /// The slip at the event that ended the motion.
     pub last_slip: [f64; 2],
-    /// Of a stone, the time up to which the claimed error stays at most 1 % of the largest speed, or 0.01 of slow motions;
-    /// infinite if it does so up to the end.
+    /// For a stone, the time up to which the claimed error is at most 1 % of the largest speed (at most 0.01
+    /// for slow motions); infinite if this holds up to the end.
     pub known_until: f64,
-    /// Whether the body has rocked over onto its other rim, now and, if poses were asked for, at each time.
+    /// Whether the body stands on its other rim, now and, if poses were requested, at each time.
     pub(super) upside_down: bool,
     pub(super) turned: Vec<bool>,
-    /// Whether the motion was left where the body began to roll.
+    /// Whether the computation stopped where the body began to roll.
     pub(crate) rolls_on: bool,
     /// Whether the last turns of a whirr were left out, since its end was known before them.
     pub(crate) leaves_turns: bool,

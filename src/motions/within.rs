@@ -1,11 +1,13 @@
-//! Motions that conserve energy by steps within a tolerance, judged by the exact solution, or by a rougher run where no
-//! exact solution exists.
+//! Motions that conserve energy, computed by steps within a tolerance. Their error is the difference from the
+//! exact solution, or from a rougher run where no accurate exact solution exists.
 //!
-//! In a nearly flat passage, steps with errors of 1e-6 may find a lift-off that the motion does not have, and steps a
-//! hundred times as good may find the same lift-off again. So an end is accepted if the exact solution has it, where
-//! that solution is accurate enough; elsewhere an end is accepted if a run within a smaller tolerance has it too.
+//! In a nearly flat passage, steps with errors of 1e-6 may lead to a lift-off that the motion does not have,
+//! and steps a hundred times as accurate may lead to the same lift-off again. So an end is accepted if the
+//! exact solution has it, where that solution is accurate enough; elsewhere an end is accepted if a run
+//! within a smaller tolerance has it too.
 //!
-//! A motion backward in time is the motion from the reversed angular velocity, which is reversed again.
+//! A motion backward in time is computed forward in time from the reversed angular velocity; the angular
+//! velocities of the result are reversed again.
 
 use super::ask::FINE;
 use super::course::Course;
@@ -20,16 +22,16 @@ use crate::laws::loss::Losses;
 use crate::laws::state::State;
 use crate::states::stability::stiffness;
 
-/// Largest error of an exact solution that may judge the error of another one.
+/// Largest error of an exact solution from which the error of another solution is computed.
 const JUDGES: f64 = 1e-3;
-/// Largest error of an exact solution that may decide how the motion ends.
+/// Largest error of an exact solution that decides how the motion ends.
 const DECIDES: f64 = 1e-6;
-/// The share of the tolerance of a motion that each of its steps may err by.
+/// The tolerance of a step as a share of the tolerance of the motion, since errors of many steps add.
 const SHARE: f64 = 0.1;
 /// Smallest tolerance of the runs that test an end which the exact solution cannot judge.
 const TIGHTEST: f64 = 1e-13;
 
-/// The exact solution and its end, if it is accurate enough to judge another solution.
+/// The exact solution and its end, if its error is at most `JUDGES`.
 pub(crate) struct Known<'a> {
     pub swing: Option<&'a Swing>,
     pub event: Option<Event>,
@@ -43,7 +45,7 @@ impl<'a> Known<'a> {
     pub fn of(course: &Course<'_>, swing: Option<&'a Swing>, limits: &Limits, beyond: bool) -> Self {
         let found = swing.and_then(|swing| limits::first_event(swing, limits, course.way()));
         let found = found.filter(|e| e.time.abs() <= course.span.abs());
-        // Nothing is judged beyond an end.
+        // The error of the exact solution counts only up to an end.
         let last = found.filter(|e| e.ends(beyond)).map_or(course.span, |e| e.time);
         let swing = swing.filter(|s| s.error(last) <= JUDGES);
         let found = found.filter(|_| swing.is_some());
@@ -62,7 +64,8 @@ impl<'a> Known<'a> {
         }
     }
 
-    /// Whether the exact solution is accurate enough up to this end, or to its own earlier end, to decide.
+    /// Whether the error of the exact solution is at most `DECIDES` up to this end, or up to its
+    /// own earlier end.
     fn is_sure(&self, made: &Event, t0: f64) -> bool {
         let since = |event: &Event| event.time - t0;
         let own = self.event.as_ref().map(since).filter(|own| own.abs() < since(made).abs());
@@ -70,7 +73,8 @@ impl<'a> Known<'a> {
     }
 }
 
-/// The motion by steps within `tol`, and its path; `None` if it is interrupted.
+/// The motion by steps within `tol`, and its path; `fine` is the tolerance of the finer of two runs. `None`
+/// if the computation is interrupted.
 fn flown(
     course: &Course<'_>,
     ask: &Ask,
@@ -85,7 +89,7 @@ fn flown(
     since.iter_mut().for_each(|t| *t = way * (*t - t0));
     let (tol, fine) = ((SHARE * tol).max(FINE), (SHARE * fine).max(FINE));
     let ask = Ask { method: Method::Tolerance(fine), losses: Losses::NONE, force: false, ..*ask };
-    let found = walked(course.body, &ask, tol, &since, &start, go_on)?;
+    let found = walked((course.body, &start), &ask, (tol, true), &since, go_on)?;
     let Some(mut found) = found else { return Ok(None) };
     let motion = &mut found.motion;
     motion.times = copied(&times[..motion.states.len()])?;
@@ -118,7 +122,7 @@ pub(crate) fn within(
         };
         motion = better;
     }
-    // Steps can miss an end that the motion has.
+    // Steps can miss an end of the exact solution.
     if motion.event.is_none() {
         ended(&mut motion, &known, course, ask);
     }
@@ -129,7 +133,7 @@ pub(crate) fn within(
     Ok(Some(motion))
 }
 
-/// Gives a motion the end of the exact solution.
+/// Sets the event of a motion to that of the exact solution, and drops the outputs after an end.
 fn ended(motion: &mut Motion, known: &Known<'_>, course: &Course<'_>, ask: &Ask) {
     motion.event = known.event;
     if let Some(event) = known.event.filter(|e| e.ends(ask.beyond)) {
@@ -137,9 +141,10 @@ fn ended(motion: &mut Motion, known: &Known<'_>, course: &Course<'_>, ask: &Ask)
     }
 }
 
-/// A motion whose steps have `made` an end that the exact solution does not have. Where that solution is sure, the steps
-/// go on beyond their end; where they cannot, as the face has landed, or where no solution is sure, an end counts only if
-/// a smaller tolerance confirms it.
+/// Decides on an end that the steps have (`made`) and the exact solution has not. If that solution is
+/// accurate enough to decide, the steps are continued beyond their end. If they cannot be, since the face has
+/// landed, or if that solution is not accurate enough, the steps are repeated with smaller tolerances until
+/// these confirm an end.
 fn decided(
     course: &Course<'_>,
     known: &Known<'_>,
@@ -176,8 +181,8 @@ fn decided(
     Ok(Some(motion))
 }
 
-/// The motion by steps within `tol`, judged by a rougher run. Runs that end otherwise than the rougher ones are repeated
-/// within a smaller tolerance.
+/// The motion by steps within `tol`, with its error from a rougher run. If the two runs end differently, they
+/// are repeated with smaller tolerances.
 fn judged_alone(
     course: &Course<'_>,
     ask: &Ask,
@@ -194,7 +199,8 @@ fn judged_alone(
         fine = (0.01 * fine).max(TIGHTEST);
     };
     motion.method = Method::Tolerance(tol);
-    // Two runs can agree on a steady state that is unstable: they stay there by rounding alone, unlike the motion.
+    // In an unstable steady state rounding may keep both runs at the start, so that they agree, although any
+    // disturbance would grow.
     let growth =
         (-stiffness(ask.table.contact(), course.body, course.start)).max(0.0).sqrt() * course.span.abs();
     motion.error = motion.error.max(4.0 * f64::EPSILON * growth.exp());

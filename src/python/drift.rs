@@ -7,7 +7,7 @@ use crate::error::room;
 use crate::laws::loss::{COUNT, Law, Losses};
 use crate::laws::state::State;
 use crate::many::drifts::{self as drift, Centre, DriftOutput, DriftStarts, Question};
-use crate::motions::drift::{Drift, End};
+use crate::motions::drift::Drift;
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -15,15 +15,15 @@ use pyo3::types::PyDict;
 
 const DRIFT_BODY: [&str; 6] = ["ell", "i1", "i3", "bore", "fillet", "theta_end"];
 
-fn centre_of(code: u8) -> PyResult<Centre> {
-    match code {
-        0 => Ok(Centre::Rest),
-        1 => Ok(Centre::Rolling),
+fn centre_of(word: &str) -> PyResult<Centre> {
+    match word {
+        "rest" => Ok(Centre::Rest),
+        "rolling" => Ok(Centre::Rolling),
         _ => Err(PyValueError::new_err("no such drift")),
     }
 }
 
-fn starts<'a>(given: &'a GivenColumns<'_>, centre: u8) -> PyResult<DriftStarts<'a>> {
+fn starts<'a>(given: &'a GivenColumns<'_>, centre: &str) -> PyResult<DriftStarts<'a>> {
     Ok(DriftStarts {
         centre: centre_of(centre)?,
         bodies: given.all(DRIFT_BODY)?,
@@ -34,7 +34,7 @@ fn starts<'a>(given: &'a GivenColumns<'_>, centre: u8) -> PyResult<DriftStarts<'
 
 /// Checks the start of a drift: raises ValueError with the reason if there is no drift.
 #[pyfunction]
-pub fn drift_check(body: [f64; 6], state: [f64; 4], losses: [f64; COUNT], centre: u8) -> PyResult<()> {
+pub fn drift_check(body: [f64; 6], state: [f64; 4], losses: [f64; COUNT], centre: &str) -> PyResult<()> {
     let (body, y, losses) = (body_of(&body)?, State::from(state), Losses { coefficients: losses });
     match centre_of(centre)? {
         Centre::Rest => Drift::at_rest(&body, y.theta, &losses)?,
@@ -48,7 +48,7 @@ pub fn drift_check(body: [f64; 6], state: [f64; 4], losses: [f64; COUNT], centre
 pub fn drift_stops<'py>(
     py: Python<'py>,
     given: Bound<'py, PyDict>,
-    centre: u8,
+    centre: &str,
     out: Bound<'py, PyDict>,
     threads: usize,
 ) -> PyResult<()> {
@@ -73,7 +73,7 @@ pub fn drift_stops<'py>(
 pub fn drift_ask<'py>(
     py: Python<'py>,
     given: Bound<'py, PyDict>,
-    centre: u8,
+    centre: &str,
     question: u8,
     of: PyReadonlyArray1<'py, u64>,
     x: PyReadonlyArray1<'py, f64>,
@@ -95,10 +95,4 @@ pub fn drift_ask<'py>(
     py.detach(|| drift::ask(&starts, question, (&of, x), &mut out, threads, |share| watch.go_on(share)))?;
     watch.done(py)?;
     Ok(PyArray1::from_vec(py, out))
-}
-
-/// The names of the ends of a drift, indexed by their codes.
-#[pyfunction]
-pub fn drift_ends() -> Vec<&'static str> {
-    End::ALL.iter().map(|end| end.name()).collect()
 }

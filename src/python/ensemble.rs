@@ -1,7 +1,7 @@
 //! Many motions: the functions read and fill columns by name.
 
 use super::columns::{FilledColumns, GivenColumns, STATE, codes};
-use super::options::table_of;
+use super::options::{MotionAsked, table_of};
 use super::watch::Watch;
 use crate::laws::loss::{COUNT, Law};
 use crate::many::motions::{Job, MotionOutput, MotionStarts, SUMMARIES, Summary, roll_among};
@@ -42,21 +42,6 @@ pub fn summaries(table: u8, loses: bool) -> PyResult<Vec<&'static str>> {
     Ok(of.map(|summary| summary.label()[0]).collect())
 }
 
-/// The options of all motions, which Python gives by name.
-#[derive(FromPyObject)]
-#[pyo3(from_item_all)]
-pub struct EnsembleAsked {
-    table: u8,
-    mu: f64,
-    tol: f64,
-    step: Option<f64>,
-    beyond: bool,
-    restitution: Option<f64>,
-    stop_at_rolling: bool,
-    /// Whether states are wanted at all times, not only at the end.
-    spread: bool,
-}
-
 /// Fills the columns of `out` from those of `given`, by name; a given column has n numbers or one. These are
 /// the numbers of bodies and states and, if present, of slips, tables and losses (by their parameters). With
 /// `spread` a column of states has n times as many numbers as there are times. `threads` has the number of
@@ -66,7 +51,7 @@ pub fn ensemble<'py>(
     py: Python<'py>,
     given: Bound<'py, PyDict>,
     times: PyReadonlyArray1<'py, f64>,
-    asked: EnsembleAsked,
+    asked: MotionAsked,
     out: Bound<'py, PyDict>,
     threads: (usize, bool),
     progress: Option<Py<PyAny>>,
@@ -79,11 +64,12 @@ pub fn ensemble<'py>(
         coefficients: given.some(TABLE)?,
         losses: given.some::<COUNT>(Law::ALL.map(Law::parameter))?,
     };
+    let table = table_of(asked.table)?;
     let job = Job {
-        table: table_of(asked.table)?,
-        mu: asked.mu,
+        table,
+        mu: if table.rubs() { f64::INFINITY } else { asked.coefficients[0] },
         times: times.as_slice()?,
-        tol: asked.tol,
+        tol: asked.tol.ok_or_else(|| PyValueError::new_err("no option tol"))?,
         step: asked.step,
         beyond: asked.beyond,
         restitution: asked.restitution,

@@ -1,5 +1,6 @@
 //! The Python module `spincyl._core` converts arguments, releases the GIL and maps the error; it computes nothing.
 
+mod codes;
 mod columns;
 mod drift;
 mod ensemble;
@@ -11,6 +12,8 @@ mod sweep;
 mod ufunc;
 mod watch;
 
+use crate::laws::contact::landing::two_rims;
+use crate::laws::contact::slip::{self, centre_velocity};
 use crate::laws::throw;
 use crate::states::steady::MOST;
 use crate::states::{stability, steady};
@@ -53,6 +56,16 @@ fn of_body(x: &[f64], f: impl Fn(&Body) -> f64) -> f64 {
 /// A function of a state and a body: `x` has theta, w1, w2, w3, then the numbers of the body.
 fn of_state(x: &[f64], f: impl Fn(&State, &Body) -> f64) -> f64 {
     of_body(&x[4..], |body| f(&state_of(x), body))
+}
+
+/// Two numbers of a state with a slip: `x` has theta, w1, w2, w3, the slip, then the numbers of the body.
+fn of_slip(x: &[f64], f: impl Fn(&Body, &State, [f64; 2]) -> [f64; 2]) -> [f64; 2] {
+    body_of(&x[6..]).map_or([f64::NAN; 2], |body| f(&body, &state_of(x), [x[4], x[5]]))
+}
+
+/// The inclination at which a capsule lands on its other side; NaN of a tube that is none, whose end follows from its shape.
+fn capsule_end(tube: &Body) -> f64 {
+    if tube.is_ball() && tube.ell() > 0.0 { tube.theta_end() } else { f64::NAN }
 }
 
 fn state_of(x: &[f64]) -> State {
@@ -211,14 +224,38 @@ static LAWS: &[ArrayFunction] = &[
     ArrayFunction {
         name: "energy_slip",
         inputs: 12,
-        value: Value::One(|x| {
-            of_body(&x[6..], |b| crate::laws::contact::slip::energy(b, &state_of(x), [x[4], x[5]]))
-        }),
+        value: Value::One(|x| of_body(&x[6..], |b| slip::energy(b, &state_of(x), [x[4], x[5]]))),
     },
+    ArrayFunction { name: "centre_along", inputs: 12, value: Value::One(|x| of_slip(x, centre_velocity)[0]) },
+    ArrayFunction {
+        name: "centre_across",
+        inputs: 12,
+        value: Value::One(|x| of_slip(x, centre_velocity)[1]),
+    },
+    ArrayFunction {
+        name: "rests",
+        inputs: 10,
+        value: Value::One(|x| of_state(x, |y, b| f64::from(u8::from(steady::rests(b, y))))),
+    },
+    ArrayFunction {
+        name: "two_rims",
+        inputs: 6,
+        value: Value::One(|x| of_body(x, |b| f64::from(u8::from(two_rims(b).is_ok())))),
+    },
+    ArrayFunction {
+        name: "capsule_end",
+        inputs: 2,
+        value: Value::One(|x| or_nan(Body::rounded_tube(x[0], 0.0, x[1]).map(|b| capsule_end(&b)))),
+    },
+    ArrayFunction { name: "stone_tilted", inputs: 3, value: Value::Pick(stone::tilted) },
+    ArrayFunction { name: "stone_inclinations", inputs: 4, value: Value::Pick(stone::inclinations) },
+    ArrayFunction { name: "stone_spin", inputs: 6, value: Value::One(stone::spin) },
+    ArrayFunction { name: "stone_lever", inputs: stone::STONE + 4, value: Value::Pick(stone::lever) },
+    ArrayFunction { name: "stone_slip", inputs: stone::STONE + 7, value: Value::Pick(stone::slip) },
     ArrayFunction {
         name: "painleve",
         inputs: 7,
-        value: Value::One(|x| of_body(&x[1..], |b| crate::laws::contact::slip::painleve(b, x[0]))),
+        value: Value::One(|x| of_body(&x[1..], |b| slip::painleve(b, x[0]))),
     },
     ArrayFunction { name: "precession", inputs: 4, value: Value::One(|x| state_of(x).precession()) },
     ArrayFunction { name: "spin", inputs: 4, value: Value::One(|x| state_of(x).spin()) },
@@ -261,7 +298,9 @@ mod _core {
     use super::*;
 
     #[pymodule_export]
-    use super::drift::{drift_ask, drift_check, drift_ends, drift_stops};
+    use super::codes::codes;
+    #[pymodule_export]
+    use super::drift::{drift_ask, drift_check, drift_stops};
     #[pymodule_export]
     use super::ensemble::{columns, ensemble, summaries};
     #[pymodule_export]
@@ -269,11 +308,11 @@ mod _core {
     #[pymodule_export]
     use super::motion::{roll, swing};
     #[pymodule_export]
-    use super::options::tables;
+    use super::options::motion_options;
     #[pymodule_export]
     use super::stone::{
-        check_stone, check_stones, egg, rattleback, rocking, spin_limits, stone_energies, stone_moments,
-        stone_names, stones, uniform_stone,
+        check_stone, check_stones, egg, rattleback, rocking, spin_limits, stone_columns, stone_energies,
+        stone_moments, stone_names, stones, uniform_stone,
     };
     #[pymodule_export]
     use super::sweep::{areas, extrema, portrait};
@@ -314,8 +353,7 @@ mod _core {
     #[pyfunction]
     fn check_tube(half_length: f64, bore: f64, fillet: f64) -> PyResult<(f64, f64, f64, f64)> {
         let body = Body::rounded_tube(half_length, bore, fillet)?;
-        let capsule = body.is_ball() && body.ell() > 0.0;
-        Ok((body.ell(), body.i1(), body.i3(), if capsule { body.theta_end() } else { f64::NAN }))
+        Ok((body.ell(), body.i1(), body.i3(), capsule_end(&body)))
     }
 
     /// i1 and theta_end of two balls, or ValueError.

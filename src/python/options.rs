@@ -19,62 +19,61 @@ pub(super) fn table_of(code: u8) -> PyResult<TableKind> {
     TableKind::from_code(code).ok_or_else(|| PyValueError::new_err("no such table"))
 }
 
-/// The names of the kinds of tables, by their codes.
-#[pyfunction]
-pub fn tables() -> Vec<&'static str> {
-    TableKind::ALL.iter().map(|kind| kind.name()).collect()
-}
+/// A struct of options from a dictionary, each in one line; missing options have their defaults.
+macro_rules! options {
+    ($(#[$about:meta])* pub struct $Name:ident { $($(#[$doc:meta])* $name:ident: $Type:ty = $default:expr,)+ }) => {
+        $(#[$about])*
+        pub struct $Name {
+            $($(#[$doc])* pub $name: $Type,)+
+        }
 
-/// The options of a motion, from a dictionary; missing options have their defaults.
-pub struct MotionAsked {
-    pub t0: f64,
-    pub slip: [f64; 2],
-    table: u8,
-    coefficients: [f64; 2],
-    losses: Option<[f64; COUNT]>,
-    step: Option<f64>,
-    tol: Option<f64>,
-    beyond: bool,
-    restitution: Option<f64>,
-    pose: bool,
-    force: bool,
-}
+        impl $Name {
+            /// The names of all options.
+            const NAMES: [&'static str; [$(stringify!($name)),+].len()] = [$(stringify!($name)),+];
+        }
 
-impl FromPyObject<'_, '_> for MotionAsked {
-    type Error = PyErr;
+        impl FromPyObject<'_, '_> for $Name {
+            type Error = PyErr;
 
-    fn extract(given: Borrowed<'_, '_, PyAny>) -> PyResult<Self> {
-        let mut asked = Self {
-            t0: 0.0,
-            slip: [0.0; 2],
-            table: TableKind::Rolling as u8,
-            coefficients: [f64::INFINITY, 0.0],
-            losses: None,
-            step: None,
-            tol: None,
-            beyond: false,
-            restitution: None,
-            pose: false,
-            force: false,
-        };
-        for (name, value) in given.cast::<PyDict>()?.iter() {
-            match name.cast::<PyString>()?.to_str()? {
-                "t0" => asked.t0 = value.extract()?,
-                "slip" => asked.slip = value.extract()?,
-                "table" => asked.table = value.extract()?,
-                "coefficients" => asked.coefficients = value.extract()?,
-                "losses" => asked.losses = value.extract()?,
-                "step" => asked.step = value.extract()?,
-                "tol" => asked.tol = value.extract()?,
-                "beyond" => asked.beyond = value.extract()?,
-                "restitution" => asked.restitution = value.extract()?,
-                "pose" => asked.pose = value.extract()?,
-                "force" => asked.force = value.extract()?,
-                other => return Err(PyValueError::new_err(format!("no option of a motion: {other}"))),
+            fn extract(given: Borrowed<'_, '_, PyAny>) -> PyResult<Self> {
+                let mut asked = Self { $($name: $default,)+ };
+                for (name, value) in given.cast::<PyDict>()?.iter() {
+                    match name.cast::<PyString>()?.to_str()? {
+                        $(stringify!($name) => asked.$name = value.extract()?,)+
+                        other => return Err(PyValueError::new_err(format!("no option of a motion: {other}"))),
+                    }
+                }
+                Ok(asked)
             }
         }
-        Ok(asked)
+    };
+}
+
+options! {
+    /// The options of a motion, or of many motions.
+    pub struct MotionAsked {
+        t0: f64 = 0.0,
+        slip: [f64; 2] = [0.0; 2],
+        table: u8 = TableKind::Rolling as u8,
+        /// Mu, or those of a law of friction.
+        coefficients: [f64; 2] = [f64::INFINITY, 0.0],
+        losses: Option<[f64; COUNT]> = None,
+        step: Option<f64> = None,
+        tol: Option<f64> = None,
+        beyond: bool = false,
+        restitution: Option<f64> = None,
+        stop_at_rolling: bool = false,
+        pose: bool = false,
+        force: bool = false,
+        /// Whether the states of many motions are wanted at all times, not only at the end.
+        spread: bool = false,
     }
+}
+
+/// The names of the options of a motion.
+#[pyfunction]
+pub fn motion_options() -> [&'static str; MotionAsked::NAMES.len()] {
+    MotionAsked::NAMES
 }
 
 impl MotionAsked {
@@ -89,7 +88,7 @@ impl MotionAsked {
             },
             beyond: self.beyond,
             restitution: self.restitution,
-            stop_at_rolling: false,
+            stop_at_rolling: self.stop_at_rolling,
             pose: self.pose,
             force: self.force,
         })

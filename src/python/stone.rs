@@ -6,6 +6,7 @@ use super::watch::Watch;
 use crate::Error;
 use crate::laws::stone::{Ellipsoid, StoneState};
 use crate::many::stones::{StoneRow, StoneSummary, many};
+use crate::states::steady::MOST;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -21,6 +22,46 @@ pub fn stone_of(x: &[f64; STONE]) -> Result<Ellipsoid, Error> {
 /// The numbers of a stone, and its largest semi-axis in the unit of the given lengths.
 fn told(stone: &Ellipsoid) -> ([f64; STONE], f64) {
     (stone.numbers(), stone.unit())
+}
+
+/// The first of several results of an elementwise function; the others are NaN.
+fn first<const N: usize>(found: [f64; N]) -> [f64; MOST] {
+    core::array::from_fn(|k| found.get(k).copied().unwrap_or(f64::NAN))
+}
+
+/// A function of a stone, whose numbers `x` begins with; NaN if there is no such stone.
+fn of_stone<const N: usize>(x: &[f64], f: impl Fn(&Ellipsoid, &[f64]) -> [f64; N]) -> [f64; MOST] {
+    let stone = x.first_chunk().map(stone_of);
+    stone.and_then(Result::ok).map_or([f64::NAN; MOST], |stone| first(f(&stone, &x[STONE..])))
+}
+
+fn state(x: &[f64]) -> StoneState {
+    StoneState { vertical: [x[0], x[1], x[2]], w: [x[3], x[4], x[5]] }
+}
+
+/// The vertical of a stone that is tilted: `x` has pitch and roll.
+pub fn tilted(x: &[f64]) -> [f64; MOST] {
+    first(StoneState::spinning(0.0, x[0], x[1]).vertical)
+}
+
+/// The angles from a vertical to the axes of a stone.
+pub fn inclinations(x: &[f64]) -> [f64; MOST] {
+    first(StoneState { vertical: [x[0], x[1], x[2]], w: [0.0; 3] }.inclinations())
+}
+
+/// The angular velocity about the vertical: `x` has the vertical and w.
+pub fn spin(x: &[f64]) -> f64 {
+    state(x).spin()
+}
+
+/// From the centre of mass to the lowest point: `x` has the numbers of a stone and a vertical.
+pub fn lever(x: &[f64]) -> [f64; MOST] {
+    of_stone(x, |stone, y| stone.lowest_point([y[0], y[1], y[2]]))
+}
+
+/// The slip of a stone whose centre of mass rests: `x` has the numbers of the stone, a vertical and w.
+pub fn slip(x: &[f64]) -> [f64; MOST] {
+    of_stone(x, |stone, y| stone.slip(&state(y), [0.0; 2]))
 }
 
 /// The names of the numbers of a stone.
@@ -124,6 +165,33 @@ pub fn stone_energies(stone: [f64; STONE], states: Vec<[f64; 8]>, smooth: bool) 
         stone.energy_slipping(&state, [u, v], smooth)
     };
     Ok(states.iter().map(energy).collect())
+}
+
+/// Unit and description of each number of a motion among many, in the order of `StoneSummary::NAMES`.
+const STONE_LABELS: [[&str; 2]; StoneSummary::NAMES.len()] = [
+    ["1", "vertical along axis 1 at the end"],
+    ["1", "vertical along axis 2 at the end"],
+    ["1", "vertical along axis 3 at the end"],
+    ["sqrt(g/a)", "angular velocity along axis 1 at the end"],
+    ["sqrt(g/a)", "angular velocity along axis 2 at the end"],
+    ["sqrt(g/a)", "angular velocity along axis 3 at the end"],
+    ["sqrt(a/g)", "time of the end"],
+    ["sqrt(g/a)", "angular velocity about the vertical at the end"],
+    ["1", "how often the spin has turned back"],
+    ["sqrt(a/g)", "time at which the spin first turned back"],
+    ["M g a", "heat of friction"],
+    ["1", "estimated error of the worst number of the state"],
+    ["sqrt(a/g)", "time up to which the motion is known"],
+];
+
+/// Name, unit and description of every number of a motion among many.
+#[pyfunction]
+pub fn stone_columns() -> Vec<[&'static str; 3]> {
+    StoneSummary::NAMES
+        .into_iter()
+        .zip(STONE_LABELS)
+        .map(|(name, [unit, about])| [name, unit, about])
+        .collect()
 }
 
 /// Follows many stones from many starts to the last of the times, and writes the wanted columns.

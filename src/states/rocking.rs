@@ -1,22 +1,25 @@
 //! A stone that spins upright, and its rocking.
 //!
 //! ```text
-//! (w1, w2, n1, n2)' = A (w1, w2, n1, n2),   det(lambda - A) = lambda^4 + a3 lambda^3 + a2 lambda^2 + a1 lambda + a0
+//! (w1, w2, n1, n2)' = A (w1, w2, n1, n2)
+//! det(lambda - A) = lambda^4 + a3 lambda^3 + a2 lambda^2 + a1 lambda + a0
 //! a3 = c31 W,  a2 = c20 + c22 W^2,  a1 = c11 W + c13 W^3,  a0 = c00 + c02 W^2 + c04 W^4        W is the spin
 //! untwisted   a3 = a1 = 0: stable where both roots lambda^2 are real and not positive
 //! twisted     stable where a3, a1, a0 > 0 and a3 a2 a1 > a1^2 + a3^2 a0 (Routh 1877, Hurwitz 1895)
-//! (I1 + h^2) w1' + I12 w2' = W (I12 w1 + (I2 - I3 - h r1 + h^2) w2) + (h - r2 + h W^2 (r1 - r2)) n2        n1' = W n2 - w2
-//! I12 w1' + (I2 + h^2) w2' = W ((I3 - I1 + h r2 - h^2) w1 - I12 w2) + (r1 - h + h W^2 (r1 - r2)) n1        n2' = w1 - W n1
-//! h = a3 + d3 is the height of the centre of mass, r1 = a1^2/a3 and r2 = a2^2/a3 the radii of curvature below
+//! (I1 + h^2) w1' + I12 w2' = W (I12 w1 + (I2 - I3 - h r1 + h^2) w2) + (h - r2 + h W^2 (r1 - r2)) n2
+//! I12 w1' + (I2 + h^2) w2' = W ((I3 - I1 + h r2 - h^2) w1 - I12 w2) + (r1 - h + h W^2 (r1 - r2)) n1
+//! n1' = W n2 - w2,   n2' = w1 - W n1
+//! height of the centre of mass h = a3 + d3, radii of curvature at the bottom r1 = a1^2/a3 and r2 = a2^2/a3,
+//! all from the semi-axes a1, a2 and a3
 //! ```
-//! The two equations for w are Newton's and Euler's law of a stone that rolls, to first order in w1, w2, n1 and n2; A has
-//! twice the digits. The odd terms of a twisted stone change their
-//! sign with the spin: of its two modes of rocking one grows and the other dies, and with the other direction of spin they
-//! change places. The faster growth belongs to the higher frequency, so that one direction turns back much sooner (Bondi,
-//! Proc. R. Soc. A 405, 265 (1986)).
+//! The two equations for w are Newton's and Euler's law of a stone that rolls, to first order in w1, w2, n1
+//! and n2; A is computed with twice the digits. The terms of a twisted stone that are odd in W change their
+//! sign with the spin: of its two modes of rocking one grows and the other decays, and with the opposite spin
+//! they change places. The faster growth belongs to the higher frequency, so that one direction turns back
+//! much sooner (Bondi, Proc. R. Soc. A 405, 265 (1986)).
 //!
-//! Error: 1e-13 of the largest eigenvalue.
-//! `tests/test_stone_reference.py` compares them with 60 digits from another model.
+//! Error: 1e-13 of the largest eigenvalue. `tests/test_stone_reference.py` compares the eigenvalues with 60
+//! digits from another model.
 
 use crate::error::{Error, within};
 use crate::laws::stone::Ellipsoid;
@@ -25,15 +28,16 @@ use core::ops::{Add, Mul, Sub};
 
 type Long = Sum<f64>;
 
-/// What counts as zero: a coefficient, the last move of a root, and the imaginary part of a real root.
+/// Relative sizes below which these count as zero: a leading coefficient, the last change of a root, and the
+/// imaginary part of a root, which then is real.
 const ZEROS: [f64; 3] = [1e-28, 1e-26, 1e-24];
 
-/// The two modes in which a stone rocks that spins upright, the slower one first.
+/// The two modes of rocking of a stone that spins upright, the slower one first.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rocking {
     /// The rate at which each mode grows (the larger one of two real rates), in sqrt(g/a).
     pub growth: [f64; 2],
-    /// The angular frequency of each mode; 0 of a mode that grows or dies without rocking.
+    /// The angular frequency of each mode; 0 for a mode that grows or decays without oscillation.
     pub frequency: [f64; 2],
     /// The four eigenvalues, as real and imaginary parts.
     pub eigenvalues: [[f64; 2]; 4],
@@ -104,18 +108,19 @@ impl Complex {
 type Quartic = [Long; 4];
 
 impl Ellipsoid {
-    /// How a stone rocks that spins upright at the rate `spin`, with axis 3 up and the contact point at rest.
+    /// Computes the rocking of a stone that spins upright at the rate `spin`, with axis 3 up and the contact
+    /// point at rest.
     ///
-    /// Errors: `OutOfRange` for a spin beyond 1e6, and for a stone that cannot spin upright, since axis 3 is no principal
-    /// axis or does not lead through the centre of mass.
+    /// Errors: `OutOfRange` for a spin beyond 1e6, and for a stone that cannot spin upright, since axis 3 is
+    /// no principal axis or does not lead through the centre of mass.
     pub fn rocking(&self, spin: f64) -> Result<Rocking, Error> {
         self.is_upright()?;
         within("spin", spin, (-1e6, 1e6), "|spin| <= 1e6 sqrt(g/a)")?;
         Ok(self.modes(&self.quartic(spin), spin))
     }
 
-    /// The spins, in ascending order, at which a stone that spins upright becomes stable or unstable. Errors: those of
-    /// [`rocking`](Self::rocking).
+    /// The spins, in ascending order, at which a stone that spins upright becomes stable or unstable. Errors:
+    /// those of [`rocking`](Self::rocking).
     pub fn spin_limits(&self) -> Result<Vec<f64>, Error> {
         self.is_upright()?;
         // Polynomials in W^2 from their values at W = 0, 1 and 2.
@@ -225,7 +230,8 @@ impl Ellipsoid {
             let [a_im, b_im] = [a, b].map(|x| x.im.hi.abs());
             a_im < b_im || a_im == b_im && a.re.hi.abs() < b.re.hi.abs()
         };
-        // Four are put in order by exchanges; a page would have to carry the code of a sort.
+        // Five exchanges sort four eigenvalues; the library's sort would make the program of a
+        // web page longer.
         for (i, j) in [(0, 1), (2, 3), (0, 2), (1, 3), (1, 2)] {
             if before(&all[j], &all[i]) {
                 all.swap(i, j);
@@ -293,7 +299,7 @@ fn even(&[a0, _, a2, _]: &Quartic) -> [Complex; 4] {
     [x, less(x), y, less(y)]
 }
 
-/// The roots of any polynomial, all at a time (Durand and Kerner).
+/// The four roots of a quartic, by simultaneous iteration (Durand and Kerner).
 fn general(quartic: &Quartic) -> [Complex; 4] {
     let number = |re: f64, im: f64| Complex { re: Long::from(re), im: Long::from(im) };
     let bound = (0..4).map(|i| quartic[i].hi.abs().powf(1.0 / (4 - i) as f64)).fold(0.0, f64::max);
@@ -318,6 +324,6 @@ fn general(quartic: &Quartic) -> [Complex; 4] {
             break;
         }
     }
-    // A root next to the real axis, or two next to each other's mirror image, are real or conjugate.
+    // A root as close to the real axis as rounding is real.
     all.map(|x| if x.im.hi.abs() <= ZEROS[2] * bound { Complex { im: Long::from(0.0), ..x } } else { x })
 }

@@ -88,7 +88,9 @@ def _doubted(name: str, value: float) -> None:
 def warn(why: str, kind: type[Warning] = UserWarning) -> None:
     """A warning at the line that called this library."""
     level, frame = 1, sys._getframe()
-    while frame.f_back and str(frame.f_globals.get("__name__")).startswith("spincyl."):
+    # labelled arrays call back what works on plain ones
+    within = "spincyl.", "xarray."
+    while frame.f_back and str(frame.f_globals.get("__name__")).startswith(within):
         level, frame = level + 1, frame.f_back
     warnings.warn(why, kind, stacklevel=level)
 
@@ -400,6 +402,11 @@ def several(most: int, *values: Reals, name: str = "root") -> tuple[Reals, ...]:
         for v in values
     )
     return *spread, np.arange(float(most))
+
+
+def components(vectors: Reals) -> list[Reals]:
+    """The components of vectors (..., n), each an array or a number."""
+    return [vectors[..., i] for i in range(vectors.shape[-1])]
 
 
 def extra(module: str, name: str) -> ModuleType:

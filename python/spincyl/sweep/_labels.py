@@ -1,13 +1,12 @@
 """Named dimensions for many motions: what goes in, what comes out."""
 
-import warnings
 from collections.abc import Callable, Sequence
 from enum import IntEnum
 from typing import Any
 
 import numpy as np
 
-from spincyl._input.numbers import Floats, Reals, extra
+from spincyl._input.numbers import Floats, Reals, extra, warn
 from spincyl.sweep._common import many_blocks
 
 
@@ -38,7 +37,7 @@ def given_up(status: np.ndarray) -> None:
     count = int(np.count_nonzero(status == Status.BOUNDED))
     if count:
         told = f"{count} of {status.size} motions hardly advance and were given up: NaN, Status.BOUNDED"
-        warnings.warn(told, RuntimeWarning, stacklevel=3)
+        warn(told, RuntimeWarning)
 
 
 def labelled(fields: dict[str, Reals]) -> list[Any]:

@@ -1,23 +1,21 @@
 """Many motions at once."""
 
-import math
 from collections.abc import Iterable
 from enum import IntEnum
-from functools import partial
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from spincyl import _core
+from spincyl._asked import Asked
 from spincyl._body import Body
-from spincyl._contact import AnyContact, Coulomb, Viscous, code, fitting, law, named
+from spincyl._contact import TABLES, AnyContact, Coulomb, Viscous, code, fitting, law
 from spincyl._input.numbers import (
     Floats,
     Reals,
     extra,
     flag,
     floats,
-    in_columns,
     is_scalar,
     made,
     number,
@@ -27,13 +25,14 @@ from spincyl._input.numbers import (
     within,
     words,
 )
-from spincyl._input.threads import Progress, callback, is_roomy, thread_count
+from spincyl._input.threads import Progress, is_roomy
 from spincyl._loss import Loss, made_law
 from spincyl._measured import natural_time, speaking
+from spincyl._phases import rubs
 from spincyl._roll import is_stone
 from spincyl._state import State, gripping
-from spincyl.sweep._common import in_si, is_lazy, signature
-from spincyl.sweep._labels import Status, applied, flags, given_up, labelled
+from spincyl.sweep._labels import flags, given_up
+from spincyl.sweep._swept import Question, swept
 
 if TYPE_CHECKING:
     import xarray
@@ -55,8 +54,7 @@ class Answer(IntEnum):
 
 _STATE = ("theta", "w1", "w2", "w3")
 _SLIP = ("slip_along", "slip_across")
-_TOLD = ("error", "method", "status")
-_LABELS = {name: (unit, words) for name, unit, words in _core.columns()}
+LABELS = {name: (unit, words) for name, unit, words in _core.columns()}
 
 
 def roll(
@@ -178,105 +176,68 @@ def roll(
     >>> found["theta_max"].dims, bool((found["error"] < 1e-10).all())
     (('motion',), True)
     """
-    lib = extra("xarray", "sweep")
+    extra("xarray", "sweep")
     if is_stone(bodies):
         from spincyl.sweep import _stones
 
         if step is not None or beyond or restitution is not None or stop_at is not None or losses is not None:
             raise ValueError("step, beyond, restitution, stop_at, losses: not of stones")
-        return _stones.roll(
-            bodies, states, t, want=want, contact=contact, tol=tol, mu=mu, threads=threads, progress=progress
-        )
+        stones = _stones.question(bodies, states, t, want, contact, tol, mu)
+        labels = LABELS | _stones.LABELS
+        return swept(_stones.fill, stones, labels, threads=threads, progress=progress, length="a")
     bodies, states = made("bodies", bodies, Body), made("states", states, State)
-    scale, given = bodies.scale, t
+    scale, seconds = bodies.scale, t
     if scale is not None:
         fitting(contact, scale)
-        given = si("t", t, "second")
+        seconds = si("t", t, "second")
         t = natural_time("t", t, scale)
         step = None if step is None else natural_time("step", step, scale)
         if losses is not None:
             made_law(losses, bodies)
     with speaking(scale):
         at, several = _times(t)
-    job = _job(contact, losses, at, step, flag("beyond", beyond), number("mu", mu), restitution, stop_at)
-    job["tol"] = number("tol", tol)
-    rubs = isinstance(contact, Coulomb | Viscous)
-    if not rubs:
+    asked = Asked(at, step=step, contact=contact, beyond=flag("beyond", beyond), mu=number("mu", mu))
+    asked = _checked(asked._replace(restitution=restitution, stop_at=stop_at), losses)
+    asked = asked._replace(tol=number("tol", tol))
+    if not rubs(contact):
         gripping(states, f"contact={contact!r} has no law for that")
-    summaries = _core.summaries(job["table"], losses is not None)
+    of = TABLES[contact] if isinstance(contact, str) else law(contact)
+    summaries = _core.summaries(of, losses is not None)
     wanted = _wanted(want, several, tuple(summaries))
-    job["spread"] = "states" in wanted
+    asked = asked._replace(spread="states" in wanted)
     fields = _fields(bodies, states, contact, losses)
-    lazy = is_lazy(*fields.values())
-    names = [*_STATE, *(_SLIP if rubs else ())] if {"final", "states"} & {*wanted} else []
-    wide = [job["spread"]] * len(names)
-    names += [name for name in summaries if name in wanted] + list(_TOLD)
-    wide += [False] * (len(names) - len(wide))
-    fill = partial(_columns, given=tuple(fields), times=at, names=tuple(names), job=job)
-    share = 1 if lazy and threads is None else thread_count(threads)
-    run = partial(fill, threads=share, progress=callback(progress))
-    # what is asked wrongly is said before any work
-    with speaking(scale):
-        fill(*(np.empty(0) for _ in fields), threads=1, progress=None)
-    data = applied(run, labelled(fields), names, [_dtype(name) for name in names], wide, at)
-    for name, array in data.items():
-        unit, meaning = _LABELS[name]
-        array.attrs = {"units": unit, "long_name": meaning}
-    data["status"].attrs |= flags(Status)
-    data["method"].attrs |= flags(Answer)
-    coords = {"t": ("t", at, {"units": "sqrt(R/g)"})} if job["spread"] else {}
-    attrs: dict[str, object] = {"contact": named(contact)}
-    attrs |= {"t": float(at[-1]), "tol": job["tol"]}
-    if not rubs:
-        attrs["mu"] = job["mu"]
+    names = [*_STATE, *(_SLIP if rubs(contact) else ())] if {"final", "states"} & {*wanted} else []
+    spread = frozenset(names if asked.spread else ())
+    names += [name for name in summaries if name in wanted] + ["error", "method", "status"]
+    question = Question(fields, names, spread, asked, wanted, scale, seconds)
+    result = swept(_fill, question, LABELS, threads=threads, progress=progress)
+    result["method"].attrs |= flags(Answer)
     if losses is not None:
-        attrs["losses"] = repr(losses)
-    if step is not None:
-        attrs["step"] = job["step"] * bodies._second
-    if lazy:
-        own = {} if scale is None else {"scale": scale}
-        attrs["spincyl_sweep"] = signature("roll", fields, t=at.tolist(), want=wanted, **job, **own)
-    result: xarray.Dataset = in_si(lib.Dataset(data, coords, attrs), scale)
-    if scale is not None:  # times as they were given
-        seconds = floats(given).reshape(-1)
-        result.attrs["t"] = float(seconds[-1])
-        if job["spread"]:
-            result["t"] = ("t", seconds, {"units": "s"})
+        result.attrs["losses"] = repr(losses)
+    if asked.step is not None:
+        result.attrs["step"] = asked.step * bodies._second
     return result
 
 
-def _job(
-    contact: AnyContact,
-    losses: Loss | None,
-    at: Floats,
-    step: float | None,
-    *settings: Any,
-) -> dict[str, Any]:
-    """What is asked of all motions, by the core's names, or an error by ours."""
-    beyond, mu, restitution, stop_at = settings
-    rubs = isinstance(contact, Coulomb | Viscous)
-    table = law(contact) if isinstance(contact, Coulomb | Viscous) else code(contact, rubs=True)
+def _checked(asked: Asked, losses: Loss | None) -> Asked:
+    """What is asked of all motions, or an error by name."""
+    contact, step = asked.contact, asked.step
+    if not rubs(contact):
+        code(contact, rubs=True)
     if losses is not None:
         made_law(losses)
-    if not rubs and (restitution is not None or stop_at is not None):
+    if not rubs(contact) and (asked.restitution is not None or asked.stop_at is not None):
         raise ValueError("restitution, stop_at: only with contact=sc.Coulomb(...) or sc.Viscous(...)")
-    one_of("restitution", restitution, (None, 0.0))
-    one_of("stop_at", stop_at, (None, "rolling"))
-    if rubs or losses is not None:
-        if at[-1] < 0:
+    one_of("restitution", asked.restitution, (None, 0.0))
+    one_of("stop_at", asked.stop_at, (None, "rolling"))
+    if rubs(contact) or losses is not None:
+        if asked.times[-1] < 0:
             raise ValueError(
-                f"t = {float(at[-1])!r}: expected times from 0 on: what is lost does not come back"
+                f"t = {float(asked.times[-1])!r}: expected times from 0 on: what is lost does not come back"
             )
-        if step is not None or beyond or (rubs and mu != np.inf):
+        if step is not None or asked.beyond or (rubs(contact) and asked.mu != np.inf):
             raise ValueError(f"step, mu, beyond: not with contact = {contact!r}, losses = {losses!r}")
-    return {
-        "table": table,
-        "mu": mu,
-        "step": None if step is None else number("step", step),
-        "beyond": beyond,
-        "restitution": None if restitution is None else 0.0,
-        "stop_at_rolling": stop_at == "rolling",
-    }
+    return asked._replace(step=None if step is None else number("step", step))
 
 
 def _fields(bodies: Body, states: State, contact: AnyContact, losses: Loss | None) -> dict[str, Any]:
@@ -318,29 +279,14 @@ def _wanted(want: str | Iterable[str] | None, several: bool, summaries: tuple[st
     return tuple(name for name in kinds if name in asked)
 
 
-def _dtype(name: str) -> type:
-    return np.uint8 if name in ("method", "status") else np.float64
-
-
-def _columns(
-    *fields: Floats,
-    given: tuple[str, ...],
+def _fill(
+    columns: dict[str, Floats],
     times: Floats,
-    names: tuple[str, ...],
-    job: dict[str, Any],
+    asked: dict[str, Any],
+    out: dict[str, Any],
     threads: int,
     progress: Progress | None,
-) -> tuple[np.ndarray, ...]:
-    """The arrays of one block of motions."""
-    shape = np.broadcast_shapes(*(np.shape(x) for x in fields))
-    shapes = [
-        (*shape, times.size) if job["spread"] and name in (*_STATE, *_SLIP) else shape for name in names
-    ]
-    sizes = [math.prod(x) for x in shapes]
-    out: dict[str, Any] = {
-        name: np.empty(size, _dtype(name)) for name, size in zip(names, sizes, strict=True)
-    }
-    columns = dict(zip(given, in_columns(fields, shape), strict=True))
-    _core.ensemble(columns, times, job, out, (threads, is_roomy()), progress)
+) -> None:
+    """Fill the columns of a block of motions."""
+    _core.ensemble(columns, times, asked, out, (threads, is_roomy()), progress)
     given_up(out["status"])
-    return tuple(out[name].reshape(x) for name, x in zip(names, shapes, strict=True))

@@ -1,123 +1,77 @@
 """Many stones at once: how they end, and which of them turn back."""
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from spincyl import _core
-from spincyl._contact import AnyContact, Coulomb, Viscous, code, fitting, named, table
+from spincyl._asked import Asked
+from spincyl._contact import AnyContact, Coulomb, Viscous, code, fitting
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._ellipsoid_state import EllipsoidState
 from spincyl._ending import ErrorWarning
-from spincyl._input.numbers import Reals, extra, floats, made, number, warn, within, words
-from spincyl._input.threads import Progress, callback, thread_count
+from spincyl._input.numbers import Floats, Reals, components, made, number, si, warn, within, words
+from spincyl._input.threads import Progress
 from spincyl._measured import natural_time
-from spincyl.sweep._common import in_si
-from spincyl.sweep._labels import Status, flags, given_up
+from spincyl.sweep._labels import given_up
+from spincyl.sweep._swept import Question
 
-if TYPE_CHECKING:
-    import xarray
-
-#: The names of the state at the end, and what else there is: unit and meaning.
-_FINAL = {
-    **{f"n{i}": ("1", f"vertical along axis {i} at the end") for i in (1, 2, 3)},
-    **{f"w{i}": ("sqrt(g/a)", f"angular velocity along axis {i} at the end") for i in (1, 2, 3)},
-}
-_TOLD = {
-    "spin": ("sqrt(g/a)", "angular velocity about the vertical at the end"),
-    "reversals": ("1", "how often the spin has turned back"),
-    "first_reversal": ("sqrt(a/g)", "time at which the spin first turned back"),
-    "end": ("sqrt(a/g)", "time of the end"),
-    "dissipated": ("M g a", "heat of friction"),
-    "error": ("1", "estimated error of the worst number of the state"),
-    "known_until": ("sqrt(a/g)", "time up to which the motion is known"),
-}
+#: Units and meanings of what there is of a motion; first of all the state at its end.
+LABELS = {name: (unit, meaning) for name, unit, meaning in _core.stone_columns()}
+_FINAL = ("n1", "n2", "n3", "w1", "w2", "w3")
+_TOLD = tuple(name for name in LABELS if name not in _FINAL)
 
 
-def roll(
+def question(
     stones: Ellipsoid,
-    states: Any,
+    states: object,
     t: Reals,
-    *,
     want: str | Iterable[str] | None,
     contact: AnyContact,
     tol: float,
     mu: float,
-    threads: int | None,
-    progress: Progress | None,
-) -> "xarray.Dataset":
-    """What `spincyl.sweep.roll` does with stones."""
-    lib: Any = extra("xarray", "sweep")
-    states = made("states", states, EllipsoidState)
-    scale = stones.scale
+) -> Question:
+    """What `spincyl.sweep.roll` is asked for of stones, or an error by name."""
+    states, scale, seconds = made("states", states, EllipsoidState), stones.scale, t
     if scale is not None:
         fitting(contact, scale)
+        seconds = si("t", t, "second")
         t = natural_time("t", t, scale)
     end = within("t", number("t", t), 0.0, 1e15, "sqrt(a/g), from 0 on")
-    wanted = words(
-        "want", ("spin", "reversals", "first_reversal") if want is None else want, ("final", *_TOLD)
-    )
-    rubs = isinstance(contact, Coulomb | Viscous)
-    if not rubs:
+    default = ("spin", "reversals", "first_reversal")
+    wanted = words("want", default if want is None else want, ("final", *_TOLD))
+    if not isinstance(contact, Coulomb | Viscous):
         code(contact, rubs=True)
-    if not rubs and np.any(states._pair != 0):
-        raise ValueError(f"states: slip, and contact={contact!r} has no law for that: contact=sc.Coulomb(mu)")
-    own: dict[str, Any] = {}
+        if states._slips:
+            why = f"contact={contact!r} has no law for that: contact=sc.Coulomb(mu)"
+            raise ValueError(f"states: slip, and {why}")
+    names = [name for name in _TOLD if name in (*wanted, "error", "known_until")]
+    names += [*(_FINAL if "final" in wanted else ()), "status"]
+    slip = ("slip_x", "slip_y")
+    fields = dict(zip(_core.stone_names(), stones._columns(), strict=True))
+    parts = states.vertical, states.w, states._pair
+    fields |= zip((*_FINAL, *slip), (x for part in parts for x in components(part)), strict=True)
     if isinstance(contact, Coulomb | Viscous):
-        own = dict(zip(("coefficient", "static"), (floats(x) for x in contact._numbers), strict=True))
-        kind = type(contact)(0.0)
-    n, w, slip = (np.moveaxis(np.asarray(x), -1, 0) for x in (states.vertical, states.w, states._pair))
-    names = (*_core.stone_names(), "n1", "n2", "n3", "w1", "w2", "w3", "slip_x", "slip_y", *own)
-    fields = [np.asarray(x, np.float64) for x in (*stones._columns(), *n, *w, *slip, *own.values())]
-    try:
-        shape = np.broadcast_shapes(*(x.shape for x in fields))
-    except ValueError:
-        raise ValueError(
-            f"bodies, states: shapes do not fit: {stones.shape} and {n.shape[1:]}, {w.shape[1:]}"
-        ) from None
-    columns = {
-        name: np.ascontiguousarray(x if x.size == 1 else np.broadcast_to(x, shape)).reshape(-1)
-        for name, x in zip(names, fields, strict=True)
-    }
-    place, coefficients = table(kind if rubs else contact, number("mu", mu))
-    asked = {
-        "t0": 0.0,
-        "slip": (0.0, 0.0),
-        "table": place,
-        "coefficients": coefficients,
-        "losses": None,
-        "step": None,
-        "tol": number("tol", tol),
-        "beyond": False,
-        "restitution": None,
-        "pose": False,
-        "force": False,
-    }
-    always = "error", "known_until"
-    labels = {name: of for name, of in (_FINAL | _TOLD).items() if name in wanted or name in always}
+        fields |= zip(("coefficient", "static"), contact._numbers, strict=True)
+    asked = Asked(np.array([end]), tol=number("tol", tol), contact=contact, mu=number("mu", mu))
+    return Question(fields, names, frozenset(), asked, wanted, scale, seconds)
+
+
+def fill(
+    columns: dict[str, Floats],
+    times: Floats,
+    asked: dict[str, Any],
+    out: dict[str, Any],
+    threads: int,
+    progress: Progress | None,
+) -> None:
+    """Fill the columns of a block of stones."""
     # which motions are known to their end depends on that
-    more = [] if "end" in labels else ["end"]
-    if "final" in wanted:
-        labels |= _FINAL
-    out: dict[str, np.ndarray] = {name: np.full(shape, np.nan) for name in (*labels, *more)}
-    status = np.full(shape, Status.INVALID, np.uint8)
-    flat = {name: x.reshape(-1) for name, x in out.items()} | {"status": status.reshape(-1)}
-    _core.stones(columns, np.array([end]), asked, flat, thread_count(threads), callback(progress))
-    given_up(status)
-    lost = int(np.count_nonzero((out["known_until"] < out["end"]) | np.isinf(out["error"])))
+    all_of = {"end": np.empty(out["status"].size)} | out
+    _core.stones(columns, times, asked, all_of, threads, progress)
+    given_up(out["status"])
+    lost = np.count_nonzero((out["known_until"] < all_of["end"]) | np.isinf(out["error"]))
     if lost:
         why = "beyond, their estimated errors are too large, and no reversal is counted"
-        warn(f"{lost} of {status.size} motions are known only up to known_until: {why}", ErrorWarning)
-    dims = ["motion"] if len(shape) == 1 else [f"motion_{i}" for i in range(len(shape))]
-    data: dict[str, Any] = {
-        name: (dims, x, {"units": labels[name][0], "long_name": labels[name][1]})
-        for name, x in out.items()
-        if name in labels
-    }
-    data["status"] = (dims, status, flags(Status))
-    attrs = {"contact": named(contact), "t": end if scale is None else float(scale.seconds(end)), "tol": tol}
-    if not rubs:
-        attrs["mu"] = float(mu)
-    result: xarray.Dataset = in_si(lib.Dataset(data, attrs=attrs), scale)
-    return result
+        warn(f"{lost} of {out['status'].size} motions are known only up to known_until: {why}", ErrorWarning)

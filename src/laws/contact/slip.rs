@@ -137,7 +137,7 @@ impl<T: Real> Slipping<T> {
         let (mut at, pace) = self.at((s, c), w, u);
         let [d1, _, d3] = at.w;
         let off = s * (s * d3 - c * d1 - w[0] / s * w[1] - s * rate);
-        let (push, more1, more3) = if self.losses.as_ref().is_some_and(Couples::drill_held) {
+        let (push, more1, more3) = if self.losses.as_ref().is_some_and(Couples::holds_drilling) {
             // To keep the drilling at rest takes one more couple, about the vertical.
             let (more1, more3) = (c / s * off, -off);
             let twist = s * i1 * more1 + c * i3 * more3;
@@ -193,7 +193,7 @@ impl<T: Real> Slipping<T> {
         }
         let mut dw = [t1 * self.per_i1, t2 * self.per_i1, t3 * self.per_i3];
         let mut held = [w1.splat(0.0), w1.splat(1.0)];
-        if let Some(losses) = self.losses.as_ref().filter(|losses| losses.drill_held()) {
+        if let Some(losses) = self.losses.as_ref().filter(|losses| losses.holds_drilling()) {
             // Neither the normal force nor friction depends on a couple about the vertical.
             let off = s * dw[0] + c * dw[2] - w2 * (c * w1 - s * w3);
             let (give1, give3) = (s * self.per_i1, c * self.per_i3);
@@ -297,6 +297,12 @@ impl Slipping<f64> {
 /// mu_P(theta) of a body: from this coefficient of friction on, some slip leaves no unique contact force.
 pub fn painleve(body: &Body, theta: f64) -> f64 {
     Slipping::of(&body.shape(), 1.0, true).painleve(theta.sin_cos())
+}
+
+/// Horizontal velocity of the centre of a body that slips with u = (along the lean, across), along the same directions.
+/// With u = 0 it is that of a contact point at rest.
+pub fn centre_velocity(body: &Body, y: &State, slip: [f64; 2]) -> [f64; 2] {
+    Slipping::of(&body.shape(), 1.0, true).centre(y.theta.sin_cos(), [y.w1, y.w2, y.w3], slip)
 }
 
 /// Kinetic and potential energy of a body that slips with u = (along the lean, across), in M g R.

@@ -181,10 +181,10 @@ fn rolling(body: &Body, y: &State, losses: &Losses) -> (Force, Option<Ways>) {
         law.losses.ways = Some(ways);
         law.at((s, c), y.precession(), w, held)
     };
-    let mut ways = Ways { contour, drill_held: true, ..Ways::default() };
+    let mut ways = Ways { contour, holds_drilling: true, ..Ways::default() };
     let mut acted = under(ways, Held::Drilling);
     if !holds(acted.held) {
-        ways = Ways { drilling: -acted.held[0].signum(), drill_held: false, ..ways };
+        ways = Ways { drilling: -acted.held[0].signum(), holds_drilling: false, ..ways };
         acted = under(ways, Held::Nothing);
     }
     let [normal, along, across] = acted.force;
@@ -264,7 +264,7 @@ fn onset(slipping: &Slipping<f64>, angle: (f64, f64), w: [f64; 3], free: f64) ->
     let at = slipping.towards(angle, w, [0.0; 2], [0.0; 2]);
     let (more, mut aside) = (-(height * pressed[1] / i1), depth * pressed[0] / i1 - radius * pressed[2] / i3);
     let mut pulled = depth * depth / i1 + radius * radius / i3;
-    if slipping.losses.is_some_and(|losses| losses.drill_held()) {
+    if slipping.losses.is_some_and(|losses| losses.holds_drilling()) {
         // The couple that holds the drilling cancels the turn about the vertical by a force and by the
         // pressed couple.
         let (s, c) = angle;

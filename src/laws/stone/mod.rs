@@ -17,7 +17,7 @@ pub(crate) mod law;
 mod state;
 
 use crate::error::{Error, within};
-use crate::numbers::vector::{Symmetric, dot};
+use crate::numbers::vector::{Symmetric, cross, dot};
 use core::f64::consts::{FRAC_PI_2, PI};
 use law::StoneLaw;
 pub use state::{StonePose, StoneState};
@@ -207,12 +207,22 @@ impl Ellipsoid {
         moments
     }
 
-    /// A nearly upright state that spins about the vertical: the vertical is turned about axis 2 by `pitch`
-    /// and then about axis 1 by `roll` (radians).
+    /// The state of [`StoneState::spinning`], whatever the stone.
     pub fn spinning(&self, spin: f64, pitch: f64, roll: f64) -> StoneState {
-        let ((sp, cp), (sr, cr)) = (pitch.sin_cos(), roll.sin_cos());
-        let vertical = [-sp, cp * sr, cp * cr];
-        StoneState { vertical, w: vertical.map(|x| spin * x) }
+        StoneState::spinning(spin, pitch, roll)
+    }
+
+    /// The lowest point where this unit vector points upward, counted from the centre of mass.
+    pub fn lowest_point(&self, vertical: [f64; 3]) -> [f64; 3] {
+        self.law(0.0, false).touching(vertical, [0.0; 3]).r
+    }
+
+    /// The slip of the contact point, where `centre` is the horizontal velocity of the centre of mass: both along the axes
+    /// x and y of the laboratory in which the stone has turned from upright by the smallest angle.
+    pub fn slip(&self, y: &StoneState, centre: [f64; 2]) -> [f64; 2] {
+        let lab = law::laboratory(y.orientation());
+        let turned = cross(y.w, self.lowest_point(y.vertical));
+        core::array::from_fn(|i| centre[i] + dot(lab[i], turned))
     }
 
     /// Kinetic and potential energy in M g a, of a stone whose contact point rests (or on a smooth table,
@@ -229,7 +239,7 @@ impl Ellipsoid {
             let lab = law::laboratory(y.orientation());
             return law.energy(&at, y.w, law::across(&lab, slip));
         }
-        let v = crate::numbers::vector::cross(y.w, at.r);
+        let v = cross(y.w, at.r);
         let up = dot(v, at.n);
         law.energy(&at, y.w, core::array::from_fn(|i| v[i] - up * at.n[i]))
     }

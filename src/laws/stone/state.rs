@@ -13,6 +13,14 @@ pub struct StoneState {
 }
 
 impl StoneState {
+    /// A nearly upright state that spins about the vertical: the vertical is turned about axis 2 by `pitch`
+    /// and then about axis 1 by `roll` (radians).
+    pub fn spinning(spin: f64, pitch: f64, roll: f64) -> Self {
+        let ((sp, cp), (sr, cr)) = (pitch.sin_cos(), roll.sin_cos());
+        let vertical = [-sp, cp * sr, cp * cr];
+        Self { vertical, w: vertical.map(|x| spin * x) }
+    }
+
     /// The angular velocity about the vertical.
     pub fn spin(&self) -> f64 {
         dot(self.vertical, self.w)

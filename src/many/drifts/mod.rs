@@ -12,7 +12,7 @@ mod rolling_lanes;
 
 pub use columns::{Centre, DriftOutput, DriftStarts, NO_DRIFT as INVALID};
 
-use super::columns::{Rows, blocks};
+use super::columns::{RowBlock, blocks};
 use super::threads::share;
 use crate::error::{Error, room, spare};
 use crate::motions::drift::{Drift, DriftState};
@@ -52,7 +52,7 @@ fn all(
     );
     spare()?;
     let blocks = blocks(out, count, DRIFTS_PER_BLOCK)?;
-    Ok(share(blocks, threads, go_on, |Rows { first, count, mut out }, still| {
+    Ok(share(blocks, threads, go_on, |RowBlock { first, count, mut out }, still| {
         if starts.centre == Centre::Rolling {
             return rolling_lanes::stops(level(), starts, first, &mut out, still);
         }

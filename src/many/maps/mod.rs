@@ -11,7 +11,7 @@ mod block;
 mod rates;
 mod survey;
 
-use super::columns::{Rows, Split, blocks, fit, rows};
+use super::columns::{RowBlock, Split, blocks, fit, rows};
 use super::threads::share;
 use crate::error::{Error, room, spare};
 use crate::laws::body::Body;
@@ -277,7 +277,7 @@ fn points_of(
     spare()?;
     let blocks = blocks(out, count, POINTS_PER_BLOCK)?;
     let level = level();
-    Ok(share(blocks, threads, go_on, |Rows { first, count, out: block }, _| {
+    Ok(share(blocks, threads, go_on, |RowBlock { first, count, out: block }, _| {
         let columns = columns.map(|x| if x.len() == 1 { x } else { &x[first..first + count] });
         in_lanes!(
             level,

@@ -27,7 +27,7 @@ mod steps;
 mod swung;
 mod walks;
 
-use super::columns::{Rows, blocks};
+use super::columns::{RowBlock, blocks};
 use super::threads::share_aside;
 use crate::error::{Error, spare, spare_for, within};
 use crate::laws::contact::{Contact, TableKind};
@@ -123,7 +123,7 @@ coded! {
         Lanes = 1,
         /// The first integrals, for one motion at a time.
         Single = 2,
-        /// RK4 with steps of a limited error, where the first integrals lose their digits.
+        /// Steps of eighth order, where the first integrals lose their digits.
         Tolerance = 3,
         /// RK4 with the fixed step.
         Step = 4,
@@ -193,7 +193,7 @@ pub(crate) fn roll_among(
     let level = crate::numbers::level();
     let failed = OnceLock::new();
     let mut go_on = |share| failed.get().is_none() && go_on(share);
-    let all = share_aside(blocks, (threads, roomy), &mut go_on, |Rows { first, count, out }, still| {
+    let all = share_aside(blocks, (threads, roomy), &mut go_on, |RowBlock { first, count, out }, still| {
         let (work, mut out) = (MotionBlock { starts, job, first }, out.out);
         let done = match (flows, starts.losses.is_some()) {
             (true, true) => work.flow::<10>(level, count, &mut out, still),

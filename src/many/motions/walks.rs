@@ -11,7 +11,7 @@ use crate::methods::flow::schedule::{STEPS_ALONE, Waiting, follow};
 use crate::methods::flow::{Spent, until_tired};
 use crate::motions::halt::TIME;
 use crate::motions::path::BodyWalk;
-use crate::motions::path::lossy::FALLS;
+use crate::motions::path::lossy::LOSSY_NUMBERS;
 use crate::motions::walk::{Pause, Phases, WalkStep};
 use crate::numbers::side_by_side::{MOST, SideBySide};
 use core::f64::consts::PI;
@@ -55,7 +55,7 @@ fn place<const N: usize>(walk: &BodyWalk<'_, N>) -> Option<(Among, [f64; NUMBERS
     numbers[..4].copy_from_slice(&[body.ell(), body.i1(), body.i3(), body.fillet()]);
     if let Some(lossy) = walk.lossy() {
         let law = LossyKind { contact: walk.contact(), round: !body.is_sharp(), present: lossy.present() };
-        numbers[4..4 + FALLS].copy_from_slice(&lossy.numbers());
+        numbers[4..4 + LOSSY_NUMBERS].copy_from_slice(&lossy.numbers());
         return lossy.is_free().then_some((Among::Lossy(law), numbers));
     }
     let slide = &walk.of.slide;

@@ -1,4 +1,4 @@
-//! The landing of the other rim of a body: the rim does not bounce, and the walk goes on.
+//! The landing of the other rim of a body without a bounce, after which the walk continues.
 
 use super::phases::BodyWalk;
 use crate::laws::contact::landing::{self, Outcome};
@@ -9,7 +9,8 @@ use crate::motions::halt::poses;
 use crate::motions::walk::Next;
 use core::f64::consts::{FRAC_PI_2, PI};
 
-/// A body that rises more slowly than this stays on its side, else landings would follow each other ever faster.
+/// A body that rises with w2 below this after a landing stays on its side. Otherwise landings would follow
+/// each other ever faster, without end.
 const CLATTER: f64 = 1e-9;
 
 impl<const N: usize> BodyWalk<'_, N> {
@@ -25,7 +26,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             self.made.path.upside_down = !self.made.path.upside_down;
         }
         if landed.outcome == Outcome::Changes && poses(N) {
-            // The contact point moves by two half lengths to the other rim, and the body leans to the other side.
+            // The contact point moves by 2 ell to the other rim, and the body leans to the other side.
             let (direction, length) = (self.at[9], 2.0 * self.of.body.ell());
             self.at[11] -= length * direction.cos();
             self.at[12] -= length * direction.sin();

@@ -1,4 +1,4 @@
-//! A phase of a walk that rolls, or slides freely, and loses energy.
+//! The phases in which a body loses energy while it rolls, or slides on a smooth table.
 
 use super::phases::{BodyWalk, LossyPhase};
 use super::write::state;
@@ -12,8 +12,8 @@ use crate::motions::path::lossy::LossyFlow;
 use crate::motions::walk::{Next, Pause, Phases, STILL, after_rest, ending, most_phases};
 
 impl<const N: usize> BodyWalk<'_, N> {
-    /// Begins a phase that loses energy and rolls with friction up to `mu` N, or slides freely. Returns the numbers of
-    /// the flow, None if the phase is over at once.
+    /// Begins a phase that loses energy and rolls with friction up to `mu` N, or slides freely. Returns the
+    /// numbers of the flow, None if the phase is over at once.
     pub(super) fn begins_to_lose(&mut self, mu: f64) -> Result<Option<[f64; N]>, Error> {
         let on = (&self.of.body, self.contact());
         let mut flow = LossyFlow::new(on, mu, &self.ask.losses, self.of.slide.tol, &self.of.state);
@@ -47,26 +47,27 @@ impl<const N: usize> BodyWalk<'_, N> {
             return Ok(Pause::Interrupted);
         };
         self.has_spent(flown.spent);
-        self.doubts(flown.halt, flown.steep, &flown.y);
+        self.claims_time_error(flown.halt, flown.steep, &flown.y);
         if flown.halt == Halt::Pause {
             return Ok(Pause::Here(flow.on_the_way().enter(&flown.y), Some(flown.step)));
         }
         self.halts(flown.y, flown.halt)
     }
 
-    /// Goes on after a halt at the common numbers `shown`: with the same phase, or to its end.
+    /// Continues the phase after a halt, or ends it; `shown` are the numbers that all flows share.
     fn halts(&mut self, shown: [f64; N], halt: Halt) -> Result<Pause<N>, Error> {
         self.arrives(shown);
         Ok(self.meets_halt(halt)?.map_or(Pause::No, |y| Pause::Here(y, None)))
     }
 
-    /// Applies a halt to the walk. Returns the numbers from which the phase goes on, None if the phase is over.
+    /// Applies a halt to the walk. Returns the numbers from which the phase continues, None if the
+    /// phase is over.
     fn meets_halt(&mut self, found: Halt) -> Result<Option<[f64; N]>, Error> {
         let Some(mut phase) = self.of.lossy.take() else { return Ok(None) };
         let (body, ask) = (self.of.body, self.ask);
         let goes_on = ask.beyond && !matches!(ask.table, Table::Rubs(_));
-        if phase.flow.drill_held() && !matches!(found, Halt::Time | Halt::Pause) {
-            self.stills();
+        if phase.flow.holds_drilling() && !matches!(found, Halt::Time | Halt::Pause) {
+            self.removes_drilling();
         }
         let flow = &mut phase.flow;
         let next = match found {
@@ -79,8 +80,8 @@ impl<const N: usize> BodyWalk<'_, N> {
                     self.next = Some(Next::Ends(Ending::Bounded));
                     return Ok(None);
                 }
-                Phases::shake(self);
-                self.renews();
+                Phases::perturbs(self);
+                self.allows_crawling();
                 let doubt = match found {
                     Halt::Contour => flow.doubt(&self.of.state, self.spent.erred * self.of.slide.tol),
                     Halt::Settles => flow.settled_doubt(&self.of.state),
@@ -89,7 +90,7 @@ impl<const N: usize> BodyWalk<'_, N> {
                 self.claims(doubt);
                 let stops = flow.after(found, &self.of.state);
                 if stops && goes_on && found == Halt::Contour {
-                    self.meets(Ending::Stops);
+                    self.records_event(Ending::Stops);
                 }
                 if !stops || goes_on && found == Halt::Contour {
                     let y = flow.enter(&self.at);
@@ -107,7 +108,7 @@ impl<const N: usize> BodyWalk<'_, N> {
                 Next::Ends(Ending::Face)
             }
             _ if goes_on && found != Halt::Rests => {
-                self.meets(ending(found));
+                self.records_event(ending(found));
                 flow.go_beyond();
                 let y = flow.enter(&self.at);
                 self.of.lossy = Some(phase);
@@ -126,7 +127,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             Halt::Slips if ask.table.rubs() => after_rest(Phases::lets_go(self)),
             found => Next::Ends(ending(found)),
         };
-        self.goes_on(next);
+        self.continues_with(next);
         Ok(None)
     }
 }

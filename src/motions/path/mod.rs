@@ -1,15 +1,17 @@
 //! The path of a body on a table with friction, through phases of slipping and of rolling.
 //!
 //! ```text
-//! slip    u = 0 and |F_roll| <= mu_s N      roll          u = 0, more is needed     slip in another direction
-//! roll    |F_roll| = mu_s N                 slip          both   N = 0, a face or the other rim lands: the end
+//! slip    until u = 0: then it rolls if |F_roll| <= mu_s N, else it slips in another direction
+//! roll    until |F_roll| = mu_s N: then it slips
+//! both    until N = 0, or a face or the other rim lands: the end
 //! ```
-//! A slipping phase is integrated (`path::slide`). A rolling phase without losses is the exact solution, so that its
-//! cost does not depend on its length. Where no force, or more than one, obeys the law of friction (Painleve), a start
-//! is refused and a motion ends.
+//! A slipping phase is integrated (`path::slide`). A rolling phase without losses is the exact solution, so
+//! that its cost does not depend on its length. Where no contact force, or more than one, obeys the law of
+//! friction (Painleve), a start is an error and a motion ends.
 //!
-//! Error: the path is computed twice, the second time with a tolerance up to ten thousand times as large, which costs a
-//! third. The claimed error is thirty times the difference of the two paths, scaled by the ratio of the tolerances.
+//! Error: the path is computed twice, the second time with a tolerance up to ten thousand times as large, in
+//! about a third of the time. The claimed error is thirty times the difference of the two paths, scaled by
+//! the ratio of the tolerances.
 
 pub(crate) mod face;
 mod lands;
@@ -35,10 +37,12 @@ use crate::laws::body::Body;
 use crate::methods::SHORT_CODE;
 pub(crate) use phases::BodyWalk;
 
-/// The motion of a body that slips or loses energy, for [`roll_with`](super::motion::roll_with). A page that follows no other
-/// motion calls this function directly and carries no other code. A motion that hardly advances, or in which slipping and
-/// rolling alternate more than 20 times in each unit of time (at least 5,000 and at most 10,000 times), ends there with
-/// [`Ending::Bounded`](super::Ending::Bounded). Error at any time: `Lost` where the equations lose their digits.
+/// The motion of a body that slips or loses energy, for [`roll_with`](super::motion::roll_with).
+/// A web page that needs no other motion calls this function directly, so that its program
+/// contains no other code. A motion that hardly advances, or in which slipping and rolling
+/// alternate more than 20 times in each unit of time (at least 5,000 and at most 10,000 times),
+/// ends there with [`Ending::Bounded`](super::Ending::Bounded). Error at any time: `Lost` where
+/// the equations lose their digits.
 pub fn follow(
     body: &Body,
     start: &Start,
@@ -48,26 +52,39 @@ pub fn follow(
 ) -> Result<Option<Motion>, Error> {
     let fine = check(body, start, ask)?;
     check_times_after(start.time, times)?;
-    let run = |tol: f64, times: &[f64]| walked(body, ask, tol, times, start, go_on);
+    let run = |tol: f64, times: &[f64]| walked((body, start), ask, (tol, false), times, go_on);
     Ok(judged(fine, times, run)?.map(Motion::from))
 }
 
-/// The walk of a body from a start within a tolerance of the steps; its numbers are those that `ask` wants.
+/// One run of a body's walk, with the tolerance `tol` of its steps. Its numbers include a pose and the lost
+/// energy only if `ask` needs them. `integrates` says that a phase without a slip is integrated although
+/// nothing is lost.
 pub(super) fn walked(
-    body: &Body,
+    (body, start): (&Body, &Start),
     ask: &Ask,
-    tol: f64,
+    (tol, integrates): (f64, bool),
     times: &[f64],
-    start: &Start,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Option<Followed>, Error> {
-    // Short code has one kind of walk, with the pose and the lost energy.
+    // `SHORT_CODE` compiles one kind of walk only, with the pose and the lost energy.
     match (SHORT_CODE || ask.pose, !SHORT_CODE && ask.losses.is_none()) {
-        (true, true) => BodyWalk::<13>::of_body(body, ask, tol, times, start)?.run(go_on),
-        (true, false) => BodyWalk::<14>::of_body(body, ask, tol, times, start)?.run(go_on),
-        (false, true) => BodyWalk::<9>::of_body(body, ask, tol, times, start)?.run(go_on),
-        (false, false) => BodyWalk::<10>::of_body(body, ask, tol, times, start)?.run(go_on),
+        (true, true) => walk::<13>(body, start, ask, (tol, integrates), times)?.run(go_on),
+        (true, false) => walk::<14>(body, start, ask, (tol, integrates), times)?.run(go_on),
+        (false, true) => walk::<9>(body, start, ask, (tol, integrates), times)?.run(go_on),
+        (false, false) => walk::<10>(body, start, ask, (tol, integrates), times)?.run(go_on),
     }
+}
+
+fn walk<'a, const N: usize>(
+    body: &Body,
+    start: &Start,
+    ask: &Ask,
+    (tol, integrates): (f64, bool),
+    times: &'a [f64],
+) -> Result<BodyWalk<'a, N>, Error> {
+    let mut walk = BodyWalk::of_body(body, ask, tol, times, start)?;
+    walk.of.integrates |= integrates;
+    Ok(walk)
 }
 
 /// Refuses a body, a start or options out of range. Returns the tolerance of the steps.

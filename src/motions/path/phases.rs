@@ -1,4 +1,4 @@
-//! The phases of a body of revolution: its numbers, its flows, and what begins and ends them.
+//! The phases of a body of revolution: their beginnings, their flows and their ends.
 
 use super::check;
 use super::lossy::LossyFlow;
@@ -23,12 +23,14 @@ use core::f64::consts::PI;
 /// The walk of a body of revolution.
 pub(crate) type BodyWalk<'a, const N: usize> = Walk<'a, BodyPhases, N>;
 
-/// Sine of theta below which a falling face has landed if slipping and sticking alternate within no time.
+/// Sine of theta below which a falling face has landed if slipping and sticking alternate without an
+/// advance of time.
 const ALL_BUT_FLAT: f64 = 1e-6;
-/// The first step of a rougher run is this many times as long.
+/// The first step of a rougher run is this many times as long as that of the finer run, so that
+/// their steps differ.
 const LONGER: f64 = 3.0;
 
-/// What the phases of a body know: its equations, and the present phase.
+/// The data of a body's walk: its equations, and the present phase.
 pub(crate) struct BodyPhases {
     pub body: Body,
     pub slide: Slide,
@@ -41,7 +43,8 @@ pub(crate) struct BodyPhases {
     pub(super) lossy: Option<LossyPhase>,
     /// Whether the body only tilts, so that rounding must not make the body turn.
     pub(super) planar: bool,
-    /// The end of a whirr that slips, where one comes down by infinitely many turns.
+    /// Estimates of the end of a slipping whirr; None if the losses do not let a whirr last for
+    /// infinitely many turns.
     pub(super) tail: Option<LastTurns>,
 }
 
@@ -49,7 +52,8 @@ pub(crate) struct BodyPhases {
 #[derive(Clone, Copy)]
 pub(super) struct LossyPhase {
     pub(super) flow: LossyFlow,
-    /// Time of the last change of holds or ways, number of such changes within no time, and their total number.
+    /// The time of the last change of holds or signs, the number of such changes in succession at the same
+    /// time, and their total number.
     pub(super) since: f64,
     pub(super) still: u32,
     pub(super) count: usize,
@@ -68,7 +72,7 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
             slide: Slide::new(body, &ask.table.friction(), &ask.losses, tol),
             state: start,
             start,
-            integrates: !ask.table.rubs() || !ask.losses.is_none(),
+            integrates: ask.table == Table::Smooth || !ask.losses.is_none(),
             lossy: None,
             planar: start.w1 == 0.0 && start.w3 == 0.0 && slip[1] == 0.0,
             tail: (!body.is_ball() && ask.losses.turn_endlessly()).then(LastTurns::default),
@@ -76,7 +80,7 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
         let mut walk = Self::new(of, at, ask, fine, (time, times))?;
         walk.next = Some(walk.first_phase()?);
         if start.theta < body.theta_end() {
-            BodyPhases::shake(&mut walk);
+            BodyPhases::perturbs(&mut walk);
         }
         Ok(walk)
     }
@@ -90,7 +94,8 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
         self.ask.table.contact()
     }
 
-    /// All numbers of a flow whose first numbers a lane has followed; the missing energy has become heat or is lost.
+    /// All numbers of a flow of which a lane has computed only the first ones. The missing energy has become
+    /// heat, or is lost.
     pub fn followed(&self, from: &[f64; N], y: [f64; N]) -> [f64; N] {
         let mut all = y;
         all[8..].copy_from_slice(&from[8..]);
@@ -104,8 +109,9 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
         all
     }
 
-    /// Moves the walk to the numbers at which a flow has halted. The axis of a ball may have passed the vertical, where s
-    /// is negative: then the ball leans to the other side, so that its lean, w1, w2 and the slip change their signs.
+    /// Moves the walk to the numbers at which a flow has halted. The axis of a ball may have passed the
+    /// vertical, where s is negative: then the ball leans to the other side, so that its lean, w1, w2 and the
+    /// slip change their signs.
     pub(super) fn arrives(&mut self, at: [f64; N]) {
         self.at = at;
         if self.at[0] < 0.0 {
@@ -118,8 +124,8 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
         self.of.state = state(&self.at);
     }
 
-    /// Takes away the drilling that the error of the steps has made, since dry friction has held the drilling at rest.
-    pub(super) fn stills(&mut self) {
+    /// Removes the drilling w_z that errors of the steps have caused while dry friction held it at zero.
+    pub(super) fn removes_drilling(&mut self) {
         let (s, c) = state(&self.at).theta.sin_cos();
         let drilling = s * self.at[2] + c * self.at[4];
         (self.at[2], self.at[4]) = (self.at[2] - s * drilling, self.at[4] - c * drilling);
@@ -127,11 +133,12 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
         self.of.state = state(&self.at);
     }
 
-    /// The time at which a whirr that slips ends, and its error, if they are known and no time is asked for before.
+    /// The time at which a slipping whirr ends, and its error, if they are known and no output is
+    /// requested before.
     pub(super) fn whirr_ends(&mut self, at: &[f64; N]) -> Option<[f64; 2]> {
         let until = self.until().unwrap_or(f64::INFINITY);
         let tail = self.of.tail.as_mut()?;
-        tail.notes(at[7], at[0], at[2]);
+        tail.adds_point(at[7], at[0], at[2]);
         tail.known(at[0], until)
     }
 
@@ -140,7 +147,7 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
         (self.at[0], self.at[7]) = (0.0, time);
         self.of.state = state(&self.at);
         self.claims(doubt);
-        self.meets(Ending::Face);
+        self.records_event(Ending::Face);
     }
 
     /// Whether a body at theta_end, whose contact point rests, rises under the contact force.
@@ -180,13 +187,14 @@ impl<const N: usize> Phases<N> for BodyPhases {
         [walk.at[5], walk.at[6]]
     }
 
-    fn shake(walk: &mut BodyWalk<'_, N>) {
-        if walk.shake == 0.0 {
+    fn perturbs(walk: &mut BodyWalk<'_, N>) {
+        if walk.perturbation == 0.0 {
             return;
         }
-        let (down, up) = (1.0 - walk.shake, 1.0 + walk.shake);
+        let (down, up) = (1.0 - walk.perturbation, 1.0 + walk.perturbation);
         let State { theta, w1, w2, w3 } = walk.of.state;
-        // What is at rest stays at rest: the drilling w_z, the rolling w_h and the rocking w2 change by shares of themselves.
+        // Drilling w_z, rolling w_h and rocking w2 change by shares of themselves: one that is
+        // zero stays zero.
         let (s, c) = theta.sin_cos();
         let (drilling, rolling) = ((s * w1 + c * w3) * up, (c * w1 - s * w3) * up);
         let theta = theta * down;
@@ -228,9 +236,9 @@ impl<const N: usize> Phases<N> for BodyPhases {
         lies.then_some(Ending::Side)
     }
 
-    /// A rolling phase watches for its own ends, at its start too.
+    /// A phase without a slip checks its margins at its start itself.
     fn begins_without_slip(_: &mut BodyWalk<'_, N>) -> Next {
-        Next::Rolls { grace: false }
+        Next::Rolls { at_limit: false }
     }
 
     fn rests(walk: &BodyWalk<'_, N>) -> Standstill {
@@ -240,7 +248,7 @@ impl<const N: usize> Phases<N> for BodyPhases {
         let_go(&walk.of.body, &walk.of.state, &walk.friction(), &walk.ask.losses)
     }
 
-    fn jam(walk: &BodyWalk<'_, N>) -> Error {
+    fn no_unique_force(walk: &BodyWalk<'_, N>) -> Error {
         let (mu, theta) = (walk.friction().strength(), walk.of.state.theta);
         Error::Painleve { mu, theta, limit: painleve(&walk.of.body, theta) }
     }
@@ -248,7 +256,7 @@ impl<const N: usize> Phases<N> for BodyPhases {
     fn is_over(walk: &mut BodyWalk<'_, N>, next: &Next) -> bool {
         let fall = walk.at[1] * walk.at[3];
         if loses(N) && walk.still > STILL && walk.at[0] < ALL_BUT_FLAT && fall > 0.0 {
-            // Slipping and sticking no longer matter, since the face is on the table.
+            // Whether the face slips or sticks no longer matters, since it is all but on the table.
             let left = walk.at[0] / fall;
             walk.lies_flat([walk.at[7] + left, left]);
             return true;
@@ -268,7 +276,7 @@ impl<const N: usize> Phases<N> for BodyPhases {
     }
 
     fn slips(walk: &mut BodyWalk<'_, N>) -> [f64; N] {
-        walk.of.slide.face(&walk.of.state, [walk.at[5], walk.at[6]], [0.0; 2]);
+        walk.of.slide.sets_ways(&walk.of.state, [walk.at[5], walk.at[6]], [0.0; 2]);
         walk.at
     }
     fn slips_on(walk: &mut BodyWalk<'_, N>) -> [f64; N] {
@@ -276,7 +284,7 @@ impl<const N: usize> Phases<N> for BodyPhases {
     }
 
     fn slow(walk: &mut BodyWalk<'_, N>, way: [f64; 2]) -> BodySlips {
-        walk.of.slide.face(&walk.of.state, [0.0; 2], way);
+        walk.of.slide.sets_ways(&walk.of.state, [0.0; 2], way);
         BodySlips::of(&walk.of.slide.law, walk.of.slide.tol, N)
     }
 
@@ -286,7 +294,8 @@ impl<const N: usize> Phases<N> for BodyPhases {
             let moved = series.at(moment);
             let place = FlowPlace { y: moved, carry: [0.0; N], rate: [0.0; N] };
             let mut all = slide.margins(&place).map(|margin| margin.value);
-            // Those of a face and of a side do not depend on the slip.
+            // The margins of a face and of the other rim do not depend on the slip, and are those at
+            // the time itself.
             let y = series.at(t);
             (0..2).filter(|i| slide.watches(*i)).for_each(|i| all[i] = slide.margin(&y, i));
             // The margin of a jam is proportional to the speed of a dry slip, and that speed may dip.
@@ -301,17 +310,17 @@ impl<const N: usize> Phases<N> for BodyPhases {
 
     fn rolls(
         walk: &mut BodyWalk<'_, N>,
-        grace: bool,
+        at_limit: bool,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Option<WalkStep<N>>, Error> {
-        walk.rolls_on(grace, go_on)
+        walk.rolls_on(at_limit, go_on)
     }
 
-    /// That of a rougher run is longer, since two runs with the same steps have the same errors, which an unstable start
-    /// makes grow unseen.
+    /// The first step of a rougher run is longer. Two runs with the same steps would have the same errors,
+    /// whose growth from an unstable start their difference would not show.
     fn first(walk: &BodyWalk<'_, N>, y: &[f64; N]) -> f64 {
         let first = walk.lossy().map_or_else(|| walk.of.slide.first(y), |flow| flow.first(y));
-        if walk.shake > 0.0 { LONGER * first } else { first }
+        if walk.perturbation > 0.0 { LONGER * first } else { first }
     }
 
     fn flows(
@@ -330,7 +339,7 @@ impl<const N: usize> Phases<N> for BodyPhases {
         walk.slip_ends(y, halt);
     }
 
-    /// A margin that depends on a force changes with the speeds, so that its errors grow with the largest speed.
+    /// The error of a margin that depends on a force is proportional to the largest speed.
     fn grows(&self, halt: Halt, y: &[f64; N]) -> Option<f64> {
         match halt {
             Halt::Side | Halt::Rests => Some(1.0),

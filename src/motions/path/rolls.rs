@@ -1,4 +1,4 @@
-//! The rolling phases of a walk: by the first integrals to their end, or as a flow where energy is lost.
+//! The rolling phases of a body: by the first integrals, or integrated as a flow where energy is lost.
 
 use super::phases::BodyWalk;
 use crate::error::Error;
@@ -16,14 +16,15 @@ use crate::motions::{Ask, Ending, Start};
 use core::f64::consts::{PI, TAU};
 use nalgebra::Point2;
 
-/// The least inclination of a motion by first integrals.
+/// A face nearer to the table than this angle has landed, since the first integrals lose their digits there.
 const LEAST: f64 = 1e-8;
 
 impl<const N: usize> BodyWalk<'_, N> {
-    /// Follows a rolling phase by the first integrals to its end, or begins its flow if the body loses energy.
+    /// Follows a rolling phase by the first integrals to its end, or begins its flow if the
+    /// body loses energy.
     pub(super) fn rolls_on(
         &mut self,
-        grace: bool,
+        at_limit: bool,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Option<WalkStep<N>>, Error> {
         let Friction::Coulomb { fixed, .. } = self.friction() else { return Ok(None) };
@@ -32,7 +33,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         if times.is_empty() {
             return Ok(None);
         }
-        let mu = if grace { fixed * (1.0 + GRACE) } else { fixed };
+        let mu = if at_limit { fixed * (1.0 + GRACE) } else { fixed };
         let (body, y, rubs) = (self.of.body, self.of.state, self.ask.table.rubs());
         if self.of.integrates {
             return Ok(self.begins_to_lose(mu)?.map(WalkStep::Flows));
@@ -67,7 +68,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             }
         }
         let Some(event) = rolled.event else { return Ok(None) };
-        // The pose at the event is computed separately.
+        // The pose at the event is computed separately, since `rolled` has poses at the requested times only.
         if self.ask.pose && (event.ending == Ending::Slip || event.ending == Ending::Side) {
             let ask = Ask { beyond: true, ..ask };
             let then = by_first_integrals(&body, &from, &[event.time], &ask, go_on)?;
@@ -87,7 +88,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             Ending::Side if self.ask.restitution.is_some() => self.lands(),
             ending => Next::Ends(ending),
         };
-        self.goes_on(next);
+        self.continues_with(next);
         Ok(None)
     }
 

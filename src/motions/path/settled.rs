@@ -1,41 +1,45 @@
-//! A settled contact: a couple that grows with a power of psi' stops the contact ever faster while the face falls.
+//! A settled contact: psi' follows a balance of couples, since a couple that grows with a power of psi' stops
+//! the contact point ever faster while the face falls.
 //!
 //! ```text
-//! psi'   at which the couple along the contour balances the couple that turns the contact, the term of psi'' included
-//! k psi'^(3/2) + slope psi' = push,   slope = c A^2 + (pi/4) mu/s        rate = -(c w2/s) (push + film psi')/slope
+//! psi'   balances the couple along the contour with the couple that turns the contact, psi'' included
+//! k psi'^(3/2) + slope psi' = push,   slope = c A^2 + film,   film = (pi/4) viscosity/s
+//! psi'' = -(c w2/s) (push + film psi')/(slope + (3/2) k psi'^(1/2))
 //! ```
-//! Where the contact stops thousands of times faster than the face falls, psi' follows that balance (Tikhonov 1952),
-//! and the motion is no longer stiff. Rolling and slipping bodies share this code.
+//! Where the contact stops thousands of times faster than the face falls, psi' follows that balance (Tikhonov
+//! 1952), and the motion is no longer stiff. Rolling and slipping bodies share this code.
 //!
-//! Error: after three sweeps the square of the ratio of the two rates, that of the fall over that of the stop.
+//! Error: after three sweeps the square of the ratio of the two rates, that of the fall over
+//! that of the stop.
 
 use crate::laws::loss::{Couples, Law};
 use core::f64::consts::FRAC_PI_4;
 
-/// Number of sweeps towards the balance.
+/// Number of times that psi'' is corrected from the balance of the sweep before.
 const SWEEPS: u32 = 3;
-/// Sine of theta below which the contact of a falling face can settle, and largest s psi' over the speed of fall.
+/// The contact of a falling face settles only where sin(theta) is below `CLOSE`, and s psi' below `SLOWER`
+/// times the speed of fall.
 pub(crate) const CLOSE: f64 = 0.01;
 pub(crate) const SLOWER: f64 = 0.01;
-/// Least ratio of the rates of stop and fall for a settled contact near the table, and sine of theta beyond which a
-/// larger ratio is required.
+/// Least ratio of the rates of stop and fall for a settled contact near the table, and sine of theta above
+/// which a larger ratio is required. With a smaller ratio the balance would be less accurate.
 const FASTER: f64 = 4e3;
 const NEARBY: f64 = 1e-4;
 
-/// Safety factor of the delay of a stop.
+/// Safety factor in the upper bound of a stop's delay.
 const LATER: f64 = 1.5;
 
 /// Cost of a step with a settled contact, in ordinary steps.
 pub(crate) const EFFORT: u64 = 30;
 
-/// Least ratio of the rates for a contact whose balance has an error below the share `SMALL` of the tolerance. This error
-/// is s psi', which is a part of w1, divided by the square of the ratio.
+/// Least ratio of the rates for a contact whose balance has an error below the share `SMALL` of the
+/// tolerance. This error is s psi', which is a part of w1, divided by the square of the ratio.
 const FAST: f64 = 40.0;
 const SMALL: f64 = 0.01;
 
-/// How far s psi' of a settled contact may be from its balance, in units of the tolerance. None if the contact, which
-/// stops at the given rate, does not stop fast enough in comparison with the fall of its face. `turns` is s psi' in the same
-/// units.
+/// The largest distance of s psi' from its balance at which a contact settles, in units of the tolerance.
+/// None if the contact, which stops at the rate `rate`, does not stop fast enough in comparison with the fall
+/// of its face. `turns` is s psi' in units of the tolerance.
 pub(crate) fn settles_within(
     losses: &Couples<f64>,
     (s, fall): (f64, f64),
@@ -47,14 +51,15 @@ pub(crate) fn settles_within(
     if ratio > FASTER * (1.0 + s / NEARBY).sqrt() {
         return Some(100.0);
     }
-    // The time at which dry friction stops the contact depends on psi' itself.
+    // With dry friction the smaller ratio is not enough, since the time of the stop depends on psi' itself.
     let small = turns.abs() < SMALL * ratio * ratio && !losses.has(Law::DryContour);
     (ratio > FAST && small).then_some(1.0)
 }
 
-/// Bound of the time by which a settled contact stops later than dry friction balances its push. The contact lags
-/// behind its balance, which falls with the face, by 1/rate. The rate of a couple that grows with a power of psi'
-/// vanishes at the stop; the lag is then the time in which this couple takes the last of the speed.
+/// Upper bound of the delay of a settled contact, which stops after dry friction has balanced the push.
+/// As the balance falls with the face, psi' lags behind it by the time 1/rate. If the couple grows with
+/// a power of psi', the rate vanishes at the stop, and the lag is the time in which this couple takes
+/// the last of psi'.
 pub(crate) fn lag(
     losses: &Couples<f64>,
     (s, fall): (f64, f64),
@@ -76,7 +81,7 @@ pub(crate) struct Turned<A> {
     pub normal: f64,
 }
 
-/// A settled contact in its balance.
+/// The motion of a settled contact, whose couples balance.
 pub(crate) struct Balance<A> {
     pub precession: f64,
     pub w: [f64; 3],
@@ -84,7 +89,8 @@ pub(crate) struct Balance<A> {
     pub spin: f64,
 }
 
-/// The balance of a settled contact, from w_z, w2 and the radius of the circle of contact; `way` is the sign of psi'.
+/// The balance of a settled contact, from w_z, w2 and the radius of the circle of contact; `way` is
+/// the sign of psi'.
 pub(crate) fn balance<A>(
     losses: &Couples<f64>,
     ((s, c), radius): ((f64, f64), f64),
@@ -133,4 +139,24 @@ fn balanced(losses: &Couples<f64>, s: f64, radius: f64, push: f64) -> f64 {
         }
     }
     way * z * z
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::laws::loss::{Couples, Law, Losses};
+
+    #[test]
+    fn the_balance_knows_every_law_along_the_contour() {
+        for law in Law::ALL {
+            let losses = Couples::of(&Losses::of(law, 0.3), |x| x);
+            let slope = |s: f64, spin: f64| losses.slope(s, 0.9, spin);
+            let known = law == Law::BoundaryLayer || slope(0.1, 1.0) == slope(0.1, 2.0);
+            assert!(
+                known,
+                "{law:?}: `balanced` and `lag` in path/settled.rs know one power of psi' but the first"
+            );
+            let known = law == Law::AirFilm || slope(0.1, 1.0) == slope(0.2, 1.0);
+            assert!(known, "{law:?}: `balance` in path/settled.rs knows one slope that depends on theta");
+        }
+    }
 }

@@ -1,4 +1,4 @@
-//! The slipping phases of a body, to their end.
+//! The slipping phases of a body, and the phase that follows each of them.
 
 use super::face::turning_share;
 use super::phases::BodyWalk;
@@ -10,7 +10,7 @@ use crate::motions::Ending;
 use crate::motions::halt::{Halt, loses};
 use crate::motions::walk::{Next, Pause, Phases, after_rest, ending};
 
-/// Number of steps between two looks at a whirr that slips.
+/// Number of steps between two estimates of the end of a whirr that slips.
 const STEPS_PER_LOOK: u64 = 64;
 
 impl<const N: usize> BodyWalk<'_, N> {
@@ -22,7 +22,8 @@ impl<const N: usize> BodyWalk<'_, N> {
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Pause<N>, Error> {
         let (slide, first) = (self.of.slide, self.made.motion.states.len());
-        // A whirr that slips is looked at from time to time, so that its end is known before its last turns.
+        // The flow of a whirr pauses regularly, so that its end can be extrapolated before its last
+        // turns are computed.
         let most = if self.of.tail.is_some() { steps.most.min(STEPS_PER_LOOK) } else { steps.most };
         let steps = Steps { most, ..steps };
         let (ask, made) = (self.ask, &mut self.made);
@@ -41,7 +42,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             }
             return Ok(Pause::Here(slide.enter(&slid.y), Some(slid.step)));
         }
-        self.doubts(slid.halt, slid.steep, &slid.y);
+        self.claims_time_error(slid.halt, slid.steep, &slid.y);
         self.slip_ends(slid.y, slid.halt);
         Ok(Pause::No)
     }
@@ -49,7 +50,8 @@ impl<const N: usize> BodyWalk<'_, N> {
     /// Ends a slip at the numbers `y`, and chooses the next phase.
     pub(super) fn slip_ends(&mut self, y: [f64; N], halt: Halt) {
         if self.of.slide.settled && loses(N) {
-            // The energy that a settled contact seems to win or lose is an error of its numbers.
+            // A change of the sum of energy, heat and lost energy while the contact is settled is an error
+            // of the numbers.
             let sum = |y: &[f64; N]| self.of.slide.energy(y) + y[8] + y[N - 1];
             self.claims((sum(&y) - sum(&self.at)).abs());
         }
@@ -64,8 +66,8 @@ impl<const N: usize> BodyWalk<'_, N> {
             self.claims(doubt);
         }
         self.made.path.slipping += self.at[7] - self.began;
-        if self.of.slide.drill_held() && !matches!(halt, Halt::Time | Halt::Pause) {
-            self.stills();
+        if self.of.slide.holds_drilling() && !matches!(halt, Halt::Time | Halt::Pause) {
+            self.removes_drilling();
         }
         let mut y = state(&self.at);
         if halt == Halt::Side {
@@ -75,7 +77,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         let slip = [self.at[5], self.at[6]];
         match halt {
             Halt::Time | Halt::Pause => {}
-            Halt::Standstill => self.goes_on(after_rest(Phases::rests(self))),
+            Halt::Standstill => self.continues_with(after_rest(Phases::rests(self))),
             Halt::Settles => {
                 self.of.slide.settled = true;
                 self.claims(Slide::settled_doubt(&y));
@@ -90,7 +92,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             }
             Halt::Side if self.ask.restitution.is_some() => {
                 let next = self.lands();
-                self.goes_on(next);
+                self.continues_with(next);
             }
             halt => self.next = Some(Next::Ends(ending(halt))),
         }

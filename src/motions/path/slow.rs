@@ -6,15 +6,15 @@ use crate::motions::walk::slow::{SlowRates, SlowSlips, turned};
 use crate::motions::walk::{SlowLaw, SlowSeries};
 use crate::numbers::Series;
 
-/// The slow slips of a body.
+/// The series of a body's slow slips.
 pub(crate) struct BodySlips {
     slips: SlowSlips<5>,
-    /// The place of the rate of the lost energy among the rates on which no other depends.
+    /// Index of the rate of the lost energy in [`SlowRates::more`].
     lost: Option<usize>,
 }
 
 impl BodySlips {
-    /// The slow slips of a body whose motion has `count` numbers.
+    /// The series for a motion with `count` numbers.
     pub fn of(law: &Slipping<f64>, tol: f64, count: usize) -> Self {
         let mut lost = None;
         let slips = SlowSlips::of(tol, |tape, [s, c, w1, w2, w3], slip, way| {
@@ -75,7 +75,8 @@ impl<const N: usize> SlowLaw<N> for BodySlips {
     }
 }
 
-/// The first `terms` coefficients of the sine and the cosine of an angle that grows from `start` at this rate.
+/// The first `terms` coefficients of the sine and the cosine of an angle that grows from
+/// `start` at this rate.
 fn circle(start: f64, rate: &Series, terms: usize) -> [Series; 2] {
     let (sin, cos) = start.sin_cos();
     let (mut sine, mut cosine) = (Series::of(sin), Series::of(cos));

@@ -14,7 +14,7 @@ use crate::motions::path::slide::Slide;
 use core::f64::consts::{PI, TAU};
 use nalgebra::Point2;
 
-/// The state from the numbers of a slide. A ball whose axis has passed the vertical leans to the other side.
+/// The state from the numbers. A ball whose axis has passed the vertical leans to the other side.
 pub(super) fn state<const N: usize>(y: &[f64; N]) -> State {
     let side = if y[0] < 0.0 { -1.0 } else { 1.0 };
     State { theta: (side * y[0]).atan2(y[1]), w1: side * y[2], w2: side * y[3], w3: y[4] }
@@ -30,29 +30,31 @@ pub(super) fn pose<const N: usize>(y: &[f64; N]) -> Pose {
     Pose { phi: angle(y[9] + turn), psi: angle(y[10] - turn), contact_point: Point2::new(y[11], y[12]) }
 }
 
-/// The errors of theta and of w from steps of this tolerance: relative to theta, and relative to the largest speed.
-fn known(y: &State, tol: f64) -> [f64; 2] {
+/// The errors of theta and of w from steps of this tolerance: relative to theta, and relative to the
+/// largest speed.
+fn state_errors(y: &State, tol: f64) -> [f64; 2] {
     let fastest = y.w1.abs().max(y.w2.abs()).max(y.w3.abs()).max(1.0);
     [tol * y.theta.min(1.0), tol * fastest]
 }
 
 impl Followed {
-    /// Adds a point of a slide to the outputs.
+    /// Adds a point of a slip to the outputs.
     pub(super) fn slid<const N: usize>(&mut self, ask: &Ask, slide: &Slide, y: &[f64; N]) {
         let now = state(y);
         let side = if y[0] < 0.0 { -1.0 } else { 1.0 };
         let slip = [side * y[5], side * y[6]];
         let pose = poses(N).then(|| pose(y));
-        // A contact point that does not slip yet is held against the direction in which its slip begins.
+        // Where a dry slip only begins, with u = 0, friction acts against the direction in which it begins.
         let towards = if slip == [0.0, 0.0] && slide.law.dry { self.path.way } else { slip };
-        let force = ask.force.then(|| doubted(&now, known(&now, slide.tol), |y| slide.law.force(y, towards)));
+        let force =
+            ask.force.then(|| doubted(&now, state_errors(&now, slide.tol), |y| slide.law.force(y, towards)));
         self.put(now, slip, y[8], Kind::Slipping, pose, force);
         if loses(N) {
             self.path.work_lost.push(y[N - 1]);
         }
     }
 
-    /// Adds a point of a body that loses energy to the outputs.
+    /// Adds a point of a phase that loses energy without a slip to the outputs.
     pub(super) fn lossy<const N: usize>(
         &mut self,
         ask: &Ask,
@@ -71,7 +73,7 @@ impl Followed {
                 _ => pose,
             }
         });
-        let force = ask.force.then(|| doubted(&now, known(&now, flow.tol), |y| flow.force(y)));
+        let force = ask.force.then(|| doubted(&now, state_errors(&now, flow.tol), |y| flow.force(y)));
         self.put(now, [0.0; 2], y[8], kind, pose, force);
         if loses(N) {
             self.path.work_lost.push(y[N - 1]);

@@ -1,13 +1,14 @@
 //! The check of a fixed step against the exact motion, before any step is made.
 //!
 //! ```text
-//! loss   = (span/h) mean((h w)^6)/144          share of the nutation's amplitude that RK4 takes away, w^2 = kappa
+//! loss   = (span/h) mean((h w)^6)/144     share of the nutation's amplitude that RK4 takes away, w^2 = kappa
 //! warn   loss > 1e-3, h w > 0.5 or h |phi'| > 0.3          refuse   h w > 2.5 or h |phi'| > 1
 //! ```
-//! In one step RK4 multiplies the amplitude of an oscillation by |1 - z^2/2 + z^4/24 + i (z - z^3/6)| = 1 - z^6/144
-//! with z = h w, and amplifies it for z > 2.83. The energy hardly shows this, since the nutation's share of the energy
-//! is small. In a near-flat passage phi' and w are large for a moment only, and a fixed step jumps over that moment:
-//! its result is then wrong by hundreds of degrees, with the energy right to 0.2 %.
+//! In one step RK4 multiplies the amplitude of an oscillation by |1 - z^2/2 + z^4/24 + i (z - z^3/6)| with z
+//! = h w, which is 1 - z^6/144 to leading order, and amplifies it for z > 2.83. The energy hardly shows this,
+//! since the nutation's share of the energy is small. In a near-flat passage phi' and w are large for a
+//! moment only, and a fixed step jumps over that moment: its result is then wrong by hundreds of degrees,
+//! with the energy right to 0.2 %.
 
 use crate::error::Error;
 use crate::laws::state::State;
@@ -16,10 +17,11 @@ use crate::motions::exact::Swing;
 use crate::motions::limits::{Limits, first_event};
 use crate::states::stability::stiffness;
 
-/// The judgement of a fixed step.
+/// How much a fixed step damps the nutation, and a step that would do.
 pub(crate) struct Guard {
     pub loss: f64,
-    /// A step that takes away less than a thousandth of the amplitude and passes without a warning.
+    /// The largest step, to three digits, that damps the nutation by less than a thousandth and
+    /// gives no warning.
     pub advice: f64,
     pub coarse: bool,
 }
@@ -30,7 +32,7 @@ impl Default for Guard {
     }
 }
 
-/// Judges `step`, or refuses it with an error.
+/// Estimates the damping by `step`. An error if the step is too long for the nutation or the precession.
 pub(crate) fn guard(
     course: &Course<'_>,
     swing: Option<&Swing>,
@@ -54,7 +56,7 @@ pub(crate) fn guard(
     };
     consider(0.0, course.start, 0.0);
     if let Some(swing) = swing {
-        // Only the places that the motion reaches before its end count.
+        // Only nodes that the motion reaches before its end count.
         let end = first_event(swing, limits, way).map_or(span, |e| e.time.abs().min(span));
         for (place, weight) in swing.nodes() {
             if let Some(time) = swing.reached(way, place).filter(|t| *t <= end) {
@@ -63,9 +65,8 @@ pub(crate) fn guard(
             }
         }
     }
-    // The mean of w^6 is taken over time.
+    // The mean over time. Without an exact solution the frequency is that at the start.
     let sixth = if whole > 0.0 { sixth / whole } else { fastest.powi(6) };
-    // The loss is n (h w)^6/144 for n = span/h steps.
     let loss = |h: f64| span * h.powi(5) * sixth / 144.0;
     let patient = (144e-3 / (span * sixth)).powf(0.2);
     let advice = rounded_down(patient.min(0.5 / fastest).min(0.3 / turning));
@@ -76,7 +77,7 @@ pub(crate) fn guard(
     Ok(Guard { loss: loss(step).min(1.0), advice, coarse })
 }
 
-/// Rounds down to three digits, so that the printed step passes the check.
+/// Rounds down to three digits, so that the step in the message passes the check.
 fn rounded_down(x: f64) -> f64 {
     let unit = 10f64.powf(x.log10().floor() - 2.0);
     if unit.is_normal() { (x / unit).floor() * unit } else { x }

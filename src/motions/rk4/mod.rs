@@ -1,4 +1,4 @@
-//! Motions by RK4 with a fixed step: the judgement of the step, and the steps up to the end of the motion.
+//! Motions by RK4 with a fixed step: the check of the step, and the steps up to the end of the motion.
 
 mod guard;
 mod stepped;

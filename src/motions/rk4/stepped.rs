@@ -1,4 +1,4 @@
-//! A motion by a fixed step, judged by a better one.
+//! A motion by RK4 with a fixed step, and its error from the exact motion or a more accurate run.
 
 use super::guard::guard;
 use super::steps;
@@ -10,11 +10,12 @@ use crate::motions::limits::Limits;
 use crate::motions::within::{Known, within};
 use crate::motions::{Ask, Motion};
 
-/// Tolerance of the motion that judges a fixed step where no exact solution does.
+/// Tolerance of the run with which a fixed step is compared where no exact solution is accurate enough. The
+/// error of that run is added to the claimed error.
 const BETTER: f64 = 1e-12;
 
-/// The motion by steps of length `step`, up to the end that a better solution has. `swing` is the exact solution, if it
-/// exists. A step that cannot reach that end is refused.
+/// The motion by steps of length `step`, up to the end of the more accurate solution. `swing` is the exact
+/// solution, if it exists. A step that is too long to reach that end is an error.
 pub(crate) fn stepped(
     course: &Course<'_>,
     swing: Option<&Swing>,
@@ -25,15 +26,15 @@ pub(crate) fn stepped(
 ) -> Result<Option<Motion>, Error> {
     let guarded = guard(course, swing, limits, step)?;
     let known = Known::of(course, swing, limits, ask.beyond);
-    let better = match known.swing {
+    let reference = match known.swing {
         Some(_) => None,
         None => match within(course, swing, limits, ask, BETTER, go_on)? {
-            Some(better) => Some(better),
+            Some(reference) => Some(reference),
             None => return Ok(None),
         },
     };
-    let event = better.as_ref().map_or(known.event, |better| better.event);
-    let count = better.as_ref().map_or(known.count, |better| better.times.len());
+    let event = reference.as_ref().map_or(known.event, |reference| reference.event);
+    let count = reference.as_ref().map_or(known.count, |reference| reference.times.len());
     let by_itself = (step, swing.is_none());
     let Some(mut motion) = steps::run(course, limits, by_itself, count, go_on)? else { return Ok(None) };
     motion.event = event;
@@ -41,10 +42,10 @@ pub(crate) fn stepped(
         judge(&mut motion, swing, event, course.t0);
         motion.error = motion.error.max(known.doubt);
     }
-    if let Some(better) = better {
-        compare(&mut motion, &better);
-        motion.error += better.error;
-        motion.pose_error += better.pose_error;
+    if let Some(reference) = reference {
+        compare(&mut motion, &reference);
+        motion.error += reference.error;
+        motion.pose_error += reference.pose_error;
     }
     (motion.step_loss, motion.advice, motion.coarse) = (guarded.loss, guarded.advice, guarded.coarse);
     Ok(Some(motion))

@@ -1,10 +1,11 @@
 //! Integration by RK4 with a fixed step, with outputs at any times.
 //!
 //! ```text
-//! t_i = t0 + i h;   an output between two of them is a shortened step from the one before
+//! t_i = t0 + i h;   an output between two of these times takes a shortened step from the earlier one
 //! ```
-//! Another solution of the same motion says where it ends; the steps go on up to there. A ball that passes its pole is
-//! stopped at the edge of the pole, and goes on beyond: its axis passes through the vertical.
+//! The end is that of a more accurate solution of the same motion, and the steps go on up to it. Where the
+//! axis of a ball passes through the vertical (its pole), a step ends at the edge of the pole, and the next
+//! one begins at the opposite edge.
 
 use crate::error::{Error, copied};
 use crate::laws::contact::reduced::Rates;
@@ -21,7 +22,8 @@ use core::f64::consts::PI;
 use nalgebra::Point2;
 
 /// Integrates theta, w1, w2 and w3, and with a pose also phi, psi, x and y, by steps of length `h`, at the
-/// first `count` of the times. `unguarded` says that nothing has judged the step, so that every step judges itself.
+/// first `count` of the times. `unguarded`: no exact motion has checked the step, so that each step is
+/// checked against the precession at its start.
 pub(crate) fn run(
     course: &Course<'_>,
     limits: &Limits,
@@ -55,13 +57,14 @@ struct Stage<const N: usize> {
 }
 
 impl<const N: usize> Stage<N> {
-    /// The distance of a face from the table, less the angle at which it has landed.
+    /// The angle between the axis and the vertical, minus `FLAT`: negative where a face has landed, or within
+    /// the pole of a ball.
     fn height(&self) -> f64 {
         self.at.y[0].min(PI - self.at.y[0]) - FLAT
     }
 }
 
-/// An integration; `ROUND` says whether the rim is rounded and rolls.
+/// One integration. `ROUND`: the rim is rounded, and the body rolls.
 struct Runner<'a, const N: usize, const ROUND: bool> {
     course: &'a Course<'a>,
     rates: Rates<f64>,
@@ -116,7 +119,7 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
         Ok(Self { course, rates, contact, unguarded, here, evaluations: 0, motion })
     }
 
-    /// The point with these numbers. An angle that leaves [-pi, pi] moves its whole turns to `turns`.
+    /// The point with these numbers. The whole turns of an angle beyond [-pi, pi] are moved to `turns`.
     #[inline(always)]
     fn place(law: (&Rates<f64>, Contact), t: f64, mut at: Compensated<N>, mut turns: [f64; 2]) -> Stage<N> {
         for i in 4..N.min(6) {
@@ -169,7 +172,8 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
                 // The pole of a ball lies within this step.
                 None if self.course.body.is_ball() => Stage { t: then, ..self.between(then) },
                 None => {
-                    // The face lands within this step, after the last outputs, or the step jumps over a near-flat turn.
+                    // Theta leaves (0, pi) within this step. If outputs remain after the step, it has jumped
+                    // over a near-flat turn; else the face lands after the last output.
                     if times.last().is_some_and(|t| (t - t0).abs() > then.abs()) {
                         let (time, theta, step) = (t0 + self.here.t, self.here.at.y[0], step.abs());
                         return Err(Error::Step { step, time, theta, advice: 0.1 * step });
@@ -211,8 +215,8 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
         Ok(change[0].is_finite().then(|| Self::place(law, t, here.at.plus(&change), here.turns)))
     }
 
-    /// The points at which a ball reaches and leaves the edge of its pole on the way to `ahead`. Between them the axis
-    /// passes through the vertical, so that phi and psi each change by half a turn.
+    /// The points at which a ball reaches and leaves the edge of its pole on the way to `ahead`. Between them
+    /// the axis passes through the vertical, so that phi and psi each change by half a turn.
     fn pole(&self, ahead: &Stage<N>, way: f64) -> Option<(Stage<N>, Stage<N>)> {
         if !self.course.body.is_ball() || ahead.height() >= 0.0 {
             return None;
@@ -225,7 +229,7 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
         y[2] = -y[2];
         if N == 8 {
             let (sin, cos) = y[4].sin_cos();
-            // Across the pole the ball rolls on in one direction.
+            // Across the pole the contact point runs straight on.
             let path = if self.contact == Contact::Rolling { 2.0 * off } else { 0.0 };
             let path = if low { path } else { -path };
             (y[6], y[7]) = (y[6] + path * cos, y[7] + path * sin);
@@ -236,7 +240,8 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
         Some((edge, Self::place((&self.rates, self.contact), t, Compensated::new(y), edge.turns)))
     }
 
-    /// The point at time `t`, reached from the last point by one shortened step, or by a few near the table.
+    /// The point at time `t`, reached from the last point by one shortened step, or by several where one
+    /// would leave (0, pi).
     fn between(&self, t: f64) -> Stage<N> {
         let law = (&self.rates, self.contact);
         let mut place = self.here;

@@ -1,14 +1,14 @@
-//! A stone as a flow: its numbers, their rates, and the margins that end a phase.
+//! The flow of a phase of a stone: its numbers, their rates, and the margins that end the phase.
 //!
 //! ```text
 //! y = (q, w, t; u_x, u_y, heat, x, y)     N = 8 of a stone that rolls without a pose, else N = 13
 //! dt = |u|/(|u| + soft) dsigma            while a contact point slips on a dry table, else dt = dsigma
-//! margins   cos theta - cos theta_end,  N,  and (mu_s N)^2 - F^2 of a contact that rests or the room of one that slips
+//! margins   cos theta - cos theta_end,  N,  and (mu_s N)^2 - F^2 while it rolls, or the room of a slip
 //! ```
-//! The quaternion q = (w, x, y, z) turns the axes of the ellipsoid to those of the laboratory; u is the slip and (x, y)
-//! the contact point on the table. Every step ends with a quaternion of length 1.
+//! The quaternion q = (w, x, y, z) turns the axes of the ellipsoid to those of the laboratory; u is the slip
+//! and (x, y) the contact point on the table. Every step ends with a quaternion of length 1.
 
-use super::known::Noted;
+use super::known::Recorded;
 use super::turns::Spot;
 use crate::laws::contact::grip;
 use crate::laws::stone::law::{StoneLaw, StoneResponse, Touching, across, laboratory, turning};
@@ -27,12 +27,13 @@ pub(super) const STONE_MARGINS: usize = 3;
 /// The numbers of a stone that rolls without a pose, and of any other.
 pub(super) const WITHOUT_POSE: usize = 8;
 pub(super) const ALL: usize = 13;
-/// A margin beyond this many tolerances of a step is far from an end: the errors of motions that are known are smaller.
+/// A minimum of a margin is recorded if it is below this many tolerances of a step, since the errors of a
+/// motion that counts as known may reach it.
 const NEAR_END: f64 = 1e7;
-/// The margin of a contact point that is held.
+/// Index of the margin of static friction, or in a slip of a unique contact force.
 pub(super) const HOLD: usize = 2;
 
-/// The speed of a slip at its end.
+/// A dry slip ends with this speed instead of 0, so that it keeps its direction.
 const ALMOST_NONE: f64 = 1e-150;
 
 /// The motion of the contact point in a phase.
@@ -44,7 +45,7 @@ pub(super) enum Touch {
     Smooth,
 }
 
-/// A phase of a stone.
+/// The equations and the margins of a phase of a stone.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct StoneFlow<'a> {
     pub law: StoneLaw<f64>,
@@ -55,16 +56,16 @@ pub(super) struct StoneFlow<'a> {
     /// The cosine of theta_end; -2 without an edge.
     pub edge: f64,
     pub tol: f64,
-    /// The share of the longest steps that this run takes. A rougher run takes shorter ones, since steps that are equal in
-    /// both runs have equal errors, which would not be seen.
+    /// The longest step of this run as a share of the longest allowed one. It is smaller in a rougher run,
+    /// since equal steps in both runs would have equal errors, which their difference does not show.
     pub stride: f64,
     /// Whether events other than a landing of the edge end the flow.
     pub watch: bool,
-    /// What is noted along the way.
-    pub noted: Option<&'a RefCell<Noted>>,
+    /// The records of reversals and ends, in the finer run.
+    pub recorded: Option<&'a RefCell<Recorded>>,
 }
 
-/// A stone at some numbers: its axes of the laboratory, its contact and its response.
+/// The axes of the laboratory, the contact point and the response of a stone with some numbers.
 pub(super) struct Seen<T> {
     pub lab: [[T; 3]; 3],
     pub at: Touching<T>,
@@ -123,7 +124,7 @@ impl StoneFlow<'_> {
         self.margins_of(&self.seen_at(y))
     }
 
-    /// By how much margin `i` changes if all numbers of the state change by 1, the worst way.
+    /// The sum of |d margin/dy_k| over the numbers of the state, for margin `i`.
     pub fn leans<const N: usize>(&self, y: &[f64; N], i: usize) -> f64 {
         let by = |k: usize| {
             let step = 1e-6 * (1.0 + y[k].abs());
@@ -137,7 +138,8 @@ impl StoneFlow<'_> {
         (0..TIME).map(by).sum::<f64>().max(f64::MIN_POSITIVE)
     }
 
-    /// The numbers a moment after a slip along `way` began, whose speed grows at the rate `growth`.
+    /// The numbers at the time `MOMENT` after the beginning of a slip along `way`, whose speed grows at the
+    /// rate `growth`.
     pub fn nudged(&self, y: &[f64; ALL], way: [f64; 2], growth: f64) -> [f64; ALL] {
         let ([a, b, c, d, e, f, g], mut to) = (core::array::from_fn(|i| y[i]), *y);
         let (lab, w) = (laboratory([a, b, c, d]), [e, f, g]);
@@ -149,8 +151,8 @@ impl StoneFlow<'_> {
         self.kept(to)
     }
 
-    /// The contact force along the axes of the laboratory. A contact point that does not slip yet is held against the
-    /// direction `way` in which its slip begins.
+    /// The contact force along the axes of the laboratory. Where a dry slip only begins, with u = 0, friction
+    /// acts against the direction `way` in which it begins.
     pub fn force(&self, y: &[f64; ALL], way: [f64; 2]) -> Vector3<f64> {
         let Seen { lab, at, mut to, .. } = self.seen_at(y);
         if self.touch == Touch::Slips && self.law.dry && slip_of(y) == [0.0; 2] {
@@ -186,9 +188,9 @@ fn slip_of<const N: usize>(y: &[f64; N]) -> [f64; 2] {
     if N == ALL { [y[8], y[9]] } else { [0.0; 2] }
 }
 
-/// The slip along the horizontal axes of the laboratory, if the stone had the orientation of a start with its vertical. So
-/// a state and its slip can be a start.
-pub(super) fn told_slip(y: &[f64; ALL]) -> [f64; 2] {
+/// The slip in the outputs: its components in the laboratory frame in which the stone has the orientation of
+/// a start with its vertical. So the state and the slip of an output can be a start.
+pub(super) fn output_slip(y: &[f64; ALL]) -> [f64; 2] {
     let slip = slip_of(y);
     if slip == [0.0; 2] {
         return slip;
@@ -251,7 +253,7 @@ impl Flow<STONE_MARGINS> for StoneFlow<'_> {
     fn error<const N: usize>(&self, y: &[f64; N], made: &rk8::Step<f64, N>) -> f64 {
         let per_tol = 1.0 / self.tol;
         let per_speed = per_tol / self.fastest(y);
-        // A vanishing slip must keep its direction.
+        // The error of a dry slip is relative to its speed, so that a vanishing slip keeps its direction.
         let [u, v] = slip_of(y);
         let dry = self.touch == Touch::Slips && self.law.dry;
         let per_slip = if dry { per_speed.max(1e3 / u.hypot(v)) } else { per_speed };
@@ -295,7 +297,7 @@ impl Flow<STONE_MARGINS> for StoneFlow<'_> {
         }
         let left = if speed > 0.0 { speed / slowing } else { 0.0 };
         let mut y: [f64; N] = core::array::from_fn(|i| place.y[i] + left * place.rate[i]);
-        // What is left of the slip has its direction, which the force of friction keeps up to this moment.
+        // A tiny slip remains, whose direction determines the friction at this time.
         (y[8], y[9]) = (u[0] / speed * ALMOST_NONE, u[1] / speed * ALMOST_NONE);
         if speed == 0.0 {
             (y[8], y[9]) = (0.0, 0.0);
@@ -319,9 +321,9 @@ impl Flow<STONE_MARGINS> for StoneFlow<'_> {
     const CLOSELY: bool = true;
 
     fn passed<const N: usize>(&self, (from, h, stages): TakenStep<'_, N>, length: f64, to: &FlowPlace<N>) {
-        let Some(noted) = self.noted else { return };
-        let mut noted = noted.borrow_mut();
-        let Some(turns) = &mut noted.turns else { return };
+        let Some(recorded) = self.recorded else { return };
+        let mut recorded = recorded.borrow_mut();
+        let Some(turns) = &mut recorded.turns else { return };
         let mut spots = [spot(&from.y, &from.rate); rk8::LOOKS.len() + 2];
         let end = spot(&to.y, &to.rate);
         for (to, (stage, _)) in spots[1..].iter_mut().zip(rk8::LOOKS) {
@@ -339,12 +341,12 @@ impl Flow<STONE_MARGINS> for StoneFlow<'_> {
     }
 
     fn grazed<const N: usize>(&self, y: &[f64; N], i: usize, margin: f64) {
-        // Where static friction just holds, a slip that is missed is too short to matter.
-        if let Some(noted) = self.noted
+        // A slip that is missed where static friction only just holds would be too short to matter.
+        if let Some(recorded) = self.recorded
             && margin < NEAR_END * self.tol * self.fastest(y)
             && !(self.touch == Touch::Rolls && self.law.dry && i == HOLD)
         {
-            noted.borrow_mut().grazes.push([y[TIME], margin / self.leans(y, i)]);
+            recorded.borrow_mut().grazes.push([y[TIME], margin / self.leans(y, i)]);
         }
     }
 

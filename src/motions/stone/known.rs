@@ -1,15 +1,14 @@
-//! Until when the motion of a stone is known, and which of its ends are sure.
+//! The time up to which the motion of a stone is known, and whether its ends are certain.
 //!
 //! ```text
-//! known    as long as the claimed error is at most 1 % of the largest speed, or 0.01 of slow motions
-//! sure     an end, or a passage beside one, whose margin is further from zero than four errors of the state can move it:
-//!          |margin|/sum |d margin/dy_i| is its room, in numbers of the state
-//! counts   where reversals of the spin are counted, also at most the spin that counts as turned back, so that the
-//!          direction of such a spin is known
+//! known     while the claimed error is at most 1 % of the largest speed, or 0.01 for slow motions; where
+//!           reversals of the spin are counted, also at most the spin that completes a reversal
+//! room      |margin|/sum |d margin/dy_i|: change of each number of the state that can bring a margin to zero
+//! certain   an end, or a minimum of a margin close to zero, whose room is at least four claimed errors
 //! ```
-//! A stone has no first integrals but its energy, and errors grow like any disturbance of it: a rattleback forgets its start
-//! within a minute. Where the claim of the whole motion does not answer these questions, the motion is followed again to
-//! times in between, by the same steps, and judged up to each of them.
+//! The energy is the only first integral of a stone, and errors grow like any disturbance: a rattleback
+//! forgets its start within a minute. If the error claimed for the whole motion is too large to decide, the
+//! motion is computed again with the same steps and more outputs, and an error is claimed up to each output.
 
 use super::turns::Reversals;
 use crate::error::Error;
@@ -19,44 +18,45 @@ use crate::motions::followed::Followed;
 
 /// Largest error of a state that is known, as a share of the largest speed.
 const KNOWN: f64 = 0.01;
-/// A passage is sure if its room is this many times the claimed error, which is an estimate.
+/// An end or a minimum is certain if its room is at least this many claimed errors; more than one, because
+/// the claimed error is an estimate.
 const SURELY: f64 = 4.0;
-/// Number of times in between.
+/// Number of additional outputs. With fewer, the time up to which a motion is known is coarser.
 const MARKS: usize = 128;
 
-/// What is noted of a motion along its way.
+/// Reversals and ends that the finer run records along a motion.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Noted {
+pub(crate) struct Recorded {
     /// The reversals of the spin, if they are counted.
     pub turns: Option<Reversals>,
-    /// The times of the ends, and of passages beside an end, and the room of each.
+    /// The time and the room of each end, and of each minimum of a margin close to zero.
     pub grazes: Vec<[f64; 2]>,
 }
 
-/// Two runs of a motion to some times, the fine one and the rough one.
+/// The fine and the rough run of a motion, with the same outputs.
 type TwoRuns = [Followed<StoneState>; 2];
 /// Two runs; none if they are interrupted.
 pub(crate) type Runs = Result<Option<TwoRuns>, Error>;
 
-/// Finds until when a motion is known, whose error is already claimed. `again` follows it to other times; if it is
-/// interrupted, the result is false.
+/// Computes the time up to which a motion with a claimed error is known. `again` computes the motion with
+/// other outputs. Returns false if `again` is interrupted.
 pub(crate) fn settle(
     found: &mut Followed<StoneState>,
-    noted: &mut Noted,
+    recorded: &mut Recorded,
     (t0, last, tol): (f64, f64, f64),
     again: &mut dyn FnMut(&[f64]) -> Runs,
 ) -> Result<bool, Error> {
     let error = found.motion.error;
     let phases = found.path.phases.iter();
     let level = KNOWN * phases.fold(1.0, |most: f64, phase| most.max(phase.state.fastest()));
-    let level = noted.turns.as_ref().map_or(level, |turns| level.min(turns.enough));
-    let narrow = noted.grazes.iter().any(|[_, room]| *room < SURELY * error);
+    let level = recorded.turns.as_ref().map_or(level, |turns| level.min(turns.enough));
+    let narrow = recorded.grazes.iter().any(|[_, room]| *room < SURELY * error);
     if !narrow && error <= level {
         return Ok(true);
     }
     let end = found.motion.event.map_or(last, |event| event.time);
     let mut marks: Vec<f64> = (1..=MARKS).map(|k| t0 + (end - t0) * (k as f64 / MARKS as f64)).collect();
-    marks.extend(noted.grazes.iter().map(|[t, _]| t0 + t).filter(|t| *t < last));
+    marks.extend(recorded.grazes.iter().map(|[t, _]| t0 + t).filter(|t| *t < last));
     marks.push(last);
     marks.sort_by(f64::total_cmp);
     marks.dedup();
@@ -76,8 +76,8 @@ pub(crate) fn settle(
         }
         if known == 0 { t0 } else { marks[known - 1] }
     };
-    // The rougher run may have ended at the same passage, a little earlier.
-    let unsure = noted.grazes.iter().find(|[t, room]| {
+    // The output at the end itself is left out, since the rougher run may have ended a little earlier.
+    let unsure = recorded.grazes.iter().find(|[t, room]| {
         let count = marks.partition_point(|mark| *mark < t0 + t);
         *room < SURELY * error && (count > reached || SURELY * claim(count) > *room)
     });
@@ -87,13 +87,13 @@ pub(crate) fn settle(
     let sure = unsure.map_or(f64::INFINITY, |[t, _]| t0 + t);
     let known = if error <= level { f64::INFINITY } else { until() }.min(sure);
     found.path.known_until = known;
-    if let Some(turns) = &mut noted.turns {
+    if let Some(turns) = &mut recorded.turns {
         turns.times.retain(|[_, t]| t0 + t <= known);
     }
     Ok(true)
 }
 
-/// The error that is claimed of a motion up to its first `count` times.
+/// The error that is claimed for a motion up to its first `count` times.
 fn claimed(runs: &TwoRuns, count: usize, tol: f64) -> f64 {
     if count == 0 {
         return 0.0;

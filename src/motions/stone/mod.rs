@@ -1,4 +1,4 @@
-//! Motions of stones: rolling, slipping, and the rocking of a stone that spins upright.
+//! Motions of stones that roll and slip.
 
 mod flow;
 pub(crate) mod known;
@@ -19,7 +19,8 @@ pub(crate) use roll::followed;
 pub use roll::roll;
 pub use rolling::{RollingStone, rolling};
 
-/// Largest error of the length of a vertical.
+/// Largest deviation of the length of a given vertical from 1. A larger one is an error, a smaller
+/// one is corrected.
 const UNIT: f64 = 1e-9;
 
 /// Refuses a start or options out of range. Returns the start with a vertical of length 1, and the tolerance.

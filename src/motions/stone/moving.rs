@@ -5,8 +5,8 @@ use crate::motions::Moving;
 use nalgebra::Vector3;
 
 impl Moving for StoneState {
-    /// A stone may pass over a sharp edge or linger where it is unstable, so that errors are less in proportion to the
-    /// tolerance than those of a rim.
+    /// Larger than for a body of revolution: a stone may pass over a sharp edge or linger near an unstable
+    /// state, so that its errors are less proportional to the tolerance.
     const SAFETY: f64 = 100.0;
     type Numbers = [f64; 6];
     type Pose = StonePose;

@@ -1,7 +1,7 @@
-//! The phases of a stone: its numbers, its flow, and what begins and ends it.
+//! The phases of a stone: their beginnings, their flows and their ends.
 
-use super::flow::{ALL, HOLD, StoneFlow, Touch, WITHOUT_POSE, spot, state, told_slip};
-use super::known::Noted;
+use super::flow::{ALL, HOLD, StoneFlow, Touch, WITHOUT_POSE, output_slip, spot, state};
+use super::known::Recorded;
 use super::slow::StoneSlips;
 use super::turns::Spot;
 use super::write::write;
@@ -24,17 +24,21 @@ use core::cell::RefCell;
 /// The walk of a stone.
 pub(super) type StoneWalk<'a, 'n> = Walk<'a, StonePhases<'n>, ALL>;
 
-/// The share of the longest steps that a rougher run takes.
+/// The longest step of a rougher run as a share of the longest allowed one. Without this factor both
+/// runs would take the same steps where the longest step limits them, and their difference would not
+/// show the errors.
 pub(super) const ROUGH_STRIDE: f64 = 0.7;
-/// An end whose margin falls this far below zero, in numbers of the state, is sure for all errors that are known.
+/// An end whose room (see [`known`](super::known)) is larger than this is certain in all motions that count
+/// as known, and its room is not computed further.
 const DEEP: f64 = 1e-2;
-/// From this share of the coefficient without a unique force on, all answers are searched for.
+/// From this share of the Painleve coefficient on, more than one contact force may be consistent, and
+/// all are counted.
 const DOUBTFUL: f64 = 0.9;
 
-/// What the phases of a stone know: the flow of the present one.
+/// The data of a stone's walk: the flow of the present phase.
 pub(super) struct StonePhases<'n> {
     flow: StoneFlow<'n>,
-    /// The centre of mass at the start, which stays there on a smooth table.
+    /// The horizontal position of the centre of mass at the start, which is constant on a smooth table.
     still_centre: [f64; 2],
 }
 
@@ -45,7 +49,7 @@ impl<'a, 'n> StoneWalk<'a, 'n> {
         times: &'a [f64],
         ask: &Ask,
         (tol, fine): (f64, f64),
-        noted: Option<&'n RefCell<Noted>>,
+        recorded: Option<&'n RefCell<Recorded>>,
     ) -> Result<Self, Error> {
         let &Start { state: y, slip, time } = start;
         let friction = ask.table.friction();
@@ -61,7 +65,7 @@ impl<'a, 'n> StoneWalk<'a, 'n> {
             tol,
             stride: if tol > fine { ROUGH_STRIDE } else { 1.0 },
             watch: true,
-            noted,
+            recorded,
         };
         let mut at = [0.0; ALL];
         at[..4].copy_from_slice(&y.orientation());
@@ -71,11 +75,11 @@ impl<'a, 'n> StoneWalk<'a, 'n> {
         let of = StonePhases { flow, still_centre: [x, y] };
         let mut walk = Self::new(of, at, ask, fine, (time, times))?;
         walk.next = Some(walk.first_phase()?);
-        StonePhases::shake(&mut walk);
+        StonePhases::perturbs(&mut walk);
         Ok(walk)
     }
 
-    /// The touch of a contact point that does not slip under a law of friction.
+    /// The contact in a phase without a slip under friction.
     fn resting(&self) -> Touch {
         if self.kind() == Kind::Slipping { Touch::Smooth } else { Touch::Rolls }
     }
@@ -89,7 +93,7 @@ impl<'a, 'n> StoneWalk<'a, 'n> {
         here.value < 0.0 || here.value == 0.0 && !(here.slope > 0.0 || here.slope == 0.0 && later() > 0.0)
     }
 
-    /// A contact point at rest, and the forces on it.
+    /// The forces at a contact point at rest, which decide whether it sticks.
     fn rest(&self) -> HeldContact<impl Fn(f64) -> Option<f64>> {
         let law = self.of.flow.law;
         let (lab, w) =
@@ -155,19 +159,20 @@ impl<'a, 'n> StoneWalk<'a, 'n> {
             }
             Halt::Slips if rubs => after_rest(self.rest().lets_go()),
             halt if halt != Halt::Face && self.ask.beyond && !rubs => {
-                self.meets(ending(halt));
+                self.records_event(ending(halt));
                 self.of.flow.watch = false;
                 self.made.path.phases.pop();
-                Next::Rolls { grace: false }
+                Next::Rolls { at_limit: false }
             }
             halt => Next::Ends(ending(halt)),
         };
-        self.goes_on(next);
+        self.continues_with(next);
     }
 
-    /// Notes how far margin `i` falls below zero after it has ended a flow: one that only touches zero may miss it.
+    /// Records the room of an end by margin `i`: how far this margin falls below zero after the end. A margin
+    /// that only touches zero may stay positive in the exact motion.
     fn ends_by(&self, i: usize) {
-        let Some(noted) = self.of.flow.noted else { return };
+        let Some(recorded) = self.of.flow.recorded else { return };
         let (leans, calm) = (self.of.flow.leans(&self.at, i), self.of.flow.calm(&self.at));
         let place = self.of.flow.place(self.at);
         let mut room = 0f64;
@@ -178,7 +183,7 @@ impl<'a, 'n> StoneWalk<'a, 'n> {
                 break;
             }
         }
-        noted.borrow_mut().grazes.push([self.at[7], room]);
+        recorded.borrow_mut().grazes.push([self.at[7], room]);
     }
 }
 
@@ -201,12 +206,12 @@ impl<'n> Phases<ALL> for StonePhases<'n> {
         state(&walk.at)
     }
     fn slip(walk: &StoneWalk<'_, 'n>) -> [f64; 2] {
-        told_slip(&walk.at)
+        output_slip(&walk.at)
     }
 
-    fn shake(walk: &mut StoneWalk<'_, 'n>) {
-        if walk.shake > 0.0 {
-            let (up, down) = (1.0 + walk.shake, 1.0 - walk.shake);
+    fn perturbs(walk: &mut StoneWalk<'_, 'n>) {
+        if walk.perturbation > 0.0 {
+            let (up, down) = (1.0 + walk.perturbation, 1.0 - walk.perturbation);
             for (x, by) in walk.at.iter_mut().zip([up, down, down, up, up, down, up]) {
                 *x *= by;
             }
@@ -244,14 +249,14 @@ impl<'n> Phases<ALL> for StonePhases<'n> {
         } else if hold < 0.0 {
             Ending::Slip
         } else {
-            return Next::Rolls { grace: false };
+            return Next::Rolls { at_limit: false };
         };
         if !walk.ask.beyond {
             return Next::Ends(ending);
         }
-        walk.meets(ending);
+        walk.records_event(ending);
         walk.of.flow.watch = false;
-        Next::Rolls { grace: false }
+        Next::Rolls { at_limit: false }
     }
 
     fn rests(walk: &StoneWalk<'_, 'n>) -> Standstill {
@@ -261,7 +266,7 @@ impl<'n> Phases<ALL> for StonePhases<'n> {
         walk.rest().lets_go()
     }
 
-    fn jam(walk: &StoneWalk<'_, 'n>) -> Error {
+    fn no_unique_force(walk: &StoneWalk<'_, 'n>) -> Error {
         let (mu, theta) = (walk.of.flow.law.strength, state(&walk.at).theta());
         let Onset { eps, .. } = walk.rest().onset;
         Error::Painleve { mu, theta, limit: mu / eps[0].hypot(eps[1]) }
@@ -293,8 +298,8 @@ impl<'n> Phases<ALL> for StonePhases<'n> {
     }
 
     fn passed(walk: &StoneWalk<'_, 'n>, series: &SlowSeries<ALL>, until: f64) {
-        let Some(noted) = walk.of.flow.noted else { return };
-        if let Some(turns) = &mut noted.borrow_mut().turns {
+        let Some(recorded) = walk.of.flow.recorded else { return };
+        if let Some(turns) = &mut recorded.borrow_mut().turns {
             let at = |t: f64| {
                 let since = t - series.from;
                 let rate = core::array::from_fn(|i| series.numbers[i].slope().value(since));
@@ -306,11 +311,11 @@ impl<'n> Phases<ALL> for StonePhases<'n> {
 
     fn rolls(
         walk: &mut StoneWalk<'_, 'n>,
-        grace: bool,
+        at_limit: bool,
         _: &mut dyn FnMut() -> bool,
     ) -> Result<Option<WalkStep<ALL>>, Error> {
         walk.of.flow.touch = walk.resting();
-        walk.of.flow.mu = walk.ask.table.mu() * if grace { 1.0 + GRACE } else { 1.0 };
+        walk.of.flow.mu = walk.ask.table.mu() * if at_limit { 1.0 + GRACE } else { 1.0 };
         Ok(Some(WalkStep::Flows(walk.at)))
     }
 
@@ -351,7 +356,7 @@ impl<'n> Phases<ALL> for StonePhases<'n> {
         };
         let Some(flown) = flown else { return Ok(Pause::Interrupted) };
         walk.has_spent(flown.spent);
-        walk.doubts(flown.halt, flown.steep, &flown.y);
+        walk.claims_time_error(flown.halt, flown.steep, &flown.y);
         walk.phase_ends(flown.y, flown.halt);
         Ok(Pause::No)
     }

@@ -1,12 +1,14 @@
 //! The motion of a stone, through phases of rolling and of slipping.
 //!
-//! The phases are those of [`walk`](crate::motions::walk): a contact point that rests slips where rolling needs more friction
-//! than mu_s N, and a slip that comes to an end sticks where rolling needs no more than that. Each phase is a `StoneFlow`.
+//! The phases are those of [`walk`](crate::motions::walk): a contact point at rest begins to slip where
+//! rolling needs more friction than mu_s N, and at the end of a slip it sticks where rolling needs no more
+//! than that. Each phase is integrated as a `StoneFlow`.
 //!
-//! Error: the motion is computed twice, as on any path; `tests/laws/stone.rs` compares it with references of 25 digits.
+//! Error: from a second run with a larger tolerance, as for a body with friction; `tests/laws/stone.rs`
+//! compares it with references of 25 digits.
 
 use super::check;
-use super::known::{Noted, Runs, settle};
+use super::known::{Recorded, Runs, settle};
 use super::phases::StoneWalk;
 use crate::error::Error;
 use crate::laws::stone::{Ellipsoid, StoneState};
@@ -16,12 +18,13 @@ use core::cell::RefCell;
 
 /// The motion of a stone from a start at the `times`, which are in order and not before the start.
 ///
-/// The start is a [`StoneState`], or a [`Start`] with a slip and a time; the vertical of
-/// a state is scaled to length 1. A slip stands along the horizontal axes x and y of the laboratory in which the stone has
-/// the orientation of the smallest turn from upright, at a start as in all outputs. `ask` has the table, the tolerance, `beyond` and the outputs; a stone has no losses, no
-/// fixed step and no landing of another rim. `go_on` is called often; if it returns false, the result is `Ok(None)`.
-/// Errors: `OutOfRange`, which names the argument; `Painleve` for a start without a unique contact force; `Restless` where
-/// slipping and rolling alternate too often, as for any body; `Endless` where the motion hardly advances.
+/// The start is a [`StoneState`], or a [`Start`] with a slip and a time; the vertical of a state is scaled to
+/// length 1. A slip has its components along the horizontal axes x and y of that laboratory frame in which
+/// the orientation of the stone is the smallest turn from upright, at the start and in all outputs. `ask` has
+/// the table, the tolerance, `beyond` and the outputs; a stone has no losses, no fixed step and no landing of
+/// another rim. `go_on` is called often; if it returns false, the result is `Ok(None)`. Errors: `OutOfRange`,
+/// which names the argument; `Painleve` for a start without a unique contact force; `Restless` where slipping
+/// and rolling alternate too often; `Endless` where the motion hardly advances.
 ///
 /// ```
 /// use spincyl::{Ellipsoid, motion::Ask, stone};
@@ -30,7 +33,8 @@ use core::cell::RefCell;
 /// let inertia = [[0.02, -0.012, 0.0], [-0.012, 0.2, 0.0], [0.0, 0.0, 0.21]];
 /// let stone = Ellipsoid::new([1.0, 0.3, 0.2], inertia, [0.0, 0.0, -0.07])?;
 /// let times: Vec<f64> = (0..=60).map(f64::from).collect();
-/// let motion = stone::roll(&stone, stone.spinning(-0.6, 0.02, 0.0), &times, &Ask::default(), || true)?.unwrap();
+/// let start = stone.spinning(-0.6, 0.02, 0.0);
+/// let motion = stone::roll(&stone, start, &times, &Ask::default(), || true)?.unwrap();
 /// assert!(motion.states[0].spin() < -0.5 && motion.states.iter().any(|y| y.spin() > 0.1));
 /// # Ok::<(), spincyl::Error>(())
 /// ```
@@ -55,26 +59,27 @@ fn rolled(
     Ok(followed(stone, start, times, ask, &RefCell::default(), go_on)?.map(Motion::from))
 }
 
-/// The motion and its path, judged by a rougher one, with what was `noted` of it as far as it is known.
+/// The motion and its path, with the error from a rougher run. The finer run records reversals and ends in
+/// `recorded`; reversals after the time up to which the motion is known are removed.
 pub(crate) fn followed(
     stone: &Ellipsoid,
     start: &Start<StoneState>,
     times: &[f64],
     ask: &Ask,
-    noted: &RefCell<Noted>,
+    recorded: &RefCell<Recorded>,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Option<Followed<StoneState>>, Error> {
     let (start, fine) = check(start, times, ask)?;
-    let mut runs = |times: &[f64], noted: Option<&RefCell<Noted>>| -> Runs {
-        let mut run = |tol: f64, noted| {
-            StoneWalk::of_stone((stone, &start), times, ask, (tol, fine), noted)?.run(go_on)
+    let mut runs = |times: &[f64], recorded: Option<&RefCell<Recorded>>| -> Runs {
+        let mut run = |tol: f64, recorded| {
+            StoneWalk::of_stone((stone, &start), times, ask, (tol, fine), recorded)?.run(go_on)
         };
-        let Some(found) = run(fine, noted)? else { return Ok(None) };
+        let Some(found) = run(fine, recorded)? else { return Ok(None) };
         Ok(run(rougher(fine), None)?.map(|rough| [found, rough]))
     };
-    let Some([mut found, rough]) = runs(times, Some(noted))? else { return Ok(None) };
+    let Some([mut found, rough]) = runs(times, Some(recorded))? else { return Ok(None) };
     found.judge(&rough, fine);
     let span = (start.time, times[times.len() - 1], fine);
-    let settled = settle(&mut found, &mut noted.borrow_mut(), span, &mut |times| runs(times, None))?;
+    let settled = settle(&mut found, &mut recorded.borrow_mut(), span, &mut |times| runs(times, None))?;
     Ok(settled.then_some(found))
 }

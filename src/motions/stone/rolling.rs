@@ -1,10 +1,11 @@
-//! A stone on a rough table that nothing stops: neither an edge nor a lift-off ends its rolling.
+//! A stone that rolls without slipping and without events: neither an edge nor a lift-off ends its motion.
 //!
 //! ```text
 //! y = (q, w, x, y, t)     q' = q w/2,   w' of the law of rolling,   (x, y)' = -w x r along the table
 //! ```
-//! This is the motion of [`roll`](super::roll) without phases and margins, of which a page has no use: their code is ten
-//! times as long. Error: the motion is computed twice, with other steps; `tests/laws/stone.rs` compares it with `roll`.
+//! This is the motion of [`roll`](super::roll) without phases and margins, which a web page does not need and
+//! whose code is ten times as long. Error: from a second run with a larger tolerance and other steps;
+//! `tests/laws/stone.rs` compares it with `roll`.
 
 use super::phases::ROUGH_STRIDE;
 use crate::error::{Error, within};
@@ -18,7 +19,7 @@ use crate::motions::followed::rougher;
 use crate::numbers::Dual;
 use crate::numbers::vector::{cross, dot};
 
-/// Number of numbers, the last of which is the time.
+/// Length of y; its last number is the time.
 pub(super) const N: usize = 10;
 const FREE_TIME: usize = 9;
 
@@ -27,7 +28,8 @@ const FREE_TIME: usize = 9;
 pub struct RollingStone {
     /// The time, in sqrt(a/g).
     pub time: f64,
-    /// The turn from the axes of the ellipsoid to those of the laboratory, as a quaternion (w, x, y, z) of length 1.
+    /// The turn from the axes of the ellipsoid to those of the laboratory, as a quaternion (w, x, y,
+    /// z) of length 1.
     pub orientation: [f64; 4],
     /// The place of the centre of mass above the table, counted from that of the first contact point.
     pub centre: [f64; 2],
@@ -39,18 +41,19 @@ pub struct RollingStone {
     pub normal: f64,
 }
 
-/// The rolling of a stone from a start at time 0, at the `times`, which ascend from 0 on; and its error.
+/// Computes the rolling of a stone from a start at time 0, at `times` in ascending order from 0 on,
+/// and its error.
 ///
-/// `tol` is the error that a step may have. `go_on` is called often; if it returns
-/// false, the result is `Ok(None)`. Errors: `OutOfRange` for an angular velocity beyond 1e6; `Endless` where the motion
-/// hardly advances.
+/// `tol` is the tolerance of a step. `go_on` is called often; if it returns false, the result is `Ok(None)`.
+/// Errors: `OutOfRange` for an angular velocity beyond 1e6; `Endless` where the motion hardly advances.
 ///
 /// ```
 /// use spincyl::{Ellipsoid, stone};
 ///
 /// let stone = Ellipsoid::rattleback([1.0, 0.2, 0.17], None, 0.03, None)?;
 /// let times: Vec<f64> = (0..=60).map(f64::from).collect();
-/// let (rows, error) = stone::rolling(&stone, stone.spinning(-0.4, 0.002, 0.0), &times, 1e-10, || true)?.unwrap();
+/// let start = stone.spinning(-0.4, 0.002, 0.0);
+/// let (rows, error) = stone::rolling(&stone, start, &times, 1e-10, || true)?.unwrap();
 /// assert!(rows.iter().any(|row| row.state.spin() > 0.1) && error < 1e-4);
 /// # Ok::<(), spincyl::Error>(())
 /// ```
@@ -65,11 +68,11 @@ pub fn rolling(
         within(name, w, (-1e6, 1e6), "|w| <= 1e6 sqrt(g/a) for a motion")?;
     }
     let (law, rough) = (stone.law(0.0, false), rougher(tol));
-    let Some(rows) = Freely { law, tol, stride: 1.0 }.follow(&start, times, &mut go_on)? else {
+    let Some(rows) = FreeRolling { law, tol, stride: 1.0 }.follow(&start, times, &mut go_on)? else {
         return Ok(None);
     };
     let Some(others) =
-        (Freely { law, tol: rough, stride: ROUGH_STRIDE }).follow(&start, times, &mut go_on)?
+        (FreeRolling { law, tol: rough, stride: ROUGH_STRIDE }).follow(&start, times, &mut go_on)?
     else {
         return Ok(None);
     };
@@ -83,22 +86,22 @@ pub fn rolling(
 
 /// A stone that rolls, as a flow without margins.
 #[derive(Clone, Copy)]
-pub(super) struct Freely {
+pub(super) struct FreeRolling {
     pub law: StoneLaw<f64>,
     pub tol: f64,
-    /// The share of the longest steps that this run takes.
+    /// The longest step of this run as a share of the longest allowed one.
     pub stride: f64,
 }
 
 /// The reasons for which a flow without margins halts.
 #[derive(Clone, Copy, PartialEq)]
-pub(super) enum Freed {
+pub(super) enum FreeRollingHalt {
     Over,
     Pause,
 }
 
-impl Freely {
-    /// The rows at the times.
+impl FreeRolling {
+    /// The stone at each of the times.
     fn follow(
         &self,
         start: &StoneState,
@@ -121,7 +124,7 @@ impl Freely {
         Ok(flown.map(|_| rows))
     }
 
-    /// The numbers of a start.
+    /// The numbers y of a start.
     pub(super) fn numbers(&self, start: &StoneState) -> [f64; N] {
         let at = self.law.touching(start.vertical, start.w);
         let ([a, b, c, d], [e, f, g]) = (start.orientation(), start.w);
@@ -144,11 +147,11 @@ impl Freely {
     }
 }
 
-impl Flow<0> for Freely {
-    type Halt = Freed;
+impl Flow<0> for FreeRolling {
+    type Halt = FreeRollingHalt;
     const TIME: usize = FREE_TIME;
-    const OVER: Freed = Freed::Over;
-    const PAUSE: Freed = Freed::Pause;
+    const OVER: FreeRollingHalt = FreeRollingHalt::Over;
+    const PAUSE: FreeRollingHalt = FreeRollingHalt::Pause;
 
     fn write_rates<const M: usize>(&self, y: &[f64; M], all: &mut [f64; M]) {
         self.rates_of(y, all);
@@ -159,8 +162,8 @@ impl Flow<0> for Freely {
     fn margin<const M: usize>(&self, _: &[f64; M], _: usize) -> f64 {
         1.0
     }
-    fn end(&self, _: usize) -> Freed {
-        Freed::Over
+    fn end(&self, _: usize) -> FreeRollingHalt {
+        FreeRollingHalt::Over
     }
     fn error<const M: usize>(&self, y: &[f64; M], made: &rk8::Step<f64, M>) -> f64 {
         let (per, per_speed) = (1.0 / self.tol, 1.0 / (self.tol * self.fastest(y)));
@@ -178,10 +181,10 @@ impl Flow<0> for Freely {
     fn longest<const M: usize>(&self, place: &FlowPlace<M>) -> f64 {
         self.stride * self.calm(&place.y)
     }
-    fn stopped<const M: usize>(&self, _: &FlowPlace<M>) -> Option<(Freed, [f64; M])> {
+    fn stopped<const M: usize>(&self, _: &FlowPlace<M>) -> Option<(FreeRollingHalt, [f64; M])> {
         None
     }
-    fn stuck<const M: usize>(&self, _: &FlowPlace<M>, _: &[Dual<f64>; 0]) -> Option<Freed> {
+    fn stuck<const M: usize>(&self, _: &FlowPlace<M>, _: &[Dual<f64>; 0]) -> Option<FreeRollingHalt> {
         None
     }
     fn shown<const M: usize>(&self, y: &[f64; M]) -> [f64; M] {

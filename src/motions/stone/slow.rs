@@ -8,7 +8,7 @@ use crate::motions::walk::{SlowLaw, SlowSeries};
 use crate::numbers::Series;
 use crate::numbers::vector::dot;
 
-/// The slow slips of a stone. The rates beside those of its numbers are those of the heat and of the contact point.
+/// The series of a stone's slow slips. Besides its numbers they have the heat and the contact point (x, y).
 pub(super) struct StoneSlips {
     slips: SlowSlips<7>,
 }

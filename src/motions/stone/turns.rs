@@ -1,11 +1,12 @@
-//! How often the spin of a stone turns back, and when.
+//! The reversals of the spin of a stone, and their times.
 //!
 //! ```text
-//! spin s = n.w;  back: s has passed zero, and come to a tenth of the first spin in the other direction
-//! step   looked through by the cubics through its ends and three of its stages; where 0 or the spin that counts lies
-//!        within twice what s varies there, halved until a cubic through both ends has an error of 1e-4 of that spin
+//! reversal   the spin s = n.w has passed zero and reached a tenth of its first value, in the other direction
+//! step       bounds of s from cubics through its ends and three of its stages; if zero or that tenth lies
+//!            within twice their range, the step is halved until the cubic through both ends has an error
+//!            of at most 1e-4 of that tenth
 //! ```
-//! So a reversal is found wherever it lies within a step. Error of its time: that of the cubic over the rate of the spin.
+//! So no reversal within a step is missed. Error of its time: that of the cubic over the rate of the spin.
 
 use crate::methods::search::crossing;
 use crate::numbers::Dual;
@@ -20,34 +21,37 @@ pub(crate) struct Spot {
 /// The reversals of the spin of a stone so far.
 #[derive(Debug, Clone)]
 pub(crate) struct Reversals {
-    /// The spin that counts as one in the other direction; infinite of a start without a spin.
+    /// The spin in the other direction that completes a reversal; infinite for a start without a spin.
     pub enough: f64,
-    /// The direction of the last spin that counts.
+    /// The sign of the spin at the start, or after the last reversal.
     side: f64,
     /// The time of the last zero of the spin.
     crossed: f64,
-    /// The time of each reversal, and that at which the spin has come to what counts.
+    /// For each reversal, the time at which the spin is zero, and that at which it reaches `enough`.
     pub times: Vec<[f64; 2]>,
 }
 
-/// The share of the first spin that counts as a spin in the other direction.
+/// A spin in the other direction completes a reversal where it reaches this share of the first spin. A
+/// smaller share would count the oscillations of a spin around zero.
 const COUNTS: f64 = 0.1;
-/// A spin of this share of the largest angular velocity, or of 1, is none and has no direction.
+/// A first spin below this share of the largest angular velocity, or of 1, counts as zero: it has no
+/// direction, and no reversals are counted.
 const NONE: f64 = 1e-12;
-/// Allowed error of a cubic, as a share of the spin that counts.
+/// Allowed error of a cubic, as a share of `enough`. A larger error shifts the times of reversals.
 const CUBIC: f64 = 1e-4;
 /// Largest number of halvings of a step.
 const STEP_HALVINGS: u32 = 12;
 
 impl Reversals {
-    /// No reversal of a spin, beside angular velocities of this size.
+    /// The count at the start, from the first spin and the largest angular velocity.
     pub fn of(spin: f64, fastest: f64) -> Self {
         let none = spin.abs() <= NONE * fastest.max(1.0);
         let enough = if none { f64::INFINITY } else { COUNTS * spin.abs() };
         Self { enough, side: spin.signum(), crossed: f64::NAN, times: Vec::new() }
     }
 
-    /// Whether anything that counts may happen along these spots, whose spins err by `known`.
+    /// Whether the spin may reach zero or complete a reversal along these spots, whose spins have the
+    /// error `known`.
     pub fn near(&self, spots: &[Spot], known: f64) -> bool {
         if self.enough == f64::INFINITY {
             return false;
@@ -120,7 +124,7 @@ impl Reversals {
     }
 }
 
-/// The cubic through two spots, at a share of the way.
+/// The cubic through two spots, at the share `x` of the time between them.
 fn cubic(Spot { t, spin: a }: Spot, Spot { t: later, spin: b }: Spot, x: f64) -> f64 {
     let (y, whole) = (1.0 - x, x * (1.0 - x) * (later - t));
     let (low, high) = (y * y * (1.0 + 2.0 * x), x * x * (1.0 + 2.0 * y));
@@ -149,10 +153,11 @@ mod tests {
         for (k, zero) in zeros.into_iter().enumerate() {
             assert!((zero - core::f64::consts::PI * (0.5 + k as f64)).abs() < 1e-4, "{zero}");
         }
-        // The spin passes zero thrice before it counts: the last of these zeros is that of the reversal.
+        // The spin passes zero three times before the reversal is complete: the last of these
+        // zeros is its time.
         let thrice = over(|t| 0.05 * (1.0 - t) * (2.0 - t) * (3.0 - t), 4.5);
         assert!(thrice.len() == 1 && (thrice[0] - 3.0).abs() < 1e-4, "{thrice:?}");
-        // It does not count if it comes to less than a tenth, and does if it comes to a little more.
+        // A spin that reaches less than a tenth in the other direction is no reversal; a little more is one.
         assert!(over(|t| (t - 1.0) * (t - 1.0) - 0.0909, 1.2).is_empty());
         assert_eq!(over(|t| (t - 1.0) * (t - 1.0) - 0.091, 1.2).len(), 1);
     }

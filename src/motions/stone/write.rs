@@ -1,6 +1,6 @@
 //! The outputs of a stone: states, poses and forces from its numbers.
 
-use super::flow::{ALL, StoneFlow, Touch, state, told_slip};
+use super::flow::{ALL, StoneFlow, Touch, output_slip, state};
 use crate::laws::stone::StoneState;
 use crate::methods::flow::Flow;
 use crate::motions::Ask;
@@ -22,7 +22,7 @@ pub(super) fn write(
         let known = core::array::from_fn(|i| match i {
             0..=3 => flow.tol,
             4..=6 => by_speed,
-            // A slip that begins or ends has a direction, which no error of the slip changes.
+            // An almost vanishing slip keeps its direction, so that its error does not change the friction.
             8 | 9 if flow.touch == Touch::Slips && y[8].hypot(y[9]) > flow.over() => by_speed * 1e-3,
             _ => 0.0,
         });
@@ -30,5 +30,5 @@ pub(super) fn write(
         (Vector3::from(force), off)
     });
     let kind = if flow.touch == Touch::Rolls { Kind::Rolling } else { Kind::Slipping };
-    made.put(state(y), told_slip(y), y[10], kind, pose, force);
+    made.put(state(y), output_slip(y), y[10], kind, pose, force);
 }

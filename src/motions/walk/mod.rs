@@ -1,4 +1,5 @@
-//! The walk of a body or of a stone through the phases of its motion: how each phase begins, and which one follows.
+//! The walk of a body or of a stone through the phases of its motion: how each phase begins, and
+//! which one follows.
 //!
 //! ```text
 //! start    slips, sticks, or ends at once
@@ -6,8 +7,8 @@
 //! rolls    to |F_roll| = mu_s N: slips off
 //! both     to N = 0, or until a face, an edge or the other rim lands
 //! ```
-//! A phase stands here once, for bodies and for stones. [`Phases`] has what differs: the numbers, the equations along a
-//! phase, and what they say about its beginning and its end.
+//! Bodies of revolution and stones share the walk. [`Phases`] has the differences: the numbers, the equations
+//! along a phase, and the conditions for its beginning and its end.
 
 mod phases;
 mod slips;
@@ -26,23 +27,25 @@ use crate::methods::flow::{PATIENCE, Spent, Steps, toil_of};
 pub(crate) use phases::Phases;
 pub(crate) use slips::{SlowLaw, SlowSeries};
 
-/// Largest number of phases, of a short motion and of a long one, and for each unit of time between; some motions slip for
-/// a moment in each nutation for ever.
+/// Largest number of phases: `PHASES_PER_TIME` for each unit of time, but within these two limits. A motion
+/// with more is given up: some motions slip for a moment in each nutation for ever.
 const FEWEST_PHASES: usize = 5_000;
 const MOST_PHASES: usize = 10_000;
 const PHASES_PER_TIME: f64 = 20.0;
-/// Largest number of phases that follow each other within no time.
+/// Largest number of phases in succession without an advance of time; a motion with more is given up.
 pub(crate) const STILL: u32 = 6;
-/// Length of a short phase of a body that loses energy, and largest number of them in turn (two dry laws alternate).
+/// A body that loses energy is given up after more than `CHATTER` phases in succession that are shorter than
+/// `SHORT`: then two laws of dry friction alternate without end.
 const SHORT: f64 = 1e-9;
 const CHATTER: u32 = 200;
-/// Number of crawling steps that each change of the motion adds to the patience.
+/// Number of additional crawling steps that each change of the motion allows, since short steps after a
+/// change do not mean that the motion hardly advances.
 const RENEWED: u64 = 1000;
 
-/// A time so short that its square is below rounding.
+/// Length of the first step of a slip that has no series, in a straight line: its square is below rounding.
 pub(crate) const MOMENT: f64 = 1e-8;
 
-/// A dry slip is over where its speed has fallen below this share of mu.
+/// A dry slip is over where its speed has fallen below this share of mu; the rest is extrapolated linearly.
 const OVER: f64 = 1e-13;
 
 /// The speed below which a slip under friction of this strength counts as zero.
@@ -50,32 +53,35 @@ pub(crate) fn slip_over(dry: bool, strength: f64) -> f64 {
     if dry { OVER * strength.min(1.0) } else { 0.0 }
 }
 
-/// The largest number of phases, and of changes of the ways that dry losses resist, up to the last of the times.
+/// The largest number of phases up to the last of the times. Also the largest number of times at which,
+/// within a phase, a motion that dry losses resist stops or begins.
 pub(crate) fn most_phases(times: &[f64]) -> usize {
     times.last().map_or(FEWEST_PHASES, |t| ((PHASES_PER_TIME * t) as usize).clamp(FEWEST_PHASES, MOST_PHASES))
 }
 
 /// The next phase of a walk.
 pub(crate) enum Next {
-    /// A slip, with the slip among the numbers.
+    /// A slip with the velocity that is among the numbers.
     Slips,
-    /// The same slip, after a dry loss has changed its direction or the contact has settled.
+    /// The same slip continues, after a motion that dry losses resist has stopped or begun, or after the
+    /// contact has settled.
     SlipsOn,
     /// A slip from rest along `alpha`, with a speed that grows at the rate `growth`.
     SlipsOff {
         alpha: f64,
         growth: f64,
     },
-    /// Rolling, or free sliding on a smooth table. With `grace` static friction holds a little more than its limit.
+    /// Rolling, or free sliding on a smooth table. With `at_limit` static friction may exceed its limit by the
+    /// share `GRACE`, for rolling that needs exactly the limit.
     Rolls {
-        grace: bool,
+        at_limit: bool,
     },
     Ends(Ending),
 }
 
-/// The next task of the caller of a walk, or its end.
+/// The next task for the caller of a walk, or the end of the walk.
 pub(crate) enum WalkStep<const N: usize> {
-    /// The caller follows the flow from these numbers.
+    /// The caller integrates the flow from these numbers on.
     Flows([f64; N]),
     /// The walk is complete.
     Done,
@@ -83,11 +89,11 @@ pub(crate) enum WalkStep<const N: usize> {
     Interrupted,
 }
 
-/// Whether a flow was left before its end.
+/// Whether a flow has paused before its end.
 #[derive(PartialEq)]
 pub(crate) enum Pause<const N: usize> {
     No,
-    /// The flow was left at these numbers, with this next step if it is known.
+    /// The flow has paused at these numbers, with this next step if it is known.
     Here([f64; N], Option<f64>),
     /// The caller has interrupted the flow.
     Interrupted,
@@ -95,7 +101,7 @@ pub(crate) enum Pause<const N: usize> {
 
 /// The computation of a motion, phase by phase.
 pub(crate) struct Walk<'a, P: Phases<N>, const N: usize> {
-    /// The laws of the body or of the stone, and what is known of the present phase.
+    /// The equations of the body or of the stone, and the data of the present phase.
     pub of: P,
     pub ask: Ask,
     pub t0: f64,
@@ -103,24 +109,27 @@ pub(crate) struct Walk<'a, P: Phases<N>, const N: usize> {
     pub since: Vec<f64>,
     times: &'a [f64],
     pub made: Followed<P::State>,
-    /// The numbers where the present phase begins or has ended.
+    /// The numbers at the beginning of the present phase, or at its end once it has ended.
     pub at: [f64; N],
     pub next: Option<Next>,
     /// The time at which the present phase began.
     pub began: f64,
-    /// Number of phases that have begun at the same time as the previous phase, and hardly later than it.
+    /// Number of phases in succession that began at the same time as the phase before.
     pub still: u32,
+    /// Number of phases in succession that began at most `SHORT` later than the phase before.
     short: u32,
-    /// The share by which a rougher run moves the state at each end of a phase. Where the motion is unstable, the
-    /// difference of the two runs then shows the instability.
-    pub shake: f64,
+    /// The share by which a rougher run perturbs the state at each end of a phase; 0 in the finer run. Where
+    /// the motion is unstable, the difference of the two runs then shows the instability.
+    pub perturbation: f64,
     pub spent: Spent,
-    /// Whether the last steps have crawled.
+    /// Whether a lane has used up its crawling steps, so that the next flow is tested at once
+    /// for being stuck.
     tired: bool,
 }
 
 impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
-    /// A walk at its start, without a first phase yet, with steps of the tolerance of `of`; `fine` is the requested one.
+    /// A walk at its start, whose first phase is not chosen yet. The tolerance of its steps is that of `of`,
+    /// which exceeds the requested one, `fine`, in a rougher run.
     pub fn new(
         of: P,
         at: [f64; N],
@@ -139,8 +148,9 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         motion.method = Method::Tolerance(tol);
         let path = Path::empty(count, if ask.losses.is_none() { 0 } else { count })?;
         Ok(Self {
-            // The scaling of the claimed error reduces this share to a few roundings.
-            shake: if tol > fine { f64::EPSILON * tol / (fine * P::State::SAFETY) } else { 0.0 },
+            // The claimed error is SAFETY fine/tol times the difference of the runs, to which this share
+            // adds one rounding.
+            perturbation: if tol > fine { f64::EPSILON * tol / (fine * P::State::SAFETY) } else { 0.0 },
             of,
             ask: *ask,
             t0,
@@ -196,20 +206,20 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
             };
             match next {
                 Next::Ends(ending) => {
-                    self.meets(ending);
+                    self.records_event(ending);
                     self.made.path.last_slip = P::slip(self);
-                    self.stays_there();
+                    self.writes_up_to_now();
                 }
-                Next::Rolls { grace } => {
-                    self.opens(self.kind());
+                Next::Rolls { at_limit } => {
+                    self.begins_phase(self.kind());
                     if self.ask.stop_at_rolling {
                         self.made.path.rolls_on = true;
-                    } else if let Some(step) = P::rolls(self, grace, go_on)? {
+                    } else if let Some(step) = P::rolls(self, at_limit, go_on)? {
                         return Ok(step);
                     }
                 }
                 Next::Slips => {
-                    self.opens(Kind::Slipping);
+                    self.begins_phase(Kind::Slipping);
                     return Ok(WalkStep::Flows(P::slips(self)));
                 }
                 Next::SlipsOn => {
@@ -226,7 +236,8 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         Ok(WalkStep::Done)
     }
 
-    /// Follows the flow of a phase from the numbers `y`, for at most `most` steps.
+    /// Follows the flow of a phase from the numbers `y`, for at most `most` steps; `first` is the first step
+    /// if it is known.
     pub fn flows(
         &mut self,
         y: [f64; N],
@@ -241,7 +252,8 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         P::flows(self, y, steps, go_on)
     }
 
-    /// The phase that begins at the present numbers, as at the start. The error is that of a start without a unique force.
+    /// The phase that begins at the present numbers, at the start or after a landing. An error if no unique
+    /// contact force exists.
     pub fn first_phase(&mut self) -> Result<Next, Error> {
         if !self.ask.table.rubs() {
             return Ok(P::begins_without_slip(self));
@@ -249,7 +261,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         let [u, v] = [self.at[P::SLIP], self.at[P::SLIP + 1]];
         if u.hypot(v) > self.of.over() || !self.of.is_dry() {
             return match P::ends_slip(self) {
-                Some(Halt::Jam) => Err(P::jam(self)),
+                Some(Halt::Jam) => Err(P::no_unique_force(self)),
                 Some(halt) => Ok(Next::Ends(ending(halt))),
                 None => Ok(Next::Slips),
             };
@@ -260,48 +272,49 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
             return Ok(Next::Ends(ending));
         }
         match after_rest(found) {
-            Next::Ends(Ending::Painleve) => Err(P::jam(self)),
+            Next::Ends(Ending::Painleve) => Err(P::no_unique_force(self)),
             next => Ok(next),
         }
     }
 
-    /// The slip has come to its end.
     pub fn stop_slip(&mut self) {
         (self.at[P::SLIP], self.at[P::SLIP + 1]) = (0.0, 0.0);
     }
 
-    /// Sets the next phase. A rolling phase of no length, which needed all of the friction that could hold the contact
-    /// point, is left out.
-    pub fn goes_on(&mut self, next: Next) {
+    /// Sets the next phase, and removes a rolling phase of no length from the list: its contact point began
+    /// to slip at once, since rolling needed all of the static friction.
+    pub fn continues_with(&mut self, next: Next) {
         if !matches!(next, Next::Ends(_)) {
             let now = self.t0 + self.at[TIME];
             self.made.path.phases.pop_if(|phase| phase.kind == Kind::Rolling && phase.time == now);
-            P::shake(self);
+            P::perturbs(self);
         }
         self.next = Some(next);
     }
 
-    /// Records the beginning of a phase. Every change of the motion may need a few crawling steps.
-    pub fn opens(&mut self, kind: Kind) {
+    /// Records the beginning of a phase, whose first steps may crawl.
+    pub fn begins_phase(&mut self, kind: Kind) {
         self.began = self.at[TIME];
-        self.renews();
+        self.allows_crawling();
         let (time, state, slip) = (self.t0 + self.at[TIME], P::state(self), P::slip(self));
         self.made.path.phases.push(Phase { time, kind, state, slip });
     }
 
-    /// Renews the patience with steps that crawl.
-    pub fn renews(&mut self) {
+    /// Allows more crawling steps after a change of the motion.
+    pub fn allows_crawling(&mut self) {
         self.spent.patience = (self.spent.patience + RENEWED).min(PATIENCE);
     }
 
-    /// Records an event that the model does not cover, at the present numbers.
-    pub fn meets(&mut self, ending: Ending) {
+    /// Records an event that the model does not cover, at the present numbers, unless an earlier
+    /// one is recorded.
+    pub fn records_event(&mut self, ending: Ending) {
         let event = Event { ending, time: self.t0 + self.at[TIME], state: P::state(self) };
         self.made.motion.event.get_or_insert(event);
     }
 
-    /// Writes the outputs up to an end at which no flow has written them, as at the start.
-    pub fn stays_there(&mut self) {
+    /// Writes the outputs up to the present time that no flow has written, as for a motion that
+    /// ends at its start.
+    pub fn writes_up_to_now(&mut self) {
         while self.until().is_some_and(|t| t <= self.at[TIME]) {
             P::write_here(self);
         }
@@ -332,17 +345,18 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         self.ask.table.friction()
     }
 
-    /// Claims at least this error.
+    /// Raises the claimed error of the motion to at least this error.
     pub fn claims(&mut self, error: f64) {
         self.made.motion.error = self.made.motion.error.max(error);
     }
 
-    /// Claims the error of the time of an end at `y`: the errors of the steps, divided by the rate at which the margin, or
-    /// the speed of a body that comes to rest, fell.
-    pub fn doubts(&mut self, halt: Halt, steep: f64, y: &[f64; N]) {
+    /// Claims the error of the time of an end at `y`: the errors of the steps, divided by the rate at which
+    /// the margin, or the speed of a body that comes to rest, fell.
+    pub fn claims_time_error(&mut self, halt: Halt, steep: f64, y: &[f64; N]) {
         if let Some(grows) = self.of.grows(halt, y) {
             let erred = grows * (self.spent.erred * self.of.tol() + 8.0 * f64::EPSILON);
-            // A margin that only touches zero bends away from zero.
+            // A margin that only touches zero does so with zero slope: the error of the time is
+            // a square root.
             self.claims((erred / steep).min(erred.sqrt()));
         }
     }
@@ -354,7 +368,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         self.spent.patience = patience;
     }
 
-    /// Adds the cost of a flow that a lane has followed with a part of the patience.
+    /// Adds the cost of a flow that a lane has followed, in which `given` steps were allowed to crawl.
     pub fn has_spent_elsewhere(&mut self, spent: Spent, given: u64) {
         let crawled = given - spent.patience.min(given);
         self.tired = spent.patience == 0;
@@ -362,10 +376,10 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
     }
 }
 
-/// The phase after a contact point has come to rest, or has been let go.
+/// The phase that follows from the behaviour of a contact point with zero slip.
 pub(crate) fn after_rest(found: Standstill) -> Next {
     match found {
-        Standstill::Sticks => Next::Rolls { grace: false },
+        Standstill::Sticks => Next::Rolls { at_limit: false },
         Standstill::Slips { alpha, growth } => Next::SlipsOff { alpha, growth },
         Standstill::LiftsOff => Next::Ends(Ending::LiftOff),
         Standstill::Undefined => Next::Ends(Ending::Painleve),

@@ -1,4 +1,4 @@
-//! What the phases of a body of revolution and those of a stone have of their own.
+//! The differences between the walks of a body of revolution and of a stone.
 
 use super::{Next, Pause, SlowLaw, SlowSeries, Walk, WalkStep};
 use crate::error::Error;
@@ -11,7 +11,7 @@ use crate::motions::{Ending, Moving};
 pub(crate) trait Phases<const N: usize>: Sized {
     type State: Moving;
     type Slow: SlowLaw<N>;
-    /// The places of the slip and of the heat among the numbers.
+    /// Indices of the slip's first component and of the heat among the numbers.
     const SLIP: usize;
     const HEAT: usize;
 
@@ -24,51 +24,54 @@ pub(crate) trait Phases<const N: usize>: Sized {
 
     /// The state at the present numbers.
     fn state(walk: &Walk<'_, Self, N>) -> Self::State;
-    /// The slip at the present numbers, as a user sees it.
+    /// The slip at the present numbers, in the components of the outputs.
     fn slip(walk: &Walk<'_, Self, N>) -> [f64; 2];
-    /// Moves the state of a rougher run at the end of a phase by more than rounding does.
-    fn shake(walk: &mut Walk<'_, Self, N>);
-    /// Writes a point of a slip.
+    /// Perturbs the state of a rougher run by the share `Walk::perturbation`, which is more than rounding.
+    fn perturbs(walk: &mut Walk<'_, Self, N>);
+    /// Writes a point of a slip to the outputs.
     fn write(walk: &mut Walk<'_, Self, N>, y: &[f64; N]);
-    /// Writes the present point, at which no flow has written.
+    /// Writes the present point, which is not on a flow.
     fn write_here(walk: &mut Walk<'_, Self, N>);
 
-    /// What ends a slip at its start.
+    /// The halt of a slip at its start, if a margin fails there.
     fn ends_slip(walk: &mut Walk<'_, Self, N>) -> Option<Halt>;
-    /// The ending of a body whose contact point rests, by an edge or the other rim that lies on the table at the start.
+    /// The ending at the start if an edge or the other rim lies on the table and does not rise; `found` is
+    /// the behaviour of the contact point, which is at rest.
     fn lies(walk: &mut Walk<'_, Self, N>, found: Standstill) -> Option<Ending>;
-    /// The first phase on a table without friction of a slip.
+    /// The first phase on a table without a law of friction.
     fn begins_without_slip(walk: &mut Walk<'_, Self, N>) -> Next;
     /// The behaviour of a contact point at rest, and of one that static friction has just ceased to hold.
     fn rests(walk: &Walk<'_, Self, N>) -> Standstill;
     fn lets_go(walk: &Walk<'_, Self, N>) -> Standstill;
     /// The error of a start without a unique contact force.
-    fn jam(walk: &Walk<'_, Self, N>) -> Error;
+    fn no_unique_force(walk: &Walk<'_, Self, N>) -> Error;
 
-    /// Ends a motion that no further phase would change. Returns whether it has ended.
+    /// Ends the motion before the next phase if its end is known already. Returns whether it has ended.
     fn is_over(_: &mut Walk<'_, Self, N>, _: &Next) -> bool {
         false
     }
-    /// The end of a motion with too many phases, of which `count` are counted.
+    /// The ending or the error of a motion with too many phases, `count` in all.
     fn gives_up(walk: &Walk<'_, Self, N>, count: usize) -> Result<Next, Error>;
-    /// Begins a slip, or goes on with one. Returns the numbers of its flow.
+    /// Begins a slip, or continues one. Returns the numbers at which its flow starts.
     fn slips(walk: &mut Walk<'_, Self, N>) -> [f64; N];
     fn slips_on(walk: &mut Walk<'_, Self, N>) -> [f64; N];
-    /// The law of slow slips, by which a slip from rest along `way` begins.
+    /// The series of slow slips, with which a slip from rest along `way` begins.
     fn slow(walk: &mut Walk<'_, Self, N>, way: [f64; 2]) -> Self::Slow;
-    /// The time up to which a series of the numbers may be used, at most `until`: before any end of the slip.
+    /// The time since the start of a series up to which no margin fails, at most the duration of the series.
     fn clear_until(walk: &Walk<'_, Self, N>, series: &SlowSeries<N>) -> f64;
-    /// The numbers a moment after a slip along `way` began whose speed grows at the rate `growth`, where no series exists.
+    /// The numbers at the time `MOMENT` after the beginning of a slip along `way`, whose speed grows at the
+    /// rate `growth`. Used where no series exists.
     fn nudged(walk: &Walk<'_, Self, N>, way: [f64; 2], growth: f64) -> [f64; N];
-    /// Looks at a part of a slow slip, up to a time since its start.
+    /// Evaluates a slow slip along its series up to a time since the series' start, to count
+    /// reversals of the spin.
     fn passed(_: &Walk<'_, Self, N>, _: &SlowSeries<N>, _: f64) {}
-    /// Rolls to an event, or begins the flow of a rolling phase.
+    /// Computes a rolling phase up to its event, or begins its flow.
     fn rolls(
         walk: &mut Walk<'_, Self, N>,
-        grace: bool,
+        at_limit: bool,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Option<WalkStep<N>>, Error>;
-    /// The first step of a flow.
+    /// The length of a flow's first step.
     fn first(walk: &Walk<'_, Self, N>, y: &[f64; N]) -> f64;
     /// Follows the flow of the present phase.
     fn flows(
@@ -79,6 +82,7 @@ pub(crate) trait Phases<const N: usize>: Sized {
     ) -> Result<Pause<N>, Error>;
     /// Ends a slip at the numbers `y`, and chooses the next phase.
     fn slip_halts(walk: &mut Walk<'_, Self, N>, y: [f64; N], halt: Halt);
-    /// The factor by which the error of the margin of a halt exceeds that of the numbers; None of a halt without a margin.
+    /// The factor by which the error of a halt's margin exceeds that of the numbers; None for a halt
+    /// without a margin.
     fn grows(&self, halt: Halt, y: &[f64; N]) -> Option<f64>;
 }

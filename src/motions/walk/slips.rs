@@ -6,21 +6,23 @@ use crate::motions::halt::{Halt, TIME};
 use crate::motions::result::{Ending, Kind};
 use crate::numbers::Series;
 
-/// A slip whose speed begins to grow faster than this does not stay slow.
+/// A slip from rest whose speed grows at a higher rate than this does not stay slow: an integrator continues
+/// it after its first series.
 const SLOWLY: f64 = 0.02;
 
-/// The series of all numbers along a slow slip; in a box, since the stack of the caller may be small.
+/// The series of all numbers along a slow slip. Functions return it in a `Box`, since the stack of the
+/// caller may be small.
 pub(crate) struct SlowSeries<const N: usize> {
     pub numbers: [Series; N],
-    /// The time of its start.
+    /// The time at which the series starts.
     pub from: f64,
-    /// The time since its start up to which it may be used.
+    /// The time since then up to which the series may be used.
     pub until: f64,
-    /// Whether the slip ends then.
+    /// Whether the slip ends at that time.
     pub ends: bool,
     /// Whether this series takes less work than the steps of an integrator would.
     pub pays: bool,
-    /// The angle of the direction.
+    /// The angle alpha of the direction of the slip.
     pub angle: Series,
 }
 
@@ -30,22 +32,23 @@ impl<const N: usize> SlowSeries<N> {
         core::array::from_fn(|i| self.numbers[i].value(t))
     }
 
-    /// Whether the series exists: it does not where a law takes a root of a quantity that vanishes at the start.
+    /// Whether the series exists. Its coefficients are infinite or NaN where a law takes a root of a quantity
+    /// that vanishes at the start.
     fn is_sound(&self) -> bool {
         self.numbers.iter().all(|x| x.at.iter().all(|a| a.is_finite())) && self.until > 0.0
     }
 }
 
-/// The slow slips under the laws of a phase.
+/// The series of slow slips under the laws of a phase.
 pub(crate) trait SlowLaw<const N: usize> {
-    /// The series from the numbers `y` on, in a direction near `angle`, with a `speed` that grows at the rate `growth`. None
-    /// where a slip would not keep such a direction, or is too fast.
+    /// The series from the numbers `y` on, in a direction near `angle`, with a `speed` that grows at the rate
+    /// `growth`. None where a slip would not keep such a direction, or is too fast.
     fn follow(&mut self, y: &[f64; N], angle: Series, growth: f64, speed: f64) -> Option<Box<SlowSeries<N>>>;
 }
 
 impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
-    /// Follows a slip from rest along alpha, whose speed grows at the rate `growth`. Returns the numbers at which an
-    /// integrator takes over; None if the slip has ended before.
+    /// Follows a slip from rest along alpha, whose speed grows at the rate `growth`. Returns the numbers at
+    /// which an integrator takes over; None if the slip ends before that.
     pub(super) fn slips_off(&mut self, (alpha, growth): (f64, f64)) -> Option<[f64; N]> {
         let way = towards(alpha);
         let mut slow = P::slow(self, way);
@@ -54,11 +57,12 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
             return None;
         };
         if series.ends && series.until == 0.0 {
-            // Rolling needs all of the friction that can hold the contact point, and no more.
-            self.next = Some(Next::Rolls { grace: true });
+            // The slip ends at once: rolling needs exactly the limit of static friction, which holds the
+            // contact point.
+            self.next = Some(Next::Rolls { at_limit: true });
             return None;
         }
-        self.opens(Kind::Slipping);
+        self.begins_phase(Kind::Slipping);
         self.made.path.way = way;
         if !series.is_sound() {
             let y = P::nudged(self, way, growth);
@@ -86,7 +90,8 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
                 P::slip_halts(self, y, if over { Halt::Time } else { Halt::Standstill });
                 return None;
             }
-            // A slip that stays slow has a settled direction, which an integrator would follow in tiny steps.
+            // The direction of a slow slip returns to its zero of f in a time proportional to the speed, so
+            // that an integrator would need tiny steps.
             let speed = y[P::SLIP].hypot(y[P::SLIP + 1]);
             let stays_slow = whole && growth < SLOWLY;
             let next = if stays_slow { slow.follow(&y, series.angle.about(until), 0.0, speed) } else { None };

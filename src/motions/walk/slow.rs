@@ -2,16 +2,19 @@
 //!
 //! ```text
 //! u = r (cos alpha, sin alpha),   r = r0 + r1 t + r2 t^2 + ...,   alpha = a0 + a1 t + ...
-//! r' = lambda(alpha),   r alpha' = f(alpha)      so that   (n r1 - f_alpha) a_n = [f - r alpha']_n from known terms
+//! r' = lambda(alpha),   r alpha' = f(alpha)
+//! order n:   (n r1 - f_alpha) a_n = [f - r alpha']_n of known terms
 //! ```
-//! In time these equations are singular: alpha follows the zero of f at the rate f_alpha/r, and an integrator would
-//! need tiny steps. The law of friction, recorded on a [`Tape`], gives the coefficients one after the other. With r0 > 0
-//! the term r0 (n + 1) a_(n+1) is taken from the series of the previous sweep, in the first sweep from the series that
-//! ended here. The sweeps converge to the slow manifold of singular perturbation theory (Fenichel 1979), on which the
-//! direction has settled, as in every slip that began from rest. With r0 or r1 = 0 (static friction that was just
-//! enough) the series is only asymptotic; its last terms show how far it may be used.
+//! In time these equations are singular: alpha follows the zero of f at the rate f_alpha/r, and an integrator
+//! would need tiny steps. The law of friction, recorded on a [`Tape`], gives the coefficients one after the
+//! other. With r0 > 0 the term r0 (n + 1) a_(n+1) is taken from the series of the previous sweep, in the
+//! first sweep from the series that ended here. The sweeps converge to the slow manifold of singular
+//! perturbation theory (Fenichel 1979), on which the direction has settled, as in every slip that began from
+//! rest. With r0 or r1 = 0 (static friction that was just enough) the series is only asymptotic; its last
+//! terms show how far it may be used.
 //!
-//! Error: the tolerance `tol` of the series; the last two terms of each number are below `tol` where the series ends.
+//! Error: the tolerance `tol` of the series; the last two terms of each number are below `tol` where
+//! the series ends.
 
 use crate::laws::contact::standstill::towards;
 use crate::methods::search::crossing;
@@ -20,11 +23,12 @@ use crate::numbers::{Series, TERMS};
 
 /// Number of coefficients for each digit of the tolerance.
 const PER_DIGIT: f64 = 1.2;
-/// The last two terms of the angle of the direction stay below this angle where a series is used.
+/// A series is used only while the last two terms of alpha(t) are below this, in radians.
 const LAST_TERMS: f64 = 1e-7;
 /// A slip faster than this is left to the integrator.
 const SLOW_SLIP: f64 = 0.02;
-/// Longest time over which two sweeps for the series of a slow slip must agree, and largest number of sweeps.
+/// Longest time over which two sweeps for the series of a slow slip must agree, and largest number of sweeps;
+/// without agreement there is no series, and the integrator follows the slip.
 const SOON: f64 = 0.05;
 const MOST_SWEEPS: i32 = 16;
 
@@ -33,26 +37,27 @@ fn terms(tol: f64) -> usize {
     ((1.0 - tol.log10()) * PER_DIGIT).ceil().clamp(5.0, TERMS as f64) as usize
 }
 
-/// The time until the last two of the terms of a series are as large as `allowed`.
+/// The time at which the larger of the last two terms of a series reaches `allowed`.
 fn soon(x: &Series, terms: usize, allowed: f64) -> f64 {
     let until = |k: usize| (allowed / x.at[k].abs()).powf(1.0 / k as f64);
     until(terms - 2).min(until(terms - 1))
 }
 
-/// Least time for which a series takes less work than an integrator, in times in which the direction of the slip settles
-/// by a factor e. A step of an integrator spans six of them.
+/// A series that lasts longer than this many settling times takes less work than an integrator, each of whose
+/// steps spans about six of them. In a settling time a deviation of the direction falls by a factor e.
 const WORTHWHILE: f64 = 30.0;
 
-/// Number of times at which the speed of a series is checked.
+/// Number of times at which the speed along a series is tested for a zero.
 const SPEEDS: usize = 64;
 
 /// Number of parts of a series between which margins are checked.
 const CHECKS: usize = 16;
-/// Largest number of halvings of a series.
+/// Largest number of halvings of a series that is too long for its margins.
 const HALVINGS: u32 = 60;
 
-/// The time up to which no margin fails, at most `until`. `margins` gives the margins at a time; at the ends of a slip,
-/// where its direction is that of another moment, the second argument is this moment.
+/// The time up to which no margin fails, at most `until`. `margins` returns the margins at a time. The slip
+/// may vanish at both ends and then has no direction, so that the second argument is a time close by at
+/// which it has one.
 pub(crate) fn clear_until<const M: usize>(mut until: f64, margins: impl Fn(f64, f64) -> [f64; M]) -> f64 {
     for _ in 0..HALVINGS {
         let part = |k: usize| until * k as f64 / CHECKS as f64;
@@ -71,11 +76,13 @@ pub(crate) fn clear_until<const M: usize>(mut until: f64, margins: impl Fn(f64, 
     until
 }
 
-/// Whether no margin fails between places that lie close together, of which the first is the start.
+/// Whether no margin fails after the first of some places that lie close together; at the first one, the
+/// start, a margin may vanish.
 fn are_clear<const M: usize>(margins: &[[f64; M]]) -> bool {
     let fails = |i: usize| {
         let falls = margins[1..].iter().any(|m| m[i] <= 0.0 || m[i].is_nan());
-        // A margin may also dip to a minimum that is small in comparison with its variation.
+        // A minimum that is small in comparison with the margin's variation may be below zero
+        // between two places.
         let dips = margins.windows(3).any(|m| {
             let (a, b, c) = (m[0][i], m[1][i], m[2][i]);
             b < a && b < c && b < 4.0 * (a.max(c) - b)
@@ -85,7 +92,8 @@ fn are_clear<const M: usize>(margins: &[[f64; M]]) -> bool {
     !(0..M).any(fails)
 }
 
-/// The rates of the K numbers of a body beside its slip, that of its slip, and those of numbers on which no rate depends.
+/// The rates of the K numbers of a body beside its slip, of its slip, and (`more`) of numbers on which
+/// no rate depends.
 pub(crate) struct SlowRates<T, const K: usize> {
     pub numbers: [T; K],
     pub slip: [T; 2],
@@ -105,18 +113,19 @@ pub(crate) struct SlowSlip<const K: usize> {
     pub slip: [Series; 2],
     pub angle: Series,
     speed: Series,
-    /// Time over which the direction of the slip settles by a factor e at the start.
+    /// The settling time at the start, in which a deviation of the direction falls by a factor e.
     settling: f64,
     pub terms: usize,
     tol: f64,
 }
 
 impl<const K: usize> SlowSlips<K> {
-    /// The places of the speed of the slip, and of the cosine and the sine of its direction, after the K numbers.
+    /// Indices of the speed of the slip, and of the cosine and the sine of its direction, after
+    /// the K numbers.
     const SPEED: usize = K;
     const COSINE: usize = K + 1;
     const SINE: usize = K + 2;
-    /// The places of f and lambda after the K rates.
+    /// Indices of f and lambda after the K rates.
     const TURNS: usize = K;
     const GROWS: usize = K + 1;
 
@@ -141,9 +150,9 @@ impl<const K: usize> SlowSlips<K> {
         Self { player: tape.player(&given, &first, &more), tol, terms: terms(tol) }
     }
 
-    /// The series from the numbers `start` on, in a direction near `angle`, with the speed `begin` that grows at the rate
-    /// `growth`; a speed above 0 has its own growth. None where the slip would not keep that
-    /// direction, or is faster than `SLOW_SLIP`.
+    /// The series from the numbers `start` on, in a direction near `angle`, with the speed `begin` that grows
+    /// at the rate `growth`; for a speed above 0 lambda replaces `growth`. None where the slip would not keep
+    /// that direction, or is faster than `SLOW_SLIP`.
     pub fn follow(
         &mut self,
         start: [f64; K],
@@ -155,7 +164,7 @@ impl<const K: usize> SlowSlips<K> {
         }
         let (terms, player) = (self.terms, &mut self.player);
         let (mut sweep, mut moved) = (0, f64::INFINITY);
-        // The coefficients of the rate of the angle, in part from the sweep before.
+        // The coefficients of the rate of the angle; those not computed yet are from the sweep before.
         let mut turns = angle.slope().at;
         let settling = loop {
             let [cos, sin] = towards(angle.at[0]);
@@ -181,7 +190,7 @@ impl<const K: usize> SlowSlips<K> {
                     turns[n - 1] = 0.0;
                     Self::direct(player, &turns, n);
                     player.go_on(n);
-                    // What is known of r alpha', with a_n = 0.
+                    // The terms of r alpha' without a_n.
                     let speed = player.given(Self::SPEED);
                     let known = (0..=n).fold(0.0, |sum, j| sum + speed[j] * turns[n - j]);
                     let left = player.result(Self::TURNS).at[n] - known;
@@ -203,7 +212,8 @@ impl<const K: usize> SlowSlips<K> {
             }
             let soon = SOON.min(soon(&angle, terms, LAST_TERMS));
             let off: f64 = (0..terms).map(|n| (angle.at[n] - before.at[n]).abs() * soon.powi(n as i32)).sum();
-            // The next sweep is expected to change the angle less by the factor by which this one did.
+            // The change of the angle is expected to decrease in the next sweep by the same factor
+            // as in this one.
             if sweep > 0 && off * (off / moved).min(1.0) <= 0.1 * self.tol.max(1e-13) {
                 break settling;
             }
@@ -237,7 +247,7 @@ impl<const K: usize> SlowSlips<K> {
         player.set(Self::SINE, n, cosine);
     }
 
-    /// The series of the rate `i` of those on which nothing else depends, of the slip that was followed last.
+    /// The series of the rate `i` of [`SlowRates::more`], for the slip that was computed last.
     pub fn more(&self, i: usize) -> Series {
         self.player.later(i, self.terms - 1)
     }
@@ -263,7 +273,7 @@ impl<const K: usize> SlowSlip<K> {
         if line > rest || speed.at[0] + line.min(0.0) > rest {
             return (until, false);
         }
-        // A slip that hardly begins ends before its series does.
+        // The speed is not certain to stay positive: the slip may end before its series does.
         let part = |k: f64| until * k / SPEEDS as f64;
         let looks: [f64; SPEEDS + 1] = core::array::from_fn(|k| speed.value(part(k as f64)));
         let over = (1..=SPEEDS).find_map(|k| {
@@ -285,7 +295,7 @@ impl<const K: usize> SlowSlip<K> {
     }
 }
 
-/// The coefficient `n` > 0 of the integral of a series times this rate.
+/// The coefficient `n` > 0 of the integral of the series `x` times the series `rate`.
 pub(crate) fn turned(x: &[f64; TERMS], rate: &[f64; TERMS], n: usize) -> f64 {
     (0..n).fold(0.0, |sum, j| sum + x[j] * rate[n - 1 - j]) / n as f64
 }
@@ -294,7 +304,8 @@ pub(crate) fn turned(x: &[f64; TERMS], rate: &[f64; TERMS], n: usize) -> f64 {
 mod tests {
     use super::*;
 
-    /// A slip whose speed has a minimum of `lowest` at the time 0.503, and whose series may be used up to the time 1.
+    /// A slip whose speed has a minimum of `lowest` at the time 0.503, and whose series may be used up
+    /// to the time 1.
     fn dipping(lowest: f64) -> (f64, bool) {
         let mut speed = Series::of(0.503f64.powi(2) + lowest);
         (speed.at[1], speed.at[2]) = (-2.0 * 0.503, 1.0);

@@ -1,12 +1,13 @@
-//! Inclinations where the stability of the steady state with the centre at rest changes: the boundaries on the map.
+//! Inclinations where the stability of the steady state with the centre at rest changes: the
+//! boundaries on the map.
 //!
 //! ```text
 //! smooth:   n Y = I1 I3 s m A g',   Y = I1^2 A^2 + (2 c I1 A - I3 L s)(c I1 A - I3 L s)
 //! rolling:  n X = I3 s m D A g',    X = D A (A I1 - 2 I1 c U/D) + I3 (U L s + V A^2 s) + h A Z
 //!           U = D A u,   V = D v,   Z = D A z      u, v, z of `at_rest`
 //! ```
-//! The formulas are the numerators of kappa as polynomials in sine and cosine of theta, with sigma = s/A (1/rho of a
-//! ball) multiplied out.
+//! The formulas are the numerators of kappa as polynomials in sine and cosine of theta, with sigma = s/A
+//! (1/rho of a ball) multiplied out.
 
 use crate::laws::body::Body;
 use crate::laws::contact::Contact;
@@ -21,13 +22,13 @@ pub fn boundaries(body: &Body, contact: Contact) -> [f64; MOST] {
     if !body.is_sharp() {
         return rounded(body, contact);
     }
-    // For a critical body m = n: both cubics have this factor, which cancels in kappa.
+    // For a critical body m = n: both cubics contain the factor n, which cancels in kappa.
     let divided = body.excess() == 0.0;
     steady::inclinations_of(body, cubic(body, contact, divided))
 }
 
-/// A cubic in T = tan theta whose sign is that of kappa m, for a sharp rim: kappa times its denominators over cos^3, where
-/// 1/cos^2 = 1 + T^2. The factor n of a critical body can be `divided` out.
+/// A cubic in T = tan theta whose sign is that of kappa m, for a sharp rim: kappa times its denominators over
+/// cos^3, where 1/cos^2 = 1 + T^2. The factor n of a critical body can be `divided` out.
 pub(super) fn cubic<C: Coefficient>(body: &Body, contact: Contact, divided: bool) -> Cubic<C> {
     let (i1, i3, ell) = (body.i1(), body.i3(), body.ell());
     let d_sharp = i1 * i3 + i1 + i3 * ell * ell;
@@ -47,12 +48,12 @@ pub(super) fn cubic<C: Coefficient>(body: &Body, contact: Contact, divided: bool
     }
 }
 
-/// The boundaries of a rounded rim, up to the end of the body's range.
+/// The boundaries of a body with a rounded rim, at inclinations below theta_end.
 fn rounded(body: &Body, contact: Contact) -> [f64; MOST] {
     let Shares { s, c, radius, depth, height, slope, n, m, sigma: [sigma, over], .. } = &Shares::of(body);
     let (i1, i3, rho) = (&Trig::of(body.i1()), &Trig::of(body.i3()), &Trig::of(body.fillet()));
     let one = Trig::of(1.0);
-    // For a critical body n = m, so that both are divided out.
+    // For a critical body n = m, and both factors cancel in kappa.
     let (n, m) = if body.excess() == 0.0 { (&one, &one) } else { (n, m) };
     let two = &Trig::of(2.0);
     // `spin` is I3 w3 and `lean` is I1 w1 cot theta, over Omega and times the denominator of sigma.

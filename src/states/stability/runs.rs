@@ -1,12 +1,13 @@
-//! Runs of ascending inclinations in one region, found without evaluating most of the inclinations.
+//! Runs of ascending inclinations in one region, without an evaluation of most of the inclinations.
 //!
 //! ```text
 //! n = 1 - ell T,   m = a - ell T,   T = tan theta,   a = I1/I3,   both over cos theta
-//! sign kappa = sign m  sign of the cubic in T that `boundaries` has
+//! sign kappa = (sign of m) (sign of the cubic in T of `boundaries`)
 //! ```
-//! A line changes its sign once, and a cubic at most once between two of its extrema: bisection in double precision
-//! finds the place among the inclinations. A value within 2^-44 of the sum of its terms' sizes (some sixty times its
-//! rounding error, here or in `kappa`) is in doubt, and the caller then has to evaluate every inclination of that body.
+//! A linear function changes its sign once, and a cubic at most once between two of its extrema, so that
+//! bisection in double precision locates the change among the inclinations. A value below 2^-44 of the sum of
+//! its terms' sizes (some sixty times its rounding error, here or in `kappa`) is in doubt, and the caller
+//! then has to evaluate every inclination of that body.
 
 use super::boundaries::cubic;
 use super::region::Region;
@@ -16,7 +17,8 @@ use crate::methods::roots::{Coefficient, Cubic};
 use crate::numbers::Sum;
 use crate::states::steady;
 
-/// Relative to the sizes of its terms, a value is in doubt below this bound.
+/// The sign of a value below this share of its terms' sizes is in doubt. A smaller share could accept a sign
+/// that rounding errors cause; a larger one leaves more bodies to the caller.
 const VALUE_DOUBT: f64 = 1.0 / (1_u64 << 44) as f64;
 
 /// A number, and the sum of the sizes of its terms.
@@ -63,7 +65,7 @@ impl Curve {
     }
 
     /// The extrema of the cubic, the smaller one first; NaN where it has none.
-    fn turns(&self) -> [f64; 2] {
+    fn extrema(&self) -> [f64; 2] {
         let [_, p1, p2, p3] = self.p;
         let root = (p2 * p2 - 3.0 * p1 * p3).sqrt();
         let sum = -(p2 + root.copysign(p2));
@@ -71,14 +73,15 @@ impl Curve {
         if one < other { [one, other] } else { [other, one] }
     }
 
-    /// Notes in `changes` the places of `tangents` (ascending, not empty) from which on the cubic has another sign than
-    /// before, and returns whether the cubic is negative at the first; None if any sign is in doubt.
+    /// Adds to `changes` the indices in `tangents` (ascending, not empty) from which on the cubic has
+    /// another sign than before. Returns whether the cubic is negative at the first tangent; None if any
+    /// sign is in doubt.
     fn signs(&self, tangents: &[f64], changes: &mut Changes, which: u8) -> Option<bool> {
         let start = self.negative(tangents[0])?;
         let [one, other] = if self.sizes[2] == 0.0 && self.sizes[3] == 0.0 {
             [0; 2]
         } else {
-            self.turns().map(|turn| tangents.partition_point(|t| *t < turn))
+            self.extrema().map(|extremum| tangents.partition_point(|t| *t < extremum))
         };
         let mut before = start;
         for (from, to) in [(0, one), (one, other), (one.max(other), tangents.len())] {
@@ -104,7 +107,8 @@ impl Curve {
     }
 }
 
-/// Changes of sign in the order of their places; each of four curves changes its sign at most five times.
+/// The index of each change of sign, in ascending order, and the bit of its curve. Each of four curves
+/// changes its sign at most five times.
 struct Changes {
     all: [(usize, u8); 20],
     count: usize,
@@ -123,10 +127,10 @@ impl Changes {
     }
 }
 
-/// Calls `tell` with the [`Region`], the first place and the end of each run, and returns true. The body has
+/// Calls `report` with the [`Region`], the first index and the end of each run, and returns true. The body has
 /// a sharp rim and the range (0, pi/2]; `tangents` are those of ascending inclinations. If a sign is in
 /// doubt, there is no call, and false is returned.
-pub(crate) fn runs(body: &Body, tangents: &[f64], mut tell: impl FnMut(Region, usize, usize)) -> bool {
+pub(crate) fn runs(body: &Body, tangents: &[f64], mut report: impl FnMut(Region, usize, usize)) -> bool {
     if tangents.is_empty() {
         return true;
     }
@@ -149,12 +153,12 @@ pub(crate) fn runs(body: &Body, tangents: &[f64], mut tell: impl FnMut(Region, u
     let mut from = 0;
     for &(place, which) in &changes.all[..changes.count] {
         if place > from {
-            tell(region_of(negative), from, place);
+            report(region_of(negative), from, place);
             from = place;
         }
         negative ^= which;
     }
-    tell(region_of(negative), from, tangents.len());
+    report(region_of(negative), from, tangents.len());
     true
 }
 

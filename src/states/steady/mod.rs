@@ -169,6 +169,16 @@ pub fn state(body: &Body, theta: f64) -> Result<State, Error> {
     Ok(turning(body, theta, rate))
 }
 
+/// Whether a state is the steady one with the centre at rest at its inclination, in either sense of turning: to six digits
+/// of |w1| + |w3|. False where there is none.
+pub fn rests(body: &Body, y: &State) -> bool {
+    state(body, y.theta).is_ok_and(|own| {
+        let way = if y.w1 * own.w1 < 0.0 { -1.0 } else { 1.0 };
+        let off = (y.w1 - way * own.w1).abs() + y.w2.abs() + (y.w3 - way * own.w3).abs();
+        off <= 1e-6 * (own.w1.abs() + own.w3.abs())
+    })
+}
+
 /// The steady state with the centre at rest that has this rate: w3 = (L/A) w1.
 pub(crate) fn turning(body: &Body, theta: f64, rate: f64) -> State {
     let speed = rate / body.i3().sqrt();

@@ -7,17 +7,17 @@ use crate::laws::state::State;
 use crate::motions::path::settled::lag;
 
 impl LossyFlow {
-    /// Error of the time at which the contact point stops, from the sum `erred` of the step errors. The slower psi'
-    /// changes, the more an error of psi' moves that time.
+    /// Error of the time at which the contact point stops, from the sum `erred` of the errors of all steps.
+    /// The slower psi' changes, the more an error of psi' moves that time.
     pub fn doubt(&self, y: &State, erred: f64) -> f64 {
         let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
         let (s, c) = angle;
-        let [d1, _, d3] = self.act(angle, w[0] / s, w, Held::Nothing).w;
+        let [d1, _, d3] = self.response(angle, w[0] / s, w, Held::Nothing).w;
         let rate = d3 - c / s * d1 - w[0] * w[1] / (s * s);
         // Since psi' = w3 - w1 c/s, an error of w1 counts for more where s is small.
         let rounded = (4.0 * SLACK + erred.max(100.0 * self.tol)) * (1.0 + y.precession().abs());
         let late = if self.hold == Hold::Settled {
-            let push = self.act(angle, w[0] / s, w, Held::Contour(0.0)).held[0];
+            let push = self.response(angle, w[0] / s, w, Held::Contour(0.0)).held[0];
             let radius = self.law.rates.reduced().shape.rim.radius(angle);
             lag(&self.law.losses, (s, c * y.w2), radius, push, self.law.stiffness(angle, 1.0))
         } else {
@@ -26,7 +26,7 @@ impl LossyFlow {
         late + (rounded + erred * (c / s).abs()) / rate.abs()
     }
 
-    /// Error of the numbers of a settled contact.
+    /// Error of w1 and w3 while psi' follows its balance: at most s abs(psi').
     pub fn settled_doubt(&self, y: &State) -> f64 {
         y.theta.sin() * y.spin().abs()
     }

@@ -1,14 +1,16 @@
-//! A body that loses energy while nothing is held, over any number: its margins, step errors and longest steps.
+//! A body that loses energy while no motion is held: its margins, step errors and longest steps, for single
+//! numbers and for lanes.
 //!
 //! ```text
-//! y = (s, c, p, w2, w3, t)  dt = v/(v + delta/J) dsigma under rolling resistance, v^2 = w_h^2 + w2^2; else dt = dsigma
-//! margins of a lane    distances from landing and settling, side, N, (mu N)^2 - F^2, the ways of psi' and of w_z, v
+//! y = (s, c, p, w2, w3, t)
+//! dt = v/(v + delta/J) dsigma with v^2 = w_h^2 + w2^2 under rolling resistance, else dt = dsigma
+//! margins of a lane    distances from landing and settling, side, N, (mu N)^2 - F^2, |psi'|, |w_z|, v
 //! ```
-//! The couple of rolling resistance turns with the rolling and the rocking, the faster the slower these are. In sigma
-//! the motion is smooth up to the point where both vanish, which is reached as exp(-sigma). Single motions and lanes of
-//! eight share this code.
+//! The direction of the couple of rolling resistance turns with that of rolling and rocking, the faster the
+//! slower these are. In sigma the motion is smooth up to the point where both vanish, which is reached as
+//! exp(-sigma). Single motions and lanes of eight share this code.
 
-use super::{FALLS, Hold, LossyFlow, REST};
+use super::{Hold, LOSSY_NUMBERS, LossyFlow, REST};
 use crate::laws::body::Shape;
 use crate::laws::contact::grip;
 use crate::laws::contact::lossy::{Acted, Held, Lossy};
@@ -19,7 +21,7 @@ use crate::motions::path::face::lands_at;
 use crate::motions::path::settled::{CLOSE, SLOWER};
 use crate::numbers::{Dual, Real, here};
 
-/// A body that loses energy while nothing is held, with its table and its losses.
+/// A body that loses energy while no motion is held, with its table and its losses.
 #[derive(Clone, Copy)]
 pub(crate) struct LossyUnheld<T> {
     pub law: Lossy<T>,
@@ -43,7 +45,7 @@ pub(crate) fn pace_of<T: Real>((s, c): (T, T), precession: T, [_, w2, w3]: [T; 3
     rolling.mac(rolling, w2 * w2).sqrt()
 }
 
-/// phi' and w of a body that moves freely.
+/// phi' and w where no motion is held.
 #[inline(always)]
 pub(crate) fn turning<T: Real>([s, _, p, w2, w3]: [T; 5]) -> (T, [T; 3]) {
     let per = s.splat(1.0) / s;
@@ -57,9 +59,9 @@ pub(crate) fn fastest_of<T: Real>(w: [T; 3]) -> T {
     w[0].splat(1.0).max(w[0].abs()).max(w[1].abs()).max(w[2].abs())
 }
 
-/// The error of a step in units of `tol`: relative to s for s, relative to the largest speed for speeds, and for p as
-/// an error of w1. Speeds also keep to a thousandth of the speed `paced` of a body that rolling resistance stops, if
-/// there is one, since that speed must vanish as it does, whatever the tolerance.
+/// The error of a step in units of `tol`: relative to s for s, relative to the largest speed for speeds, and
+/// for p as an error of w1. If rolling resistance stops the body, `paced` is its speed of rolling and
+/// rocking, and speeds may err by at most a thousandth of it, so that it vanishes correctly at any tolerance.
 #[inline(always)]
 pub(crate) fn error<T: Real, const N: usize>(
     tol: T,
@@ -110,9 +112,10 @@ impl<T: Real> LossyUnheld<T> {
         acted
     }
 
-    /// The margins that are all positive where a step needs no closer look: distances of the face from landing and
-    /// settling, distance of the other rim, N, margin of friction, margins of the motions that dry losses resist, and
-    /// margin of the joint speed that rolling resistance brings to rest.
+    /// The margins, which are all positive where a lane may take a step without a search for events: the
+    /// distance of the face from landing and settling, that of the other rim, N, the margin of friction,
+    /// those of the motions that dry losses resist, and that of the joint speed which rolling resistance
+    /// brings to rest.
     #[inline(always)]
     pub fn margins(&self, y: &[T; 6], acted: &Acted<T>) -> [T; 7] {
         let [s, c, p, w2, w3, _] = *y;
@@ -128,7 +131,7 @@ impl<T: Real> LossyUnheld<T> {
         let [normal, along, across] = acted.force;
         let held = grip(self.mu, normal, along * along + across * across);
         let held = self.mu.select_lt(one.splat(f64::MAX), held, one);
-        let endless = losses.has(Law::RollingResistance) || losses.has(Law::Drilling);
+        let endless = losses.turn_endlessly();
         // This margin vanishes at ten times the sine of theta of a landing.
         let i1 = self.law.rates.reduced().shape.i1;
         let mut far = s * one.splat(0.1) - lands_at(i1, (s, c), [w[0], w2], acted.w[1], endless);
@@ -197,14 +200,15 @@ impl<T: Real> LossyUnheld<T> {
 }
 
 impl LossyFlow {
-    /// Whether lanes can follow this flow: nothing is held, all events are watched, and the body is not a ball.
+    /// Whether lanes can follow this flow: no motion is held, all events end it, and the body is not a ball.
     pub fn is_free(&self) -> bool {
-        self.hold == Hold::No && !self.drill_held && self.watch && !self.ball
+        self.hold == Hold::No && !self.holds_drilling && self.watch && !self.ball
     }
 
-    /// The numbers that lanes need: theta_end, mu, coefficients and ways.
-    pub fn numbers(&self) -> [f64; FALLS] {
-        let mut all = [0.0; FALLS];
+    /// The numbers that lanes need: theta_end, mu, the coefficients of the losses, and the signs
+    /// of psi' and w_z.
+    pub fn numbers(&self) -> [f64; LOSSY_NUMBERS] {
+        let mut all = [0.0; LOSSY_NUMBERS];
         let (sine, cosine) = self.theta_end.sin_cos();
         let there = f64::from(u8::from(self.theta_end < core::f64::consts::PI));
         all[..4].copy_from_slice(&[sine, cosine, there, self.mu]);
@@ -215,7 +219,6 @@ impl LossyFlow {
         all
     }
 
-    /// Whether each law is present.
     pub fn present(&self) -> [bool; COUNT] {
         self.law.losses.present()
     }
@@ -226,13 +229,14 @@ impl<T: Real> LossyUnheld<T> {
     #[inline(always)]
     pub fn of(
         rates: crate::laws::contact::reduced::Rates<T>,
-        numbers: [T; FALLS],
+        numbers: [T; LOSSY_NUMBERS],
         present: [bool; COUNT],
     ) -> Self {
         let [sine, cosine, there, mu, rest @ ..] = numbers;
         let mut coefficients = [mu; COUNT];
         coefficients.copy_from_slice(&rest[..COUNT]);
-        let ways = Ways { contour: rest[COUNT], drilling: rest[COUNT + 1], rocking: 0.0, drill_held: false };
+        let ways =
+            Ways { contour: rest[COUNT], drilling: rest[COUNT + 1], rocking: 0.0, holds_drilling: false };
         let losses = Couples::among(coefficients, present, Some(ways));
         Self { law: Lossy { rates, losses }, side: [sine, cosine, there], mu }
     }

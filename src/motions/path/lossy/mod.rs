@@ -3,12 +3,13 @@
 //! ```text
 //! y = (s, c, p, w2, w3, 0, 0, t, 0; phi, psi, x, y; lost)       p = w1 s = phi' s^2, in time
 //! held   y = (s, c, q, w2, -, ...),   w1 = s (q - c psi'),   w3 = c q + s^2 psi',   q = w_z
-//! margins   s,  theta_end - theta,  N,  (mu N)^2 - F^2,  the way of psi' (or of its hold),  that of w_z or w2
+//! margins   s,  theta_end - theta,  N,  (mu N)^2 - F^2,  |psi'| or its hold,  |w_z| or its hold or |w2|
 //! ```
-//! Near the table p is almost conserved, while w1 = p/s is not; so a whirr is followed to its end in bounded numbers.
-//! Dry friction holds a motion that it has stopped ([`lossy`](crate::laws::contact::lossy)). A couple that grows with a power
-//! of psi' stops the contact of a falling face ever faster. Where this stop is thousands of times faster than the fall,
-//! psi' follows from the balance of that couple with the couple that turns the contact, the term of psi'' included
+//! Near the table p is almost conserved, while w1 = p/s is not; so a whirr is computed to its end with
+//! bounded numbers. Dry friction can hold a motion that it has stopped
+//! ([`lossy`](crate::laws::contact::lossy)). A couple that grows with a power of psi' stops the contact of
+//! a falling face ever faster. Where this stop is thousands of times faster than the fall, psi' follows
+//! from the balance of that couple with the couple that turns the contact, the term of psi'' included
 //! (Tikhonov 1952).
 //!
 //! Error: the tolerance of the steps; `test_losses_reference` has motions of 25 digits from another model.
@@ -40,18 +41,19 @@ enum Hold {
     Planar,
     /// Dry friction holds the contact point.
     Dry,
-    /// A couple that grows with psi' has almost stopped the contact point.
+    /// A couple that grows with psi' has almost stopped the contact point (see `settled`).
     Settled,
 }
 
-/// A friction demand that exceeds mu N by more than this share has jumped beyond mu N.
+/// A friction demand that exceeds mu N by more than this share has jumped beyond mu N, as at a reversal of a
+/// dry couple, and has not crossed mu N continuously.
 const JUMP: f64 = 1e-6;
-/// A motion that has just turned round, and slips at once, is moved by this much in its new direction.
+/// Speed given to a motion that has just reversed and slips at once, so that its new direction is definite.
 const NUDGE: f64 = 1e-13;
 /// A body with a smaller joint speed of rolling and rocking is at rest for the law of rolling resistance.
 pub(crate) const REST: f64 = 1e-13;
 
-/// The couples that push a body that only drills, and the couple that resists.
+/// The couples that push a body that only drills, and the couple that resists them.
 struct Resisted {
     /// The couples that push the body to roll and to rock.
     rolling: f64,
@@ -62,10 +64,10 @@ struct Resisted {
     most: f64,
 }
 
-/// How many numbers [`LossyFlow::numbers`] gives to lanes.
-pub(crate) const FALLS: usize = 4 + COUNT + 2;
+/// Length of [`LossyFlow::numbers`].
+pub(crate) const LOSSY_NUMBERS: usize = 4 + COUNT + 2;
 
-/// A body, its table and its losses, with the motions that are held.
+/// A body, its table and its losses, and the motions that are held at rest.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LossyFlow {
     law: Lossy<f64>,
@@ -74,10 +76,11 @@ pub(crate) struct LossyFlow {
     bare: Lossy<f64>,
     hold: Hold,
     /// Whether dry friction holds the drilling.
-    drill_held: bool,
+    holds_drilling: bool,
     /// Whether the flow starts from a state in which w_z vanishes exactly.
     starts_still: bool,
-    /// Allowances for the rounding of psi', and of w_z (of w2 if the body only rocks), where these begin at rest.
+    /// Allowances for the rounding of psi', and of w_z (of w2 if the body only rocks), where these
+    /// begin at rest.
     slack: [f64; 2],
     ways: Ways,
     /// The sign of psi' of a settled contact.
@@ -91,7 +94,7 @@ pub(crate) struct LossyFlow {
 }
 
 impl LossyFlow {
-    /// The flow from a state on of a body that rolls with friction up to mu N, or slides freely.
+    /// The flow of a body from a state on; it rolls with friction up to mu N, or slides on a smooth table.
     pub fn new((body, contact): (&Body, Contact), mu: f64, losses: &Losses, tol: f64, y: &State) -> Self {
         let law = Lossy::of(contact, body, losses);
         let dual = |value: f64| Dual { value, slope: 0.0 };
@@ -102,14 +105,14 @@ impl LossyFlow {
         let mu = if contact == Contact::Smooth { f64::INFINITY } else { mu };
         let (hold, ways) = (Hold::No, Ways::default());
         let bare = Lossy { losses: law.losses.off_the_contour(), ..law };
-        let (drill_held, watch) = (false, true);
+        let (holds_drilling, watch) = (false, true);
         let (settled_way, starts_still, slack) = (0.0, false, [0.0; 2]);
         let mut lossy = Self {
             law,
             sloped,
             bare,
             hold,
-            drill_held,
+            holds_drilling,
             starts_still,
             slack,
             ways,
@@ -120,13 +123,12 @@ impl LossyFlow {
             tol,
             watch,
         };
-        lossy.face(y);
+        lossy.sets_holds(y);
         lossy
     }
 
-    /// Whether dry friction holds the drilling.
-    pub fn drill_held(&self) -> bool {
-        self.drill_held
+    pub fn holds_drilling(&self) -> bool {
+        self.holds_drilling
     }
 
     /// From now on only a landing of the face ends the flow.
@@ -138,14 +140,14 @@ impl LossyFlow {
         self.law.losses.has(law)
     }
 
-    /// Sets the motions that are held at a state, and the ways of the other motions.
-    fn face(&mut self, y: &State) {
+    /// Sets which motions are held at a state, and the signs (`ways`) of the others.
+    fn sets_holds(&mut self, y: &State) {
         let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
         let (s, c) = angle;
         let (spin, drilling) = (y.w3 - c / s * y.w1, s * y.w1 + c * y.w3);
         let way = |x: f64| if x == 0.0 { 0.0 } else { x.signum() };
         self.ways = Ways { contour: way(spin), drilling: way(drilling), ..Ways::default() };
-        self.drill_held = false;
+        self.holds_drilling = false;
         self.hold = Hold::No;
         if y.w1 == 0.0 && y.w3 == 0.0 {
             self.only_rocks(angle, y.w2);
@@ -158,11 +160,12 @@ impl LossyFlow {
             }
         }
         self.turn(self.ways);
-        self.allows(y);
+        self.sets_slack(y);
     }
 
-    /// Sets the allowances for motions that begin at rest against a dry loss: rounding may give them either sign.
-    fn allows(&mut self, y: &State) {
+    /// Sets the allowances for motions that begin at rest against a dry loss, where rounding may
+    /// give either sign.
+    fn sets_slack(&mut self, y: &State) {
         let size = SLACK * (1.0 + y.precession().abs());
         let (s, c) = y.theta.sin_cos();
         let slow = |x: f64| if x.abs() < 16.0 * size { SLACK } else { 0.0 };
@@ -176,45 +179,47 @@ impl LossyFlow {
         self.sloped.losses = self.law.losses.map(|value| Dual { value, slope: 0.0 });
     }
 
-    fn act(&self, angle: (f64, f64), precession: f64, w: [f64; 3], held: Held<f64>) -> Acted<f64> {
+    fn response(&self, angle: (f64, f64), precession: f64, w: [f64; 3], held: Held<f64>) -> Acted<f64> {
         self.law.at(angle, precession, w, held)
     }
 
-    /// Lets dry friction hold the contact point if its limit suffices, or always if `surely`; else the push moves it.
+    /// Lets dry friction hold the contact point if its limit suffices, or always if `surely`; else the
+    /// push moves it.
     fn stop_contour(&mut self, angle: (f64, f64), w: [f64; 3], surely: bool) {
         self.turn(Ways { contour: 0.0, ..self.ways });
-        let needs = self.act(angle, w[0] / angle.0, w, Held::Contour(0.0)).held;
+        let needs = self.response(angle, w[0] / angle.0, w, Held::Contour(0.0)).held;
         let held = surely || holds(needs);
         self.hold = if held { Hold::Dry } else { Hold::No };
         self.turn(Ways { contour: if held { 0.0 } else { needs[0].signum() }, ..self.ways });
-        if held && self.drill_held {
+        if held && self.holds_drilling {
             self.only_rocks(angle, w[1]);
         }
     }
 
     /// Lets the body only rock, since nothing turns it any more.
     fn only_rocks(&mut self, angle: (f64, f64), w2: f64) {
-        (self.hold, self.drill_held) = (Hold::Planar, false);
+        (self.hold, self.holds_drilling) = (Hold::Planar, false);
         self.turn(Ways::default());
-        let falls = self.act(angle, 0.0, [0.0, w2, 0.0], Held::Nothing).w[1];
+        let falls = self.response(angle, 0.0, [0.0, w2, 0.0], Held::Nothing).w[1];
         let rocking = if w2 != 0.0 { w2.signum() } else { falls.signum() };
         self.turn(Ways { rocking, ..Ways::default() });
     }
 
-    /// Lets dry friction hold the drilling if its limit suffices; else the drilling begins where the body is pushed.
+    /// Lets dry friction hold the drilling if its limit suffices; else the drilling begins where the
+    /// body is pushed.
     fn stop_drilling(&mut self, angle: (f64, f64), w: [f64; 3]) {
         self.turn(Ways { drilling: 0.0, ..self.ways });
-        let needs = self.act(angle, w[0] / angle.0, w, Held::Drilling).held;
-        self.drill_held = holds(needs);
-        self.turn(Ways { drilling: if self.drill_held { 0.0 } else { -needs[0].signum() }, ..self.ways });
+        let needs = self.response(angle, w[0] / angle.0, w, Held::Drilling).held;
+        self.holds_drilling = holds(needs);
+        self.turn(Ways { drilling: if self.holds_drilling { 0.0 } else { -needs[0].signum() }, ..self.ways });
     }
 
-    /// Whether the friction demand has jumped beyond mu N, as happens where a dry loss has just turned round.
+    /// Whether the friction demand has jumped beyond mu N, as happens where a dry couple has just reversed.
     pub fn jumps(&self, y: &State) -> bool {
         self.force(y).friction_coefficient() > self.mu * (1.0 + JUMP)
     }
 
-    /// The state after a small move along the new way of a motion that has just turned, and the size of the move.
+    /// The state with a small speed in the new direction of a motion that has just reversed, and this speed.
     pub fn on_its_way(&self, y: &State) -> (State, f64) {
         let (s, c) = y.theta.sin_cos();
         let little = NUDGE * (1.0 + y.precession().abs());
@@ -232,10 +237,11 @@ impl LossyFlow {
         (State { w1, w3, ..*y }, little)
     }
 
-    /// Applies the changes of a halt. Returns whether the contact point has stopped for good, or the body rests.
+    /// Applies the changes of a halt. Returns whether the contact point has stopped for good, or
+    /// the body rests.
     pub fn after(&mut self, halt: Halt, y: &State) -> bool {
         let stops = self.turned_by(halt, y);
-        self.allows(y);
+        self.sets_slack(y);
         stops
     }
 
@@ -244,19 +250,20 @@ impl LossyFlow {
         self.starts_still = halt == Halt::Drilling;
         match halt {
             Halt::Contour if self.hold == Hold::Dry => {
-                let push = self.act(angle, w[0] / angle.0, w, Held::Contour(0.0)).held[0];
+                let push = self.response(angle, w[0] / angle.0, w, Held::Contour(0.0)).held[0];
                 self.hold = Hold::No;
                 self.turn(Ways { contour: push.signum(), ..self.ways });
             }
             Halt::Contour => {
-                // A settled contact stops where dry friction balances its push, which is the case here.
+                // A settled contact stops where dry friction balances the push, so that friction holds
+                // it in any case.
                 let settled = self.hold == Hold::Settled;
                 self.stop_contour(angle, w, settled);
                 return self.hold == Hold::Dry;
             }
-            Halt::Drilling if self.drill_held => {
-                let push = self.act(angle, w[0] / angle.0, w, Held::Drilling).held[0];
-                self.drill_held = false;
+            Halt::Drilling if self.holds_drilling => {
+                let push = self.response(angle, w[0] / angle.0, w, Held::Drilling).held[0];
+                self.holds_drilling = false;
                 self.turn(Ways { drilling: -push.signum(), ..self.ways });
             }
             // A body that neither runs along its rim nor drills does not turn at all.
@@ -264,7 +271,7 @@ impl LossyFlow {
             Halt::Drilling => self.stop_drilling(angle, w),
             Halt::Rocking => return !self.rocks_back(angle),
             Halt::Rests => return self.rests(y),
-            Halt::Settles if self.drill_held => self.only_rocks(angle, w[1]),
+            Halt::Settles if self.holds_drilling => self.only_rocks(angle, w[1]),
             Halt::Settles => {
                 (self.hold, self.settled_way) = (Hold::Settled, self.ways.contour);
                 self.turn(Ways { contour: 0.0, ..self.ways });
@@ -274,10 +281,11 @@ impl LossyFlow {
         false
     }
 
-    /// Whether a body that only rocks, and has come to rest, rocks back; otherwise rolling resistance holds the body.
+    /// Whether a body that only rocks, and has come to rest, rocks back; otherwise rolling resistance
+    /// holds the body.
     fn rocks_back(&mut self, angle: (f64, f64)) -> bool {
         self.turn(Ways::default());
-        let acted = self.act(angle, 0.0, [0.0; 3], Held::Nothing);
+        let acted = self.response(angle, 0.0, [0.0; 3], Held::Nothing);
         let inertia = self.law.rates.reduced().inertia(|| angle);
         let limit = self.law.losses.coefficient(Law::RollingResistance) * acted.force[0];
         let moves = acted.w[1].abs() * inertia > limit;
@@ -299,15 +307,15 @@ impl LossyFlow {
         rolling.hypot(rocking) <= most
     }
 
-    /// The couples that rolling resistance has to hold on a body that only drills.
+    /// The couples that push a body that only drills to roll and rock, and the limit of rolling resistance.
     fn resisted(&self, angle: (f64, f64), drilling: f64) -> Resisted {
         let ((s, c), mut still) = (angle, *self);
         still.turn(Ways { contour: 0.0, ..self.ways });
         let w = [s * drilling, 0.0, c * drilling];
-        let acted = still.act(angle, drilling, w, Held::Contour(0.0));
+        let acted = still.response(angle, drilling, w, Held::Contour(0.0));
         let [push, limit] = acted.held;
-        let [d1, _, d3] = still.act(angle, drilling, w, Held::Nothing).w;
-        // Dry friction along the contour takes its share of the push.
+        let [d1, _, d3] = still.response(angle, drilling, w, Held::Nothing).w;
+        // Dry friction along the contour balances the push up to its limit.
         let rolling = -push.signum() * (push.abs() - limit).max(0.0) / s;
         let lightness = ((c * d1 - s * d3) * s / push).abs();
         let lightness = if lightness > 0.0 { lightness } else { 1.0 };
@@ -316,17 +324,18 @@ impl LossyFlow {
         Resisted { rolling, rocking: acted.w[1] * inertia, lightness: [lightness, 1.0 / inertia], most }
     }
 
-    /// The flow after its start, where w_z no longer vanishes exactly.
+    /// The same flow after its start, where w_z no longer vanishes exactly.
     pub fn on_the_way(&self) -> Self {
         Self { starts_still: false, ..*self }
     }
 
-    /// Whether the variable differs from time: under rolling resistance, except for a body that only rocks.
+    /// Whether sigma differs from time: under rolling resistance, except for a body that only rocks.
     fn is_paced(&self) -> bool {
         self.has(Law::RollingResistance) && self.hold != Hold::Planar
     }
 
-    /// Gives a body that neither rolls nor rocks, but is not held, a small speed in the direction of the push.
+    /// Gives a body that neither rolls nor rocks, but is not held, a small speed in the
+    /// direction of the push.
     fn pushed_off<const N: usize>(&self, y: &mut [f64; N]) {
         let ([s, c, w1, w2, w3], held) = (core::array::from_fn(|i| y[i]), self.hold != Hold::No);
         if !self.is_paced() || pace_of((s, c), w1 / s, [w1, w2, w3]) >= REST {
@@ -352,7 +361,7 @@ impl LossyFlow {
         self.pushed_off(&mut y);
         let [s, c, mut w1, mut w3] = [y[0], y[1], y[2], y[4]];
         if self.starts_still && self.hold == Hold::No {
-            // The rounding error of w_z is removed.
+            // Here w_z vanishes exactly, and its rounding error is removed.
             let off = s * w1 + c * w3;
             if c.abs() > 0.5 {
                 w3 -= off / c
@@ -372,13 +381,13 @@ impl LossyFlow {
 
     fn held<T: Real>(&self, like: T) -> Held<T> {
         match self.hold {
-            Hold::No if self.drill_held => Held::Drilling,
+            Hold::No if self.holds_drilling => Held::Drilling,
             Hold::No => Held::Nothing,
             _ => Held::Contour(like.splat(0.0)),
         }
     }
 
-    /// phi' and w of the numbers, where a held contact point is taken to be at rest.
+    /// phi' and w from the numbers; psi' of a held or settled contact point counts as zero.
     #[inline(always)]
     fn turning<T: Real>(&self, y: [T; 5]) -> (T, [T; 3]) {
         let [s, c, p, w2, _] = y;
@@ -388,7 +397,7 @@ impl LossyFlow {
     /// The halt by the first margin that fails at the start of a flow; None if all margins hold.
     pub fn at_start(&self, y: &State) -> Option<Halt> {
         let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
-        let acted = self.act(angle, w[0] / angle.0, w, self.held(0.0));
+        let acted = self.response(angle, w[0] / angle.0, w, self.held(0.0));
         let rises = y.w2 > 0.0 || (y.w2 == 0.0 && acted.w[1] > 0.0);
         let side = self.theta_end - y.theta;
         let [normal, along, across] = acted.force;
@@ -406,7 +415,7 @@ impl LossyFlow {
     /// The contact force at a state of the flow.
     pub fn force(&self, y: &State) -> Force {
         let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
-        let [normal, along, across] = self.act(angle, w[0] / angle.0, w, self.held(0.0)).force;
+        let [normal, along, across] = self.response(angle, w[0] / angle.0, w, self.held(0.0)).force;
         Force { normal, along, across }
     }
 
@@ -414,21 +423,23 @@ impl LossyFlow {
     pub fn rest_of<const N: usize>(&self, shown: &[f64; N]) -> (f64, f64) {
         let [s, c, w1, w2, w3] = core::array::from_fn(|i| shown[i]);
         let (falls, i1) = (if c * w2 > 0.0 { s / (c * w2) } else { 0.0 }, self.law.rates.reduced().shape.i1);
-        let acted = self.act((s, c), w1 / s, [w1, w2, w3], self.held(0.0));
+        let acted = self.response((s, c), w1 / s, [w1, w2, w3], self.held(0.0));
         if self.hold != Hold::No || falls > 0.0 && turning_share(i1, s, w1, w2) < 0.25 {
             if w2 * w2 > s || falls == 0.0 {
                 return (falls, falls * falls.max(s));
             }
-            // The face falls ever more slowly, with w2 ~ s^a. For a = 1 it only comes nearer, by e in each of these times,
-            // and is said to land ten times later than at `FLAT`.
+            // The face falls more and more slowly, with w2 ~ s^a. For a = 1 it never lands: s falls by a
+            // factor e in each time `falls`, and the landing is set to ten such times after `FLAT`.
             let slower = -(c * acted.w[1] * s) / (w2 * w2);
             let nearer = (s / FLAT).max(1.0).ln() + 10.0;
             let times = if slower < 0.9 { 1.0 / (1.0 - slower.max(0.0)) } else { nearer };
             return (falls * times, falls);
         }
-        // If a body comes down by infinitely many turns, its energy E = (3/2) s falls as the square of the time left.
+        // If a body lands after infinitely many turns, its energy E = (3/2) a s falls as the square of
+        // the time left.
         let resisted = self.law.losses.coefficient(Law::RollingResistance) * acted.force[0];
-        // The power of rolling resistance counts alone, since drilling takes another energy.
+        // Only the power of rolling resistance counts, since drilling friction takes energy of the
+        // drilling alone.
         let power =
             if resisted > 0.0 { resisted * pace_of((s, c), w1 / s, [w1, w2, w3]) } else { acted.power };
         let left = if power > 0.0 { 3.0 * s * self.law.rates.reduced().shape.rim.a / power } else { 0.0 };

@@ -16,8 +16,8 @@ use core::f64::consts::PI;
 const ROLLING_ENDS: [Halt; MARGINS] =
     [Halt::Face, Halt::Side, Halt::LiftOff, Halt::Slips, Halt::Contour, Halt::Drilling];
 
-/// The numbers after the time `left` in sigma, in a straight line, where the body only drills; `drills` gives the three
-/// numbers of its turning from the extrapolated numbers.
+/// The numbers where the body only drills, extrapolated linearly by `left` in sigma; `drills` returns the
+/// three numbers of its angular velocity from the extrapolated ones.
 pub(crate) fn at_rest<const N: usize>(
     place: &FlowPlace<N>,
     left: f64,
@@ -43,7 +43,8 @@ impl LossyFlow {
         (precession, w, Acted { power: acted.power + push * spin, ..acted }, spin)
     }
 
-    /// The error of s psi' that steps leave where a contact stops so fast that the steps are as short as they may be.
+    /// The error of s psi' that steps leave where the contact point stops so fast that stability
+    /// limits the steps.
     fn noise(&self, w: [f64; 3]) -> f64 {
         100.0 * self.tol * w.iter().fold(1.0, |most: f64, x| most.max(x.abs()))
     }
@@ -53,13 +54,13 @@ impl LossyFlow {
         let y = &place.y;
         let angle = (y[0], y[1]);
         let (_, w) = self.turning([y[0], y[1], y[2], y[3], y[4]]);
-        let acted = self.act(angle, w[0] / angle.0, w, self.held(0.0));
+        let acted = self.response(angle, w[0] / angle.0, w, self.held(0.0));
         rolling_growth(angle, w, acted.w)
     }
 
     /// The end, by linear extrapolation, of rolling and rocking that rolling resistance has almost stopped.
     fn comes_to_rest<const N: usize>(&self, place: &FlowPlace<N>) -> Option<[f64; N]> {
-        // A face that comes down by infinitely many turns rolls as slowly at its end.
+        // A whirr rolls as slowly before its face lands, and does not rest.
         if !self.is_paced() || place.y[0].abs() < FLAT {
             return None;
         }
@@ -80,7 +81,7 @@ impl LossyFlow {
         let (precession, w) = self.turning(y);
         let one = s.splat(1.0);
         let acted = law.at((s, c), precession, w, self.held(s));
-        let endless = self.hold == Hold::No && (self.has(Law::RollingResistance) || self.has(Law::Drilling));
+        let endless = self.hold == Hold::No && self.law.losses.turn_endlessly();
         let face = if self.ball {
             one
         } else {
@@ -106,7 +107,7 @@ impl LossyFlow {
         };
         let drilling = if self.hold == Hold::Planar {
             if self.has(Law::RollingResistance) { number(self.ways.rocking) * w2 + slack[1] } else { one }
-        } else if self.drill_held {
+        } else if self.holds_drilling {
             within
         } else if self.has(Law::Drilling) && self.ways.drilling != 0.0 {
             number(self.ways.drilling) * (s * w[0] + c * w[2]) + slack[1]
@@ -140,7 +141,7 @@ impl Flow<MARGINS> for LossyFlow {
             (precession, w, acted)
         } else {
             let (precession, w) = self.turning([s, c, y[2], w2, y[4]]);
-            (precession, w, self.act((s, c), precession, w, self.held(0.0)))
+            (precession, w, self.response((s, c), precession, w, self.held(0.0)))
         };
         let [d1, d2, d3] = acted.w;
         let (turn, free) = if self.hold == Hold::No {
@@ -184,7 +185,7 @@ impl Flow<MARGINS> for LossyFlow {
 
     #[inline(always)]
     fn error<const N: usize>(&self, y: &[f64; N], made: &rk8::Step<f64, N>) -> f64 {
-        // A ball that only rocks passes through its pole.
+        // A ball that only rocks passes through its pole, where an error relative to s has no meaning.
         let s = if self.ball && self.hold != Hold::No { 1.0 } else { y[0].abs() };
         let (precession, w) = self.turning([y[0], y[1], y[2], y[3], y[4]]);
         let paced = self.is_paced().then(|| pace_of((y[0], y[1]), precession, w));

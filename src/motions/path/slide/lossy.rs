@@ -1,4 +1,5 @@
-//! Losses during a slip: the ways that dry losses resist, the settling of a falling face, and the stop of the rolling.
+//! Losses during a slip: the signs of the motions that dry losses resist, the settling of the contact of a
+//! falling face, and the end of the rolling.
 
 use super::Slide;
 use crate::laws::body::Shape;
@@ -18,9 +19,9 @@ use crate::motions::path::settled::{Balance, CLOSE, SLOWER, Turned, balance, lag
 use crate::numbers::{Dual, Real};
 
 impl Slide {
-    /// Sets the ways of the motions that dry losses resist, from a state on at which no contact has settled. `toward` is
-    /// the direction of a slip from rest.
-    pub fn face(&mut self, y: &State, slip: [f64; 2], toward: [f64; 2]) {
+    /// Sets the signs (`ways`) of the motions that dry losses resist, at a state whose contact has not
+    /// settled. `toward` is the direction of a slip from rest.
+    pub fn sets_ways(&mut self, y: &State, slip: [f64; 2], toward: [f64; 2]) {
         self.settled = false;
         let Some(losses) = self.law.losses else { return };
         let angle = y.theta.sin_cos();
@@ -49,19 +50,19 @@ impl Slide {
         }
     }
 
-    /// Lets dry friction hold the drilling if its limit suffices; else the drilling begins where the body is pushed.
+    /// Lets dry friction hold the drilling if its limit suffices; else the drilling begins where the
+    /// body is pushed.
     fn stop_drilling(&mut self, angle: (f64, f64), w: [f64; 3], slip: [f64; 2], toward: [f64; 2]) {
         let ways = self.law.losses.and_then(|losses| losses.ways).unwrap_or_default();
-        self.turn(Ways { drilling: 0.0, drill_held: true, ..ways });
+        self.turn(Ways { drilling: 0.0, holds_drilling: true, ..ways });
         let needs = self.response(angle, w, slip, toward).held;
         if !holds(needs) {
-            self.turn(Ways { drilling: -needs[0].signum(), drill_held: false, ..ways });
+            self.turn(Ways { drilling: -needs[0].signum(), holds_drilling: false, ..ways });
         }
     }
 
-    /// Whether dry friction holds the drilling.
-    pub fn drill_held(&self) -> bool {
-        self.law.losses.is_some_and(|losses| losses.drill_held())
+    pub fn holds_drilling(&self) -> bool {
+        self.law.losses.is_some_and(|losses| losses.holds_drilling())
     }
 
     fn turn(&mut self, ways: Ways) {
@@ -72,7 +73,8 @@ impl Slide {
         }
     }
 
-    /// Keeps the way of the rocking of a ball that now leans to the other side.
+    /// Reverses the sign of the rocking where a ball now leans to the other side, so that its direction
+    /// in space stays.
     pub fn leans_over(&mut self) {
         if let Some(ways) = self.law.losses.and_then(|losses| losses.ways) {
             self.turn(Ways { rocking: -ways.rocking, ..ways });
@@ -94,22 +96,22 @@ impl Slide {
         if still { self.law.towards(angle, w, slip, toward) } else { self.acts(angle, w, slip) }
     }
 
-    /// psi'', w_z' and w2'.
+    /// The derivatives psi'', w_z' and w2'.
     fn changes(&self, angle: (f64, f64), w: [f64; 3], slip: [f64; 2], toward: [f64; 2]) -> [f64; 3] {
         let ((s, c), [w1, w2, w3]) = (angle, w);
         let [d1, d2, d3] = self.response(angle, w, slip, toward).w;
         [d3 - c / s * d1 - w1 * w2 / (s * s), s * d1 + c * d3 - w2 * (c * w1 - s * w3), d2]
     }
 
-    /// Reverses a motion that has stopped against a dry loss, or holds the drilling or releases it; false where any other
-    /// motion stays at rest.
+    /// Reverses a motion that a dry loss has stopped; drilling may also be held, or released. Returns false
+    /// if a motion other than drilling stays at rest.
     pub fn turns(&mut self, halt: Halt, y: &State, slip: [f64; 2]) -> bool {
         let Some(before) = self.law.losses.and_then(|losses| losses.ways) else { return false };
         let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
         if halt == Halt::Drilling {
-            if before.drill_held {
+            if before.holds_drilling {
                 let [push, _] = self.response(angle, w, slip, [0.0; 2]).held;
-                self.turn(Ways { drilling: -push.signum(), drill_held: false, ..before });
+                self.turn(Ways { drilling: -push.signum(), holds_drilling: false, ..before });
             } else {
                 self.stop_drilling(angle, w, slip, [0.0; 2]);
             }
@@ -128,7 +130,8 @@ impl Slide {
         change * [ways.contour, ways.drilling, ways.rocking][i] > 0.0
     }
 
-    /// Whether a couple that grows with psi' has almost stopped the contact along the rim, while the face falls.
+    /// Whether a couple that grows with psi' has almost stopped the contact along the rim, while
+    /// the face falls.
     pub(crate) fn settles<const N: usize>(&self, place: &FlowPlace<N>) -> bool {
         let ([s, c, w1, w2, w3], shape) = (core::array::from_fn(|i| place.y[i]), &self.law.shape);
         // `fall` is the speed at which either face falls.
@@ -148,7 +151,7 @@ impl Slide {
             return false;
         };
         let (fastest, q) = (Self::fastest(&place.y), s * w1 + c * w3);
-        // A contact that dry friction catches stops by itself.
+        // Where dry friction exceeds the push, the contact point stops at a finite time and does not settle.
         if self.pushed_on(&self.bare, (s, c), [s * q, w2, c * q], [place.y[5], place.y[6]])[0] <= 0.0 {
             return false;
         }
@@ -183,8 +186,9 @@ impl Slide {
         balance(&losses, (angle, self.law.shape.rim.radius(angle)), (drilling, w2), way, act)
     }
 
-    /// The excess of the push on a settled contact over the limit of dry friction, where `w` is that of a contact at
-    /// rest and `bare` is the law without the couples along the contour; also the margin of the hold of its drilling.
+    /// The excess of the push on a settled contact over the limit of dry friction, and the margin of
+    /// held drilling. `w` is that of a contact point at rest, and `bare` is the law without the couples
+    /// along the contour.
     pub(crate) fn pushed_on<T: Real>(
         &self,
         bare: &Slipping<T>,
@@ -194,7 +198,7 @@ impl Slide {
     ) -> [T; 2] {
         let one = w[0].splat(1.0);
         let Some(losses) = self.law.losses else { return [one; 2] };
-        let (resists, holds) = (losses.has(Law::DryContour), losses.drill_held());
+        let (resists, holds) = (losses.has(Law::DryContour), losses.holds_drilling());
         if !resists && !holds {
             return [one; 2];
         }
@@ -218,7 +222,7 @@ impl Slide {
     }
 
     /// The numbers common to all flows, from the numbers of this flow.
-    pub(crate) fn known<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
+    pub(crate) fn common_numbers<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
         let mut shown = *y;
         if self.settled {
             let [_, w2, _] = [y[2], y[3], y[4]];
@@ -228,7 +232,8 @@ impl Slide {
         shown
     }
 
-    /// Writes the rates of the numbers of a settled contact. Returns precession, psi', and the power of the losses.
+    /// Writes the rates of the numbers of a settled contact. Returns precession, psi', and the power
+    /// of the losses.
     pub(crate) fn settled_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) -> ([f64; 2], f64) {
         let ([s, c, q, w2], u) = (core::array::from_fn(|i| y[i]), [y[5], y[6]]);
         let Balance { precession, w: [w1, _, w3], turned, spin } = self.balance((s, c), q, w2, u);
@@ -244,13 +249,13 @@ impl Slide {
         ([precession, spin], power)
     }
 
-    /// The rate of psi' under a unit couple along the contour.
+    /// The rate of change of psi' under a unit couple along the contour.
     fn lightness(&self, (s, c): (f64, f64)) -> f64 {
         let Shape { i1, i3, .. } = self.law.shape;
         1.0 / i3 + c / s * (c / s) / i1
     }
 
-    /// Bound of the time by which a settled contact stops later than dry friction balances its push.
+    /// Upper bound of the delay of a settled contact, which stops after dry friction has balanced the push.
     pub fn settled_lag(&self, y: &State, slip: [f64; 2]) -> f64 {
         let ((s, c), shape) = (y.theta.sin_cos(), &self.law.shape);
         let turned = self.balance((s, c), s * y.w1 + c * y.w3, y.w2, slip).turned;
@@ -258,7 +263,8 @@ impl Slide {
         self.law.losses.map_or(0.0, |losses| lag(&losses, (s, c * y.w2), radius, turned.push, lightness))
     }
 
-    /// Error of the numbers of a settled contact.
+    /// Error of w1 and w3 while psi' follows its balance: s abs(psi'), times the ratio of s abs(psi') to the
+    /// speed of fall if this is below 1.
     pub fn settled_doubt(y: &State) -> f64 {
         let fall = y.theta.cos() * y.w2;
         let slower = y.theta.sin() * y.spin() / fall;
@@ -271,8 +277,8 @@ impl Slide {
         rolling_growth((s, c), w, self.acts((s, c), w, [u_h, u_2]).w)
     }
 
-    /// The end, by linear extrapolation, of rolling and rocking that rolling resistance has almost stopped, and would also
-    /// stop in the opposite direction.
+    /// The end, by linear extrapolation, of rolling and rocking that rolling resistance has almost stopped,
+    /// and would also stop in the opposite direction.
     pub(crate) fn comes_to_rest<const N: usize>(&self, place: &FlowPlace<N>) -> Option<[f64; N]> {
         let there = |losses: &Couples<f64>| {
             let planar = losses.ways.is_some_and(|ways| ways.rocking != 0.0);
@@ -295,13 +301,13 @@ impl Slide {
     }
 }
 
-/// The margin of a couple of dry friction, from this couple and its limit.
+/// The margin of a motion that dry friction holds, from the couple that this needs and its limit.
 fn hold<T: Real>([push, limit]: [T; 2]) -> T {
     grip(push.splat(1.0 + GRACE), limit, push * push)
 }
 
-/// The margins of the motions that dry losses resist: along the rim, and drilling (or rocking if the body only rocks).
-/// `held` has the couple that holds the drilling, and the limit of friction.
+/// The margins of the motions that dry losses resist: along the rim, and drilling (or rocking if the body
+/// only rocks). `held` has the couple that holds the drilling, and the limit of friction.
 pub(crate) fn ways<T: Real>(losses: &Couples<T>, seen: &Kinematics<T>, held: [T; 2]) -> [T; 2] {
     let one = seen.spin.splat(1.0);
     let size = one + seen.w[0].abs() / seen.angle.0.abs();
@@ -313,7 +319,7 @@ pub(crate) fn ways<T: Real>(losses: &Couples<T>, seen: &Kinematics<T>, held: [T;
         let there = losses.has(Law::RollingResistance);
         return [contour, if there { going(way, seen.w[1], slack) } else { one }];
     }
-    if of.drill_held {
+    if of.holds_drilling {
         return [contour, hold(held)];
     }
     let there = losses.has(Law::Drilling);

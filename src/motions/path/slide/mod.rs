@@ -2,12 +2,12 @@
 //!
 //! ```text
 //! y = (s, c, w1, w2, w3, u_h, u_2, t, heat; phi, psi, x, y)        in sigma, dt = |u|/(|u| + soft) dsigma
-//! u = 0   reached as exp(-sigma); the last 1e-13 of it in a straight line
+//! u = 0   reached as exp(-sigma); the last 1e-13 is extrapolated linearly
 //! N0 = 0,   eps = 1,   theta = 0,   theta = theta_end                margins that turn negative
 //! ```
-//! [`rk8`] takes the steps. A margin that turns negative within a step, even if it is positive again at the end, is
-//! found on parts of the step, and so is the state at a requested time. [`contact::slip`](crate::laws::contact::slip) has the
-//! equations.
+//! [`rk8`] takes the steps. A margin that becomes negative within a step, even if it is positive again at the
+//! end, is located on parts of the step; states at requested times are computed on such parts, too.
+//! [`contact::slip`](crate::laws::contact::slip) has the equations.
 //!
 //! Error: 1e-11 in states and 1e-12 in times; a test of `test_slip_reference` has 25 motions of 25 digits.
 
@@ -31,8 +31,8 @@ use lossy::ways;
 const SLIP_ENDS: [Halt; MARGINS] =
     [Halt::Face, Halt::Side, Halt::LiftOff, Halt::Jam, Halt::Contour, Halt::Drilling];
 
-/// Sine of theta at which a slipping face has landed that comes down by infinitely many turns, the last of which tell when
-/// it lands.
+/// Sine of theta at which a slipping face has landed if it comes down by infinitely many turns. It is smaller
+/// than `FLAT`, since the time of the landing is extrapolated from the last turns.
 const FLATTER: f64 = 1e-14;
 
 /// The equations of a body that slips, and the ends of its slip.
@@ -76,7 +76,8 @@ impl Slide {
         self.law.energy(&state, [y[5], y[6]])
     }
 
-    /// The response of the body. What is computed once in a step shares this copy of the law.
+    /// The response of the body, as one compiled copy of the law for callers that need it only
+    /// once in a step.
     #[inline(never)]
     pub(super) fn acts(&self, angle: (f64, f64), w: [f64; 3], u: [f64; 2]) -> SlipResponse<f64> {
         self.law.at(angle, w, u).0
@@ -106,9 +107,9 @@ impl Slide {
         let slip = y[5].mac(y[5], y[6] * y[6]).sqrt();
         let fastest = Self::fastest(y);
         let (per_tol, per_speed) = (one / tol, one / (tol * fastest));
-        // A vanishing slip must keep its direction.
+        // The error of a dry slip is relative to its speed, so that a vanishing slip keeps its direction.
         let per_slip = if dry { per_speed.max(one.splat(1e3) / slip) } else { per_speed };
-        // The sine of an almost flat face keeps its digits.
+        // The error of the sine is relative where the face is almost flat.
         let per_sine = per_tol / y[0].abs().max(one.splat(1e-6)).min(one);
         let per = |i: usize| match i {
             0 => per_sine,
@@ -136,7 +137,8 @@ impl Slide {
         }
     }
 
-    /// The numbers a moment after the slip began, with a speed that grows at the rate `growth`, where no series exists.
+    /// The numbers at the time `MOMENT` after the beginning of a slip along `way`, whose speed grows at the
+    /// rate `growth`. Used where no series exists.
     pub(crate) fn nudged<const N: usize>(&self, start: &[f64; N], way: [f64; 2], growth: f64) -> [f64; N] {
         let (angle, w) = ((start[0], start[1]), [start[2], start[3], start[4]]);
         let at = self.law.towards(angle, w, [0.0; 2], way);
@@ -211,7 +213,7 @@ impl Flow<MARGINS> for Slide {
             let losses = self.bare.losses.map(|losses| losses.map(|value| Dual { value, slope: 0.0 }));
             let bare = self.sloped.with_losses(losses);
             let [push, kept] = self.pushed_on(&bare, (s, c), [w1, w2, w3], [u_h, u_2]);
-            [push, if self.drill_held() { kept } else { drilling }]
+            [push, if self.holds_drilling() { kept } else { drilling }]
         } else {
             [contour, drilling]
         };
@@ -226,14 +228,14 @@ impl Flow<MARGINS> for Slide {
         match SLIP_ENDS[i] {
             Halt::Face => s - self.flat,
             Halt::Contour if self.settled => self.pushed_on(&self.bare, (s, c), [w1, w2, w3], [u_h, u_2])[0],
-            Halt::Drilling if self.settled && self.drill_held() => {
+            Halt::Drilling if self.settled && self.holds_drilling() => {
                 self.pushed_on(&self.bare, (s, c), [w1, w2, w3], [u_h, u_2])[1]
             }
             Halt::Side => self.theta_end.sin() * c - self.theta_end.cos() * s,
             Halt::Contour | Halt::Drilling => {
                 let Some(losses) = self.law.losses else { return 1.0 };
                 let seen = losses.seen(&self.law.shape.rim, (s, c), w1 / s, [w1, w2, w3]);
-                let held = if losses.drill_held() {
+                let held = if losses.holds_drilling() {
                     self.acts((s, c), [w1, w2, w3], [u_h, u_2]).held
                 } else {
                     [1.0; 2]
@@ -247,7 +249,8 @@ impl Flow<MARGINS> for Slide {
         }
     }
 
-    /// The halt of an almost vanished slip, extrapolated linearly to u = 0, or of a body that rests or settles.
+    /// The halt of an almost vanished slip, extrapolated linearly to u = 0, or of a body that
+    /// rests or settles.
     fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
         if loses(N)
             && !self.settled
@@ -327,17 +330,19 @@ impl Flow<MARGINS> for Slide {
     }
 
     fn shown<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
-        self.known(y)
+        self.common_numbers(y)
     }
 }
 
-/// A first step that is short enough, also for an almost flat face that turns or falls fast; the next steps grow fast.
+/// A first step that is short enough, also for an almost flat face that turns or falls fast; the next
+/// steps grow fast.
 fn first<const N: usize>(y: &[f64; N]) -> f64 {
     let fastest = y[2].abs().max(y[3].abs());
     0.02 / (1.0 + fastest.max(y[4].abs()).max((fastest / y[0].abs()).min(FASTEST)))
 }
 
-/// The longest step that does not amplify rounding: three radians of the turning or of the free nutation I3 w3/I1.
+/// The longest step that does not amplify rounding: three radians of the turning or of the free
+/// nutation I3 w3/I1.
 #[inline(always)]
 pub(crate) fn longest<T: Real, const N: usize>(y: &[T; N], shape: &Shape<T>) -> T {
     let one = y[0].splat(1.0);

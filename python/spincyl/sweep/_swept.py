@@ -1,0 +1,101 @@
+"""What all sweeps of motions do: columns in, a Dataset out; at once, or block by block of dask's arrays."""
+
+import math
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from spincyl._asked import Asked, crossing
+from spincyl._contact import kind, named
+from spincyl._input.numbers import Floats, Reals, extra, floats, in_columns
+from spincyl._input.threads import Progress, callback, thread_count
+from spincyl._measured import speaking
+from spincyl._phases import rubs
+from spincyl._scale import Scale
+from spincyl.sweep._common import in_si, is_lazy, signature
+from spincyl.sweep._labels import Status, applied, flags, labelled
+
+if TYPE_CHECKING:
+    import xarray
+
+#: Numbers that stand in columns of codes.
+CODES = ("method", "status")
+
+
+class Question(NamedTuple):
+    """What many motions are asked for, in natural units."""
+
+    fields: dict[str, Reals]  # what goes in, by the core's names
+    names: list[str]  # what comes out
+    spread: frozenset[str]  # what of that has a dimension of times
+    asked: Asked
+    want: tuple[str, ...]  # as the caller has it
+    scale: Scale | None
+    seconds: Reals  # the times as they were given
+
+
+def swept(
+    law: Callable[..., None],
+    question: Question,
+    labels: Mapping[str, tuple[str, str]],
+    *,
+    threads: int | None,
+    progress: Progress | None,
+    length: str = "R",
+) -> "xarray.Dataset":
+    """The answers to a question. `law` fills columns of a block; `labels` are their units and meanings."""
+    lib: Any = extra("xarray", "sweep")
+    fields, names, spread, asked, want, scale, seconds = question
+    lazy, at = is_lazy(*fields.values()), asked.times
+    options = crossing(asked._replace(contact=kind(asked.contact)))
+    share = 1 if lazy and threads is None else thread_count(threads)
+    fill = partial(_block, law=law, given=tuple(fields), names=names, spread=spread, times=at, asked=options)
+    run = partial(fill, threads=share, progress=callback(progress))
+    # what is asked wrongly is said before any work
+    with speaking(scale, length):
+        fill(*(np.empty(0) for _ in fields), threads=1, progress=None)
+    data = applied(
+        run, labelled(fields), names, [*map(_dtype, names)], [name in spread for name in names], at
+    )
+    for name, array in data.items():
+        array.attrs = dict(zip(("units", "long_name"), labels[name], strict=True))
+    data["status"].attrs |= flags(Status)
+    coords = {"t": ("t", at, {"units": f"sqrt({length}/g)"})} if spread else {}
+    attrs: dict[str, object] = {"contact": named(asked.contact), "t": float(at[-1]), "tol": asked.tol}
+    if not rubs(asked.contact):
+        attrs["mu"] = asked.mu
+    if lazy:
+        own = {} if scale is None else {"scale": scale}
+        attrs["spincyl_sweep"] = signature("roll", fields, t=at.tolist(), want=want, **options, **own)
+    result: xarray.Dataset = in_si(lib.Dataset(data, coords, attrs), scale)
+    if scale is not None:  # times as they were given
+        told = floats(seconds).reshape(-1)
+        result.attrs["t"] = float(told[-1])
+        if spread:
+            result["t"] = ("t", told, {"units": "s"})
+    return result
+
+
+def _block(
+    *fields: Floats,
+    law: Callable[..., None],
+    given: tuple[str, ...],
+    names: list[str],
+    spread: frozenset[str],
+    times: Floats,
+    asked: dict[str, Any],
+    threads: int,
+    progress: Progress | None,
+) -> tuple[np.ndarray, ...]:
+    """The arrays of one block of motions."""
+    shape = np.broadcast_shapes(*(np.shape(x) for x in fields))
+    shapes = {name: (*shape, times.size) if name in spread else shape for name in names}
+    out = {name: np.empty(math.prod(wide), _dtype(name)) for name, wide in shapes.items()}
+    law(dict(zip(given, in_columns(fields, shape), strict=True)), times, asked, out, threads, progress)
+    return tuple(out[name].reshape(wide) for name, wide in shapes.items())
+
+
+def _dtype(name: str) -> type:
+    return np.uint8 if name in CODES else np.float64
