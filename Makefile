@@ -113,18 +113,18 @@ long: $(VENV)/.tested wheel core
 	$(BIN)/python benches/motion.py
 	$(BIN)/python benches/behaviour.py --kills 100
 	$(BIN)/python -m pip install --quiet --group peers
-	$(BIN)/python benches/starts.py --count 100000
-	$(BIN)/python benches/claims.py --count 10000
-	$(BIN)/python benches/many.py --count 100000
-	$(BIN)/python benches/singles.py --count 5000
-	$(BIN)/python benches/ends.py --count 1000000
-	$(BIN)/python benches/slip_starts.py --count 10000 --painleve 1000
-	$(BIN)/python benches/losses_claims.py
+	$(BIN)/python benches/claims.py --of starts --count 100000
+	$(BIN)/python benches/claims.py --of motions --count 10000
+	$(BIN)/python benches/claims.py --of many --count 100000
+	$(BIN)/python benches/claims.py --of singles --count 5000
+	$(BIN)/python benches/claims.py --of ends --count 1000000
+	$(BIN)/python benches/claims.py --of phases --count 10000 --painleve 1000
+	$(BIN)/python benches/claims.py --of losses
 	$(BIN)/python benches/losses_fit.py
-	$(BIN)/python benches/saddles.py --count 200
-	$(BIN)/python benches/stones.py --count 10000
+	$(BIN)/python benches/claims.py --of saddles --count 200
+	$(BIN)/python benches/claims.py --of stones --count 10000
 	$(BIN)/python benches/slowest.py --count 20000
-	$(BIN)/python benches/peers/launch_claims.py
+	$(BIN)/python benches/claims.py --of launches
 	HYPOTHESIS_PROFILE=fresh $(BIN)/pytest -m 'not page and not long' $$(grep -l hypothesis tests/test_*.py)
 	python3 tests/fresh.py --runs 10
 	nice -n 10 python3 tests/thresholds.py

@@ -108,6 +108,20 @@ def swept(starts, t, beyond):
         yield Answer("sweep.roll", by, found, float(d["error"].values[i]), float("nan"))
 
 
+def routes(starts, t, beyond, ways, sweep=True):
+    """(index of the start, times, result or error, poses, options) of every route; `ways` gives `want` and
+    the options of `sc.roll` for the next start."""
+    both = [t / 3, t]
+    for i, start in enumerate(starts):
+        for want, how in ways():
+            try:
+                yield i, both, *rolled(start, both, beyond, want, **how), how
+            except ValueError as e:
+                yield i, both, e, None, how
+    for i, answer in enumerate(swept(starts, t, beyond) if sweep else ()):
+        yield i, [t], answer, None, {}
+
+
 class Noise(NamedTuple):
     """Change of the truth by half an ulp (2^-53) of every input, summed over the inputs; and the kinds of
     ends that occur."""

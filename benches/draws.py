@@ -1,4 +1,4 @@
-"""Random bodies and starts, of all kinds that a user may type: for starts.py, claims.py and saddles.py."""
+"""Random bodies and starts, of all kinds that a user may type: for motions, starts and saddles of claims.py."""
 
 import math
 from typing import NamedTuple

@@ -16,30 +16,15 @@ import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "tests" / "reference"))
 import losses as reference
-from gmpy2 import mpfr
 from losses_forms import Momenta
 from series import precise
-from slip_tape import LongTape
+from slip_tape import Few, LongTape
 
 DIGITS = 28
 
 
-class Dear(ArithmeticError):
-    """Too many steps."""
-
-
-class Quick(Momenta):
-    order, tolerance, tape = 20, mpfr("1e-20"), LongTape
-
-    def __init__(self, scene, most):
-        super().__init__(scene)
-        self.left = most
-
-    def phase(self, kind, signs):
-        self.left -= 1
-        if self.left < 0:
-            raise Dear
-        return super().phase(kind, signs)
+class Quick(Few, Momenta):
+    tape = LongTape
 
 
 def exact(body, losses, start, times, *, contact="rolling", mu=0.0, beyond=False, most=4000):
@@ -48,5 +33,7 @@ def exact(body, losses, start, times, *, contact="rolling", mu=0.0, beyond=False
     named = {name: value for name, value in zip(reference.LAWS, losses, strict=True) if value}
     scene = reference.Scene("", body, named, start, times[-1], contact=contact, mu=mu, beyond=beyond)
     scene.samples = [float(t) for t in times]
-    found = reference.follow(Quick(scene, most)).rows
+    equations = Quick(scene)
+    equations.left = most
+    found = reference.follow(equations).rows
     return [(kind, np.array([float(x) for x in row])) for kind, row in found]

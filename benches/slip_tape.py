@@ -97,6 +97,22 @@ class LongNode(Node):
         return self.told[1]
 
 
+class Dear(ArithmeticError):
+    """Too many steps."""
+
+
+class Few:
+    """For equations of tests/reference: a series of 20 terms, whose steps err by 1e-20, and only so many steps."""
+
+    order, tolerance, left = 20, mpfr("1e-20"), 1500
+
+    def phase(self, *of):
+        self.left -= 1
+        if self.left < 0:
+            raise Dear
+        return super().phase(*of)
+
+
 class LongTape(Tape):
     """A tape whose operations are a table for the C code."""
 

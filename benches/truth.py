@@ -202,6 +202,17 @@ def path(start, times, *, bits=113, pose=False, beyond=False, steps=20_000):
     return Path(*event, np.array(rows))
 
 
+def paths(starts, times, **how):
+    """As `path`, for each start; None where it takes too many steps."""
+    found = []
+    for start in starts:
+        try:
+            found.append(path(start, times, **how))
+        except ArithmeticError:
+            found.append(None)
+    return found
+
+
 def reversed_(start):
     return start._replace(w1=-start.w1, w2=-start.w2, w3=-start.w3)
 

@@ -59,13 +59,41 @@ def windows(chromium):
     return {}
 
 
+@pytest.fixture(scope="session")
+def kept():
+    """Recorded pages that stay open, by page and window: to load one takes a second of the processor."""
+    return {}
+
+
+@pytest.fixture(scope="session")
+def written(tmp_path_factory):
+    """Writes a page into a file, each page once."""
+    folder, paths = tmp_path_factory.mktemp("pages"), {}
+
+    def write(view):
+        if view not in paths:
+            paths[view] = view.save(folder / f"{len(paths)}.html")
+        return paths[view]
+
+    return write
+
+
 @pytest.fixture
-def shown(chromium, windows, tmp_path):
-    """Opens a view in a window of its own: the page, with what it asked for and complained of."""
+def shown(chromium, windows, written, kept):
+    """Opens a view in a window of its own: the page, with what it asked for and complained of.
+
+    `keep` is for tests that leave a recorded page as they find it, but for its time: the next one has the same page.
+    """
+    from pages import go
+
     opened = []
 
-    def show(view, at="", *, script=None, **how):
+    def show(view, at="", *, script=None, keep=False, **how):
         how = {"viewport": {"width": 800, "height": 560}} | how
+        same = (view, repr(sorted(how.items())))
+        if keep and same in kept:
+            go(kept[same], at.removeprefix("#t="))
+            return kept[same]
         idle = windows.setdefault(repr(sorted(how.items())), [])
         if idle and not script:
             page = idle.pop()
@@ -81,9 +109,11 @@ def shown(chromium, windows, tmp_path):
         }
         for event, hear in hears.items():
             page.on(event, hear)
-        opened.append((page, hears, None if script else idle, how["viewport"]))
-        path = view.save(tmp_path / f"{len(opened)}.html")
-        page.goto(path.as_uri() + at)
+        if keep:
+            kept[same] = page
+        else:
+            opened.append((page, hears, None if script else idle, how["viewport"]))
+        page.goto(written(view).as_uri() + at)
         if not script:
             page.wait_for_selector("html[data-drawn]")
         return page
@@ -104,12 +134,11 @@ def shown(chromium, windows, tmp_path):
 def opened(shown):
     """Opens a page to play with, at rest unless it is said otherwise."""
 
+    from page_scenes import live_page
     from playing import LAPTOP
-
-    import spincyl as sc
 
     def show(at="", page=None, **how):
         how = {"viewport": LAPTOP, "reduced_motion": "reduce"} | how
-        return shown(sc.play() if page is None else page, at, **how)
+        return shown(live_page() if page is None else page, at, **how)
 
     return show

@@ -1,26 +1,18 @@
-"""What the tests of pages share: bodies, and ways to look at a page; `shown` of conftest.py opens one."""
+"""What the tests of pages share: ways to look at a page; `shown` of conftest.py opens one, page_scenes.py has them."""
 
 import base64
 import io
 
 import numpy as np
-from nutating_cylinder import start as START
 from PIL import Image
+from playing import settled
 
-import spincyl as sc
-
-CYLINDER, PIPE, DISK = sc.Body.solid(2.5), sc.Body.tube(6.0, bore=0.8), sc.Body.solid(0.375)
-CAN, COIN = sc.Body.solid(1.0), sc.Body.solid(0.0852)
-ROUNDED, CAPSULE, BALLS = sc.Body.solid(1.5, fillet=0.3), sc.Body.solid(2.5, fillet=1.0), sc.Body.balls()
-TIPPE = sc.Body.ball(-0.3, 0.45, 0.42)
-
-
-def nutating():
-    return sc.roll(CYLINDER, START, 20.0)
+#: Where numbers are asked for, and nobody looks.
+SMALL = {"width": 160, "height": 120}
 
 
 def picture(page, selector="canvas"):
-    page.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    settled(page)
     shot = page.locator(selector).screenshot()
     return np.asarray(Image.open(io.BytesIO(shot)).convert("RGB"), float) / 255
 
@@ -51,6 +43,22 @@ def near(image, colour, width=0.12):
     return float(((image @ hue > (1 - width**2) * size) & (size > 0.15)).mean())
 
 
+def between(knots, t):
+    """What a page draws at ascending times between knots: their numbers after the time, and then their slopes."""
+    half = (knots.shape[1] + 1) // 2
+    i = np.clip(np.searchsorted(knots[:, 0], t) - 1, 0, len(knots) - 2)
+    h, s = np.diff(knots[:, 0])[i, None], ((t - knots[i, 0]) / np.diff(knots[:, 0])[i])[:, None]
+    basis = [(1 + 2 * s) * (1 - s) ** 2, s * s * (3 - 2 * s), s * (1 - s) ** 2 * h, s * s * (s - 1) * h]
+    pieces = [knots[i, 1:half], knots[i + 1, 1:half], knots[i, half:], knots[i + 1, half:]]
+    return sum(b * p for b, p in zip(basis, pieces, strict=True))
+
+
+def go(page, t):
+    """Sets the time by the slider, and waits for the picture."""
+    page.locator("#time").evaluate("(e, t) => { e.value = t; e.dispatchEvent(new Event('input')); }", t)
+    settled(page)
+
+
 def at(page):
     return page.evaluate("window.spincyl.at()")
 
@@ -61,11 +69,12 @@ def clock(page, i=0):
 
 def arrow(page, name):
     """Where the head of an arrow is in the picture, from the middle of the body, in pixels, right and up."""
-    page.add_style_tag(content=".tip { visibility: hidden }")
+    hidden = page.add_style_tag(content=".tip { visibility: hidden }")
     plain = picture(page)
     page.locator(f"#{name}").click()
     changed = np.abs(picture(page) - plain).max(axis=-1) > 0.15
     page.locator(f"#{name}").click()
+    hidden.evaluate("e => e.remove()")
     rows, columns = np.nonzero(changed)
     centre = np.array(page.evaluate("window.spincyl.on(0, window.spincyl.at())"))
     away = np.column_stack([columns, rows]) - centre

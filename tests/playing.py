@@ -22,6 +22,12 @@ def details(page):
     return page.locator("#details").inner_text().replace("\u00a0", " ")
 
 
+def address(page, at):
+    """Opens another address in the same page."""
+    page.evaluate("at => { location.hash = at; }", at)
+    settled(page)
+
+
 def settled(page):
     """After the picture that follows a change."""
     page.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")

@@ -3,7 +3,7 @@
 import os
 
 import pytest
-from pages import nutating
+from page_scenes import page_of
 from playing import LAPTOP, ask, settled, state
 
 import spincyl as sc
@@ -57,7 +57,7 @@ def test_the_live_page_computes_in_firefox_what_the_library_does(seen):
 
 
 def test_the_recorded_page_is_drawn_in_firefox(seen):
-    page = seen(sc.view(nutating()), "#t=1.5")
+    page = seen(page_of("nutating"), "#t=1.5")
     assert page.locator("#unlit").is_hidden()
     page.keyboard.press("0")
     settled(page)

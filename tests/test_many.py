@@ -1,6 +1,6 @@
 """Many motions at once are what each of them is alone: kinds of ends, their times, the states, on scenes that nobody would choose.
 
-`benches/many.py` draws them by the hundred thousand.
+`benches/claims.py --of many` draws them by the hundred thousand.
 """
 
 from functools import cache

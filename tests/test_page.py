@@ -3,23 +3,17 @@
 import numpy as np
 import pytest
 from letters import letters
-from pages import CAN, CYLINDER, DISK, PIPE, arrow, at, clock, nutating, picture
+from page_scenes import DISK, ENDS, STANDING, motion_of, page_of
+from pages import arrow, at, clock, go, picture
+from playing import DRIVEN, settled
 from scipy import ndimage
 
 import spincyl as sc
 from spincyl._studio.shape import BLUE, ORANGE
 
-#: A browser whose pictures come when the test says so, with the times that it says.
-DRIVEN = """
-const waiting = [];
-window.requestAnimationFrame = f => waiting.push(f);
-window.performance.now = () => 10000;
-window.picture = at => { for (const f of waiting.splice(0)) f(at); };
-"""
-
 
 def test_the_clock_of_a_busy_machine_starts_at_the_start_and_never_runs_back(shown):
-    page = shown(sc.view(nutating(), slow=1), script=DRIVEN)
+    page = shown(page_of("nutating", slow=1), script=DRIVEN + "window.performance.now = () => 10000;")
     times = []
     # play is pressed at 10 s; the picture that comes next belongs to a second that is long past
     for ms in (9000, 9016, 9116, 9100, 9150, 60000):
@@ -35,10 +29,10 @@ def test_the_clock_of_a_busy_machine_starts_at_the_start_and_never_runs_back(sho
 
 
 def test_time_is_kept_by_play_pause_scrub_and_slow_motion(shown):
-    page = shown(sc.view(nutating()), "#t=3")
+    page = shown(page_of("nutating"), "#t=3")
     assert at(page) == 3.0 and clock(page) == "t = 3.000 √(R/g)\nθ = 73.1°"
     start = picture(page)
-    page.locator("#time").evaluate("e => { e.value = 7.5; e.dispatchEvent(new Event('input')); }")
+    go(page, 7.5)
     assert at(page) == pytest.approx(7.5) and np.abs(picture(page) - start).mean() > 0.01
     passed = {}
     for speed in ("1", "0.001"):
@@ -55,7 +49,7 @@ def test_time_is_kept_by_play_pause_scrub_and_slow_motion(shown):
     assert 1e-5 < passed["0.001"] < passed["1"] / 100
     # it stops at the end, and begins anew
     page.select_option("#speed", "2")
-    page.locator("#time").evaluate("e => { e.value = 19.9; e.dispatchEvent(new Event('input')); }")
+    go(page, 19.9)
     page.click("#play")
     page.wait_for_selector("#play[aria-label=play]")
     assert at(page) == 20.0
@@ -65,9 +59,9 @@ def test_time_is_kept_by_play_pause_scrub_and_slow_motion(shown):
 
 
 def test_it_plays_at_once_unless_motion_is_unwelcome(shown):
-    playing = shown(sc.view(nutating()))
+    playing = shown(page_of("nutating"))
     playing.wait_for_function("() => window.spincyl.at() > 0")
-    resting = shown(sc.view(nutating()), reduced_motion="reduce")
+    resting = shown(page_of("nutating"), reduced_motion="reduce")
     resting.wait_for_timeout(300)
     assert at(resting) == 0
 
@@ -93,7 +87,7 @@ def test_a_body_is_round_on_a_large_screen(shown):
 
 
 def test_vectors_path_and_view_from_above_can_be_switched(shown):
-    page = shown(sc.view(nutating()), "#t=6")
+    page = shown(page_of("nutating"), "#t=6")
     last = picture(page)
     for name in ("omega", "momentum", "path", "above"):
         page.locator(f"#{name}").click()
@@ -103,7 +97,7 @@ def test_vectors_path_and_view_from_above_can_be_switched(shown):
 
 
 def test_it_is_turned_and_zoomed_by_mouse_wheel_fingers_and_keys(shown):
-    page = shown(sc.view(nutating()), "#t=6", has_touch=True)
+    page = shown(page_of("nutating"), "#t=6", has_touch=True)
     last = picture(page)
 
     def changed():
@@ -141,7 +135,7 @@ def test_it_is_turned_and_zoomed_by_mouse_wheel_fingers_and_keys(shown):
 
 
 def test_every_control_is_reached_by_the_tab_key(shown):
-    page = shown(sc.view(nutating()), "#t=1")
+    page = shown(page_of("nutating"), "#t=1")
     reached = []
     for _ in range(12):
         page.keyboard.press("Tab")
@@ -152,11 +146,11 @@ def test_every_control_is_reached_by_the_tab_key(shown):
 
 
 def test_on_a_phone_and_on_a_wall_nothing_sticks_out_and_text_is_read_from_afar(shown):
-    page = shown(sc.view(nutating(), labels=["word " * 30]), "#t=1")
+    page = shown(page_of("nutating", labels=("word " * 30,)), "#t=1")
     screens = [(360, 640), (390, 844), (844, 390), (800, 480), (1280, 720), (1920, 1080), (3840, 2160)]
     for width, height in screens:
         page.set_viewport_size({"width": width, "height": height})
-        picture(page)
+        settled(page)
         assert page.evaluate("document.documentElement.scrollWidth") <= width
         boxes = page.locator("#controls > *").evaluate_all("all => all.map(e => e.getBoundingClientRect())")
         for box in boxes:
@@ -171,14 +165,14 @@ def test_on_a_phone_and_on_a_wall_nothing_sticks_out_and_text_is_read_from_afar(
 
 def test_light_and_dark_have_their_own_ground(shown):
     light, dark = (
-        picture(shown(sc.view(nutating()), "#t=1", color_scheme=c))[5, 5] for c in ("light", "dark")
+        picture(shown(page_of("nutating"), "#t=1", color_scheme=c, keep=True))[5, 5]
+        for c in ("light", "dark")
     )
     assert light.min() > 0.85 and dark.max() < 0.2
 
 
 def test_motions_run_in_step_and_one_that_ended_says_how(shown):
-    standing = DISK.steady(np.radians(80)).kicked(0.01)
-    rolling, sliding = (sc.roll(DISK, standing, 30.0, contact=c) for c in ("rolling", "smooth"))
+    rolling, sliding = sc.roll(DISK, STANDING, 30.0), motion_of("side")
     page = shown(sc.view(rolling, sliding), "#t=29")
     said = page.locator(".panel").all_inner_texts()
     assert "rolling" in said[0] and "smooth" in said[1]
@@ -196,20 +190,10 @@ def warm(page):
     return float(((image[..., 0] > image[..., 2]) & (most - least > 0.05 * most) & (most > 0.25)).mean())
 
 
-STANDING = DISK.steady(np.radians(80)).kicked(0.01)
-ENDS = {
-    "face": lambda: sc.roll(CAN, sc.State(0.3, 0.0, 0.0, 0.0), 5.0),
-    "side": lambda: sc.roll(DISK, STANDING, 30.0, contact="smooth"),
-    "slip": lambda: sc.roll(CYLINDER, CYLINDER.steady(1.3).kicked(0.05), 20.0, mu=0.06),
-    "backward": lambda: sc.roll(CAN, sc.State(0.3, 0.0, 0.0, 0.0), -5.0),
-    "steps": lambda: sc.roll(CAN, sc.State(0.3, 0.0, 0.0, 0.0), 5.0, step=1e-3),
-}
-
-
 @pytest.mark.parametrize("kind", ENDS)
 def test_a_body_is_grey_from_its_end_on_and_the_clock_says_why_and_when(shown, kind):
-    m = ENDS[kind]()
-    page = shown(sc.view(m), f"#t={0.97 * m.event.time}", color_scheme="dark")
+    m = motion_of(kind)
+    page = shown(page_of(kind), f"#t={0.97 * m.event.time}", color_scheme="dark")
     assert warm(page) > 0.02 and clock(page).startswith("t = ")
     go(page, m.event.time)
     words, told = m.message.split(" at t =")[0], clock(page)
@@ -217,11 +201,6 @@ def test_a_body_is_grey_from_its_end_on_and_the_clock_says_why_and_when(shown, k
     assert float(told.split("t = ")[1].split()[0]) == pytest.approx(m.event.time, abs=5e-3)
     go(page, 0)
     assert warm(page) > 0.02 and clock(page).startswith("t = ")
-
-
-def go(page, t):
-    page.locator("#time").evaluate("(e, t) => { e.value = t; e.dispatchEvent(new Event('input')); }", t)
-    picture(page)
 
 
 def test_beyond_an_end_and_beyond_what_was_asked_for_the_page_says_so(shown):
@@ -237,7 +216,7 @@ def test_beyond_an_end_and_beyond_what_was_asked_for_the_page_says_so(shown):
 
 
 def test_who_listens_is_told_of_an_end_and_of_an_exposure(shown):
-    page = shown(sc.view(ENDS["face"](), labels=["can"]), "#t=1.4")
+    page = shown(page_of("face", labels=("can",)), "#t=1.4")
     page.click("#play")
     page.wait_for_selector("#play[aria-label=play]")
     said = page.get_by_role("status").first.inner_text().replace("\xa0", " ")
@@ -263,7 +242,7 @@ def contrast(a, b):
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_arrows_are_told_apart_without_hue_and_from_the_marks_by_it(shown, scheme):
-    page = shown(sc.view(nutating()), "#t=1", color_scheme=scheme)
+    page = shown(page_of("nutating"), "#t=1", color_scheme=scheme, keep=True)
     style = "n => getComputedStyle(document.documentElement).getPropertyValue('--' + n).trim()"
     omega, momentum, ground, paper = (
         np.array([int(text[i : i + 2], 16) for i in (1, 3, 5)]) / 255
@@ -283,15 +262,14 @@ def test_arrows_are_told_apart_without_hue_and_from_the_marks_by_it(shown, schem
 
 @pytest.mark.parametrize("moment", [1.0, 4.0, 11.0])
 def test_each_arrow_has_its_letter_beside_its_tip(shown, moment):
-    page = shown(sc.view(nutating()), f"#t={moment}")
+    page = shown(page_of("nutating"), f"#t={moment}", keep=True)
     assert page.locator(".tip:visible").count() == 0
     tips, places = {}, {}
     for name in ("omega", "momentum"):
         tips[name] = arrow(page, name)
-    page.add_style_tag(content=".tip { visibility: visible !important }")
     for name in ("omega", "momentum"):
         page.check(f"#{name}")
-    picture(page)
+    settled(page)
     centre = np.array(page.evaluate("window.spincyl.on(0, window.spincyl.at())"))
     for name, letter in (("omega", "ω"), ("momentum", "L")):
         tip = page.locator(f".tip.{name}")
@@ -308,19 +286,21 @@ def test_each_arrow_has_its_letter_beside_its_tip(shown, moment):
         sides = [np.linalg.det([tips[name], x]) for x in (places[name] - tips[name], tips[other])]
         assert sides[0] * sides[1] < 0
     page.uncheck("#omega")
-    picture(page)
+    settled(page)
     assert [page.locator(f".tip.{name}").is_visible() for name in ("omega", "momentum")] == [False, True]
+    page.uncheck("#momentum")
+    settled(page)
 
 
 def test_f_and_a_button_fill_the_screen_and_leave_it(shown):
-    page = shown(sc.view(nutating()), "#t=1")
+    page = shown(page_of("nutating"), "#t=1")
     for act in (lambda: page.keyboard.press("f"), lambda: page.click("#full")):
         for full in ("true", "false"):
             act()
             page.wait_for_function("full => !!document.fullscreenElement === (full === 'true')", arg=full)
             page.wait_for_selector(f"#full[aria-pressed={full}]")
     barred = shown(
-        sc.view(nutating()),
+        page_of("nutating"),
         "#t=1",
         script="Object.defineProperty(document, 'fullscreenEnabled', { get: () => false });",
     )
@@ -332,10 +312,7 @@ def test_f_and_a_button_fill_the_screen_and_leave_it(shown):
     ("upper", "count"), [("O", (6, 0)), pytest.param("X", (0, 6), marks=pytest.mark.long)]
 )
 def test_its_long_exposure_shows_what_the_photograph_shows(shown, upper, count):
-    state = PIPE.steady(np.radians(89.5))
-    page = shown(
-        sc.view(sc.roll(PIPE, state, 30.0), upper=upper), "#t=0", viewport={"width": 560, "height": 480}
-    )
+    page = shown(page_of("still symbols", upper=upper), "#t=0", viewport={"width": 560, "height": 480})
     page.select_option("#shutter", "1")
     page.wait_for_selector("html[data-exposed='720']", timeout=200_000)
     image = picture(page)
@@ -346,8 +323,7 @@ def test_its_long_exposure_shows_what_the_photograph_shows(shown, upper, count):
 
 
 def test_an_exposure_is_seen_as_it_comes_says_what_rests_meanwhile_and_can_be_stopped(shown):
-    state = PIPE.steady(np.radians(89.5))
-    page = shown(sc.view(sc.roll(PIPE, state, 30.0)), "#t=0", viewport={"width": 390, "height": 844})
+    page = shown(page_of("still symbols"), "#t=0", viewport={"width": 390, "height": 844})
     assert not page.locator("#shot").is_visible()
     page.select_option("#shutter", "1")
     # seen and stopped within one frame, since a fast page may else have closed the shutter meanwhile

@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from pages import near, nutating, picture
+from page_scenes import live_page, page_of
+from pages import near, picture
 from playing import LAPTOP, PHONE, ask, settled, state
 
 import spincyl as sc
@@ -47,14 +48,7 @@ def test_a_motion_of_no_length_is_a_body_that_stands_still(opened, at):
 
 
 def picture_of(page):
-    import io
-
-    from PIL import Image
-
-    settled(page)
-    return (
-        np.asarray(Image.open(io.BytesIO(page.locator("#canvas").screenshot())).convert("RGB"), float) / 255
-    )
+    return picture(page, "#canvas")
 
 
 def test_every_other_edge_of_the_sliders_moves_and_complains_of_nothing(opened):
@@ -93,8 +87,7 @@ def test_it_opens_on_the_tube_of_the_paper_with_both_letters_and_its_shutter_a_t
 
 
 def test_the_first_picture_of_a_recorded_tube_shows_both_letters(shown):
-    tube = sc.Body.tube(6.0, bore=0.8)
-    image = picture(shown(sc.view(sc.roll(tube, tube.steady(np.radians(89.5)), 5.0)), "#t=0"))
+    image = picture(shown(page_of("still symbols"), "#t=0"))
     assert near(image, BLUE, 0.2) > 5e-4 and near(image, ORANGE, 0.2) > 5e-4
 
 
@@ -112,7 +105,7 @@ def test_without_webgl_all_but_the_body_works(opened):
     assert page.complaints == []
 
 
-@pytest.mark.parametrize("make", [lambda: sc.view(nutating()), sc.play], ids=["recorded", "live"])
+@pytest.mark.parametrize("make", [lambda: page_of("nutating"), live_page], ids=["recorded", "live"])
 def test_a_context_that_the_browser_takes_is_said_to_be_gone_and_drawn_again(shown, make):
     page = shown(make(), "#t=1", viewport=LAPTOP, reduced_motion="reduce")
     before = picture_of(page)
@@ -133,7 +126,7 @@ def test_a_context_that_the_browser_takes_is_said_to_be_gone_and_drawn_again(sho
 
 
 def test_of_twenty_views_in_a_notebook_all_that_are_seen_are_drawn(chromium, tmp_path):
-    frame = sc.view(nutating())._repr_html_()
+    frame = page_of("nutating")._repr_html_()
     path = tmp_path / "notebook.html"
     path.write_text("<meta charset=utf-8><body data-jp-theme-light=false>" + f"<div>{frame}</div>" * 20)
     page = chromium.new_page(viewport=LAPTOP, reduced_motion="reduce")
@@ -158,7 +151,7 @@ def test_of_twenty_views_in_a_notebook_all_that_are_seen_are_drawn(chromium, tmp
 
 
 @pytest.mark.parametrize("touch", [False, True], ids=["fine", "coarse"])
-@pytest.mark.parametrize("make", [lambda: sc.view(nutating()), sc.play], ids=["recorded", "live"])
+@pytest.mark.parametrize("make", [lambda: page_of("nutating"), live_page], ids=["recorded", "live"])
 def test_every_control_is_whole_on_a_phone_a_laptop_and_a_wall(shown, make, touch):
     page = shown(make(), "#t=1", viewport=LAPTOP, has_touch=touch, reduced_motion="reduce")
     assert page.evaluate("matchMedia('(pointer: coarse)').matches") == touch

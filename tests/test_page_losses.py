@@ -4,27 +4,23 @@ import wave
 
 import numpy as np
 import pytest
-from pages import clock, near, picture
+from page_scenes import COIN as DISK  # Euler's disk
+from page_scenes import PIPE, motion_of, page_of
+from pages import clock, go, near, picture
 
 import spincyl as sc
 from spincyl._studio.poses import knots, pace, span
 
-DISK, PIPE = sc.Body.solid(0.0852), sc.Body.tube(6.0, bore=0.8)  # Euler's disk, the paper's tube
 SIZE = sc.Scale(radius=0.0375, mass=0.44)
 BLUE = (0.0, 0.33, 0.63)
 
 
-def whirr(until=100.0, **how):
-    return sc.roll(DISK, DISK.steady(0.3), until, losses=sc.loss.DryContour(5e-3), **how)
-
-
 def test_the_page_follows_a_whirr_to_its_last_turn(shown):
-    m = whirr()
-    page = shown(sc.view(m, scale=SIZE), "#t=0.5")
+    m = motion_of("whirr")
+    page = shown(page_of("whirr", scale=SIZE), "#t=0.5")
     end = m.event.time
     t = np.array([0.0, 3.0, 10.0, 16.0, 17.0, 17.2, end - 1e-3])
     there = m.wanting("pose", t=t)
-    second = SIZE.seconds(1.0)
     for k, time in enumerate(t):
         seen = page.evaluate(
             "t => { const p = window.spincyl.pose(0, t); return [p.theta, p.phi, ...p.centre]; }", time
@@ -33,7 +29,7 @@ def test_the_page_follows_a_whirr_to_its_last_turn(shown):
         assert seen[1] == pytest.approx(there.phi[k], abs=3e-3)
         assert seen[2:] == pytest.approx(there.centre[k], abs=3e-3)
     assert clock(page).startswith("t = 0.5000 s") and near(picture(page), BLUE) > 0.005
-    page = shown(sc.view(m, scale=SIZE), f"#t={end * second}")
+    go(page, end)
     assert "ended: the contact point stops: the body rolls no more, t = 1.0675 s" in clock(page)
     assert near(picture(page), BLUE) < 0.001, "what has ended is grey"
     assert page.complaints == [] and len(page.requests) == 1
@@ -53,7 +49,7 @@ def test_a_cubic_between_few_knots_meets_a_motion_with_losses(contact):
 
 
 def test_nutations_become_shorter_as_a_disk_falls():
-    m = whirr()
+    m = motion_of("whirr")
     first, last = (sc.swing(DISK, DISK.steady(theta).kicked(1e-3)).period for theta in (0.3, 0.02))
     assert last < 0.3 * first and last < pace(m) < 0.75 * first
 
@@ -97,7 +93,7 @@ def test_the_ring_beats_once_a_turn_of_the_contact(theta, tmp_path):
 
 
 def test_a_whirr_beats_faster_to_its_end_and_then_is_still(tmp_path):
-    m = whirr()
+    m = motion_of("whirr")
     x, rate = heard(m.sound(tmp_path / "whirr.wav", scale=SIZE, rate=22_050))
     assert rate == 22_050
     end = SIZE.seconds(m.event.time)
@@ -139,7 +135,7 @@ def test_an_exact_motion_sounds_too(tmp_path):
 )
 def test_what_makes_no_sound_is_refused(ask, error, match, tmp_path):
     with pytest.raises(error, match=match):
-        ask(whirr(), tmp_path)
+        ask(motion_of("whirr"), tmp_path)
 
 
 def test_backward_in_time_there_is_nothing_to_hear(tmp_path):

@@ -4,25 +4,15 @@ import re
 
 import numpy as np
 import pytest
-from pages import PIPE, clock, near, nutating, picture
+from page_scenes import PIPE, motion_of, page_of
+from pages import clock, go, near, picture
+from playing import settled
 
 import spincyl as sc
 from spincyl._pages.slip import forces
 
 RED, GREY = (0.75, 0.12, 0.18), (0.43, 0.45, 0.50)
 STICKS = 29.922072959
-
-
-def flick(until=60.0, **how):
-    start = sc.State(np.pi / 2, 3.0, 0.0, 1.3 * PIPE.ell / (PIPE.i3 * 3.0))
-    start = PIPE.with_centre_velocity(start, 0.0, -PIPE.i1 * 3.0 / PIPE.ell)
-    return sc.roll(PIPE, start, until, contact=sc.Coulomb(0.3), **how)
-
-
-def hoop(law=sc.Coulomb(0.25)):  # noqa: B008
-    ring = sc.Body.tube(0.0, bore=1.0)
-    start = ring.with_centre_velocity(sc.State(np.pi / 2, 0.0, 0.0, -3.0), 0.0, 2.0)
-    return sc.roll(ring, start, 14.0, contact=law)
 
 
 def seen_on(page, t):
@@ -32,8 +22,8 @@ def seen_on(page, t):
 
 
 def test_the_page_knows_slip_and_forces_at_every_time(shown):
-    m = flick()
-    page = shown(sc.view(m), "#t=3")
+    m = motion_of("flick")
+    page = shown(page_of("flick"), "#t=3", keep=True)
     t = np.array([0.4, 3.0, 11.7, 28.3, 31.0, 47.0])
     there = m.wanting("pose", "force", t=t)
     for k, time in enumerate(t):
@@ -48,7 +38,7 @@ def test_the_page_knows_slip_and_forces_at_every_time(shown):
 
 
 def test_friction_on_the_page_is_that_of_the_law():
-    m = flick()
+    m = motion_of("flick")
     t = np.linspace(0.5, 59.5, 60)
     found = forces(m, t)
     there = m.wanting("force", t=t)
@@ -57,10 +47,9 @@ def test_friction_on_the_page_is_that_of_the_law():
 
 
 def test_the_clock_says_what_the_body_does_and_the_line_when(shown):
-    page = shown(sc.view(flick()), "#t=3")
+    page = shown(page_of("flick"), "#t=3", keep=True)
     assert re.fullmatch(r"t = 3\.000 √\(R/g\)\nθ = \d+\.\d°\nslipping \d+\.\d+ √\(g R\)", clock(page))
-    page.locator("#time").evaluate("e => { e.value = 40; e.dispatchEvent(new Event('input')); }")
-    picture(page)  # the clock is set with the next one
+    go(page, 40)
     assert clock(page).endswith("\nrolling")
     line = page.locator(".phases")
     told = line.get_attribute("title").replace("\xa0", " ")
@@ -73,12 +62,12 @@ def test_the_clock_says_what_the_body_does_and_the_line_when(shown):
     style = line.get_attribute("style")
     share = [float(x) for x in re.findall(r"([\d.]+)%", style)]
     assert share[1] == share[2] == pytest.approx(100 * STICKS / 60, abs=1e-3)
-    scaled = shown(sc.view(flick(), scale=sc.Scale(radius=7.9375e-3)), "#t=0.1")
+    scaled = shown(page_of("flick", scale=sc.Scale(radius=7.9375e-3)), "#t=0.1")
     assert re.search(r"\nslipping \d\.\d+ m/s$", clock(scaled))
 
 
 def test_the_path_is_red_where_it_slips_and_grey_where_it_rolls(shown):
-    page = shown(sc.view(flick()), "#t=25")
+    page = shown(page_of("flick"), "#t=25")
     page.uncheck("#forces")
     page.uncheck("#follow")
     assert near(picture(page), RED) > 3e-4
@@ -86,7 +75,7 @@ def test_the_path_is_red_where_it_slips_and_grey_where_it_rolls(shown):
     page.check("#above")
     page.check("#follow")
     assert near(picture(page), RED) > 1e-3
-    page.locator("#time").evaluate("e => { e.value = 60; e.dispatchEvent(new Event('input')); }")
+    go(page, 60)
     late = picture(page)
     hue = np.abs(late - np.array(GREY)).max(axis=-1) < 0.06
     assert hue.mean() > 0.01
@@ -95,7 +84,7 @@ def test_the_path_is_red_where_it_slips_and_grey_where_it_rolls(shown):
 
 
 def test_forces_can_be_switched_and_friction_is_smaller_than_the_weight(shown):
-    page = shown(sc.view(hoop()), "#t=2")
+    page = shown(page_of("hoop"), "#t=2")
     page.uncheck("#path")
     with_ = picture(page)
     tips = page.locator(".tip")
@@ -110,15 +99,14 @@ def test_forces_can_be_switched_and_friction_is_smaller_than_the_weight(shown):
 
 
 def test_the_camera_follows_what_goes_far_and_rests_where_it_is_told(shown):
-    page = shown(sc.view(flick()), "#t=0")
+    page = shown(page_of("flick"), "#t=0")
     assert page.is_checked("#follow")
     at = [page.evaluate("t => window.spincyl.on(0, t)", 0)]
-    page.locator("#time").evaluate("e => { e.value = 40; e.dispatchEvent(new Event('input')); }")
-    picture(page)
+    go(page, 40)
     at.append(page.evaluate("t => window.spincyl.on(0, t)", 40))
     assert at[0] == pytest.approx(at[1], abs=20), "the body stays in the middle"
     page.uncheck("#follow")
-    picture(page)
+    settled(page)
     places = [page.evaluate("t => window.spincyl.on(0, t)", t) for t in (0, 40)]
     assert np.hypot(*np.subtract(*places)) > 50
     # what stays where it is needs no following
@@ -127,7 +115,7 @@ def test_the_camera_follows_what_goes_far_and_rests_where_it_is_told(shown):
 
 
 def test_a_body_that_slips_and_one_that_does_not_are_side_by_side(shown):
-    page = shown(sc.view(hoop(), hoop(sc.Viscous(0.3)), nutating()), "#t=13")
+    page = shown(page_of("hoop", "wet hoop", "nutating"), "#t=13")
     assert clock(page, 0).endswith("rolling") and re.search(r"slipping 0\.\d+ √", clock(page, 1))
     assert clock(page, 2).count("\n") == 1
     assert page.locator(".phases").count() == 2 and page.complaints == []
@@ -136,6 +124,6 @@ def test_a_body_that_slips_and_one_that_does_not_are_side_by_side(shown):
 
 
 def test_a_page_without_slip_has_nothing_of_it():
-    page = sc.view(nutating()).html
+    page = page_of("nutating").html
     assert "friction" not in page and "slip" not in page and "follow" not in page
-    assert "friction" in sc.view(hoop()).html and len(sc.view(flick()).html.encode()) < 60_000
+    assert "friction" in page_of("hoop").html and len(page_of("flick").html.encode()) < 60_000

@@ -8,14 +8,13 @@ from importlib.resources import files
 
 import numpy as np
 import pytest
+from page_scenes import PIPE, live_page
 
 import spincyl as sc
 from spincyl._pages.joined import script, style
 from spincyl._pages.play import _LEAN, _SCRIPTS, CORES
 from spincyl._pages.words import body_of, losses_of, scenes, state_of, table_of
 from spincyl.cli import main
-
-TUBE = sc.Body.tube(6.0, bore=0.8)
 
 
 def unpacked(page):
@@ -33,7 +32,7 @@ def unpacked(page):
 
 @pytest.mark.parametrize("friction", [False, True])
 def test_the_page_holds_its_script_and_the_core_that_is_asked_for_in_little_more_than_their_size(friction):
-    play = sc.play(friction=friction)
+    play = live_page(friction)
     page, (look, shown, text, core) = play.html, unpacked(play)
     assert (look, text) == (
         style(["play.css"]),
@@ -50,7 +49,7 @@ def test_the_page_holds_its_script_and_the_core_that_is_asked_for_in_little_more
 
 
 def test_a_page_without_friction_is_smaller_offers_none_and_refuses_it():
-    lean, whole = sc.play(TUBE, friction=False), sc.play(TUBE)
+    lean, whole = sc.play(PIPE, friction=False), sc.play(PIPE)
     assert len(lean.html) < 0.75 * len(whole.html)
     assert "flicked" not in unpacked(lean)[1] and "hula hoop" in unpacked(whole)[1]
     for how in (
@@ -59,7 +58,7 @@ def test_a_page_without_friction_is_smaller_offers_none_and_refuses_it():
         {"losses": sc.loss.Drilling(1e-3)},
     ):
         with pytest.raises(ValueError, match="need friction=True"):
-            sc.play(TUBE, friction=False, **how)
+            sc.play(PIPE, friction=False, **how)
         with pytest.raises(ValueError, match="need friction=True"):
             setattr(lean, *next(iter(how.items())))
     assert lean.contact == "rolling" and lean.losses is None
@@ -69,7 +68,7 @@ def test_the_page_begins_with_what_is_told():
     def given(page):
         return json.loads(page.html.split('id="given">')[1].split("</script>")[0])
 
-    told = given(sc.play(TUBE, 1.5, kick=0.1, contact="smooth"))
+    told = given(sc.play(PIPE, 1.5, kick=0.1, contact="smooth"))
     assert told == {
         "ell": 6.0, "bore": 0.8, "fillet": 0.0, "theta": 1.5, "kick": 0.1, "until": 60.0, "slow": 20.0,
         "contact": "smooth",
@@ -78,22 +77,22 @@ def test_the_page_begins_with_what_is_told():
     assert rounded["ell"] == pytest.approx(0.5) and rounded["fillet"] == 0.1, "half the length, as on the map"
     whirr = given(sc.play(sc.Body.solid(0.17), 0.3, losses=sc.loss.DryContour(5e-3), t=400))
     assert (whirr["law"], whirr["loss"], whirr["until"]) == ("dry-contour", 5e-3, 400)
-    free = given(sc.play(TUBE, state=sc.State(1.0, 0.1, 0.2, 0.3, slip=(0.4, 0.5)), contact=sc.Coulomb(0.3)))
+    free = given(sc.play(PIPE, state=sc.State(1.0, 0.1, 0.2, 0.3, slip=(0.4, 0.5)), contact=sc.Coulomb(0.3)))
     assert free["w"] == [0.1, 0.2, 0.3, 0.4, 0.5] and (free["contact"], free["mu"]) == ("coulomb", 0.3)
     balls = given(sc.play(sc.Body.balls(), 1.3))
     assert (balls["i3"], balls["end"]) == (0.4, math.pi / 2)
 
 
 def test_what_is_told_comes_back_as_what_it_was():
-    bodies = [TUBE, sc.Body.solid(0.4, fillet=0.1), sc.Body.balls(1.5), sc.Body.ball(-0.2, 0.5, 0.45)]
+    bodies = [PIPE, sc.Body.solid(0.4, fillet=0.1), sc.Body.balls(1.5), sc.Body.ball(-0.2, 0.5, 0.45)]
     for body in bodies:
         page = sc.play(body, 1.4, kick=0.02)
         assert page.body == body
         assert page.state == body.steady(1.4).kicked(0.02)
     for contact in ("rolling", "smooth", sc.Coulomb(0.3), sc.Viscous(0.2)):
-        assert sc.play(TUBE, contact=contact).contact == contact
+        assert sc.play(PIPE, contact=contact).contact == contact
     for law in sc.loss.DryContour(1e-3), sc.loss.AirQuadratic(1e-5), sc.loss.BoundaryLayer(1e-6):
-        assert sc.play(TUBE, losses=law).losses == law
+        assert sc.play(PIPE, losses=law).losses == law
     assert sc.play().losses is None
 
 
@@ -110,7 +109,7 @@ def test_a_measured_body_keeps_its_size_on_the_page():
     assert "gravity=1.62" in moon.address
     moon.body = sc.Body.solid(2.5)
     assert moon.body.scale is None and "radius" not in moon.address, "another body has a size of its own"
-    assert "radius" not in sc.play(TUBE).address
+    assert "radius" not in sc.play(PIPE).address
 
 
 def test_the_motion_of_a_measured_body_is_in_seconds():
@@ -123,21 +122,21 @@ def test_the_motion_of_a_measured_body_is_in_seconds():
 
 
 def test_its_state_and_motion_are_those_of_the_library():
-    page = sc.play(TUBE, 1.5, kick=0.02, t=10)
-    expected = sc.roll(TUBE, TUBE.steady(1.5).kicked(0.02), np.linspace(0, 10, 2001))
+    page = sc.play(PIPE, 1.5, kick=0.02, t=10)
+    expected = sc.roll(PIPE, PIPE.steady(1.5).kicked(0.02), np.linspace(0, 10, 2001))
     assert np.array_equal(page.motion.theta, expected.theta)
     # in the forbidden band it is let go at rest
     assert sc.play(sc.Body.solid(2.5), 0.7).state == sc.State(0.7, 0.0, 0.0, 0.0)
 
 
 def test_what_is_set_afterwards_is_shown():
-    page = sc.play(TUBE, 1.5)
+    page = sc.play(PIPE, 1.5)
     page.theta = 1.3
-    assert page.theta == 1.3 and page.state == TUBE.steady(1.3) and '"theta":1.3' in page.html
+    assert page.theta == 1.3 and page.state == PIPE.steady(1.3) and '"theta":1.3' in page.html
     page.state = sc.State(1.2, 0.1, 0.0, 2.0)
     assert page.state == sc.State(1.2, 0.1, 0.0, 2.0)
     page.theta = 1.25
-    assert page.state == TUBE.steady(1.25), "a state belongs to its inclination"
+    assert page.state == PIPE.steady(1.25), "a state belongs to its inclination"
     page.body = sc.Body.balls()
     assert page.body == sc.Body.balls() and page.state == sc.Body.balls().steady(1.25)
     page.contact, page.losses, page.kick = sc.Coulomb(0.2), sc.loss.Drilling(1e-3), 0.1
@@ -150,7 +149,7 @@ def test_what_is_set_afterwards_is_shown():
     [
         ({"theta": 4.0}, "theta = 4.0: expected 0.001 to 3.14159"),
         ({"kick": 5.0}, "kick = 5.0: expected -3 to 3"),
-        ({"body": TUBE, "t": 1e5}, "t = 100000.0: expected 1 to 2000"),
+        ({"body": PIPE, "t": 1e5}, "t = 100000.0: expected 1 to 2000"),
         ({"slow": 0.1}, "slow = 0.1: expected 1 to 1000"),
         ({"body": sc.Body.solid(np.array([1.0, 2.0]))}, "a single body, not a family"),
         ({"contact": sc.Coulomb(0.3, static=0.5)}, "the page knows one coefficient"),
@@ -186,8 +185,8 @@ def test_a_stone_is_refused_by_name_and_another_body_takes_the_place_of_the_ratt
     play = sc.play()
     play._heard({"new": play._told | dict(scenes())["a rattleback turns back"]})
     assert play.html.startswith("<!DOCTYPE html>")
-    play.body = TUBE
-    assert play.body == TUBE
+    play.body = PIPE
+    assert play.body == PIPE
 
 
 def test_every_scene_is_one_of_the_library():
@@ -212,10 +211,10 @@ def test_the_command_writes_the_page_that_is_asked_for(tmp_path, capsys):
     path = tmp_path / "play.html"
     assert main(["play", "-o", str(path)]) == 0
     assert "kB in" in capsys.readouterr().out
-    assert path.read_text("utf-8") == sc.play().html
+    assert path.read_text("utf-8") == live_page().html
     words = ["--ell", "6", "--bore", "0.8", "--theta", "85deg", "--contact", "coulomb", "--mu", "0.2"]
     assert main(["play", *words, "--loss", "drilling=1e-3", "-o", str(path)]) == 0
-    asked = sc.play(TUBE, math.radians(85), contact=sc.Coulomb(0.2), losses=sc.loss.Drilling(1e-3))
+    asked = sc.play(PIPE, math.radians(85), contact=sc.Coulomb(0.2), losses=sc.loss.Drilling(1e-3))
     assert path.read_text("utf-8") == asked.html
     assert main(["play", "--contact", "viscous", "--viscosity", "0.2", "-o", str(path)]) == 0
     assert path.read_text("utf-8") == sc.play(contact=sc.Viscous(0.2)._known()).html

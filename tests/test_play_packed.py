@@ -6,8 +6,8 @@ from importlib.resources import files
 
 import numpy as np
 import pytest
+from page_scenes import live_page
 
-import spincyl as sc
 from spincyl._pages.deflated import packed
 from spincyl._pages.joined import text
 from spincyl._pages.play import CORES
@@ -65,7 +65,7 @@ def test_what_is_torn_anywhere_is_refused(opened):
 def test_a_page_with_a_torn_part_says_so_beside_its_picture(shown):
     class Torn:
         def save(self, path):
-            before, after = sc.play().html.split('id="packed">')
+            before, after = live_page().html.split('id="packed">')
             path.write_bytes(f'{before}id="packed">{after[:5000]}{after[6000:]}'.encode())
             return path
 
@@ -76,7 +76,7 @@ def test_a_page_with_a_torn_part_says_so_beside_its_picture(shown):
 
 
 def test_a_browser_that_cannot_unpack_says_so_beside_the_picture(shown):
-    page = shown(sc.play(), script="delete window.DecompressionStream")
+    page = shown(live_page(), script="delete window.DecompressionStream")
     page.wait_for_selector("html[data-failed]")
     said = page.locator("#reason").inner_text()
     assert said.startswith("This page needs DecompressionStream, which this browser does not have. ")

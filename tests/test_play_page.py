@@ -5,13 +5,12 @@ import re
 import numpy as np
 import pytest
 from pages import near, picture
-from playing import DRIVEN, PHONE, ask, settled, state
+from playing import DRIVEN, PHONE, address, ask, settled, state
 
 import spincyl as sc
 from spincyl._pages.words import scenes
 from spincyl._studio.shape import BLUE, IVORY, ORANGE, marks, profiles
 
-TUBE = sc.Body.tube(6.0, bore=0.8)
 #: Keeps what moves by itself from where it was drawn.
 SHIFTS = """window.shifts = [];
 new PerformanceObserver(list => { for (const e of list.getEntries()) window.shifts.push(e.value); }).observe({ type: "layout-shift", buffered: true });"""
@@ -42,17 +41,17 @@ def test_it_asks_for_nothing_complains_of_nothing_and_shows_the_body(opened):
 
 
 def drawn(page):
-    settled(page)
     return picture(page, "#canvas")
 
 
 def test_its_numbers_are_those_of_the_library(opened):
+    page = opened()
     for at in (
         "#ell=2.5&theta=1.3&kick=0.05",
         "#ell=6&bore=0.8&theta=1.5",
         "#ell=0.375&theta=1.4&kick=-0.01&contact=smooth",
     ):
-        page = opened(at)
+        address(page, at)
         told, here, head = state(page), ask(page, "here()"), ask(page, "head()")
         body, start = steady(told)
         assert here["rate"] == pytest.approx(body.rate(told["theta"]), rel=1e-12)

@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from pages import near
+from page_scenes import live_page
+from pages import near, picture
 from playing import DRIVEN, LAPTOP, PHONE, ask, details, settled, state
 from scipy.spatial.transform import Rotation
 
@@ -183,15 +184,8 @@ def test_it_looks_as_it_does_everywhere_else(opened, at):
 
 @pytest.mark.parametrize("size", [LAPTOP, PHONE])
 def test_everything_of_it_is_on_the_screen_and_its_marks_are_seen(opened, size):
-    import io
-
-    from PIL import Image
-
     page = opened(AT + "&t=20", viewport=size)
-    settled(page)
-    image = (
-        np.asarray(Image.open(io.BytesIO(page.locator("#canvas").screenshot())).convert("RGB"), float) / 255
-    )
+    image = picture(page, "#canvas")
     assert near(image, BLUE, 0.2) > 1e-3 and near(image, ORANGE, 0.2) > 1e-3
     for x in ("stage", "chart", "twist", "clockwise", "counterclockwise"):
         box = page.locator(f"#{x}").bounding_box()
@@ -200,7 +194,7 @@ def test_everything_of_it_is_on_the_screen_and_its_marks_are_seen(opened, size):
 
 
 def test_a_page_without_friction_has_no_stones(opened):
-    page = opened(AT, sc.play(friction=False))
+    page = opened(AT, live_page(False))
     assert "stone=0.07" in details(page) and page.locator("#twirl").count() == 0
     assert NAME not in page.locator("#preset").inner_text() and page.complaints == []
 

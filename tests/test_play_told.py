@@ -4,12 +4,11 @@ import re
 
 import numpy as np
 import pytest
-from playing import LAPTOP, PHONE, ask, details, settled, state
+from page_scenes import PIPE
+from playing import LAPTOP, PHONE, address, ask, details, settled, state
 
 import spincyl as sc
 from spincyl._pages.words import body_of, scenes, state_of
-
-TUBE = sc.Body.tube(6.0, bore=0.8)
 
 #: What a name of an address may be that is no number of the page's, and no key of a keyboard.
 OF_EVERY_OBJECT = ("__proto__", "constructor", "toString", "hasOwnProperty", "__defineGetter__", "valueOf")
@@ -162,10 +161,10 @@ def test_the_page_of_a_measured_body_tells_hertz_seconds_and_joules(opened):
 
 
 def test_an_address_that_names_a_body_opens_the_same_on_every_page(opened):
-    page = opened("#ell=2.5&theta=1.2", page=sc.play(TUBE, 1.4, kick=0.2, contact="smooth"))
+    page = opened("#ell=2.5&theta=1.2", page=sc.play(PIPE, 1.4, kick=0.2, contact="smooth"))
     told = state(page)
     assert (told["bore"], told["kick"], told["contact"]) == (0, 0, "rolling")
-    page = opened("#theta=1.2", page=sc.play(TUBE, 1.4, kick=0.2))
+    page = opened("#theta=1.2", page=sc.play(PIPE, 1.4, kick=0.2))
     assert state(page)["bore"] == 0.8 and state(page)["theta"] == 1.2
 
 
@@ -238,13 +237,13 @@ def test_the_axes_hold_the_friction_of_a_slip_and_the_peaks_on_ice_and_tell_what
     page.keyboard.press("c")
     most, cut, greatest = axes(page)["μ"]
     assert greatest == pytest.approx(0.3, abs=1e-6) and 0.294 < most <= 0.5 and not cut
-    page = opened("#ell=0.375&theta=1.396263&kick=-0.01&contact=smooth")
+    address(page, "#ell=0.375&theta=1.396263&kick=-0.01&contact=smooth")
     most, cut, greatest = axes(page)["N"]
     assert greatest > 3 and 0.98 * greatest <= most < 2 * greatest and not cut
-    page = opened("#ell=1&theta=0.3&w=0.001,0,0,0,0")
+    address(page, "#ell=1&theta=0.3&w=0.001,0,0,0,0")
     most, cut, greatest = axes(page)["N"]
     assert greatest > 30 and most < 10 and cut
-    page = opened("#ell=2.5&theta=1.3")
+    address(page, "#ell=2.5&theta=1.3")
     assert axes(page)["N"][:2] == (1, False)
 
 

@@ -11,14 +11,13 @@ import mujoco
 import numpy as np
 import nutating_cylinder
 import pytest
+from page_scenes import BALLS, CAPSULE, CYLINDER, PIPE, ROUNDED, TIPPE
 from scipy.spatial.transform import Rotation
 
 import spincyl as sc
 
 ROOT = pathlib.Path(__file__).parents[1]
-CYLINDER, PIPE = sc.Body.solid(2.5), sc.Body.tube(6.0, bore=0.8)
-CAN, CAPSULE = sc.Body.solid(1.5, fillet=0.3), sc.Body.solid(2.5, fillet=1.0)
-BALLS, APART, TIPPE = sc.Body.balls(), sc.Body.balls(1.5), sc.Body.ball(-0.3, 0.45, 0.42)
+APART = sc.Body.balls(1.5)
 EULER = sc.Body.from_metres(outer_diameter=0.0751, length=0.0128)
 SCENES = {
     "cylinder": lambda: sc.scene(CYLINDER, nutating_cylinder.start),
@@ -36,7 +35,7 @@ SCENES = {
         seconds=np.float64(0.5),
         mu=np.float32(0.5),
     ),
-    "rounded can": lambda: sc.scene(CAN, CAN.steady(1.3).kicked(0.05)),
+    "rounded can": lambda: sc.scene(ROUNDED, ROUNDED.steady(1.3).kicked(0.05)),
     "rounded coin": lambda: sc.scene(
         eulers_disk.body, eulers_disk.start, scale=sc.Scale(0.03755, mass=0.44), seconds=0.2
     ),
@@ -46,7 +45,7 @@ SCENES = {
     ),
     "balls on a rod": lambda: sc.scene(APART, APART.steady(np.radians(85)).kicked(0.02)),
     "tippe top": lambda: sc.scene(TIPPE, sc.State(0.6, 1.0, 0.0, 2.0), mu=5.0),
-    "round on ice": lambda: sc.scene(CAN, CAN.steady(1.3).kicked(0.05), contact="smooth"),
+    "round on ice": lambda: sc.scene(ROUNDED, ROUNDED.steady(1.3).kicked(0.05), contact="smooth"),
     "on ice": lambda: sc.scene(CYLINDER, nutating_cylinder.start, contact="smooth"),
 }
 

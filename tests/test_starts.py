@@ -1,6 +1,6 @@
 """Random starts at rest or almost, by every route, against an integrator that shares no code.
 
-benches/starts.py asks the same of a hundred thousand motions, of long times and of the last digits.
+`benches/claims.py --of starts` asks the same of a hundred thousand motions, of long times and of the last digits.
 """
 
 import math

@@ -4,27 +4,12 @@ import json
 import re
 import warnings
 
-import hurricane_balls
 import near_steady_tube
 import numpy as np
 import nutating_cylinder
 import pytest
-import rocking_can
-from pages import (
-    BALLS,
-    CAN,
-    CAPSULE,
-    COIN,
-    CYLINDER,
-    DISK,
-    PIPE,
-    ROUNDED,
-    TIPPE,
-    arrow,
-    near,
-    nutating,
-    picture,
-)
+from page_scenes import BODIES, CAN, COIN, CYLINDER, DISK, PIPE, ROUNDED, live_page, motion_of, page_of
+from pages import SMALL, arrow, between, near, picture
 
 import spincyl as sc
 from spincyl._studio.poses import knots, seen
@@ -36,7 +21,7 @@ HOSTILE = "</script><img src=x onerror=alert(1)><b>{data}&amp;\u2028"
 
 
 def test_it_draws_a_body_with_its_marks_and_asks_for_nothing(shown):
-    page = shown(sc.view(nutating()), "#t=3")
+    page = shown(page_of("nutating"), "#t=3", keep=True)
     image = picture(page)
     assert near(image, BLUE, 0.2) > 0.001 and near(image, ORANGE, 0.2) > 0.001, "O and X are seen"
     assert near(image, IVORY, 0.05) > 0.03
@@ -45,31 +30,9 @@ def test_it_draws_a_body_with_its_marks_and_asks_for_nothing(shown):
     assert page.complaints == []
 
 
-# where numbers are asked for, and nobody looks
-SMALL = {"width": 160, "height": 120}
-MOTIONS = {
-    "nutating": nutating,
-    "for long": lambda: sc.roll(CYLINDER, CYLINDER.steady(1.3).kicked(0.2), 3000.0),
-    "stepped": lambda: sc.roll(CYLINDER, nutating_cylinder.start, 20.0, step=1e-2),
-    "sliding": lambda: sc.roll(CYLINDER, nutating_cylinder.start, 20.0, contact="smooth"),
-    "rocking": lambda: sc.roll(CAN, rocking_can.start, 5.0),
-    "hardly not landing": lambda: sc.roll(CAN, sc.State(0.3, 1e-5, 0.0, 0.0), 5.0),
-    "whirring": lambda: sc.roll(COIN, COIN.steady(0.1).kicked(0.1), 8.0),
-    "long": lambda: sc.roll(PIPE, PIPE.steady(1.5), 2.5e4),
-    "circling": lambda: sc.roll(COIN, COIN.circular(1.2, 0.3).kicked(0.05), 60.0),
-    "backward": lambda: sc.roll(CYLINDER, nutating_cylinder.start, -20.0),
-    "rounded": lambda: sc.roll(ROUNDED, ROUNDED.steady(1.3).kicked(0.05), 20.0),
-    "rounded and sliding": lambda: sc.roll(ROUNDED, ROUNDED.steady(1.3).kicked(0.05), 9.0, contact="smooth"),
-    "capsule": lambda: sc.roll(CAPSULE, CAPSULE.steady(1.35).kicked(0.05), 20.0),
-    "Hurricane balls": lambda: sc.roll(BALLS, hurricane_balls.start, 20.0),
-    "tippe top": lambda: sc.roll(TIPPE, sc.State(0.6, 1.0, 0.0, 6.0), 10.0),
-    "close to the pole": lambda: sc.roll(TIPPE, sc.State(0.1, 1e-3, -0.3, 1.0), 10.0),
-}
-
-
 def test_the_drawn_pose_is_that_of_the_motion(shown):
-    motions = {kind: make() for kind, make in MOTIONS.items()}
-    page = shown(sc.view(*motions.values()), "#t=0", viewport=SMALL)
+    motions = {kind: motion_of(kind) for kind in BODIES}
+    page = shown(page_of(*BODIES), "#t=0", viewport=SMALL, keep=True)
     for i, (kind, m) in enumerate(motions.items()):
         t = np.linspace(0.0, float(m.t[-1]), 2001)
         # as one text, which playwright need not look through
@@ -95,9 +58,10 @@ def test_the_drawn_pose_is_that_of_the_motion(shown):
 
 def test_a_body_with_a_fillet_stands_on_the_table_and_on_its_path(shown):
     # of the drawn pose, with the drawn geometry: the lowest place of the surface lies on the table at the contact
-    motions = [MOTIONS[kind]() for kind in ("rounded", "capsule", "Hurricane balls", "tippe top")]
-    page = shown(sc.view(*motions), "#t=0", viewport=SMALL)
-    for i, m in enumerate(motions):
+    kinds = ("rounded", "capsule", "Hurricane balls", "tippe top")
+    page = shown(page_of(*BODIES), "#t=0", viewport=SMALL, keep=True)
+    for kind in kinds:
+        i, m = list(BODIES).index(kind), motion_of(kind)
         places = np.concatenate([part.vertices for part in map(lathe, profiles(m.body))])
         times = np.linspace(0, float(m.t[-1]), 40).tolist()
         for pose in page.evaluate("([i, t]) => t.map(t => window.spincyl.pose(i, t))", [i, times]):
@@ -110,8 +74,8 @@ def test_a_body_with_a_fillet_stands_on_the_table_and_on_its_path(shown):
 
 
 def test_a_page_of_sharp_bodies_knows_nothing_of_fillets():
-    sharp, rounded = (sc.roll(b, b.steady(1.3), 5.0) for b in (CYLINDER, ROUNDED))
-    alone, both = sc.view(sharp).html, sc.view(sharp, rounded).html
+    rounded = sc.roll(ROUNDED, ROUNDED.steady(1.3), 5.0)
+    alone, both = page_of("steady").html, sc.view(motion_of("steady"), rounded).html
     assert "fillet" not in alone and "onSharpRim" not in alone
     assert '"fillet":0.3' in both and both.count("onSharpRim=pose") == 1
     # what is written into the page of a sharp body is written in the same way beside a rounded one
@@ -126,19 +90,20 @@ def test_a_page_of_sharp_bodies_knows_nothing_of_fillets():
 
 
 def test_a_sharp_body_looks_the_same_beside_a_rounded_one(shown):
-    sharp, ball = sc.roll(CYLINDER, CYLINDER.steady(1.3), 5.0), sc.Body.solid(1.0, fillet=1.0)
+    ball = sc.Body.solid(1.0, fillet=1.0)
     rolling = sc.roll(ball, sc.State(1.0, 0.1, 0.0, 0.1), 5.0)
-    page = shown(sc.view(sharp, rolling), "#t=2")
-    alone = shown(sc.view(sharp, sharp), "#t=2")
+    page = shown(sc.view(motion_of("steady"), rolling), "#t=2")
+    alone = shown(page_of("steady", "steady"), "#t=2")
     half = [picture(x)[:, :400] for x in (page, alone)]
     assert np.array_equal(*half) and page.complaints == []
 
 
 def test_the_page_of_a_ball_does_not_slow_down_for_its_pole():
-    m = MOTIONS["close to the pole"]()
-    (phi,) = seen(m, np.linspace(0.0, 10.0, 9001), "phi")
+    (phi,) = seen(motion_of("close to the pole"), np.linspace(0.0, 10.0, 9001), "phi")
     fastest = np.abs(np.gradient(phi, 10 / 9000)).max()
-    assert fastest > 15 and sc.view(m).slow == 1, "phi runs at more than two turns in a unit of time"
+    assert fastest > 15 and page_of("close to the pole").slow == 1, (
+        "phi runs at more than two turns in a unit of time"
+    )
 
 
 def rotations(q):
@@ -173,17 +138,8 @@ def test_between_few_knots_a_cubic_meets_the_motion(body, state, until):
     there = m.wanting("pose", t=np.r_[0.0, t if until > 0 else t[::-1]])
     true = np.column_stack([there.theta, there.phi, there.psi, there.centre[:, :2]])[1:]
     true = true if until > 0 else true[::-1]
-    assert np.abs(drawn(found, t) - true).max() < 2.5e-3
+    assert np.abs(between(found, t) - true).max() < 2.5e-3
     assert len(found) < 120
-
-
-def drawn(found, t):
-    """What the page draws at ascending times between knots."""
-    i = np.clip(np.searchsorted(found[:, 0], t) - 1, 0, len(found) - 2)
-    h, s = np.diff(found[:, 0])[i, None], ((t - found[i, 0]) / np.diff(found[:, 0])[i])[:, None]
-    basis = [(1 + 2 * s) * (1 - s) ** 2, s * s * (3 - 2 * s), s * (1 - s) ** 2 * h, s * s * (s - 1) * h]
-    pieces = [found[i, 1:6], found[i + 1, 1:6], found[i, 6:], found[i + 1, 6:]]
-    return sum(b * p for b, p in zip(basis, pieces, strict=True))
 
 
 def test_random_motions_are_met_between_their_knots():
@@ -200,7 +156,7 @@ def test_random_motions_are_met_between_their_knots():
         t = np.sort(rng.uniform(*found[[0, -1], 0], 1000))
         theta, phi, psi, centre = seen(m, t, "theta", "phi", "psi", "centre")
         true = np.column_stack([theta, phi, psi, centre[:, :2]])
-        met.append(np.abs(drawn(found, t) - true).max())
+        met.append(np.abs(between(found, t) - true).max())
     assert len(met) > 100 and max(met) < 3e-3, max(met)
 
 
@@ -218,16 +174,15 @@ def test_a_motion_that_ends_early_is_shown_to_its_end(shown, tmp_path, how):
 
 
 def test_the_page_starts_as_slowly_as_the_fastest_turn_asks_for():
-    m = sc.roll(DISK, DISK.steady(np.radians(80)).kicked(0.01), 30.0, contact="smooth")
-    assert m.t.size == 0  # so that its states say nothing
-    assert sc.view(m, scale=sc.Scale(5e-4)).slow >= 20
-    assert sc.view(m).slow == 1 and sc.view(m, slow=20).slow == 20
+    assert motion_of("side").t.size == 0  # so that its states say nothing
+    assert page_of("side", scale=sc.Scale(5e-4)).slow >= 20
+    assert page_of("side").slow == 1 and page_of("side", slow=20).slow == 20
 
 
 def test_looking_at_a_motion_does_not_switch_warnings_off():
     from concurrent.futures import ThreadPoolExecutor
 
-    m = nutating()
+    m = motion_of("nutating")
     before = warnings.filters.copy()
     with ThreadPoolExecutor(8) as pool:
         list(pool.map(lambda k: m.wanting("pose", t=np.linspace(0, 20, 50 + k)), range(200)))
@@ -249,14 +204,14 @@ def test_a_page_of_twenty_seconds_takes_less_than_sixty_kilobytes():
 
 
 def test_two_pictures_of_one_time_are_equal(shown):
-    view = sc.view(nutating(), sc.roll(DISK, DISK.steady(1.4), 20.0))
+    view = sc.view(motion_of("nutating"), sc.roll(DISK, DISK.steady(1.4), 20.0))
     first, second = (picture(shown(view, "#t=4.25")) for _ in range(2))
     assert np.array_equal(first, second)
     assert not np.array_equal(first, picture(shown(view, "#t=4.3")))
 
 
 def test_hostile_labels_stay_text(shown):
-    page = shown(sc.view(nutating(), labels=[HOSTILE], title=HOSTILE), "#t=1")
+    page = shown(page_of("nutating", labels=(HOSTILE,), title=HOSTILE), "#t=1")
     assert re.sub(r"\s", " ", page.title()) == re.sub(r"\s", " ", HOSTILE)
     assert page.locator(".panel b").inner_text() == HOSTILE
     assert page.locator("img").count() == 0 and page.complaints == [] and len(page.requests) == 1
@@ -279,7 +234,7 @@ FIT = "a\ttube\r\nof \u2028 PVC\N{GRINNING FACE}"
 
 
 def test_white_space_in_text_is_a_space_and_the_rest_stays(shown, tmp_path):
-    view = sc.view(nutating(), labels=[FIT], title=FIT)
+    view = page_of("nutating", labels=(FIT,), title=FIT)
     page = shown(view)
     seen = "a tube of \u2028 PVC\N{GRINNING FACE}"
     assert (
@@ -304,7 +259,7 @@ LEAVING = """async () => {
 }"""
 
 
-@pytest.mark.parametrize("make", [lambda: sc.view(nutating()), sc.play], ids=["recorded", "live"])
+@pytest.mark.parametrize("make", [lambda: page_of("nutating"), live_page], ids=["recorded", "live"])
 def test_nothing_on_a_page_can_send_a_form_or_turn_its_links_elsewhere(shown, make):
     page = shown(make())
     assert page.evaluate(LEAVING) == [["base-uri", "form-action"], False]
@@ -325,7 +280,7 @@ def test_arrows_point_along_angular_velocity_and_momentum_seen_from_above(shown)
 
 
 def test_without_webgl_it_says_so(shown):
-    page = shown(sc.view(nutating()), script="HTMLCanvasElement.prototype.getContext = () => null;")
+    page = shown(page_of("nutating"), script="HTMLCanvasElement.prototype.getContext = () => null;")
     assert "WebGL 2" in page.get_by_role("alert").inner_text()
     page.locator("#controls").wait_for(state="hidden")
     assert page.complaints == []
@@ -333,7 +288,7 @@ def test_without_webgl_it_says_so(shown):
 
 def test_in_a_notebook_it_shows_itself_in_a_frame_that_can_do_nothing_else(chromium):
     page = chromium.new_page()
-    frame = sc.view(nutating())._repr_html_()
+    frame = page_of("nutating")._repr_html_()
     assert 'sandbox="allow-scripts"' in frame
     page.set_content(f"<p>above</p>{frame}")
     page.frame_locator("iframe").locator("html[data-drawn]").wait_for()
@@ -341,7 +296,7 @@ def test_in_a_notebook_it_shows_itself_in_a_frame_that_can_do_nothing_else(chrom
 
 
 def test_what_cannot_be_shown_is_refused_by_name(tmp_path):
-    m = nutating()
+    m = motion_of("nutating")
     for wrong, said in (
         (lambda: sc.view(), "at least one"),
         (lambda: sc.view(m, labels=["a", "b"]), "labels"),

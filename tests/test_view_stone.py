@@ -3,11 +3,14 @@
 import gzip
 import json
 import re
+from functools import cache
 from itertools import pairwise
 
 import numpy as np
+import pages
 import pytest
-from pages import SENT, arrow, clock, near, nutating, picture, sent
+from page_scenes import ACROSS, ACROSS_START, EGG, SMALL, STONES, TOY, motion_of, page_of
+from pages import SENT, arrow, between, clock, go, near, picture, sent
 from scipy.spatial.transform import Rotation
 
 import spincyl as sc
@@ -17,54 +20,12 @@ from spincyl._studio.poses import knots, seen
 from spincyl._studio.shape import BLUE, IVORY, ORANGE, lathe, marks, parts, profiles
 from spincyl._studio.stone_shape import height
 
-# the small stone of docs/stones.md; a toy of 40 cm that is cut; an egg that rises
-TWISTED = [[0.02, -0.012, 0.0], [-0.012, 0.2, 0.0], [0.0, 0.0, 0.21]]
-SMALL = sc.Ellipsoid((1.0, 0.3, 0.2), TWISTED, offset=(0.0, 0.0, -0.07))
-TOY = sc.Ellipsoid.rattleback((0.20, 0.03, 0.02), twist=np.radians(3)).in_metres(mass=0.3)
-EGG = sc.Ellipsoid.egg(0.7, 1.0)
-# its second axis is the long one
-ACROSS = sc.Ellipsoid((0.4, 1.0, 0.3), (0.25, 0.06, 0.28), (0.05, -0.1, -0.1), 1.2)
 RED = (0.75, 0.12, 0.18)
-
-
-def turning_back():
-    return sc.roll(SMALL, SMALL.spinning(-0.6, pitch=0.02), 60.0)
-
-
-def toy():
-    return sc.roll(TOY, TOY.spinning(-5 * TOY.scale.seconds(1.0), pitch=0.01), 6.0)
-
-
-def lying(z=0.02):
-    return sc.EllipsoidState([np.sqrt(1 - z * z), 0.0, z], [6.0, 0.0, 0.0])
-
-
-def rising():
-    return sc.roll(EGG, lying(), 50.0, contact=sc.Coulomb(0.1))
-
-
-def across():
-    return sc.roll(ACROSS, ACROSS_START, 12.0)
-
-
-ACROSS_START = sc.EllipsoidState([0.1, 0.2, np.sqrt(0.95)], [0.3, 0.1, 0.8])
-MOTIONS = {
-    "turns back": turning_back,
-    "measured": toy,
-    "rises": rising,
-    "lands": across,
-    "smooth": lambda: sc.roll(EGG, lying(0.1), 8.0, contact="smooth"),
-    "tumbles": lambda: sc.roll(EGG, sc.EllipsoidState([0.8, 0.0, 0.6], [0.0, 1.7, 0.2]), 12.0),
-}
 
 
 def drawn(found, t):
     """What the page draws at ascending times between knots: rotation and centre."""
-    i = np.clip(np.searchsorted(found[:, 0], t) - 1, 0, len(found) - 2)
-    h, s = np.diff(found[:, 0])[i, None], ((t - found[i, 0]) / np.diff(found[:, 0])[i])[:, None]
-    basis = [(1 + 2 * s) * (1 - s) ** 2, s * s * (3 - 2 * s), s * (1 - s) ** 2 * h, s * s * (s - 1) * h]
-    pieces = [found[i, 1:7], found[i + 1, 1:7], found[i, 7:], found[i + 1, 7:]]
-    numbers = sum(b * p for b, p in zip(basis, pieces, strict=True))
+    numbers = between(found, t)
     return Rotation.from_quat(numbers[:, [0, 1, 2, 5]]), numbers[:, 3:5]
 
 
@@ -140,7 +101,7 @@ def test_a_stone_is_cut_where_its_edge_lands(end):
 
 
 def test_friction_of_a_stone_is_that_of_the_law_and_against_its_slip():
-    m = rising()
+    m = motion_of("rises")
     t = np.linspace(0.5, 49.5, 99)
     found, there = forces(m, t), m.wanting("force", t=t)
     assert np.allclose(np.hypot(found[:, 2], found[:, 3]), there.friction, atol=1e-6)
@@ -160,7 +121,7 @@ def test_friction_of_a_stone_is_that_of_the_law_and_against_its_slip():
 
 
 def test_the_spin_turns_back_when_it_has_come_to_a_tenth_in_the_other_direction():
-    m = turning_back()
+    m = motion_of("turns back")
     found = turns_back(m, knots(m)[:, 0])
     t = np.linspace(0.0, 60.0, 200_001)
     spin = m.at(t).spin
@@ -181,12 +142,18 @@ def test_the_spin_turns_back_when_it_has_come_to_a_tenth_in_the_other_direction(
 
 # in a browser
 
-LITTLE, SQUARE = {"width": 160, "height": 120}, {"width": 330, "height": 330}
+SQUARE = {"width": 330, "height": 330}
+
+
+@cache
+def natural():
+    """All of them side by side, in units of each."""
+    return sc.view(*(motion_of(kind).natural for kind in STONES), labels=list(STONES))
 
 
 def test_the_drawn_pose_is_that_of_the_motion(shown):
-    motions = {kind: make().natural for kind, make in MOTIONS.items()}
-    page = shown(sc.view(*motions.values(), labels=list(motions)), "#t=0", viewport=LITTLE)
+    motions = {kind: motion_of(kind).natural for kind in STONES}
+    page = shown(natural(), "#t=0", viewport=pages.SMALL, keep=True)
     assert page.complaints == []
     for i, (kind, m) in enumerate(motions.items()):
         t = np.linspace(0.0, m.event.time - 1e-6 if m.event else m.t[-1], 1001)
@@ -211,9 +178,9 @@ def test_the_drawn_pose_is_that_of_the_motion(shown):
 
 def test_it_stands_on_the_table_where_it_touches_it(shown):
     # of the drawn pose, with the drawn geometry: at any time, not only at knots
-    motions = [make().natural for make in (turning_back, toy, rising, across)]
-    page = shown(sc.view(*motions), "#t=0", viewport=LITTLE)
-    for i, m in enumerate(motions):
+    page = shown(natural(), "#t=0", viewport=pages.SMALL, keep=True)
+    for i, kind in enumerate(("turns back", "measured", "rises", "lands")):
+        m = motion_of(kind).natural
         places = np.concatenate([part.vertices for part in map(lathe, profiles(m.body))])
         last = m.event.time - 1e-6 if m.event else float(m.t[-1])
         times = np.linspace(0, last, 60).tolist()
@@ -231,7 +198,7 @@ def test_it_stands_on_the_table_where_it_touches_it(shown):
 
 
 def test_it_is_drawn_with_its_marks_and_asks_for_nothing(shown):
-    for view, at in ((sc.view(turning_back()), "#t=20"), (sc.view(toy()), "#t=1")):
+    for view, at in ((page_of("turns back"), "#t=20"), (page_of("measured"), "#t=1")):
         page = shown(view, at)
         image = picture(page)
         assert near(image, BLUE, 0.2) > 1e-3 and near(image, ORANGE, 0.25) > 5e-4
@@ -240,7 +207,7 @@ def test_it_is_drawn_with_its_marks_and_asks_for_nothing(shown):
     # the other way round
     page.check("#above")
     ahead = picture(page)
-    page = shown(sc.view(toy(), upper="X"), "#t=1")
+    page = shown(page_of("measured", upper="X"), "#t=1")
     page.check("#above")
     other = picture(page)
     blue, orange = (np.abs(ahead - colour).max(-1) < 0.08 for colour in (BLUE, ORANGE))
@@ -249,8 +216,8 @@ def test_it_is_drawn_with_its_marks_and_asks_for_nothing(shown):
 
 
 def test_the_needle_points_along_the_longer_axis(shown):
-    for make, long in ((toy, 0), (across, 1)):
-        m = make().natural
+    for kind, long in (("measured", 0), ("lands", 1)):
+        m = motion_of(kind).natural
         page = shown(sc.view(m), "#t=1")
         page.check("#above")
         page.uncheck("#path")
@@ -264,8 +231,8 @@ def test_the_needle_points_along_the_longer_axis(shown):
 
 
 def test_arrows_point_along_angular_velocity_and_momentum_seen_from_above(shown):
-    m = across()
-    page = shown(sc.view(m), "#t=2")
+    m = motion_of("lands")
+    page = shown(page_of("lands"), "#t=2")
     page.check("#above")
     state = m.wanting("pose", t=[0.0, 2.0])
     turn = Rotation.from_quat(state.orientation[1])
@@ -276,9 +243,9 @@ def test_arrows_point_along_angular_velocity_and_momentum_seen_from_above(shown)
 
 
 def test_the_clock_tells_the_spin_and_when_it_turns_back(shown):
-    page = shown(sc.view(turning_back()), "#t=3")
-    spin = turning_back().at([0.0, 3.0, 30.0]).spin
-    back = turns_back(turning_back(), knots(turning_back())[:, 0])
+    page = shown(page_of("turns back"), "#t=3")
+    spin = motion_of("turns back").at([0.0, 3.0, 30.0]).spin
+    back = turns_back(motion_of("turns back"), knots(motion_of("turns back"))[:, 0])
     told = re.fullmatch(
         r"t = 3\.000 √\(a/g\)\nθ = \d+\.\d°\nspin (.\d\.\d+) √\(g/a\)\nturns back at t = (\d+\.\d+) √\(a/g\)",
         clock(page),
@@ -286,21 +253,20 @@ def test_the_clock_tells_the_spin_and_when_it_turns_back(shown):
     assert told and told[1][0] == "\N{MINUS SIGN}"
     assert float(told[1][1:]) == pytest.approx(-spin[1], abs=0.01)
     assert float(told[2]) == pytest.approx(back[0], abs=1e-3)
-    page.locator("#time").evaluate("e => { e.value = 30; e.dispatchEvent(new Event('input')); }")
-    picture(page)
+    go(page, 30)
     assert f"spin {'+' if spin[2] > 0 else chr(0x2212)}{abs(spin[2]):.3f}" in clock(page)
     assert f"turned back at t = {max(x for x in back if x < 30):.3f}" in clock(page)
     assert "inclination of its axis 3" in page.locator("details p").text_content()
     # of a measured one in SI
-    m = toy()
-    told = clock(shown(sc.view(m), "#t=2"))
+    m = motion_of("measured")
+    told = clock(shown(page_of("measured"), "#t=2"))
     assert re.match(r"t = 2\.0+ s\n", told) and "rad/s" in told
     assert f"{abs(m.at([0.0, 2.0]).spin[1]):.1f}" in told
 
 
 def test_where_it_slips_its_path_is_red_and_forces_have_arrows(shown):
-    m = rising()
-    page = shown(sc.view(m), "#t=20")
+    m = motion_of("rises")
+    page = shown(page_of("rises"), "#t=20")
     assert re.search(r"\nspin \+\d\.\d\d √\(g/a\)\nslipping \d\.\d+ √\(g a\)$", clock(page))
     tips = page.locator(".tip")
     assert [tips.nth(k).inner_text() for k in range(tips.count()) if tips.nth(k).is_visible()] == ["N", "F"]
@@ -356,10 +322,10 @@ def test_a_photograph_of_a_stone_is_open_for_its_turns(shown):
 
 
 def test_a_stone_and_a_body_of_revolution_are_side_by_side(shown):
-    page = shown(sc.view(turning_back(), nutating(), rising(), labels=["stone", "can", "egg"]), "#t=10")
+    page = shown(page_of("turns back", "nutating", "rises", labels=("stone", "can", "egg")), "#t=10")
     assert "spin" in clock(page, 0) and clock(page, 1).count("\n") == 1 and "slipping" in clock(page, 2)
     assert "√(R/g)" in clock(page, 0) and page.complaints == []
-    alone = shown(sc.view(nutating()), "#t=10")
+    alone = shown(page_of("nutating"), "#t=10")
     there = "window.spincyl.pose({}, 10).matrix"
     assert page.evaluate(there.format(1)) == alone.evaluate(there.format(0))
 
@@ -368,7 +334,7 @@ def test_a_stone_and_a_body_of_revolution_are_side_by_side(shown):
 
 
 def test_a_page_without_a_stone_has_nothing_of_it_and_one_with_it_is_little_longer():
-    body, stone = (sc.view(m).html for m in (nutating(), turning_back()))
+    body, stone = (page_of(kind).html for kind in ("nutating", "turns back"))
     assert not re.search("inertia|unstretched|unspun|turned back", body)
     assert stone.count("unspun=doing") == stone.count("unstretched=lathe") == 1
     packed = [len(gzip.compress(page.encode(), 9)) for page in (body, stone)]
@@ -382,8 +348,8 @@ def test_another_library_loads_the_scene_with_poses_of_the_motion(tmp_path):
     import trimesh
     from pygltflib import GLTF2
 
-    m = rising()
-    path = sc.view(m).save(tmp_path / "egg.glb")
+    m = motion_of("rises")
+    path = page_of("rises").save(tmp_path / "egg.glb")
     scene = trimesh.load_scene(path)
     surface = trimesh.util.concatenate(
         [g for g in scene.geometry.values() if g.visual.material.name not in ("O", "X")]
@@ -424,7 +390,7 @@ def test_the_card_of_a_motion_tells_the_spin():
     told = m._repr_html_()
     assert f"{m.spin.min():.4g} to {m.spin.max():.4g}, at last {m.spin[-1]:.4g} √(g/a)" in told
     assert "from 0 to 20 √(a/g)" in told and "Ellipsoid(" in told and "the last time was reached" in told
-    assert "rad/s" in toy()._repr_html_() and m.spin[-1] > 0
+    assert "rad/s" in motion_of("measured")._repr_html_() and m.spin[-1] > 0
 
 
 @pytest.mark.filterwarnings("ignore::spincyl.ErrorWarning")
@@ -432,7 +398,7 @@ def test_what_makes_no_sense_of_a_stone_is_refused_by_name(tmp_path):
     with pytest.raises(TypeError, match="body: expected a Body, not Ellipsoid"):
         sc.scene(SMALL, SMALL.spinning(1.0))
     with pytest.raises(ValueError, match="upper"):
-        sc.view(turning_back(), upper="Y")
+        sc.view(motion_of("turns back"), upper="Y")
     with pytest.raises(ValueError, match="no duration"):
         sc.view(sc.roll(SMALL, SMALL.spinning(1.0), 0.0))
     with pytest.raises(ValueError, match="too many"):

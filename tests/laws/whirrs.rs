@@ -94,7 +94,7 @@ fn side_by_side_a_body_loses_what_it_loses_alone_and_ends_as_it_does() {
                 continue;
             };
             let path = path.unwrap();
-            // each claim holds within a factor of ten, as `benches/losses_claims.py` has it
+            // each claim holds within a factor of ten, as `benches/kinds/losses.py` has it
             let claim = 10.0 * (found[CLAIM][i] + path.error);
             if claim.is_infinite() {
                 continue;

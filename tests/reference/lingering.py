@@ -2,7 +2,7 @@
 
     python tests/reference/lingering.py > tests/reference/lingering.csv        needs the dependency group `peers`
 
-The starts are those that benches/saddles.py draws with seed 5, three of each kind. A row: kind; ell, i1, i3; theta, w1, w2,
+The starts are those that benches/kinds/saddles.py draws with seed 5, three of each kind. A row: kind; ell, i1, i3; theta, w1, w2,
 w3 at time 0; t; theta, w1, w2, w3 at t; noise, the largest that half an ulp of each of the seven inputs, summed, moves any of
 the four by. All numbers but the kind as C's %a.
 """
@@ -14,8 +14,8 @@ import numpy as np
 
 HERE = pathlib.Path(__file__).parent
 sys.path[:0] = [str(HERE), str(HERE.parent.parent / "benches")]
-import saddles  # noqa: E402
 import truth  # noqa: E402
+from kinds import saddles  # noqa: E402
 
 
 def main():

@@ -2,7 +2,7 @@
 
     python tests/reference/periods.py > tests/reference/periods.csv        needs the dependency group `peers`; a minute
 
-The starts are those that benches/periods.py draws, ten of each kind, and a ball that spins all but upright. A row: kind;
+The starts are those that benches/kinds/periods.py draws, ten of each kind, and a ball that spins all but upright. A row: kind;
 contact; ell, i1, i3, fillet; theta, w1, w2, w3; the period and phi after it. All numbers are C's %a.
 """
 
@@ -14,7 +14,7 @@ import numpy as np
 
 HERE = pathlib.Path(__file__).parent
 sys.path[:0] = [str(HERE.parent.parent / "benches")]
-import periods  # noqa: E402
+from kinds import periods  # noqa: E402
 
 BALL = (-0.1091342966683389, 0.7491982311998557, 0.45654036042742985, 1.0)
 NODDING = (1.0939993594418556e-07, -1.9056977547865172e-07, 0.0, -1.948119043062726)

@@ -1,9 +1,6 @@
-"""Figure 3 of slipping: the phases of random starts, of sc.roll against an independent model in plain
-doubles.
+"""The phases of random starts with friction, of sc.roll against an independent model in plain doubles.
 
-    python benches/slip_starts.py --count 10000 --painleve 1000        about 10 minutes, on one core
-
-The model is slip_model.py. A start is refused or followed to t = 3, and the kinds of the phases and the end
+10,000 starts take about 10 minutes on one core. The model is slip_model.py. A start is refused or followed to t = 3, and the kinds of the phases and the end
 are compared.
 
     agreed     the same phases, at the same times within 1e-4, and the same end
@@ -17,17 +14,15 @@ Other starts are built to be undefined: at a slip where 1 - eps cos(alpha) < 0, 
 forces has none or more than one. All of these must be refused.
 """
 
-import argparse
 import math
-import time
-import warnings
 
 import numpy as np
-from judge import Tally
+from judge import blocks
 from slip_model import END, Doubtful, Model, predicted
 
 import spincyl as sc
 
+DEFAULTS, FEW = {"count": 10_000, "seed": 13, "show": 5}, "--count 1000 --painleve 100"
 ENDINGS = {
     "lift-off": sc.Ending.LIFT_OFF,
     "side": sc.Ending.SIDE,
@@ -35,7 +30,6 @@ ENDINGS = {
     "end": sc.Ending.DONE,
     "undefined": sc.Ending.PAINLEVE,
 }
-LEFT_OUT = "left out"
 
 # The draws.
 
@@ -180,19 +174,19 @@ def judged(start, tally, ask=True):
     try:
         prediction = predicted(*start)
     except (Doubtful, OverflowError, ZeroDivisionError, ValueError) as e:  # where SciPy's events give up, too
-        tally.count(f"{LEFT_OUT}: {type(e).__name__}")
+        tally.count("left out", type(e).__name__)
         return "left out", 0.0
     phases, ending, _ = prediction
-    tally.count("phases: " + " ".join([*(kind[0] for _, kind in phases), ending]))
+    tally.count("phases", " ".join([*(kind[0] for _, kind in phases), ending]))
     if not ask:
         return None, 0.0
     answer = asked(*start)
     word, apart = verdict(prediction, answer)
     if word == "wrong" and sensitive(prediction, start):
-        tally.count(f"{LEFT_OUT}: sensitive")
+        tally.count("left out", "sensitive")
         return "left out", 0.0
     told = f"(body, mu, static, start) = {start}, predicted {prediction}, found {answer}"
-    tally.count(word, told if word in ("wrong", "silent") else None)
+    tally.count("starts", word, told if word in ("wrong", "silent") else None)
     return word, apart if word == "agreed" else 0.0
 
 
@@ -202,30 +196,22 @@ def refused(built, tally):
     found, status, _ = asked(body, mu, mu, start)
     named = found is None and "Painlev" in status and "mu = " in status and "theta = " in status
     text = None if named else f"body {body}, mu {mu!r}, start {start}: {found} {status}"
-    tally.count(f"built to be undefined at {why}: {'' if named else 'not '}refused", text)
+    tally.count(f"built to be undefined at {why}", "refused" if named else "not refused", text)
     return named
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--count", type=int, default=10000)
-    parser.add_argument("--painleve", type=int, default=1000)
-    parser.add_argument("--seed", type=int, default=13)
-    parser.add_argument("--show", type=int, default=5, help="of each fault")
-    parser.add_argument("--predict", action="store_true", help="only what the model says")
-    args = parser.parse_args()
-    warnings.simplefilter("ignore")
-    rng = np.random.default_rng(args.seed)
-    tally, begun_at = Tally(args.show), time.time()
-    late = max((judged(drawn(rng), tally, not args.predict)[1] for _ in range(args.count)), default=0.0)
-    for _ in range(args.painleve):
+def options(add):
+    add("--painleve", type=int, default=1000, help="how many starts that are built to be undefined")
+    add("--predict", action="store_true", help="only what the model says")
+
+
+def judge(given, tally):
+    rng, late = np.random.default_rng(given.seed), 0.0
+    for _ in blocks(given):
+        late = max(late, judged(drawn(rng), tally, not given.predict)[1])
+    for _ in range(given.painleve):
         built = undefined(rng)
-        if not args.predict:
+        if not given.predict:
             refused(built, tally)
-    print(f"{args.count} starts in {time.time() - begun_at:.0f} s, to t = {END:g}; s slipping, r rolling;")
-    print(f"times of what agreed to {late:.1e}; wrong, silent and not refused: 0 if they are not listed")
-    tally.print()
-
-
-if __name__ == "__main__":
-    main()
+    tally.note(f"to t = {END:g}; s slipping, r rolling; times of what agreed to {late:.1e}")
+    tally.note("wrong, silent and not refused: 0 if they are not listed")

@@ -1,8 +1,6 @@
 """Claimed errors of motions with losses, and whether energy, work and heat sum to a constant.
 
-    python benches/losses_claims.py --seconds 300       one core; needs gmpy2 and a C compiler
-
-Random bodies (disks, cans, tubes, rounded ones, balls), states (steady, nodding, any), one to three laws of
+Needs gmpy2 and a C compiler. Random bodies (disks, cans, tubes, rounded ones, balls), states (steady, nodding, any), one to three laws of
 1e-5 to 1e-1, contacts "rolling" (also with a coefficient of friction), "smooth" and Coulomb, to t = 1 ..
 60. `sc.roll` computes each with the default tolerance and with tol = 1e-8 and 1e-11.
 
@@ -15,20 +13,19 @@ it. A motion that takes more than 6 s, raises, ends otherwise than the truth, cl
 than 1e-4 is printed with its call.
 """
 
-import argparse
 import functools
 import math
 import operator
-import time
-import warnings
 
 import losses_truth
 import numpy as np
-from judge import Tally
+from judge import blocks
 from limit import Late, limit
 
 import spincyl as sc
 
+DEFAULTS, FEW = {"count": 1_000_000, "seed": 14, "show": 3, "seconds": 300.0}, "--seconds 100"
+NOTHING = 1e-15
 LAWS = sc.loss.Law.__subclasses__()  # in the order of the core
 TOLERANCES = (None, 1e-8, 1e-11)
 ENDS = {"stops": "STOPS", "side": "SIDE", "slips": "SLIP", "end": "DONE"}
@@ -118,11 +115,11 @@ def enter(tally, case, tol, truth):
         with limit(LONGEST):
             m = case.rolled(tol)
     except (ValueError, Late) as e:
-        tally.count(f"{name}: {'late' if isinstance(e, Late) else 'raises'}", f"{e}: {case.call(tol)}")
+        tally.count(name, "late" if isinstance(e, Late) else "raises", f"{e}: {case.call(tol)}")
         return
     call = case.call(tol)
     if not m.error <= VAGUE:
-        tally.count(f"{name}: claims more than {VAGUE:g}", f"{m.error:.2g}: {call}")
+        tally.count(name, f"claims more than {VAGUE:g}", f"{m.error:.2g}: {call}")
     if m.t.size:
         total = m.energy + m.work_lost + (m.dissipated if case.contact == "coulomb" else 0.0)
         start = float(case.shape.energy(case.state, "smooth" if case.contact == "smooth" else "rolling"))
@@ -141,10 +138,10 @@ def enter(tally, case, tol, truth):
                 apart = float(np.abs(there.y[:, 0] - truth[-1][1][1:5]).max())
                 tally.add(f"{name}: states before the end", apart, there.error, call)
             else:
-                tally.count(f"{name}: no state at 0.98 of the time of its end", call)
+                tally.count(name, "no state at 0.98 of the time of its end", call)
             truth = [*truth[:-1], ("before", truth[-1][1])]
     if truth is None or (m.event and m.event.time == 0):
-        tally.count(f"{name}: without a truth")
+        tally.count(name, "without a truth")
         return
     samples = np.array([row for kind, row in truth if kind in ("sample", "end")]).reshape(-1, 13)
     kind, last = truth[-1]
@@ -156,9 +153,9 @@ def enter(tally, case, tol, truth):
     n = len(samples)
     if m.t.size < n or (whole and (m.t.size != n or m.status.name != ENDS[kind])):
         if math.isfinite(m.error):
-            tally.count(f"{name}: another end", f"{m.message}; true: {kind} at {last[0]!r}: {call}")
+            tally.count(name, "another end", f"{m.message}; true: {kind} at {last[0]!r}: {call}")
         else:
-            tally.count(f"{name}: another end, but inf is claimed")
+            tally.count(name, "another end, but inf is claimed")
         return
     tally.add(f"{name}: states", float(np.abs(m.y.T[:n] - samples[:, 1:5]).max(initial=0)), m.error, call)
     tally.add(
@@ -171,31 +168,19 @@ def enter(tally, case, tol, truth):
         tally.add(f"{name}: state of the end", float(np.abs(there[1:] - last[1:5]).max()), m.error, call)
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--seconds", type=float, default=300)
-    parser.add_argument("--seed", type=int, default=14)
-    parser.add_argument("--show", type=int, default=3, help="of each violation")
-    given = parser.parse_args()
-    warnings.simplefilter("ignore")
-    rng, tally, begun, n = (
-        np.random.default_rng(given.seed),
-        Tally(given.show, nothing=1e-15),
-        time.perf_counter(),
-        0,
-    )
-    while time.perf_counter() - begun < given.seconds:
+def drawn(rng):
+    while True:
         try:
-            case = Case(rng)
+            return Case(rng)
         except ValueError:
-            continue
-        n += 1
+            pass
+
+
+def judge(given, tally):
+    rng = np.random.default_rng(given.seed)
+    for _ in blocks(given):
+        case = drawn(rng)
         truth = case.truth()
+        tally.count("all", "motions")
         for tol in TOLERANCES:
             enter(tally, case, tol, truth)
-    print(f"{n} motions in {time.perf_counter() - begun:.0f} s, seed {given.seed}")
-    tally.print()
-
-
-if __name__ == "__main__":
-    main()

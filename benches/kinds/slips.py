@@ -1,8 +1,6 @@
 """Claimed errors of slipping motions: true over claimed, of `sc.roll` and of `sc.sweep.roll`.
 
-    python benches/slip_claims.py --count 2000       half an hour on one core; needs gmpy2 and xarray
-
-Motions of all kinds: tubes launched from pi/2, disks, cans, rounded bodies and balls, planar and spatial,
+Needs gmpy2, xarray and a C compiler; 2,000 motions take half an hour on one core. Motions of all kinds: tubes launched from pi/2, disks, cans, rounded bodies and balls, planar and spatial,
 with Coulomb friction, also with a static coefficient that is larger, and with viscous friction; to t = 3 ..
 50. Each is computed by `sc.roll` with tol = 1e-8, 1e-10, 1e-12 and the default, with poses at every other
 motion, and by `sc.sweep.roll`.
@@ -18,52 +16,34 @@ covers phi, psi and the contact point. The slip, the heat and the times of the p
 the true ones counts as "other" if its claim is finite; an infinite claim claims nothing.
 """
 
-import argparse
-import collections
 import math
-import pathlib
-import sys
 import time
-import warnings
 
-import numpy as np
-
-import spincyl as sc
-
-sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "tests" / "reference"))
 import gmpy2
+import numpy as np
 import slip
 from gmpy2 import mpfr
-from judge import Tally
+from judge import blocks
 from phases import follow
 from series import Tape, precise
 from slip_forms import Reduced
 from slip_model import Model
-from slip_starts import ENDINGS
-from slip_tape import LongTape
+from slip_tape import Few, LongTape
 
+import spincyl as sc
+from kinds.phases import ENDINGS
+
+DEFAULTS, FEW = {"count": 2000, "seed": 13, "show": 3}, "--count 100"
 TOLERANCES = (1e-8, 1e-10, 1e-12, None)
 BLOCK = 20
-STEPS = 1500  # a truth that needs more, with the directions it tries, takes too long
 DIGITS = 28
 KEPT = ("final", "end", "slip_time", "dissipated", "phases", "rolling_time", "rolling_theta", "rolling_w3")
 
 
-class Dear(ArithmeticError):
-    """Too many steps."""
-
-
-class Quick(Reduced):
+class Quick(Few, Reduced):
     """The reduced equations, in long doubles."""
 
-    order, tolerance, cut, last, tiny = 20, mpfr("1e-20"), 0.6, 30, mpfr("1e-22")
-    left = STEPS
-
-    def phase(self, kind):
-        self.left -= 1
-        if self.left < 0:
-            raise Dear
-        return super().phase(kind)
+    cut, last, tiny = 0.6, 30, mpfr("1e-22")
 
     def equations(self, kind):
         self.tape = Tape if kind == "onset" else LongTape
@@ -160,6 +140,10 @@ def drawn(rng, kind, end):
     return scene
 
 
+def options(add):
+    add("--check", type=int, default=10, help="truths that are computed again with 40 digits")
+
+
 KINDS = ("launched", "launched", "hoop", "planar", "disk", "disk", "can", "can", "rounded", "ball")
 
 
@@ -199,23 +183,24 @@ def enter(tally, truth, tol, pose):
     try:
         m = sc.roll(body, state, scene.samples, t0=0.0, contact=contact(scene), tol=tol, want=want)
     except ValueError as e:
-        tally.count(f"{name}: refused", f"{e}: {said}")
+        tally.count(name, "refused", f"{e}: {said}")
         return None
     # the first phase follows from the start, also where u = 0 there
     kinds = [phase.kind == "rolling" for phase in m.phases][1:]
     if m.status != truth.ending or kinds != [rolls for _, rolls in truth.begins]:
         if math.isinf(m.error):
-            tally.count(f"{name}: other phases or end, but inf is claimed")
+            tally.count(name, "other phases or end, but inf is claimed")
         else:
             tally.count(
-                f"{name}: other phases or end",
+                name,
+                "other phases or end",
                 f"{m.error:.2g} claimed, {m.message}; true: {truth.begins}, "
                 f"{truth.kind} at {truth.last[0]!r}: {said}",
             )
         return m
     rows = np.array(truth.samples).reshape(-1, 12)[: m.t.size]
     if len(rows) != len(truth.samples) or m.t.size != len(truth.samples):
-        tally.count(f"{name}: other number of times", said)
+        tally.count(name, "other number of times", said)
         return m
 
     def apart(a, b):
@@ -267,26 +252,24 @@ def sweep(tally, truths, singles, tol):
             said, name = f"tol={tol!r}: {line(truth.scene)}", f"sweep {tol:g}{on_edge(truth.scene)}"
             if m is None:
                 if one["status"] not in (sc.sweep.Status.INVALID, sc.sweep.Status.PAINLEVE):
-                    tally.count(f"{name}: answers where roll refuses", said)
+                    tally.count(name, "answers where roll refuses", said)
                 continue
             error = float(one["error"])
             final = np.array([one[k] for k in ("theta", "w1", "w2", "w3")])
             if one["status"] != truth.ending or (one["phases"] != len(truth.begins) + 1):
                 if math.isinf(error):
-                    tally.count(f"{name}: other phases or end, but inf is claimed")
+                    tally.count(name, "other phases or end, but inf is claimed")
                 else:
                     text = f"{error:.2g} claimed; status {one['status']}, {one['phases']:g} phases: {said}"
-                    tally.count(f"{name}: other phases or end", text)
+                    tally.count(name, "other phases or end", text)
             else:
                 tally.add(f"{name}: final", float(np.abs(final - truth.last[1:5]).max()), error, said)
                 tally.add(f"{name}: end", abs(float(one["end"]) - truth.last[0]), error, said)
                 tally.add(f"{name}, aside: heat", abs(float(one["dissipated"]) - truth.last[7]), error, said)
             if one["status"] != m.status or one["phases"] != len(m.phases):
                 finite = math.isfinite(error) and math.isfinite(m.error)
-                tally.count(
-                    f"{name}: not as sc.roll{', both claims finite' if finite else ''}",
-                    said if finite else None,
-                )
+                word = f"not as sc.roll{', both claims finite' if finite else ''}"
+                tally.count(name, word, said if finite else None)
                 continue
             s = m.event.state if m.event else None
             there = (s.theta, s.w1, s.w2, s.w3) if s else m.y[:, -1]
@@ -298,7 +281,7 @@ def same_bits(tally, name, scenes, tol, found):
     """Checks that the bits do not depend on threads, order and neighbours."""
 
     def compare(what, other, places):
-        tally.count(f"{name}: compared bit for bit, {what}")
+        tally.count(name, f"compared bit for bit, {what}")
         for key, value in found.items():
             if value[places].tobytes() != other[key].tobytes():
                 bad = [
@@ -306,7 +289,7 @@ def same_bits(tally, name, scenes, tol, found):
                     for i, a, b in zip(places, value[places], other[key], strict=True)
                     if a.tobytes() != b.tobytes()
                 ]
-                tally.count(f"{name}: other bits, {what}", f"{key}: {line(scenes[bad[0]])}")
+                tally.count(name, f"other bits, {what}", f"{key}: {line(scenes[bad[0]])}")
                 return
 
     n = len(scenes)
@@ -318,55 +301,40 @@ def same_bits(tally, name, scenes, tol, found):
         compare("alone", swept([scenes[i]], tol), np.array([i]))
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--count", type=int, default=2000)
-    parser.add_argument("--seed", type=int, default=13)
-    parser.add_argument("--show", type=int, default=3, help="of each violation")
-    parser.add_argument("--check", type=int, default=10, help="truths that are found again")
-    parser.add_argument("--seconds", type=float, default=math.inf, help="stop after so long")
-    given = parser.parse_args()
-    warnings.simplefilter("ignore")
+def same(truth, other):
+    """Largest difference of two truths."""
+    if other.kind != truth.kind or len(other.begins) != len(truth.begins):
+        raise ArithmeticError(f"two truths: {line(truth.scene)}")
+    rows = [*zip(truth.samples, other.samples, strict=True), (truth.last, other.last)]
+    return max(float(np.abs(a - b)[:8].max()) for a, b in rows)
+
+
+def judge(given, tally):
     rng = np.random.default_rng(given.seed)
-    tally, ends, clock = Tally(given.show), collections.Counter(), time.perf_counter()
-    done, within, left, spent = 0, 0.0, given.check, 0.0
-    while done < given.count and time.perf_counter() - clock < given.seconds:
+    within, left, spent = 0.0, given.check, 0.0
+    for block, count in blocks(given, BLOCK):
         end = float(np.round(10 ** rng.uniform(math.log10(3), math.log10(50)), 3))
         truths, singles = [], []
-        for _ in range(min(BLOCK, given.count - done)):
-            if time.perf_counter() - clock > given.seconds:
-                break
-            done += 1
+        for i in range(count):
             scene = drawn(rng, str(rng.choice(KINDS)), end)
             begun = time.perf_counter()
             try:
                 truth = exact(scene)
             except (ArithmeticError, AssertionError, ValueError) as e:
-                tally.count(f"without a truth ({type(e).__name__})")
+                tally.count("without a truth", type(e).__name__)
                 continue
             finally:
                 spent += time.perf_counter() - begun
             if left > 0:
                 left -= 1
-                other = checked(scene)
-                if other.kind != truth.kind or len(other.begins) != len(truth.begins):
-                    raise ArithmeticError(f"two truths: {line(scene)}")
-                rows = [*zip(truth.samples, other.samples, strict=True), (truth.last, other.last)]
-                within = max(within, *(float(np.abs(a - b)[:8].max()) for a, b in rows))
-            ends[f"{'viscous' if scene.law == 'viscous' else 'Coulomb'}, {truth.kind}"] += 1
-            found = [enter(tally, truth, tol, done % 2 == 0) for tol in TOLERANCES]
+                within = max(within, same(truth, checked(scene)))
+            tally.count("truths", f"{'viscous' if scene.law == 'viscous' else 'Coulomb'}, {truth.kind}")
+            pose = (block * BLOCK + i) % 2 == 1
+            found = [enter(tally, truth, tol, pose) for tol in TOLERANCES]
             truths.append(truth)
             singles.append(found[-1])
         for tol in (1e-8, 1e-10, 1e-12):
             sweep(tally, truths, singles, tol)
-    print(f"python benches/slip_claims.py --count {done} --seed {given.seed}")
-    print(", ".join(f"{n} {k}" for k, n in ends.most_common()))
-    print(
-        f"{time.perf_counter() - clock:.0f} s, of which {spent:.0f} s for the truths; "
-        f"the first {given.check} differ by at most {within:.1e} from those of 40 digits"
+    tally.note(
+        f"{spent:.0f} s for the truths; the first {given.check} differ by at most {within:.1e} from those of 40 digits"
     )
-    tally.print()
-
-
-if __name__ == "__main__":
-    main()

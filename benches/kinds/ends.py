@@ -1,16 +1,13 @@
 """Motions that end, by the sweep and one by one: kinds and times of ends, methods, true and claimed errors.
 
-    python benches/ends.py [--count 1000000] [--truth 2000] [--hard 1500] [--set NAME ...]
-
-Random starts as in benches/peers/endings.py, to t = 20: `--count` of them by `sweep.roll` at 1e-10 and by
-`sc.roll`, and `--truth` of them by heyoka in 80-bit arithmetic (0: none). Then `--hard` starts of every hard
-set (0: none) by all three. A wrong kind is a kind of end that differs from that by the other method. Errors
-are those of the time of the end or of the state there, whichever is larger, or of the state at t = 20, in
-natural units; true ones are against heyoka, and `over` counts those above twice the claimed one and 1e-14.
-Microseconds are CPU time of one thread.
+Random starts as in peers/endings.py, to t = 20: `--count` of them by `sweep.roll` at 1e-10 and by `sc.roll`,
+and `--truth` of them by heyoka in 80-bit arithmetic (0: none). Then `--hard` starts of every hard set (0:
+none) by all three. A wrong kind is a kind of end that differs from that by the other method. Errors are those
+of the time of the end or of the state there, whichever is larger, or of the state at t = 20, in natural
+units; true ones are against heyoka, and those below 1e-14 count as none. Times of the sweep are compared with
+those one by one. Microseconds are CPU time of one thread.
 """
 
-import argparse
 import os
 import pathlib
 import sys
@@ -20,26 +17,15 @@ from multiprocessing import get_context
 
 import numpy as np
 
-sys.path.insert(1, str(pathlib.Path(__file__).parent / "peers"))
-from clock import has, said, table
+sys.path.insert(1, str(pathlib.Path(__file__).parents[1] / "peers"))
+from clock import has
 from endings import T, draw, heyoka_alone, press, table_of
 
 import spincyl as sc
 
+DEFAULTS, FEW, HONEST = {"count": 1_000_000, "seed": 5}, "--count 20000 --truth 200 --hard 200", 2.0
+NOTHING = 1e-14
 TOL = 1e-10
-HEAD = (
-    *(
-        "starts",
-        "motions",
-        "us by the sweep",
-        "us one by one",
-        "who answered",
-        "end",
-        "wrong kinds, one by one",
-    ),
-    *("times differ: median", "99 %", "worst", "wrong kinds, heyoka", "error: median", "99 %", "worst"),
-    *("claimed: median", "99 %", "worst", "over"),
-)
 
 
 def singly(ell, start):
@@ -74,41 +60,38 @@ def swept(ell, start):
     return found, least
 
 
-def parts(x):
-    """Median, 99th percentile and maximum."""
-    return tuple(float(f) for f in (*np.quantile(x, (0.5, 0.99)), x.max())) if x.size else (np.nan,) * 3
-
-
-def shares(codes, names):
-    """The share of each code, with its name."""
-    count = np.bincount(codes)
-    return ", ".join(f"{names(i).name.lower()} {n / codes.size:.4g}" for i, n in enumerate(count) if n)
-
-
-def measured(name, ell, start, truths):
-    """Prints the row of one set of starts."""
+def measured(tally, name, ell, start, truths):
+    """Adds one set of starts to the tally."""
     found, seconds = swept(ell, start)
     told, claimed = table_of(found), found["error"].to_numpy()
     alone, spent = one_by_one(ell, start)
     same = told[:, 0] == alone[:, 0]
-    ended = same & (told[:, 0] > 0)
-    row = [name, ell.size, seconds / ell.size * 1e6, spent / ell.size * 1e6]
-    row += [
-        shares(found["method"].to_numpy(), sc.sweep.Answer),
-        shares(found["status"].to_numpy(), sc.sweep.Status),
-    ]
-    row += [int((~same).sum()), *parts(np.abs(told[ended, 1] - alone[ended, 1]))]
-    if truths:
-        some = np.linspace(0, ell.size - 1, min(truths, ell.size)).astype(int)
-        # heyoka detects zeros of N, and a body that lifts off at once has none
-        some = some[press(ell[some], start[some]) > 0]
-        truth = heyoka_alone(ell[some], start[some], 1e-18, wide=True)()
-        right = told[some, 0] == truth[:, 0]
-        off = np.abs(told[some, 1:] - truth[:, 1:]).max(axis=1)[right]
-        claim = claimed[some][right]
-        row += [f"{int((~right).sum())} of {some.size}", *parts(off), *parts(claim)]
-        row.append(int((off > np.maximum(2 * claim, 1e-14)).sum()))
-    print("| " + " | ".join(map(said, row)) + " |", flush=True)
+    us = [1e6 * x / ell.size for x in (seconds, spent)]
+    tally.note("{}: {:.3g} us by the sweep, {:.3g} us one by one".format(name, *us))
+    tally.count(name, "motions", n=ell.size)
+    tally.count(name, "wrong kinds, one by one", n=int((~same).sum()))
+    for word, of, codes in (
+        ("answered by", sc.sweep.Answer, found["method"].to_numpy()),
+        ("ends by", sc.sweep.Status, found["status"].to_numpy()),
+    ):
+        for code, n in enumerate(np.bincount(codes)):
+            tally.count(f"{name}, {word}", of(code).name.lower() if n else "", n=int(n))
+    for i in np.flatnonzero(same & (told[:, 0] > 0)):
+        tally.add(f"{name}: times, aside", abs(told[i, 1] - alone[i, 1]), claimed[i])
+    if not truths:
+        return
+    some = np.linspace(0, ell.size - 1, min(truths, ell.size)).astype(int)
+    # heyoka detects zeros of N, and a body that lifts off at once has none
+    some = some[press(ell[some], start[some]) > 0]
+    truth = heyoka_alone(ell[some], start[some], 1e-18, wide=True)()
+    right = told[some, 0] == truth[:, 0]
+    tally.count(name, "judged by heyoka", n=some.size)
+    tally.count(name, "wrong kinds, heyoka", n=int((~right).sum()))
+    off = np.abs(told[some, 1:] - truth[:, 1:]).max(axis=1)
+    for i, k in zip(some[right], np.flatnonzero(right), strict=True):
+        tally.add(
+            f"{name}: error", off[k], claimed[i], f"sc.Body.solid({ell[i]!r}), sc.State(*{start[i].tolist()})"
+        )
 
 
 def powers(random, low, high, n):
@@ -145,40 +128,33 @@ def hard(n):
 
     def changed(change, seed):
         def make():
-            random = np.random.default_rng(seed)
-            ell, start = draw(n, seed)
-            ell, start = ell.copy(), start.copy()
-            ell = change(ell, start, random)
+            ell, start = (x.copy() for x in draw(n, seed))
+            change(ell, start, np.random.default_rng(seed))
             return ell, start
 
         return make
 
     def resting(ell, start, _):
         start[:, 2] = 0
-        return ell
 
     def almost(ell, start, random):
         start[:, 2] = powers(random, -12, -2, n)
-        return ell
 
     def scaled(factor):
         def change(ell, start, _):
             start[:, 1:] *= factor
-            return ell
 
         return change
 
     def flat(ell, start, random):
-        return random.uniform(1e-3, 0.1, n)
+        ell[:] = random.uniform(1e-3, 0.1, n)
 
     def upright(ell, start, random):
         start[:, 0] = np.abs(powers(random, -3, -1, n))
         start[:, 1:] *= 0.1
-        return ell
 
     def lying(ell, start, random):
         start[:, 0] = np.pi / 2 - np.abs(powers(random, -9, np.log10(0.3), n))
-        return ell
 
     return {
         "w2 = 0": changed(resting, 11),
@@ -192,25 +168,17 @@ def hard(n):
     }
 
 
-def main():
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--count", type=lambda x: int(float(x)), default=1_000_000)
-    parser.add_argument("--truth", type=int, default=2000)
-    parser.add_argument("--hard", type=int, default=1500)
-    parser.add_argument("--set", nargs="*", choices=list(hard(1)), metavar="NAME", help=", ".join(hard(1)))
-    args = parser.parse_args()
-    if args.truth and not has("heyoka"):
+def options(add):
+    add("--truth", type=int, default=2000, help="how many of a set are judged by heyoka")
+    add("--hard", type=int, default=1500, help="how many starts of each hard set")
+    add("--set", nargs="*", choices=list(hard(1)), metavar="NAME", help=", ".join(hard(1)))
+
+
+def judge(given, tally):
+    if given.truth and not has("heyoka"):
         sys.exit("true errors need heyoka: pip install heyoka, or --truth 0")
-    print(table(HEAD, []), end="")
-    if args.count and not args.set:
-        measured("random", *draw(args.count), args.truth)
-    if args.hard:
-        for name, make in hard(args.hard).items():
-            if not args.set or name in args.set:
-                measured(name, *make(), args.truth)
-
-
-if __name__ == "__main__":
-    main()
+    if given.count and not given.set:
+        measured(tally, "random", *draw(given.count, given.seed), given.truth)
+    for name, make in hard(given.hard).items() if given.hard else ():
+        if not given.set or name in given.set:
+            measured(tally, name, *make(), given.truth)

@@ -1,8 +1,6 @@
-"""Figure 3: motions that linger at an unstable steady state, against 113 bits or, where that is too few, 240.
+"""Motions that linger at an unstable steady state, against 113 bits or, where that is too few, 240.
 
-    python benches/saddles.py --count 200          needs the dependency group `peers`
-
-Rolling. A fifth each of five kinds of start, from tubes, coins, general moments and the critical cylinder
+Needs the dependency group `peers`. Rolling. A fifth each of five kinds of start, from tubes, coins, general moments and the critical cylinder
 (ell = sqrt(3)/2 at theta0, reduced rates around 1.0 and 0.4):
 
     rest       an unstable steady state, the inclination off by 1e-16 to 1e-5
@@ -17,8 +15,6 @@ half an ulp (2^-53 relative); allowed is max(1e-12, 10 noise). Where noise is ab
 with 240 bits. Units: rad, sqrt(g/R).
 """
 
-import argparse
-import collections
 import math
 import time
 
@@ -28,10 +24,12 @@ import numpy as np
 import truth
 from axes import rates_and_force
 from draws import Start
+from judge import blocks
 from timing import best
 
 import spincyl as sc
 
+DEFAULTS, FEW, HONEST = {"count": 200, "seed": 1, "show": 5}, "--count 50", 1.0
 KINDS = ("rest", "kick", "mixed", "exact", "manifold")
 LATEST = 200.0
 
@@ -185,105 +183,54 @@ def eight_times(start, t):
     return f"{start.line('T')[:-1]}, t0=0.0, beyond=True)".replace("'T'", f"np.arange(1, 9) * {t / 8!r}")
 
 
-def measured(start, t, true, noisy, want):
-    """The result, its largest errors over the allowed and over the claimed ones; and the same two ratios for
-    poses."""
-    times = eighths(t)
-    answer, poses = answers.rolled(start, times, True, want)
-    number, count = type(true.rows[0, 0]), min(len(answer.path.rows), len(true.rows))
-    if count < len(true.rows):
-        return answer, math.inf, math.inf, math.inf, math.inf
-    off = [
-        max(
-            abs(float(number(float(x)) - y))
-            for x, y in zip(answer.path.rows[i], true.rows[i, :4], strict=True)
-        )
-        for i in range(count)
-    ]
-    allowed = [max(1e-12, 10 * noisy[i, :4].max()) for i in range(count)]
-    over = max(a / b for a, b in zip(off, allowed, strict=True))
-    claim = max(off) / answer.error if answer.error > 0 else math.inf
-    if poses is None:
-        return answer, over, claim, math.nan, math.nan
-    turned = [
+def enter(tally, name, kind, start, t, true, noisy):
+    """Adds one result to the tally; `name`: what is wanted."""
+    call = eight_times(start, t)
+    try:
+        answer, poses = answers.rolled(start, eighths(t), True, ("pose",) if name == "poses" else ())
+    except ValueError as e:
+        tally.count(f"answered, {name}", "refused", f"{call}  # {e}")
+        return
+    tally.count(f"answered, {name}", answer.by)
+    line = f"{kind}, {answer.by}, claimed {answer.error:.1e}: {call}"
+    if len(answer.path.rows) < len(true.rows):
+        tally.count(f"answered, {name}", "too short", line)
+        return
+    parts = [
         answers.apart(
             answer.path._replace(rows=answer.path.rows[i : i + 1]),
             true._replace(rows=true.rows[i : i + 1], kind=answer.path.kind),
-            ((poses[0][0][i : i + 1], poses[0][1][i : i + 1]), poses[1][i : i + 1]),
-        ).poses
-        for i in range(count)
+            poses and ((poses[0][0][i : i + 1], poses[0][1][i : i + 1]), poses[1][i : i + 1]),
+        )
+        for i in range(len(true.rows))
     ]
-    allowed = [max(1e-12, 10 * noisy[i, 4:].max()) for i in range(count)]
-    pose = max(a / b for a, b in zip(turned, allowed, strict=True))
-    return answer, over, claim, pose, max(turned) / answer.pose_error
+
+    def both(row, off, noisy, claimed):
+        allowed = [max(1e-12, 10 * x) for x in noisy[: len(off)].max(axis=1)]
+        tally.add(
+            f"{row}: over allowed", *max(zip(off, allowed, strict=True), key=lambda x: x[0] / x[1]), line
+        )
+        tally.add(f"{row}: over claimed", max(off), claimed, line)
+
+    for by in ("", ", exact") if answer.by == "exact" else ("",):
+        both(f"{name}{by}", [part.states for part in parts], noisy[:, :4], answer.error)
+    if poses is not None:
+        both("angles and places", [part.poses for part in parts], noisy[:, 4:], answer.pose_error)
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--count", type=int, default=200)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--show", type=int, default=5)
-    given = parser.parse_args()
+def judge(given, tally):
     rng = np.random.default_rng(given.seed)
-    told, routes, deep, clock = collections.defaultdict(list), collections.Counter(), 0, time.perf_counter()
-    for i in range(given.count):
+    for i, _ in blocks(given):
         kind = KINDS[i % len(KINDS)]
         start, t = draw(rng, kind)
         times = eighths(t)
         true = truth.path(start, times, pose=True, beyond=True)
         noisy = noise(start, times, true)
         if noisy.max() > 1e-9:  # 113 bits are too few
-            deep += 1
+            tally.count("truths", "with 240 bits")
             true = truth.path(start, times, bits=240, pose=True, beyond=True)
-        for name, want in (("states", ()), ("poses", ("pose",))):
-            try:
-                answer, over, claim, pose, pose_claim = measured(start, t, true, noisy, want)
-            except ValueError as e:
-                routes[name, "refused"] += 1
-                told[name, "over"].append((math.inf, f"{eight_times(start, t)}  # {e}"))
-                continue
-            routes[name, answer.by] += 1
-            said = f"{kind}, {answer.by}, claimed {answer.error:.1e}: {eight_times(start, t)}"
-            told[name, "over"].append((over, said))
-            told[name, "claim"].append((claim, said))
-            if answer.by == "exact":
-                told[name, "over, exact"].append((over, said))
-                told[name, "claim, exact"].append((claim, said))
-            if name == "poses":
-                told[name, "poses over"].append((pose, said))
-                told[name, "poses claim"].append((pose_claim, said))
+        for name in ("states", "poses"):
+            enter(tally, name, kind, start, t, true, noisy)
         body, state = sc.Body(*start[:3]), sc.State(*start[3:7])
-        took = 1e6 * best(lambda: sc.roll(body, state, t, beyond=True), clock=time.perf_counter)[1]  # noqa: B023
-        told["time", "microseconds"].append((took, start.line(t)))
-    print(f"python benches/saddles.py --count {given.count} --seed {given.seed}")
-    print(f"{deep} needed 240 bits; {time.perf_counter() - clock:.0f} s")
-    for name in ("states", "poses"):
-        n = sum(v for k, v in routes.items() if k[0] == name)
-        by = ", ".join(f"{k[1]} {v}" for k, v in routes.items() if k[0] == name)
-        print(
-            f"answered ({'no wants' if name == 'states' else 'want pose'}): {by}, so exactly {routes[name, 'exact'] / n:.1%}"
-        )
-    titles = {
-        ("states", "over"): "error over allowed",
-        ("states", "over, exact"): "error over allowed, exact route",
-        ("states", "claim"): "error over claimed",
-        ("states", "claim, exact"): "error over claimed, exact route",
-        ("poses", "over"): "error over allowed, with poses",
-        ("poses", "claim"): "error over claimed, with poses",
-        ("poses", "poses over"): "error of poses over allowed",
-        ("poses", "poses claim"): "error of poses over claimed",
-        ("time", "microseconds"): "microseconds a motion",
-    }
-    for key, title in titles.items():
-        x = np.array([v for v, _ in told[key]])
-        print(
-            f"{title:36} n {x.size:4}  median {np.median(x):9.2g}  worst {x.max():9.2g}  over 1: {(x > 1).sum()}"
-        )
-    for key, title in titles.items():
-        worst = sorted((x for x in told[key] if x[0] > 1), key=lambda x: -x[0])
-        for value, line in worst[: given.show if key[0] != "time" else 2]:
-            print(f"{title}: {value:.2g}  {line}")
-
-
-if __name__ == "__main__":
-    main()
+        took = best(lambda: sc.roll(body, state, t, beyond=True), clock=time.perf_counter)[1]  # noqa: B023
+        tally.took(took, start.line(t))
