@@ -221,7 +221,7 @@ class Play:
         return path
 
     def _repr_html_(self) -> str:
-        """The page in a frame that may only run its script and save files; named if it follows this object."""
+        """The page in a frame that may only run its script and save files; named if it follows the object."""
         return frame(self.html, SANDBOX, FRAME, self._followed())
 
     def _followed(self) -> str:

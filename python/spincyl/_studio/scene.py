@@ -347,7 +347,7 @@ def friction_needed(body: Body, state: State, until: float) -> float:
 
 
 def enough(body: Body, state: State, until: float, mu: float) -> float:
-    """A rounded coefficient of friction, at least `mu`, with which the body rolls until then; inf without one.
+    """A rounded coefficient of friction above `mu` with which the body rolls until then; inf without one.
 
     The need may have peaks between the sampled times, and with more friction the motion may end otherwise.
     """
