@@ -1,4 +1,5 @@
-// Day or night: the theme of the notebook around the page, where that can be asked or tells it; else what the browser prefers.
+// Day or night: the theme of the notebook around the page, if it can be read or is sent; else the browser's
+// preference.
 
 const dusk = { matches: false, onchange: null };
 {
