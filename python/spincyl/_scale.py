@@ -188,16 +188,16 @@ def scale_of(scale: "Scale | Body", *bodies: "Body") -> Scale: ...
 @overload
 def scale_of(scale: "Scale | Body | None", *bodies: "Body") -> Scale | None: ...
 def scale_of(scale: "Scale | Body | None", *bodies: "Body") -> Scale | None:
-    """The one scale that is meant: the given one, or that of measured bodies; None if there is none.
+    """The given scale, or the common scale of measured bodies; None without any.
 
     A measured body may be given in place of a scale.
 
     Raises
     ------
     ValueError
-        If bodies have another scale than the given one, or not all the same one.
+        If a body has another scale than the given one, or the bodies have different scales.
     TypeError
-        If what is given is no scale, or there is nothing to have one.
+        If `scale` is no scale, or neither a scale nor a body is given.
     """
     given = scale if scale is None or isinstance(scale, Scale) else getattr(scale, "scale", None)
     if scale is not None and not isinstance(given, Scale):

@@ -35,12 +35,12 @@ _TURN, _PLACE = [0, 1, 2, 5], [3, 4]
 
 
 def span(m: "Motion") -> tuple[float, float]:
-    """First and last time that there is to show, in the motion's own direction.
+    """First and last time to show, in the direction of the motion.
 
     Raises
     ------
     ValueError
-        If there is none between them.
+        If the motion has no duration.
     """
     times, start = m._asked.times, m._asked.t0
     first = start if times.size == 1 else float(times[0])
@@ -146,12 +146,12 @@ def knots(m: "Motion", tolerance: float = 2e-3, until: float | None = None) -> F
     tolerance : float
         Largest error of an angle (radians) or of the centre (R) at the places looked at.
     until : float, optional
-        Where to stop. Default: where the motion does.
+        Last time. Default: the end of the motion.
 
     Returns
     -------
     ndarray, shape (n, 11)
-        t; theta, phi, psi, x and y of the centre; the slopes of these five. Ascending times. Of a stone
+        t; theta, phi, psi, x and y of the centre; the slopes of these five. Ascending times. For a stone
         (n, 13): x, y, z of its quaternion in place of the angles, and w after the centre.
 
     Raises

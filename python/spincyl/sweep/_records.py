@@ -76,14 +76,14 @@ def _whole(file: Path) -> Record | None:
 
 
 def recorded(store: Store) -> list[Record]:
-    """What the records in a store say; none where nothing has begun.
+    """The intact records in a store; empty if there is no folder or it is empty.
 
     Raises
     ------
     FileExistsError
-        If there is something in which no record stands.
+        If the folder holds anything, but no records; or if the path is no folder.
     ValueError
-        If all of its records are damaged.
+        If all records are damaged.
     """
     if not store.folder.exists():
         return []
@@ -113,12 +113,12 @@ def same(store: Store, record: Record) -> Record | None:
 
 
 def beside(store: Store, record: Record) -> None:
-    """Refuse a folder beside the store that is not of this sweep; one that is empty can become it.
+    """Refuse a folder of marks that is not of this sweep; an empty one is accepted.
 
     Raises
     ------
     FileExistsError
-        If there is something else in it.
+        If it holds anything else.
     ValueError
         If its record is of another sweep.
     """
