@@ -1,6 +1,6 @@
-"""Random starts with friction: the phases of an independent model in plain doubles, and the starts it calls undefined.
+"""Random starts with friction: phases agree with an independent model in doubles, as do undefined starts.
 
-benches/slip_starts.py has the model, and asks the same of ten thousand starts.
+benches/slip_starts.py has the model, and tests ten thousand starts.
 """
 
 import pathlib
@@ -13,13 +13,13 @@ sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "benches"))
 import judge
 import slip_starts
 
-pytestmark = pytest.mark.filterwarnings("ignore")  # of SciPy, where a phase begins at rest
+pytestmark = pytest.mark.filterwarnings("ignore")  # from SciPy, if a phase begins at rest
 
 
 def test_bodies_go_through_the_phases_that_the_independent_model_foresees():
     rng, tally = np.random.default_rng(1310), judge.Tally(show=5)
     words = [slip_starts.judged(slip_starts.drawn(rng), tally)[0] for _ in range(100)]
-    assert set(words) <= {"agreed", "refused", "left out"}  # what else there is has been printed
+    assert set(words) <= {"agreed", "refused", "left out"}  # any other verdict has been printed
     assert words.count("left out") < 8
     phases = {name: n for name, n in tally.counts.items() if name.startswith("phases: ")}
     assert sum((len(name.split()) - 2) * n for name, n in phases.items()) > 100
