@@ -43,8 +43,8 @@ def test_a_scene_of_the_gallery_draws_the_picture_that_the_page_shows(scene):
     gallery.draw(scene).savefig(drawn, dpi=120)
     plt.close("all")
     kept = ROOT / f"docs/figures/gallery/{scene}.png"
-    # Another matplotlib may place letters a pixel off. For comparison: 1.1 times the friction changes the hoop's
-    # picture by 4.6, 1.5 times the kick that of the balls by 2.9.
+    # Another matplotlib may place letters a pixel off. For comparison: 1.1 times the friction changes the
+    # hoop's picture by 4.6, 1.5 times the kick that of the balls by 2.9.
     off = np.abs(coarse(drawn) - coarse(kept)).mean()
     assert off < 2, f"python examples/gallery.py draws it anew: {off:.2f} of 255 off"
 

@@ -1,8 +1,8 @@
 """Exact motions, many at once and one at a time: the same ends, times and states within both claims.
 
-No bit of a motion depends on its neighbours. The starts are of all kinds that a user may choose: nearly flat on either face, on or beyond the edge of the
-other rim, at rest or almost, lifting off at once, with one decimal, with high spin, and before a nearly flat
-passage.
+No bit of a motion depends on its neighbours. The starts are of all kinds that a user may choose: nearly flat
+on either face, on or beyond the edge of the other rim, at rest or almost, lifting off at once, with one
+decimal, with high spin, and before a nearly flat passage.
 """
 
 import numpy as np

@@ -167,9 +167,7 @@ def test_the_drawing_is_the_silhouette_at_the_inclination():
     (shape,) = outlines(PIPE)
     across, along = shape[1] - shape[0], shape[3] - shape[0]
     assert abs(along) / abs(across) == pytest.approx(6.0, rel=0.02)
-    assert np.angle(1j / along) == pytest.approx(
-        theta, abs=0.01
-    )  # from the vertical to the axis, clockwise
+    assert np.angle(1j / along) == pytest.approx(theta, abs=0.01)  # from the vertical to the axis, clockwise
     assert np.angle(across / along) == pytest.approx(np.pi / 2, abs=0.02)
     # the plane of a rim is inclined by theta from the table
     (rim,) = outlines(STATE)
