@@ -155,8 +155,7 @@ def live(_app: Any, name: str, source: list[str]) -> None:
     """Interactive figures: the code of the picture below its caption, and the state for the live page.
 
     All figures of the site share two live pages: one with friction and losses, for pages with a figure or
-    link
-    that needs them, and a smaller one.
+    link that needs them, and a smaller one.
     """
     number = count(1)
     friction = ("contact=coulomb", "contact=viscous", "law=")

@@ -107,7 +107,7 @@ def linked(page):
 
 
 def at_once(page, path):
-    """The same on a phone, before any figure is loaded."""
+    """Errors of the links on a phone, before any figure is loaded."""
     page.goto(path.absolute().as_uri())
     return [f"on a phone {what}" for what in linked(page)]
 

@@ -1,6 +1,6 @@
-"""Every property of the Rust tests with cases that nobody has drawn before.
+"""Run every property of the Rust tests with new random cases.
 
-    python3 tests/fresh.py --runs 10        prints the seed of each run, and at the end what failed
+    python3 tests/fresh.py --runs 10        prints the seed of each run, and finally the failures
 
 Builds the tests once, optimised. `PROPTEST_RNG_SEED=N cargo test --release --test laws` draws the cases of seed N again.
 """

@@ -1,4 +1,4 @@
-"""A processor without lanes (`SPINCYL_LANES=off`) gives the answers of one that has them, within their claims, more slowly."""
+"""Results without lanes (`SPINCYL_LANES=off`) agree with those in lanes within the claimed errors."""
 
 import os
 import pathlib

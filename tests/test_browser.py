@@ -1,4 +1,4 @@
-"""A machine without a browser gets one, or is told which tests it did not run."""
+"""The browser of the tests: it is installed where there is none, or skipped tests are reported."""
 
 import os
 import pathlib

@@ -1,4 +1,4 @@
-"""The recorded page under the hands of a user: the clock, controls, sizes, colours, ends, the exposure."""
+"""The recorded page in use: the clock, controls, sizes, colours, ends, the exposure."""
 
 import numpy as np
 import pytest

@@ -45,8 +45,7 @@ def linear(body, spin, down):
     """Both precession rates of a ball nearly upright on a pole, by the linear theory of the sleeping top.
 
     With zeta the lean as a complex number, J zeta'' = i (I3 + h) n zeta' + ell zeta, h the height of the
-    centre
-    and J = I1 + h^2; upside down, ell and the spin have the other sign.
+    centre and J = I1 + h^2; upside down, ell and the spin have the other sign.
     """
     ell, n = (-body.ell, -spin) if down else (body.ell, spin)
     h = 1 + ell

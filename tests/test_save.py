@@ -306,10 +306,8 @@ def survive(tmp_path, kills, workers, longest):
     """Kill a save until it has survived so many kills, anew when it is done; (kills, most lost blocks).
 
     A block counts as lost once, by the first kill after which it is written but not marked: the next run may
-    be
-    killed before it reaches the block. Whenever the job is done, the store has the bytes of an undisturbed
-    run
-    in one process.
+    be killed before it reaches the block. Whenever the job is done, the store has the bytes of an undisturbed
+    run in one process.
     """
     script = tmp_path / "job.py"
     script.write_text(JOB)

@@ -257,7 +257,7 @@ def test_what_may_be_written_to_but_not_replaced_is_written_to(tmp_path):
     for name, mode in (("old.html", 0o666), ("fixed.html", 0o444)):
         (folder / name).write_text("older")
         (folder / name).chmod(mode)
-    theirs = tmp_path / "theirs.html"  # in a folder that takes new files, with an owner that cannot be kept
+    theirs = tmp_path / "theirs.html"  # replaceable, but a replacement would not have its owner
     theirs.write_text("older")
     theirs.chmod(0o666)
     before = theirs.stat()

@@ -1,7 +1,6 @@
 """Measured bodies, and the conversion of their motions from SI to natural units and back.
 
-The motion of a measured body takes times in seconds, is computed in natural units like any other motion,
-and
+The motion of a measured body takes times in seconds, is computed in natural units like any other motion, and
 is returned in SI. `Motion.natural` is the motion in natural units, from which plots, pages and files start.
 """
 

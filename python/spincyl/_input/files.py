@@ -19,12 +19,9 @@ def replaced(path: str | os.PathLike[str]) -> Iterator[Path]:
     """An empty file to write to, which replaces `path` at the end, or is removed if anything fails.
 
     Its name is absolute and ends in the suffix of `path` in small letters, so that other programs and
-    libraries
-    take it for a plain file. A new file has the permissions that `open` gives; a file that replaces an
-    older
-    one has the older one's owner and permissions. Links are followed. A device, a pipe, and a file whose
-    folder
-    or owner forbids its replacement are written in place at the end.
+    libraries take it for a plain file. A new file has the permissions that `open` gives; a file that replaces
+    an older one has the older one's owner and permissions. Links are followed. A device, a pipe, and a file
+    whose folder or owner forbids its replacement are written in place at the end.
 
     Raises
     ------

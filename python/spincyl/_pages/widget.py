@@ -56,8 +56,7 @@ def watched() -> bool:
     """Whether a user may be at the notebook.
 
     A program that runs a notebook, such as nbconvert, accepts no input. It would store the widget, and its
-    page
-    would load the script for widgets from a network.
+    page would load the script for widgets from a network.
     """
     try:
         from IPython import get_ipython

@@ -1,7 +1,6 @@
 """The picture of the page for each frame of a film, drawn without a browser.
 
-Bodies, marks, camera, light and colours are those of the page. Agg (matplotlib) fills the triangles at
-twice
+Bodies, marks, camera, light and colours are those of the page. Agg (matplotlib) fills the triangles at twice
 the resolution of the film, which is then averaged. Pieces of a body are drawn in painter's order: along the
 axis from far to near, inner surfaces before outer ones, marks last.
 """

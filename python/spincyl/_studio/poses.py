@@ -72,8 +72,7 @@ def seen(m: "Motion", t: Floats, *names: str) -> list[Floats]:
 def pace(m: "Motion") -> float:
     """Duration of a nutation: the exact period, or with friction the shortest period of any phase.
 
-    With losses it is the mean over the motion, since nutations become shorter as a disk falls. For a stone
-    it
+    With losses it is the mean over the motion, since nutations become shorter as a disk falls. For a stone it
     is roughly the mean duration of its rockings, from the number of evaluations.
     """
     if isinstance(m.body, Ellipsoid):
@@ -266,8 +265,7 @@ def packed(found: Floats) -> dict[str, Any]:
     """Knots in few bytes: values as integers between bounds, slopes as differences from a prediction.
 
     The prediction is the slope of the parabola through a knot and its neighbours. The difference is
-    multiplied
-    by the longer of the adjacent intervals, in which its error has the largest effect.
+    multiplied by the longer of the adjacent intervals, in which its error has the largest effect.
     """
     wide = _wide(found)
     low, high = found[:, :wide].min(axis=0), found[:, :wide].max(axis=0)

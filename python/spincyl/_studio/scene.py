@@ -173,10 +173,8 @@ class Scene:
         """The geoms of table and body for MuJoCo, the mesh for display, and the pair's contact.
 
         A cylinder with a fillet is a smaller one with a margin: contact begins when plane and cylinder are
-        two
-        fillets apart, and MuJoCo puts the contact point half way between them. So the plane lies one fillet
-        below
-        the table. The shape is exact, without facets.
+        two fillets apart, and MuJoCo puts the contact point half way between them. So the plane lies one
+        fillet below the table. The shape is exact, without facets.
         """
         body, metre, second = self.motion.body, float(self.scale.metres(1.0)), self.scale.seconds(1.0)
         stiff = f'solref="{-1e6 / second**2:.6g} {-1e3 / second:.6g}" solimp="0.9999 0.9999 0.001 0.5 2"'

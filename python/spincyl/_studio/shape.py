@@ -1,8 +1,7 @@
 """Drawn shapes of bodies: triangles of the surface and of the two marks, O and X, in units of R.
 
 The axes are those of `Motion.orientation`: the origin is the centre of mass, the third axis is the axis of
-symmetry, and at the start the first axis points to the top of the rim. The upper end is at z = ell +
-fillet.
+symmetry, and at the start the first axis points to the top of the rim. The upper end is at z = ell + fillet.
 The page, the photograph, the glTF file and the scenes for engines share this geometry; the page turns the
 profiles itself, so that only profiles are stored.
 
@@ -105,8 +104,7 @@ class Skin(NamedTuple):
 def skin(body: Body) -> Skin:
     """The surface of a body that is symmetric top to bottom, like all except balls with a stem.
 
-    A general body is drawn solid, and as long above its centre as below. If it continues beyond pi/2
-    although
+    A general body is drawn solid, and as long above its centre as below. If it continues beyond pi/2 although
     its centre is above its rim, the upper side must not be in the way, and only the lower end is drawn.
     """
     ell, fillet = float(body.ell), float(body.fillet)
@@ -208,10 +206,8 @@ def _bore(body: Body) -> float:
 def _mark(body: Body, letter: Letter, end: int) -> Part:
     """A letter near the rim of the upper (end = 1) or lower (-1) end: on the wall or on a disk's face.
 
-    On the wall it continues round the fillet to a latitude of about 45 degrees; on two balls its middle is
-    on
-    the equator, where O and X are at pi/2. Its strokes have the same width on curved surfaces as on the
-    wall.
+    On the wall it continues round the fillet to a latitude of about 45 degrees; on two balls its middle is on
+    the equator, where O and X are at pi/2. Its strokes have the same width on curved surfaces as on the wall.
     """
     middle, wall, fillet, rim, bore = skin(body)
     bend = fillet * np.pi / 4

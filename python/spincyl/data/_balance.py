@@ -73,8 +73,7 @@ class Balance:
         self.places = np.stack([theta, rate]) / self.sigma
         self.bodies = [with_ratio(body, ratio) for ratio in (1.0, 2.0)]
         # Change of the torque by one error of theta and of the rate: odrpack enforces the curve by a penalty,
-        # and
-        # converges if both terms are of the same order.
+        # and converges if both terms are of the same order.
         own = self.own["ratio"], 1.0
         sides = (
             self.off(self.places + d, *own) - self.off(self.places - d, *own)

@@ -30,9 +30,9 @@ class Curve:
     """The drift of a body under one law or a sum, as a function of coefficients and first inclination.
 
     `ends` are the least and the greatest first inclination. The tabulated drift starts at the end that it
-    passes
-    first, the greatest if it goes `down`. For rolling, one more number may follow the coefficients: the
-    inclination at which the centre was at rest, as a share of the way from the first inclination to that end.
+    passes first, the greatest if it goes `down`. For rolling, one more number may follow the coefficients:
+    the inclination at which the centre was at rest, as a share of the way from the first inclination to that
+    end.
     """
 
     def __init__(

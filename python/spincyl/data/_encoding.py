@@ -40,8 +40,7 @@ _CERTAIN = re.compile(
     )
 )
 #: Characters that are valid UTF-8, but more probably two-byte characters of Chinese or Korean: letters of
-#: rare
-#: alphabets, accents without a letter, and symbols that are no units.
+#: rare alphabets, accents without a letter, and symbols that are no units.
 _ODD = re.compile(
     r"[\x80-\x9f\u0180-\u019f\u01a2-\u01ae\u01b1-\u0258\u025a-\u02ff\u0370-\u0385\u03cf-\u0400\u0460-\u048f]"
     r"|[\u0492-\u05cf\u05eb-\u0620\u0653-\u065f\u0700-\u07ff]|(?<![A-Za-z])[\u0300-\u036f]|[\u030d-\u0326\u0329-\u036f]"

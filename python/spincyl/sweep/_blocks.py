@@ -86,8 +86,8 @@ def block_size(
     taken = _cost(found, asked)
     if count > 1:
         # A block has a fixed cost, which matters in a small sample and hardly in a large block. It is
-        # measured with
-        # blocks of one motion, the first and the last of the sample, since one of these may be slow.
+        # measured with blocks of one motion, the first and the last of the sample, since one of these may be
+        # slow.
         ends = slice(0, 1), slice(-1, None)
         least = min(_cost(job(*(_part(x, end) for x in blocks)), asked) for end in ends)
         taken = max(taken - least, OWN * taken)

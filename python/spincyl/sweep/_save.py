@@ -183,8 +183,7 @@ def _written(result: "xarray.Dataset", store: Store, record: Record) -> Any:
     """A lazy array with one number for each block; computing the number writes the block.
 
     Only this number returns to the caller. All blocks are in one graph of dask: to build a graph for each
-    block
-    takes the client longer than a worker needs for the block.
+    block takes the client longer than a worker needs for the block.
     """
     array = extra("dask.array", "sweep")
     chunks, arguments = record["chunks"], list[Any]()
@@ -243,8 +242,8 @@ def _begin(result: "xarray.Dataset", store: Store, record: Record) -> tuple[Reco
     """Write the layout of the store, or repair it. Returns the record and the names of damaged files.
 
     An existing layout stays, even if another version of zarr would write a different one. But if a damaged
-    file
-    cannot be restored byte for byte, the layout is written anew, and the marks of blocks no longer count.
+    file cannot be restored byte for byte, the layout is written anew, and the marks of blocks no longer
+    count.
     """
     _records.beside(store, record)
     there, wrong = _records.same(store, record), list[str]()

@@ -3,7 +3,7 @@
 
 let canvas = $("canvas"), gl = null, era = 0, without = "", yielded = false;
 const inside = window.top !== window;
-let seen = !inside; // in a frame, which may be scrolled out of view, the observer below decides
+let seen = !inside; // a frame may be scrolled out of view: the observer below decides
 // handlers that move to a new canvas
 const HANDS = ["onpointerdown", "onpointermove", "onpointerup", "onpointercancel", "onwheel"];
 

@@ -68,7 +68,7 @@ function project(m, place, width, height) {
   return [width * (at(0) / at(3) + 1) / 2, height * (1 - at(1) / at(3)) / 2];
 }
 
-// ---- one picture of one motion
+// ---- a frame of one motion
 
 // the style sheet defines the colours
 function paints() {

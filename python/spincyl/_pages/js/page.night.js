@@ -17,7 +17,7 @@ const dusk = { matches: false, onchange: null };
       const { body } = window.parent.document, ask = () => { around = { false: true, true: false }[body.dataset.jpThemeLight] ?? null; set(); };
       new MutationObserver(ask).observe(body, { attributes: true });
       ask();
-    } catch { /* a page of another origin may not be asked */ }
+    } catch { /* a page of another origin cannot be read */ }
     addEventListener("message", e => { if (e.source === window.parent && typeof e.data?.spincylNight === "boolean") { around = e.data.spincylNight; set(); } });
   }
   set();

@@ -1,5 +1,5 @@
-// Poses, interpolated between the knots that the page stores for each motion.
-// The files are joined in the order of view.py, in one strict function.
+// Poses, interpolated between the knots that the page stores for each motion. The files are joined in the
+// order of view.py, in one strict function.
 
 const $ = id => document.getElementById(id);
 const data = JSON.parse($("data").textContent);

@@ -39,8 +39,8 @@ for (const knob of KNOBS) {
   }
   knob.input.id = "knob-" + knob.name;
 }
-// applies a knob; the one for the centre's circle is the relative deviation of the precession from that with
-// the centre at rest
+// applies the value of a knob; for the centre's circle it is the relative change of the precession from its
+// value with the centre at rest
 function turned(knob, value) {
   held_ = true;
   if (knob.name === "rate") {
