@@ -143,7 +143,7 @@ def sampled(rows):
 
 
 def off(found, rows, names):
-    """The errors, and the errors relative to the number or 1."""
+    """The errors, and the errors divided by the size of the number if that is above 1."""
     true = np.array([[float(getattr(row, name)) for name in names] for row in rows])
     error = np.abs(np.asarray(found) - true)
     return error, error / np.maximum(1, np.abs(true))

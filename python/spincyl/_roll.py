@@ -194,8 +194,8 @@ def roll(
             why = f"beyond, its estimated error comes to {found.error:.2g}"
             warn(f"the motion is {found._doubt} (known_until): {why}", ErrorWarning)
         return found
-    # `single` refuses others
-    one: Body = body  # `single` raises for other types
+    # `single` raises for other types
+    one: Body = body  # type: ignore[assignment]
     start: State = state  # type: ignore[assignment]
     numbers = single(one, start)
     scale, seconds, given_step = one.scale, t, step

@@ -392,7 +392,7 @@ def _quoted(line: str) -> list[str]:
 
 
 def _plain(lines: list[str], delimiter: str | None, comma: bool, width: int) -> Floats | None:
-    """The result of `_table` by NumPy's reader, five times faster; None if the lines have anything unusual."""
+    """The result of `_table` by NumPy's reader, five times faster; None if lines have anything unusual."""
     if any('"' in line or (comma and "." in line) for line in lines):
         return None
     if comma:

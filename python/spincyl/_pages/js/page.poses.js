@@ -23,7 +23,7 @@ const motions = data.motions.map(m => {
 const first = Math.min(...motions.map(m => m.first)), last = Math.max(...motions.map(m => m.last));
 
 const digits = Math.max(2, 4 - Math.floor(Math.log10(Math.max(1e-9, (last - first) * data.unit))));
-// without line breaks
+// with spaces that do not break
 const clock = t => `t = ${(t * data.unit).toFixed(digits)} ${data.symbol}`.replaceAll(" ", "\u00a0");
 
 // theta, phi, psi, x, y, or the numbers of a stone, and their rates: the cubic between two knots
