@@ -1,8 +1,8 @@
 """Motions and drifts with losses: the references of tests/reference/losses.py and drifts.py, and the library.
 
-The first half does not use the library: the tables, from three-dimensional models in two formulations,
-obey the balance of energy and work, the closed solutions of the thin disk, and the equations of steady
-rolling. The second half compares `sc.roll(..., losses=)` and `sc.drift` with them.
+The first half does not use the library: the tables, from three-dimensional models in two formulations, obey
+the balance of energy and work, the closed solutions of the thin disk, and the equations of steady rolling.
+The second half compares `sc.roll(..., losses=)` and `sc.drift` with them.
 """
 
 import json

@@ -1,7 +1,7 @@
 """Bodies with a rounded rim: the references of tests/reference/rounded.py keep their laws, and the library agrees.
 
-The first half does not use the library: the tables, computed with vectors to 40 digits or more, obey the integrals of
-the motion and the closed formulas. The second half compares the library with them.
+The first half does not use the library: the tables, computed with vectors to 40 digits or more, obey the
+integrals of the motion and the closed formulas. The second half compares the library with them.
 """
 
 import csv

@@ -1,7 +1,8 @@
 """Slipping motion: the references of tests/reference/slip.py keep their laws, and the library agrees.
 
-The first half does not use the library: the table, on which two formulations agree to 22 digits or more, obeys the
-balance of energy and heat, Jellett's integral and the closed solutions. The second half compares `sc.roll` with it.
+The first half does not use the library: the table, on which two formulations agree to 22 digits or more,
+obeys the balance of energy and heat, Jellett's integral and the closed solutions. The second half compares
+`sc.roll` with it.
 """
 
 import csv

@@ -32,7 +32,7 @@ function forget() {
     gl.deleteFramebuffer(t.buffer);
     if (t.depth) gl.deleteRenderbuffer(t.depth);
   }
-  // pictures begun (`count`), finished (`shown`), wanted (`most`); batch size (`some`) and the fence of a batch
+  // pictures begun (`count`), finished (`shown`), wanted (`most`); size (`some`) and fence of a batch
   Object.assign(exposing, { targets: null, count: 0, shown: 0, most: PICTURES, some: 4, fence: null, gain: 1, measured: 0 });
 }
 forget();

@@ -31,7 +31,7 @@ function program(vertex, fragment, first) {
 const surface = program(
   `in vec3 place, normal; uniform mat4 camera, model; uniform vec3 eye; out vec3 n, v;
    void main() { vec4 p = model * vec4(place, 1.0); n = mat3(model) * normal; v = eye - p.xyz; gl_Position = camera * p; }`,
-  // round surfaces have an outline two pixels wide, where they turn away from the eye, unless `lit` is below 1
+  // round surfaces have an outline, two pixels wide, where they turn away from the eye, if `lit` is 1
   `in vec3 n, v; uniform vec4 colour; uniform float lit; out vec4 o;
    void main() { vec3 m = normalize(n), e = normalize(v), sun = normalize(vec3(-0.45, -0.5, 0.75));
      float light = 0.52 + 0.16 * m.z + 0.36 * max(dot(m, sun), 0.0);
