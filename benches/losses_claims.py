@@ -29,10 +29,7 @@ from limit import Late, limit
 
 import spincyl as sc
 
-LAWS = (
-    sc.loss.DryContour, sc.loss.ViscousContour, sc.loss.RollingResistance, sc.loss.Drilling,
-    sc.loss.AirLinear, sc.loss.AirQuadratic, sc.loss.AirFilm, sc.loss.BoundaryLayer,
-)  # fmt: skip
+LAWS = sc.loss.Law.__subclasses__()  # in the order of the core
 TOLERANCES = (None, 1e-8, 1e-11)
 ENDS = {"stops": "STOPS", "side": "SIDE", "slips": "SLIP", "end": "DONE"}
 VAGUE, LONGEST, STEPS = 1e-4, 6, 1500
@@ -56,7 +53,7 @@ class Case:
             state = body.steady(theta)
         if way < 0.4:
             state = state.kicked(rng.normal() * 0.05)
-        self.coefficients = [0.0] * 8
+        self.coefficients = [0.0] * len(LAWS)
         for k in rng.choice(6 if self.kind == "ball" else 8, rng.integers(1, 4), replace=False):
             self.coefficients[k] = float(10 ** rng.uniform(-5, -1))
         self.contact = str(rng.choice(["rolling", "rolling", "smooth", "coulomb"]))

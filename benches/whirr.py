@@ -35,10 +35,7 @@ DISK, ROUNDED = sc.Body.solid(HALF), sc.Body.solid(HALF, fillet=0.05)
 TOLERANCES = (None, 1e-12, 1e-10, 1e-8, 1e-6)
 OTHERS = [*(10 ** (-k / 2) for k in range(8, 27)), 2.5e-14]  # of DOP853; rtol cannot be less
 KINDS = 1 if losses_scipy.numba is None else 2  # DOP853 in Python, and with a compiled right-hand side
-LAWS = (
-    sc.loss.DryContour, sc.loss.ViscousContour, sc.loss.RollingResistance, sc.loss.Drilling,
-    sc.loss.AirLinear, sc.loss.AirQuadratic, sc.loss.AirFilm, sc.loss.BoundaryLayer,
-)  # fmt: skip
+LAWS = sc.loss.Law.__subclasses__()  # in the order of the core
 CASES = (
     ("Euler's disk, dry 5e-3", DISK, 0.0, (0, 5e-3)),
     ("the same, nodding", DISK, 0.1, (0, 5e-3)),

@@ -24,7 +24,7 @@ def drifted(case, repeat=0):
     body = sc.Body(ell, i1, i3, fillet=fillet)
     theta, w1, w3 = case["state"]
     state = sc.State(theta, w1, 0.0, w3)
-    some = [law(k) for law, k in zip(LAWS, case["losses"], strict=True) if k]
+    some = [law(k) for law, k in zip(LAWS, case["losses"], strict=False) if k]
     return sc.drift(body, state, sum(some[1:], start=some[0]), centre="rolling")
 
 

@@ -109,8 +109,8 @@ def test_names_and_exponents_are_those_of_the_core():
     assert _core.loss_laws() == list(zip(LAWS.values(), EXPONENTS, strict=True))
     for place, (law, exponent) in enumerate(zip(LAWS, EXPONENTS, strict=True)):
         assert law(0.1).exponent == exponent
-        assert law(0.1)._coefficients == [0.1 if k == place else 0.0 for k in range(8)]
-    assert ALL._coefficients == [10.0**-k for k in range(8)]
+        assert law(0.1)._coefficients == [0.1 if k == place else 0.0 for k in range(len(LAWS))]
+    assert ALL._coefficients == [10.0**-k for k in range(len(LAWS))]
 
 
 # Refusals.

@@ -168,7 +168,7 @@ def body_of(case):
 
 
 def losses_of(case):
-    return reduce(operator.add, (law(k) for law, k in zip(LAWS, case.losses, strict=True) if k))
+    return reduce(operator.add, (law(k) for law, k in zip(LAWS, case.losses, strict=False) if k))
 
 
 def rolled(case):

@@ -40,6 +40,6 @@ def test_the_scenes_hold_every_kind_of_start_and_end():
         contacts.add(scene.contact)
         laws.update(scene.losses)
         ends.update(apart.status[0] for apart in found)
-    assert contacts == set(scenes.CONTACTS) and laws == set(range(8))
+    assert contacts == set(scenes.CONTACTS) and laws == set(range(len(scenes.LAWS)))
     # done, face, side, lift-off, slip, refused, Painleve, stops
     assert ends >= {0, 1, 2, 3, 4, 6, 7}

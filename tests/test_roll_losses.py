@@ -61,7 +61,7 @@ def rolled(start="disk", losses=DRY, t=T, **how):
         ({"losses": loss.DryContour([1e-3])}, ValueError, r"^losses = DryContour\(\[0.001\]\): expected"),
         ({"step": 1e-3}, ValueError, r"^step = 0.001 does not go with losses=DryContour\(0.005\): .* tol="),
         ({"method": "exact"}, ValueError, "^method = 'exact' does not go with losses=.* no first integrals"),
-        ({"method": "rk4", "tol": 1e-9}, ValueError, "^method = 'rk4' does not go with losses="),
+        ({"method": "rk4", "tol": 1e-9}, ValueError, "^method = 'rk4' takes step="),
         ({"t": [0.0, -1.0]}, ValueError, "^t = -1.0: expected times from the start on, t0 = 0.0; what is"),
         ({"t": [5.0, 6.0], "t0": 7.0}, ValueError, "^t = 5.0: expected times from the start on, t0 = 7.0"),
         ({"t": [0.0, 2.0, 1.0]}, ValueError, "t"),

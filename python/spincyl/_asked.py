@@ -141,10 +141,12 @@ def ask(
     if step is not None or tol is not None:
         if method == "exact":
             raise ValueError("method = 'exact' takes neither step= nor tol=")
+        if method == "rk4" and step is None:
+            raise ValueError("method = 'rk4' takes step=; tol= is for steps of eighth order")
         step = None if step is None else number("step", step)
         tol = None if tol is None else number("tol", tol)
     elif method == "rk4":
-        raise ValueError("method = 'rk4' needs step= or tol=, as in step=1e-3")
+        raise ValueError("method = 'rk4' needs step=, as in step=1e-3")
     mu = mu if type(mu) is float else number("mu", mu)
     plain = word and state.slip is None and restitution is None and losses is None
     if not plain:  # otherwise no combination of the arguments is invalid

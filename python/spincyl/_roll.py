@@ -98,13 +98,13 @@ def roll(
     step : float, optional
         By RK4 with this fixed step, of either sign backward in time.
     tol : float, optional
-        By RK4, each of whose steps errs by less than this (1e-14 to 0.1). The error at the end is
-        said by `Motion.error`. With friction, the same of the steps of slipping, with losses of all
-        steps; default 1e-14.
+        Tolerance of each step of an eighth-order method (absolute, 1e-14 to 0.1); `Motion.error` estimates
+        the error of the result. With friction only slipping is integrated, with losses the whole motion;
+        there the default is 1e-14.
     method : {"exact", "rk4"}, optional
-        Default: RK4 if a step or a tolerance is given; else the first integrals, which give the
-        state at any time for the same cost. Where these lose all their digits, RK4 within 1e-12
-        answers, and `method` and `message` say so.
+        Default: RK4 if `step` is given; else the first integrals, which give the state at any time for the
+        same cost, unless `tol` is given. Where the first integrals lose all their digits, steps within
+        1e-12 replace them, and `method` and `message` say so.
     contact : {"rolling", "smooth"}, Coulomb or Viscous
         Rolling without slipping, a frictionless table, or a law of friction: then the body slips from the
         `slip` of the state, or rolls if it has none, and passes from one to the other where the law says so.

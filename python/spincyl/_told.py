@@ -21,7 +21,7 @@ def message(m: "Motion") -> str:
     pose = "" if np.isnan(m.pose_error) else f", of the pose {m.pose_error:.1e}"
     force = "" if np.isnan(m.force_error) else f", of the forces {m.force_error:.1e}"
     errors = f"error about {m.error:.1e}{pose}{force}"
-    if m.method == "dop853":
+    if m._by_steps or m._phases is not None:
         phases = told(m._phases or (), _second(m))
         return "; ".join(filter(None, (why, phases, _how(m), errors, m._doubt)))
     return f"{why}; found {_how(m)}, {errors}"
@@ -47,7 +47,7 @@ def _how(m: "Motion") -> str:
     how = {
         "exact": "by first integrals",
         "rk4": f"by RK4, step {m._asked.step!r}{_second(m)}",
-        "rk4 within tol": f"by RK4, steps within {m._setting:g}",
+        "dop853": f"by steps of eighth order within {m._setting:g}",
     }[m.method]
     free = m._asked.step is None and m._asked.tol is None
     if free and m.method != "exact":

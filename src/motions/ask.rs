@@ -17,8 +17,7 @@ pub enum Method {
     Exact,
     /// RK4 with this fixed step; it is refused for a motion that slips or loses energy.
     Step(f64),
-    /// RK4 with steps whose errors are below this tolerance; an eighth-order method for a motion with
-    /// slip or losses.
+    /// Steps of eighth order whose errors are below this tolerance.
     Tolerance(f64),
 }
 

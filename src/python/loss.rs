@@ -1,4 +1,4 @@
-//! Elementwise functions of losses; the inputs are eight coefficients, the normal force, a state and a body.
+//! Elementwise functions of losses; the inputs are the coefficients of all laws, the normal force, a state and a body.
 
 use super::{of_state, or_nan};
 use crate::laws::loss::{COUNT, Law, Losses};

@@ -238,8 +238,7 @@ fn dictionary<'py, S: Moving>(
     }
     let (method, setting) = match m.method {
         Method::Step(h) => (intern!(py, "rk4"), h),
-        Method::Tolerance(tol) if m.path.is_some() => (intern!(py, "dop853"), tol),
-        Method::Tolerance(tol) => (intern!(py, "rk4 within tol"), tol),
+        Method::Tolerance(tol) => (intern!(py, "dop853"), tol),
         Method::Exact => (intern!(py, "exact"), f64::NAN),
     };
     out.set_item(intern!(py, "method"), method)?;

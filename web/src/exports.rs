@@ -44,7 +44,7 @@ exports! {
     at_rest(theta);
     by_rate(rate);
     circular(theta, precession);
-    losses(eps, c, delta, mu, b, b2, film, layer);
+    losses(law, coefficient);
     start(theta, w1, w2, w3, u_h, u_2, table, mu, t, n);
     follow(n, t0, t1);
     poses(t0, t1, n);

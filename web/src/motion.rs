@@ -5,7 +5,7 @@ use crate::walk::Walked;
 use crate::{Answer, Desk, Refusal, count};
 use spincyl::contact::{Force, TableKind, force};
 use spincyl::exact::Swing;
-use spincyl::loss::Losses;
+use spincyl::loss::{Law, Losses};
 use spincyl::motion::{self, Event};
 use spincyl::pose::Pose;
 use spincyl::{Body, Contact, State};
@@ -62,9 +62,12 @@ pub(crate) fn told(event: Option<Event>) -> (f64, f64) {
 }
 
 impl Desk {
-    /// Sets the coefficients of the laws of loss, in their order.
-    pub fn losses(&mut self, coefficients: [f64; 8]) -> Answer {
-        let losses = Losses { coefficients };
+    /// Sets the one law of loss by its number, with its coefficient; 0 for no loss.
+    pub fn losses(&mut self, [law, coefficient]: [f64; 2]) -> Answer {
+        let expected = "the number of a law of loss";
+        let known = Law::ALL.into_iter().find(|known| f64::from(*known as u8) == law);
+        let known = known.ok_or(Refusal::Range { name: "law", value: law, expected })?;
+        let losses = Losses::of(known, coefficient);
         losses.check()?;
         (self.losses, self.motion) = (losses, None);
         Ok(())

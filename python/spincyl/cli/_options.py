@@ -87,7 +87,7 @@ _PLAY = f"{_play.TEXT}{_BODY}"
 
 _REPORT = """\
 Measure the error of the final state against the time that a trajectory takes, on this machine: RK4
-over steps, RK4 within tolerances, the exact solution and, where SciPy is installed, its DOP853. With
+over steps, steps of eighth order within tolerances, the exact solution and, where SciPy is installed, its DOP853. With
 a folder, writes report.md, and report.png where matplotlib is installed."""
 
 _REPORT_EXAMPLES = """\
@@ -283,7 +283,7 @@ def _roll_options(sub: ArgumentParser) -> None:
     how.add_argument("--t", type=time, required=True, metavar="TIME", help="in sqrt(R/g), or as in 2s")
     how.add_argument("--points", type=whole, default=2001, help="times from 0 on (default 2001)")
     how.add_argument("--step", type=time, metavar="TIME", help="by RK4 with this step")
-    how.add_argument("--tol", type=float, help="by RK4 within this tolerance")
+    how.add_argument("--tol", type=float, help="by steps of eighth order within this tolerance")
     laws = ("rolling", "smooth", "coulomb", "viscous")
     how.add_argument(
         "--contact", choices=laws, default="rolling", help="the last two slip (default: rolling)"

@@ -7,21 +7,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from spincyl._body import Body
+from spincyl._contact import CODES
 from spincyl._input.numbers import Floats, Reals, is_scalar, number, one_of, radians_per_second, reals, si
 from spincyl._studio.shape import steepest
 from spincyl.data._curve import branches, goes_down
 from spincyl.data._report import counted
 
-LAWS = (
-    "DryContour",
-    "ViscousContour",
-    "RollingResistance",
-    "Drilling",
-    "AirLinear",
-    "AirQuadratic",
-    "AirFilm",
-    "BoundaryLayer",
-)
+LAWS = tuple(CODES["Law"])
 CENTRES = ("rest", "rolling")
 _SHARE = 0.01  # relative error of values as long as nothing is known about it
 

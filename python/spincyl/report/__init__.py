@@ -117,7 +117,7 @@ def _row(scene: Scene, budget: float, known: Floats | None) -> Row:
         "RK4, fixed step": _curve(
             (largest * 2.0**-k for k in range(14)), lambda h: final(step=h), error, budget
         ),
-        "RK4, tol": _curve(
+        "steps within tol": _curve(
             (10.0**-k for k in np.arange(3, 13.6, 0.75)), lambda tol: final(tol=tol), error, budget
         ),
     }
@@ -306,7 +306,7 @@ def figure(rows: list[Row], path: Path) -> bool:
 
     from spincyl.plot._style import BLACK, BLUE, GREEN, ORANGE, saved
 
-    style = {"RK4, fixed step": (BLUE, "o-"), "RK4, tol": (GREEN, "s-"), "SciPy DOP853": (ORANGE, "^-")}
+    style = {"RK4, fixed step": (BLUE, "o-"), "steps within tol": (GREEN, "s-"), "SciPy DOP853": (ORANGE, "^-")}
     across = 4
     down = -(-len(rows) // across)
     figure, axes = plt.subplots(

@@ -7,23 +7,35 @@
 //! rim gives 1.28. The film has to fill the gap, theta^(3/4) < nu^(1/2) (R/(4 g))^(1/4)/R, which is 0.005 rad for
 //! Euler's disk. A thin disk has theta = (pi viscosity tau/(2 I1))^(1/3) at the time tau before its end.
 
-use super::Kinematics;
+use super::{EndPowers, Kinematics, LossLaw, Resists};
 use crate::numbers::Real;
 use core::f64::consts::FRAC_PI_4;
 
-pub(super) const PARAMETER: &str = "viscosity";
-pub(super) const EXPONENT: Option<f64> = Some(1.0 / 3.0);
+#[derive(Debug)]
+pub(super) struct AirFilm;
 
-/// The couple for viscosity = 1.
-#[inline(always)]
-pub(super) fn couple<T: Real>(seen: &Kinematics<T>) -> [T; 3] {
-    let s = seen.angle.0;
-    seen.along(s.splat(FRAC_PI_4) * seen.spin / s)
-}
+impl LossLaw for AirFilm {
+    const PARAMETER: &str = "viscosity";
+    const RESISTS: Resists = Resists::Contour;
+    const NEEDS_FACE: bool = true;
+    const POWERS: EndPowers = EndPowers { face: [-2.0; 2], balanced: 3.0, critical: 2.0, upright: -1.0 };
 
-/// The power for viscosity = 1.
-#[inline(always)]
-pub(super) fn power<T: Real>(seen: &Kinematics<T>) -> T {
-    let s = seen.angle.0;
-    s.splat(FRAC_PI_4) * seen.spin * seen.spin / s
+    /// The couple for viscosity = 1.
+    #[inline(always)]
+    fn couple<T: Real>(seen: &Kinematics<T>) -> [T; 3] {
+        let s = seen.angle.0;
+        seen.along(s.splat(FRAC_PI_4) * seen.spin / s)
+    }
+
+    /// The power for viscosity = 1.
+    #[inline(always)]
+    fn power<T: Real>(seen: &Kinematics<T>) -> T {
+        let s = seen.angle.0;
+        s.splat(FRAC_PI_4) * seen.spin * seen.spin / s
+    }
+
+    #[inline(always)]
+    fn slope<T: Real>(coefficient: T, s: T, _: T, _: T) -> T {
+        coefficient * s.splat(FRAC_PI_4) / s
+    }
 }

@@ -5,21 +5,27 @@
 //! ```
 //! The law is Stokes's law of a body that turns. A thin disk never stops: sin theta falls as exp(-2 b t/(3 I1)).
 
-use super::Kinematics;
+use super::{EndPowers, Kinematics, LossLaw, Resists};
 use crate::numbers::Real;
 
-pub(super) const PARAMETER: &str = "b";
-pub(super) const EXPONENT: Option<f64> = None;
+#[derive(Debug)]
+pub(super) struct AirLinear;
 
-/// The couple for b = 1.
-#[inline(always)]
-pub(super) fn couple<T: Real>(seen: &Kinematics<T>) -> [T; 3] {
-    let [w1, w2, w3] = seen.w;
-    [-w1, -w2, -w3]
-}
+impl LossLaw for AirLinear {
+    const PARAMETER: &str = "b";
+    const RESISTS: Resists = Resists::All;
+    const POWERS: EndPowers = EndPowers { face: [1.0; 2], balanced: 1.0, critical: 0.0, upright: 0.0 };
 
-/// The power for b = 1.
-#[inline(always)]
-pub(super) fn power<T: Real>(seen: &Kinematics<T>) -> T {
-    seen.square()
+    /// The couple for b = 1.
+    #[inline(always)]
+    fn couple<T: Real>(seen: &Kinematics<T>) -> [T; 3] {
+        let [w1, w2, w3] = seen.w;
+        [-w1, -w2, -w3]
+    }
+
+    /// The power for b = 1.
+    #[inline(always)]
+    fn power<T: Real>(seen: &Kinematics<T>) -> T {
+        seen.square()
+    }
 }

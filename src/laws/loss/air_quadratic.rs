@@ -5,22 +5,29 @@
 //! ```
 //! The law is Newton's law of drag, integrated along the body. A thin disk never stops.
 
-use super::Kinematics;
+use super::{EndPowers, Kinematics, LossLaw, Resists, Speed};
 use crate::numbers::Real;
 
-pub(super) const PARAMETER: &str = "b2";
-pub(super) const EXPONENT: Option<f64> = None;
+#[derive(Debug)]
+pub(super) struct AirQuadratic;
 
-/// The couple for b2 = 1.
-#[inline(always)]
-pub(super) fn couple<T: Real>(seen: &Kinematics<T>) -> [T; 3] {
-    let (size, [w1, w2, w3]) = (seen.square().sqrt(), seen.w);
-    [-(size * w1), -(size * w2), -(size * w3)]
-}
+impl LossLaw for AirQuadratic {
+    const PARAMETER: &str = "b2";
+    const RESISTS: Resists = Resists::All;
+    const ROOT: Option<Speed> = Some(Speed::Whole);
+    const POWERS: EndPowers = EndPowers { face: [1.5; 2], balanced: 1.5, critical: 0.0, upright: 0.0 };
 
-/// The power for b2 = 1.
-#[inline(always)]
-pub(super) fn power<T: Real>(seen: &Kinematics<T>) -> T {
-    let square = seen.square();
-    square * square.sqrt()
+    /// The couple for b2 = 1.
+    #[inline(always)]
+    fn couple<T: Real>(seen: &Kinematics<T>) -> [T; 3] {
+        let (size, [w1, w2, w3]) = (seen.square().sqrt(), seen.w);
+        [-(size * w1), -(size * w2), -(size * w3)]
+    }
+
+    /// The power for b2 = 1.
+    #[inline(always)]
+    fn power<T: Real>(seen: &Kinematics<T>) -> T {
+        let square = seen.square();
+        square * square.sqrt()
+    }
 }

@@ -6,20 +6,33 @@
 //! The law is in Bildsten, Phys. Rev. E 66, 056309 (2002); it holds above the angle at which Moffatt's film fills the
 //! gap; C is of order 0.1. A thin disk has theta = (3 k tau/(2 I1^(5/4)))^(4/9) at the time tau before its end.
 
-use super::Kinematics;
+use super::{EndPowers, Kinematics, LossLaw, Resists, Speed};
 use crate::numbers::Real;
 
-pub(super) const PARAMETER: &str = "k";
-pub(super) const EXPONENT: Option<f64> = Some(4.0 / 9.0);
+#[derive(Debug)]
+pub(super) struct BoundaryLayer;
 
-/// The couple for k = 1.
-#[inline(always)]
-pub(super) fn couple<T: Real>(seen: &Kinematics<T>) -> [T; 3] {
-    seen.along(seen.spin * seen.spin.abs().sqrt())
-}
+impl LossLaw for BoundaryLayer {
+    const PARAMETER: &str = "k";
+    const RESISTS: Resists = Resists::Contour;
+    const NEEDS_FACE: bool = true;
+    const ROOT: Option<Speed> = Some(Speed::Spin);
+    const POWERS: EndPowers = EndPowers { face: [-1.25; 2], balanced: 3.75, critical: 2.5, upright: 0.0 };
 
-/// The power for k = 1.
-#[inline(always)]
-pub(super) fn power<T: Real>(seen: &Kinematics<T>) -> T {
-    seen.spin * seen.spin * seen.spin.abs().sqrt()
+    /// The couple for k = 1.
+    #[inline(always)]
+    fn couple<T: Real>(seen: &Kinematics<T>) -> [T; 3] {
+        seen.along(seen.spin * seen.spin.abs().sqrt())
+    }
+
+    /// The power for k = 1.
+    #[inline(always)]
+    fn power<T: Real>(seen: &Kinematics<T>) -> T {
+        seen.spin * seen.spin * seen.spin.abs().sqrt()
+    }
+
+    #[inline(always)]
+    fn slope<T: Real>(coefficient: T, s: T, _: T, spin: T) -> T {
+        s.splat(1.5) * coefficient * spin.abs().sqrt()
+    }
 }

@@ -1,16 +1,15 @@
 //! The couple of several laws together, over any type of number, and the kinematics on which the laws depend.
 //!
 //! ```text
-//! m = m0 + N mN,   P = P0 + N PN          of the eight laws that are present
+//! m = m0 + N mN,   P = P0 + N PN          of the laws that are present
 //! ```
 //! The ways are the signs of psi', of the drilling, and of the rocking of a body that only rocks. A caller can hold
 //! them fixed within a step, so that every step is smooth. The error is that of the laws.
 
-use super::{COUNT, Law, Losses};
+use super::{COUNT, Law, Losses, Speed};
 use crate::laws::body::{Body, Rim};
 use crate::laws::state::State;
 use crate::numbers::{Dual, Real, here};
-use core::f64::consts::FRAC_PI_4;
 
 /// The kinematics of a body on which the laws depend.
 #[derive(Debug, Clone, Copy)]
@@ -108,8 +107,8 @@ pub(crate) struct Ways<T = f64> {
 /// The losses in the form that the equations of motion use, of one body or of eight in lanes.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Couples<T> {
-    coefficients: [T; COUNT],
-    present: [bool; COUNT],
+    pub(super) coefficients: [T; COUNT],
+    pub(super) present: [bool; COUNT],
     /// The signs of the motions that dry friction resists, where a caller holds them fixed within a step.
     pub ways: Option<Ways<T>>,
 }
@@ -175,7 +174,7 @@ pub(crate) fn rolling_growth((s, c): (f64, f64), [w1, w2, w3]: [f64; 3], [d1, d2
 impl Couples<f64> {
     /// These losses without the laws that act along the contour.
     pub fn off_the_contour(mut self) -> Self {
-        for law in [Law::DryContour, Law::ViscousContour, Law::AirFilm, Law::BoundaryLayer] {
+        for law in Law::ALL.into_iter().filter(|law| law.is_along()) {
             (self.coefficients[law as usize], self.present[law as usize]) = (0.0, false);
         }
         self
@@ -220,23 +219,6 @@ impl<T: Real> Couples<T> {
         Kinematics { signs: [ways.contour, ways.drilling], rocks, ..seen }
     }
 
-    /// The derivative of the couple along the contour with respect to psi'.
-    #[inline(always)]
-    pub fn slope(&self, s: T, radius: T, spin: T) -> T {
-        let number = |x: f64| s.splat(x);
-        let mut slope = number(0.0);
-        if self.has(Law::ViscousContour) {
-            slope = slope + self.coefficient(Law::ViscousContour) * radius * radius;
-        }
-        if self.has(Law::AirFilm) {
-            slope = slope + self.coefficient(Law::AirFilm) * number(FRAC_PI_4) / s;
-        }
-        if self.has(Law::BoundaryLayer) {
-            slope = slope + number(1.5) * self.coefficient(Law::BoundaryLayer) * spin.abs().sqrt();
-        }
-        slope
-    }
-
     /// The losses with these coefficients among the laws that are present, where `ways` holds signs fixed.
     #[inline(always)]
     pub fn among(coefficients: [T; COUNT], present: [bool; COUNT], ways: Option<Ways<T>>) -> Self {
@@ -251,19 +233,54 @@ impl<T: Real> Couples<T> {
     /// Whether some law acts about the axis of the rocking.
     #[inline(always)]
     pub fn tilts(&self) -> bool {
-        self.has(Law::RollingResistance) || self.has(Law::AirLinear) || self.has(Law::AirQuadratic)
+        self.has_any(
+            #[inline(always)]
+            |law| law.tilts(),
+        )
     }
 
     /// Whether the couple of some law grows with the speed of the contact along the rim.
     #[inline(always)]
     pub fn is_soft(&self) -> bool {
-        self.has(Law::ViscousContour) || self.has(Law::AirFilm) || self.has(Law::BoundaryLayer)
+        self.has_any(
+            #[inline(always)]
+            |law| law.is_soft(),
+        )
+    }
+
+    /// Whether a face comes down by infinitely many turns, if no law along the contour stops the contact.
+    #[inline(always)]
+    pub fn turn_endlessly(&self) -> bool {
+        self.has_any(
+            #[inline(always)]
+            |law| law.turns_endlessly(),
+        )
     }
 
     /// Whether some law other than rolling resistance contains a root.
     #[inline(always)]
     pub fn has_roots(&self) -> bool {
-        self.has(Law::AirQuadratic) || self.has(Law::BoundaryLayer)
+        self.has_root(Speed::Spin) || self.has_root(Speed::Whole)
+    }
+
+    /// Whether some law contains a root of this speed.
+    #[inline(always)]
+    fn has_root(&self, speed: Speed) -> bool {
+        self.has_any(
+            #[inline(always)]
+            |law| law.root() == Some(speed),
+        )
+    }
+
+    /// Whether a law of this kind is present.
+    #[inline(always)]
+    fn has_any(&self, kind: impl Fn(Law) -> bool) -> bool {
+        let mut has = false;
+        Law::each(
+            #[inline(always)]
+            |law| has |= kind(law) && self.has(law),
+        );
+        has
     }
 
     /// Whether dry friction holds the drilling of a body that slips.
@@ -289,41 +306,10 @@ impl<T: Real> Couples<T> {
     fn roots(&self, seen: &Kinematics<T>, paced: bool) -> [Option<T>; 3] {
         let rolling = seen.rolling();
         [
-            self.has(Law::BoundaryLayer).then(|| seen.spin * seen.spin),
-            (self.has(Law::RollingResistance) && seen.rocks.is_none() && !paced)
+            self.has_root(Speed::Spin).then(|| seen.spin * seen.spin),
+            (self.has_root(Speed::Rolling) && seen.rocks.is_none() && !paced)
                 .then(|| rolling.mac(rolling, seen.w[1] * seen.w[1])),
-            self.has(Law::AirQuadratic).then(|| seen.square()),
+            self.has_root(Speed::Whole).then(|| seen.square()),
         ]
-    }
-
-    /// The couple of all laws.
-    #[inline(always)]
-    pub fn at(&self, seen: &Kinematics<T>) -> Couple<T> {
-        let zero = seen.spin.splat(0.0);
-        let mut couple = Couple { free: [zero; 3], pressed: [zero; 3] };
-        for law in Law::ALL {
-            if self.present[law as usize] {
-                let to = if law.presses() { &mut couple.pressed } else { &mut couple.free };
-                let unit = law.couple(seen);
-                for i in 0..3 {
-                    to[i] = self.coefficients[law as usize].mac(unit[i], to[i]);
-                }
-            }
-        }
-        couple
-    }
-
-    /// The power that all laws take under a normal force.
-    #[inline(always)]
-    pub fn power(&self, seen: &Kinematics<T>, normal: T) -> T {
-        let mut power = normal.splat(0.0);
-        for law in Law::ALL {
-            if self.present[law as usize] {
-                let unit = law.power(seen);
-                let unit = if law.presses() { unit * normal } else { unit };
-                power = self.coefficients[law as usize].mac(unit, power);
-            }
-        }
-        power
     }
 }

@@ -7,21 +7,28 @@
 //! in Contensou 1963, Leine, Arch. Appl. Mech. 79, 1063 (2009). It never stops a thin disk: sin^(-1/2) theta grows by
 //! length t/(3 sqrt I1). It stops a body of finite height as rolling resistance does.
 
-use super::Kinematics;
+use super::{EndPowers, Kinematics, LossLaw, Resists};
 use crate::numbers::Real;
 
-pub(super) const PARAMETER: &str = "length";
-pub(super) const EXPONENT: Option<f64> = None;
+#[derive(Debug)]
+pub(super) struct Drilling;
 
-/// The couple for length = N = 1.
-#[inline(always)]
-pub(super) fn couple<T: Real>(seen: &Kinematics<T>) -> [T; 3] {
-    let ((s, c), sign) = (seen.angle, seen.signs[1]);
-    [-(s * sign), s.splat(0.0), -(c * sign)]
-}
+impl LossLaw for Drilling {
+    const PARAMETER: &str = "length";
+    const RESISTS: Resists = Resists::Drilling;
+    const PRESSES: bool = true;
+    const POWERS: EndPowers = EndPowers { face: [1.5, 0.5], balanced: 0.5, critical: 0.0, upright: 0.0 };
 
-/// The power for length = N = 1.
-#[inline(always)]
-pub(super) fn power<T: Real>(seen: &Kinematics<T>) -> T {
-    seen.signs[1] * seen.drilling()
+    /// The couple for length = N = 1.
+    #[inline(always)]
+    fn couple<T: Real>(seen: &Kinematics<T>) -> [T; 3] {
+        let ((s, c), sign) = (seen.angle, seen.signs[1]);
+        [-(s * sign), s.splat(0.0), -(c * sign)]
+    }
+
+    /// The power for length = N = 1.
+    #[inline(always)]
+    fn power<T: Real>(seen: &Kinematics<T>) -> T {
+        seen.signs[1] * seen.drilling()
+    }
 }

@@ -7,20 +7,27 @@
 //! Sci. 15, 27 (2005); Leine, Arch. Appl. Mech. 79, 1063 (2009). Where the contact point stops, the couple has any
 //! value up to eps N A h/s. A thin disk has theta = (eps tau/sqrt I1)^(2/3) at the time tau before its end.
 
-use super::Kinematics;
+use super::{EndPowers, Kinematics, LossLaw, Resists};
 use crate::numbers::Real;
 
-pub(super) const PARAMETER: &str = "eps";
-pub(super) const EXPONENT: Option<f64> = Some(2.0 / 3.0);
+#[derive(Debug)]
+pub(super) struct DryContour;
 
-/// The couple for eps = N = 1.
-#[inline(always)]
-pub(super) fn couple<T: Real>(seen: &Kinematics<T>) -> [T; 3] {
-    seen.along(seen.radius * seen.signs[0])
-}
+impl LossLaw for DryContour {
+    const PARAMETER: &str = "eps";
+    const RESISTS: Resists = Resists::Contour;
+    const PRESSES: bool = true;
+    const POWERS: EndPowers = EndPowers { face: [-0.5; 2], balanced: 1.5, critical: 1.0, upright: 1.0 };
 
-/// The power for eps = N = 1.
-#[inline(always)]
-pub(super) fn power<T: Real>(seen: &Kinematics<T>) -> T {
-    seen.radius * seen.signs[0] * seen.spin
+    /// The couple for eps = N = 1.
+    #[inline(always)]
+    fn couple<T: Real>(seen: &Kinematics<T>) -> [T; 3] {
+        seen.along(seen.radius * seen.signs[0])
+    }
+
+    /// The power for eps = N = 1.
+    #[inline(always)]
+    fn power<T: Real>(seen: &Kinematics<T>) -> T {
+        seen.radius * seen.signs[0] * seen.spin
+    }
 }

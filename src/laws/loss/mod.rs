@@ -8,7 +8,7 @@
 //! ```
 //! A law that acts through the speed A |psi'| of the contact moves the normal force ahead of the contact along its
 //! path, by Lam/(N s). A distance beyond A has no meaning, so that dry contour friction ends at theta ~ eps. Every law
-//! is linear in its one coefficient, and laws add: any set of laws is eight coefficients, with 0 for an absent law.
+//! is linear in its one coefficient, and laws add: any set of laws is one coefficient for each, with 0 for an absent law.
 //! Which law takes a coin's energy is debated (Moffatt 2000, van den Engh 2000, Bildsten 2002, Leine 2009), and no law
 //! is preferred here.
 //!
@@ -24,6 +24,7 @@ mod boundary_layer;
 mod couples;
 mod drilling;
 mod dry_contour;
+mod law;
 mod rolling_resistance;
 mod viscous_contour;
 
@@ -33,99 +34,193 @@ use crate::error::{Error, within};
 use crate::numbers::Real;
 use crate::numbers::codes::coded;
 use core::ops::Add;
+use couples::Couple;
 pub(crate) use couples::{
     Couples, GRACE, Kinematics, NEAR, SLACK, Ways, going, holds, mirrored, rolling_growth, rounded,
 };
+pub(crate) use law::{EndPowers, LossLaw, Resists, Speed};
 
-coded! {
+/// The enumeration of the laws from the table below, and the way from a law to the type that implements it. The laws are
+/// called by `match`, so that they are inlined in lanes.
+macro_rules! laws {
+    ($(#[$about:meta])* pub enum $Laws:ident {
+        $($(#[$doc:meta])* $Law:ident = $code:literal in $file:ident,)+
+    }) => {
+        coded! {
+            $(#[$about])*
+            pub enum $Laws { $($(#[$doc])* $Law = $code,)+ }
+        }
+
+        impl $Laws {
+            /// Calls `f` for each law in turn. The calls stand one after the other, without a loop that the compiler may
+            /// leave as it is, so that what depends on the law alone is known to it.
+            #[inline(always)]
+            fn each(mut f: impl FnMut(Self)) {
+                $(f(Self::$Law);)+
+            }
+
+            /// The name of the coefficient of this law.
+            pub fn parameter(self) -> &'static str {
+                match self { $(Self::$Law => $file::$Law::PARAMETER,)+ }
+            }
+
+            /// The motion that this law resists.
+            #[inline(always)]
+            pub(crate) const fn resists(self) -> Resists {
+                match self { $(Self::$Law => $file::$Law::RESISTS,)+ }
+            }
+
+            /// Whether this law is dry, and proportional to the normal force.
+            #[inline(always)]
+            pub(crate) const fn presses(self) -> bool {
+                match self { $(Self::$Law => $file::$Law::PRESSES,)+ }
+            }
+
+            /// Whether this law needs a flat face above the table.
+            const fn needs_face(self) -> bool {
+                match self { $(Self::$Law => $file::$Law::NEEDS_FACE,)+ }
+            }
+
+            /// The speed at whose zero this law is not smooth.
+            #[inline(always)]
+            const fn root(self) -> Option<Speed> {
+                match self { $(Self::$Law => $file::$Law::ROOT,)+ }
+            }
+
+            /// How the power of this law goes near the ends of a drift.
+            pub(crate) const fn powers(self) -> EndPowers {
+                match self { $(Self::$Law => $file::$Law::POWERS,)+ }
+            }
+
+            /// The couple for a coefficient of 1, and for N = 1 if the law is dry.
+            #[cfg(test)]
+            fn couple<T: Real>(self, seen: &Kinematics<T>) -> [T; 3] {
+                match self { $(Self::$Law => $file::$Law::couple(seen),)+ }
+            }
+
+            /// The power for a coefficient of 1, and for N = 1 if the law is dry.
+            #[cfg(test)]
+            fn power<T: Real>(self, seen: &Kinematics<T>) -> T {
+                match self { $(Self::$Law => $file::$Law::power(seen),)+ }
+            }
+
+            /// The derivative of the couple along the contour with respect to psi'.
+            #[cfg(test)]
+            fn slope<T: Real>(self, coefficient: T, s: T, radius: T, spin: T) -> T {
+                match self { $(Self::$Law => $file::$Law::slope(coefficient, s, radius, spin),)+ }
+            }
+        }
+
+        /// The sums over all laws are written out, law by law: a loop with a `match` costs lanes and single motions
+        /// up to a tenth of their time.
+        impl<T: Real> Couples<T> {
+            /// The couple of all laws.
+            #[inline(always)]
+            pub fn at(&self, seen: &Kinematics<T>) -> Couple<T> {
+                let zero = seen.spin.splat(0.0);
+                let (mut free, mut pressed) = ([zero; 3], [zero; 3]);
+                $(if self.present[$code] {
+                    let unit = $file::$Law::couple(seen);
+                    let to = if $file::$Law::PRESSES { &mut pressed } else { &mut free };
+                    for i in 0..3 {
+                        to[i] = self.coefficients[$code].mac(unit[i], to[i]);
+                    }
+                })+
+                Couple { free, pressed }
+            }
+
+            /// The power that all laws take under a normal force.
+            #[inline(always)]
+            pub fn power(&self, seen: &Kinematics<T>, normal: T) -> T {
+                let mut power = normal.splat(0.0);
+                $(if self.present[$code] {
+                    let unit = $file::$Law::power(seen);
+                    let unit = if $file::$Law::PRESSES { unit * normal } else { unit };
+                    power = self.coefficients[$code].mac(unit, power);
+                })+
+                power
+            }
+
+            /// The derivative of the couple along the contour with respect to psi'.
+            #[inline(always)]
+            pub fn slope(&self, s: T, radius: T, spin: T) -> T {
+                let mut slope = s.splat(0.0);
+                $(if Law::$Law.is_soft() && self.present[$code] {
+                    slope = slope + $file::$Law::slope(self.coefficients[$code], s, radius, spin);
+                })+
+                slope
+            }
+        }
+    };
+}
+
+// The table: a law, its number, and the file in which the type of the same name implements it. CONTRIBUTING.md says how a
+// law is added.
+laws! {
     /// A law of loss. The number of a law is its index among the coefficients, which are in natural units: delta and length
     /// are in R, so that an arm in metres is divided by the radius.
     pub enum Law {
         /// Dry friction along the contour of the rim, with the power eps N A |psi'|.
-        DryContour = 0,
+        DryContour = 0 in dry_contour,
         /// Viscous friction along the contour of the rim, with the power c (A psi')^2.
-        ViscousContour = 1,
+        ViscousContour = 1 in viscous_contour,
         /// Rolling resistance, with the power delta N sqrt(w_h^2 + w2^2).
-        RollingResistance = 2,
+        RollingResistance = 2 in rolling_resistance,
         /// Drilling friction, with the power length N |w_z|.
-        Drilling = 3,
+        Drilling = 3 in drilling,
         /// Resistance of the air linear in w, with the power b w.w.
-        AirLinear = 4,
+        AirLinear = 4 in air_linear,
         /// Resistance of the air quadratic in w, with the power b2 |w|^3.
-        AirQuadratic = 5,
+        AirQuadratic = 5 in air_quadratic,
         /// A viscous film of air under the face, with the power (pi/4) viscosity psi'^2/s.
-        AirFilm = 6,
+        AirFilm = 6 in air_film,
         /// Boundary layers of the air under the face, with the power k |psi'|^(5/2).
-        BoundaryLayer = 7,
+        BoundaryLayer = 7 in boundary_layer,
     }
 }
 
 /// The number of laws.
-pub const COUNT: usize = 8;
+pub const COUNT: usize = Law::ALL.len();
+
+// The number of a law is its index.
+const _: () = {
+    let mut i = 0;
+    while i < COUNT {
+        assert!(Law::ALL[i] as usize == i, "the table has the laws in the order of their numbers");
+        i += 1;
+    }
+};
 
 impl Law {
-    /// The name of the coefficient of this law.
-    pub fn parameter(self) -> &'static str {
-        match self {
-            Self::DryContour => dry_contour::PARAMETER,
-            Self::ViscousContour => viscous_contour::PARAMETER,
-            Self::RollingResistance => rolling_resistance::PARAMETER,
-            Self::Drilling => drilling::PARAMETER,
-            Self::AirLinear => air_linear::PARAMETER,
-            Self::AirQuadratic => air_quadratic::PARAMETER,
-            Self::AirFilm => air_film::PARAMETER,
-            Self::BoundaryLayer => boundary_layer::PARAMETER,
-        }
-    }
-
     /// The exponent q in theta ~ tau^q of a thin disk, with tau the time that is left; None if the disk never stops.
     pub fn exponent(self) -> Option<f64> {
-        match self {
-            Self::DryContour => dry_contour::EXPONENT,
-            Self::ViscousContour => viscous_contour::EXPONENT,
-            Self::RollingResistance => rolling_resistance::EXPONENT,
-            Self::Drilling => drilling::EXPONENT,
-            Self::AirLinear => air_linear::EXPONENT,
-            Self::AirQuadratic => air_quadratic::EXPONENT,
-            Self::AirFilm => air_film::EXPONENT,
-            Self::BoundaryLayer => boundary_layer::EXPONENT,
-        }
+        // The energy of a thin disk falls as theta, so that tau ~ theta^(1 - p) with P ~ theta^p.
+        let [thin, _] = self.powers().face;
+        (thin < 1.0).then(|| 1.0 / (1.0 - thin))
     }
 
-    /// Whether this law is proportional to the normal force.
+    /// Whether the couple acts along the contour.
     #[inline(always)]
-    pub(crate) const fn presses(self) -> bool {
-        matches!(self, Self::DryContour | Self::RollingResistance | Self::Drilling)
+    pub(crate) const fn is_along(self) -> bool {
+        matches!(self.resists(), Resists::Contour)
     }
 
-    /// The couple for a coefficient of 1, and for N = 1 if the law is proportional to the normal force.
+    /// Whether the couple grows with the speed of the contact along the rim.
     #[inline(always)]
-    fn couple<T: Real>(self, seen: &Kinematics<T>) -> [T; 3] {
-        match self {
-            Self::DryContour => dry_contour::couple(seen),
-            Self::ViscousContour => viscous_contour::couple(seen),
-            Self::RollingResistance => rolling_resistance::couple(seen),
-            Self::Drilling => drilling::couple(seen),
-            Self::AirLinear => air_linear::couple(seen),
-            Self::AirQuadratic => air_quadratic::couple(seen),
-            Self::AirFilm => air_film::couple(seen),
-            Self::BoundaryLayer => boundary_layer::couple(seen),
-        }
+    pub(crate) const fn is_soft(self) -> bool {
+        self.is_along() && !self.presses()
     }
 
-    /// The power for a coefficient of 1, and for N = 1 if the law is proportional to the normal force.
+    /// Whether the couple acts about the axis of the rocking.
     #[inline(always)]
-    fn power<T: Real>(self, seen: &Kinematics<T>) -> T {
-        match self {
-            Self::DryContour => dry_contour::power(seen),
-            Self::ViscousContour => viscous_contour::power(seen),
-            Self::RollingResistance => rolling_resistance::power(seen),
-            Self::Drilling => drilling::power(seen),
-            Self::AirLinear => air_linear::power(seen),
-            Self::AirQuadratic => air_quadratic::power(seen),
-            Self::AirFilm => air_film::power(seen),
-            Self::BoundaryLayer => boundary_layer::power(seen),
-        }
+    pub(crate) const fn tilts(self) -> bool {
+        matches!(self.resists(), Resists::Rolling | Resists::All)
+    }
+
+    /// Whether a face comes down by infinitely many turns under this law, if no law along the contour stops the contact.
+    #[inline(always)]
+    pub(crate) const fn turns_endlessly(self) -> bool {
+        self.presses() && !self.is_along()
     }
 }
 
@@ -171,10 +266,9 @@ impl Losses {
     /// Refuses coefficients outside their range, and the air laws of a face for a ball, which has no face.
     pub fn check_for(&self, body: &Body) -> Result<(), Error> {
         self.check()?;
-        let face =
-            [Law::AirFilm, Law::BoundaryLayer].iter().any(|law| self.coefficients[*law as usize] != 0.0);
+        let face = Law::ALL.iter().any(|law| law.needs_face() && self.coefficients[*law as usize] != 0.0);
         if face && body.is_ball() {
-            let expected = "a body with a flat face above the table, for AirFilm and BoundaryLayer";
+            let expected = "a body with a flat face above the table, which a law of these losses needs";
             return Err(Error::OutOfRange { name: "fillet", value: body.fillet(), expected });
         }
         Ok(())
@@ -185,12 +279,13 @@ impl Losses {
         self.coefficients == [0.0; COUNT]
     }
 
-    /// Whether a face comes down by infinitely many turns: under rolling resistance or drilling friction, if no law along
-    /// the contour stops the contact.
+    /// Whether a face comes down by infinitely many turns: if some law does so and none along the contour stops the
+    /// contact.
     pub(crate) fn turn_endlessly(&self) -> bool {
-        let has = |law: Law| self.coefficients[law as usize] > 0.0;
-        let along = [Law::DryContour, Law::ViscousContour, Law::AirFilm, Law::BoundaryLayer];
-        (has(Law::RollingResistance) || has(Law::Drilling)) && !along.into_iter().any(has)
+        let any = |of: fn(Law) -> bool| {
+            Law::ALL.iter().any(|law| of(*law) && self.coefficients[*law as usize] > 0.0)
+        };
+        any(Law::turns_endlessly) && !any(Law::is_along)
     }
 
     /// The power that is lost in a state under a normal force N, in M g R sqrt(g/R). N is in units of the weight, 1 in

@@ -6,34 +6,42 @@
 //! The law is in Coulomb 1785 and any textbook. It resists rolling along the rim and rocking over it together. A thin
 //! disk has theta = (delta tau)^2/(9 I1) at the time tau before its end, and makes infinitely many turns until then.
 
-use super::Kinematics;
+use super::{EndPowers, Kinematics, LossLaw, Resists, Speed};
 use crate::numbers::Real;
-
-pub(super) const PARAMETER: &str = "delta";
-pub(super) const EXPONENT: Option<f64> = Some(2.0);
 
 /// The speed below which the couple falls to zero with the speed; squares of smaller speeds are rounded away.
 const SLOWEST: f64 = 1e-154;
 
-/// The couple for delta = N = 1; zero for a body that neither rolls nor rocks.
-#[inline(always)]
-pub(super) fn couple<T: Real>(seen: &Kinematics<T>) -> [T; 3] {
-    let (s, c) = seen.angle;
-    if let Some(way) = seen.rocks {
-        return [s.splat(0.0), -way, s.splat(0.0)];
-    }
-    let (rolling, rocking) = (seen.rolling(), seen.w[1]);
-    let speed = power(seen).max(s.splat(SLOWEST));
-    let across = -(rolling / speed);
-    [c * across, -(rocking / speed), -(s * across)]
-}
+#[derive(Debug)]
+pub(super) struct RollingResistance;
 
-/// The power for delta = N = 1.
-#[inline(always)]
-pub(super) fn power<T: Real>(seen: &Kinematics<T>) -> T {
-    let (rolling, rocking) = (seen.rolling(), seen.w[1]);
-    if let Some(way) = seen.rocks {
-        return way * rocking;
+impl LossLaw for RollingResistance {
+    const PARAMETER: &str = "delta";
+    const RESISTS: Resists = Resists::Rolling;
+    const PRESSES: bool = true;
+    const ROOT: Option<Speed> = Some(Speed::Rolling);
+    const POWERS: EndPowers = EndPowers { face: [0.5; 2], balanced: 1.5, critical: 1.0, upright: 1.0 };
+
+    /// The couple for delta = N = 1; zero for a body that neither rolls nor rocks.
+    #[inline(always)]
+    fn couple<T: Real>(seen: &Kinematics<T>) -> [T; 3] {
+        let (s, c) = seen.angle;
+        if let Some(way) = seen.rocks {
+            return [s.splat(0.0), -way, s.splat(0.0)];
+        }
+        let (rolling, rocking) = (seen.rolling(), seen.w[1]);
+        let speed = Self::power(seen).max(s.splat(SLOWEST));
+        let across = -(rolling / speed);
+        [c * across, -(rocking / speed), -(s * across)]
     }
-    rolling.mac(rolling, rocking * rocking).sqrt()
+
+    /// The power for delta = N = 1.
+    #[inline(always)]
+    fn power<T: Real>(seen: &Kinematics<T>) -> T {
+        let (rolling, rocking) = (seen.rolling(), seen.w[1]);
+        if let Some(way) = seen.rocks {
+            return way * rocking;
+        }
+        rolling.mac(rolling, rocking * rocking).sqrt()
+    }
 }

@@ -7,21 +7,32 @@
 //! McDonald, arXiv physics/0008227 (2001). A thin disk has cos theta = exp(-2 c tau/(3 I1)) at the time tau before its
 //! end, and theta = (4 c tau/(3 I1))^(1/2) near the end.
 
-use super::Kinematics;
+use super::{EndPowers, Kinematics, LossLaw, Resists};
 use crate::numbers::Real;
 
-pub(super) const PARAMETER: &str = "c";
-pub(super) const EXPONENT: Option<f64> = Some(1.0 / 2.0);
+#[derive(Debug)]
+pub(super) struct ViscousContour;
 
-/// The couple for c = 1.
-#[inline(always)]
-pub(super) fn couple<T: Real>(seen: &Kinematics<T>) -> [T; 3] {
-    seen.along(seen.radius * seen.radius * seen.spin)
-}
+impl LossLaw for ViscousContour {
+    const PARAMETER: &str = "c";
+    const RESISTS: Resists = Resists::Contour;
+    const POWERS: EndPowers = EndPowers { face: [-1.0; 2], balanced: 3.0, critical: 2.0, upright: 2.0 };
 
-/// The power for c = 1.
-#[inline(always)]
-pub(super) fn power<T: Real>(seen: &Kinematics<T>) -> T {
-    let speed = seen.radius * seen.spin;
-    speed * speed
+    /// The couple for c = 1.
+    #[inline(always)]
+    fn couple<T: Real>(seen: &Kinematics<T>) -> [T; 3] {
+        seen.along(seen.radius * seen.radius * seen.spin)
+    }
+
+    /// The power for c = 1.
+    #[inline(always)]
+    fn power<T: Real>(seen: &Kinematics<T>) -> T {
+        let speed = seen.radius * seen.spin;
+        speed * speed
+    }
+
+    #[inline(always)]
+    fn slope<T: Real>(coefficient: T, _: T, radius: T, _: T) -> T {
+        coefficient * radius * radius
+    }
 }

@@ -126,12 +126,14 @@ fn task(row: &DriftRow) -> Option<DriftGoal> {
 
 /// The goal of a drift to the face, for a body with ell + rho = `height`.
 fn down(Losses { coefficients }: &Losses, height: f64) -> DriftGoal {
-    let has = |law: Law| coefficients[law as usize] > 0.0;
-    let stops = Law::ALL.iter().any(|law| law.exponent().is_some() && has(*law));
-    let drills = has(Law::Drilling) && height > 0.0;
-    let alone = coefficients.iter().filter(|x| **x > 0.0).count() == 1;
-    let power = if alone && !has(Law::BoundaryLayer) { 2.0 } else { 4.0 };
-    DriftGoal { end: End::Face, goal: 0.0, power, finite: stops || drills }
+    let powers = || {
+        let some = Law::ALL.into_iter().filter(|law| coefficients[*law as usize] > 0.0);
+        some.map(|law| law.powers().face[usize::from(height > 0.0)])
+    };
+    let finite = powers().any(|p| p < 1.0);
+    let alone = powers().count() == 1 && powers().all(|p| (2.0 * p).fract() == 0.0);
+    let power = if alone { 2.0 } else { 4.0 };
+    DriftGoal { end: End::Face, goal: 0.0, power, finite }
 }
 
 /// Eight rows as columns.

@@ -14,7 +14,7 @@ use crate::methods::flow::schedule::{STEPS_ALONE, Waiting, follow};
 use crate::methods::rk8;
 use crate::motions::drift::circular::{CirclePoint, Circular, Numbers};
 use crate::motions::drift::rolling::{
-    self, FROM_ABOVE, MOST, Margins, Rolling, STEPS, before_tail, counted, error,
+    self, DRIFT_NUMBERS, FROM_ABOVE, MOST, Margins, Rolling, STEPS, before_tail, counted, error,
 };
 use crate::numbers::in_lanes;
 use crate::numbers::side_by_side::{MOST as LANES, SideBySide, zero};
@@ -23,6 +23,8 @@ use fearless_simd::Level;
 /// Number of margins in a lane: those of a single drift, the beginning of the tail or the end of the
 /// precession, and the inclination at which counting changes to the other end of [0, pi].
 const DRIFT_MARGINS: usize = rolling::DRIFT_MARGINS + 2;
+
+const _: () = assert!(4 + COUNT + DRIFT_NUMBERS <= NUMBERS);
 
 /// The properties that all lanes of a set share.
 #[derive(Clone, Copy, PartialEq)]
@@ -58,9 +60,12 @@ impl<T: SideBySide> Flows<T, 4, DRIFT_MARGINS> for DriftLanes<T> {
 
     #[inline(always)]
     fn of(numbers: &[T; NUMBERS], like: &Self) -> Self {
-        let [ell, i1, i3, fillet, a, b, c, d, e, f, g, h, runs, drills, theta, rate, w3, far, side] =
-            *numbers;
-        let (coefficients, kind) = ([a, b, c, d, e, f, g, h], like.kind);
+        let [ell, i1, i3, fillet, rest @ ..] = *numbers;
+        let kind = like.kind;
+        let (mut coefficients, mut others) = ([ell; COUNT], [ell; DRIFT_NUMBERS]);
+        coefficients.copy_from_slice(&rest[..COUNT]);
+        others.copy_from_slice(&rest[COUNT..COUNT + DRIFT_NUMBERS]);
+        let [runs, drills, theta, rate, w3, far, side] = others;
         let couples = Couples::among(coefficients, kind.present, None);
         let mut of = Circular::new(&Shape::of([ell, i1, i3, fillet]), kind.round, couples);
         of.signs = [runs, drills];
@@ -172,7 +177,7 @@ impl Waiting<4, DRIFT_MARGINS> for Drifts<'_, '_, '_> {
         let mut numbers = [0.0; NUMBERS];
         numbers[..4].copy_from_slice(&[ell, i1, i3, fillet]);
         numbers[4..4 + COUNT].copy_from_slice(&row.losses.coefficients);
-        numbers[4 + COUNT..].copy_from_slice(&task.of.numbers());
+        numbers[4 + COUNT..][..DRIFT_NUMBERS].copy_from_slice(&task.of.numbers());
         let (y, step, patience) = (task.y, task.step, task.left);
         self.inside[k] = Some(task);
         Some(Entry { y, step, numbers, tol: 1.0, until: f64::INFINITY, patience })

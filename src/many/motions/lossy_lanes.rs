@@ -7,8 +7,10 @@ use crate::laws::contact::reduced::Rates;
 use crate::laws::loss::COUNT;
 use crate::methods::flow::lanes::{Flows, NUMBERS};
 use crate::methods::rk8;
-use crate::motions::path::lossy::LossyUnheld;
+use crate::motions::path::lossy::{LOSSY_NUMBERS, LossyUnheld};
 use crate::numbers::side_by_side::SideBySide;
+
+const _: () = assert!(4 + LOSSY_NUMBERS <= NUMBERS);
 
 /// The properties that all lanes of a set share.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -30,7 +32,7 @@ impl<T: SideBySide> LossyLanes<T> {
     pub fn new(zero: T, kind: LossyKind) -> Self {
         let one = zero.splat(1.0);
         let rates = Rates::of(kind.contact, &Shape::of([zero, one, one, zero]), kind.round);
-        Self { kind, free: LossyUnheld::of(rates, [zero; NUMBERS - 5], kind.present) }
+        Self { kind, free: LossyUnheld::of(rates, [zero; LOSSY_NUMBERS], kind.present) }
     }
 }
 
@@ -39,10 +41,12 @@ impl<T: SideBySide> Flows<T, 6, 7> for LossyLanes<T> {
 
     #[inline(always)]
     fn of(numbers: &[T; NUMBERS], like: &Self) -> Self {
-        let [ell, i1, i3, fillet, rest @ .., _] = *numbers;
+        let [ell, i1, i3, fillet, rest @ ..] = *numbers;
         let kind = like.kind;
+        let mut falls = [ell; LOSSY_NUMBERS];
+        falls.copy_from_slice(&rest[..LOSSY_NUMBERS]);
         let rates = Rates::of(kind.contact, &Shape::of([ell, i1, i3, fillet]), kind.round);
-        Self { kind, free: LossyUnheld::of(rates, rest, kind.present) }
+        Self { kind, free: LossyUnheld::of(rates, falls, kind.present) }
     }
 
     #[inline(always)]

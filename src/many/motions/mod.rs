@@ -123,7 +123,7 @@ coded! {
         Lanes = 1,
         /// The first integrals, for one motion at a time.
         Single = 2,
-        /// RK4 with steps of a limited error, where the first integrals lose their digits.
+        /// Steps of eighth order, where the first integrals lose their digits.
         Tolerance = 3,
         /// RK4 with the fixed step.
         Step = 4,

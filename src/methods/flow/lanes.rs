@@ -15,8 +15,9 @@ use crate::methods::rk8::{self, LOOKS};
 use crate::numbers::side_by_side::{MOST, SideBySide, apart};
 use crate::numbers::{Real, here};
 
-/// Greatest number of parameters of a system, such as the shape of a body and the forces on it.
-pub(crate) const NUMBERS: usize = 19;
+/// Greatest number of parameters of a system, such as the shape of a body and the forces on it. A system with more does
+/// not compile.
+pub(crate) const NUMBERS: usize = 32;
 
 /// Equations of motion in lanes, with N numbers, the last of which is the time, and M margins.
 pub(crate) trait Flows<T: SideBySide, const N: usize, const M: usize>: Copy {

@@ -2,10 +2,8 @@
 //!
 //! ```text
 //! distance x from the end,   P ~ x^p,   E' ~ x^e:    time is finite where 1 + e - p > 0
-//! face lands, p    -1/2, -1, 1/2, 1/2 (3/2 if ell + rho = 0), 1, 3/2, -2, -5/4              in the order of the laws
-//! balanced, p      3/2, 3, 3/2, 1/2, 1, 3/2, 3, 15/4            Omega ~ x^(1/2), psi' ~ x^(3/2)
-//!   critical body  1, 2, 1, 0, 0, 0, 2, 5/2                     Omega stays, psi' ~ x
-//! stands, p        1, 2, 1, 0, 0, 0, -1, 0   and e = 1          a ball at its pole: A and s vanish
+//! p                  of a law at each end: `POWERS` in its file in `laws::loss`
+//! e = 1 where a ball stands at its pole, else 0
 //! ```
 //! The energy falls during a drift, so that the inclination moves in one direction until the branch ends or the energy
 //! is least. If several laws act, the smallest p decides. The powers are the leading ones of the terms of `branch`.
@@ -14,7 +12,7 @@
 
 use super::branch::Exact;
 use crate::laws::body::Body;
-use crate::laws::loss::{COUNT, Losses};
+use crate::laws::loss::{Law, Losses};
 use crate::numbers::Sum;
 use crate::numbers::codes::coded;
 use crate::states::steady;
@@ -104,16 +102,55 @@ impl Goal {
     fn at(body: &Body, losses: &Losses, (end, theta): (End, Sum<f64>)) -> Self {
         let critical = body.excess() == 0.0;
         let height = if theta.hi == 0.0 { body.ell() + body.fillet() } else { body.fillet() - body.ell() };
-        let powers: [f64; COUNT] = match end {
-            End::Face => [-0.5, -1.0, 0.5, if height == 0.0 { 1.5 } else { 0.5 }, 1.0, 1.5, -2.0, -1.25],
-            End::Balanced if critical => [1.0, 2.0, 1.0, 0.0, 0.0, 0.0, 2.0, 2.5],
-            End::Balanced => [1.5, 3.0, 1.5, 0.5, 1.0, 1.5, 3.0, 3.75],
-            End::Upright => [1.0, 2.0, 1.0, 0.0, 0.0, 0.0, -1.0, 0.0],
-            _ => [0.0; COUNT],
+        let exponent = |law: Law| match (end, law.powers()) {
+            (End::Face, of) => of.face[usize::from(height != 0.0)],
+            (End::Balanced, of) if critical => of.critical,
+            (End::Balanced, of) => of.balanced,
+            (End::Upright, of) => of.upright,
+            _ => 0.0,
         };
         let rise = if end == End::Upright || end == End::Lowest { 2.0 } else { 1.0 };
-        let some = powers.iter().zip(losses.coefficients).filter(|(_, x)| *x > 0.0);
-        let power = rise - some.fold(f64::INFINITY, |least, (p, _)| least.min(*p));
+        let some = Law::ALL.into_iter().filter(|law| losses.coefficients[*law as usize] > 0.0);
+        let power = rise - some.fold(f64::INFINITY, |least, law| least.min(exponent(law)));
         Self { end, theta, finite: power > 0.0, power }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The exponent of the power of a law in steady states at the distance x from an end.
+    fn exponent(law: Law, body: &Body, at: impl Fn(f64) -> f64) -> f64 {
+        let [far, near] = [1e-4, 1e-5].map(|x| {
+            let y = steady::state(body, at(x)).unwrap();
+            Losses::of(law, 1.0).power(body, &y, 1.0)
+        });
+        (far / near).log10()
+    }
+
+    #[test]
+    fn the_power_of_every_law_goes_near_every_end_as_its_file_says() {
+        let body = |ell: f64, i1: f64, i3: f64| Body::new(ell, i1, i3).unwrap();
+        let (coin, disk, can) = (body(0.0, 0.25, 0.5), body(0.5, 0.33, 0.5), body(2.5, 2.33, 0.5));
+        let (critical, ball) = (body(1.0, 0.5, 0.5), Body::ball(-0.3, 0.4, 0.38).unwrap());
+        for law in Law::ALL {
+            let of = law.powers();
+            let near = |body: &Body| exponent(law, body, |x| x);
+            let about = |body: &Body| exponent(law, body, |x| body.theta_balance() - x);
+            let all = [
+                ("face", of.face[0], near(&coin)),
+                ("face", of.face[1], near(&disk)),
+                ("balanced", of.balanced, about(&can)),
+                ("critical", of.critical, about(&critical)),
+                ("upright", of.upright, near(&ball)),
+            ];
+            for (end, stated, found) in all {
+                assert!(
+                    (stated - found).abs() < 0.02,
+                    "{law:?}: POWERS, {end}: {stated}, and it goes as {found}"
+                );
+            }
+        }
     }
 }

@@ -15,7 +15,7 @@ use super::ends::End;
 use super::tail::Tail;
 use crate::error::Error;
 use crate::laws::body::Body;
-use crate::laws::loss::{COUNT, Couples, Losses};
+use crate::laws::loss::{COUNT, Couples, Law, Losses, Resists};
 use crate::laws::state::State;
 use crate::methods::flow::{Flow, FlowPlace, Flown, PATIENCE, Steps, TOIL, TakenStep};
 use crate::methods::rk8;
@@ -49,6 +49,8 @@ pub(crate) const MOST: u64 = 5000;
 /// Lengths in x of the first step and of the longest step.
 pub(crate) const STEPS: [f64; 2] = [0.02, 1.5];
 
+/// How many numbers [`Rolling::numbers`] gives to lanes.
+pub(crate) const DRIFT_NUMBERS: usize = 7;
 /// Number of margins that a drift must keep positive.
 pub(crate) const DRIFT_MARGINS: usize = 4;
 
@@ -225,7 +227,7 @@ impl Rolling<'_> {
     }
 
     /// The numbers that a lane needs beside the body and its losses.
-    pub fn numbers(&self) -> [f64; 7] {
+    pub fn numbers(&self) -> [f64; DRIFT_NUMBERS] {
         let ([runs, drills], [theta, rate, w3, _]) = (self.of.signs, self.start);
         [runs, drills, theta, rate, w3, self.far, self.margins.side]
     }
@@ -362,15 +364,28 @@ impl<T: Real> Margins<T> {
     /// The margins under losses with these coefficients, up to an inclination, from the inclination `start`.
     #[inline(always)]
     pub fn of(coefficients: &[T; COUNT], theta_end: T, start: T) -> Self {
-        let [dry, viscous, rolling, drilling, _, _, film, layer] = *coefficients;
         let [zero, one] = [0.0, 1.0].map(|x| start.splat(x));
-        let firm = dry + viscous + rolling + drilling + film + layer;
+        let [mut dry, mut drilling, mut firm, mut along] = [zero; 4];
+        for law in Law::ALL {
+            let x = coefficients[law as usize];
+            if law.presses() {
+                let to = if law.resists() == Resists::Drilling { &mut drilling } else { &mut dry };
+                *to = *to + x;
+            }
+            // The face lands in a finite time under a law whose power falls less fast than theta.
+            if law.powers().face[1] < 1.0 {
+                firm = firm + x;
+            }
+            if law.is_along() {
+                along = along + x;
+            }
+        }
         Self {
             // A body without a second rim gets a limit above pi, which it never reaches.
             side: theta_end.select_lt(one.splat(PI), theta_end, one.splat(4.0)),
-            dry: [dry + rolling, drilling].map(|x| zero.select_lt(x, one, zero)),
+            dry: [dry, drilling].map(|x| zero.select_lt(x, one, zero)),
             airy: zero.select_lt(firm, zero, one),
-            steady: zero.select_lt(dry + viscous + film + layer, zero, one),
+            steady: zero.select_lt(along, zero, one),
             last: zero.select_lt(firm, one.splat(LAST), start * one.splat(FACE_LANDED)),
         }
     }

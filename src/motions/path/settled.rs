@@ -140,3 +140,23 @@ fn balanced(losses: &Couples<f64>, s: f64, radius: f64, push: f64) -> f64 {
     }
     way * z * z
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::laws::loss::{Couples, Law, Losses};
+
+    #[test]
+    fn the_balance_knows_every_law_along_the_contour() {
+        for law in Law::ALL {
+            let losses = Couples::of(&Losses::of(law, 0.3), |x| x);
+            let slope = |s: f64, spin: f64| losses.slope(s, 0.9, spin);
+            let known = law == Law::BoundaryLayer || slope(0.1, 1.0) == slope(0.1, 2.0);
+            assert!(
+                known,
+                "{law:?}: `balanced` and `lag` in path/settled.rs know one power of psi' but the first"
+            );
+            let known = law == Law::AirFilm || slope(0.1, 1.0) == slope(0.2, 1.0);
+            assert!(known, "{law:?}: `balance` in path/settled.rs knows one slope that depends on theta");
+        }
+    }
+}

@@ -3,6 +3,7 @@
 use super::apart;
 use crate::common;
 use spincyl::drift::{Centre, DriftOutput, DriftStarts, INVALID, Question, WIDTH};
+use spincyl::loss::COUNT;
 use spincyl::{Body, State, steady};
 
 /// Columns of random starts; one in fifty has a negative coefficient.
@@ -10,7 +11,7 @@ struct Many {
     centre: Centre,
     bodies: [Vec<f64>; 6],
     states: [Vec<f64>; 4],
-    losses: [Vec<f64>; 8],
+    losses: [Vec<f64>; COUNT],
 }
 
 impl Many {
@@ -44,8 +45,8 @@ impl Many {
             for (column, x) in all.states.iter_mut().zip(common::numbers(&y)) {
                 column.push(x);
             }
-            let first = (8.0 * r()) as usize;
-            let second = (8.0 * r()) as usize;
+            let first = (COUNT as f64 * r()) as usize;
+            let second = (COUNT as f64 * r()) as usize;
             for (i, column) in all.losses.iter_mut().enumerate() {
                 let here = i == first || (i == second && second > 3);
                 column.push(if here { 10f64.powf(-5.0 * r()) } else { 0.0 });

@@ -23,6 +23,6 @@ fn apart(a: f64, b: f64) -> f64 {
 
 /// The laws that a body can have: without a face there is no air film.
 fn laws_of(body: &Body) -> impl Iterator<Item = Law> + use<> {
-    let face = body.rim() > 0.0;
-    Law::ALL.into_iter().filter(move |law| face || !matches!(law, Law::AirFilm | Law::BoundaryLayer))
+    let body = *body;
+    Law::ALL.into_iter().filter(move |law| Losses::of(*law, 1.0).check_for(&body).is_ok())
 }

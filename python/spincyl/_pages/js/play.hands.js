@@ -14,7 +14,7 @@ const KNOBS = [
   { name: "contact", text: "table", choices: { rolling: "rubber: it rolls", smooth: "ice: no friction", coulomb: "dry friction μ", viscous: "wet: friction c u" } },
   { name: "mu", text: "friction μ", low: 0, high: () => 1, ...same, told: x => decimal(x) },
   { name: "c", text: "friction c", low: 0, high: () => 1, ...same, told: x => decimal(x) },
-  { name: "law", text: "losses", choices: { none: "none", "dry-contour": "dry contour", "viscous-contour": "viscous contour", "rolling-resistance": "rolling resistance", drilling: "drilling", "air-linear": "air, linear", "air-quadratic": "air, quadratic", "air-film": "air film", "boundary-layer": "boundary layer" } },
+  { name: "law", text: "losses", choices: LAWS },
   { name: "loss", text: "their coefficient", low: -7, high: () => -0.5, ...power, told: x => x.toExponential(1) },
 ];
 if (!rubs) {

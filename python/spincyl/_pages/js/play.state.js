@@ -7,7 +7,8 @@ const RANGE = {
   precession: [-20, 20], mu: [0, 5], c: [0, 20], loss: [0, 1], until: [1, 2000], slow: [1, 1000], t: [0, 1e9], expose: [0, 3], radius: [1e-6, 1e3], mass: [1e-9, 1e9], gravity: [1e-6, 1e6], twist: [-0.3, 0.3], spin: [-50, 50],
 };
 const CONTACTS = ["rolling", "smooth", "coulomb", "viscous"]; // in the order of the codes of the core
-const LAWS = ["none", "dry-contour", "viscous-contour", "rolling-resistance", "drilling", "air-linear", "air-quadratic", "air-film", "boundary-layer"];
+// the laws of loss in the order of the core, with their words
+const LAWS = { none: "none", "dry-contour": "dry contour", "viscous-contour": "viscous contour", "rolling-resistance": "rolling resistance", drilling: "drilling", "air-linear": "air, linear", "air-quadratic": "air, quadratic", "air-film": "air film", "boundary-layer": "boundary layer" };
 // i1 and i3 belong to a body that is no tube, end is the inclination at which it lands, w is a state that is
 // not steady: w1, w2, w3 and the slip. radius, mass and gravity belong to a measured body, in metres,
 // kilograms and m/s^2. stone has the semi-axes of a rattleback in metres, twist is in radians and spin in
@@ -46,7 +47,7 @@ function parsed(hash) {
   for (const [name, text] of new URLSearchParams(hash.replace(/^#/, ""))) {
     if (name === "figure") continue;
     const numbers = text.split(",").map(Number), [low, high] = RANGE[name] || [];
-    if (name === "contact" ? CONTACTS.includes(text) : name === "law" && LAWS.includes(text)) found[name] = text;
+    if (name === "contact" ? CONTACTS.includes(text) : name === "law" && Object.hasOwn(LAWS, text)) found[name] = text;
     else if (name === "w" && numbers.length === 5 && numbers.every(Number.isFinite)) found.w = numbers;
     else if (name === "stone" && rubs && numbers.length === 3 && numbers.every(x => x > 1e-6 && x < 1e3)) found.stone = numbers;
     else if (low !== undefined && text !== "" && Number.isFinite(numbers[0])) {
@@ -74,7 +75,7 @@ function embody() {
   return !code;
 }
 const lossy = () => s.law !== "none";
-function damped() { core.losses(...LAWS.slice(1).map(name => name === s.law ? s.loss : 0)); }
+function damped() { const law = Object.keys(LAWS).indexOf(s.law) - 1; core.losses(Math.max(law, 0), law < 0 ? 0 : s.loss); }
 
 // number of stored rows of an integrated motion, which can be read again at no cost; duration of an exact
 // motion

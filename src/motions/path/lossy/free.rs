@@ -131,7 +131,7 @@ impl<T: Real> LossyUnheld<T> {
         let [normal, along, across] = acted.force;
         let held = grip(self.mu, normal, along * along + across * across);
         let held = self.mu.select_lt(one.splat(f64::MAX), held, one);
-        let endless = losses.has(Law::RollingResistance) || losses.has(Law::Drilling);
+        let endless = losses.turn_endlessly();
         // This margin vanishes at ten times the sine of theta of a landing.
         let i1 = self.law.rates.reduced().shape.i1;
         let mut far = s * one.splat(0.1) - lands_at(i1, (s, c), [w[0], w2], acted.w[1], endless);

@@ -81,7 +81,7 @@ impl LossyFlow {
         let (precession, w) = self.turning(y);
         let one = s.splat(1.0);
         let acted = law.at((s, c), precession, w, self.held(s));
-        let endless = self.hold == Hold::No && (self.has(Law::RollingResistance) || self.has(Law::Drilling));
+        let endless = self.hold == Hold::No && self.law.losses.turn_endlessly();
         let face = if self.ball {
             one
         } else {
