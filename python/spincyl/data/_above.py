@@ -338,7 +338,7 @@ def _turning(t: Floats, between: Floats) -> tuple[float, float, Floats]:
         expected = direction[k] + slope * gap
         off = np.angle(between[k + 1] * np.exp(-1j * expected))
         direction[k + 1] = expected + off
-        if gap > 3 * np.median(gaps):  # fit the slope to all points before a gap
+        if gap > 3 * np.median(gaps):  # refit the slope to the points before the gap
             slope = float(np.polyfit(t[: k + 1], direction[: k + 1], 1)[0]) if k > 3 else slope
     table = t - t.mean()
     squares = float(table @ table)

@@ -49,7 +49,7 @@ aim = (m, p) => {
   return [0, 1].map(k => (Math.min(...places.map(x => x[k])) + Math.max(...places.map(x => x[k]))) / 2).concat(m.middle[2]);
 };
 
-// under the slider a line for each motion, red while the body slips
+// under the slider a line for each motion with phases, red while the body slips
 {
   const slider = $("time"), line = document.createElement("div"), share = t => 100 * Math.min(Math.max((t - first) / (last - first), 0), 1);
   line.id = "line";
