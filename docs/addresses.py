@@ -1,18 +1,18 @@
-"""The call in Python that shows what an address of the page to play with tells, such as "ell=2.5&theta=1.3".
+"""The Python call for the state in an address of the live page, such as "ell=2.5&theta=1.3".
 
-docs/play.md has the words of an address.
+docs/play.md lists the words of an address.
 """
 
 from urllib.parse import parse_qsl
 
 import spincyl as sc
 
-#: words of how the page is looked at, which the call leaves to the hand
+#: words about the view of the page, which have no argument in Python
 LOOKS = {"expose", "t"}
 
 
 def called(address: str) -> str:
-    """The call, in lines."""
+    """The call, as lines of code."""
     words = dict(parse_qsl(address, keep_blank_values=True, strict_parsing=True))
     for word in LOOKS & words.keys():
         del words[word]
@@ -23,7 +23,7 @@ def called(address: str) -> str:
 
 
 def number(x: float) -> str:
-    """A number as it is typed."""
+    """A number with six digits."""
     return f"{x:.6g}"
 
 
@@ -33,12 +33,12 @@ def call(name: str, *given: str, **named: str | None) -> str:
 
 
 def body_of_revolution(words: dict[str, str]) -> str:
-    """The call of `sc.play`; takes the words that it tells from the others."""
+    """The call of `sc.play`; removes the words that it uses from `words`."""
     sizes = {name: float(words[name]) for name in ("radius", "mass", "gravity") if name in words}
     size = sc.Scale(**sizes) if sizes else None
     body, theta, kick = _body(words), words.pop("theta"), words.pop("kick", None)
     law, table, first = _loss(words, size), _table(words, size), ""
-    # A coefficient in SI is one of this body.
+    # A coefficient in SI belongs to a body of known size.
     if any(told and "scale=sized" in told for told in (law, table)):
         first, body = f"sized = {body}\n", "sized"
     state = None
@@ -106,7 +106,7 @@ def _loss(words: dict[str, str], size: sc.Scale | None) -> str | None:
 
 
 def stone(words: dict[str, str]) -> str:
-    """The motion of a rattleback, as the page follows it: no page in Python begins with one."""
+    """The code for the motion of a rattleback as the page follows it; `sc.play` cannot start with a stone."""
     axes, twist, spin = words.pop("stone"), words.pop("twist"), words.pop("spin")
     slow = words.pop("slow", None)
     start = f"hertz={spin} / (2 * np.pi), pitch=np.radians(0.02), roll=np.radians(0.02)"

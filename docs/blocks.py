@@ -1,6 +1,6 @@
-"""The pages as they are written: prose, and between it blocks in fences, each of a kind.
+"""Pages as written: prose, and fenced blocks of several kinds.
 
-The pages of Sphinx (conf.py), the notebooks (notebooks.py) and the tests read them by this one reader.
+Sphinx (conf.py), the notebooks (notebooks.py) and the tests all use this reader.
 """
 
 import ast
@@ -12,9 +12,9 @@ from typing import NamedTuple
 DOCS = Path(__file__).parent
 ROOT = DOCS.parent
 FENCE = re.compile(r"^```(\S+)(?: ([^\n]*))?\n(.*?)^```$", re.M | re.S)
-#: the kinds of blocks whose code runs
+#: kinds of blocks with code that runs
 RUNS = ("python", "{plot}", "{live}")
-#: how figures look that a page draws
+#: style of the figures in pages
 STYLE = {
     "axes.titlesize": "medium",
     "figure.constrained_layout.use": True,
@@ -25,35 +25,35 @@ STYLE = {
 
 
 class Block(NamedTuple):
-    """A block in a fence, or the prose between two of them."""
+    """A fenced block, or the prose between two of them."""
 
-    kind: str  # what the fence begins with, such as python, text or {plot}; "" is prose
-    words: str  # what stands beside the kind
-    text: str  # what stands in the fence, or the prose
-    source: str  # all of it as it is written
+    kind: str  # first word of the fence, such as python, text or {plot}; "" for prose
+    words: str  # rest of the fence's line
+    text: str  # content of the fence, or the prose
+    source: str  # the whole block as written
 
 
 class Live(NamedTuple):
-    """A figure that computes, of a block of the kind {live}."""
+    """An interactive figure, from a block of the kind {live}."""
 
-    shows: str  # which part of the page to play with
-    address: str  # its state, as it stands in the address of that page
+    shows: str  # name of the part of the live page
+    address: str  # state of the page, as in its address
     caption: str
-    code: str  # draws the picture that stands in its place where nothing can compute
+    code: str  # draws the picture that replaces the figure where nothing can compute
 
 
 class Scene(NamedTuple):
-    """A section of the gallery: a file of examples/, and what is said of it."""
+    """A section of the gallery: a file of examples/, and its description."""
 
     path: str
     title: str
     prose: str
-    picture: str  # what is to be seen on it
-    said: str  # what the file prints
+    picture: str  # description of the picture
+    said: str  # output of the file
 
 
 def blocks(text: str) -> list[Block]:
-    """All of a page, in its order."""
+    """All blocks of a page, in order."""
     found, end = [], 0
     for fence in FENCE.finditer(text):
         found.append(Block("", "", text[end : fence.start()], text[end : fence.start()]))
@@ -67,22 +67,22 @@ def blocks(text: str) -> list[Block]:
 
 
 def of_kind(text: str, *kinds: str) -> list[Block]:
-    """Those of a page that are of these kinds."""
+    """The blocks of a page that are of these kinds."""
     return [block for block in blocks(text) if block.kind in kinds]
 
 
 def prose(text: str) -> str:
-    """A page without its blocks."""
+    """A page without its fenced blocks."""
     return "".join(block.text for block in of_kind(text, ""))
 
 
 def exchanged(text: str, kind: str, new: Callable[[Block], str]) -> str:
-    """A page with others in the place of all blocks of a kind."""
+    """A page in which every block of a kind is replaced."""
     return "".join(new(block) if block.kind == kind else block.source for block in blocks(text))
 
 
 def printed(all_blocks: Iterable[Block]) -> list[tuple[Block, str | None]]:
-    """Blocks, each with what it prints, which the page has as a block of text below its code."""
+    """Blocks, each with the output that the page shows in a block of text below the code, or None."""
     found: list[tuple[Block, str | None]] = []
     last = None
     for block in all_blocks:
@@ -97,7 +97,7 @@ def printed(all_blocks: Iterable[Block]) -> list[tuple[Block, str | None]]:
 
 
 def live(block: Block) -> Live:
-    """The figure that computes of a block."""
+    """The interactive figure of a block."""
     shows, address = block.words.split()
     caption = ast.get_docstring(ast.parse(block.text), clean=False)
     if caption is None:

@@ -1,18 +1,18 @@
-"""The code of figures, as cells of a notebook have it: each leaves the names that the text works with."""
+"""The code of figures as cells of a notebook, so that each leaves the names that the text uses."""
 
 import ast
 from textwrap import indent
 
 
 def quiet(code: str) -> str:
-    """Code that draws; what its last line gives is not to be printed below the figure."""
+    """Code that draws, with a semicolon so that the notebook does not print the value of its last line."""
     return f"{code.strip()};" if isinstance(ast.parse(code).body[-1], ast.Expr) else code.strip()
 
 
 def apart(code: str, before: list[str], after: list[str]) -> str:
-    """Code of a figure, in a function if it would change a name that is set before it and read after it.
+    """The code of a figure, wrapped in a function if it would change a name that is used later.
 
-    On a page a figure is drawn by itself; in a notebook it shares its names with all blocks.
+    On a page a figure is drawn by itself; in a notebook it shares names with all other blocks.
     """
     known = {name for text in before for name in bound(ast.parse(text))}
     needed = {name for text in before for name in in_functions(text)}
@@ -26,7 +26,7 @@ def apart(code: str, before: list[str], after: list[str]) -> str:
 
 
 def bound(tree: ast.AST) -> set[str]:
-    """The names that code sets, those of modules left out."""
+    """The names that code sets, without those of imports."""
     stored = {x.id for x in ast.walk(tree) if isinstance(x, ast.Name) and isinstance(x.ctx, ast.Store)}
     return stored | {x.name for x in ast.walk(tree) if isinstance(x, ast.FunctionDef | ast.ClassDef)}
 
@@ -37,11 +37,11 @@ def read(tree: ast.AST) -> set[str]:
 
 
 def asked(code: str) -> set[str]:
-    """The names that code reads before it has set them."""
+    """The names that code reads before it sets them."""
     free: set[str] = set()
     has: set[str] = set()
     for line in ast.parse(code).body:
-        # the value of an assignment is read first; a loop sets its names before it reads them
+        # an assignment reads its value first; a loop sets its names before it reads them
         own = set() if isinstance(line, ast.Assign | ast.AugAssign) else bound(line)
         free |= read(line) - has - own
         has |= bound(line)

@@ -1,4 +1,4 @@
-"""The pages: Sphinx reads Markdown, runs every figure, and makes the three-dimensional pages anew."""
+"""Sphinx configuration: reads Markdown, runs every figure, and makes the three-dimensional pages anew."""
 
 import os
 import sys
@@ -38,7 +38,7 @@ extensions = [
     "numpydoc",
     "matplotlib.sphinxext.plot_directive",
 ]
-# The pages of others are asked for only where this is set: ours have to be built without a network, too.
+# Other sites are read only if this variable is set, since the docs have to build without a network.
 LINKS = "SPINCYL_LINKS" in os.environ
 OTHERS = {
     "dask": "https://docs.dask.org/en/stable",
@@ -65,22 +65,22 @@ pygments_style, pygments_dark_style = "friendly", "monokai"
 
 myst_heading_anchors = 3
 myst_enable_extensions = ["colon_fence", "dollarmath"]
-# A link that sets the figure of its section, or else opens the page to play with in that state.
+# A link that sets the figure of its section, or opens the live page in that state.
 myst_url_schemes = {name: None for name in ("http", "https", "mailto", "ftp")} | {
     "live": {"url": "_static/play.html#{{path}}", "classes": ["live"]}
 }
-myst_fence_as_directive = ["math"]  # which is how other readers of Markdown have it, too
-# one script, beside the pages, that fetches nothing: its menu would
+myst_fence_as_directive = ["math"]  # so that other readers of Markdown show the formulas, too
+# one script beside the pages; without the menu it loads nothing else
 mathjax_path = "mathjax.js"
 mathjax3_config = {
     "options": {"enableMenu": False},
-    "tex": {"packages": {"[-]": ["noerrors", "noundefined"]}},  # what is no formula is to be seen
+    "tex": {"packages": {"[-]": ["noerrors", "noundefined"]}},  # a faulty formula must be visible
 }
-autosummary_generate = False  # numpydoc brings it
+autosummary_generate = False  # numpydoc does this
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"  # the docstrings say more
 numpydoc_show_class_members = False
-# The types of parameters lead to what they are; what nobody knows stays as it is.
+# Types of parameters link to their documentation; unknown ones stay plain text.
 numpydoc_xref_param_type = True
 numpydoc_xref_ignore = "all"
 numpydoc_xref_aliases = {
@@ -103,7 +103,7 @@ plot_working_directory = str(HERE.parent)
 
 
 def pages(folder: Path) -> None:
-    """The motions that the pages show, each as a page of its own."""
+    """Save the motions that the pages show, each as a page."""
     folder.mkdir(exist_ok=True)
     pipe, disk = sc.Body.tube(6.0, bore=0.8), sc.Body.solid(0.375)
     state = pipe.steady(np.radians(89.5))
@@ -117,23 +117,23 @@ def pages(folder: Path) -> None:
 
 
 def mathjax(folder: Path) -> None:
-    """MathJax as its package has it, to be served with the pages."""
+    """Copy MathJax from its package beside the pages."""
     package = find_spec("sphinx-mathjax-offline")
     assert package and package.origin, "pip install --group docs"
     copyfile(Path(package.origin).parent / "static" / "mathjax" / "tex-svg-full.js", folder / mathjax_path)
-    # a formula as high as it is, without a bar to scroll it by
+    # the full height of a formula, without a scroll bar
     (folder / html_css_files[0]).write_text("div.math { overflow-y: hidden; padding-block: 0.3em; }\n")
 
 
 def formulas(_app: Any, doctree: nodes.document) -> None:
-    """Hand formulas on as they are written, with their numbers."""
+    """Pass formulas on as written, with their numbers."""
     for formula in doctree.findall(nodes.math_block):
         formula["no-wrap"] = True
         formula[:] = [nodes.Text(rf"\[{formula.astext()}\]")]
 
 
 def plots(_app: Any, name: str, source: list[str]) -> None:
-    """Hand figures on to matplotlib's directive, which reads reStructuredText only."""
+    """Turn figures into matplotlib's directive, which reads reStructuredText only."""
     number = count(1)
 
     def handed_on(block: Block) -> str:
@@ -144,7 +144,7 @@ def plots(_app: Any, name: str, source: list[str]) -> None:
 
 
 def noted(_app: Any, name: str, source: list[str]) -> None:
-    """The note with its numbers, and a link to its PDF if `make note` has made one."""
+    """Fill the numbers of the note, and link to its PDF if `make note` has made one."""
     if name == f"note/{note.TEXT.stem}":
         source[0] = note.KEPT.read_text("utf-8") if note.is_made() else note.filled(source[0])
         if (printed := note.MADE / f"{note.TEXT.stem}.pdf").exists():
@@ -152,10 +152,10 @@ def noted(_app: Any, name: str, source: list[str]) -> None:
 
 
 def live(_app: Any, name: str, source: list[str]) -> None:
-    """Figures that compute: the code of a picture below its caption, and the state of the page in its place.
+    """Interactive figures: the code of the picture below its caption, and the state for the live page.
 
-    All figures of the site share two pages: one that knows friction and losses, where a figure or a link asks
-    for them, and a smaller one.
+    All figures of the site share two live pages: one with friction and losses, for pages with a figure or
+    link that needs them, and a smaller one.
     """
     number = count(1)
     friction = ("contact=coulomb", "contact=viscous", "law=")
@@ -178,7 +178,7 @@ def live(_app: Any, name: str, source: list[str]) -> None:
 
 
 def sources(_app: Any, _name: str, source: list[str]) -> None:
-    """Files of the repository as they are, folded, each with its notebook."""
+    """Show source files in folded blocks, each with a link to its notebook."""
 
     def folded(block: Block) -> str:
         return f"""```{{raw}} html
@@ -198,25 +198,25 @@ def sources(_app: Any, _name: str, source: list[str]) -> None:
 
 
 def link(name: str) -> str:
-    """A link to a notebook, in HTML."""
+    """A link to a notebook, as HTML."""
     return f'<p class="notebook"><a href="notebooks/{name}.ipynb" download>As a notebook</a></p>'
 
 
 def linked(_app: Any, name: str, source: list[str]) -> None:
-    """A link to its notebook below the title of each page that has one."""
+    """Add a link to the notebook below the title of each page that has one."""
     if name in notebooks.pages():
         title, rest = source[0].split("\n", 1)
         source[0] = f"{title}\n\n```{{raw}} html\n{link(name)}\n```\n{rest}"
 
 
 def made(app: Any, failed: Exception | None) -> None:
-    """The notebooks, in a folder beside the pages."""
+    """Write the notebooks to a folder beside the pages."""
     if failed is None and app.builder.format == "html":
         notebooks.written(Path(app.outdir) / "notebooks", "..")
 
 
 def fields(app: Any, env: Any) -> list[str]:
-    """Attributes that a class tells of itself, such as `Motion.theta`, as objects that lead to the class."""
+    """Register attributes that a class documents itself, such as `Motion.theta`, as targets of links."""
     known = env.get_domain("py").objects
     for name, entry in list(known.items()):
         kind: Any = sc
@@ -230,7 +230,7 @@ def fields(app: Any, env: Any) -> list[str]:
 
 
 def setup(app: Any) -> None:
-    """Sphinx calls this."""
+    """Connect the functions above to Sphinx."""
     app.connect("env-updated", fields)
     app.connect("source-read", plots)
     app.connect("source-read", live)

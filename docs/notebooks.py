@@ -33,7 +33,7 @@ from blocks import (
 )
 from cells import apart, quiet
 
-#: blocks that only Sphinx can make
+#: blocks that only Sphinx can show
 ONLY_SPHINX = ("{eval-rst}", "{toctree}")
 LINK = re.compile(r"(!?)\[((?:[^\[\]]|\[[^\[\]]*\])*)\]\(([^)\s]+)\)")
 MAIN = 'if __name__ == "__main__":\n'
@@ -41,7 +41,7 @@ KERNEL = {"display_name": "Python 3", "language": "python", "name": "python3"}
 
 
 def page(name: str) -> str:
-    """A page as it is written."""
+    """The text of a page."""
     return (DOCS / f"{name}.md").read_text("utf-8")
 
 
@@ -53,9 +53,9 @@ def pages() -> tuple[str, ...]:
 
 
 class Notebook:
-    """The cells of a notebook, one after the other.
+    """The cells of a notebook in order.
 
-    `built` is the folder of the built docs, as it is seen from the folder of the notebooks.
+    `built` is the path of the built docs relative to the folder of the notebooks.
     """
 
     def __init__(self, name: str, built: str) -> None:
@@ -63,7 +63,7 @@ class Notebook:
         self.cells: list[dict[str, Any]] = []
 
     def text(self, markdown: str) -> None:
-        """Add prose, a cell for each section of it."""
+        """Add prose, with a cell for each section."""
         for part in re.split(r"^(?=##+ )", markdown, flags=re.M):
             if part.strip():
                 self._section(re.sub(r"\n{3,}", "\n\n", part.strip()))
@@ -71,11 +71,11 @@ class Notebook:
     def _section(self, markdown: str) -> None:
         pictures: dict[str, Any] = {}
         words = LINK.sub(lambda link: self._link(link, pictures), markdown)
-        words = re.sub(r"\{[\w:+-]+\}(?=`)", "", words)  # what Sphinx makes of a name
+        words = re.sub(r"\{[\w:+-]+\}(?=`)", "", words)  # roles of Sphinx
         self._add("markdown", words, **({"attachments": pictures} if pictures else {}))
 
     def code(self, code: str, said: str | None = None) -> None:
-        """Add code, with what it prints."""
+        """Add code and its output."""
         name = {"output_type": "stream", "name": "stdout"}
         outputs = [] if said is None else [name | {"text": said.splitlines(keepends=True)}]
         self._add("code", code.strip(), execution_count=None, outputs=outputs)
@@ -85,7 +85,7 @@ class Notebook:
         self.cells.append(named | {"source": source.splitlines(keepends=True)} | more)
 
     def _link(self, link: re.Match[str], pictures: dict[str, Any]) -> str:
-        """A link as a notebook has it: to another notebook, or to a page of the built docs."""
+        """A link for the notebook: to another notebook, or to a page of the built docs."""
         picture, words, target = link.groups()
         file, _, anchor = target.partition("#")
         if picture:
@@ -107,7 +107,7 @@ class Notebook:
         return f"[{words}]({there}{'#' + headings(name)[anchor] if anchor else ''})"
 
     def json(self) -> str:
-        """The notebook as its file has it."""
+        """The text of the notebook's file."""
         about = {"kernelspec": KERNEL, "language_info": {"name": "python"}}
         made = {"cells": self.cells, "metadata": about, "nbformat": 4, "nbformat_minor": 5}
         return json.dumps(made, indent=1, ensure_ascii=False) + "\n"
@@ -115,13 +115,13 @@ class Notebook:
 
 @cache
 def headings(name: str) -> dict[str, str]:
-    """The anchors of a page in Sphinx, and what Jupyter calls each."""
+    """The anchors of a page in Sphinx, with Jupyter's anchor for each."""
     found = re.findall(r"^#+ (.+)$", prose(page(name)), flags=re.M)
     return {anchor_of(head): head.replace(" ", "-") for head in found}
 
 
 def anchor_of(head: str) -> str:
-    """What Sphinx calls a heading."""
+    """Sphinx's anchor of a heading."""
     return re.sub(r"[^\w -]", "", head.lower()).replace(" ", "-")
 
 
@@ -132,7 +132,7 @@ def scene_names() -> dict[str, str]:
 
 
 def headed(name: str, title: str, of: str, built: str) -> Notebook:
-    """A notebook with its head: what it is made from, and what has to be installed."""
+    """A notebook with its head: the page or scene that it was made from, and how to install what it needs."""
     made = Notebook(name, built)
     made.text(
         f"# {title}\n\nThis notebook has been made from [a page of the docs]({built}/{of}.html). It needs "
@@ -177,13 +177,13 @@ def of_page(name: str, built: str) -> Notebook:
 
 
 def links(parts: list[tuple[Block, str | None]]) -> list[list[tuple[str, str]]]:
-    """Of each block the links that set it, if it is a figure that computes: words and address.
+    """For each block the links that set it, if it is an interactive figure: words and address.
 
-    That is the next figure of the section of the link, else the last one before it.
+    A link sets the next figure of its section, or else the last one before it.
     """
     found: list[list[tuple[str, str]]] = [[] for _ in parts]
     waiting: list[tuple[str, str]] = []
-    figure: int | None = None  # of this section
+    figure: int | None = None  # index of the section's figure
     for i, (block, _) in enumerate(parts):
         if block.kind == "{live}":
             figure = i
@@ -202,7 +202,7 @@ def links(parts: list[tuple[Block, str | None]]) -> list[list[tuple[str, str]]]:
 
 
 def touched(figure: Live, links: list[tuple[str, str]]) -> str:
-    """The call that shows a figure, and in comments those of the links that set it to something else."""
+    """The call that shows a figure, and as comments the calls for the links that change it."""
     code = called(figure.address)
     others: dict[str, str] = {}
     for words, address in links:
@@ -212,7 +212,7 @@ def touched(figure: Live, links: list[tuple[str, str]]) -> str:
 
 
 def as_text(block: Block, built: str) -> str:
-    """A block that does not run, as the Markdown of a notebook."""
+    """A block without running code, as Markdown for a notebook."""
     if not block.kind:
         return block.text
     if block.kind == "math":
@@ -228,7 +228,7 @@ def as_text(block: Block, built: str) -> str:
 
 
 def of_scene(scene: Scene, built: str) -> Notebook:
-    """The notebook of a scene of the gallery: its file, its picture, and what it prints."""
+    """The notebook of a scene of the gallery: its file, its picture and its output."""
     made = headed(Path(scene.path).stem, scene.title, "gallery", built)
     whole = (ROOT / scene.path).read_text("utf-8")
     code, main = whole[whole.index('"""', 3) + 3 :].split(MAIN)
@@ -249,7 +249,7 @@ def all_made(built: str) -> Iterator[Notebook]:
 
 
 def written(folder: Path, built: str) -> list[Path]:
-    """Write all of them into a folder."""
+    """Write all notebooks into a folder."""
     folder.mkdir(parents=True, exist_ok=True)
     found = []
     for made in all_made(built):

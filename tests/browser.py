@@ -1,7 +1,7 @@
-"""A real browser without a window, for the tests of pages: the one that is there, or one that is fetched.
+"""A headless browser for the tests of pages: an installed one, or one that is downloaded.
 
-python tests/browser.py: fetches one where there is none. Where that fails the tests of pages are left out, and said
-to be; where CI is set it is an error.
+python tests/browser.py: downloads one if none is installed. If that fails, tests of pages are skipped with a
+message; if CI is set, it is an error.
 """
 
 import functools
@@ -22,7 +22,7 @@ FLAGS = [
     "--disable-sync",
     "--no-first-run",
 ]
-#: A script for pages: they draw ten pictures a second, since more would keep a whole core busy without a graphics card.
+#: A script that limits pages to ten frames a second: without a graphics card more would keep a core busy.
 SELDOM = """
 const next = window.requestAnimationFrame.bind(window);
 window.requestAnimationFrame = draw => setTimeout(() => next(draw), 80);
@@ -32,12 +32,12 @@ MISSING = "no Chromium: `apt-get install chromium` or `playwright install chromi
 
 
 def checking():
-    """Whether this machine runs nothing but checks: there a test that is left out is a failure."""
+    """Whether this machine runs checks only: then a skipped test is a failure."""
     return os.environ.get("CI", "").lower() not in ("", "0", "false", "no")
 
 
 def starts(path):
-    """Whether it is more than a file: what stands for a package that is not there says so, and fails."""
+    """Whether the file runs as a browser; placeholders of missing packages fail."""
     try:
         return subprocess.run([path, "--version"], capture_output=True, timeout=60).returncode == 0
     except (OSError, subprocess.TimeoutExpired):
@@ -49,7 +49,7 @@ OWN = "from playwright.sync_api import sync_playwright as s\nwith s() as p: prin
 
 @functools.cache
 def find():
-    """Where it is, or None; SPINCYL_BROWSER says so if its name is unusual."""
+    """The path of a browser, or None; SPINCYL_BROWSER sets it if its name is unusual."""
     named = os.environ.get("SPINCYL_BROWSER")
     if named:
         assert starts(named), f"SPINCYL_BROWSER = {named!r}: it does not start"
@@ -57,20 +57,20 @@ def find():
     for found in filter(None, map(shutil.which, NAMES)):
         if starts(found):
             return found
-    # playwright's own: in a process of its own, because it may be running here already
+    # in a process of its own, because playwright may be running here already
     own = subprocess.run([sys.executable, "-c", OWN], capture_output=True, text=True).stdout.strip()
     return own if own and starts(own) else None
 
 
 def executable():
-    """Where it is."""
+    """The path of a browser; fails without one."""
     found = find()
     assert found, MISSING
     return found
 
 
 def run(*words, **environment):
-    """Says what it does, and what went wrong."""
+    """Run a command; print it, and print its errors."""
     print(" ".join(words), flush=True)
     try:
         done = subprocess.run(
@@ -86,13 +86,13 @@ def run(*words, **environment):
 
 
 def fetch():
-    """By apt where it may install; else playwright's own, if that can be downloaded."""
+    """Install a browser by apt if permitted; else download playwright's own."""
     if shutil.which("apt-get") and os.geteuid() == 0:
         quiet = {"DEBIAN_FRONTEND": "noninteractive"}
         run("apt-get", "update", "-qq")
         run("apt-get", "install", "-y", "-qq", "chromium", **quiet)
     if not find():
-        # a machine without a network should not be waited for
+        # do not wait long on a machine without a network
         run(
             sys.executable, "-m", "playwright", "install", "chromium",
             PLAYWRIGHT_DOWNLOAD_CONNECTION_TIMEOUT="10000",

@@ -1,4 +1,4 @@
-"""The built pages in a browser: they ask for nothing from the network, every formula is set, and links set the figures.
+"""The built pages in a browser: no requests to the network, every formula set, links that set figures.
 
 Run by `make docs`.
 
@@ -17,9 +17,9 @@ WIDE = "all => all.filter(e => e.scrollWidth > e.clientWidth + 1).map(e => e.tex
 
 
 def listened(page):
-    """The page, with what it complains of from now on in its `wrong`."""
+    """The page, which collects its errors from now on in `wrong`."""
     page.wrong = []
-    page.set_default_timeout(120_000)  # bodies spin on some of them
+    page.set_default_timeout(120_000)  # some pages show spinning bodies and are slow
     page.on("console", lambda m: m.type == "error" and page.wrong.append(m.text))
     page.on("pageerror", lambda e: page.wrong.append(str(e)))
     page.on("request", lambda r: r.url.startswith(LOCAL) or page.wrong.append(f"asks for {r.url}"))
@@ -28,10 +28,10 @@ def listened(page):
 
 
 def look(page, path):
-    """What is wrong with a page that is opened where motion is unwanted, and how many formulas it has."""
+    """Errors of a page that is opened with reduced motion, and its number of formulas."""
     wrong = page.wrong = []
     page.goto(path.absolute().as_uri())
-    # it would also go on while a link is clicked, past what the link sets
+    # smooth scrolling would continue while a link is clicked, past its target
     if page.evaluate(SMOOTH):
         wrong.append("scrolls smoothly where motion is unwanted")
     for name in page.locator("a[download]").evaluate_all("all => all.map(e => e.getAttribute('href'))"):
@@ -47,7 +47,7 @@ def look(page, path):
     return wrong, done
 
 
-# what a link says that the page in a figure does not show; t is only where it opens
+# words of a link that the page in a figure does not show; t is only the time at which it opens
 SHOWN = """words => [...new URLSearchParams(words)].filter(([name, text]) => {
   if (name === "expose") return document.getElementById("shutter").value !== text;
   const value = window.spincyl.state()[name];
@@ -59,7 +59,7 @@ NO_CORE = "delete window.WebAssembly;"
 
 
 def set_by(page, words):
-    """What a figure in view does not show of what a link says, in no more than ten seconds; [] if one shows all."""
+    """The words of a link that no figure in view shows within ten seconds; [] if a figure shows all."""
     for _ in range(50):
         page.wait_for_timeout(200)
         left = []
@@ -79,7 +79,7 @@ def set_by(page, words):
 
 
 def figures(page):
-    """What is wrong with the figures that compute: each takes its picture's place, and shows what its links say."""
+    """Errors of the interactive figures: each must replace its picture, and show what its links set."""
     wrong, links = [], page.locator("a.live")
     figures = page.locator("figure.live")
     for i in range(figures.count()):
@@ -95,7 +95,7 @@ def figures(page):
 
 
 def linked(page):
-    """What is wrong with the links that set figures, clicked one after the other as soon as the page is there."""
+    """Errors of the links that set figures, clicked in turn as soon as the page is loaded."""
     wrong, here = [], page.url
     for link in page.locator("a.live").all():
         words, said = link.get_attribute("href").split("#")[1], f"the link {link.inner_text()!r}"
@@ -107,13 +107,13 @@ def linked(page):
 
 
 def at_once(page, path):
-    """The same on a phone, before any figure is there."""
+    """Errors of the links on a phone, before any figure is loaded."""
     page.goto(path.absolute().as_uri())
     return [f"on a phone {what}" for what in linked(page)]
 
 
 def pictures(page, path):
-    """What is wrong where WebAssembly is not allowed: then every figure is its picture."""
+    """Errors where WebAssembly is not allowed: there every figure must stay a picture."""
     page.goto(path.absolute().as_uri())
     for figure in page.locator("figure.live").all():
         figure.scroll_into_view_if_needed()
@@ -136,7 +136,7 @@ def main():
     found, formulas, live = [], 0, 0
     with sync_playwright() as driver:
         chromium = driver.chromium.launch(executable_path=browser.executable(), args=browser.FLAGS)
-        # three windows for all of them, since to open one takes longer than to load most pages in it
+        # three windows for all pages, since opening a window takes longer than loading most pages
         page = listened(chromium.new_page(reduced_motion="reduce"))
         phone = chromium.new_page(reduced_motion="reduce", viewport={"width": 390, "height": 844})
         without = chromium.new_page()

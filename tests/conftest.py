@@ -1,4 +1,4 @@
-"""Without a browser the tests of pages are left out, and said to be; where CI is set they fail."""
+"""Without a browser the tests of pages are skipped with a message; if CI is set, they fail."""
 
 import os
 import signal
@@ -10,23 +10,23 @@ import browser
 import pytest
 from hypothesis import settings
 
-# a busy machine may take as long as it likes; the cases are the same in every run, but where others are asked for
+# no deadline, since the machine may be busy; the same cases in every run unless the profile "fresh" is chosen
 settings.register_profile("same", deadline=None, derandomize=True)
 settings.register_profile("fresh", deadline=None, print_blob=True)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "same"))
 
-# what a shell starts in the background is deaf to Ctrl-C, and so are its children; tests of Ctrl-C would wait for ever
+# a background process of a shell ignores Ctrl-C, and so do its children: tests of Ctrl-C would hang
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
-# scenes, and what reads the pages, are read by the tests, too
+# tests import the scenes, and the reader of pages
 sys.path += [str(Path(__file__).parents[1] / folder) for folder in ("examples", "docs")]
 
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items):
     pages = [item for item in items if "chromium" in item.fixturenames]
-    # at the end: while the browser runs nothing else can have an event loop
+    # last: while the browser runs, no other event loop is possible
     items[:] = [item for item in items if "chromium" not in item.fixturenames] + pages
     for item in pages:
         item.add_marker(pytest.mark.page)
@@ -44,7 +44,7 @@ def pytest_terminal_summary(terminalreporter):
 
 @pytest.fixture(scope="session")
 def chromium():
-    """A browser for all tests of pages: to start one takes longer than most of them."""
+    """A browser for all tests of pages, since starting one takes longer than most of them."""
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as p:
@@ -55,7 +55,7 @@ def chromium():
 
 @pytest.fixture(scope="session")
 def windows(chromium):
-    """Empty windows by how they were asked for: to open one takes longer than to load a page in it."""
+    """Empty windows by their settings, since opening a window takes longer than loading a page."""
     return {}
 
 
@@ -132,7 +132,7 @@ def shown(chromium, windows, written, kept):
 
 @pytest.fixture
 def opened(shown):
-    """Opens a page to play with, at rest unless it is said otherwise."""
+    """A function that opens a live page, at rest unless told otherwise."""
 
     from page_scenes import live_page
     from playing import LAPTOP

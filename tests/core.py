@@ -1,4 +1,4 @@
-"""The core of the live page, asked as the page asks it: by node, or by the browser of the tests of pages."""
+"""The core of the live page, called as the page calls it: by node, or by the browser of the page tests."""
 
 import atexit
 import base64
@@ -12,7 +12,7 @@ import subprocess
 import browser
 import numpy as np
 
-# numbers go both ways as the bytes they are: JSON has no infinity
+# numbers are sent as bytes in both directions, since JSON has no infinity
 ASK = """async (core, questions) => {
   const bytes = text => Uint8Array.from(atob(text), c => c.charCodeAt(0));
   const text = bytes => { let all = ""; for (const b of bytes) all += String.fromCharCode(b); return btoa(all); };
@@ -25,7 +25,7 @@ ASK = """async (core, questions) => {
     return [code, view(x.out(), 8 * x.len()), map, view(x.words(), x.words_len()), took];
   });
 }"""
-# a line that comes in is answered by a line
+# answers each line of input by a line
 NODE = """(async () => {
   for await (const line of require("readline").createInterface({ input: process.stdin })) {
     const { core, questions } = JSON.parse(line);
@@ -35,7 +35,7 @@ NODE = """(async () => {
 
 
 class Answer:
-    """A code, the numbers, the region codes of a map, the words of a refusal, and the ms that it took."""
+    """A code, numbers, the region codes of a map, the text of a refusal, and the duration in ms."""
 
     def __init__(self, code, out, codes, words, took):
         self.code, self.took = code, took
@@ -46,7 +46,7 @@ class Answer:
 
 @functools.cache
 def node():
-    """A process that answers as long as this one asks: to start one takes longer than most answers."""
+    """A node process for all questions, since starting one takes longer than most answers."""
     pipe = subprocess.PIPE
     started = subprocess.Popen(["node", "-e", NODE % ASK], stdin=pipe, stdout=pipe, stderr=pipe, text=True)
     atexit.register(lambda: (started.stdin.close(), started.wait()))
@@ -54,7 +54,7 @@ def node():
 
 
 def ask(packed, questions):
-    """The answers of a packed core to (name, numbers) questions, one after the other."""
+    """The answers of a packed core to a list of (name, numbers)."""
     core = base64.b64encode(gzip.decompress(packed)).decode()
     given = [
         (name, base64.b64encode(struct.pack(f"{len(x)}d", *map(float, x))).decode()) for name, x in questions
@@ -63,7 +63,7 @@ def ask(packed, questions):
         process = node()
         print(json.dumps({"core": core, "questions": given}), file=process.stdin, flush=True)
         line = process.stdout.readline()
-        if not line:  # a trap ends it
+        if not line:  # a trap of the core ends the process
             node.cache_clear()
             raise AssertionError(process.stderr.read())
         return [Answer(*answer) for answer in json.loads(line)]
@@ -77,5 +77,5 @@ def ask(packed, questions):
 
 
 def runs():
-    """Whether anything here runs WebAssembly."""
+    """Whether this machine can run WebAssembly."""
     return bool(shutil.which("node") or browser.find())

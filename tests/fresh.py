@@ -1,6 +1,6 @@
-"""Every property of the Rust tests with cases that nobody has drawn before.
+"""Run every property of the Rust tests with new random cases.
 
-    python3 tests/fresh.py --runs 10        prints the seed of each run, and at the end what failed
+    python3 tests/fresh.py --runs 10        prints the seed of each run, and finally the failures
 
 Builds the tests once, optimised. `PROPTEST_RNG_SEED=N cargo test --release --test laws` draws the cases of seed N again.
 """
@@ -20,14 +20,14 @@ LAWS = ROOT / "tests" / "laws"
 
 
 def built():
-    """The tests as a program."""
+    """The tests as an executable."""
     words = ["cargo", "test", "--quiet", "--release", "--no-run", "--message-format=json", "--test", "laws"]
     lines = subprocess.run(words, cwd=ROOT, check=True, stdout=subprocess.PIPE, text=True).stdout.splitlines()
     return next(found["executable"] for found in map(json.loads, lines) if found.get("executable"))
 
 
 def properties():
-    """Their names among the tests."""
+    """The names of the property tests."""
     for path in sorted(LAWS.rglob("*.rs")):
         module = "::".join(path.relative_to(LAWS).with_suffix("").parts)
         for block in re.findall(r"^proptest! \{\n.*?^\}$", path.read_text("utf-8"), re.M | re.S):

@@ -1,4 +1,4 @@
-"""Counts the letters in a photograph: bright patches, those with a hole being O's."""
+"""Count the letters in a photograph: bright patches, of which those with a hole are O's."""
 
 import numpy as np
 from scipy import ndimage

@@ -1,6 +1,7 @@
-"""Odd calls: every public function with one argument replaced by what it cannot be, and what is wrong with the answer.
+"""Odd calls: every public function with one invalid argument, and what is unclear in the response.
 
-An answer is clear if it is a result, an OSError of a path, or a TypeError or ValueError that names the argument."""
+A clear response is a result, an OSError about a path, or a TypeError or ValueError that names the argument.
+"""
 
 import re
 import warnings
@@ -20,18 +21,18 @@ DISK = sc.Body.solid(0.1)
 
 
 class Hostile:
-    """What no attribute can be asked of."""
+    """An object whose attributes all raise."""
 
     def __getattr__(self, name):
         raise AttributeError(name)
 
 
-#: What is called, and may itself refuse what it is called with.
+#: Callbacks, which may themselves refuse their arguments.
 CALLED = ("progress", "(job")
 
 
 def values():
-    """What an argument is replaced by, by name."""
+    """Odd values, by name."""
     endless = []
     endless.append(endless)
     return {
@@ -94,9 +95,9 @@ def heard():
 
 
 def subjects(folder):
-    """By name: something to call, and arguments with which it works; one that begins with a bracket has no name.
+    """By name: a function, and valid arguments; an argument whose name begins with a bracket is positional.
 
-    Functions that write files are left out, but for the figures, which are asked for in a format that is none.
+    Functions that write files are left out, except the figures, which get an invalid format.
     """
     return {**nouns(), **stones(), **motions(), **laws(), **sweeps(), **measurements(), **pictures(folder)}
 
@@ -227,7 +228,7 @@ def nouns():
 
 
 def motions():
-    """What moves, drifts and is shown."""
+    """Motions, drifts and views."""
     body, state = BODY, STATE
     found = {
         "roll": (
@@ -338,7 +339,7 @@ def sweeps():
 
 
 def measurements():
-    """What is read, fitted and compared."""
+    """Functions that read, fit and compare data."""
     body = BODY
     theta = np.radians([5.0, 10.0, 15.0, 70.0, 80.0])
     t, sound = heard()
@@ -374,7 +375,7 @@ def measurements():
 
 
 def pictures(folder):
-    """What is drawn."""
+    """Functions that draw."""
     body, ends = BODY, sc.sweep.flicks(TUBE, 1.0, hertz=[9, 20], launch=[1.2, 3], contact=sc.Coulomb(0.3))
     found = {
         "plot.landmarks": (sc.plot.landmarks, {"body": body, "contact": "smooth"}),
@@ -404,19 +405,19 @@ def pictures(folder):
 
 
 def setting(name, **given):
-    """An attribute of a page to play with is set."""
+    """Set an attribute of a live page."""
     page = sc.play(BODY)
     setattr(page, name, given[name])
 
 
 def asked(call, good, argument, value):
-    """The call with one argument replaced."""
+    """Call with one argument replaced."""
     given = {**good, argument: value}
     plain = [given.pop(name) for name in list(given) if name.startswith("(")]
     return call(*plain, **given)
 
 
-#: What Python and NumPy say of code, not of an argument.
+#: Phrases of Python and NumPy that speak of code and not of an argument.
 _WITHIN = re.compile(
     r"truth value|has no attribute|not subscriptable|not iterable|not callable|operands|ufunc|broadcast together|"
     r"unhashable|cannot be interpreted|positional argument|unexpected keyword|could not convert|unsupported operand|"
@@ -425,9 +426,9 @@ _WITHIN = re.compile(
 
 
 def offence(call, good, argument, value):
-    """What is unclear in the answer to an odd call, or nothing."""
+    """What is unclear in the response to an odd call, or None."""
     name = argument.strip("(")
-    # an odd body makes another argument one that does not fit, and states and bodies are told by their fields
+    # an odd body can make another argument unsuitable, and errors about states and bodies name their fields
     others = "|".join(
         {re.escape(x.strip("(")) for x in good} | {"theta", "w1", "w2", "w3", "slip", "ell", "job"}
     )

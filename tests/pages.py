@@ -17,7 +17,7 @@ def picture(page, selector="canvas"):
     return np.asarray(Image.open(io.BytesIO(shot)).convert("RGB"), float) / 255
 
 
-#: Keeps what is sent to the graphics card as places, normals and colours.
+#: Records the positions, normals and colours sent to the graphics card.
 SENT = """
 window.sent = [];
 const send = WebGL2RenderingContext.prototype.bufferData;
@@ -32,12 +32,12 @@ WebGL2RenderingContext.prototype.bufferData = function (kind, values, ...how) {
 
 
 def sent(page):
-    """What the page has sent, opened with the script SENT: an array for each buffer."""
+    """The arrays that a page opened with the script SENT has sent to the graphics card."""
     return [np.frombuffer(base64.b64decode(x), np.float32) for x in page.evaluate("window.sent")]
 
 
 def near(image, colour, width=0.12):
-    """Share of the pixels of about this hue, whatever the light."""
+    """Share of the pixels whose hue is close to a colour, at any brightness."""
     hue = np.array(colour) / np.linalg.norm(colour)
     size = np.linalg.norm(image, axis=-1)
     return float(((image @ hue > (1 - width**2) * size) & (size > 0.15)).mean())

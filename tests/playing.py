@@ -1,7 +1,7 @@
-"""What the tests of the live page share: ways to ask it; `opened` of conftest.py opens one."""
+"""Helpers of the live page tests: ways to query it; `opened` of conftest.py opens one."""
 
 LAPTOP, PHONE = {"width": 1280, "height": 800}, {"width": 390, "height": 844}
-#: A browser whose pictures come when the test says so, with the times that it says.
+#: A browser that draws a frame when the test calls for it, with the time that the test gives.
 DRIVEN = """
 const waiting = [];
 window.requestAnimationFrame = f => waiting.push(f);
@@ -18,7 +18,7 @@ def ask(page, what):
 
 
 def details(page):
-    """The numbers beside the sentence, with plain spaces."""
+    """The numbers beside the sentence, with ordinary spaces."""
     return page.locator("#details").inner_text().replace("\u00a0", " ")
 
 
@@ -29,5 +29,5 @@ def address(page, at):
 
 
 def settled(page):
-    """After the picture that follows a change."""
+    """Wait for the frame after a change."""
     page.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")

@@ -1,7 +1,7 @@
-"""Everything that the package writes, each kind by the name of a file; and what becomes of it where nothing fits.
+"""Every kind of file that the package writes, by file name; and the outcome if there is no room for it.
 
-python tests/saving.py FAILS DIES: saves each in these two folders where no file may exceed 500 bytes, and prints as JSON
-what was said in each, or by which signal the process ended.
+python tests/saving.py FAILS DIES: saves each kind in these two folders with a limit of 500 bytes per file,
+and prints as JSON the error of each in the first, and the signal that ended the process in the second.
 """
 
 import contextlib
@@ -49,7 +49,7 @@ def scene(path):
 
 
 def typed(*words):
-    """A command; OSError with what it says if it fails."""
+    """Run a command; OSError with its message if it fails."""
     with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()) as error:
         if main([str(word) for word in words]):
             raise OSError(error.getvalue())
@@ -97,7 +97,7 @@ JOBS = {
 
 
 def cramped(name):
-    """What is said of a file for which there is no room."""
+    """The error of saving a file with too little room."""
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (LIMIT, before[1]))
     try:
@@ -110,7 +110,7 @@ def cramped(name):
 
 
 def killed(name):
-    """The same of a process of its own, or the signal by which it ended."""
+    """The error of saving with too little room in a process of its own, or the signal that ended it."""
     ours, theirs = os.pipe()
     child = os.fork()
     if not child:

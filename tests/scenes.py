@@ -1,7 +1,7 @@
-"""Random scenes that nobody would choose, and whether many motions at once are what each of them is alone.
+"""Random unusual scenes, to compare many motions at once with each of them alone.
 
-A scene is a family of motions with the same kind of contact, the same laws of loss and the same times: `sc.sweep.roll`
-answers it at once, `sc.roll` one motion after the other. Bodies, coefficients and starts differ within a family.
+A scene is a family of motions with the same kind of contact, laws of loss and times: `sc.sweep.roll` computes
+it at once, `sc.roll` one motion after the other. Bodies, coefficients and starts differ within a family.
 """
 
 import math
@@ -17,7 +17,7 @@ from spincyl.sweep import Status
 LAWS = tuple(getattr(sc.loss, name) for name in CODES["Law"])
 CONTACTS = ("rolling", "mu", "smooth", "coulomb", "viscous")
 NUMBERS = ("theta", "w1", "w2", "w3")
-#: an end so near to the last time may be met by one of the two only
+#: only one of the two computations may reach an end so close to the last time
 LATE = 1e-6
 
 
@@ -34,17 +34,17 @@ FACES = tuple(k for k, law in enumerate(LAWS) if wants_a_face(law))
 
 
 class Scene(NamedTuple):
-    """A family of motions."""
+    """A family of motions with one kind of contact."""
 
     contact: str
     bodies: np.ndarray  # (count, 4): ell, i1, i3, fillet
     starts: np.ndarray  # (count, 6): theta, w1, w2, w3, slip along and across
     table: np.ndarray  # (count, 2): mu or c, static
-    losses: dict[int, np.ndarray]  # coefficients by the number of the law
+    losses: dict[int, np.ndarray]  # coefficients by the index of the law
     times: np.ndarray
     tol: float
     how: dict[str, Any]
-    theta_end: np.ndarray | None = None  # (count,), or that of each body
+    theta_end: np.ndarray | None = None  # (count,); None: the default of each body
 
     def contact_of(self, i):
         """Contact and settings of motion i, or of all of them."""
@@ -68,7 +68,7 @@ class Scene(NamedTuple):
         return body, state, how
 
     def call(self, i):
-        """A line of Python that rolls motion i."""
+        """A line of Python that computes motion i."""
         body, state, how = self.asked(i)
         state = " ".join(repr(state).split())
         given = ", ".join(f"{name}={value!r}" for name, value in how.items())
@@ -81,12 +81,12 @@ def log_uniform(rng, low, high, count=None):
 
 
 def typed(rng, x):
-    """Some of the numbers as people type them, with one decimal."""
+    """The numbers, some of them rounded to one decimal as people type them."""
     return np.where(rng.random(np.shape(x)) < 0.3, np.round(x, 1), x)
 
 
 def draw_bodies(rng, count, faces):
-    """Tubes, disks, bodies of any moments, rounded ones, balls; of a family that wants faces no balls."""
+    """Tubes, disks, bodies of any moments, rounded bodies, balls; without balls if `faces`."""
     ell = typed(rng, rng.uniform(0, 3, count))
     ell = np.select(
         [rng.random(count) < 0.2, rng.random(count) < 0.1], [0.0, log_uniform(rng, 1e-3, 1e2, count)], ell
@@ -111,7 +111,7 @@ def draw_bodies(rng, count, faces):
 
 
 def draw_starts(rng, bodies):
-    """States of all kinds: any, steady, kicked, at rest, planar, flat, at an edge, lifted, fast, with next to no tilt."""
+    """States of all kinds: random, steady, kicked, at rest, planar, flat, at an edge, lifted, fast."""
     count = len(bodies)
     theta = typed(rng, rng.uniform(0.05, 1.55, count))
     theta = np.maximum(theta, 0.05)
@@ -150,7 +150,7 @@ def draw_starts(rng, bodies):
 
 
 def draw(rng, count, contact=None, laws=None):
-    """A scene of so many motions, with this contact and these laws, or with any."""
+    """A scene of `count` motions with this contact and these laws; None: random ones."""
     if contact is None:
         contact = str(rng.choice(CONTACTS))
     if laws is None:
@@ -189,7 +189,7 @@ def draw(rng, count, contact=None, laws=None):
 
 
 class Alone(NamedTuple):
-    """What `sc.roll` says of a motion."""
+    """The result of `sc.roll` for a motion."""
 
     status: int
     end: float
@@ -199,13 +199,13 @@ class Alone(NamedTuple):
 
 
 def alone(scene, i):
-    """Motion i by itself; a ValueError where there is none."""
+    """Motion i computed by `sc.roll`; a ValueError if there is none."""
     body, state, how = scene.asked(i)
     exact = not scene.losses and scene.contact in CONTACTS[:3]
     m = sc.roll(body, state, scene.times, t0=0.0, **how | ({} if exact else {"tol": scene.tol}))
     event = m.event
     if how.get("beyond") and event and event.ending != sc.Ending.FACE:
-        # it went on beyond its first event; a face that landed afterwards has no event of its own
+        # the motion continued beyond its first event; a face that landed later has no event of its own
         event = None
         if m.t.size < scene.times.size:
             return Alone(
@@ -223,7 +223,7 @@ def alone(scene, i):
 
 
 class Apart(NamedTuple):
-    """How far the two are apart, in units of both claims together; `kind` says whether they end differently."""
+    """Difference of the two results in units of the sum of their claimed errors; `kind`: the ends differ."""
 
     kind: bool
     ratio: float
@@ -233,7 +233,7 @@ class Apart(NamedTuple):
 
 
 def compare(scene):
-    """Every motion of a scene, at once and alone."""
+    """Compare every motion of a scene, at once and alone."""
     count = len(scene.bodies)
     body, state, how = scene.asked(slice(None))
     with warnings.catch_warnings():
@@ -259,7 +259,7 @@ def _compared(scene, i, data):
     both = claim + one.error
     apart = Apart(False, 0.0, (status, one.status), (claim, one.error), scene.call(i))
     if not math.isfinite(both):
-        # what claims nothing may end in any way
+        # motions without a finite claim may end in any way
         return apart._replace(kind=status in (Status.INVALID, Status.BOUNDED))
     spread = scene.times.size > 1
     rows = np.stack([data[x][i] for x in NUMBERS], axis=-1)
@@ -277,7 +277,7 @@ def _compared(scene, i, data):
 
 
 def compare_periods(scene):
-    """How far periods at once and alone are apart in units of both claims, for every motion that has one, with its call."""
+    """Differences of periods at once and alone, in units of both claims, with the call of each motion."""
     if scene.losses or scene.contact not in CONTACTS[:3]:
         return
     body, state, how = scene.asked(slice(None))

@@ -1,4 +1,4 @@
-"""A processor without lanes (`SPINCYL_LANES=off`) gives the answers of one that has them, within their claims, more slowly."""
+"""Results without lanes (`SPINCYL_LANES=off`) agree with those in lanes within the claimed errors."""
 
 import os
 import pathlib
@@ -15,14 +15,14 @@ ULP = 2.0**-53
 
 
 def numbers(x):
-    """All numbers of what holds some."""
+    """All numbers inside an object."""
     if isinstance(x, dict):
         x = list(x.values())
     return [y for part in x for y in numbers(part)] if isinstance(x, tuple | list) else [float(x)]
 
 
 def everything():
-    """Answers of every kind that is found in lanes, by name."""
+    """Results of every kind that is computed in lanes, by name."""
     odd = [0.0, 1e-300, 1e-12, np.pi / 2, np.nextafter(np.pi / 2, 2), 2.0, np.nan]
     theta = np.concatenate([np.linspace(0.02, 1.56, 60), odd])
     ell = np.concatenate([np.linspace(0.0, 3.0, 33), [1e-300, np.sqrt(3) / 2, 1e3, 1e12]])
@@ -52,7 +52,7 @@ def everything():
             for kind in ("rate", "kappa_rolling", "energy"):
                 found_ends = numbers(survey[kind])
                 found[f"ends of {kind} of {name}"] = np.array(found_ends)
-    # bodies that nobody throws are in the maps alone
+    # bodies that cannot be thrown: only for maps
     bodies = sc.Body.solid(ell[:35] + 0.2)
     start = sc.State(0.9, 0.7, 0.1, 0.8)
     slips = sc.State(0.9, 0.7, 0.1, 0.8, slip=(0.5, -0.2))
@@ -73,14 +73,14 @@ def everything():
 
 
 def at_random():
-    """Of random scenes: whether many motions end as each does alone, and how far they are apart in units of both claims."""
+    """For random scenes: whether ends at once and alone differ, and differences in units of the claims."""
     drawn = (scenes.draw(np.random.default_rng([25, family]), 10) for family in range(30))
     return np.array([(apart.kind, apart.ratio) for scene in drawn for apart in scenes.compare(scene)])
 
 
 @pytest.fixture(scope="module")
 def alone(tmp_path_factory):
-    """The same, of a process without lanes."""
+    """The same results from a process without lanes."""
     path = tmp_path_factory.mktemp("alone") / "found.npz"
     told = "import sys, numpy as np, test_alone; np.savez(sys.argv[1], scenes=test_alone.at_random(), **test_alone.everything())"
     where = {"SPINCYL_LANES": "off", "PYTHONPATH": str(pathlib.Path(__file__).parent)}
@@ -102,7 +102,7 @@ def test_maps_and_elementwise_functions_are_the_same_to_a_few_ulp(alone):
             continue
         assert np.array_equal(np.isnan(a), np.isnan(b)), name
         ulp = 2.0**-24 if a.dtype == np.float32 else ULP
-        # no number, or infinite, in both; the rest beside the largest of its row
+        # NaN or inf in both; finite numbers are compared relative to the largest of their row
         rest = np.isfinite(a)
         assert (a[np.isinf(a)] == b[np.isinf(a)]).all(), name
         a, b = (np.where(rest, x, 0.0) for x in (a, b))

@@ -1,4 +1,4 @@
-"""The blocks of the pages: lines of code fit beside the menu, text is what code prints, formulas are set."""
+"""Blocks of the pages: code fits beside the menu, text blocks are the output of code, formulas are set."""
 
 import pathlib
 import re
@@ -11,12 +11,12 @@ sys.path.insert(0, str(ROOT / "docs"))
 import blocks  # noqa: E402
 
 STORIES = sorted(path for path in (ROOT / "docs").glob("*.md") if path.name != "api.md")
-WIDEST = 88  # letters of code in the column of a page
+WIDEST = 88  # characters of code that fit the column of a page
 SHOWN = {"bibtex", "console", "python", "rust", "sh", "text", "{live}", "{plot}"}
 
 
 def shown(page):
-    """The blocks of a page that show code or what it prints."""
+    """The blocks of a page that show code or its output."""
     return [block for block in blocks.blocks(page.read_text("utf-8")) if block.kind in SHOWN]
 
 
@@ -58,7 +58,7 @@ def test_every_formula_names_a_module_that_opens_with_it():
     ]
     assert len(set(named)) == len(named) >= 20, "each stands on one page only"
     for module in named:
-        # a page names a module without its layer
+        # pages name modules without their layer
         place, layers = f"*/{module.replace('::', '/')}", ROOT / "src"
         found = [*layers.glob(f"{place}.rs"), *layers.glob(f"{place}/mod.rs")]
         (path,) = [path for path in found if path.parent != layers / "python"]

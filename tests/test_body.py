@@ -1,4 +1,4 @@
-"""The Python face: how arrays, kinds and mistakes are met (rows A of docs/hard-cases.md)."""
+"""`Body` in Python: arrays, types and mistakes (rows A of docs/hard-cases.md)."""
 
 import copy
 import dataclasses
@@ -244,7 +244,7 @@ def test_a6_memmap_is_an_array(body, tmp_path):
 
 @pytest.mark.long
 def test_a7_two_to_the_31_elements_are_counted(body):
-    # stride-0 input: 2 GiB of codes come out, nothing else is made
+    # input of stride 0: the 2 GiB of codes are the only large array
     codes = body.region(np.broadcast_to(1.3, 2**31 + 9))
     assert codes.size == 2**31 + 9
     assert codes[0] == codes[2**31 - 1] == codes[2**31] == codes[-1] == Region.STABLE
@@ -355,7 +355,7 @@ def test_arrays_in_degrees_are_nan_with_one_warning_at_the_line_that_asks(ask):
 
 
 def test_a_right_angle_too_much_is_no_number_in_degrees():
-    # beyond what a body leans, but not by more than a factor: it has no steady state there
+    # beyond the body's range but not by a large factor: there is no steady state, and no suspicion of degrees
     assert np.isnan(sc.Body.solid(2.5).rate(2.0)) and sc.Body.solid(2.5).region(2.0) == Region.INVALID
     assert sc.Body.ball(-0.2, 0.4, 0.4).energy(sc.State(np.pi, 0.0, 0.0, 1.0)) > 0
 

@@ -1,4 +1,4 @@
-"""What crosses the border between Python and the core: names, codes and options, each told once."""
+"""The border between Python and the core: each name, code and option is defined once."""
 
 import ast
 import pathlib
@@ -39,7 +39,7 @@ def test_every_enumeration_of_the_core_is_one_of_these():
 
 
 def calls(text):
-    """The calls of the core that follow motions, each with its arguments."""
+    """The calls of the core that compute motions, with their arguments."""
     for x in ast.walk(ast.parse(text)):
         if isinstance(x, ast.Call) and ast.unparse(x.func) in {
             f"_core.{n}" for n in ("roll", "stones", "ensemble")
@@ -72,7 +72,7 @@ def test_single_motions_and_sweeps_take_their_options_from_there():
         "_stones.py",
     ]
     for name, arguments in found:
-        # a sweep's come through `swept`, which makes them
+        # the options of a sweep come from `swept`, which makes them by `crossing`
         assert any(x.startswith("crossing(") for x in arguments) or arguments[2] == "asked", name
     swept = (PACKAGE / "sweep" / "_swept.py").read_text("utf-8")
     assert swept.count("crossing(") == 1 and "asked=options" in swept

@@ -1,4 +1,4 @@
-"""A machine without a browser gets one, or is told which tests it did not run."""
+"""The browser of the tests: it is installed where there is none, or skipped tests are reported."""
 
 import os
 import pathlib
@@ -13,7 +13,7 @@ OWN = browser.OWN
 
 @pytest.fixture
 def bare(monkeypatch, tmp_path):
-    """A search path with nothing on it, and nothing that playwright has fetched (asking it takes seconds)."""
+    """An empty search path, without the browser of playwright (looking for that takes seconds)."""
     for name in ("CI", "SPINCYL_BROWSER"):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setenv("PATH", str(tmp_path))
@@ -33,7 +33,7 @@ def program(path, code=0):
 
 def test_a_browser_is_one_that_starts(bare, monkeypatch):
     assert browser.find() is None
-    program(bare / "chromium", code=1)  # such as the stub of a package that is somewhere else
+    program(bare / "chromium", code=1)  # like a placeholder of a package that is not installed
     browser.find.cache_clear()
     assert browser.find() is None
     there = program(bare / "google-chrome")

@@ -1,4 +1,4 @@
-"""The version, the date and the paper stand in several files, and they are the same in all of them."""
+"""The version, the date and the citation of the paper agree in all files that contain them."""
 
 import json
 import pathlib

@@ -27,7 +27,7 @@ def said(capsys, *words, status=0):
 
 
 def refused(capsys, *words):
-    """What is said of words that cannot be read."""
+    """The error message for words that cannot be parsed."""
     with pytest.raises(SystemExit) as ended:
         cli.main([str(x) for x in words])
     assert ended.value.code == 2
@@ -40,7 +40,7 @@ def shell(line, **how):
     return subprocess.run(bash, capture_output=True, text=True, check=False, **how)
 
 
-# what is understood
+# input
 
 
 @pytest.mark.parametrize(
@@ -141,7 +141,7 @@ def test_powers_of_ten_are_whole_numbers_and_may_be_negative(capsys):
     )
 
 
-# what comes out
+# output
 
 
 def test_nothing_is_counted_where_nothing_turns(capsys):
@@ -278,7 +278,7 @@ def test_the_contact_circle_of_a_rounded_rim_is_smaller_than_its_still_symbols_s
     (state,) = json.loads(said(capsys, "steady", "--balls", "--theta", "80deg", "--json").out)["states"]
     assert state["still_symbols"] == pytest.approx(1, rel=1e-15)
     body = sc.Body.balls()
-    times = np.linspace(0, 2 * np.pi / state["precession"], 2001)  # once round the vertical
+    times = np.linspace(0, 2 * np.pi / state["precession"], 2001)  # one turn about the vertical
     turn = sc.roll(body, body.steady(np.radians(80)), times, want="pose")
     assert state["contact_radius"] == pytest.approx(np.ptp(turn.contact_point[..., 0]) / 2, rel=1e-4)
 

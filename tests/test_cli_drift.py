@@ -1,4 +1,4 @@
-"""The commands `drift` and `roll --loss`: what an experimenter types, the table, files, and what is refused."""
+"""The commands `drift` and `roll --loss`: typical input, the table, files, and refusals."""
 
 import csv
 import io
@@ -20,13 +20,13 @@ DRIFT = ["drift", "--ell", "0.0852", "--theta", "0.3", "--law", "viscous-contour
 
 
 def table(text):
-    """The rows of the drift: what stands below the blank line, as numbers."""
+    """The rows of the drift, below the blank line, as numbers."""
     lines = text.split("\n\n", 1)[1].splitlines()
     heads, rows = lines[0], [line for line in lines[1:] if line.startswith("  ")]
     return heads, np.array([[float(x) for x in row.split()] for row in rows])
 
 
-# Laws as they are typed.
+# Laws on the command line.
 
 
 def test_every_law_can_be_typed():
@@ -75,7 +75,7 @@ def test_roll_says_what_is_lost_and_writes_it(capsys, tmp_path):
     out = said(capsys, *asked).out
     m = sc.roll(DISK, DISK.steady(0.3), np.linspace(0, 400, 2001), losses=loss.DryContour(5e-3))
     assert "losses                 DryContour(0.005)" in out and "turning points" not in out
-    # up to the end, which lies between two of the times
+    # up to the end, which lies between two times
     lost = m.energy[0] - DISK.energy(m.event.state)
     assert lost > m.work_lost[-1] + 1e-3
     assert f"energy lost            {lost:.9g} M g R" in out and " J, " in out

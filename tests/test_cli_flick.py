@@ -1,4 +1,4 @@
-"""The command `flick`: what an experimenter types, the table of phases, files, and what is refused."""
+"""The command `flick`: typical input, the table of phases, files, and refusals."""
 
 import csv
 import json
@@ -16,7 +16,7 @@ PIPE = ["flick", "--ell", "6", "--bore", "0.8", "--mu", "0.3"]
 
 
 def rows(text):
-    """The table: names of rows, and what stands beside them."""
+    """The table: names of rows, and their cells."""
     found = (re.split(r" {2,}", line.strip()) for line in text.splitlines()[1:])
     return [(cells[0], cells[1:]) for cells in found]
 
@@ -130,13 +130,13 @@ def test_a_flicked_tube_that_loses_energy_sinks_back_to_its_side_and_its_account
     before, after = tube.natural.energy(start), tube.natural.energy(m.event.state)
     assert before - after == pytest.approx(found["dissipated"] + found["work_lost"], rel=1e-11)
     assert found["work_lost"] > 1
-    # in words
+    # as text
     told = dict(rows(said(capsys, *lossy).out))
     assert told["losses"] == [f"{losses!r}"] and told["energy lost"][0].endswith("M g R") and "side" in told
     page = tmp_path / "flick.html"
     said(capsys, *lossy, "-o", str(page))
     assert "RollingResistance(0.0126) + Drilling(0.006299)" in page.read_text(encoding="utf-8")
-    # without losses it goes on
+    # without losses the motion does not end
     assert json.loads(said(capsys, *FLICK, "--json").out)["event"] is None
 
 

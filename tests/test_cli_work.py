@@ -1,4 +1,4 @@
-"""The command line at work: what is refused before it, what its help teaches, how far it says it is."""
+"""The command line at work: refusals before the work begins, help texts, progress."""
 
 import math
 import os
@@ -97,7 +97,7 @@ def test_ctrl_c_leaves_quietly(capsys, monkeypatch):
     assert said(capsys, *ROLL, "--t", "5", status=130).err == "spincyl roll: interrupted\n"
 
 
-# what is taught, and told meanwhile
+# help texts and progress
 
 
 def help_of(command):
@@ -118,7 +118,7 @@ def test_every_help_has_examples_and_they_run(capsys, tmp_path, monkeypatch, com
         words = shlex.split(line)[1:]
         if command in ("report", "figures"):
             parser().parse_args(joined(words))
-        elif not {"|", ">", "--help"} & set(words):  # as a process of its own would, but for what that loads
+        elif not {"|", ">", "--help"} & set(words):  # like a separate process, but without its imports
             said(capsys, *words)
         else:
             ended = shell(line, cwd=tmp_path)
@@ -126,7 +126,7 @@ def test_every_help_has_examples_and_they_run(capsys, tmp_path, monkeypatch, com
 
 
 def on_a_terminal(run):
-    """What a run writes to a terminal."""
+    """The output of a run to a terminal."""
     mine, theirs = pty.openpty()
     written = []
 

@@ -1,4 +1,4 @@
-"""Sweeps on worker processes: the bits of one process, whatever dies; blocks by time; nothing large is sent."""
+"""Sweeps on worker processes: the bits of one process, even if workers die; block sizes; traffic."""
 
 import os
 import pickle
@@ -20,7 +20,7 @@ COUNT = 2_000
 
 
 def job(number):
-    """Motions that go on and motions that end, made from their numbers alone."""
+    """Motions with and without ends, which depend on their numbers only."""
     ell, theta = 0.3 + 2.5 * ((number * 0.618) % 1), 0.2 + 1.2 * ((number * 0.755) % 1)
     state = sc.State(theta, 1.0, 0.3, 0.5 + ell)
     return sc.sweep.roll(sc.Body.solid(ell), state, 3.0, want=("final", "end"))
@@ -87,7 +87,7 @@ def test_a_killed_worker_does_not_change_the_store(cluster, alone, tmp_path):
 
 
 def test_as_many_blocks_are_asked_for_as_the_workers_can_take(cluster):
-    cluster.wait_for_workers(2)  # one may have been killed
+    cluster.wait_for_workers(2)  # a worker may have been killed
     assert _pass(dask.base.get_scheduler()) == 8 * 2, "two threads, in two processes"
     with dask.config.set(scheduler="synchronous"):
         assert _pass(dask.base.get_scheduler()) == 8 * os.cpu_count()
@@ -98,12 +98,12 @@ def test_what_is_sent_does_not_grow_with_the_blocks():
         (found,) = dask.optimize(job(da.arange(8.0 * count, chunks=count)))
         return len(pickle.dumps(dict(found.__dask_graph__())))
 
-    # the numbers of the last block have more digits
+    # the indices of the last block have more digits
     assert sent(1_000_000) < sent(10) + 1000
 
 
 def busy(each, block=0.0, zero=0.0):
-    """A job of so many seconds for each motion, for each block, and for the motion that begins at zero."""
+    """A job that takes this many seconds per motion, per block, and for the motion at zero."""
 
     def slow(x):
         def work(part):
@@ -126,13 +126,13 @@ def test_a_block_takes_no_longer_than_asked(seconds):
 
 
 def test_the_cost_of_a_block_is_not_counted_for_each_of_its_motions():
-    # 70 ms for a sample of a thousand, and 1.05 s for 50,000
+    # 70 ms for a sample of a thousand, and 1.05 s for 50,000 motions
     size = sc.sweep.block_size(busy(2e-5, block=0.05), np.arange(1000.0))
     assert size in (20_000, 50_000)
 
 
 def test_a_first_motion_that_takes_long_counts_as_one_of_the_sample():
-    # 70 ms for a sample of a thousand, one of which takes 50: 14,000 in a second
+    # 70 ms for a sample of a thousand, of which one motion takes 50: 14,000 in a second
     assert sc.sweep.block_size(busy(2e-5, zero=0.05), np.arange(1000.0)) in (5_000, 10_000)
 
 

@@ -1,4 +1,4 @@
-"""The inertia ratio is that of the body as it was built, its rim sharp or rounded, or a ball."""
+"""The fitted inertia ratio is that of the body as built, with a sharp or rounded rim, or a ball."""
 
 from dataclasses import replace
 
@@ -11,14 +11,14 @@ SIZE = sc.Scale(radius=0.012, mass=0.05)
 
 
 def general(rng):
-    """A body of any moments, whose stem or cap lands anywhere."""
+    """A body of random moments, with a stem or cap that lands at a random inclination."""
     i3 = rng.uniform(0.2, 0.9)
     more = {"fillet": rng.uniform(0.0, 1.0), "theta_end": rng.uniform(1.0, 3.1)}
     return sc.Body(rng.uniform(0.0, 3.0), i3 * rng.uniform(0.55, 8.0), i3, **more)
 
 
 def ball(rng):
-    """A ball whose centre of mass is above its middle, or below, as of a tippe top."""
+    """A ball with its centre of mass above or, like a tippe top, below its middle."""
     i3 = rng.uniform(0.2, 0.8)
     return sc.Body.ball(rng.choice([-1, 1]) * rng.uniform(0.1, 0.8), i3 * rng.uniform(0.6, 2.0), i3)
 
@@ -39,7 +39,7 @@ KINDS = {
 
 
 def steady(rng, kind, points=10, off=0):
-    """A body of a kind, inclinations anywhere below its end at which it is steady, and its own rates."""
+    """A body of a kind, random inclinations at which it is steady, and its rates there."""
     while True:
         body = replace(KINDS[kind](rng), scale=SIZE)
         theta = np.linspace(0.0, np.pi, 600)[1 + off : -1 - off]

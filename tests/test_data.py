@@ -1,4 +1,4 @@
-"""Measured data: what Tracker exports is read, and the inertia ratio is found with its uncertainty."""
+"""Measured data: exports of Tracker are read, and the inertia ratio is fitted with its uncertainty."""
 
 import time
 
@@ -134,7 +134,7 @@ def test_reading_a_long_table_costs_little_more_than_its_numbers(tmp_path):
     for text in (plain, gaps):
         path = tmp_path / "long.txt"
         path.write_text(text)
-        # with a new reader of CSV for every line it was 15 to 70
+        # a new CSV reader for every line took 15 to 70 times as long
         assert min(timed(lambda path=path: sc.data.read_tracker(path)) for _ in range(3)) < 5 * alone
 
 
@@ -154,7 +154,7 @@ def test_a_missing_file_is_an_os_error(tmp_path):
 
 
 def test_a_film_of_both_ends_gives_inclination_and_rate(tmp_path):
-    # what a camera from the side and one from above see of a steady tube, as Tracker writes it
+    # a steady tube as tracked by a camera at the side and one above
     pipe, scale = sc.Body.tube(6.0, bore=0.8), sc.Scale(radius=7.9375e-3)
     state = pipe.steady(np.radians(80))
     seconds = np.arange(40) / 240
@@ -218,7 +218,7 @@ def test_the_uncertainty_is_that_of_many_repetitions(known):
         found = sc.data.compare(CYLINDER, theta, rate, **errors)
         pulls.append((found.ratio - found.expected) / found.ratio_err)
         chi2.append(found.chi2)
-    # of 120 standard numbers: the spread is known to 0.065, the mean to 0.09
+    # 120 standard normal numbers: standard errors are 0.065 for the spread and 0.09 for the mean
     assert 0.8 < np.std(pulls) < 1.25 and abs(np.mean(pulls)) < 0.35
     if known:
         assert 0.85 < np.mean(chi2) < 1.15
@@ -263,7 +263,7 @@ def test_without_known_errors_the_scatter_of_the_points_decides():
     theta, rate, *_ = measured(CYLINDER, rng, 1e-4)
     given = sc.data.compare(CYLINDER, theta, rate, theta_err=np.radians(1.0), rate_err=0.02 * rate)
     found = sc.data.compare(CYLINDER, theta, rate)
-    # points a hundred times closer than the errors they might have
+    # the points scatter a hundred times less than their assumed errors
     assert found.ratio_err == pytest.approx(given.ratio_err * np.sqrt(given.chi2), rel=1e-3)
     assert found.ratio_err < 0.03 * given.ratio_err
 

@@ -1,4 +1,4 @@
-"""Measured spin-downs: the drift is fitted, and laws of loss are told apart or said not to be."""
+"""Measured spin-downs: drifts are fitted, and laws of loss are told apart where the data allow."""
 
 import warnings
 from functools import cache
@@ -17,7 +17,7 @@ named = pytest.mark.parametrize("law", ALL, ids=lambda law: law.__name__)
 
 
 def spun(law, body=EULER, start=0.3, points=200, share=0.95, noise=0.01, seed=1, centre="rest"):
-    """Times, inclinations and rates with errors of one share of each, and the true drift."""
+    """Times, inclinations and rates with relative noise, and the true drift."""
     rng = np.random.default_rng(seed)
     drift = sc.drift(body, start, law, centre=centre)
     stop = drift.stops_at if np.isfinite(drift.stops_at) else float(drift.time(start / 10))
@@ -43,7 +43,7 @@ def test_exact_points_give_the_coefficient_and_the_stopping_time(law, given):
 
 @cache
 def noisy(law):
-    """Times, inclinations with noise, and the fit of every law to them."""
+    """Times, noisy inclinations, and the fit of every law to them."""
     t, theta, _, _ = spun(law(1e-4))
     return t, theta, sc.data.fit_losses(t, theta, body=EULER, centre="rest")
 
@@ -84,7 +84,7 @@ def test_the_errors_are_those_of_many_repetitions(how):
         found = sc.data.fit_losses(t, **given, body=EULER, laws=[law], centre="rest", **more).best
         pulls.append((found.coefficient - 1e-3) / found.coefficient_err)
         stops.append((found.stops_at - true.stops_at) / found.stops_at_err)
-    # of 80 standard numbers: the spread is known to 0.08, the mean to 0.11
+    # 80 standard normal numbers: standard errors are 0.08 for the spread and 0.11 for the mean
     for numbers in (pulls, stops):
         assert 0.75 < np.std(numbers) < 1.3 and abs(np.mean(numbers)) < 0.5
 
@@ -179,13 +179,13 @@ def test_rolling_drifts_are_fitted_with_rolling():
     t, theta, _, _ = spun(law(1e-3), centre="rolling", points=80)
     found = sc.data.fit_losses(t, theta, body=EULER, laws=[law], centre="rolling").best
     assert found.coefficient == pytest.approx(1e-3, abs=4 * found.coefficient_err)
-    # the other drift explains it too, with another coefficient
+    # the other drift fits too, with another coefficient
     other = sc.data.fit_losses(t, theta, body=EULER, laws=[law], centre="rest").best
     assert abs(other.coefficient - 1e-3) > 4 * other.coefficient_err
 
 
 def test_rates_that_several_inclinations_could_have_need_a_start():
-    # on its side, or on its end above the ridge: the precession falls to 1 on both
+    # on its side, or on its end above the ridge: on both branches the precession falls to 1
     law, can = sc.loss.DryContour, sc.Body.solid(0.9)
     t, _, precession, _ = spun(law(1e-3), can, 1.2, noise=0.0)
     with pytest.raises(
@@ -202,7 +202,7 @@ def test_the_log_log_line_is_biased_by_more_than_it_claims():
     assert -0.03 < line.exponent - 1 / 2 < -3 * line.exponent_err < 0
     line = sc.data.fit_losses(t, precession=precession, body=EULER, laws=[sc.loss.ViscousContour]).line
     assert 0.005 < line.exponent + 1 / 4 < 0.03
-    # of a true power it finds exponent and stopping time
+    # for an exact power the line has the true exponent and stopping time
     power = sc.data._line.line(t, 0.3 * (100 - t) ** (2 / 3))
     assert power.exponent == pytest.approx(2 / 3, abs=1e-6) and power.stops_at == pytest.approx(100, abs=1e-3)
     assert power.factor == pytest.approx(0.3, rel=1e-5)
@@ -270,7 +270,7 @@ def test_a_spin_down_that_no_law_explains_is_warned_of():
 
 
 def test_points_after_the_stop_do_not_break_the_fit():
-    # a clock that errs by more than is left of the drift
+    # an error of the clock larger than the time left
     t, theta, _, true = spun(sc.loss.DryContour(1e-3), share=0.999, points=60)
     t = t.copy()
     t[-1] = 1.01 * float(true.stops_at)
@@ -311,7 +311,7 @@ def test_a_fit_shows_itself_with_all_its_laws():
 
 
 def test_the_fitted_curve_goes_on_before_its_start_and_beyond_its_stop():
-    # so that a trial whose stop lies before the last point is led back to it
+    # a trial with its stop before the last point must be drawn back to the point
     curve = sc.data._curve.Curve(EULER, [sc.loss.DryContour], "rest", (0.01, 0.3), True)
     stop = curve.stops_at([1e-3], 0.3)
     assert stop == pytest.approx(float(sc.drift(EULER, 0.3, sc.loss.DryContour(1e-3)).stops_at), rel=1e-9)
@@ -324,7 +324,7 @@ def test_the_fitted_curve_goes_on_before_its_start_and_beyond_its_stop():
 
 
 def dry(eps, body):
-    """Dry friction along the contour of a measured body, by its coefficient in R."""
+    """Dry friction along the contour of a measured body, with the coefficient in R."""
     return sc.loss.DryContour.from_si(eps * body.scale.radius, scale=body)
 
 
@@ -354,7 +354,7 @@ def test_a_spin_down_in_seconds_gives_the_law_and_its_time_in_seconds():
         assert (one.coefficient, one.chi2, one.aic) == pytest.approx(numbers, rel=1e-6)
         times = other.stops_at * second, other.stops_at_err * second
         assert (one.stops_at, one.stops_at_err) == pytest.approx(times, rel=1e-6)
-        # what is left is the difference of what was measured and what the drift of the fit says
+        # the residual is the measurement minus the fitted drift
         clock = t - t[0]
         shown = {"theta": one.drift.theta(clock), "precession": one.drift.precession(clock)}
         assert found.theta - shown["theta"] == pytest.approx(one.residual["theta"], abs=1e-9)

@@ -1,4 +1,4 @@
-"""Sound: files of phones are read, and the wobble is found in the envelope of a ring that is made here."""
+"""Sound: recordings of phones are read, and the wobble is measured from synthetic ringing."""
 
 import struct
 import wave
@@ -13,7 +13,7 @@ HERTZ = 44_100
 
 
 def whirr(slow, stop, seconds, *, noise=0.5, depth=0.6, tone=3000.0, seed=1, hertz=HERTZ):
-    """A ring of one tone, louder once a turn, that turns as often as a dry loss lets a disk: tau^(-1/3)."""
+    """A ring of one tone, louder once per turn, of a disk under dry friction: rate ~ tau^(-1/3)."""
     rng = np.random.default_rng(seed)
     t = np.arange(int(seconds * hertz)) / hertz
     turn = 1.5 * slow * stop * (1 - (1 - t / stop) ** (2 / 3))
@@ -38,7 +38,7 @@ def test_the_errors_of_the_wobble_are_those_of_many_recordings():
         t, sound, true = whirr(20.0, 6.5, 6.0, noise=2.0, seed=seed)
         found = sc.data.wobble(t, sound)
         pulls.append((found.turns - true(found.t)) / found.turns_err)
-    # about 100 numbers from windows of eight turns
+    # about 100 windows of eight turns
     assert 0.7 < np.std(np.concatenate(pulls)) < 1.3
 
 

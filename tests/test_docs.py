@@ -1,4 +1,4 @@
-"""The README and every page of the documentation: their Python runs and prints what they say it prints."""
+"""The README and every page of the documentation: the Python code runs and prints the output shown."""
 
 import contextlib
 import doctest
@@ -29,7 +29,7 @@ PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 
 
 def examples(page):
-    """Runs of code, and the text that follows them if it is what they print."""
+    """Code that runs, with the text below it that shows its output."""
     parts = blocks.printed(blocks.blocks(page.read_text("utf-8")))
     return [(block.kind, block.text, said) for block, said in parts if block.kind in blocks.RUNS]
 
@@ -38,7 +38,7 @@ RUNNING = [page for page in PAGES if examples(page)]
 
 
 def clipped(figure):
-    """Whether something of the figure lies outside it when it is saved."""
+    """Whether any part of a figure is cut off when it is saved."""
     figure.savefig(io.BytesIO(), format="png")
     (left, low), (right, high) = figure.bbox.get_points()
     boxes = [ax.get_tightbbox().get_points() for ax in figure.axes]
@@ -58,7 +58,7 @@ def test_the_examples_of_a_page_run_and_print_what_it_says(page, monkeypatch):
             plt.close("all")
 
 
-@pytest.mark.long  # the figures are made by `make docs`, too, where a warning is an error
+@pytest.mark.long  # `make docs` makes the figures, too, with warnings as errors
 @pytest.mark.parametrize("page", RUNNING, ids=lambda page: page.name)
 def test_nothing_of_a_figure_lies_outside_of_it(page, monkeypatch):
     monkeypatch.chdir(ROOT)
@@ -80,26 +80,26 @@ def test_the_commands_of_the_pages_run_and_write_what_they_name(monkeypatch, tmp
     monkeypatch.chdir(tmp_path)
     texts = [(ROOT / f"docs/{page}.md").read_text("utf-8") for page in ("command-line", "install")]
     commands = "".join(block.text for text in texts for block in blocks.of_kind(text, "sh"))
-    lines = commands.replace("\\\n", "").splitlines()  # a line that ends with a backslash goes on
+    lines = commands.replace("\\\n", "").splitlines()  # join lines that end with a backslash
     lines = [shlex.split(line) for line in lines if line.startswith("spincyl ")]
     assert {words[1] for words in lines} >= {*"steady portrait roll flick drift report figures".split()}
     for words in lines:
         if words[1] in ("report", "figures"):
-            cli.parser().parse_args(words[1:])  # to run them takes minutes
+            cli.parser().parse_args(words[1:])  # running these takes minutes
             continue
         assert cli.main(words[1:]) == 0, words
         assert "-o" not in words or (tmp_path / words[words.index("-o") + 1]).stat().st_size > 1000
 
 
 def named(thing, name):
-    """The public names of a class, or of a module and what it exports: what a table of the page can list."""
+    """The public names of a class or module, which the table of the page can list."""
     if inspect.ismodule(thing):
         found = {f"{name}.{x}" for x in thing.__all__}
         return found if name in ("data", "loss", "plot", "sweep") else set()
     if not inspect.isclass(thing) or issubclass(thing, (tuple, enum.Enum, Warning)):
         return {name}
     own = {x: inspect.getattr_static(thing, x) for x in dir(thing) if not x.startswith("_")}
-    for base in thing.__mro__[1:]:  # what a public class has inherited from another is listed there
+    for base in thing.__mro__[1:]:  # names inherited from another public class are listed there
         if base.__name__ in sc.__all__:
             own = {x: what for x, what in own.items() if inspect.getattr_static(base, x, None) is not what}
     methods = (property, functools.cached_property, classmethod, staticmethod, types.FunctionType)

@@ -1,6 +1,6 @@
-"""Ends that are hard to find: beside the last time, at the start, where something stops, of what all but does not turn.
+"""Ends that are difficult to compute: near the last time, at the start, at a stop, or nearly without spin.
 
-Times and states are those of independent models of 80 to 220 bits, unless another source is named.
+Times and states come from independent models of 80 to 220 bits, unless another source is named.
 """
 
 import warnings
@@ -16,7 +16,7 @@ COIN = sc.Body.solid(0.1)
 
 
 def swept(body, y, slip, table, t, **how):
-    """One motion by `sweep.roll`: status, time of the end, theta and the claim."""
+    """One motion by `sweep.roll`: status, time of the end, theta and claimed error."""
     state = sc.State(*(np.array([x]) for x in y), slip=tuple(np.array([u]) for u in slip))
     found = sc.sweep.roll(body, state, t, contact=table, want=("final", "end"), **how)
     return int(found["status"][0]), *(float(found[x][0]) for x in ("end", "theta", "error"))
@@ -113,7 +113,7 @@ def test_what_all_but_does_not_turn_falls_as_what_does_not(w1):
     body = sc.Body.solid(0.4487387004847323, fillet=0.4487387004847323)
     start = sc.State(0.18655459943920516, w1, 0.0, 0.0)
     m = sc.roll(body, start, 20.0, losses=loss.AirLinear(9.85580013311344e-06))
-    # the planar equation, by DOP853
+    # from the planar equation, by DOP853
     assert m.status is sc.Ending.FACE and abs(m.event.time - 0.7573446267939468) < 1e-12
     assert m.error < 1e-9
 
@@ -127,7 +127,7 @@ def test_a_pencil_that_is_let_go_falls_and_slips_also_where_it_loses_energy(law)
     m = sc.roll(body, sc.State(0.3, 0.0, 0.0, 0.0), 10.0, contact=table, losses=law)
     assert m.status is sc.Ending.FACE and m.error < 1e-11
     assert [phase.kind for phase in m.phases] == [phase.kind for phase in free.phases]
-    # a law acts or it does not, but it never hastens the fall
+    # a loss may not act here, but it never accelerates the fall
     assert -1e-12 < m.event.time - free.event.time < 1e-2
 
 
@@ -136,7 +136,7 @@ def test_two_laws_of_which_one_resists_rolling_bring_a_coin_down():
     for other in (loss.Drilling(1e-4), loss.Drilling(1e-3), loss.AirLinear(1e-3)):
         m = sc.roll(COIN, COIN.steady(0.3), 100.0, losses=loss.RollingResistance(0.01) + other)
         assert m.status is sc.Ending.FACE and m.event.time < alone.event.time
-        # the last of it comes nearer and nearer to the table, and does not land
+        # near the table the steps become short, but not too many
         assert m.error < 1e-3 and m.nfev < 300_000
 
 
@@ -152,7 +152,7 @@ def test_a_contact_that_settles_under_any_tolerance_lands_alone_and_in_lanes():
 
 
 def test_a_motion_that_hardly_advances_is_given_up_by_name_and_the_sweep_goes_on():
-    # on ice air brings a spinning coin down ever more slowly, in ever more turns
+    # on ice, air slows a spinning coin ever more slowly, over ever more turns
     coin = sc.Body(0.0, 0.2544821776506208, 0.5089643553012416)
     laws = loss.AirLinear(0.2640565710003036) + loss.AirQuadratic(0.18745507026194141)
     theta, w1 = np.array([0.3, 2.1772682973849927e-07, 0.5]), np.array([0.5, 0.0009249692353442887, 0.4])
@@ -165,7 +165,7 @@ def test_a_motion_that_hardly_advances_is_given_up_by_name_and_the_sweep_goes_on
     status = found["status"].values
     assert status[1] == Status.BOUNDED and np.isnan(found["theta"][1])
     assert (status[[0, 2]] == Status.DONE).all()
-    # what is fine beside it draws no warning
+    # the other motions cause no warning
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         sc.sweep.roll(coin, sc.State(theta[[0, 2]], w1[[0, 2]], 0.0, 0.0), 12.0, **how)
@@ -176,7 +176,7 @@ def test_what_changes_its_way_ten_thousand_times_is_followed_up_to_there():
     with pytest.warns(RuntimeWarning, match="given up at t = "):
         m = sc.roll(COIN, COIN.steady(0.3).kicked(0.02), np.linspace(0, 1e4, 101), losses=law)
     assert m.status == sc.Ending.BOUNDED and 100 < m.event.time < 1e4
-    # what is known up to there is returned
+    # the states before the end are returned
     assert m.t.size == 1 + int(m.event.time // 100) and np.isfinite(m.y).all()
 
 
@@ -253,7 +253,7 @@ def test_spins_of_hundreds_are_as_exact_in_lanes_as_claimed(body, y, t, how, w2)
 @pytest.mark.parametrize("want", [(), "pose"])
 @pytest.mark.parametrize("tol", [1e-6, 1e-8, 1e-10, 1e-12, 1e-13, None])
 def test_a_step_whose_error_overflows_is_not_taken_for_the_best_of_steps(tol, want):
-    # a step of a coin under a boundary layer left all numbers, and its error was infinity over infinity
+    # a step of a coin under a boundary layer gave NaN, with an error of inf/inf
     laws = (
         loss.RollingResistance(0.0005627393790316231)
         + loss.AirLinear(0.0013615041303707903)
@@ -261,7 +261,7 @@ def test_a_step_whose_error_overflows_is_not_taken_for_the_best_of_steps(tol, wa
     )
     start = sc.State(0.17834983405438287, 0.8423914174586884, 0.04921618599425541, 0.0)
     m = sc.roll(sc.Body(0.0, 0.25, 0.5), start, 5.0, losses=laws, tol=tol, want=want)
-    # runs of six tolerances come to the same time
+    # six tolerances give the same time
     assert m.status == Status.FACE
     assert abs(m.event.time - 0.70862253514309) <= m.error + 1e-13
 
@@ -284,7 +284,7 @@ def test_a_step_whose_error_overflows_is_not_taken_for_the_best_of_steps(tol, wa
     ],
 )
 def test_on_ice_a_contact_without_slip_stays_so_alone_and_in_lanes(body, y, t, tol):
-    # a slip of 1e-303 has no direction that friction would keep
+    # a slip of 1e-303 has no direction for friction
     alone = sc.roll(body, sc.State(*y, slip=(0.0, 0.0)), t, contact=sc.Coulomb(0.0), tol=tol)
     status, end, theta, claim = swept(body, y, (0.0, 0.0), sc.Coulomb(0.0), t, tol=tol)
     assert status == alone.status == Status.DONE and end == t
@@ -294,7 +294,7 @@ def test_on_ice_a_contact_without_slip_stays_so_alone_and_in_lanes(body, y, t, t
 @pytest.mark.parametrize(
     ("body", "y", "slip", "t", "how", "most"),
     [
-        # it needed 232,389,889 evaluations
+        # needed 232,389,889 evaluations
         (
             sc.Body(0.0, 0.11735334731610608, 0.023067016723355996),
             (0.4, -0.4, -0.08909648968603268, 4.369932837733929),
@@ -303,7 +303,7 @@ def test_on_ice_a_contact_without_slip_stays_so_alone_and_in_lanes(body, y, t, t
             {"contact": "smooth", "losses": loss.RollingResistance(0.04810842865165527), "tol": 1e-10},
             100_000,
         ),
-        # and this one 1,551,452
+        # needed 1,551,452 evaluations
         (
             sc.Body(2.6151865659265146, 2.552233591534172, 0.545, fillet=0.10031688778549808),
             (0.00014078439500811825, 0.007425986543035423, 0.0, 0.019420340246097317),
@@ -326,7 +326,7 @@ def test_what_slips_or_rolls_slowly_makes_steps_as_long_as_its_turning_allows(bo
 @pytest.mark.parametrize(
     ("body", "y", "t", "how", "ending"),
     [
-        # air beside the table moves it within 1e-20
+        # next to the table, the film of air acts on a time scale of 1e-20
         (
             sc.Body(0.685692958285332, 2.212008754136846, 3.6546096303762625, fillet=0.15078508000734803),
             (4.753132816155289e-08, -1.2102260381961927, 0.0, -0.7569381565983346),
@@ -336,7 +336,7 @@ def test_what_slips_or_rolls_slowly_makes_steps_as_long_as_its_turning_allows(bo
             + loss.AirFilm(0.01),
             Status.LIFT_OFF,
         ),
-        # dry friction holds a contact that has settled
+        # dry friction holds a contact whose psi' already follows its balance
         (
             sc.Body(1.9363696472641292, 1.6598424702819359, 0.82),
             (0.2, 0.003953762486301797, -0.2, -1.5),
@@ -344,7 +344,7 @@ def test_what_slips_or_rolls_slowly_makes_steps_as_long_as_its_turning_allows(bo
             loss.DryContour(0.0003738083564251192) + loss.AirFilm(0.1),
             Status.STOPS,
         ),
-        # a contact that loose steps follow settles all the same
+        # psi' follows its balance also with a loose tolerance
         (
             sc.Body(0.24385004674320976, 0.2698209484322219, 0.5),
             (1.9348539882762427e-08, 0.0002677850128302061, 1e-09, 6.529938789577679e-05),
@@ -391,7 +391,7 @@ def test_ends_that_one_way_missed_are_the_same_alone_and_in_lanes(body, y, t, ho
     ids=["in 6 ns", "in 35 ms"],
 )
 def test_dry_friction_stops_a_contact_that_slips_and_has_settled(body, y, slip, c, how):
-    # at 1e-14 no contact settles: its stop is found as any other
+    # with tol=1e-14 no contact is treated as settled: its stop is found like any other event
     followed, *others = (
         sc.roll(body, sc.State(*y, slip=slip), 1.0, contact=sc.Viscous(c), losses=how, tol=tol)
         for tol in (1e-14, 1e-12, 1e-10, 1e-8)

@@ -121,7 +121,7 @@ def test_dry_contour_friction_warns_where_it_has_no_meaning():
 
 
 def test_a_film_of_air_warns_of_what_stands_too_high_for_one():
-    """Euler's disk of Moffatt, Nature 404, 833 (2000): below 0.005 rad, from 1.8e-5 Pa s, 1.2 kg/m^3 and its size."""
+    """Euler's disk of Moffatt, Nature 404, 833 (2000): below 0.005 rad, from viscosity and density of air."""
     disk = sc.measured(outer_diameter=0.075, length=0.0128, mass=0.4)
     film = sc.loss.AirFilm.from_si(scale=disk)
     below = ((1.5e-5) ** 0.5 * (0.0375 / (4 * 9.80665)) ** 0.25 / 0.0375) ** (4 / 3)
@@ -133,7 +133,7 @@ def test_a_film_of_air_warns_of_what_stands_too_high_for_one():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         sc.drift(disk, 0.99 * below, film)
-        sc.drift(disk.natural, 0.3, film)  # of no size
+        sc.drift(disk.natural, 0.3, film)  # without a size
         sc.drift(disk, 0.3, sc.loss.BoundaryLayer.from_si(0.3, scale=disk))
 
 

@@ -1,4 +1,4 @@
-"""The encoding of a table: names and units are those that stand in the file, or it is said that nobody knows."""
+"""The encoding of a table: names and units are read as written, or refused as undecodable."""
 
 import re
 import zipfile
@@ -45,7 +45,7 @@ def test_a_name_that_may_be_another_one_is_refused_with_its_readings_and_read_wh
             readings = dict(re.findall(r"('[^']*') \(([^()]*)\)", str(caught.value)))
             assert encoding in readings[repr(name)].split(", ")
         assert list(sc.data.read_tracker(path, encoding=encoding)) == [name]
-        # as a column and as a unit, too
+        # as a column and as a unit
         for column in (f"{name} (m)", f"x ({name})"):
             path = written(tmp_path, f"t (s)\t{column}\n0\t1\n1\t2\n", encoding)
             with pytest.raises(ValueError, match=r"export.txt: its encoding is not known"):
@@ -72,7 +72,7 @@ def test_a_name_of_western_windows_that_can_be_no_other_is_read(tmp_path, name):
     ["质量_A", "質点", "θ", "Δt", "масса", "t (сек)", "é", "Öl", "où", "x̄", "½ t", "kąt", "čas", "Ø", "R²"],
 )
 def test_utf_8_is_read_also_without_its_mark(tmp_path, name):
-    if name == "½ t":  # a sign that may be half of a Chinese character is known by the mark alone
+    if name == "½ t":  # only with a mark: the character may be half of a Chinese one
         assert list(sc.data.read_tracker(written(tmp_path, f"{name}\n{TABLE}", "utf-8-sig"))) == [name]
         return
     assert list(sc.data.read_tracker(written(tmp_path, f"{name}\n{TABLE}", "utf-8"))) == [name]

@@ -155,7 +155,8 @@ def test_c2_a_long_ensemble_obeys_ctrl_c_within_a_tenth_of_a_second():
         "print(max(delays)); assert threading.active_count() <= 2"
     )
     said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
-    assert float(said) < 1.0  # of processor time, on every thread; an uninterrupted one would go on for ever
+    # seconds of processor time on all threads; a motion that ignores the interrupt would not end
+    assert float(said) < 1.0
 
 
 def _child(queue=None):
@@ -202,7 +203,7 @@ def test_c6_many_threads_may_sweep_at_once():
 
 
 def lazy(chunk=50):
-    """The same motions, dask-backed."""
+    """The same motions as dask arrays."""
     spread = [np.broadcast_to(x, ELL.shape).copy() for x in (START.theta, START.w1, START.w2, START.w3)]
     return sc.Body.solid(da.from_array(ELL, chunks=chunk)), sc.State(
         *(da.from_array(x, chunks=chunk) for x in spread)

@@ -1,4 +1,4 @@
-"""The scenes of examples/: each is a body, a start and times, says in a sentence what it shows, and shows it."""
+"""The scenes of examples/: each has a body, a start, times and a sentence about its physics, which holds."""
 
 import ast
 import importlib
@@ -121,7 +121,7 @@ def test_one_second_before_the_end_a_dry_whirr_is_the_fastest():
 @pytest.mark.parametrize("spin", [-5.0, 5.0])
 def test_a_rattleback_turns_back_because_the_rocking_grows_that_the_eigenvalue_says(spin):
     m, law = sc.roll(rattleback.body, rattleback.spun(spin), rattleback.t), rattleback.law(spin)
-    # its swings, too, take a little of the spin
+    # the nutation also takes a little of the spin
     assert rattleback.grows(m, law.axis) == pytest.approx(law.growth, rel=0.01)
     assert m.spin[0] * m.spin[np.argmax(np.abs(m.spin[1000:])) + 1000] < 0
     times = rattleback.swings(m, law.axis)[0]
@@ -147,7 +147,7 @@ def test_an_egg_rises_where_it_slips_and_jelletts_number_says_how_fast_it_then_s
 
 def test_an_egg_starts_with_its_centre_of_mass_at_rest():
     m = sc.roll(rising_egg.body, rising_egg.start, [0.0, 1e-6], contact=rising_egg.table, want="pose")
-    # in a microsecond friction gives it at most mu g t
+    # in a microsecond friction accelerates the egg to mu g t at most
     assert np.abs(np.diff(m.centre, axis=0)).max() < 1e-11
 
 

@@ -1,4 +1,4 @@
-"""What the eye sees of a spinning tube: the photograph from above."""
+"""The photograph from above of a spinning tube: the symbols that stand still."""
 
 import numpy as np
 import pytest
@@ -12,7 +12,7 @@ PIPE = sc.Body.tube(6.0, bore=0.8)  # the paper's PVC tube
 
 
 def turning(body, theta, turns=1.0):
-    """A steady motion through so many turns about the vertical."""
+    """A steady motion over a number of turns about the vertical."""
     state = body.steady(theta)
     return sc.roll(body, state, turns * 2 * np.pi / state.precession)
 
@@ -27,7 +27,7 @@ def test_pressed_on_its_other_end_it_shows_six_xs_and_no_o():
 
 @pytest.mark.parametrize("ell", [2.0, 3.0, 4.0, 5.0])
 def test_on_its_side_a_tube_shows_as_many_letters_as_its_length_has_diameters(ell):
-    # |ell sin - cos| still symbols a turn
+    # |ell sin - cos| still symbols per turn
     assert letters(sc.exposure(turning(sc.Body.tube(ell, 0.8), np.radians(89.9)))) == (ell, 0)
 
 
@@ -36,14 +36,14 @@ def test_the_letters_stay_where_they_are_over_many_turns_if_their_number_is_whol
 
 
 def test_hurricane_balls_show_one_o_and_no_x_however_they_lean():
-    # |g|/A = 1 symbol a turn stands still: psi' = phi' exactly
+    # |g|/A = 1 still symbol per turn: psi' = phi' exactly
     balls = sc.Body.balls()
     for theta in (72, 80, 88):
         assert letters(sc.exposure(turning(balls, np.radians(theta)))) == (1, 0)
 
 
 def test_a_fillet_shifts_the_number_of_letters_as_the_ratio_of_spin_to_precession():
-    # |g|/A of a can with H = 4 and a fillet of 0.5 at 89.9 degrees is 3.5: none stands still; with H = 3.5 it is 3
+    # at 89.9 degrees |g|/A is 3.5 with H = 4 and a fillet of 0.5: no still symbols; with H = 3.5 it is 3
     for half, whole in ((3.5, True), (4.0, False)):
         can = sc.Body.solid(half, fillet=0.5)
         light = sc.exposure(turning(can, np.radians(89.99), turns=2), samples=1e7)
@@ -51,7 +51,7 @@ def test_a_fillet_shifts_the_number_of_letters_as_the_ratio_of_spin_to_precessio
 
 
 def test_the_upper_ball_hides_the_letter_that_lies_below_it():
-    # half a turn about the axis from the start, the letters are on the lower side of the balls
+    # half a turn about the axis after the start, the letters are on the lower side of the balls
     balls, spin = sc.Body.balls(), 1000.0
     t = np.pi / spin
     now = sc.roll(balls, sc.State(0.3, 0.0, 0.0, spin), [t, t * (1 + 1e-9)], t0=0.0, want="pose")
@@ -66,7 +66,7 @@ def test_the_upper_ball_hides_the_letter_that_lies_below_it():
 
 
 def test_far_away_is_up_and_x_runs_to_the_right():
-    # a coin, for a moment, whose mark has come round towards +y
+    # a coin at a moment when its mark has turned towards +y
     coin = sc.Body.solid(0.0)
     now = sc.roll(coin, coin.circular(0.3, 1.0), [1.0, 1.0 + 1e-9], t0=0.0, want="pose")
     x, y, _ = Rotation.from_quat(now.orientation[0]).apply([1 - 0.56 * 0.6, 0.0, 0.0])
@@ -98,7 +98,7 @@ def test_where_the_number_is_not_whole_many_turns_blur_the_letters_into_a_ring()
 
 
 def test_light_is_conserved():
-    # the normal of a place on the wall of a tube on its side makes full turns: it shows 1/pi of its area
+    # on the wall of a lying tube, a normal makes full turns: a place shows 1/pi of its area on average
     ink = sum(
         np.linalg.norm(np.cross(c[:, 1] - c[:, 0], c[:, 2] - c[:, 0]), axis=1).sum() / 2
         for c in (part.vertices[part.triangles] for part in parts(PIPE)[-2:])
@@ -106,8 +106,8 @@ def test_light_is_conserved():
     light = sc.exposure(turning(PIPE, np.pi / 2 - 1e-6), size=300, width=14.0)
     assert light.sum() * (14.0 / 300) ** 2 == pytest.approx(
         ink / np.pi, rel=4e-3
-    )  # of letters made of flat pieces
-    assert light.min() >= 0 and light.max() <= 1  # nothing is still here, so that noise does not reach 1
+    )  # the letters are made of flat pieces
+    assert light.min() >= 0 and light.max() <= 1  # nothing stands still here, so that noise stays below 1
 
 
 def test_the_upper_letter_of_a_disk_is_seen_from_above_and_the_lower_is_not():
@@ -121,7 +121,7 @@ def test_a_picture_of_a_resting_coin_is_the_letter_where_it_is():
     still = sc.roll(coin, sc.State(1e-3, 0.0, 0.0, 0.0), 1e-9)
     light = sc.exposure(still, width=2.0, size=100)
     y, x = np.mgrid[1:-1:100j, -1:1:100j][0], np.mgrid[1:-1:100j, -1:1:100j][1]
-    # the mark lies on the side of the top of the rim, +x; each place of it shows all the time
+    # the mark is on the side of the top of the rim, +x, and shows all the time
     assert (light * x).sum() / light.sum() == pytest.approx(1 - 0.56 * 0.6, abs=0.01)
     assert (light * y).sum() / light.sum() == pytest.approx(0.0, abs=0.01)
     assert np.median(light[light > 0.5]) == pytest.approx(1.0, abs=0.1)

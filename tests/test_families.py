@@ -1,4 +1,4 @@
-"""Sweeps of bodies and of stones are one thing: what works for one family works for the other."""
+"""Sweeps of bodies and sweeps of stones share their features."""
 
 import dataclasses
 import re
@@ -16,7 +16,7 @@ COUNT = 23
 
 
 def bodies(x):
-    """Bodies, and starts; `x` from 0 to 1 is an array of any kind."""
+    """A family of bodies and their starts; `x` from 0 to 1 is an array of any type."""
     body = sc.Body.solid(0.9 + x)
     return body, body.steady(1.3).kicked(0.05 + 0.01 * x)
 
@@ -27,7 +27,7 @@ def stones(x):
 
 
 def eggs(x):
-    """Stones that are given by all of their numbers, and slip."""
+    """A family of slipping stones given by all of their numbers."""
     axes = np.array([0.75, 0.75, 1.0])
     inertia = np.diag((0.2, 0.2, 0.2)) * (0.6 + 0.1 * x[..., None, None])
     stone = sc.Ellipsoid(axes, inertia, theta_end=1.5 + 0.0 * x)
@@ -173,7 +173,7 @@ def test_a_lazy_sweep_of_stones_can_be_saved_and_read(tmp_path):
     sc.sweep.save(lazy, tmp_path / "stones.zarr")
     found = xarray.open_zarr(tmp_path / "stones.zarr")
     for name, array in sc.sweep.roll(*stones(x), 2.0).data_vars.items():
-        # codes are kept as numbers that can be NaN, where nothing is written yet
+        # codes are stored as floats, NaN where nothing has been written yet
         assert np.array_equal(array.values, found[name].values, equal_nan=True), name
     with pytest.raises(ValueError, match="of another sweep: t is"):
         sc.sweep.save(sc.sweep.roll(*stones(da.from_array(x, chunks=5)), 3.0), tmp_path / "stones.zarr")

@@ -1,4 +1,4 @@
-"""The fields of the nouns are their own: what a caller does to an array later changes no body, state, law or motion."""
+"""Fields keep their values: later changes of the caller's arrays change no body, state, law or motion."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Films: the frames show the motion at their times, as the page does; what writes them is found or named."""
+"""Films: frames show the motion at their times, like the page; missing programs are named."""
 
 import os
 import stat
@@ -31,7 +31,7 @@ def stage(what, times):
     return _Stage(what, [prepared(m, times, what.upper) for m in what.motions], times)
 
 
-# which time a frame shows
+# the times of frames
 
 
 def test_a_film_runs_as_many_times_slower_as_it_says():
@@ -51,7 +51,7 @@ def test_the_last_picture_of_what_has_ended_stays_for_a_second():
     end = m.event.time
     assert np.allclose(what.times[-25:], end, rtol=1e-6) and what.times[-27] < end - 1e-3
     (before,), (after,) = (list(frames(what, np.array([k]))) for k in (-27, -1))
-    # what has ended is grey
+    # after the end of a motion its body is grey
     assert spread(before).max() > 120 and spread(after).max() < 60
 
 
@@ -69,7 +69,7 @@ def test_a_film_too_long_is_refused_before_anything_is_written(tmp_path):
     assert not list(tmp_path.iterdir())
 
 
-# what a frame shows
+# the content of frames
 
 
 @pytest.mark.parametrize(
@@ -86,17 +86,17 @@ def test_each_place_shows_what_is_nearest_to_the_camera_in_its_light(scene):
     rng = np.random.default_rng(1)
     for k, picture in enumerate(frames(what, numbers)):
         found = nearest(m, turned[k], there.centre[k], camera, picture.shape, rng)
-        # along an edge a pixel is a mixture of two
+        # pixels along an edge mix two colours
         around = np.lib.stride_tricks.sliding_window_view(found, (3, 3), axis=(0, 1))
         inside = np.ptp(around, axis=(-2, -1)).max(axis=-1) < 0.1
-        inside[140:, :140] = False  # where the clock stands
+        inside[140:, :140] = False  # the clock is here
         assert inside.sum() > 200
         off = np.abs(picture - 255 * found).max(axis=-1)[1:-1, 1:-1]
         assert (off[inside] < 12).mean() > 0.96 and np.median(off[inside]) < 3, (scene, k)
 
 
 def nearest(m, rotation, centre, camera, shape, rng):
-    """Colours (height, width, 3) of the nearest of many places of the surface; NaN where there is none."""
+    """Colours (height, width, 3) of the nearest of many surface points in each pixel; NaN without any."""
     height, width, _ = shape
     picture, depth = np.full((height * width, 3), np.nan), np.full(height * width, np.inf)
     sun = np.array([-0.45, -0.5, 0.75])
@@ -173,7 +173,7 @@ def test_several_motions_stand_side_by_side_and_the_shadow_darkens_once():
     )
     blue = [(x[..., 2].astype(int) - x[..., 0] > 60) for x in (one, two[:, :320], two[:, 320:])]
     assert all(b.sum() > 20 for b in blue) and blue[1].sum() == pytest.approx(blue[2].sum(), rel=0.05)
-    # the darkest that is not of the body: the ground under one layer of shadow
+    # the darkest colour outside the body: the ground under one layer of shadow
     ground = np.array([0xE9, 0xE5, 0xDB])
     shade = np.abs(one.astype(int) - np.round(0.76 * ground)).max(axis=-1) <= 3
     assert shade.sum() > 300
@@ -225,7 +225,7 @@ def test_a_file_holds_the_frames_with_their_rate_and_size(tmp_path, kind):
     assert b"320x180" in ran.stderr and b" 20 fps" in ran.stderr
     seen = np.frombuffer(ran.stdout, np.uint8).reshape(-1, 180, 320, 3).astype(int)
     assert len(true) == 21 == len(seen)
-    # what is even, as the paper, has its colour
+    # uniform areas such as the paper keep their colour
     assert np.abs(seen[0][:10, 150:] - true[0][:10, 150:]).max() <= 3
     for k, picture in enumerate(seen):
         off = [np.abs(picture - x).mean() for x in true]

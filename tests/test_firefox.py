@@ -1,4 +1,4 @@
-"""The pages in Firefox, where there is the one that playwright drives: they are drawn, and the core says the same."""
+"""The pages in Firefox, if playwright has it: pictures are drawn, and the core gives the same numbers."""
 
 import os
 
@@ -14,7 +14,7 @@ MISSING = "no Firefox: `playwright install firefox` gets the one that playwright
 
 @pytest.fixture(scope="module")
 def firefox():
-    """A browser of its own, which is closed before that of the other pages is started."""
+    """A browser that is closed before that of the other page tests starts."""
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as p:
@@ -27,7 +27,7 @@ def firefox():
 
 @pytest.fixture
 def seen(firefox, tmp_path):
-    """Opens a page, and holds that it complains of nothing."""
+    """A function that opens a page; it fails if the page complains."""
     context = firefox.new_context(viewport=LAPTOP, reduced_motion="reduce")
     complaints = []
 

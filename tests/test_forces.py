@@ -1,4 +1,4 @@
-"""Contact forces, and how far off they say they may be: against 40 digits of the three-dimensional model and between tolerances."""
+"""Contact forces and their claimed errors: against 40 digits of the 3-d model, and between tolerances."""
 
 import csv
 import pathlib
@@ -19,12 +19,12 @@ import newton_euler  # noqa: E402
 
 
 def components(m):
-    """N and the size of the friction, whose error is at most sqrt(2) times that of its components."""
+    """N, and friction over sqrt(2), so that its error is that of its components at most."""
     return np.array([m.normal, m.friction / np.sqrt(2)])
 
 
 def random_starts(seed, count):
-    """Bodies and states, some of them all but flat."""
+    """Random bodies and states, some of them nearly flat."""
     rng = np.random.default_rng(seed)
     for _ in range(count):
         ell, i3 = rng.uniform(0, 2), rng.uniform(0.4, 1)
@@ -45,7 +45,7 @@ def test_a_force_is_that_of_forty_digits_within_its_claim_also_all_but_flat(cont
             normal, along, across = newton_euler.force(numbers, [mpf(x) for x in y], contact)
             off = [mpf(float(m.normal[0])) - normal, mpf(float(m.friction[0])) - mp.hypot(along, across)]
         assert max(abs(float(off[0])), abs(float(off[1])) / np.sqrt(2)) <= m.force_error, (body, y)
-        # a motion begins with e2 along y, and leans toward x
+        # at the start e2 is along y, and the body leans toward x
         there = np.array([float(across), float(along), float(normal)])
         assert np.abs(m.contact_force[0] - there).max() <= 2 * m.force_error, (body, y)
 
@@ -62,7 +62,7 @@ def test_forces_on_the_way_are_those_of_the_model_within_their_claims():
                 sc.Body(ell, i1, i3), sc.State(*start), t, contact=contact, want="force", beyond=True, **how
             )
             if m.error > 1e-3:
-                continue  # a claim of forces is of first order in that of the state
+                continue  # the claimed error of forces is linear in that of the state
             off = np.abs(components(m)[:, 0] - [normal, friction / np.sqrt(2)]).max()
             assert off <= m.force_error, (name, how)
             checked.append(m.force_error)
@@ -135,7 +135,7 @@ MOVING = {
 
 @pytest.mark.parametrize("name", MOVING)
 def test_the_contact_force_and_the_weight_move_the_centre_and_turn_the_body(name):
-    # Newton's law along the axes of the laboratory, by differences; without losses Euler's, about the centre
+    # Newton's law in the laboratory, and without losses Euler's about the centre, by finite differences
     body, start, how = MOVING[name]
     h, middle = 5e-3, np.linspace(0.1, 0.5, 9) + (4.6 if body is COIN else 0.0)
     times = np.ravel(middle[:, None] + h * np.arange(-2, 3))
@@ -151,7 +151,7 @@ def test_the_contact_force_and_the_weight_move_the_centre_and_turn_the_body(name
     if name in ("loses", "has landed"):
         return
     if body is CAN:
-        # w stands along axes that follow the tilt and not the spin
+        # w has components along axes that follow the tilt, but not the spin
         tilt = Rotation.from_euler("ZY", np.column_stack([m.phi, -m.theta])).as_matrix()
         momentum = np.einsum("nij,j,nj->ni", tilt, [body.i1, body.i1, body.i3], m.w)
     else:

@@ -1,4 +1,4 @@
-"""The gallery: its scenes print what the page says and draw the pictures that it shows; the README fits three screens."""
+"""The gallery: scenes print and draw what the page shows; the README fits three screens."""
 
 import io
 import pathlib
@@ -20,7 +20,7 @@ LINK = re.compile(r"\]\(([^)#:\s]+)(?:#[^)]*)?\)")
 
 
 def coarse(picture):
-    """A picture in 48 x 24 cells of grey, 0 to 255."""
+    """A picture as 48 x 24 cells of grey, 0 to 255."""
     with Image.open(picture) as opened:
         return np.asarray(opened.convert("L").resize((48, 24), Image.Resampling.BOX), dtype=float)
 
@@ -43,8 +43,8 @@ def test_a_scene_of_the_gallery_draws_the_picture_that_the_page_shows(scene):
     gallery.draw(scene).savefig(drawn, dpi=120)
     plt.close("all")
     kept = ROOT / f"docs/figures/gallery/{scene}.png"
-    # Another matplotlib may set letters a pixel off. A tenth more friction moves the hoop's picture by 4.6, half as
-    # much again of a kick that of the balls by 2.9.
+    # Another matplotlib may place letters a pixel off. For comparison: 1.1 times the friction changes the
+    # hoop's picture by 4.6, 1.5 times the kick that of the balls by 2.9.
     off = np.abs(coarse(drawn) - coarse(kept)).mean()
     assert off < 2, f"python examples/gallery.py draws it anew: {off:.2f} of 255 off"
 

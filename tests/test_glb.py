@@ -1,4 +1,4 @@
-"""The animated scene as glTF 2.0: other libraries load it, and its frames are poses of the motion."""
+"""The animated scene as glTF 2.0: another library loads it, and its frames are poses of the motion."""
 
 import near_steady_tube
 import numpy as np
@@ -24,7 +24,7 @@ def test_another_library_loads_the_scene_and_finds_the_body(tmp_path):
     surface.merge_vertices(merge_norm=True, merge_tex=True)
     assert surface.is_watertight and surface.is_winding_consistent
     assert surface.volume == pytest.approx(np.pi * (1 - 0.64) * 12, rel=1e-3)
-    # metres, y up, standing on the table as at the start
+    # in metres, y upwards, standing on the table
     low, high = scene.bounds
     assert low[1] == pytest.approx(0.0, abs=5e-3)
     assert high[1] == pytest.approx(float(2 * m.wanting("pose", t=0.0).centre[0, 2]) * 0.5, abs=0.01)
@@ -35,7 +35,8 @@ def test_another_library_loads_the_scene_and_finds_the_body(tmp_path):
     [
         (sc.Body.solid(2.5, fillet=1.0), np.pi * (3 + 4 / 3)),
         (sc.Body.balls(), np.pi * 8 / 3),
-        # half of it: the straight part, and a fillet of 1/2 round a rim of 1/2, a^2 rho + a pi rho^2/2 + 2 rho^3/3
+        # half of its volume: the straight part, and a fillet of 1/2 round a rim of 1/2, a^2 rho + a pi
+        # rho^2/2 + 2 rho^3/3
         (sc.Body.solid(1.5, fillet=0.5), 2 * np.pi * (1 + 1 / 8 + np.pi / 16 + 1 / 12)),
     ],
     ids=["capsule", "two balls", "rounded can"],
@@ -52,7 +53,7 @@ def test_a_round_body_is_round_there_too_and_stands_on_the_table(tmp_path, body,
     assert surface.is_watertight and surface.is_winding_consistent
     assert surface.volume == pytest.approx(volume, rel=1.3e-3)
     assert scene.bounds[0][1] == pytest.approx(0.0, abs=7e-4)
-    # its normals are those of a round body: those of a place agree, whichever facet it belongs to
+    # normals of a smooth body: at one point they agree on all facets
     (ball, *_) = scene.geometry.values()
     places, same = np.unique(np.round(ball.vertices, 5), axis=0, return_inverse=True)
     mean = np.stack([np.bincount(same, ball.vertex_normals[:, i]) for i in range(3)], -1)
@@ -65,7 +66,7 @@ def test_its_frames_are_poses_of_the_motion_in_seconds(tmp_path):
 
     scale = sc.Scale(radius=0.02)
     m = sc.roll(CYLINDER, nutating_cylinder.start, 20.0)
-    other = sc.roll(CAN, sc.State(0.3, 1e-6, 0.0, 0.0), 5.0)  # through a passage of microseconds
+    other = sc.roll(CAN, sc.State(0.3, 1e-6, 0.0, 0.0), 5.0)  # through a passage of microseconds fine
     coin = sc.roll(sc.Body.solid(0.02), sc.Body.solid(0.02).steady(0.1), 10.0)
     tree = GLTF2().load(
         sc.view(m, other, coin, labels=["a", STRANGE, "coin"], scale=scale).save(tmp_path / "spin.glb")
@@ -93,12 +94,12 @@ def test_its_frames_are_poses_of_the_motion_in_seconds(tmp_path):
         q = values(paths["rotation"].output)
         same = np.abs((q * there.orientation).sum(1))
         assert same.min() > 1 - 1e-5
-        # half way between frames a player turns the short way: that is where the body is
+        # half way between frames a player interpolates along the shorter turn, which must be the true one
         middle = motion.wanting("pose", t=(t[1:] + t[:-1]) / 2 / scale.seconds(1.0))
         half_way = q[1:] + q[:-1]
         half_way /= np.linalg.norm(half_way, axis=1)[:, None]
         assert np.abs((half_way * middle.orientation).sum(1)).min() > np.cos(0.02)
-        # between frames it turns by a quarter of a radian at most
+        # the body turns by a quarter of a radian at most between frames
         assert (q[1:] * q[:-1]).sum(1).min() > np.cos(0.3 / 2)
         shifted = values(paths["translation"].output) - there.centre
         assert np.ptp(shifted, axis=0).max() < 1e-4

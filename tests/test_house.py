@@ -1,4 +1,4 @@
-"""The sources keep what their map promises: one home for a formula, one way to read, and tests that exist."""
+"""Rules for the sources: each formula has one home, modules import in one order, and promised tests exist."""
 
 import ast
 import pathlib
@@ -16,7 +16,7 @@ def name(path):
 
 
 def code(path):
-    """The lines of a file without comments, texts and the tests at its end: pairs of a number and a line."""
+    """The lines of a file without comments, strings and the tests at its end: pairs (line number, line)."""
     lines = path.read_text("utf-8").split("#[cfg(test)]\nmod tests")[0].splitlines()
     for number, line in enumerate(lines, 1):
         line = re.sub(r'"(\\.|[^"\\])*"', '""', line)
@@ -24,7 +24,7 @@ def code(path):
 
 
 def comments(path):
-    """The comments of a file in pieces, each a run of lines without a break: pairs of a number and a text."""
+    """The comments of a file, a text for each run of lines, as pairs (number of the first line, text)."""
     run, first = [], 0
     for number, line in enumerate([*path.read_text("utf-8").splitlines(), ""], 1):
         found = re.match(r"\s*//[/!]?(.*)", line)
@@ -36,7 +36,7 @@ def comments(path):
             run = []
 
 
-# Where it touches.
+# The lever of the normal force.
 
 ELL = r"&?(?:\w+\.)*ell(?:\(\))?(?:\.hi|\.lo)?"
 ROUND = (
@@ -51,7 +51,7 @@ LEVER = re.compile(
     rf"|product\(\s*{ELL}\s*,\s*{ROUND}|product\(\s*{ROUND}\s*,\s*{ELL}\b"  # product(ell, s)
 )
 
-# Who else writes a sine or a cosine beside ell, how often, and why it is not `Rim` that is asked.
+# Other files with a product of ell and a sine or cosine: how many, and why they do not use `Rim`.
 ELSEWHERE = {
     "laws/body/mod.rs": (1, "thetaInf in twice the digits"),
     "states/stability/at_rest.rs": (4, "the fast twin of a sharp rim, with products fused everywhere"),
@@ -105,7 +105,7 @@ def test_only_the_rim_knows_where_a_body_touches():
     assert {file: len(lines) for file, lines in found.items() if lines} == expected, found
 
 
-# What things are called.
+# Names of types.
 
 TYPE = re.compile(
     r"^(?:\s*(?:pub(?:\([^)]*\))?\s+)?(?:struct|enum|trait|union)|(?:pub(?:\([^)]*\))?\s+)?type)\s+(\w+)"
@@ -113,7 +113,7 @@ TYPE = re.compile(
 
 
 def types(path):
-    """The names of structs, enums, traits and aliases of a file; an associated type is none of them."""
+    """The names of structs, enums, traits and aliases of a file, without associated types."""
     return [(found[1], number) for number, line in code(path) if (found := TYPE.match(line))]
 
 
@@ -144,7 +144,7 @@ def test_the_name_of_a_type_stands_once():
     assert not twice, twice
 
 
-# The way through the modules.
+# Imports between modules.
 
 HOMES = {path.relative_to(SRC).with_suffix("").parts: path for path in SOURCES if path.stem != "lib"}
 HOMES = {words[:-1] if words[-1] == "mod" else words: path for words, path in HOMES.items()}
@@ -153,25 +153,25 @@ INLINE = re.compile(r"(?<![\w:$])(?:crate|super|self)(?:::\w+)+")
 
 
 def layers_of_src():
-    """The layers in the order of the map in lib.rs: each may use those before it."""
+    """The layers in the order of the map in lib.rs; each may import from those before it."""
     text = (SRC / "lib.rs").read_text("utf-8")
     return ["error", *dict.fromkeys(re.findall(r"^//! \| `(\w+)` \|", text, re.M)), "python"]
 
 
 def front_door():
-    """The names that lib.rs gives, each with the words of the path that it stands for."""
+    """The public names of lib.rs, each with the words of its path."""
     found = {}
     for tree in re.findall(r"^pub use ([^;]+);", (SRC / "lib.rs").read_text("utf-8"), re.M):
         for *head, last in paths(re.sub(r"\s", "", re.sub(r" as ", "=", tree))):
             last, _, alias = last.partition("=")
             path = (*head, last)
-            # `pub use body::Body`, where `body` is itself a name of the front door
+            # as in `pub use body::Body`, where `body` is itself a public name
             found[alias or last] = (*found.get(path[0], path[:1]), *path[1:])
     return found
 
 
 def resolved(words, module, front):
-    """The module that a path leads to, seen from another one; None if it leads out of the crate."""
+    """The module that a path leads to when written in `module`; None if it leads out of the crate."""
     words, base = list(words), list(module)
     if words[0] == "crate":
         words, base = words[1:], []
@@ -189,7 +189,7 @@ def resolved(words, module, front):
 
 
 def uses():
-    """(module, number of the line, module that it uses), by `use` and by the paths in its lines."""
+    """(module, line number, imported module) for every `use` and every inline path."""
     front = front_door()
     for module, path in HOMES.items():
         text = "\n".join(line for _, line in code(path))
@@ -248,7 +248,7 @@ def test_a_path_is_followed_through_the_front_door_and_upward(words, found):
 
 
 def paths(tree):
-    """The words of each path of a `use`: a::{b, c::d} has two."""
+    """The words of each path in a `use`: a::{b, c::d} has two."""
     if "{" not in tree:
         return [tree.split("::")]
     head, depth, found, part = tree[: tree.index("{")], 0, [], ""
@@ -263,8 +263,8 @@ def paths(tree):
 
 
 def circle(asks):
-    """Those that ask each other in a circle, of what each asks."""
-    # what asks only for what is settled is settled; what stays over asks in a circle, or for one
+    """Modules that import each other in a circle, from the imports of each module."""
+    # settle modules that import only settled ones; the rest is in a circle or imports from one
     settled, left = set(), {*asks, *(found for all_found in asks.values() for found in all_found)}
     while free := {module for module in left if asks.get(module, set()) <= settled}:
         settled |= free
@@ -275,7 +275,7 @@ def circle(asks):
 
 
 def test_no_modules_use_each_other_in_a_circle():
-    # A module may use the folder in which it stands; what its own folder leads to is no circle.
+    # A module may use its own folder: what that imports makes no circle.
     asks = {}
     for module, _, found in uses():
         if module[: len(found)] != found:
@@ -285,7 +285,7 @@ def test_no_modules_use_each_other_in_a_circle():
 
 
 def test_only_numbers_and_methods_know_what_they_are_compiled_for():
-    # A browser has no clock; what else is short there has one flag, which build.rs sets.
+    # A browser has no clock; other code that is shorter there depends on a flag of build.rs.
     def places(flag):
         return {name(path) for path in SOURCES for _, line in path_lines(path) if flag in line}
 
@@ -297,7 +297,7 @@ def path_lines(path):
     return enumerate(path.read_text("utf-8").splitlines(), 1)
 
 
-# A constant of a module; one of a type or of a trait has the name of that as well.
+# A constant of a module; associated constants are distinguished by the name of their type.
 CONSTANT = re.compile(r"^(?:pub(?:\([^)]*\))? )?(?:const|static) ([A-Z][A-Z0-9_]*)\b")
 
 
@@ -313,7 +313,7 @@ def test_the_name_of_a_constant_stands_once_in_a_layer():
     assert not twice, twice
 
 
-# The layers of the package for Python.
+# The layers of the Python package.
 
 PACKAGE = ROOT / "python" / "spincyl"
 CORE = "spincyl._core"
@@ -321,24 +321,24 @@ TRIGONOMETRY = re.compile(r"a?(?:rc)?(?:sin|cos|tan)h?2?|hypot|sincos")
 
 
 def layers():
-    """The layers that the front door lists, from below; "." is the wrapper, "__init__" the front door."""
+    """The layers in `spincyl/__init__.py`, lowest first; "." is the wrapper, "__init__" the front door."""
     return re.findall(r"^# (\S+) {2,}\S", (PACKAGE / "__init__.py").read_text("utf-8"), re.M)
 
 
 def modules_of_python():
-    """All modules of the package by name; "spincyl" is the front door."""
+    """All modules of the package, by name; "spincyl" is the front door."""
     names = ((path, path.relative_to(PACKAGE.parent).with_suffix("").parts) for path in PACKAGE.rglob("*.py"))
     return {".".join(words).removesuffix(".__init__"): path for path, words in names}
 
 
 def layer(module):
-    """The layer of a module."""
+    """The layer of a module, by name."""
     first = module.split(".")[1] if "." in module else "__init__"
     return "cli" if first == "__main__" else first if first in layers() else "."
 
 
 def asked(text, known):
-    """The modules that a module imports, wherever it does, or names in a text; for its types alone it may know any."""
+    """The modules that a module imports anywhere or names in a string; imports for types do not count."""
     tree = ast.parse(text)
     hints = [x for x in ast.walk(tree) if isinstance(x, ast.If) and ast.unparse(x.test) == "TYPE_CHECKING"]
     unseen = {id(x) for hint in hints for line in hint.body for x in ast.walk(line)}
@@ -350,14 +350,14 @@ def asked(text, known):
             names = [name if name in known else x.module for name in whole]
         elif isinstance(x, ast.Import):
             names = [name.name for name in x.names]
-        elif isinstance(x, ast.Constant) and x.value != "spincyl":  # of import_module, or of files
+        elif isinstance(x, ast.Constant) and x.value != "spincyl":  # an argument of import_module or files
             names = [x.value]
         if id(x) not in unseen:
             yield from (name for name in names if name in known)
 
 
 def python_asks():
-    """What each module asks for; the front door leads to all that is below it."""
+    """The imports of each module; the front door imports all layers below it."""
     known = modules_of_python()
     names = {*known, CORE}
     asks = {name: {*asked(path.read_text("utf-8"), names)} - {name} for name, path in known.items()}
@@ -367,14 +367,14 @@ def python_asks():
 
 
 def against(asks):
-    """Imports against the order of the layers."""
+    """Imports of a higher layer."""
     order = {name: place for place, name in enumerate(layers())}
     pairs = ((name, other) for name, others in asks.items() for other in others)
     return [f"{name} asks {other}" for name, other in pairs if order[layer(name)] < order[layer(other)]]
 
 
 def code_lines(text):
-    """How many lines have code: without empty lines, comments and docstrings."""
+    """Number of lines with code, without empty lines, comments and docstrings."""
     blocks = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
     docs = set()
     for x in ast.walk(ast.parse(text)):
@@ -385,7 +385,7 @@ def code_lines(text):
 
 
 def trigonometry(text):
-    """The functions, by name, that call a sine or the like."""
+    """The names of functions that call a trigonometric function."""
     tree = ast.parse(text)
     inner = [x for x in ast.walk(tree) if isinstance(x, ast.FunctionDef)]
     for x in ast.walk(tree):
@@ -457,7 +457,7 @@ def test_an_import_along_the_layers_is_none_against_them(module, line):
 
 
 def hidden(text):
-    """Whether modules are loaded by names that stand nowhere in the text."""
+    """Whether a text loads modules by names that it does not contain."""
     calls = [x for x in ast.walk(ast.parse(text)) if isinstance(x, ast.Call)]
     loads = [x for x in calls if ast.unparse(x.func).split(".")[-1] in ("import_module", "__import__")]
     return any(not isinstance(arg, ast.Constant) for x in loads for arg in x.args)
@@ -534,15 +534,15 @@ def test_the_wrapper_leaves_trigonometry_to_the_core():
     assert not found
 
 
-# What is promised.
+# Promises of tests in comments.
 
 PROMISE = re.compile(r"[^.;]*\b(?:a test|a property|the tests|tests of)\b[^.;]*", re.I)
-# of a file that has some
+# for a file that ends with tests
 OWN = "the tests at the end"
 
 
 def known_tests():
-    """The names that a promise can give: files of tests, modules with tests of their own, and tests."""
+    """The names that a promise can give: test files, modules with tests, and tests."""
     files = [*(ROOT / "tests").glob("**/*.rs"), *(ROOT / "tests").glob("test_*.py")]
     names = {path.parent.name if path.name == "main.rs" else path.stem for path in files}
     for path in [*files, *SOURCES]:

@@ -1,4 +1,4 @@
-"""Installed as a user would: the wheel without Rust, the crate without Python, the sources with pip and cargo."""
+"""Installation by users: the wheel without Rust, the crate without Python, the sources with pip and cargo."""
 
 import os
 import pathlib
@@ -60,7 +60,7 @@ def numbers():
 
 
 def only(folder, *names):
-    """A search path with nothing but these programs."""
+    """A search path with these programs only."""
     folder.mkdir()
     for name in names:
         found = shutil.which(name)
@@ -76,7 +76,7 @@ def run(words, **how):
 
 
 def built():
-    """The wheel of this machine; SPINCYL_WHEELS=dist is the one that `make wheel` makes for others."""
+    """The wheel for this machine; SPINCYL_WHEELS=dist tests the one that `make wheel` makes for release."""
     folder = ROOT / os.environ.get("SPINCYL_WHEELS", pathlib.Path(sys.prefix) / "wheels")
     wheels = list(folder.glob(f"spincyl-*{platform.machine()}.whl"))
     assert len(wheels) == 1, f"make builds it: {wheels}"
@@ -106,7 +106,7 @@ def test_the_wheel_works_where_there_is_no_rust(tmp_path):
     quiet = {k: v for k, v in os.environ.items() if not k.startswith(("PYTHON", "CARGO", "RUST"))}
     quiet["PATH"] = str(python.parent)
     assert shutil.which("cargo", path=quiet["PATH"]) is None
-    # by the pip of the tests: one of its own would take longer than the rest
+    # by the pip of this environment, since installing a new pip takes longer than the rest
     install = [
         sys.executable,
         "-m",
@@ -131,7 +131,7 @@ def test_the_wheel_works_where_there_is_no_rust(tmp_path):
 
 @pytest.fixture(scope="module")
 def sdist(tmp_path_factory):
-    """The sources as they go to an index of packages."""
+    """The sources as uploaded to a package index."""
     folder = tmp_path_factory.mktemp("sdist")
     run([sys.executable, "-m", "maturin", "sdist", "--out", folder], cwd=ROOT)
     (path,) = folder.glob("spincyl-*.tar.gz")
@@ -152,7 +152,7 @@ def test_the_sources_for_python_are_whole_and_have_nothing_else(sdist):
     assert not [name for name in names if name.endswith((".png", ".so", ".pyc"))]
 
 
-@pytest.mark.long  # it is compiled with all that it needs
+@pytest.mark.long  # compiles the crate and all its dependencies
 def test_the_sources_for_python_build_where_there_is_only_pip_and_cargo(sdist, tmp_path):
     tools = ("cargo", "rustc", "rustup", "cc", "gcc", "ld", "as", "ar", "collect2", "cat", "sh")
     venv.create(tmp_path / "env", with_pip=True)
@@ -171,12 +171,12 @@ def test_the_crate_asks_for_no_python():
     assert "nalgebra" in tree and "pyo3" not in tree
 
 
-@pytest.mark.long  # it is compiled with all that it needs
+@pytest.mark.long  # compiles the crate and all its dependencies
 def test_a_rust_program_of_ten_lines_works_where_there_is_no_python(tmp_path):
     tools = ("cargo", "rustc", "rustup", "cc", "gcc", "ld", "as", "ar", "collect2", "cat", "sh")
     alone = {k: v for k, v in os.environ.items() if not k.startswith(("PYTHON", "VIRTUAL_ENV"))}
     alone["PATH"] = only(tmp_path / "bin", *tools)
-    alone["CARGO_TARGET_DIR"] = str(ROOT / "target" / "alone")  # its dependencies are built once
+    alone["CARGO_TARGET_DIR"] = str(ROOT / "target" / "alone")  # dependencies are compiled only once
     assert not any(shutil.which(name, path=alone["PATH"]) for name in ("python", "python3"))
     app = tmp_path / "app"
     run(["cargo", "init", "--quiet", "--vcs", "none", app], env=alone)

@@ -1,4 +1,4 @@
-"""Ctrl-C in the middle of anything long: heard before the rest is computed."""
+"""Ctrl-C during long work: it stops before the rest is computed."""
 
 import subprocess
 import sys
@@ -58,11 +58,12 @@ NAMES = [line.split('"')[1] for line in JOB.splitlines() if line.startswith('   
 
 @pytest.mark.parametrize("name", NAMES)
 def test_c2_ctrl_c_is_heard_in_the_middle(name):
-    # the least of three, since a busy machine may keep the thread that is to hear it waiting
+    # the best of three tries, since a busy machine may delay the thread that handles the signal
     for _ in range(3):
         found = subprocess.run([sys.executable, "-c", JOB, name], capture_output=True, text=True)
         assert found.returncode == 0 and found.stdout, found.stderr[-1000:]
         share, _, whole = map(float, found.stdout.split())
-        if share < 0.5 or share * whole < 0.04:  # at the end of the call it would be 0.8
+        # if only the end of the call handled it, the share would be 0.8
+        if share < 0.5 or share * whole < 0.04:
             return
     pytest.fail(found.stdout)

@@ -1,4 +1,4 @@
-"""The live page in JupyterLab itself: both ways, twice, after a reload, without a kernel, by day and by night."""
+"""The live page in JupyterLab: both directions, twice, reloaded, without a kernel, by day and by night."""
 
 import importlib.util
 import json
@@ -38,7 +38,7 @@ def write(path, *cells, **output):
 
 
 def environment(root):
-    """Whatever Jupyter keeps is kept there."""
+    """Environment variables that keep all files of Jupyter in a folder."""
     kept = {
         "JUPYTER_CONFIG_DIR": "config",
         "JUPYTER_DATA_DIR": "data",
@@ -52,7 +52,7 @@ def environment(root):
 
 @pytest.fixture(scope="module")
 def lab(tmp_path_factory):
-    """Where JupyterLab serves, and the folder that it serves."""
+    """The address of a running JupyterLab, and the folder that it serves."""
     root = tmp_path_factory.mktemp("lab")
     settings = root / ".kept/settings/@jupyterlab/apputils-extension"
     settings.mkdir(parents=True)
@@ -73,7 +73,7 @@ def lab(tmp_path_factory):
 
 
 def served(root, server):
-    """Its address, when it answers."""
+    """The address of the server, as soon as it answers."""
     for _ in range(600):
         assert server.poll() is None, (root / "said").read_text()
         for found in (root / ".kept/runtime").glob("jpserver-*.json"):
@@ -87,7 +87,7 @@ def served(root, server):
 
 @pytest.fixture
 def notebook(chromium, lab):
-    """Opens notebooks in JupyterLab, which may ask no other host for anything."""
+    """A function that opens notebooks in JupyterLab, without access to other hosts."""
     address, _ = lab
     contexts = []
 
@@ -117,13 +117,13 @@ def notebook(chromium, lab):
 
 
 def ready(page):
-    """When its kernel waits for something to do."""
+    """Wait until the kernel is idle."""
     page.wait_for_selector(".jp-Notebook .jp-Cell", timeout=120_000)
     page.wait_for_selector(".jp-Notebook-ExecutionIndicator[data-status=idle]", timeout=120_000)
 
 
 def run(page, i):
-    """Runs a cell and returns what it prints."""
+    """Run a cell and return its output."""
     cell = page.locator(".jp-Notebook .jp-Cell").nth(i)
     before = cell.locator(".jp-InputPrompt").inner_text()
     cell.locator(".cm-content").click()
@@ -139,7 +139,7 @@ def run(page, i):
 
 
 def frames(page, n):
-    """The pages in the outputs, when there are so many."""
+    """The pages in the outputs, as soon as there are n."""
     page.wait_for_function("n => document.querySelectorAll('.jp-OutputArea iframe').length === n", arg=n)
     found = [handle.content_frame() for handle in page.query_selector_all(".jp-OutputArea iframe")]
     for frame in found:
@@ -148,7 +148,7 @@ def frames(page, n):
 
 
 def push(frame, knob, value):
-    """A hand on a slider."""
+    """Move a slider of the page."""
     frame.locator(f"#knob-{knob}").evaluate(
         "(e, value) => { e.value = value; e.dispatchEvent(new Event('input')); }", value
     )
@@ -196,7 +196,7 @@ def test_all_renderings_follow_one_state_both_ways_and_after_a_reload(notebook, 
     run(page, 4)
     follow(both, 1.25, 0.1)
     assert run(page, 3).startswith("1.25 0.1")
-    # a second window is another front end of the same kernel
+    # a second window of the browser on the same kernel
     save(page)
     other = notebook("both.ipynb")
     follow(frames(other, 3)[:2], 1.25, 0.1)
@@ -225,7 +225,7 @@ def test_a_saved_notebook_without_its_kernel_shows_the_page(notebook, lab):
     follow([frame], 1.3, 0.2)
     assert "model not found" not in page.locator(".jp-Notebook").inner_text()
     page.close()
-    # of somebody else, whom nobody has trusted yet
+    # a notebook from someone else, which is not trusted
     output["data"]["text/html"] = "".join(output["data"]["text/html"]).replace("allowfullscreen ", "", 1)
     (root / "theirs.ipynb").write_text(json.dumps(kept))
     page = notebook("theirs.ipynb")

@@ -1,4 +1,4 @@
-"""The lab: a film from above in one call, rates with a factor in common, reports."""
+"""The lab: a film from above, measured rates with a common factor, and reports."""
 
 import warnings
 
@@ -76,7 +76,7 @@ def test_the_errors_of_a_film_are_those_of_many_films():
                 (found.theta - np.radians(80.0)) / found.theta_err,
             ]
         )
-    # sixty numbers: the spread is known to 0.09, the mean to 0.13
+    # 60 standard normal numbers: standard errors are 0.09 for the spread and 0.13 for the mean
     assert (np.abs(np.mean(pulls, axis=0)) < 0.45).all()
     assert ((np.std(pulls, axis=0) > 0.6) & (np.std(pulls, axis=0) < 1.4)).all()
 
@@ -87,7 +87,7 @@ def test_rows_in_any_order_rows_that_stand_twice_and_gaps_change_nothing():
     order = np.random.default_rng(2).permutation(np.r_[np.arange(40), 3, 7])
     shuffled = sc.data.from_above(changed(tracks, lambda v: v[order]), TUBE)
     assert shuffled.rate == pytest.approx(plain.rate, rel=1e-12) and shuffled.t.size == 40
-    # a gap of more than half a turn
+    # with a gap of more than half a turn
     cut = np.r_[0:8, 33:40]
     gap = sc.data.from_above(changed(filmed(np.radians(75.0)), lambda v: v[cut]), TUBE)
     assert gap.rate == pytest.approx(float(TUBE.rate(np.radians(75.0))), rel=1e-9)
@@ -191,7 +191,7 @@ def test_a_film_whose_clock_counts_frames_is_warned_of():
         sc.data.from_above(counting, TUBE)
 
 
-# rates with a factor in common
+# rates with a common factor
 
 
 def steady(body, rng, noise=0.01):
@@ -210,7 +210,7 @@ def test_a_factor_in_common_is_fitted_and_the_error_of_the_ratio_includes_it():
         pulls.append(
             [(found.ratio - found.expected) / found.ratio_err, (found.factor - 1.03) / found.factor_err]
         )
-    # forty numbers: the spread is known to 0.11, the mean to 0.16
+    # 40 standard normal numbers: standard errors are 0.11 for the spread and 0.16 for the mean
     assert (np.abs(np.mean(pulls, axis=0)) < 0.55).all()
     assert ((np.std(pulls, axis=0) > 0.65) & (np.std(pulls, axis=0) < 1.4)).all()
 
@@ -222,7 +222,7 @@ def test_three_per_cent_in_all_rates_are_warned_of_and_allowed_for():
     errors = {"theta_err": np.radians(0.5), "rate_err": 0.02 * rate}
     plain = sc.data.compare(TUBE, theta, rate, **errors)
     assert abs(plain.ratio - plain.expected) < plain.ratio_err
-    # where all points are alike, another ratio and a factor look the same
+    # for points close to each other, another ratio and a factor have the same effect
     theta = np.random.default_rng(1).normal(np.radians(np.linspace(70.0, 76.0, 12)), 0.005)
     rate = 1.03 * TUBE.rate(np.radians(np.linspace(70.0, 76.0, 12)))
     errors = {"theta_err": 0.005, "rate_err": 0.01 * rate}

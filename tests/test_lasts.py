@@ -1,4 +1,4 @@
-"""Does it last? One default everywhere, and a reason where the answer is of another question."""
+"""Stability: the same default contact everywhere, and a reason where False has another cause."""
 
 import inspect
 import warnings
@@ -13,7 +13,7 @@ SIDE = np.pi / 2
 
 
 def functions():
-    """Every public function and method that takes a contact."""
+    """Every public function and method with an argument `contact`."""
     for place in (sc, sc.plot, sc.sweep, sc.data, sc.Body, sc.Ellipsoid, sc.Motion):
         for name in dir(place) if inspect.isclass(place) else place.__all__:
             found = getattr(place, name)
@@ -26,7 +26,7 @@ def functions():
 def test_a_contact_that_is_not_given_rolls_everywhere():
     found = dict(functions())
     assert len(found) > 12 and {"spincyl.plot.branches", "spincyl.plot.landmarks"} < set(found)
-    # a map shows both; a flick names its table
+    # a map shows both contacts; a flick has no default
     other = {name: contact for name, contact in found.items() if contact != "rolling"}
     assert other == {"spincyl.plot.portrait": None, "spincyl.sweep.flicks": inspect.Parameter.empty}
 
@@ -42,7 +42,7 @@ def test_the_command_line_rolls_too():
 def test_branches_are_drawn_by_what_stable_says():
     plt = pytest.importorskip("matplotlib.pyplot")
     plt.switch_backend("Agg")
-    body = sc.Body.solid(0.375)  # whose two answers differ
+    body = sc.Body.solid(0.375)  # stable in rolling, unstable on a smooth table
     ax = sc.plot.branches([0.375], marks=False)
     assert "rolling" in ax.get_title()
     seen = 0
@@ -89,11 +89,11 @@ def test_a_body_on_two_rims_or_on_its_face_is_not_stable_and_is_told_why(body, s
 @pytest.mark.parametrize(
     ("body", "state"),
     [
-        (COIN, COIN.steady(SIDE)),  # steady on one rim as well
+        (COIN, COIN.steady(SIDE)),  # steady on one rim
         (COIN, sc.State(1.0, 0.3, 0.2, 0.0)),  # not steady, on a point
-        (sc.Body.solid(0.0), sc.State(SIDE, 2.0, 0.1, 0.0)),  # whose two rims are one
-        (sc.Body.ball(-0.2, 0.4, 0.4), sc.State(SIDE, 2.0, 0.1, 0.0)),  # which has one rim
-        (sc.Body.ball(-0.2, 0.4, 0.4), sc.State(0.0, 0.0, 0.0, 3.0)),  # and no face
+        (sc.Body.solid(0.0), sc.State(SIDE, 2.0, 0.1, 0.0)),  # its two rims coincide
+        (sc.Body.ball(-0.2, 0.4, 0.4), sc.State(SIDE, 2.0, 0.1, 0.0)),  # one rim only
+        (sc.Body.ball(-0.2, 0.4, 0.4), sc.State(0.0, 0.0, 0.0, 3.0)),  # one rim, no face
     ],
 )
 def test_other_states_are_answered_without_a_word(body, state):

@@ -1,4 +1,4 @@
-"""Drifts of rolling up to their ends: the reference of tests/reference/late.py, and the library, one alone and many."""
+"""Drifts of rolling up to their ends: tests/reference/late.py against single and many drifts."""
 
 import json
 from pathlib import Path
@@ -19,7 +19,7 @@ BOUND = 1e-10
 
 
 def drifted(case, repeat=0):
-    """The drift of a case, or as many of it."""
+    """The drift of a case, or `repeat` copies of it."""
     ell, i1, i3, fillet = (np.full(repeat, x) if repeat else x for x in case["body"])
     body = sc.Body(ell, i1, i3, fillet=fillet)
     theta, w1, w3 = case["state"]
@@ -54,7 +54,7 @@ def test_a_drift_of_rolling_has_its_digits_until_99_percent_of_its_time(case):
     assert np.abs(y.theta / theta - 1).max() <= BOUND
     assert np.abs(y.w1 / w1 - 1).max() <= BOUND
     assert (np.abs(y.w3 - w3) <= BOUND * np.hypot(w1, w3)).all()
-    # a sine next to that of pi has no digits in theta
+    # theta next to pi has lost the digits of its sine
     known = np.pi - theta > 1e-3
     assert np.abs(d.precession(t) / rate - 1)[known].max(initial=0.0) <= BOUND
     assert np.abs(d.time(theta) / t - 1)[known].max(initial=0.0) <= BOUND
@@ -75,14 +75,14 @@ def test_nothing_tilts_however_small_the_inclination_has_become():
     case = CASES[0]
     d = drifted(case)
     y = d.state(rows(case)[0])
-    # theta'' is a difference of terms as large as these
+    # theta'' is a difference of terms of this size
     size = y.w1**2 / np.tan(y.theta) + np.abs(y.w1 * y.w3 / np.tan(y.theta)) + 1
     assert (np.abs(d.body.acceleration(y)) <= 1e-10 * size).all()
 
 
 @pytest.mark.parametrize("share", [1.0, 0.5, 1e-3])
 def test_a_face_that_comes_down_over_a_hundred_thousand_e_folds_lands_when_its_spin_has_fallen_to_zero(share):
-    # a thin disk whose centre runs on a circle: rolling resistance takes its spin at a constant rate
+    # a thin disk whose centre runs on a circle: rolling resistance reduces its spin at a constant rate
     body = sc.Body(0.001710650545067889, 0.2500009754417625, 0.5)
     start = sc.State(0.2333783408782825, 1.0329662274017193, 0.0, 0.09733219824894633)
     d = sc.drift(body, start, sc.loss.RollingResistance(share * 0.004001044732879072), centre="rolling")
@@ -100,7 +100,7 @@ def test_disks_on_circles_land_when_their_spin_has_fallen_to_zero():
     start = body.circular(rng.uniform(0.02, 1.5, 400), np.exp(rng.normal(0.7, 0.8, 400)))
     d = sc.drift(body, start, sc.loss.RollingResistance(10 ** rng.uniform(-5, -1, 400)), centre="rolling")
     t = d.time(np.array([[1e-100], [1e-139]]))
-    # the last way, which no step follows, takes a time of its own
+    # the last part, which has no steps, takes considerable time
     late = (d.stops_at > 1.1 * t[1]) & np.isfinite(d.stops_at)
     t, w3 = t[:, late], d.state(t).w3[:, late]
     lands = t[1] + w3[1] * (t[1] - t[0]) / (w3[0] - w3[1])
@@ -121,7 +121,7 @@ def test_the_spin_of_what_is_nearly_a_ball_outlasts_its_inclination(case, repeat
     y = d.state(t[:, None] if repeat else t)
     known = w3[:, None] if repeat else w3
     assert (np.abs(y.w3 - known) <= BOUND * np.hypot(y.w1, known)).all()
-    # a body that lies flat keeps w1/w3, whatever is left of its inclination
+    # a flat body keeps w1/w3, whatever its remaining inclination
     ell, i1, _, fillet = case["body"]
     depth = ell + fillet
     flat = y.theta < 1e-15

@@ -1,4 +1,4 @@
-"""Laws of loss: what they are, what they take, what is refused, and the sizes that SI units give."""
+"""Laws of loss: arithmetic, power, refusals, and SI units."""
 
 import copy
 import math
@@ -41,14 +41,14 @@ EXPONENTS = (2 / 3, 1 / 2, 2, None, None, None, 1 / 3, 4 / 9)
 COIN, PIPE, ROUNDED = sc.Body.solid(0.0), sc.Body.tube(6.0, bore=0.8), sc.Body.solid(1.5, fillet=0.3)
 EULER = sc.Scale(radius=0.0375, mass=0.44)
 WHIRR = COIN.steady(0.1)
-# Away from rest, where a dry law says nothing.
+# Away from rest, where the couple of a dry law is not unique.
 STATE = sc.State(0.7, 1.1, -0.4, 0.6)
 ALL = sum(law(10.0**-k) for k, law in enumerate(LAWS))
 
 laws = pytest.mark.parametrize(("law", "name"), LAWS.items(), ids=lambda x: getattr(x, "__name__", x))
 
 
-# What they are.
+# Arithmetic.
 
 
 @laws
@@ -113,7 +113,7 @@ def test_names_and_exponents_are_those_of_the_core():
     assert ALL._coefficients == [10.0**-k for k in range(len(LAWS))]
 
 
-# What is refused.
+# Refusals.
 
 
 @laws
@@ -153,11 +153,11 @@ def test_what_is_no_loss_is_refused(make, error, match):
         make()
 
 
-# What they take.
+# Power.
 
 
 def power(law, body, y, n=1.0):
-    """The table of losses, written once more, of sharp rims."""
+    """The table of losses for sharp rims, written independently."""
     (s, c), x = (np.sin(y.theta), np.cos(y.theta)), law.coefficient
     spin, square = y.w3 - c / s * y.w1, y.w1**2 + y.w2**2 + y.w3**2
     return {
@@ -180,7 +180,7 @@ def test_a_law_takes_the_power_of_its_table(law, name):
     assert law(0.03).power(PIPE, STATE) == pytest.approx(found / (1.7 if dry else 1.0), rel=1e-14)
 
 
-# Zero is a hard place; what squares to nothing is none.
+# Include zero, but no numbers whose squares underflow.
 speeds = st.integers(-20_000, 20_000).map(lambda k: k / 1000)
 
 
@@ -246,7 +246,7 @@ def test_a_body_of_a_family_that_is_none_loses_nothing_that_is_known():
     assert np.isnan(found).tolist() == [False, True]
 
 
-# Sizes, in SI units.
+# SI units.
 
 
 def test_moffatts_film_under_eulers_disk():
@@ -275,7 +275,7 @@ def test_coefficients_from_metres_seconds_and_joules():
 
 @laws
 def test_a_power_in_watts_is_that_of_the_law_in_si_units(law, name):
-    """A coefficient that is 1 in SI units takes its power of SI speeds."""
+    """A coefficient of 1 in SI gives the power of speeds in SI."""
     small = sc.Scale(radius=2.0, mass=3.0, gravity=5.0)
     seconds, joules = small.seconds(1.0), small.joules(1.0)
     natural = law.from_si(0.1, scale=small)

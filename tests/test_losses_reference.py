@@ -1,8 +1,8 @@
 """Motions and drifts with losses: the references of tests/reference/losses.py and drifts.py, and the library.
 
-The first half asks nothing of the library: the tables, from three-dimensional models in two formulations,
-obey the balance of energy and work, the closed solutions of the thin disk, and the equations of steady
-rolling. The second half compares `sc.roll(..., losses=)` and `sc.drift` with them.
+The first half does not use the library: the tables, from three-dimensional models in two formulations, obey
+the balance of energy and work, the closed solutions of the thin disk, and the equations of steady rolling.
+The second half compares `sc.roll(..., losses=)` and `sc.drift` with them.
 """
 
 import json
@@ -24,7 +24,7 @@ REFERENCE = pathlib.Path(__file__).with_name("reference")
 sys.path.insert(0, str(REFERENCE))
 import newton_euler as ne  # noqa: E402
 
-# a coin from a thousandth is below eps, which is warned of
+# a coin at 0.001 rad is below eps, which warns
 pytestmark = pytest.mark.filterwarnings("ignore::spincyl.DriftWarning")
 
 STATE = ("theta", "w1", "w2", "w3")
@@ -34,7 +34,7 @@ CONTOUR = ("dry", "viscous", "film", "layer", "rolling")
 
 
 def table(name):
-    """The cases of a table, with their rows as objects of exact numbers."""
+    """The cases of a table, with rows of exact numbers."""
     with (REFERENCE / f"{name}.json").open() as file, mp.workdps(40):
         data = json.load(file)
         columns = data["columns"]
@@ -52,7 +52,7 @@ def table(name):
 
 
 MOTIONS, DRIFTS = table("losses"), table("drifts")
-# air is pressed out below a face, and a ball has none: the library refuses that
+# the library refuses AirFilm and BoundaryLayer for a ball, which has no face
 FACELESS = [d for d in DRIFTS if d.body[3] == 1.0 and {"film", "layer"} & set(d.laws)]
 DRIFTS = [d for d in DRIFTS if d not in FACELESS]
 RESTING = [d for d in DRIFTS if d.centre == "rest"]
@@ -63,7 +63,7 @@ def each(cases):
     return pytest.mark.parametrize("case", cases, ids=[case.name for case in cases])
 
 
-# The laws of the tables.
+# The tables.
 
 
 def test_the_motions_are_of_all_kinds_and_both_formulations_agree():
@@ -120,7 +120,8 @@ def test_the_drifts_are_of_all_kinds():
     assert max(case.agreement for case in ROLLING) < 1e-16
 
 
-THIN = {  # what grows evenly in time, and the time of one of it: a factor, and the power of sqrt(I1), over k
+# a quantity that grows at a constant rate, and its rate: a factor, and the power of sqrt(I1), over k
+THIN = {
     "viscous": (lambda x: mp.log(mp.cos(x)), 3 / mpf(2), 2),
     "drilling": (lambda x: 1 / mp.sqrt(mp.sin(x)), mpf(3), 1),
     "air": (lambda x: -mp.log(mp.sin(x)), 3 / mpf(2), 2),
@@ -171,7 +172,7 @@ def losses_of(case):
 
 
 def rolled(case):
-    """The motion at the samples of the table, and beyond them to its end."""
+    """The motion at the times of the table, and beyond them to its end."""
     theta, w1, w2, w3, *slip = case.start
     slips = case.contact == "coulomb"
     start = sc.State(theta, w1, w2, w3, slip=tuple(slip) if slips else None)
@@ -185,7 +186,7 @@ def rolled(case):
 
 
 def off(found, rows, names):
-    """The errors, and the same over 1 or the largest number of the row if that is more."""
+    """The errors, and the errors relative to the largest number of the row or 1."""
     true = np.array([[float(getattr(row, name)) for name in names] for row in rows])
     error = np.abs(np.asarray(found) - true)
     return error, error / np.maximum(1, np.abs(true).max(axis=1, keepdims=True))
@@ -203,7 +204,7 @@ def test_states_and_work_are_those_of_the_reference(case):
     assert states.max() <= 10 * m.error + 1e-14
     assert off(m.work_lost[:, None], samples, ["work"])[1].max() <= 1e-10
     poses, scaled = off(np.column_stack([m.phi, m.psi, m.contact_point]), samples, POSE)
-    if case.contact != "smooth":  # there the centre may move on as it likes
+    if case.contact != "smooth":  # on a smooth table the centre may have any constant velocity
         assert scaled.max() <= 1e-10
         assert poses.max() <= 10 * m.pose_error + 1e-14
     assert off(np.column_stack([m.phi, m.psi]), samples, POSE[:2])[1].max() <= 1e-10
@@ -264,7 +265,7 @@ def test_drifts_take_the_times_of_the_reference(case):
     assert np.abs(d.time(theta) / t - 1).max() <= bound
     rate = np.array([float(row.w1 / mp.sin(row.theta)) for row in case.rows])
     for found, true in ((d.theta(t), theta), (d.precession(t), rate)):
-        steep = np.abs(np.gradient(np.log(true), np.log(t)))  # what a relative error of the time makes of it
+        steep = np.abs(np.gradient(np.log(true), np.log(t)))  # amplification of a relative error of the time
         assert (np.abs(found / true - 1) <= bound * (1 + 4 * steep)).all()
 
 

@@ -1,4 +1,4 @@
-"""Many motions at once are what each of them is alone: kinds of ends, their times, the states, on scenes that nobody would choose.
+"""Many motions at once against each of them alone: ends, times and states, for random unusual scenes.
 
 `benches/claims.py --of many` draws them by the hundred thousand.
 """
@@ -10,13 +10,14 @@ import pytest
 import scenes
 
 SEED, FAMILY = 24, 20
-#: times both claims together: they are estimates, and one of the 2,000 of a hundred families is 1.06 times what they say
+#: times the sum of both claims, which are estimates: one of 2,000 motions in a hundred families exceeds it by
+#: 6 %
 HONEST = 1.1
 
 
 @cache
 def family(number):
-    """A family of motions, and how each of them differs from what it is alone."""
+    """A family of motions, and the differences of each at once and alone."""
     scene = scenes.draw(np.random.default_rng([SEED, number]), FAMILY)
     return scene, list(scenes.compare(scene))
 

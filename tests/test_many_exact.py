@@ -1,8 +1,8 @@
-"""Exact motions, many at once and one at a time: the same ends, and times and states within both claims; and no bit of a
-motion hangs on its neighbours.
+"""Exact motions, many at once and one at a time: the same ends, times and states within both claims.
 
-The starts are of every kind that a user may type: nearly flat on either face, on the edge of the other rim and beyond it, at
-rest or almost, lifted at once, of one decimal, spinning fast, and on their way to a passage that is nearly flat.
+No bit of a motion depends on its neighbours. The starts are of all kinds that a user may choose: nearly flat
+on either face, on or beyond the edge of the other rim, at rest or almost, lifting off at once, with one
+decimal, with high spin, and before a nearly flat passage.
 """
 
 import numpy as np
@@ -33,7 +33,7 @@ EVERYTHING = (
 
 
 def bodies(rng, n):
-    """ell, I1, I3, fillet: sharp tubes, bodies of any moments, rounded ones, balls."""
+    """ell, I1, I3, fillet: sharp tubes, bodies of any moments, rounded bodies, balls."""
     ell = np.where(rng.random(n) < 0.15, 0.0, rng.uniform(0.05, 3, n))
     ell = np.where(rng.random(n) < 0.3, np.round(ell, 1), ell)
     i3 = (1 + np.where(rng.random(n) < 0.6, 0, rng.uniform(0, 1, n)) ** 2) / 2
@@ -47,7 +47,7 @@ def bodies(rng, n):
 
 
 def states(rng, ell, fillet):
-    """theta, w1, w2, w3 of every kind."""
+    """theta, w1, w2, w3 of all kinds."""
     n = ell.size
     theta, kind = rng.uniform(0.05, 1.55, n), rng.random(n)
 
@@ -92,7 +92,7 @@ def swept(body, y, some, **how):
 
 
 def alone(body, y, i, times, **how):
-    """Kind and time of the end, states at the times before it and at the end, claim; none of what is refused."""
+    """Kind and time of the end, states at the times before it and at the end, claim; None if invalid."""
     ell, i1, i3, fillet = (x[i] for x in body)
     try:
         motion = sc.roll(sc.Body(ell, i1, i3, fillet=fillet), sc.State(*y[i]), [0.0, *times], **how)
@@ -100,7 +100,7 @@ def alone(body, y, i, times, **how):
         return None
     event = motion.event
     if how.get("beyond") and event is not None and event.ending != sc.Ending.FACE:
-        # the face may land later: that is seen by the times which are left
+        # the face may land later, which shows in the number of times
         event = None if motion.t.size > len(times) else sc.Ending.FACE
     if event is None or event == sc.Ending.FACE:
         kind, last, end = sc.Ending.DONE if event is None else event, motion.y[:, -1], np.nan
@@ -111,7 +111,7 @@ def alone(body, y, i, times, **how):
 
 
 def differences(body, y, t, how):
-    """Of all that is answered in lanes: where the kinds differ, and how often both claims explain what else does."""
+    """Motions computed in lanes: where ends differ, and other differences in units of both claims."""
     times = [t / 3, t]
     everyone = np.arange(len(y))
     many = swept(body, y, everyone, t=times, want=("states", "end"), **how)
@@ -157,12 +157,12 @@ def test_starts_that_lie_nearly_flat_keep_their_digits_in_lanes(contact, pole):
 
 
 def test_a_slip_that_comes_just_before_a_lift_off_is_seen():
-    # the demand of friction lies above mu N for a thousandth of a unit of time before N vanishes, and mu^2 N^2 hides it after that
+    # friction demand exceeds mu N for 0.001 units of time before N vanishes; later mu^2 N^2 hides this
     body = sc.Body.tube(0.0, bore=0.8)
     y = (1.1, -0.06473832860126874, 0.3265813037067141, 42.24805863769208)
     found = sc.sweep.roll(body, sc.State(*([x] for x in y)), 5.0, mu=0.3, want=("final", "end"))
     assert found["status"] == sc.sweep.Status.SLIP
-    # in 80 bits, of the three-dimensional model
+    # from the three-dimensional model in 80 bits
     assert abs(float(found["end"][0]) - 0.0442887787426644167) < 1e-11
     rng = np.random.default_rng(5)
     spins = np.column_stack(
@@ -190,7 +190,7 @@ def test_a_rounded_body_lands_on_its_face_with_the_energy_that_it_had(contact):
         (0.5, 0.0, 0.3),
     ]:
         body, a = sc.Body(ell, 0.4, 0.6, fillet=rho), 1 - rho
-        # I1 + L^2 + A^2 of the face on which it lands, or I1 + g^2; and how far the centre has sunk
+        # I1 + L^2 + A^2 of the landing face, or I1 + g^2; and the fall of the centre
         inertia = 0.4 + a**2 + ((ell + rho) ** 2 if contact == "rolling" else 0.0)
         sunk = a * np.sin(theta) - 2 * ell * np.sin(theta / 2) ** 2
         landed = np.sqrt(2 * sunk / inertia)

@@ -1,4 +1,4 @@
-"""Bodies that know their size: SI in and out, by one way through the same code."""
+"""Measured bodies: SI in and out of the same code."""
 
 import copy
 import dataclasses
@@ -17,7 +17,7 @@ import matplotlib.pyplot as plt
 
 PVC = {"outer_diameter": 15.875e-3, "inner_diameter": 12.7e-3, "length": 95.25e-3}
 TUBE = sc.measured(**PVC, mass=20e-3)
-RULED = sc.measured(**PVC)  # measured with a ruler, not weighed
+RULED = sc.measured(**PVC)  # measured with a ruler, but not weighed
 START = TUBE.steady(1.4).kicked(0.05)
 SECONDS = np.linspace(0.0, 0.5, 401)
 ALL = ("pose", "force")
@@ -62,7 +62,7 @@ def test_the_energy_of_a_measured_body_is_that_of_its_masses(motion):
     cos, sin = np.cos(m.theta)[:, None], np.sin(m.theta)[:, None]
     e1 = (np.array([0.0, 0.0, 1.0]) - cos * e3) / sin
     turning = m.w[:, :1] * e1 + m.w[:, 1:2] * np.cross(e3, e1) + m.w[:, 2:] * e3
-    # the contact is at rest: the centre moves with the angular velocity times its arm
+    # the contact point is at rest, so the centre has the velocity w x arm
     velocity = np.cross(turning, m.centre - np.column_stack([m.contact_point, 0 * m.t]))
     kinetic = mass * (velocity**2).sum(1) / 2
     kinetic += square * (TUBE.i1 * (m.w[:, 0] ** 2 + m.w[:, 1] ** 2) + TUBE.i3 * m.w[:, 2] ** 2) / 2
@@ -219,7 +219,7 @@ def test_the_error_of_a_motion_covers_slips_and_times_in_si_too(radius):
     assert float(many["error"]) == pytest.approx(rough.error, rel=0.05)
 
 
-# A weight that nobody knows.
+# An unknown mass.
 
 
 def test_forces_and_energies_of_a_body_that_was_not_weighed_are_refused_and_nothing_else():
@@ -242,7 +242,7 @@ def test_forces_and_energies_of_a_body_that_was_not_weighed_are_refused_and_noth
     assert units["normal"] == "M g" and units["energy"] == "M g R" and units["centre_x"] == "m"
 
 
-# Tables and pictures.
+# Tables and figures.
 
 
 def test_tables_are_in_si_with_units(motion, sliding):
@@ -281,7 +281,7 @@ def test_a_picture_is_in_seconds_metres_and_newtons(sliding):
     plt.close("all")
 
 
-# Everything that takes a scale takes it from the body.
+# Functions with `scale` take it from the body.
 
 
 def test_everything_that_takes_a_scale_takes_it_from_the_body(tmp_path, motion):
@@ -371,7 +371,7 @@ def test_a_state_from_si_is_the_natural_one_over_its_units():
         sc.State.from_si(1.3, 50.0, 0.0, 1.0, slip=2.0, scale=TUBE)
 
 
-# Python's own questions.
+# repr, equality, pickle and copies.
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""Sweeps, maps and drifts of bodies that know their size: in SI, the same numbers as of one body at a time."""
+"""Sweeps, maps and drifts of measured bodies: in SI, with the numbers of single bodies."""
 
 import dataclasses
 

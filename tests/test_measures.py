@@ -1,4 +1,4 @@
-"""What a measured body is asked for: rates, texts with units, and what is no body at all."""
+"""Measured bodies: rates, texts with units, and implausible measures."""
 
 import math
 import warnings
@@ -10,7 +10,7 @@ import spincyl as sc
 
 PVC = {"outer_diameter": 15.875e-3, "inner_diameter": 12.7e-3, "length": 95.25e-3}
 TUBE = sc.measured(**PVC, mass=20e-3)
-RULED = sc.measured(**PVC)  # measured with a ruler, not weighed
+RULED = sc.measured(**PVC)  # measured with a ruler, but not weighed
 START = TUBE.steady(1.4).kicked(0.05)
 
 
@@ -88,7 +88,7 @@ def test_balls_are_measured_by_the_diameter_of_one_and_the_mass_of_both():
     balls = sc.Body.balls(diameter="25.4mm", mass=0.13)
     assert balls.scale == sc.Scale(12.7e-3, 0.13) and balls.natural == sc.Body.balls()
     assert eval(repr(balls), {"Body": sc.Body, "Scale": sc.Scale, "nan": math.nan}) == balls
-    # two solid balls that touch, about the line of their centres: 2/5 M R^2
+    # two touching solid balls, about the line of their centres: I3 = 2/5 M R^2
     rate = math.sqrt(9.80665 / (12.7e-3 * 0.4)) / (2 * math.pi)
     assert balls.critical_hertz == pytest.approx(rate)
     with pytest.warns(UserWarning, match="pair of balls 50 m long and 25 m wide; 1 mm is 1e-3"):
@@ -113,14 +113,14 @@ def test_a_coefficient_without_a_unit_is_refused_of_a_measured_body():
         with pytest.raises(ValueError, match=r"^losses = .*RollingResistance.from_si\(..., scale=body\)"):
             ask(bare)
         ask(told)
-        if ask is not asked[-1]:  # the page knows one law
+        if ask is not asked[-1]:  # the live page supports one law only
             ask(told + sc.loss.DryContour.from_si("0.01mm", scale=TUBE) + told)
             with pytest.raises(ValueError, match="^losses = "):
                 ask(told + bare)
     m = sc.roll(TUBE, START, 0.1, losses=told)
     assert m.at([0.05, 0.1]).work_lost[1] > 0
     page = sc.play(TUBE, losses=told)
-    page.losses = page.losses  # what was read off a page has been told
+    page.losses = page.losses  # losses read from a page already have their units
     assert page.motion.work_lost[-1] > 0
 
 
@@ -131,7 +131,7 @@ def test_a_mass_that_is_missing_is_asked_for_by_what_needs_it():
         sc.loss.AirFilm.from_si(scale=RULED)
 
 
-# Wrong questions.
+# Invalid arguments.
 
 
 @pytest.mark.parametrize(
@@ -183,7 +183,7 @@ def test_millimetres_and_grams_taken_for_metres_and_kilograms_are_warned_of(unit
     [
         (0.0751, 0.0, 0.0128, 0.44),  # Euler's disk
         (24.26e-3, 0.0, 1.75e-3, 5.67e-3),  # a quarter dollar
-        (0.8, 0.8, 0.0, 0.3),  # a hoop without thickness
+        (0.8, 0.8, 0.0, 0.3),  # a hoop of zero thickness
         (0.066, 0.0658, 0.115, 0.013),  # a can
         (2.0, 1.8, 3.0, 5000.0),  # a concrete pipe
         (5e-3, 0.0, 0.2, 7e-5),  # a rod of foam

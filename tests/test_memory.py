@@ -1,4 +1,4 @@
-"""Too little memory is a MemoryError at whatever place it runs out, and the process lives."""
+"""Too little memory raises MemoryError wherever it runs out; the process survives."""
 
 import os
 import subprocess
@@ -40,12 +40,12 @@ slips = sc.State(1.3, 0.3, 0.05, 1.0, slip=(0.2, 0.1))
 
 
 def survives(job, most):
-    """Runs a job with less and less too little memory in a process of its own, which must not die.
+    """Run a job in a process of its own with less and less memory; the process must not die.
 
-    Eight megabytes are always kept for what is small.
+    Eight megabytes are always left for small objects.
     """
     code = f"{HEAD}{job}\njob()\ngc.freeze()\nrefused = tried(job, {most} + (8 << 20))\njob()\nassert 1 < refused < 10, refused"
-    # nothing is set aside, and what is freed goes back at once, so that the next look finds as little
+    # malloc keeps no reserves, and returns freed memory at once, so that each attempt has as little
     frugal = {"MALLOC_MMAP_THRESHOLD_": "65536", "MALLOC_TRIM_THRESHOLD_": "65536", "MALLOC_ARENA_MAX": "1"}
     env = {**os.environ, **frugal}
     found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=env)

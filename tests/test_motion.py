@@ -1,4 +1,4 @@
-"""Motion from Python: shapes, errors, endings, files; the physics itself is tested in Rust."""
+"""Motion from Python: shapes, errors, endings, files; tests in Rust cover the physics."""
 
 import copy
 import csv
@@ -29,7 +29,7 @@ REFERENCE = pathlib.Path(__file__).parent / "reference"
 
 
 def rows(table, *kinds):
-    """Kind, scene, contact and numbers of the rows of these kinds."""
+    """Kind, scene, contact and numbers of the table's rows of these kinds."""
     with (REFERENCE / table).open() as file:
         for row in csv.reader(file):
             if row[0] in kinds:
@@ -54,10 +54,10 @@ def test_motions_are_those_of_the_three_dimensional_model():
         off = np.abs([m.phi[0], m.psi[0], *m.contact_point[0]] - known[4:8])
         allowed = 1e-12 * growth * (1 + np.abs(known[4:8]))
         if kind == "pole":
-            # both angles jump by pi: by which turn they do is nothing that the body could tell
+            # both angles jump by pi at a pole, in either sense
             turns = np.array([m.phi[0] - known[4], m.phi[0] + m.psi[0] - known[4] - known[5]]) / (2 * np.pi)
             off[:2] = np.abs(turns - np.round(turns)) * 2 * np.pi
-            allowed = np.full(4, 1e-12 * (1 + t / 4))  # some passages more
+            allowed = np.full(4, 1e-12 * (1 + t / 4))  # larger for some passages
         there = ~np.isnan(off)
         assert (off[there] <= np.minimum(share * m.pose_error, allowed[there])).all(), told
         assert m.normal[0] == pytest.approx(known[8], abs=1e-11 * growth), told
@@ -97,7 +97,7 @@ def test_what_is_not_asked_for_is_not_there_and_says_how_to_get_it():
     with pytest.raises(ValueError, match="want = 'colour': expected 'pose' or 'force'"):
         sc.roll(CYLINDER, START, T, want="colour")
     more = m.wanting("pose")
-    assert np.abs(more.theta - m.theta).max() <= more.error + m.error < 1e-11  # found another way
+    assert np.abs(more.theta - m.theta).max() <= more.error + m.error < 1e-11  # computed by another method
     assert more.wanting("pose") is more
     assert more.phi.size == T.size
 
@@ -193,7 +193,7 @@ def test_a_motion_at_other_times_is_the_same_motion(how):
         _ = other.normal
     later = sc.roll(CYLINDER, START, [3.0, 4.0], t0=1.0)
     assert np.allclose(later.at(5.0).y, sc.roll(CYLINDER, START, 4.0).y, atol=1e-12)
-    # a step that was warned of is not warned of again, and an end is an end
+    # warnings of a step are not repeated, and an end stays an end
     can = sc.roll(sc.Body.solid(1.0), sc.State(0.3, 0, 0, 0), 1.0)
     assert can.success
     assert can.at(2.0).status is sc.Ending.FACE
@@ -225,12 +225,12 @@ def test_a_step_that_would_lie_is_refused_and_a_doubtful_one_warned_of():
     with pytest.warns(sc.StepWarning, match="would do, or tol="):
         m = sc.roll(CYLINDER, START, 20, step=0.4)
     assert m.error > 1e-6
-    # the step that it names passes without a word
+    # the proposed step causes no warning
     with pytest.raises(ValueError, match="would do") as refused:
         sc.roll(can, sc.State(0.3, 1.3e-3, 0, 0), 2.9, step=0.01)
     advice = float(re.search(r"a step of (\S+) would do", str(refused.value))[1])
     assert sc.roll(can, sc.State(0.3, 1.3e-3, 0, 0), 2.9, step=advice).error < 1e-4
-    # the passage within a tolerance: to the angle of the reference
+    # the passage with a tolerance: to the angle of the reference
     name = "rocking can 1e-5"
     ell, i1, i3, *start, period, _, _, phi, _ = next(
         x for _, n, _, x in rows("motion.csv", "period") if n == name
@@ -369,7 +369,7 @@ except KeyboardInterrupt:
 """
     child = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     delay, alive = child.stdout.split()
-    # of processor time, whatever else the machine does: a tenth of a second, where the motion would take minutes
+    # in seconds of processor time, on a machine with any other load; the motion would take minutes
     assert float(delay) < 0.6
     assert alive == "alive"
 
@@ -403,12 +403,12 @@ def test_the_command_line_writes_what_it_says(tmp_path, capsys):
     assert "t = 1.4699543119" in capsys.readouterr().out
 
 
-# the last one takes as long as they
+# the last scene takes as long as all others
 @pytest.mark.parametrize("count", [6, pytest.param(7, marks=pytest.mark.long)])
 def test_the_report_measures_errors_that_fall_with_the_step(tmp_path, monkeypatch, count):
     scenes = report.scenes()[:count]
     monkeypatch.setattr(report, "scenes", lambda: scenes)
-    # a machine that is busy elsewhere takes longer, but no more of its processor
+    # processor time, since other load on the machine delays the clock
     monkeypatch.setattr(report, "time", SimpleNamespace(perf_counter=time.process_time))
     table = report.measure(0.3 * count, reference=str(REFERENCE / "motion.csv"))
     assert len(table) == count and "near-steady tube" in report.table(table)

@@ -1,6 +1,7 @@
-"""The places that know every law of loss by name: a law that one of them lacks is told with the file.
+"""Files that list all laws of loss by name: a failure names the law and the file that lacks it.
 
-The core's table is first; what can be derived from it is. CONTRIBUTING.md has the way to a new law.
+The table of the core comes first; other lists are derived from it where possible. CONTRIBUTING.md describes
+how to add a law.
 """
 
 import re
@@ -24,7 +25,7 @@ def typed(name):
     return re.sub(r"\B(?=[A-Z])", "-", name).lower()
 
 
-#: File, and what has to stand in it for the law of this name and this coefficient.
+#: Each file with patterns that must match for a law with this name and this coefficient.
 PLACES = {
     loss.__file__: (
         r"^class {name}\(Law\):$",

@@ -1,4 +1,4 @@
-"""The note of docs/note: every number is filled, and what it claims holds."""
+"""The note of docs/note: every number is filled in, and its claims hold."""
 
 import pathlib
 import re

@@ -1,4 +1,4 @@
-"""The notebooks: made of the pages and the scenes, whole, readable without Sphinx, and run from top to bottom."""
+"""The notebooks made from pages and scenes: complete, readable without Sphinx, and running."""
 
 import ast
 import json
@@ -21,7 +21,7 @@ import spincyl as sc
 BUILT = "../built"
 MADE = {made.name: json.loads(made.json()) for made in notebooks.all_made(BUILT)}
 EVERY = pytest.mark.parametrize("name", MADE)
-#: every address that the pages tell: of a figure, and of a link that sets it
+#: every address in the pages: of a figure, and of a link that sets it
 LIVE = [
     blocks.live(block).address
     for name in notebooks.pages()
@@ -39,7 +39,7 @@ def source(cell):
 
 
 def prose(name):
-    """The text of a notebook without the blocks that are shown in it, and those."""
+    """The text of a notebook without the blocks in it, and the kinds of those blocks."""
     text = "\n\n".join(map(source, cells(name, "markdown")))
     return blocks.prose(text), [block.kind for block in blocks.blocks(text) if block.kind]
 
@@ -105,7 +105,7 @@ def test_every_link_of_a_notebook_leads_somewhere(name):
 
 
 def shown(code):
-    """What the last line of a cell gives."""
+    """The value of the last line of a cell."""
     names, tree = {"sc": sc, "np": np}, ast.parse(code)
     exec(compile(ast.Module(tree.body[:-1], []), "cell", "exec"), names)
     return eval(compile(ast.Expression(tree.body[-1].value), "cell", "eval"), names)
@@ -123,7 +123,7 @@ def test_the_call_of_a_live_figure_shows_what_its_address_tells(address):
         return
     told = shown(called(address))._told
     for name, word in words.items():
-        if name == "expose":  # how it is looked at, which a hand sets
+        if name == "expose":  # concerns the view only, which the user sets
             continue
         wanted = word if isinstance(word, list) else [word]
         found = told[name] if isinstance(word, list) else [told[name]]
@@ -164,13 +164,13 @@ def test_a_notebook_runs_from_top_to_bottom_and_prints_what_the_page_says(name, 
     ran = [cell for cell in made.cells if cell["cell_type"] == "code"]
     said = [printed(cell) for cell in ran]
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of Jupyter's own about its loops
+        warnings.simplefilter("ignore")  # from Jupyter, about event loops
         nbclient.NotebookClient(made, timeout=600, resources={"metadata": {"path": tmp_path}}).execute()
     assert [printed(cell) for cell in ran] == said
     for cell, kind in zip(ran, kinds(name), strict=True):
         shows = [what for x in cell["outputs"] for what in x.get("data", ())]
         if kind == "{live}":
-            # a stone is a page alone
+            # a stone has a page of its own and no widget
             page = "text/html" if "sc.view(" in cell["source"] else "application/vnd.jupyter.widget-view+json"
             assert page in shows, cell["source"]
         if kind == "{plot}":
@@ -178,7 +178,7 @@ def test_a_notebook_runs_from_top_to_bottom_and_prints_what_the_page_says(name, 
 
 
 def printed(cell):
-    """What a cell prints, in however many pieces."""
+    """The output of a cell, joined from its pieces."""
     return "".join(x["text"] for x in cell["outputs"] if x["output_type"] == "stream")
 
 

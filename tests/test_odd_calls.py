@@ -1,4 +1,4 @@
-"""Every public function is called with what its arguments cannot be: each is refused by its name; and equality is one of values."""
+"""Every public function is called with invalid arguments: errors name them; and equality goes by value."""
 
 import warnings
 
@@ -10,13 +10,13 @@ import spincyl as sc
 
 plt = pytest.importorskip("matplotlib.pyplot")
 
-# of all odd values those that have found something
+# the odd values that have revealed faults
 FEW = (
     "None", "text", "bytes", "object", "dict", "empty list", "list of None", "ragged", "pair", "complex", "nan", "inf", "-1",
     "2**70", "10**400", "empty array", "matrix", "vector", "texts", "None array", "date", "Decimal", "masked", "masked number",
     "class of laws", "function", "family", "State", "Motion", "Coulombs", "losses",
 )  # fmt: skip
-# results, which their functions make, and kinds
+# results, which only functions construct, and enumerations
 MADE = {
     "": {
         "Drift", "DriftWarning", "EllipsoidMotion", "Ending", "ErrorWarning", "Event", "Motion", "Phase", "Play", "Region", "Rocking",
@@ -70,7 +70,7 @@ def test_every_public_name_is_called_oddly_or_is_a_result(subjects):
 
 def test_what_the_subjects_are_called_with_is_right(subjects):
     for name, (call, good) in subjects.items():
-        if name in ("plot.figures", "loss.Law", "sweep.block_size of a job"):  # whose calls are never right
+        if name in ("plot.figures", "loss.Law", "sweep.block_size of a job"):  # no call of these is valid
             continue
         odd.asked(call, good, *next(iter(good.items())))
         plt.close("all")
@@ -113,7 +113,7 @@ def test_fields_whose_shapes_do_not_fit_are_named():
 
 
 def results():
-    """Results by their kind, each made anew."""
+    """Results by type, each computed anew."""
     t, sound = odd.heard()
     tube, tracks = odd.filmed()
     theta = np.radians([5.0, 10.0, 15.0, 70.0, 80.0])
@@ -180,7 +180,7 @@ def test_a_result_is_equal_to_no_other_thing(twice):
         for other in (*others, *plain, *(x for x in kinds if x is not one)):
             same, reflected = one == other, other == one
             if isinstance(other, np.ndarray) and name == "Columns":
-                continue  # a dict is no number to NumPy, which compares element by element
+                continue  # to NumPy a dict is no number, so it compares element by element
             assert same is False and reflected is False and (one != other) is True, (name, type(other))
 
 
@@ -201,7 +201,7 @@ def test_one_number_that_differs_makes_a_result_another(twice):
     )
     same = sc.data.Columns([("hertz (Hz)", np.ones(2)), ("degrees", np.ones(2))])
     assert table != other and other == same and other == {"degrees": np.ones(2), "hertz": np.ones(2)}
-    assert other != sc.data.Columns([("degrees", np.ones(2)), ("hertz", np.ones(2))])  # without its unit
+    assert other != sc.data.Columns([("degrees", np.ones(2)), ("hertz", np.ones(2))])  # without the unit
 
 
 def test_a_zero_has_no_sign_and_a_number_no_type_to_equality():

@@ -1,4 +1,4 @@
-"""Arrays with odd numbers in them, and of shapes that do not fit: no warning of NumPy's, and no words of its own."""
+"""Arrays with odd numbers or shapes that do not fit: no warnings and no messages of NumPy."""
 
 import os
 import re
@@ -19,7 +19,7 @@ STONES = sc.Ellipsoid.uniform([[1.0, 0.6, 0.5], [1.0, 0.5, 0.4]])
 
 
 def more():
-    """What broadcasts with a family, and what is made by a law of its own."""
+    """Further functions, which broadcast with a family or have loops of their own."""
     found = {
         "stones.growth_rates": (STONES.growth_rates, {"spin": 1.0}),
         "stones.spinning": (STONES.spinning, {"spin": 1.0, "pitch": 0.01, "roll": 0.0}),
@@ -42,7 +42,7 @@ def more():
 
 
 def numeric(value):
-    """Whether it is a number, or numbers, that could be others."""
+    """Whether a value is a number, or numbers, that can be replaced."""
     if value is None or isinstance(value, str | bool | sc.State) or np.size(value) == 0:
         return False
     try:
@@ -52,7 +52,7 @@ def numeric(value):
 
 
 def variants(good):
-    """Arrays like a good number or good numbers, in which something is odd."""
+    """Arrays like a valid argument, in which something is odd."""
     good = np.asarray(good, np.float64)
     for x in (np.inf, -np.inf, np.nan, 1e308, -1e200, 1e-320, 0.0, -1.0):
         if good.ndim == 0:
@@ -83,7 +83,7 @@ def cases(good):
 
 
 def unclear(call, good, names, given):
-    """What is unclear in the answer, or nothing; as `odd.offence` has it."""
+    """What is unclear in the response, or None; like `odd.offence`."""
     given = good | given
     plain = [given.pop(name) for name in list(given) if name.startswith("(")]
     known = [x.strip("(") for x in good] + ["theta", "w1", "w2", "w3", "slip", "ell", "shapes do not fit"]
@@ -150,7 +150,7 @@ def test_a_text_with_an_exponent_beyond_all_numbers_is_zero_or_refused(exponent,
             if "e-" in exponent:
                 assert read(text) == 0.0
             elif unit == "angle":
-                assert np.isinf(read(text))  # which whoever takes an angle refuses by name
+                assert np.isinf(read(text))  # functions that take an angle refuse this by name
             else:
                 with pytest.raises(
                     units.ArgumentTypeError, match=f"^'{re.escape(text)}': expected an? {unit} of less"

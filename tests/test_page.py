@@ -1,4 +1,4 @@
-"""What hands do with the page and eyes see of it: the clock, the controls, sizes, colours, ends, the exposure."""
+"""The recorded page in use: the clock, controls, sizes, colours, ends, the exposure."""
 
 import numpy as np
 import pytest
@@ -15,12 +15,12 @@ from spincyl._studio.shape import BLUE, ORANGE
 def test_the_clock_of_a_busy_machine_starts_at_the_start_and_never_runs_back(shown):
     page = shown(page_of("nutating", slow=1), script=DRIVEN + "window.performance.now = () => 10000;")
     times = []
-    # play is pressed at 10 s; the picture that comes next belongs to a second that is long past
+    # play is pressed at 10 s; the next frame has an earlier time
     for ms in (9000, 9016, 9116, 9100, 9150, 60000):
         page.evaluate("ms => window.picture(ms)", ms)
         times.append(at(page))
     assert times == pytest.approx([0.0, 0.016, 0.116, 0.116, 0.166, 0.416])
-    # and after a pause it goes on from where it was
+    # after a pause it continues from the same time
     for _ in range(2):
         page.click("#play", no_wait_after=True)
     page.evaluate("window.picture(59000)")
@@ -47,7 +47,7 @@ def test_time_is_kept_by_play_pause_scrub_and_slow_motion(shown):
         assert at(page) == still
     assert passed["1"] > 0.05
     assert 1e-5 < passed["0.001"] < passed["1"] / 100
-    # it stops at the end, and begins anew
+    # the motion stops at its end, and play starts it anew
     page.select_option("#speed", "2")
     go(page, 19.9)
     page.click("#play")
@@ -78,9 +78,9 @@ def test_a_body_is_round_on_a_large_screen(shown):
     ray = ndimage.map_coordinates(
         light, [y - np.outer(np.sin(angle), radius) - 0.5, x + np.outer(np.cos(angle), radius) - 0.5], order=1
     )
-    # the edge is one of whole pixels, which a mean over six neighbours smooths
+    # the edge consists of whole pixels; a mean over six neighbours smooths it
     rim = radius[(ray > 0.4).cumsum(axis=1).argmax(axis=1)].reshape(-1, 6).mean(axis=1)
-    # of forty sides the middles would lie 1.2 pixels inside the corners
+    # with forty sides the middle of a side would lie 1.2 pixels inside its corners
     assert rim.min() > 350 and np.ptp(np.percentile(rim, [2, 98])) < 0.7, np.percentile(
         rim, [0, 2, 50, 98, 100]
     )
@@ -103,7 +103,7 @@ def test_it_is_turned_and_zoomed_by_mouse_wheel_fingers_and_keys(shown):
     def changed():
         nonlocal last
         before = last
-        for _ in range(20):  # what hands do may come later than the next picture
+        for _ in range(20):  # an input event may arrive after the next frame
             last = picture(page)
             if np.abs(last - before).mean() > 0.003:
                 return True
@@ -184,7 +184,7 @@ def test_motions_run_in_step_and_one_that_ended_says_how(shown):
 
 
 def warm(page):
-    """Share of the picture that has the colours of the body, in the dark."""
+    """Share of the picture with the colours of the body, in the dark."""
     image = picture(page)
     most, least = image.max(axis=-1), image.min(axis=-1)
     return float(((image[..., 0] > image[..., 2]) & (most - least > 0.05 * most) & (most > 0.25)).mean())
@@ -277,12 +277,12 @@ def test_each_arrow_has_its_letter_beside_its_tip(shown, moment):
         places[name] = ([box["x"] + box["width"] / 2, box["y"] + box["height"] / 2] - centre) * [1, -1]
         em = tip.evaluate("e => parseFloat(getComputedStyle(e).fontSize)")
         assert tip.inner_text() == letter
-        # beside the tip, not on it, and nearer to it than to the other one
+        # close to its own tip, but not on it, and not to the other tip
         assert 0.4 * em < np.hypot(*(places[name] - tips[name])) < 1.3 * em
         assert 0 < box["x"] < 800 - em and 0 < box["y"] < 560 - em
     assert np.hypot(*(places["omega"] - places["momentum"])) > 1.2 * em
     for name, other in (("omega", "momentum"), ("momentum", "omega")):
-        # on the side of its arrow where the other arrow is not
+        # on the side of its arrow away from the other arrow
         sides = [np.linalg.det([tips[name], x]) for x in (places[name] - tips[name], tips[other])]
         assert sides[0] * sides[1] < 0
     page.uncheck("#omega")
@@ -316,7 +316,8 @@ def test_its_long_exposure_shows_what_the_photograph_shows(shown, upper, count):
     page.select_option("#shutter", "1")
     page.wait_for_selector("html[data-exposed='720']", timeout=200_000)
     image = picture(page)
-    seen, other = (0, 2)[:: 1 if upper == "X" else -1]  # red or blue, more than the other: no text, no body
+    # red minus blue or the reverse, so that neither text nor the body counts
+    seen, other = (0, 2)[:: 1 if upper == "X" else -1]
     assert letters(np.clip(image[..., seen] - image[..., other], 0, None), 0.55) == count
     page.select_option("#shutter", "0")
     assert picture(page).mean() > 0.5
@@ -326,7 +327,7 @@ def test_an_exposure_is_seen_as_it_comes_says_what_rests_meanwhile_and_can_be_st
     page = shown(page_of("still symbols"), "#t=0", viewport={"width": 390, "height": 844})
     assert not page.locator("#shot").is_visible()
     page.select_option("#shutter", "1")
-    # seen and stopped within one frame, since a fast page may else have closed the shutter meanwhile
+    # read and stopped within one frame, since on a fast machine the shutter may otherwise close meanwhile
     found = page.wait_for_function(
         """() => {
           const of = (name) => document.getElementById(name);
@@ -345,14 +346,14 @@ def test_an_exposure_is_seen_as_it_comes_says_what_rests_meanwhile_and_can_be_st
     assert "of 720 pictures" in found["said"] and "rest until the photograph is closed" in found["said"]
     assert found["whole"], "all of it is read on a phone"
     assert found["off"] == [True] * 4 and 0 < found["part"] < 1
-    # stopped, it keeps what it has
+    # after the stop the picture stays
     page.wait_for_function("() => document.getElementById('stop').textContent === 'close'")
     assert page.locator("#why").inner_text().startswith("Stopped")
     count, image = page.evaluate("document.documentElement.dataset.exposed"), picture(page)
     page.wait_for_timeout(500)
     assert page.evaluate("document.documentElement.dataset.exposed") == count and int(count) < 720
     assert np.array_equal(picture(page), image) and image.max() > 0.4
-    # closed by the keyboard, everything is as it was
+    # when the keyboard closes it, everything is as before
     page.keyboard.press("Escape")
     page.wait_for_selector("#shot", state="hidden")
     assert not page.locator("#omega").is_disabled() and picture(page).mean() > 0.5

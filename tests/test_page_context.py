@@ -1,4 +1,4 @@
-"""What the pages share besides their bodies: the WebGL context, the theme, and screens of three sizes."""
+"""Parts common to both pages: the WebGL context, the theme, and three sizes of screens."""
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ from spincyl._studio.shape import BLUE, ORANGE
 NO_WEBGL = """{ const plain = HTMLCanvasElement.prototype.getContext;
 HTMLCanvasElement.prototype.getContext = function (kind, ...how) { return kind === "webgl2" ? null : plain.call(this, kind, ...how); }; }"""
 NIGHT = "() => document.documentElement.hasAttribute('data-night')"
-#: Motions that end where they begin, or have no steady state: what is seen stands still, or moves.
+#: Starts without a steady state, or motions that end at their start: whether the body stands still or moves.
 STILL = {
     "End on the slider": "#ell=2.5&theta=1.570796",
     "a flick": "#ell=1.198797&theta=1.570796&contact=coulomb&w=2.20633,0,0.8631339,0,0.4400477",
@@ -58,7 +58,7 @@ def test_every_other_edge_of_the_sliders_moves_and_complains_of_nothing(opened):
         settled(page)
         assert ask(page, "head()")["lasts"] > 0 and len(ask(page, "rows()")) > 100, name
         assert page.complaints == [], name
-    # from the keyboard, to the end of theta and back
+    # by keyboard, to the end of theta and back
     page.evaluate("location.hash = '#ell=2.5&theta=1.3'")
     settled(page)
     page.locator("#knob-theta").press("End")
@@ -116,7 +116,7 @@ def test_a_context_that_the_browser_takes_is_said_to_be_gone_and_drawn_again(sho
     assert "taken this picture back" in page.locator("#unlit").inner_text()
     page.click("#relight")
     assert np.abs(picture_of(page) - before).mean() < 0.01 and not page.locator("#unlit").is_visible()
-    page.focus("#canvas")  # hands have followed to the new canvas
+    page.focus("#canvas")  # event handlers have moved to the new canvas
     page.mouse.move(*(page.locator("#canvas").bounding_box()[x] + 15 for x in "xy"))
     page.mouse.down()
     page.mouse.move(*(page.locator("#canvas").bounding_box()[x] + 95 for x in "xy"), steps=3)
@@ -133,7 +133,7 @@ def test_of_twenty_views_in_a_notebook_all_that_are_seen_are_drawn(chromium, tmp
     page.goto(path.as_uri())
     drawn = page.locator("iframe").first.content_frame.locator("html[data-drawn]")
     drawn.wait_for()
-    # the theme of the notebook is told through the frame, and followed
+    # the notebook's theme reaches the frame, and changes of it, too
     inner = page.frames[1]
     inner.wait_for_function(NIGHT)
     page.evaluate("document.body.dataset.jpThemeLight = 'true'")
@@ -144,7 +144,7 @@ def test_of_twenty_views_in_a_notebook_all_that_are_seen_are_drawn(chromium, tmp
         there.locator("html[data-drawn]").wait_for()
         live = "() => !document.getElementById('canvas').getContext('webgl2').isContextLost() && document.getElementById('unlit').hidden"
         page.frames[i + 1].wait_for_function(live)
-    # a frame out of sight draws no pictures, with which it would be asked
+    # a frame out of view draws nothing, so it cannot be asked for a picture
     gone = "() => document.getElementById('canvas').getContext('webgl2').isContextLost()"
     page.frames[20].wait_for_function(gone, polling=100)
     page.close()
@@ -169,7 +169,7 @@ def test_every_control_is_whole_on_a_phone_a_laptop_and_a_wall(shown, make, touc
             "all => all.filter(e => e.scrollHeight > e.clientHeight + 1).map(e => e.textContent)"
         )
         assert cut == []
-        if size is not PHONE:  # nothing stands alone in a second line
+        if size is not PHONE:  # no single control in a second line
             tops = page.locator("#controls > *").evaluate_all(
                 "all => all.map(e => e.offsetTop + e.offsetHeight / 2)"
             )

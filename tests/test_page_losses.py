@@ -1,4 +1,4 @@
-"""What is seen and heard of a body that comes to rest: the page, the photograph, the sound."""
+"""A body that comes to rest: the page, the photograph, the sound."""
 
 import wave
 
@@ -75,7 +75,7 @@ def heard(path):
 
 
 def beat(x, rate):
-    """The strongest frequency of the loudness."""
+    """The strongest frequency in the loudness."""
     loud = np.abs(x)[: x.size // 512 * 512].reshape(-1, 64).mean(axis=1)
     spectrum = np.abs(np.fft.rfft((loud - loud.mean()) * np.hanning(loud.size), 16 * loud.size))
     found = np.fft.rfftfreq(16 * loud.size, 64 / rate)
@@ -170,7 +170,7 @@ LAID = sc.loss.RollingResistance.from_si(5e-4, scale=COIN)
     ],
 )
 def test_a_motion_is_heard_whatever_its_end(motion, tmp_path):
-    m = motion()  # a warning of NumPy's is an error here
+    m = motion()  # warnings of NumPy are errors here
     x, rate = heard(m.sound(tmp_path / "x.wav", scale=None if m.scale else SIZE))
     first = x[: max(x.size - rate // 4, 100) // 2]
     assert 0.85 < np.abs(x).max() < 0.95

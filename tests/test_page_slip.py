@@ -1,4 +1,4 @@
-"""The page of a body that slips: forces at the contact, the path in two colours, phases, a camera that follows."""
+"""The page of a body that slips: contact forces, the path in two colours, phases, a camera that follows."""
 
 import re
 
@@ -31,7 +31,7 @@ def test_the_page_knows_slip_and_forces_at_every_time(shown):
         assert normal == pytest.approx([0, 0, there.normal[k]], abs=0.01) and fz == 0
         assert np.hypot(fx, fy) == pytest.approx(there.friction[k], abs=0.01)
         assert speed == pytest.approx(np.hypot(*there.slip[k]), abs=0.1)
-        if there.phase[k]:  # friction is against the slip
+        if there.phase[k]:  # friction opposes the slip
             turn = np.exp(1j * there.phi[k]) * complex(*there.slip[k])
             assert abs(complex(fx, fy) / abs(complex(fx, fy)) + turn / abs(turn)) < 0.05
     assert page.complaints == [] and len(page.requests) == 1
@@ -54,7 +54,7 @@ def test_the_clock_says_what_the_body_does_and_the_line_when(shown):
     line = page.locator(".phases")
     told = line.get_attribute("title").replace("\xa0", " ")
     assert told == "slipping from t = 0.000 √(R/g), rolling from t = 29.922 √(R/g)"
-    # the line is red up to there, below the knob of the slider
+    # the line, below the knob of the slider, is red until then
     box, strip = line.bounding_box(), page.locator("#time").bounding_box()
     assert box["y"] >= strip["y"] + strip["height"] - 1 and box["width"] == pytest.approx(
         strip["width"] - 16, abs=1
@@ -71,7 +71,7 @@ def test_the_path_is_red_where_it_slips_and_grey_where_it_rolls(shown):
     page.uncheck("#forces")
     page.uncheck("#follow")
     assert near(picture(page), RED) > 3e-4
-    # from above, the last circle of a long roll is grey
+    # seen from above, the last circle of a long roll is grey
     page.check("#above")
     page.check("#follow")
     assert near(picture(page), RED) > 1e-3
@@ -109,7 +109,7 @@ def test_the_camera_follows_what_goes_far_and_rests_where_it_is_told(shown):
     settled(page)
     places = [page.evaluate("t => window.spincyl.on(0, t)", t) for t in (0, 40)]
     assert np.hypot(*np.subtract(*places)) > 50
-    # what stays where it is needs no following
+    # a body that stays in place is not followed
     spinning = sc.roll(PIPE, PIPE.steady(1.5), 20.0, contact=sc.Coulomb(0.3))
     assert not shown(sc.view(spinning)).is_checked("#follow")
 

@@ -1,4 +1,4 @@
-"""Short passages over an end, and motions that hardly move: what a sweep says of them, whatever its tolerance."""
+"""Short passages beyond an end, and motions that hardly move: results of sweeps at any tolerance."""
 
 import numpy as np
 import pytest
@@ -19,7 +19,7 @@ TABLES = {
 
 
 def peaks(bodies, state, how):
-    """The times and heights of the tops of motions that nothing ends, between dense points by parabolas."""
+    """Times and heights of the maxima of motions without ends, from parabolas through dense points."""
     free = sc.Body(*bodies, theta_end=3.0)
     t = np.linspace(0, 0.4, 401)[1:]
     theta = sc.sweep.roll(free, state, t, want="states", tol=1e-13, **how)["theta"].to_numpy()
@@ -27,7 +27,7 @@ def peaks(bodies, state, how):
     k = np.clip(most, 1, t.size - 2)
     below, here, above = (theta[np.arange(len(theta)), k + j] for j in (-1, 0, 1))
     bend = below - 2 * here + above
-    # one at an end of these times is no top
+    # a maximum at an end of the interval does not count
     top = np.where(k == most, t[k] + 0.5 * t[0] * (below - above) / bend, np.nan)
     return top, here - (below - above) ** 2 / (8 * bend)
 
@@ -40,7 +40,7 @@ def test_a_sweep_sees_a_short_passage_over_the_side_wherever_it_lies(name):
     i3 = rng.uniform(0.5, 2.0, COUNT)
     ell, i1 = rng.uniform(0.1, 1.0, COUNT), i3 * rng.uniform(0.8, 1.7, COUNT)
     slip = None if isinstance(contact, str) else tuple(rng.normal(size=(2, COUNT)) * 0.1)
-    # these turn back soon after the side, since I3 w1 w3 > ell
+    # these turn back soon after theta = pi/2, since I3 w1 w3 > ell
     w1 = rng.uniform(0.2, 0.8, COUNT)
     w3 = ell / (i3 * w1) * rng.uniform(1.05, 1.5, COUNT)
     over, rise = 10 ** rng.uniform(-9, -6, COUNT), 10 ** rng.uniform(-4, -2, COUNT)
@@ -67,7 +67,7 @@ def test_a_passage_near_the_start_does_not_depend_on_the_last_time():
     for t in (0.03, 0.1, 15.0):
         for tol in (1e-6, 1e-10, 1e-14):
             found = sc.sweep.roll(body, state, t, losses=loss.AirLinear(1e-3), tol=tol, want="end")
-            # it is above the side by up to 3.7e-7 from 0.0181 to 0.0183
+            # theta exceeds pi/2 by up to 3.7e-7 from 0.0181 to 0.0183
             assert found["status"][0] == Status.SIDE and abs(found["end"][0] - 0.018117) < 2e-4
 
 
@@ -136,5 +136,5 @@ def test_what_a_fine_tolerance_follows_to_its_end_a_coarse_one_does(name):
         assert found["status"][0] == finest.event.ending == sc.Ending.FACE, tol
         both = float(found["error"][0]) + finest.error
         if 30 * tol > y[0]:
-            continue  # a lean of the size of the tolerance: nothing has to be claimed
+            continue  # an inclination of the order of the tolerance: no claim is required
         assert abs(found["end"][0] - finest.event.time) <= 1.1 * both < 1e-2, tol

@@ -1,4 +1,4 @@
-"""Periods of nutations and what is claimed of them, alone and many: 113-bit motions, and the linear theory of a top."""
+"""Periods of nutations and their claims, single and many: 113-bit motions, and the theory of a top."""
 
 import math
 from pathlib import Path
@@ -16,7 +16,7 @@ WANT = ("period", "precession_per_period")
 
 
 def motion(row):
-    """Kind, contact, body, state, and what is true of its period and precession."""
+    """Kind, contact, body, state, and the true period and precession."""
     kind, contact, *numbers = row
     x = [float.fromhex(number) for number in numbers]
     return kind, contact, sc.Body(*x[:3], fillet=x[3]), sc.State(*x[4:8]), x[8:]
@@ -42,10 +42,10 @@ BALL = sc.Body(-0.1091342966683389, 0.7491982311998557, 0.45654036042742985, fil
 
 
 def linear(body, spin, down):
-    """Both rates at which a ball that all but stands on a pole precesses, in the linear theory of the sleeping top.
+    """Both precession rates of a ball nearly upright on a pole, by the linear theory of the sleeping top.
 
-    With zeta the lean as a complex number, J zeta'' = i (I3 + h) n zeta' + ell zeta, h the height of the centre and J =
-    I1 + h^2; turned over, ell and the spin have the other sign.
+    With zeta the lean as a complex number, J zeta'' = i (I3 + h) n zeta' + ell zeta, h the height of the
+    centre and J = I1 + h^2; upside down, ell and the spin have the other sign.
     """
     ell, n = (-body.ell, -spin) if down else (body.ell, spin)
     h = 1 + ell
@@ -61,7 +61,7 @@ def test_a_ball_that_spins_all_but_upright_nods_as_a_sleeping_top_does(theta, do
     theta = math.pi - theta if down else theta
     s = math.sin(theta)
     for share in (0.0, 1e-9, 1e-3, 0.5, 0.999):
-        # two circular motions with the rates middle +- root, the slower one `share` of the faster one in size
+        # two circular motions with rates middle +- root; the amplitude of the slower is `share` of the other
         rate = ((middle - root) + share * (middle + root)) / (1 + share)
         start = sc.State(theta, rate * s, 0.0, -1.948)
         found = sc.swing(BALL, start)

@@ -1,4 +1,4 @@
-"""The live page as Python makes it: what it is told, what it holds, and what is refused."""
+"""The live page as Python writes it: its state, its content, and refusals."""
 
 import gzip
 import json
@@ -18,7 +18,7 @@ from spincyl.cli import main
 
 
 def unpacked(page):
-    """What the loader finds: style, page and script, and the core."""
+    """The content of a page as the loader unpacks it: style, page and script, and the core."""
     text = page.html.split('id="packed">')[1].split("</script>")[0]
     sevens = [
         x for c in map(ord, text) for x in ((c & 127,) if c < 128 else ((0, 13, 60)[c // 128 - 1], c & 127))
@@ -40,7 +40,7 @@ def test_the_page_holds_its_script_and_the_core_that_is_asked_for_in_little_more
     ) and '<canvas id="map"' in shown
     assert core == gzip.decompress(files("spincyl._pages").joinpath("cores", CORES[friction]).read_bytes())
     assert core.startswith(b"\0asm")
-    # seven bits in eight, and a shell that unpacks it
+    # seven bits per byte, and a loader
     small = [zlib.compress(what, 9) for what in (core, (look + shown + text).encode())]
     assert len(page.encode()) < 8 / 7 * sum(map(len, small)) + 10_000
     assert len(page.encode()) < (255_000 if friction else 150_000)
@@ -125,7 +125,7 @@ def test_its_state_and_motion_are_those_of_the_library():
     page = sc.play(PIPE, 1.5, kick=0.02, t=10)
     expected = sc.roll(PIPE, PIPE.steady(1.5).kicked(0.02), np.linspace(0, 10, 2001))
     assert np.array_equal(page.motion.theta, expected.theta)
-    # in the forbidden band it is let go at rest
+    # in the forbidden band the body is released at rest
     assert sc.play(sc.Body.solid(2.5), 0.7).state == sc.State(0.7, 0.0, 0.0, 0.0)
 
 
@@ -170,7 +170,7 @@ def test_what_is_of_another_kind_is_refused(how):
 
 
 def spun_back(play, told):
-    """Whether the spin of the rattleback that a page tells of turns round, as its motion says."""
+    """Whether the rattleback with the state of a page reverses its spin in the page's `motion`."""
     play._heard({"new": told})
     m = play.motion
     with pytest.raises(ValueError, match="rattleback"):

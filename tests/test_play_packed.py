@@ -1,4 +1,4 @@
-"""What the live page unpacks in a browser is what Python packed, byte by byte; what is torn is refused."""
+"""The packed content of the live page: a browser unpacks it byte by byte; damaged content is refused."""
 
 import base64
 import gzip
@@ -14,7 +14,7 @@ from spincyl._pages.play import CORES
 
 CHANCE = np.random.default_rng(7)
 COMMITTED = files("spincyl._pages").joinpath("cores")
-#: Bytes of all kinds: each way in which deflate can tell the next ones is taken.
+#: Bytes for all kinds of blocks of deflate.
 KINDS = {
     "nothing": b"",
     "one byte": b"\xff",
@@ -28,7 +28,7 @@ KINDS = {
     "the lean core": gzip.decompress(COMMITTED.joinpath(CORES[0]).read_bytes()),
     "the whole core": gzip.decompress(COMMITTED.joinpath(CORES[1]).read_bytes()),
 }
-#: Two pieces out of a text, as the loader takes them, or what it says of a torn one.
+#: Unpacks two byte strings from a text as the loader does, or returns the error of a damaged text.
 OPEN = """async text => {
   const tell = bytes => { let all = ""; for (const b of bytes) all += String.fromCharCode(b); return btoa(all); };
   try { return (await unpacked(text)).map(tell); } catch (e) { return e.message; }
@@ -37,7 +37,7 @@ OPEN = """async text => {
 
 @pytest.fixture(scope="module")
 def opened(chromium):
-    """What a browser makes of a packed text."""
+    """A function that unpacks a text in a browser."""
     page = chromium.new_page()
     loader = text("play.loader.js").split("async function opened")[0]
     page.add_script_tag(content=loader)

@@ -1,4 +1,4 @@
-"""The live page in a real browser: the core answers the hand, and its numbers are those of the library."""
+"""The live page in a browser: it reacts to the user, and its numbers are those of the library."""
 
 import re
 
@@ -18,7 +18,7 @@ NO_CORE = "delete window.WebAssembly;"
 
 
 def on_map(page, ell, theta):
-    """Where a point of the map is on the page."""
+    """Position of a point of the map on the page."""
     box, map_ = page.locator("#map").bounding_box(), ask(page, "map()")
     return box["x"] + box["width"] * ell / map_["widest"], box["y"] + box["height"] * (
         1 - theta / map_["steep"]
@@ -26,7 +26,7 @@ def on_map(page, ell, theta):
 
 
 def steady(told):
-    """Body, start and table of what a page says of itself."""
+    """Body and start from the state of a page."""
     body = sc.Body.tube(told["ell"], told["bore"], told["fillet"])
     return body, body.steady(told["theta"]).kicked(told["kick"])
 
@@ -60,7 +60,7 @@ def test_its_numbers_are_those_of_the_library(opened):
             assert here[contact] == pytest.approx(kappa, rel=1e-10)
         rows = np.array(ask(page, "rows()"))
         m = sc.roll(body, start, rows[:, 0], want=("pose", "force"), contact=told["contact"])
-        rows = rows[: m.t.size]  # a motion that ends has its end as the last row
+        rows = rows[: m.t.size]  # the last row is the end of the motion
         bound = head["error"] + m.error + 1e-13
         assert np.abs(rows[:, 1] - m.theta).max() < bound
         assert np.abs(rows[:, 9] - m.normal).max() < 100 * bound
@@ -80,7 +80,7 @@ def test_a_point_is_dragged_over_the_map_and_everything_follows(opened):
     assert told["ell"] == pytest.approx(0.5, abs=0.01) and told["theta"] == pytest.approx(1.3, abs=0.02)
     assert page.locator("#what").inner_text() != text
     assert np.abs(drawn(page) - before).mean() > 0.003
-    # and the address follows, so that it opens the same
+    # the address follows, and opens the same state
     page.wait_for_function("e => location.hash.startsWith(`#ell=${+e.toPrecision(7)}`)", arg=told["ell"])
     again = opened(page.evaluate("location.hash"))
     assert state(again)["theta"] == pytest.approx(told["theta"], rel=1e-6)
@@ -98,7 +98,7 @@ def test_the_finger_snaps_to_lines_and_the_sentence_names_them(opened):
         assert state(page)["theta"] == pytest.approx(line, abs=5e-3), name
         assert name in page.locator("#what").inner_text()
         assert ask(page, "here()").get("rate", 0) > 0, "on the side where there is a steady state"
-    # unless it is told not to
+    # unless Alt is pressed
     page.keyboard.down("Alt")
     page.mouse.click(x, y + 6)
     page.keyboard.up("Alt")
@@ -116,7 +116,7 @@ def test_a_click_on_a_ghost_jumps_to_the_other_inclination_of_the_same_rate(open
     settled(page)
     assert state(page)["theta"] == pytest.approx(others[0], abs=1e-9)
     assert ask(page, "here()")["rate"] == pytest.approx(rate, rel=1e-9)
-    # by the keyboard, and by a button that says where
+    # also by the keyboard, and by a button that shows the other inclination
     page.locator("#map").focus()
     page.keyboard.press("g")
     settled(page)
@@ -244,7 +244,7 @@ def test_bodies_look_as_they_do_everywhere_else(opened):
             assert mine["colour"] == pytest.approx(theirs.colour)
         for mine, theirs in zip(seen["marks"], marks(body), strict=True):
             assert np.allclose(np.reshape(mine["places"], (-1, 3)), theirs.vertices, atol=1e-12), body
-            if body.fillet:  # of a sharp wall `shape` keeps the order of older pages
+            if body.fillet:  # for sharp walls `shape` keeps the order of older pages
                 assert np.allclose(np.reshape(mine["normals"], (-1, 3)), theirs.normals, atol=1e-12)
             assert mine["colour"] == pytest.approx(theirs.colour)
             at, normals, which = (np.reshape(mine[k], (-1, 3)) for k in ("places", "normals", "triangles"))
@@ -266,7 +266,7 @@ def test_the_clock_never_runs_back_and_never_below_zero(opened):
 def test_slow_motion_is_slow(opened):
     page = opened("#ell=2.5&theta=1.3&kick=0.1", reduced_motion="no-preference", script=DRIVEN)
     page.wait_for_function("() => window.spincyl?.at", polling=50)
-    page.evaluate("window.picture(99000)")  # nothing can be chosen before something is seen
+    page.evaluate("window.picture(99000)")  # controls have no effect before the first frame
     passed = {}
     for slow in ("10", "1000"):
         page.select_option("#slow", value=slow)
@@ -276,7 +276,7 @@ def test_slow_motion_is_slow(opened):
             page.evaluate("ms => window.picture(ms)", first + 10 * k)
         passed[slow] = ask(page, "at()") - before
     assert passed["10"] == pytest.approx(100 * passed["1000"], rel=1e-6) and passed["1000"] > 0
-    # of a body of 1 cm in a tenth of a second; one of 4 cm takes twice as long
+    # a tenth of a second for a body of 1 cm; for one of 4 cm the unit of time is twice as long
     assert passed["10"] == pytest.approx(0.1 / 10 / np.sqrt(0.01 / 9.80665), rel=1e-6)
     page.evaluate("window.spincyl.set({ radius: 0.04, slow: 10 })")
     page.evaluate("window.picture(100110)")
@@ -326,7 +326,7 @@ def test_on_a_phone_it_fits_keeps_still_and_can_be_hit_by_a_finger(opened):
     page.evaluate("window.spincyl.set({ ell: 0.4, theta: 1.4 })")
     page.wait_for_timeout(400)
     assert sum(page.evaluate("window.shifts")) < 0.01
-    # the finger drags the point and does not scroll the page
+    # a finger drags the point and does not scroll the page
     x, y = on_map(page, 1.5, 1.2)
     assert page.locator("#map").evaluate("e => getComputedStyle(e).touchAction") == "none"
     page.touchscreen.tap(x, y)
@@ -354,7 +354,7 @@ def test_regions_are_told_by_hatching_and_name_not_by_hue_alone(opened, scheme):
     assert all(
         word in legend for word in ("stable because it rolls", "forbidden", "unstable", "stable on ice only")
     )
-    # without colour the regions differ by how much the light changes from place to place
+    # without colour, the regions differ in how their brightness varies in space
     swatches = page.locator("#legend canvas")
     patterns = []
     for i in range(swatches.count()):
@@ -393,7 +393,7 @@ def test_a_picture_and_a_film_are_saved(opened):
     assert got.value.suggested_filename == "spincyl.png"
     assert got.value.path().read_bytes().startswith(b"\x89PNG\r\n\x1a\n")
     page.click("#film")
-    page.wait_for_timeout(2500)  # on a busy machine the first picture of a film takes a second
+    page.wait_for_timeout(2500)  # on a busy machine the first frame of a film takes a second
     with page.expect_download() as got:
         page.click("#film")
     content = got.value.path().read_bytes()

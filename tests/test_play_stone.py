@@ -1,4 +1,4 @@
-"""The rattleback of the live page: it turns back where the library says, and the rest of the page does not change."""
+"""The rattleback of the live page: it turns back as in the library; the rest of the page is the same."""
 
 import numpy as np
 import pytest
@@ -16,7 +16,7 @@ AT = "#stone=0.07,0.014,0.012&twist=0.0349066&spin=-5&slow=1"
 
 
 def motion(twist, spin, t):
-    """The same motion by the library, in SI."""
+    """The motion of the page's rattleback by the library, in SI."""
     stone = sc.Ellipsoid.rattleback((0.07, 0.014, 0.012), twist=twist).in_metres()
     push = np.radians(0.02)
     start = stone.spinning(spin * stone.scale.seconds(1.0), pitch=push, roll=push)
@@ -24,7 +24,7 @@ def motion(twist, spin, t):
 
 
 def turns_back(m):
-    """When the spin comes to a tenth of the first one the other way round: its last zero before."""
+    """The last zero of the spin before it reaches a tenth of the first spin in the other sense."""
     way = m.spin * np.sign(m.spin[0])
     if not (way < -0.1 * way[0]).any():
         return None
@@ -33,7 +33,7 @@ def turns_back(m):
 
 
 def shown_map(page):
-    """What of the page is seen."""
+    """The visible parts of the page."""
     return {
         x: page.locator(f"#{x}").is_visible() for x in ("map", "knobs", "flick", "hear", "twirl", "chart")
     }
@@ -81,7 +81,7 @@ def test_what_it_shows_is_the_motion_of_the_library(opened, twist, spin):
     else:
         assert head["back"][0] * unit == pytest.approx(expected, abs=0.02)
         assert what(page) == f"It turns back after {head['back'][0] * unit:.1f} s"
-    # between two rows, too
+    # also between two rows
     for t in (0.777, 3.21, 12.345):
         pose, here = ask(page, f"pose({t / unit!r})"), motion(np.radians(twist), spin, [t])
         turn = np.reshape(pose["matrix"], (4, 4))[:3, :3].T
@@ -141,7 +141,7 @@ def test_a_body_of_revolution_after_it_is_as_it_was(opened):
     page, other = opened(AT), opened("#ell=2.5&theta=1.3&kick=0.05")
     page.evaluate("location.hash = '#ell=2.5&theta=1.3&kick=0.05'")
     page.wait_for_function("document.getElementById('map').clientWidth > 0")
-    for each in (page, other):  # the path with more places
+    for each in (page, other):  # the path with more points
         each.wait_for_function("() => window.spincyl.rows().length === 1500")
     for of in ("head()", "here()", "body()", "ghosts()", "rows()", "tracks()", "pose(3)"):
         assert ask(page, of) == ask(other, of), of
@@ -155,7 +155,8 @@ def test_what_follows_a_change_by_a_moment_may_come_before_the_next_picture(open
     page.wait_for_selector("main", state="attached")
     page.evaluate("window.picture(0)")
     page.evaluate("stone => { window.spincyl.solve({}); window.spincyl.set({ stone }); }", stone)
-    page.evaluate("() => new Promise(done => setTimeout(done, 400))")  # the address, the fine map and path
+    # time for the address, the fine map and the fine path
+    page.evaluate("() => new Promise(done => setTimeout(done, 400))")
     page.evaluate("window.picture(16)")
     assert page.complaints == [] and len(ask(page, "rows()")) > 10
 

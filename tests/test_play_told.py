@@ -1,4 +1,4 @@
-"""What the live page says: in sentences, numbers, tracks and its address, each held to the library."""
+"""The text of the live page: sentences, numbers, tracks and address agree with the library."""
 
 import re
 
@@ -114,7 +114,7 @@ def test_an_address_with_nonsense_is_taken_as_far_as_it_makes_sense(opened):
         0.1,
     )
     assert page.complaints == []
-    # and one that is changed by hand is followed
+    # the page follows an address that is changed by hand
     page.evaluate("location.hash = '#ell=0.5&theta=0.3&contact=smooth'")
     page.wait_for_function("() => window.spincyl.state().ell === 0.5")
     assert state(page)["contact"] == "smooth" and state(page)["kick"] == 0
@@ -128,7 +128,7 @@ def test_an_address_may_name_what_every_object_of_javascript_has(opened, name):
     assert page.complaints == [] and f"{name}=1" in page.locator("body").inner_text()
     page.evaluate("name => { location.hash = `#ell=0.5&${name}=2,3`; }", name)
     page.wait_for_function("() => window.spincyl.state().ell === 0.5")
-    # nor does a key, or who sets the state from outside
+    # keys and calls from outside have no effect either
     page.evaluate("name => window.dispatchEvent(new KeyboardEvent('keydown', { key: name }))", name)
     page.evaluate("name => window.spincyl.set({ [name]: 1, ell: 0.7 })", name)
     page.wait_for_function("() => window.spincyl.state().ell === 0.7")
@@ -154,7 +154,7 @@ def test_the_page_of_a_measured_body_tells_hertz_seconds_and_joules(opened):
     page.evaluate("window.spincyl.set({ precession: 2.0 })")
     settled(page)
     assert f"goes round {tube.scale.turns(2.0):.2f} times a second" in details(page)
-    # a copy of the address opens the same, and what has no size says so
+    # a copy of the address opens the same state, and a body without a size says so
     page.wait_for_function("() => location.hash.includes('radius=0.025&mass=0.1')")
     unknown = opened("#ell=3&theta=1.4")
     assert "R = 1 cm" in details(unknown) and "Hz" not in details(unknown)
@@ -222,7 +222,7 @@ def test_on_a_wet_table_a_tippe_top_turns_over_as_the_library_says_and_on_a_dry_
 
 
 def axes(page):
-    """The greatest value on the axis of each track that begins at 0, whether some are cut, and the greatest."""
+    """The upper end of each track's axis that begins at 0, whether curves are cut, and the largest value."""
     settled(page)
     page.wait_for_timeout(400)
     rows = np.array(page.evaluate("() => window.spincyl.tracked()"))

@@ -85,7 +85,7 @@ def test_the_curves_of_a_map_of_rounded_tubes_are_theirs():
     balanced = next(line for line in ax.lines if "balanced" in line.get_label())
     ell, theta = balanced.get_data()
     assert np.allclose(theta, np.degrees(np.arctan2(0.8, ell - 0.2)), rtol=1e-12)
-    (image,) = ax.images  # what is steady changes where the curve is
+    (image,) = ax.images  # the image of the regions changes at the curve
     region, column = np.asarray(image.get_array()), 350
     row = np.argmax(region[:, column] == sc.Region.FORBIDDEN)
     half = np.linspace(0.2, 2.0, 701)[column]

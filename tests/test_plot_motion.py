@@ -1,4 +1,4 @@
-"""Motions as pictures: what is drawn, at which times, where it ended, and in whose sizes."""
+"""Figures of motions: content, times, ends, and sizes of text."""
 
 import warnings
 
@@ -24,7 +24,7 @@ def test_the_first_figure_of_a_notebook_leaves_it_interactive_and_the_sizes_as_t
     make, before = plt.subplots, mpl.rcParams["font.size"]
 
     def first(*args, **kwargs):
-        plt.ion()  # as the backend of a notebook does with its first figure
+        plt.ion()  # as the backend of a notebook does at its first figure
         return make(*args, **kwargs)
 
     monkeypatch.setattr(plt, "subplots", first)
@@ -51,7 +51,7 @@ def test_an_exact_motion_is_drawn_whatever_times_were_asked_for(t):
             assert (time[0], time[-1]) == (0.0, last)
             there = getattr(m.at(time).wanting(*[want] if want else []), name)
             assert np.allclose(drawn, np.degrees(there) if name == "theta" else there, atol=1e-9)
-    # close enough for the nutation: straight lines between the points meet the motion
+    # the times are close enough for the nutation: lines between points agree with the motion
     time, drawn = curve(tilt)
     between = np.degrees(m.at((time[1:] + time[:-1]) / 2).theta)
     assert np.abs(between - (drawn[1:] + drawn[:-1]) / 2).max() < 2e-3 * np.ptp(drawn)
@@ -148,7 +148,7 @@ def test_words_have_the_size_of_the_axes_they_are_drawn_on(name):
         mpl.rc_context({"font.size": 21, "axes.labelsize": 21, "xtick.labelsize": 21, "ytick.labelsize": 21}),
         warnings.catch_warnings(),
     ):
-        warnings.simplefilter("ignore")  # such words leave a small figure little room
+        warnings.simplefilter("ignore")  # such long labels leave a small figure little room
         _, ax = plt.subplots()
         DRAWN[name](ax)
         assert sizes(ax) == {21.0}, "a lecturer's own"
@@ -195,7 +195,7 @@ def test_laws_of_loss_have_the_digits_in_a_title_that_it_has_room_for():
     assert title.startswith("rolling, RollingResistance(0.0126) + AirFilm(1e-07), ")
 
 
-# Stones, and what draws itself.
+# Stones, and objects that draw themselves.
 
 
 @pytest.mark.parametrize("contact", ["rolling", sc.Coulomb(0.3)])
@@ -262,7 +262,7 @@ def test_a_map_of_flicks_has_each_outcome_where_it_is():
     settles = outcome == ends.SETTLES
     assert np.array_equal(drawn[2][settles], found["rolling_time"].values.T[settles])
     plt.close(ax.figure)
-    # in any order, with other variables, without any that settles, and cut off while all slip
+    # in any order, with further variables, without any that settles, and with all still slipping at the end
     for other, words in (
         (found.isel(hertz=[2, 0, 1], launch=[1, 2, 0]), ["lies down", "lifts off"]),
         (found.assign(end=found["end"].expand_dims(more=3)), ["lies down", "lifts off"]),

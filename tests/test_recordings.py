@@ -1,4 +1,4 @@
-"""A spin-down that was heard: whatever stands before and after it, its law is known, or said not to be."""
+"""A recorded spin-down: whatever comes before and after it, its law is determined, or declared uncertain."""
 
 import sys
 import warnings
@@ -15,7 +15,7 @@ import recordings
 DISK = sc.measured(outer_diameter=75.1e-3, length=12.8e-3, mass=0.44)
 T, WHIRR = sc.data.read_sound(sc.data.example("whirr"))
 HERTZ = 1 / (T[1] - T[0])
-TRUE = 2e-4  # of ViscousContour, from which the example is made
+TRUE = 2e-4  # coefficient of ViscousContour in the example
 
 
 def heard(sound):
@@ -51,7 +51,7 @@ def test_mains_that_hum_louder_than_the_whirr_are_not_taken_for_one():
 
 
 def test_a_short_buffer_is_said_to_be_too_short_and_not_noise():
-    t = np.arange(32_770) / 48_000  # of phyphox
+    t = np.arange(32_770) / 48_000  # the buffer of phyphox
     noise = np.random.default_rng(0).normal(0, 1e-3, t.size)
     for turns, between in ((20, (2.0, 200.0)), (40, (2.0, 200.0)), (40, (28.0, 60.0))):
         phase = 2 * np.pi * (turns * t + turns * t**2 / 8)
@@ -59,7 +59,7 @@ def test_a_short_buffer_is_said_to_be_too_short_and_not_noise():
         many = round(phase[-1] / (2 * np.pi))
         with pytest.raises(ValueError, match=rf"^sound: too short: ({many - 1}|{many}) turns, 32 needed"):
             sc.data.wobble(t, sound, between=between)
-    # in a longer one too few may be heard
+    # a longer recording may have too few audible turns
     t = np.arange(5 * 48_000) / 48_000
     loud = np.where((t > 2) & (t < 3), 0.3, 0.0) * (1 + 0.6 * np.cos(2 * np.pi * 28 * t))
     sound = loud * np.sin(2 * np.pi * 5000 * t) + np.random.default_rng(0).normal(0, 1e-3, t.size)
@@ -68,7 +68,7 @@ def test_a_short_buffer_is_said_to_be_too_short_and_not_noise():
 
 
 def rolled(law=sc.loss.DryContour, noise=1e-3, share=0.9, seed=2):
-    """Rates of a disk that rolls, from a while after its centre rested on."""
+    """Rates of a rolling disk, from some time after its centre was at rest."""
     drift = sc.drift(DISK.natural, 0.4, law(1e-3), centre="rolling")
     t = np.linspace(0.08, share, 24) * drift.stops_at
     precession = drift.precession(t) * (1 + noise * np.random.default_rng(seed).normal(size=t.size))
@@ -85,14 +85,14 @@ def test_both_places_of_the_centre_are_in_one_table_and_a_body_that_rolls_is_kno
     }
     assert (found.best.name, found.best.centre, found.centre) == ("DryContour", "rolling", "either")
     assert abs(found.best.coefficient - 1e-3) < 4 * found.best.coefficient_err < 2e-4
-    # the centre rested before the first time, and the fitted drift goes on from there
+    # the centre was at rest before the first time, and the fitted drift continues from there
     assert 0.3 < found.best.theta < found.best.rested < 0.6 and np.isnan(found.of(laws[0], "rest").rested)
     shown = found.best.drift.precession(t - t[0])
     assert precession - shown == pytest.approx(found.best.residual["precession"], abs=1e-6 * precession.max())
     rows = found.table().splitlines()
     assert rows[0].split()[:2] == ["law", "centre"] and rows[1].split()[:2] == ["DryContour", "rolling"]
     assert "rolling" in repr(found) and "DryContour, rolling" in found._repr_html_()
-    # the same law with the centre at rest is another row, over which it is told apart as well
+    # the same law with the centre at rest is another row, from which it is told apart
     assert found.told_apart == (found.fits[1].daic > 6)
     with pytest.warns(UserWarning, match="no law explains"):
         alone = sc.data.fit_losses(t, **given, centre="rest")

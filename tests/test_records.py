@@ -1,4 +1,4 @@
-"""Whose a folder is: a sweep is saved where nothing is, or into its own store; nothing else is changed, whatever is damaged."""
+"""Ownership of folders: a sweep is saved to a new folder or to its own store, and changes nothing else."""
 
 import os
 import random
@@ -22,7 +22,7 @@ def lazy(ell=ELL, want=("rate", "region")):
 
 
 def files(*folders):
-    """Every file of these folders, with what it holds."""
+    """Every file of these folders, with its bytes."""
     return {p: p.read_bytes() for f in folders for p in sorted(Path(f).rglob("*")) if p.is_file()}
 
 
@@ -37,7 +37,7 @@ def right(saved, ell=ELL):
 
 
 def quietly(store, ell=ELL):
-    """The store, saved again, and what was warned of."""
+    """Save to the store again; returns it and the warnings."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         saved = sc.sweep.save(lazy(ell), store).load()
@@ -53,13 +53,13 @@ def good(tmp_path_factory):
 
 @pytest.fixture
 def store(good, tmp_path):
-    """A copy of a store that is done, with its records; of another name."""
+    """A copy of a complete store with its records, under another name."""
     shutil.copytree(good, tmp_path / "copy.zarr")
     shutil.copytree(beside(good), tmp_path / "copy.zarr.sweep")
     return tmp_path / "copy.zarr"
 
 
-# what is no store is left as it is
+# other folders are left unchanged
 
 
 def foreign(folder, kind):
@@ -67,7 +67,7 @@ def foreign(folder, kind):
     folder.mkdir()
     if kind == "zarr":
         xr.Dataset({"rate": ("theta", THETA)}).to_zarr(folder, consolidated=False)
-    elif kind == "derived":  # whose attributes are those of a sweep
+    elif kind == "derived":  # with the attributes of a sweep
         saved = sc.sweep.save(lazy(), folder.parent / "first.zarr").load()
         (saved + 1).assign_attrs(saved.attrs).to_zarr(folder, consolidated=False)
     elif kind == "a folder in it":
@@ -194,7 +194,7 @@ def test_records_of_another_sweep_are_no_ones_but_its_own(store, tmp_path):
 
 
 def test_marks_of_another_sweep_are_not_taken_for_those_of_this_one(store, tmp_path):
-    """Of the regions nothing is on disk that a mark could miss: they are fill values."""
+    """The regions are all fill values, so no file is on disk that a wrong mark could miss."""
     flat = sc.sweep.portrait(np.full(3, 2.0), da.from_array(ELL, chunks=2), want="region")
     sc.sweep.save(flat, tmp_path / "flat.zarr")
     (beside(tmp_path / "flat.zarr") / "job.json").unlink()
@@ -232,11 +232,11 @@ def test_lazy_numbers_and_lazy_coordinates_are_written_and_checked(tmp_path):
     assert saved["mass"].values.tolist() == [0, 1, 2, 3]
 
 
-# what is damaged
+# damage
 
 
 def damages(raw, rng):
-    """What a file may hold instead."""
+    """Damaged versions of a file's bytes."""
     flipped = bytearray(raw)
     flipped[rng.randrange(len(raw))] ^= 1 << rng.randrange(8)
     return {
@@ -252,7 +252,7 @@ def damages(raw, rng):
 
 @pytest.mark.parametrize("every", [False, pytest.param(True, marks=pytest.mark.long)])
 def test_whatever_is_damaged_is_made_again_as_it_was(good, tmp_path, every):
-    """Every file of a store and beside it, each with one kind of damage, or with every kind."""
+    """Every file of a store and beside it is damaged in one way, or in every way."""
     rng, store = random.Random(1), tmp_path / "a.zarr"
     whole = {
         p.relative_to(good.parent): raw for p, raw in files(good, beside(good)).items() if p.name != "lock"
@@ -343,7 +343,7 @@ def test_what_killed_writers_left_behind_is_removed(store):
 
 @pytest.mark.parametrize("step", range(12))
 def test_a_save_that_dies_while_it_is_laid_out_begins_again(tmp_path, monkeypatch, step):
-    """Dies as a kill does: nothing is cleaned up, and what is half written stays."""
+    """As after a kill, nothing is cleaned up, and half-written files stay."""
     from spincyl._input import files
 
     count = iter(range(100))

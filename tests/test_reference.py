@@ -1,4 +1,4 @@
-"""Against 60 digits and against an independently linearised model (rows N of docs/hard-cases.md)."""
+"""Comparison with 60 digits, and with an independently linearised model (rows N of docs/hard-cases.md)."""
 
 import math
 import pathlib
@@ -21,7 +21,7 @@ CONTACTS = ("rolling", "smooth")
 
 
 def exact_kappa(body, theta, contact):
-    """kappa of the state with the centre at rest at the double theta, to 40 digits."""
+    """kappa to 40 digits, of the state with the centre at rest, at the inclination `theta` as a double."""
     with mp.workdps(60):
         ell, i3 = mpf(body.ell), (1 + mpf(body.bore) ** 2) / 2
         i1 = i3 / 2 + ell**2 / 3
@@ -61,7 +61,7 @@ def test_n12_a_kick_of_1e_8_nutates_or_grows_as_kappa_says(ell, theta, contact):
     kappa = float(body.stability(theta, contact))
     with mp.workdps(30):
         state = [mpf(x) for x in (theta, body.steady(theta).w1, 0, body.steady(theta).w3)]
-        # the double state is steady to 1e-16 only: refine its rate, so that the kick is the only disturbance
+        # in doubles the state is steady to 1e-16 only: refine its rate, so that only the kick disturbs it
         e, i3 = mpf(ell), mpf(1) / 2
         i1 = i3 / 2 + e**2 / 3
         s, c = mp.sin(state[0]), mp.cos(state[0])
@@ -93,7 +93,7 @@ def sturm_count(ell, rate):
     ell, w = Fraction(ell), Fraction(rate) ** 2
     a = Fraction(1, 2) + Fraction(2, 3) * ell**2
     p = [Fraction(1), 2 * (ell - a * w), -4 * ell * w, 2 * (ell + a * w), Fraction(-1)]
-    while sum(p) == 0:  # a root at t = 1, lying on the side, is no answer: divide it out
+    while sum(p) == 0:  # a root at t = 1, on the side, does not count: divide it out
         p = [sum(p[: k + 1]) for k in range(len(p) - 1)]
     chain = [p, [c * (len(p) - 1 - k) for k, c in enumerate(p[:-1])]]
     while True:
@@ -117,7 +117,7 @@ def sturm_count(ell, rate):
 
 
 def planted(rng, n):
-    """Random bodies and rates, and rates at and beside the folds of random bodies."""
+    """Random bodies and rates, and rates at and next to the folds of random bodies."""
     ell = np.where(rng.random(n) < 0.7, rng.uniform(0, 3, n), 10 ** rng.uniform(-3, 3, n))
     rate = np.where(rng.random(n) < 0.7, rng.uniform(0, 4, n), 10 ** rng.uniform(-3, 3, n))
     body = sc.Body.solid(ell)

@@ -1,4 +1,4 @@
-"""What an argument cannot be is refused by its name, before anything is filled (rows A2, A5 of docs/hard-cases.md)."""
+"""Invalid arguments are refused by name, before anything is written (rows A2, A5 of docs/hard-cases.md)."""
 
 import numpy as np
 import pandas as pd
@@ -62,7 +62,7 @@ def test_out_is_an_array_to_fill(law, bad):
 
 
 def test_whole_numbers_cannot_hold_a_rate_whatever_the_input_is():
-    # into a Series, pandas would cast NaN to the smallest whole number there is
+    # pandas would cast NaN to the smallest integer
     for theta in (THETA, pd.Series(THETA), xr.DataArray(THETA)):
         out = np.full(4, -1)
         with pytest.raises(TypeError, match="^out: rate gives float64, which int64 cannot hold"):
@@ -73,7 +73,7 @@ def test_whole_numbers_cannot_hold_a_rate_whatever_the_input_is():
 
 
 def test_texts_and_dates_cannot_hold_a_rate():
-    # NumPy would write "1" for 1.3 into a text of one letter
+    # NumPy would write 1.3 as "1" into a text of one letter
     for out in (np.array(["a"]), np.array([b"a"]), np.array(["2020"], "datetime64[Y]")):
         with pytest.raises(TypeError, match="^out: rate gives float64, which .* cannot hold"):
             BODY.rate(THETA[2:3], out=out)
@@ -95,7 +95,7 @@ def test_a_missing_value_is_no_number():
 
 
 class Series:
-    """What a Series of polars is to NumPy: it takes its functions, and has a type that NumPy does not know."""
+    """A Series of polars as NumPy sees it: it accepts ufuncs, and its dtype is unknown to NumPy."""
 
     __module__ = "polars.series.series"
     dtype = "Float64"

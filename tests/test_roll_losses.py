@@ -1,4 +1,4 @@
-"""Motions with losses from Python: what is refused, where the energy goes, how they end, how they are shown."""
+"""Motions with losses from Python: refusals, balance of energy, ends, and display."""
 
 import copy
 import math
@@ -44,7 +44,7 @@ def rolled(start="disk", losses=DRY, t=T, **how):
     return sc.roll(*STARTS[start], t, losses=losses, **how)
 
 
-# What is refused.
+# Refusals.
 
 
 @pytest.mark.parametrize(
@@ -100,7 +100,7 @@ def test_a_ball_has_no_face_for_air_to_be_pressed_out_of(law):
         sc.roll(SPHERE, sc.State(1.2, 1.0, 0.3, 0.7), 1.0, losses=LAWS[law])
 
 
-# Where the energy goes.
+# Balance of energy.
 
 
 @pytest.mark.parametrize("law", LAWS)
@@ -131,7 +131,7 @@ def test_air_slows_a_sphere_as_an_exponential(b):
     m = sc.roll(SPHERE, start, np.linspace(0, 10, 101), losses=loss.AirLinear(b), contact="smooth")
     size = start.angular_velocity * np.exp(-b * m.t / 0.4)
     assert np.allclose(m.states.angular_velocity, size, rtol=1e-11)
-    # rolling, what turns about the vertical has the moment 0.4, the rest 0.4 + 1
+    # in rolling, the moment is 0.4 for rotation about the vertical and 0.4 + 1 otherwise
     m = sc.roll(SPHERE, start, np.linspace(0, 10, 101), losses=loss.AirLinear(b))
     vertical = m.w[:, 0] * np.sin(m.theta) + m.w[:, 2] * np.cos(m.theta)
     level = np.sqrt((m.w**2).sum(axis=1) - vertical**2)
@@ -146,7 +146,7 @@ def test_the_claimed_error_holds_for_a_loose_tolerance():
     assert rough.nfev < fine.nfev
 
 
-# How they end.
+# Ends.
 
 
 def test_the_contact_of_a_whirr_stops_and_says_so():
@@ -199,7 +199,7 @@ def test_without_friction_there_are_no_phases_and_no_slip(contact):
     assert m.states.slip is None
 
 
-# How they are shown.
+# Display.
 
 
 def test_a_motion_keeps_its_losses_at_other_times_and_with_more_of_it():

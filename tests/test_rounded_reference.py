@@ -1,7 +1,7 @@
 """Bodies with a rounded rim: the references of tests/reference/rounded.py keep their laws, and the library agrees.
 
-The first half asks nothing of the library: the tables, found with vectors at 40 digits and more, obey the integrals of
-the motion and the closed formulas. The second half compares the library with them.
+The first half does not use the library: the tables, computed with vectors to 40 digits or more, obey the
+integrals of the motion and the closed formulas. The second half compares the library with them.
 """
 
 import csv
@@ -23,7 +23,7 @@ CONTACTS = ("rolling", "smooth")
 
 
 def exact(word):
-    """A hexadecimal double or a decimal number, to all its digits."""
+    """A hexadecimal double or a decimal number, with all its digits."""
     return mpf(float.fromhex(word)) if "x" in word else mpf(word)
 
 
@@ -56,7 +56,7 @@ def states(motions, contact=None):
     return found
 
 
-# The laws of the tables.
+# The tables.
 
 
 def test_the_moments_are_those_of_a_torus_between_two_cylinders(moments):
@@ -86,7 +86,7 @@ def test_a_ball_a_capsule_and_a_sharp_cylinder_are_among_the_rounded_bodies(mome
     with mp.workdps(50):
         rows = {(h, rho): (i1, i3) for h, q, rho, i1, i3, _ in moments if q == 0}
         assert all(abs(x - mpf(2) / 5) < 1e-24 for x in rows[1, 1])
-        # a cylinder of mass 2 ell and two half balls of mass 2/3, each with its centre 3/8 beyond the end
+        # a cylinder of mass 2 ell, and two half balls of mass 2/3 with their centres 3/8 beyond its ends
         i1, i3 = rows[2, 1]
         mass = 2 + mpf(4) / 3
         assert abs(i3 - (1 + mpf(8) / 15) / mass) < 1e-24
@@ -148,7 +148,7 @@ def test_kappa_is_that_of_the_closed_formulas(steady):
 
 
 def energy(body, y, contact):
-    """Kinetic and potential, the velocity of the centre as r x w, of a smooth table its vertical part only."""
+    """Energy with the velocity r x w of the centre; on a smooth table only its vertical component."""
     ell, i1, i3, rho = body
     theta, w1, w2, w3 = y
     s, c = mp.sin(theta), mp.cos(theta)
@@ -206,7 +206,7 @@ def test_the_normal_force_is_the_weight_and_what_lifts_the_centre(motions):
 
 
 def test_a_nutation_turns_where_the_energy_leaves_no_tilting(motions):
-    """Of balls, for which Routh and Jellett give w1 and w3 at any inclination."""
+    """For balls, where the integrals of Routh and Jellett give w1 and w3 at any inclination."""
     checked = 0
     with mp.workdps(40):
         for kind, scene, contact, body, start, _, values in motions:
@@ -256,7 +256,7 @@ def test_the_rate_of_a_flat_body_near_its_side_is_right_where_its_moments_nearly
             turning = -a * s - ell * c + d * (rho * c * c - radius * s)
             condition = abs(theta * (sum(slopes) - turning / m)) / 2
             near += condition < 1
-            if np.isnan(rate):  # within rounding of where m changes its sign
+            if np.isnan(rate):  # within rounding of a change of sign of m
                 assert condition > 1e12
                 continue
             assert abs(rate / mp.sqrt(square) - 1) <= 2 * (1 + condition) * ULP, numbers
@@ -270,5 +270,5 @@ def test_a_ball_near_its_pole_swings_in_a_time_that_is_right_within_what_it_says
     wide, *small = (sc.swing(top, sc.State(x, 0.0, 0.0, spin), contact) for x in (1e-4, 1e-5, 1e-6, 1e-7))
     assert wide.error < 1e-6 * wide.period
     for found in small:
-        # the motion is linear there: the period changes with the square of the inclination
+        # linear regime: the period changes with the square of the inclination
         assert abs(found.period - wide.period) <= found.error + wide.error + 1e-7 * wide.period

@@ -29,7 +29,7 @@ def lazy(top=3.0, want=("rate", "region")):
 
 
 def contents(store):
-    """Every file of a store."""
+    """Every file of a store, with its bytes."""
     return {p.relative_to(store): p.read_bytes() for p in sorted(Path(store).rglob("*")) if p.is_file()}
 
 
@@ -39,7 +39,7 @@ def test_a_saved_map_is_the_map(tmp_path):
     expected = sc.sweep.portrait(THETA, ELL, want=("rate", "region"))
     assert all(np.array_equal(saved[k], expected[k], equal_nan=True) for k in expected)
     assert np.array_equal(saved["theta"], THETA) and told[-1] == 1.0
-    # nothing is computed again
+    # a second save computes nothing
     before = contents(tmp_path / "map.zarr")
     stamp = (tmp_path / "map.zarr" / "rate" / "c" / "0" / "0").stat().st_mtime_ns
     sc.sweep.save(lazy(), tmp_path / "map.zarr")
@@ -79,7 +79,7 @@ def test_a_saved_ensemble_is_the_ensemble(tmp_path):
 def test_a_store_opens_without_a_warning_and_so_does_a_map_of_many_blocks(tmp_path):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        # dask warns of a product that has more than ten times the blocks of what it is made of
+        # dask warns of a product with more than ten times the blocks of its inputs
         ell = da.from_array(ELL, chunks=7)
         many = sc.sweep.portrait(da.from_array(THETA, chunks=8), ell, want="rate")
         sc.sweep.roll(
@@ -108,7 +108,7 @@ def test_p5_the_second_of_two_processes_that_save_at_once_is_told_so(tmp_path):
     with subprocess.Popen(
         [sys.executable, "-c", SAVE, store], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
     ) as first:
-        first.stdout.readline()  # it has begun, and waits
+        first.stdout.readline()  # wait until it has begun
         with pytest.raises(BlockingIOError, match=r"another process or thread is saving to it: .*map\.zarr"):
             sc.sweep.save(job, store)
         first.communicate("\n" * 9)
@@ -249,9 +249,9 @@ if __name__ == "__main__":
 
 
 def interrupted(script, store, workers, wait):
-    """Starts the job and kills it, workers and all, this long after it is ready; whether it was done before.
+    """Start the job and kill it with its workers after a delay; returns whether it was done before.
 
-    A job that ends by itself must have done its work: a failure is not taken for a kill.
+    A job that ends by itself has to be complete: a failure does not count as killed.
     """
     with (
         tempfile.TemporaryFile("w+") as said,
@@ -280,10 +280,10 @@ def record(store):
 
 
 def complete(script, store, workers):
-    """Runs the job to its end, without workers in this process."""
+    """Run the job to its end; with `workers` 0 in this process."""
     if not workers:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # of blocks that a kill has damaged
+            warnings.simplefilter("ignore")  # about blocks that a kill has damaged
             runpy.run_path(str(script))["main"](store, 0)
         return
     done = subprocess.run([sys.executable, script, store, str(workers)], capture_output=True, text=True)
@@ -291,23 +291,23 @@ def complete(script, store, workers):
 
 
 def written(store):
-    """The places of the blocks whose first variable is on disk."""
+    """Indices of the blocks whose first variable is on disk."""
     places = (p.parts[-2:] for p in store.glob("rate/c/*/*") if p.name.isdigit())
     return {(int(row), int(column)) for row, column in places}
 
 
 def recorded(store):
-    """The places of the blocks that are recorded as done, each of 200 x 200 points."""
+    """Indices of the blocks that are marked as done, each of 200 x 200 points."""
     marks = (re.fullmatch(r"theta-(\d+)_ell-(\d+)", p.name) for p in record(store).glob("theta-*"))
     return {(int(m[1]) // 200, int(m[2]) // 200) for m in marks if m}
 
 
 def survive(tmp_path, kills, workers, longest):
-    """Kills a save until so many are survived, again and again from the start; (kills, most blocks that one lost).
+    """Kill a save until it has survived so many kills, anew when it is done; (kills, most lost blocks).
 
-    A block is lost by the first kill that finds it written and not recorded, and counts for that kill alone: the
-    next run may be killed before it comes to it. Whenever the job is done, by as many workers, its store has the
-    bytes of one process that nobody disturbed.
+    A block counts as lost once, by the first kill after which it is written but not marked: the next run may
+    be killed before it reaches the block. Whenever the job is done, the store has the bytes of an undisturbed
+    run in one process.
     """
     script = tmp_path / "job.py"
     script.write_text(JOB)
@@ -344,5 +344,5 @@ def test_p1_a_job_that_fails_by_itself_is_no_kill_survived(tmp_path):
 def test_p1_a_sweep_survives_being_killed(tmp_path, workers):
     kills, lost = survive(tmp_path, 2, workers, 0.5 if workers == 0 else 1.5)
     assert kills == 2
-    # a kill costs at most one block for each worker that was writing: dask has as many threads as cores, or two workers
+    # a kill costs at most one block for each writing thread or worker: dask has as many threads as cores
     assert lost <= (os.cpu_count() if workers == 0 else 2)

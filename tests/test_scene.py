@@ -1,4 +1,4 @@
-"""Scenes with a known answer: consistent in themselves, and understood by a real contact engine."""
+"""Scenes with a known solution: consistent in themselves, and read by a real contact engine."""
 
 import json
 import pathlib
@@ -75,7 +75,7 @@ def test_a_rigid_body_with_these_numbers_touches_the_table_with_a_resting_point(
 
 
 def lowest_place(body, axis):
-    """From the centre of mass to the lowest place of the body, by its measures."""
+    """Vector from the centre of mass to the lowest point of the body, from its measures."""
     down = np.array([0, 0, -1.0])
     rim = down - (down @ axis) * axis
     rim /= np.linalg.norm(rim)
@@ -112,13 +112,13 @@ def test_its_poses_agree_with_its_inclinations_and_its_force_carries_the_body(sc
     expected = {k: np.array(v) for k, v in data["expected"].items() if isinstance(v, list)}
     axis = Rotation.from_quat(expected["orientation"]).as_matrix()[:, :, 2]
     assert np.allclose(np.arccos(axis[:, 2]), expected["theta"], atol=1e-12)
-    # M z'' = N - M g, by differences of the heights
+    # M z'' = N - M g, by finite differences of the heights
     z, t = expected["position"][:, 2], expected["time"]
     lift = np.gradient(np.gradient(z, t, edge_order=2), t, edge_order=2)[3:-3]
     force = expected["normal_force"][3:-3] / data["body"]["mass"] + data["gravity"][2]
     assert np.abs(lift - force).max() < 0.02 * np.abs(force).max() + 1e-6 * abs(data["gravity"][2])
     assert 0 < data["error"]["theta"] < 1e-9
-    # the velocities are how fast the poses change
+    # velocities are derivatives of the poses
     position, start = expected["position"], data["start"]
     h = expected["time"][1]
     velocity = (-1.5 * position[0] + 2 * position[1] - 0.5 * position[2]) / h
@@ -144,7 +144,7 @@ def test_mujoco_reads_it_and_starts_where_we_do(scene):
     assert state.energy.sum() == pytest.approx(data["expected"]["energy"][0], rel=1e-12)
     gaps = [c.dist - c.includemargin for c in state.contact]
     assert abs(min(gaps, default=0.0)) < 1e-9 * data["body"]["radius"]
-    # pushed a little into the table it is felt so deep, at the place where the solution has its contact
+    # pushed slightly into the table, the engine finds this depth, at the contact point of the solution
     deep = 1e-6 * data["body"]["radius"]
     state.qpos[2] -= deep
     mujoco.mj_forward(model, state)
@@ -246,7 +246,7 @@ def test_a_scene_that_is_not_all_rolling_is_refused_and_told_how_it_ends():
             sc.scene(can if start.w1 == 0 else CYLINDER, start, **how)
     with pytest.raises(TypeError, match="scale"):
         sc.scene(CYLINDER, CYLINDER.steady(1.3), scale=1.0)
-    # and with as much friction as it says, it is one, however few its times are
+    # with the friction that the message proposes there is a scene, however few its times
     for points in (2, 3, 101):
         with pytest.raises(ValueError, match="would do") as caught:
             sc.scene(CYLINDER, nutating_cylinder.start, mu=0.01, seconds=2.0, points=points)
@@ -260,7 +260,7 @@ def test_energy_and_force_are_as_good_as_it_says(scene):
     data = sc.scene(
         m.body, m.start, scale=scene.scale, seconds=float(scene.scale.seconds(m.t[-1])), contact=m.contact
     ).data
-    # what ten times smaller steps of another method make of them
+    # another method with steps ten times smaller
     other = sc.roll(m.body, m.start, m.t, tol=1e-13, contact=m.contact, want=("pose", "force"))
     weight = scene.scale.mass * scene.scale.gravity
     for name, mine, unit in (

@@ -1,4 +1,4 @@
-"""What is drawn of a body with a fillet is that body: its volume, its moments, where it touches the table."""
+"""The drawn shape of a body with a fillet: its volume, moments and contact are those of the body."""
 
 import numpy as np
 import pytest
@@ -42,17 +42,18 @@ ALL = UNIFORM | {
     "beyond pi/2": TUMBLER,
     "lens": LENS,
 }
-#: The surface lies inside the true one by so much: the sagitta of a 128th of a turn, along the profile and round it.
+#: Largest depth of the drawn surface below the true one: the sagitta of 1/128 turn, along and round the
+#: profile.
 SAGITTA = 1 - np.cos(np.pi / 128)
 
 
 def surface(body):
-    """Corners of the triangles of all but the marks, (n, 3, 3)."""
+    """Corners of the triangles of the surface without marks, (n, 3, 3)."""
     return np.concatenate([part.vertices[part.triangles] for part in map(shape.lathe, profiles(body))])
 
 
 def moments(body):
-    """Volume, height of its middle, and I1, I3 about the centre of mass per volume, by the divergence theorem."""
+    """Volume, height of its centroid, and I1, I3 per volume about the centre, by the divergence theorem."""
     corners = surface(body)
     six = np.linalg.det(corners)
     total = corners.sum(axis=1)
@@ -80,7 +81,7 @@ def test_its_moments_of_inertia_by_the_divergence_theorem_are_those_of_the_body(
     body = UNIFORM[name]
     _, middle, (i1, same, i3) = moments(body)
     assert middle == pytest.approx(0.0, abs=1e-12)
-    # a radius of gyration is short by the sagitta of both circles at most; that of a thin wall is less short
+    # a radius of gyration is too small by the sagitta of both circles at most; less for a thin wall
     assert i1 == pytest.approx(same, rel=1e-12)
     for mine, true in ((i1, float(body.i1)), (i3, float(body.i3))):
         assert -4 * SAGITTA * true < mine - true < SAGITTA * true
@@ -119,7 +120,7 @@ def test_the_lowest_point_of_what_is_drawn_is_the_contact_at_every_inclination(n
     places = np.concatenate([part.vertices for part in map(shape.lathe, profiles(body))])
     theta = np.linspace(1e-3, landing(body) - 1e-3, 200)
     s, c, rho = np.sin(theta), np.cos(theta), float(body.fillet)
-    # z = sin(theta) e1 + cos(theta) e3, and a place of the body has x along e1 where its psi is 0
+    # z = sin(theta) e1 + cos(theta) e3; a point of the body has its x along e1 when psi = 0
     depth = -(places[:, :1] * s + places[:, 2:] * c).min(axis=0)
     h = rho + float(body.ell) * c + (1 - rho) * s
     assert np.all(depth < h + 1e-12) and np.all(depth > h - SAGITTA * rho - 1e-12)
@@ -142,7 +143,7 @@ def test_normals_point_out_and_are_those_of_the_round_body_not_of_its_facets(nam
         assert np.allclose(np.linalg.norm(part.normals, axis=1), 1.0)
         flat = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         flat /= np.linalg.norm(flat, axis=1)[:, None]
-        # those at the corners of a facet differ from its own by half of what it turns by
+        # normals at the corners differ from the facet's by half the angle between facets
         assert np.einsum("ni,nki->nk", flat, normals).min() > np.cos(1.5 * np.pi / 128)
         if profile.normals is not None:
             for (r0, z0, out0, up0), (r1, z1, out1, up1) in zip(
@@ -152,12 +153,12 @@ def test_normals_point_out_and_are_those_of_the_round_body_not_of_its_facets(nam
                 ),
                 strict=True,
             ):
-                # symmetric about the facet: its direction is at right angles to the sum of the normals
+                # symmetric about the facet, whose direction is perpendicular to the sum of the normals
                 assert (r1 - r0) * (out0 + out1) + (z1 - z0) * (up0 + up1) == pytest.approx(0.0, abs=1e-12)
 
 
 def height(body, places):
-    """How far above the round surface of a body (without bore, stem and rod) places are."""
+    """Height of points above the round surface of a body (without bore, stem and rod)."""
     middle, wall, fillet, rim, _ = shape.skin(body)
     r, z = np.hypot(places[..., 0], places[..., 1]), places[..., 2] - middle
     if kind(body) == "balls":
@@ -172,10 +173,10 @@ def test_the_letters_lie_on_the_curved_surface(name):
     body = ALL[name]
     for part in marks(body):
         assert np.allclose(height(body, part.vertices), 0.006, atol=1e-9)
-        # the way along the normal is the shortest to the surface
+        # the normal is the shortest way to the surface
         assert np.allclose(height(body, part.vertices + 0.1 * part.normals), 0.106, atol=1e-9)
         corners = part.vertices[part.triangles]
-        # and the surface, which is flat between its corners and lower, shows nowhere through them
+        # the surface, which is lower between its corners, is hidden everywhere below the marks
         for share in ([1, 1, 1], [1, 1, 0], [0, 1, 1], [1, 0, 1]):
             spots = np.einsum("k,nki->ni", np.array(share) / sum(share), corners)
             assert height(body, spots).min() > 1e-3
@@ -189,7 +190,7 @@ def test_the_o_of_hurricane_balls_is_opposite_to_the_contact_and_rests_with_the_
     assert BALLS.speed_o(state) == pytest.approx(0.0, abs=1e-12)
     s, c = np.sin(theta), np.cos(theta)
     o, x = marks(BALLS)
-    # O is at A e1 + L e3, X at A e1 - L e3 of the lower ball's equator
+    # O is at A e1 + L e3, X at A e1 - L e3, on the equator of the lower ball
     for part, z in ((o, 1 + c), (x, -1 - c)):
         middle = (part.vertices.min(axis=0) + part.vertices.max(axis=0)) / 2
         assert np.hypot(middle[0] - s, middle[2] - z) < 0.2 and abs(middle[1]) < 1e-9
@@ -252,6 +253,6 @@ def test_what_is_drawn_follows_from_what_is_known():
     assert {what for name, what in kinds.items() if name not in balls} == {"cylinder"}
     assert [p.name for p in profiles(APART)] == ["lower ball", "rod", "upper ball"]
     assert [len(profiles(x)) for x in (TIPPE, STEM, BALLS, CAPSULE, TUBE)] == [1, 2, 2, 1, 4]
-    # its farthest place
+    # largest distance from the centre of mass
     assert [reach(x) for x in (CAPSULE, BALLS, APART, TIPPE)] == pytest.approx([2.5, 2.0, 2.5, 1.3])
     assert landing(sc.Body.solid(0.5, fillet=0.5)) == landing(TIPPE) == np.pi

@@ -1,4 +1,4 @@
-"""How bodies, states and motions show themselves: in words that Python can evaluate, and as a card in a notebook."""
+"""The display of bodies, states and motions: text that Python can evaluate, and cards in a notebook."""
 
 import copy
 import dataclasses
@@ -132,7 +132,7 @@ CARDS = {
 
 
 def card(value):
-    """The card as a tree: it is well-formed, so what is text in it cannot be anything else."""
+    """The card as an XML tree, which shows that its text cannot be anything else."""
     return ET.fromstring(value._repr_html_())
 
 
@@ -141,7 +141,7 @@ def rows(value):
 
 
 def outlines(value):
-    """Corners of the outlines in the drawing, from the contact, in pixels with y upwards."""
+    """Corners of the outlines in the drawing, relative to the contact, in pixels with y upwards."""
     svg = next(card(value).iter("{http://www.w3.org/2000/svg}svg"))
     dot = next(x for x in svg if x.tag.endswith("circle"))
     contact = complex(float(dot.get("cx")), float(dot.get("cy")))
@@ -167,11 +167,9 @@ def test_the_drawing_is_the_silhouette_at_the_inclination():
     (shape,) = outlines(PIPE)
     across, along = shape[1] - shape[0], shape[3] - shape[0]
     assert abs(along) / abs(across) == pytest.approx(6.0, rel=0.02)
-    assert np.angle(1j / along) == pytest.approx(
-        theta, abs=0.01
-    )  # from the vertical to the axis, to the right
+    assert np.angle(1j / along) == pytest.approx(theta, abs=0.01)  # from the vertical to the axis, clockwise
     assert np.angle(across / along) == pytest.approx(np.pi / 2, abs=0.02)
-    # a rim: its plane leans as much from the table
+    # the plane of a rim is inclined by theta from the table
     (rim,) = outlines(STATE)
     assert np.angle(-1 / rim[1]) == pytest.approx(1.3, abs=0.01)
 
@@ -190,10 +188,10 @@ def test_what_is_drawn_stands_on_the_table(name):
 def test_the_drawing_of_a_round_body_is_round_and_as_long_as_it_is(name, long):
     (shape,) = outlines(CARDS[name])
     theta = CARDS[name].theta_balance if name == "rounded" else np.radians(60)
-    turned = shape / np.exp(1j * (np.pi / 2 - theta))  # the axis to the right
+    turned = shape / np.exp(1j * (np.pi / 2 - theta))  # with the axis to the right
     size = np.ptp(turned.imag) / 2
     assert np.ptp(turned.real) / 2 / size == pytest.approx(long, rel=0.02)
-    # a step from corner to corner turns by a few degrees but where two balls touch and a face begins
+    # successive edges turn by a few degrees, except where two balls touch or a face begins
     steps = np.diff(np.append(turned, turned[0]))
     steps = steps[np.abs(steps) > 0.5]
     assert np.median(np.abs(np.angle(steps[1:] / steps[:-1]))) < np.radians(13)
@@ -224,7 +222,7 @@ def test_a_card_says_the_fillet_and_what_the_body_is(name, said):
 def test_a_round_body_is_drawn_rolling_on_its_contact(name):
     for shape in outlines(CARDS[name]):
         assert shape.imag.min() >= -0.11 and np.abs(shape).max() < 200
-        # its corners lie on the circle: the middle of an edge, a 32nd of a turn, is within 1 - cos(pi/32) of 60 pixels
+        # corners lie on the circle: the middle of an edge (1/32 turn) is within 1 - cos(pi/32) of 60 pixels
         ends = np.append(shape, shape[0])
         edge = np.diff(ends)
         edge[edge == 0] = 1e-9
@@ -295,7 +293,7 @@ def test_every_motion_has_a_card_however_odd_its_start(theta):
             for contact in ("rolling", "smooth"):
                 try:
                     motion = sc.roll(body, sc.State(theta, *w), [0.0, 1.0], contact=contact)
-                except ValueError:  # no body, or no motion from there
+                except ValueError:  # an invalid body, or a start without a motion
                     continue
                 assert cells(motion)
                 cards += 1

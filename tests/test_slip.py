@@ -1,4 +1,4 @@
-"""Slipping from Python: what is refused, the exact laws of friction at a rim, and its limits."""
+"""Slipping from Python: refusals, the exact laws of friction at a rim, and limits."""
 
 import copy
 import math
@@ -17,13 +17,13 @@ from spincyl._input.numbers import Floats
 
 PIPE, HOOP, DISK = sc.Body.tube(6.0, bore=0.8), sc.Body.tube(0.0, bore=1.0), sc.Body.solid(0.375)
 COIN, TIPPE = sc.Body.solid(0.17, fillet=0.05), sc.Body.ball(-0.3, 0.45, 0.42)
-PENCIL = sc.Body(20.0, 401 / 3, 0.01)  # (I1/(1 + ell^2) = 1/3), as of a thin rod
+PENCIL = sc.Body(20.0, 401 / 3, 0.01)  # a thin rod: I1/(1 + ell^2) = 1/3
 BODIES = {"tube": PIPE, "disk": DISK, "rounded coin": COIN, "tippe top": TIPPE, "hoop": HOOP}
 THROWN = sc.State(np.pi / 2, 0.0, 0.0, -3.0, slip=(0.0, 5.0))
 
 
 def launched(w1: float = 3.0, number: float = 1.3) -> sc.State:
-    """The paper's tube as a finger leaves it."""
+    """The paper's tube when a finger has launched it."""
     start = sc.State(np.pi / 2, w1, 0.0, number * PIPE.ell / (PIPE.i3 * w1))
     return PIPE.with_centre_velocity(start, 0.0, -PIPE.i1 * w1 / PIPE.ell)
 
@@ -53,12 +53,12 @@ def slid(body: sc.Body, start: sc.State, until: float, contact: object, **how: o
 
 
 def lab(m: sc.Motion, along: Floats, across: Floats) -> Floats:
-    """Places or velocities on the table of parts along the lean and across it."""
+    """Positions or velocities on the table from components along and across the lean."""
     c, s = np.cos(m.phi), np.sin(m.phi)
     return np.stack([c * along - s * across, s * along + c * across], -1)
 
 
-# What is refused.
+# Refusals.
 
 
 @pytest.mark.parametrize(
@@ -149,7 +149,7 @@ def test_what_is_asked_of_a_rolling_body_is_refused_for_one_that_slips(name):
         getattr(PIPE, name)(LAUNCH)
     with pytest.raises(ValueError, match="^state: slips"):
         sc.swing(PIPE, LAUNCH)
-    # a slip of zero is none
+    # a slip of zero is no slip
     still = PIPE.steady(1.4)
     same = sc.State(still.theta, still.w1, still.w2, still.w3, slip=(0.0, 0.0))
     assert getattr(PIPE, name)(same) == getattr(PIPE, name)(still)
@@ -174,7 +174,7 @@ def test_labels_and_lazy_arrays_go_through_a_slip():
     lazy = PIPE.with_centre_velocity(sc.State(da.from_array(theta.values), 1.0, 0.0, 2.0), 0.0, 1.0)
     assert "slip=(<lazy Array" in repr(lazy)
     assert np.allclose(PIPE.energy(lazy).compute(), PIPE.energy(series), rtol=1e-15)
-    # what is not looked into may slip
+    # a lazy slip, which is not computed, counts as a slip
     with pytest.raises(ValueError, match="^state: slips"):
         PIPE.speed_o(lazy)
     masked = sc.State(np.ma.masked_array([1.0, 1.2], [False, True]), 1.0, 0.0, 2.0)
@@ -197,7 +197,7 @@ def test_a_state_without_a_unique_contact_force_is_refused_with_the_limit():
         ValueError, match=r"^no unique contact force \(Painleve\): mu = 1.6, theta = 0.7; mu_P"
     ):
         sc.roll(PENCIL, pushed, 1.0, contact=sc.Coulomb(1.6))
-    # the same chalk is dragged without trouble, and pushed with less friction
+    # the same chalk can be dragged, or pushed with less friction
     assert sc.roll(
         PENCIL, sc.State(0.7, 0.0, 0.0, 0.0, slip=(-3.0, 0.0)), 0.5, contact=sc.Coulomb(1.6)
     ).success
@@ -210,14 +210,15 @@ def test_uniform_tubes_are_safe_up_to_a_known_friction():
         sc.Body.tube(ell, bore).painleve(theta).min() for ell in (0.2, 0.9, 6.0, 40.0) for bore in (0, 0.7, 1)
     ]
     assert min(least) > math.sqrt(5) / 2 - 1e-6
-    # on a sharp rim, with k = I1/(1 + ell^2), least 2 sqrt(k (1 + k)) at theta0 +- atan sqrt(k/(1 + k))
+    # for a sharp rim with k = I1/(1 + ell^2), the least is 2 sqrt(k (1 + k)) at theta0 +- atan sqrt(k/(1 +
+    # k))
     k = PENCIL.i1 / (1 + PENCIL.ell**2)
     at = PENCIL.theta_balance + math.atan(math.sqrt(k / (1 + k)))
     assert PENCIL.painleve(at) == pytest.approx(2 * math.sqrt(k * (1 + k)), rel=1e-12)
     assert not DISK.painleve(DISK.theta_balance) < 1e10
 
 
-# The nouns.
+# Bodies and states.
 
 
 def test_a_law_is_a_value_and_writes_itself_as_typed():
@@ -257,7 +258,7 @@ def test_the_centre_moves_as_it_was_told(name):
     assert moving.slip[0].shape == (2, 3) and moving.slip[1].shape == (3,)
     along, across = body.centre_velocity(moving)
     assert np.allclose(along, np.array([[1.0], [-2.0]])) and np.allclose(across, 0.25)
-    # the velocity that a rolling body has means no slip
+    # the velocity of a rolling body's centre corresponds to zero slip
     rolling = body.with_centre_velocity(state, *body.centre_velocity(state))
     assert np.abs(rolling.slip).max() < 1e-15
     assert np.allclose(body.energy(rolling), body.energy(state), rtol=1e-14)
@@ -317,7 +318,7 @@ def test_a_slipping_motion_at_other_times_is_the_same_motion():
     more = m.wanting("pose", "force")
     assert more.normal.size == m.t.size and np.abs(more.y - m.y).max() <= m.error + more.error
     assert m.wanting() is m
-    # the clock starts where it is told to
+    # the clock starts at t0
     later = sc.roll(PIPE, LAUNCH, [15.0], t0=5.0, contact=sc.Coulomb(0.3))
     assert np.allclose(later.y, m.at(10.0).y, atol=1e-11) and later.phases[0].time == 5.0
 
@@ -336,7 +337,7 @@ def test_friction_opposes_the_slip_has_the_size_of_the_law_and_turns_energy_into
     assert np.allclose(m.friction[slips], (law_says * m.normal)[slips], rtol=1e-12)
     if isinstance(law, sc.Coulomb):
         assert (m.friction <= law.static * m.normal * (1 + 1e-12))[~slips].all()
-    # as the centre is accelerated, by differences
+    # forces are those that accelerate the centre, by finite differences
     times = m.t[slips & (speed > 0.1)][1:-1:7]
     h = 1e-4
     before, now, after = (m.wanting("pose", "force", t=times + k * h) for k in (-1, 0, 1))
@@ -403,7 +404,7 @@ def test_a_landing_without_a_bounce_costs_heat_and_the_motion_goes_on():
     lands = ends.event.time
     assert any(phase.time == pytest.approx(lands, abs=1e-9) for phase in goes.phases)
     assert np.ptp(goes.energy + goes.dissipated) < 1e-11 * goes.energy[0]
-    # the landing takes the energy of the tilting, and what the rims rub while they strike
+    # the landing dissipates the energy of tilting, and of the rims' slip during the impact
     before, after = goes.at([lands - 1e-9, lands + 1e-9]).dissipated
     assert after - before > (PIPE.i1 + PIPE.ell**2) * ends.event.state.w2**2 / 2 > 0.01
 
@@ -425,12 +426,12 @@ def test_any_start_gives_a_motion_that_keeps_its_energy_or_a_refusal(
     try:
         m = sc.roll(body, start, np.linspace(0, 3, 31), contact=contact, want=("pose", "force"))
     except ValueError as e:
-        # a slip of 1e-130 has no digits beside what turns the body
+        # a slip of 1e-130 is lost beside the rotation of the body
         refusals = ("no unique contact force (Painleve): mu = ", "cannot be followed", "hardly advances")
         assert any(words in str(e) for words in refusals)
         return
     total = m.energy + m.dissipated
     assert np.isfinite(m.y).all() and np.isfinite(m.slip).all()
     assert np.abs(total - body.energy(start)).max(initial=0.0) < 1e-10 * (1 + body.energy(start)), m.message
-    # what lifts off as it starts is not pressed there
+    # a body that lifts off at its start may have N < 0 there
     assert (m.normal > -1e-9).all() or (m.event and m.event.time == 0.0 and m.t.size == 1)

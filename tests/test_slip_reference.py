@@ -1,7 +1,8 @@
 """Slipping motion: the references of tests/reference/slip.py keep their laws, and the library agrees.
 
-The first half asks nothing of the library: the table, on which two formulations agree to 22 digits or more, obeys the
-balance of energy and heat, Jellett's integral and the closed solutions. The second half compares `sc.roll` with it.
+The first half does not use the library: the table, on which two formulations agree to 22 digits or more,
+obeys the balance of energy and heat, Jellett's integral and the closed solutions. The second half compares
+`sc.roll` with it.
 """
 
 import csv
@@ -29,7 +30,7 @@ WORDS = ("name", "law", "kind")
 
 
 def exact(word):
-    """A hexadecimal double or a decimal number, to all its digits."""
+    """A hexadecimal double or a decimal number, with all its digits."""
     return mpf(float.fromhex(word)) if "x" in word else mpf(word)
 
 
@@ -54,7 +55,7 @@ def start_of(row):
     )
 
 
-# The laws of the table.
+# The table.
 
 
 def test_the_motions_are_of_all_kinds_and_both_formulations_agree():
@@ -99,7 +100,7 @@ def test_the_hoop_comes_back_as_its_closed_solution_says():
         spun = -x.w30
         v = x.u_20 - spun
         (stop,) = (row for row in rows if row.kind == "rolls")
-        # to 1e-14, for the hoop leans by the rounding of pi/2, 6e-17, and its weight turns it on
+        # to 1e-14, since pi/2 as a double is off by 6e-17, and gravity lets this tilt grow
         assert abs(stop.t - (v + spun) / (x.mu * (1 + 1 / x.i3))) < 1e-14
         assert abs(stop.w3 - (v - x.i3 * spun) / (1 + x.i3)) < 1e-14
         assert abs(stop.heat - x.i3 * (v + spun) ** 2 / (2 * (1 + x.i3))) < 1e-14
@@ -124,7 +125,7 @@ def test_a_pencil_slips_where_the_force_of_the_planar_fall_reaches_the_friction(
 
 
 def rolled(rows):
-    """The motion at the samples of the table, and beyond them to its end."""
+    """The motion at the times of the table, and beyond them to its end."""
     x = rows[0]
     body = sc.Body(float(x.ell), float(x.i1), float(x.i3), fillet=float(x.fillet))
     theta, w1, w2, w3, u_h, u_2 = (float(getattr(x, name + "0")) for name in STATE)
@@ -143,7 +144,7 @@ def sampled(rows):
 
 
 def off(found, rows, names):
-    """The errors, and the same over 1 or the number if that is more."""
+    """The errors, and the errors divided by the size of the number if that is above 1."""
     true = np.array([[float(getattr(row, name)) for name in names] for row in rows])
     error = np.abs(np.asarray(found) - true)
     return error, error / np.maximum(1, np.abs(true))
@@ -159,7 +160,8 @@ def test_states_and_poses_are_those_of_the_reference(rows):
     assert states.max() <= 10 * m.error + 1e-14
     poses, scaled = off(np.column_stack([m.phi, m.psi, m.contact_point]), samples, POSE)
     assert scaled[:, :2].max() <= 1e-11
-    far = np.array([max(1.0, math.hypot(row.x, row.y)) for row in samples])  # of a place: how far it has gone
+    # scale of positions: the distance travelled
+    far = np.array([max(1.0, math.hypot(row.x, row.y)) for row in samples])
     assert (poses[:, 2:] / far[:, None]).max() <= 1e-11
     assert poses.max() <= 10 * m.pose_error + 1e-14
     assert off(m.dissipated[:, None], samples, ["heat"])[1].max() <= 1e-11

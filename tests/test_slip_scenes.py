@@ -1,4 +1,4 @@
-"""The scenes of examples/ that slip, against closed forms, published numbers and what slip keeps constant."""
+"""The slipping scenes of examples/ against closed forms, published numbers and conserved quantities."""
 
 import eulers_disk_with_slip
 import falling_pencil
@@ -236,7 +236,7 @@ def test_a_tippe_top_on_a_wet_table_turns_over():
     m = sc.roll(tippe_top_turns.body, tippe_top_turns.start, tippe_top_turns.t, contact=tippe_top_turns.wet)
     assert m.success and kinds(m) == ["slipping"]
     assert m.theta[0] < 0.11 and np.degrees(m.theta[-1]) > 178
-    # it stands on its head by spinning the other way round in its own frame, and slower
+    # on its head, w3 has the other sign in the axes of the body, and the spin is slower
     assert m.w[-1, 2] < 0 and abs(m.w[-1, 2]) < m.w[0, 2]
 
 

@@ -1,4 +1,4 @@
-"""Random starts with friction: the phases of an independent model in plain doubles, and the starts it calls undefined.
+"""Random starts with friction: phases agree with an independent model in doubles, as do undefined starts.
 
 benches/slip_model.py is the model, and `benches/claims.py --of phases` asks the same of ten thousand starts.
 """
@@ -13,7 +13,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "benches"))
 import judge
 from kinds import phases
 
-pytestmark = pytest.mark.filterwarnings("ignore")  # of SciPy, where a phase begins at rest
+pytestmark = pytest.mark.filterwarnings("ignore")  # from SciPy, if a phase begins at rest
 
 
 def test_bodies_go_through_the_phases_that_the_independent_model_foresees():

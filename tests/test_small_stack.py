@@ -1,11 +1,11 @@
-"""Threads with a small stack: no call of the library carries large frames on the stack of its caller."""
+"""Threads with a small stack: no function of the library puts large frames on the stack of its caller."""
 
 import subprocess
 import sys
 
 import pytest
 
-#: 128 KiB is what some systems give; numpy and Python themselves need about 32
+#: some systems give 128 KiB; NumPy and Python themselves need about 32
 KIB = 64
 
 JOB = """
@@ -81,7 +81,7 @@ print(*map(int, said), all((x == states[0]).all() for x in states))
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no thread of it counts as roomy")
 def test_the_main_thread_alone_works_itself_and_only_with_a_large_stack():
-    # its stack is large enough from the start, whatever the limit of this process is
+    # the shell sets the size of the stack, whatever the limit of this process
     run = f"ulimit -s 8192; exec {sys.executable} -c '{ROOMY}'"
     found = subprocess.run(["sh", "-c", run], capture_output=True, text=True)
     assert found.stdout.split() == ["1", "0", "0", "0", "True"], found.stderr[-500:]

@@ -1,4 +1,4 @@
-"""Random starts at rest or almost, by every route, against an integrator that shares no code.
+"""Random starts at rest or nearly so, by every method, against an independent integrator.
 
 `benches/claims.py --of starts` asks the same of a hundred thousand motions, of long times and of the last digits.
 """
@@ -38,7 +38,7 @@ def test_the_axes_that_follow_and_the_laboratory_know_the_same_accelerations(con
 
 
 def starts(contact):
-    """Starts at rest or almost, not so near the flat that a fixed step would lose its way."""
+    """Starts at rest or nearly so, but not so flat that a fixed step would fail."""
     rng, found = np.random.default_rng(20), []
     scene = {"contact": contact, "mu": math.inf, "beyond": False}
     while len(found) < COUNT:
@@ -49,7 +49,7 @@ def starts(contact):
 
 
 def integrated(contact, columns, steps):
-    """Fourth-order Runge-Kutta of all of them at once: the states at T, and (theta, N) at every step."""
+    """All motions at once by fourth-order Runge-Kutta: the states at T, and (theta, N) at every step."""
     body, y, h = columns[:3], columns[3:].copy(), T / steps
     told = []
 
@@ -58,7 +58,7 @@ def integrated(contact, columns, steps):
         rates, force = axes.rates_and_force(contact, body, s, c, y[1:], float)
         return np.array([-y[2], *rates]), axes.vertical(force, s, c)
 
-    with np.errstate(all="ignore"):  # what has met the table goes on to nowhere
+    with np.errstate(all="ignore"):  # motions continue beyond the table with meaningless numbers
         for _ in range(steps):
             k1, normal = rate(y)
             told.append((y[0], normal))
@@ -71,18 +71,19 @@ def integrated(contact, columns, steps):
 
 
 def first_end(start, told):
-    """How it ends and when, to a step; None where a step does not tell."""
+    """The first end and its time to within a step; None if the steps do not decide it."""
     theta, normal = told
     flat = np.minimum(theta, np.pi - theta)
     margins = {LIFT_OFF: normal}
     if start.ell > 0:
         margins[SIDE] = np.pi / 2 - theta
-    if start.w1 == 0 and start.w3 == 0:  # only what falls in a plane meets the table
+    if start.w1 == 0 and start.w3 == 0:  # only planar motions reach theta = 0
         margins[FACE] = flat
     first = {k: i[0] for k, m in margins.items() if (i := np.flatnonzero(~(m > 0))).size}
     kind = min(first, key=first.get, default=DONE)
     last = first.get(kind, theta.size - 1)
-    if FACE not in margins and not flat[: last + 1].min() > 0.02:  # whirled past the table within a few steps
+    # passes close to the table within a few steps
+    if FACE not in margins and not flat[: last + 1].min() > 0.02:
         return None
     others = [m for k, m in margins.items() if k != kind]
     if any(m[: last + 1].min() < 1e-3 for m in others):
@@ -90,13 +91,13 @@ def first_end(start, told):
     if kind == DONE:
         return DONE, T
     m = margins[kind]
-    if kind != FACE and not (last + 1 < m.size and m[last + 1] < -1e-4):  # grazing
+    if kind != FACE and not (last + 1 < m.size and m[last + 1] < -1e-4):  # grazes the limit
         return None
     return kind, max(last - 1, 0) * T / (theta.size - 1)
 
 
 def routes(start, swept, i):
-    """(name, status, time of the end, state at T, claimed error) of every route."""
+    """(name, status, time of the end, state at T, claimed error) by every method."""
     body, state = sc.Body(*start[:3]), sc.State(*start[3:7])
     for want in ((), ("pose", "force")):
         m = sc.roll(body, state, [T / 2, T], t0=0.0, contact=start.contact, want=want)
@@ -123,7 +124,7 @@ def test_every_start_at_rest_or_almost_goes_where_newton_and_euler_send_it(conta
     compared, ends, wrong = 0, set(), []
     for i, start in enumerate(drawn):
         end = first_end(start, told[:, :, i].T)
-        # two steps agree to sixteen times the error of the finer
+        # the difference of two steps is sixteen times the error of the finer one
         doubt = np.abs(exact[:, i] - rough[:, i]).max() / 15
         if end is None or (end[0] == DONE and not doubt < 1e-10):
             continue

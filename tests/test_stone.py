@@ -1,4 +1,4 @@
-"""Stones from Python: families, measures, what is refused, and sweeps of what turns back."""
+"""Stones from Python: families, measures, refusals, and sweeps for reversals of the spin."""
 
 import dataclasses
 import pickle
@@ -90,7 +90,7 @@ def test_a_motion_says_how_the_stone_stands_and_turns_back():
     assert np.ptp(m.energy) < 1e-13
     assert np.allclose(m.theta, m.inclinations[:, 2]) and np.allclose(np.linalg.norm(m.vertical, axis=1), 1)
     assert m.y.shape == (6, 401)
-    # the orientation takes the vertical of the body to that of the laboratory
+    # the orientation maps the vertical in the body's axes to z of the laboratory
     x, y, z, w = m.orientation.T
     up = np.stack([2 * (x * z - w * y), 2 * (y * z + w * x), w * w - x * x - y * y + z * z], axis=1)
     assert np.allclose(up, m.vertical, atol=1e-12)
@@ -257,7 +257,7 @@ def test_a_sweep_says_what_turned_back_and_when():
     )
     assert found["reversals"].dims == ("motion_0", "motion_1")
     assert (found["reversals"][1] == 0).all()
-    # mirrored stones turn back alike
+    # mirror images reverse alike
     mirrored = sc.sweep.roll(family, family.spinning(-spin, pitch=0.02, roll=-0.01), 10.0)
     short = sc.sweep.roll(family, family.spinning(spin, pitch=0.02, roll=0.01), 10.0)
     assert np.allclose(short["spin"][0], -mirrored["spin"][2], atol=1e-9)
@@ -378,9 +378,9 @@ def test_moments_that_mass_within_a_stone_has_not_are_warned_of():
             stone = sc.Ellipsoid.rattleback((0.06, 0.012, 0.01), moments=moments, twist=0.05)
     with pytest.warns(UserWarning, match="inertia"):
         sc.Ellipsoid((1, 1, 1), [[0.4, 0.4, 0.4], [0.7, 0.7, 0.7]])
-    # once: a copy, and what is made of it, says nothing more, and a thin shell has the most that there is
+    # warnings come once: copies repeat none, and a thin shell has the largest valid moments
     assert stone.in_metres().natural == stone == pickle.loads(pickle.dumps(stone))
     sc.Ellipsoid((1, 1, 1), np.full(3, 2 / 3))
-    # about a centre of mass elsewhere there is less room
+    # with the centre of mass elsewhere the limits are narrower
     with pytest.warns(UserWarning, match="inertia"):
         sc.Ellipsoid((1, 1, 1), np.full(3, 2 / 3), offset=(0, 0, 0.1))

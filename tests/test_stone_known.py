@@ -1,4 +1,4 @@
-"""What is known of the motion of a stone: until when, how often its spin turns back, and which ends are sure."""
+"""Reliability of a stone's motion: until when it is known, reversals of the spin, certain ends."""
 
 import warnings
 
@@ -12,7 +12,7 @@ TOLERANCES = (None, 1e-13, 1e-12, 1e-10, 1e-8, 1e-6)
 
 
 def turned(t, spin):
-    """How often a spin at many times turns back, and the zero before the first."""
+    """Number of reversals of a densely sampled spin, and the time of the zero before the first."""
     side, count, first, zero, enough = np.sign(spin[0]), 0, np.nan, np.nan, 0.1 * abs(spin[0])
     for i in range(1, len(spin)):
         if spin[i] * spin[i - 1] < 0:
@@ -31,7 +31,7 @@ def test_a_rattleback_says_until_when_it_is_known_and_reversals_are_counted_up_t
         m = sc.roll(stone, start, t)
     assert 25 < m.known_until < 30 < m.t[-1] and "known to 1 % up to" in m.message
     assert m.natural.known_until == pytest.approx(m.known_until / stone.scale.seconds(1.0))
-    # other steps have other errors, and the same motion up to there
+    # with other steps the errors differ, but the motion agrees up to that time
     with pytest.warns(sc.ErrorWarning):
         other = sc.roll(stone, start, t, tol=3e-14)
     upto = t <= min(m.known_until, other.known_until)
@@ -46,7 +46,7 @@ def test_a_rattleback_says_until_when_it_is_known_and_reversals_are_counted_up_t
     count, first = turned(t[upto], m.spin[upto])
     assert int(many["reversals"]) == count < turned(t, m.spin)[0]
     assert float(many["first_reversal"]) == pytest.approx(first, abs=1e-3)
-    # what is known to its end says so, and warns of nothing
+    # a motion known to its end says so without a warning
     m = sc.roll(stone, start, np.linspace(0, 10, 11))
     assert m.known_until == 10.0 and "known" not in m.message
     assert float(sc.sweep.roll(stone, start, 10.0)["known_until"]) == pytest.approx(10.0, rel=1e-15)
@@ -59,7 +59,7 @@ def test_one_time_says_until_when_a_motion_is_known_as_well_as_many():
     assert found[0] == found[1] and 5 < found[0] < 80
 
 
-# nearly round, with a spin that is small beside what it rolls with: several reversals in a step
+# nearly round, with a spin much smaller than its rolling: several reversals in one step
 TENSOR = [
     [0.060410842259208786, -0.004176755897106626, -0.009631850526063718],
     [-0.004176755897106626, 0.051255188810675055, 0.0025221405612223147],
@@ -90,7 +90,7 @@ def test_reversals_within_a_step_are_counted_with_every_tolerance(contact, spin)
 
 
 def extremum(follow, what, low, high):
-    """The largest of a number between two times, by looking ever closer, and when it is."""
+    """The maximum of a quantity between two times by repeated refinement, and its time."""
     for _ in range(8):
         t = np.linspace(low, high, 33)
         values = what(follow(t))
@@ -100,7 +100,7 @@ def extremum(follow, what, low, high):
     return float(values[i]), float(t[i])
 
 
-# needs the largest coefficient for a moment, and a larger one a little later
+# the needed friction has a narrow maximum, and later a larger one
 NARROW = [
     [0.020357275801981576, -0.00010164565821605652, 0.0],
     [-0.00010164565821605652, 0.01583751637654831, 0.0],
@@ -112,14 +112,14 @@ FALLING = sc.EllipsoidState(VERTICAL, [0.008118250558719448, -0.0121661694035319
 
 def narrow():
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)  # some of its mass is outside
+        warnings.simplefilter("ignore", UserWarning)  # part of the mass is outside the ellipsoid
         return sc.Ellipsoid(
             [0.042861278498571374, 0.031730260746448816, 1.0], NARROW, offset=[0.0, 0.0, -0.14179249980869124]
         )
 
 
 def grazed(end):
-    """A stone, its start, what it comes to, when, and a limit of that which ends it."""
+    """A stone, its start, its ending and time, and a limiting value at which the end just occurs."""
     if end == "mu":
         stone, state = narrow(), FALLING
         most, when = extremum(

@@ -1,4 +1,4 @@
-"""Stones: the references of tests/reference/stones.py, from equations in the laboratory, and the library."""
+"""Stones: tests/reference/stones.py, from equations in the laboratory, against the library."""
 
 import csv
 import json
@@ -9,7 +9,7 @@ import pytest
 
 import spincyl as sc
 
-# some of these stones have weights outside
+# some of these stones have masses outside the ellipsoid
 pytestmark = pytest.mark.filterwarnings("ignore:inertia")
 REFERENCE = pathlib.Path(__file__).with_name("reference")
 TABLE = json.loads((REFERENCE / "stones.json").read_text("utf-8"))
@@ -17,7 +17,7 @@ COLUMNS = TABLE["columns"]
 MOTIONS = {motion["name"]: motion for motion in TABLE["motions"]}
 STEADY = list(csv.DictReader((REFERENCE / "stones_steady.csv").read_text("utf-8").splitlines()))
 ENDS = {"lift-off": sc.Ending.LIFT_OFF, "face": sc.Ending.FACE}
-#: whose contact point rests or slides freely all the time, and which nothing throws about
+#: motions whose contact point always rests or always slides freely, without violent rotation
 GENTLE = [
     "small stone pushed at 0.6",
     "small stone rocks from rest",
@@ -36,7 +36,7 @@ def stone(case):
 
 def contact(case):
     if case["law"] == "smooth":
-        # without a slip the library lets the centre rest, and the other model the contact point
+        # without a slip the library keeps the centre at rest, the reference the contact point
         return sc.Coulomb(0.0)
     if case["law"] == "coulomb":
         return sc.Coulomb(case["mu"], static=case["static"])
@@ -44,7 +44,7 @@ def contact(case):
 
 
 def units(case):
-    """The natural units of length and of time, in those of the case."""
+    """The natural units of length and time in the units of the case."""
     length = max(case["axes"])
     return length, np.sqrt(length / case["g"])
 
@@ -73,7 +73,7 @@ def numbers(row, *names):
 
 
 def rotation(q):
-    """From the axes of the body to those of the laboratory; the scalar of the quaternion first."""
+    """Rotation matrix from the axes of the body to the laboratory; the quaternion has its scalar first."""
     w, x, y, z = q
     return np.array(
         [
@@ -85,13 +85,13 @@ def rotation(q):
 
 
 def smallest_turn(n):
-    """The orientation of the smallest turn from upright with this vertical."""
+    """The rotation by the smallest angle from upright to this vertical."""
     q = np.array([1 + n[2], n[1], -n[0], 0.0]) if n[2] > -1 else np.array([0.0, 1.0, 0.0, 0.0])
     return rotation(q / np.linalg.norm(q))
 
 
 def off(m, i, row, centre):
-    """The errors of state, slip, pose and force of the i-th time of a motion."""
+    """The errors of state, slip, pose and force at time number i of a motion."""
     q = numbers(row, "q0", "q1", "q2", "q3")
     ours = np.roll(m.orientation[i], 1)
     n = numbers(row, "n1", "n2", "n3")
@@ -144,7 +144,7 @@ def test_a_motion_is_that_of_the_other_model_within_its_claims(name):
 @pytest.mark.parametrize("row", STEADY, ids=lambda row: f"{row['name']} {float.fromhex(row['spin']):.3g}")
 def test_the_eigenvalues_of_an_upright_spin_have_thirteen_digits(row):
     x = {k: float.fromhex(v) for k, v in row.items() if k in _EXACT}
-    flip = x["up"]  # turned over about axis 1, a stone on its other end stands on this one
+    flip = x["up"]  # a stone on its upper end equals one turned over by half a turn about axis 1
     inertia = np.array(
         [
             [x["i11"], flip * x["i12"], flip * x["i13"]],
@@ -157,7 +157,7 @@ def test_the_eigenvalues_of_an_upright_spin_have_thirteen_digits(row):
     second = np.sqrt(axes.max() / x["g"])
     found = body.rocking(x["spin"] * second).eigenvalues / second
     there = np.array([complex(float(row[f"real{i}"]), float(row[f"imag{i}"])) for i in (1, 2, 3, 4)])
-    # each is next to one of its own
+    # each eigenvalue is close to a different one of the reference
     left, largest = list(there), np.abs(there).max()
     for value in found:
         next_to = min(left, key=lambda other: abs(other - value))

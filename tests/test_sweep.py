@@ -73,7 +73,7 @@ def test_an_earlier_result_is_filled_again():
 
 
 def unaligned(values):
-    """The same numbers at an odd address, as a file or a network may hand them over."""
+    """The same numbers at an odd address, as from a file or a network."""
     return np.frombuffer(b"!" + np.asarray(values, np.float64).tobytes(), offset=1)
 
 
@@ -124,7 +124,7 @@ def test_the_environment_sets_the_threads(monkeypatch):
 
 def test_c1_c2_a_long_map_lets_other_threads_run_and_obeys_ctrl_c():
     theta, ell = np.linspace(0.01, 1.57, 8000), np.linspace(0, 3, 4000)
-    sc.sweep.portrait(THETA, ELL)  # what is imported for it is there before anything interrupts
+    sc.sweep.portrait(THETA, ELL)  # import everything before the interrupt
     ticks, done = [0], threading.Event()
 
     def tick():
@@ -135,7 +135,7 @@ def test_c1_c2_a_long_map_lets_other_threads_run_and_obeys_ctrl_c():
     stopped = []
 
     def interrupt():
-        # a busy machine may keep the other thread waiting, too, but not for a thousand times as long as it sleeps
+        # a busy machine may delay this thread, but not by a thousand times its sleep
         for _ in range(100):
             time.sleep(0.05)
             if ticks[0] > 3:
@@ -156,5 +156,5 @@ def test_c1_c2_a_long_map_lets_other_threads_run_and_obeys_ctrl_c():
         ticker.join()
         breaker.join()
     assert ticks[0] > 3
-    assert delay < 2.0  # of processor time; an uninterrupted map would go on for ever
+    assert delay < 2.0  # seconds of processor time; a map that ignores the interrupt would take much longer
     assert sc.sweep.portrait(THETA, ELL)["rate"].shape == (61, 43)

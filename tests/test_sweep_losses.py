@@ -1,4 +1,4 @@
-"""Many motions with losses at once: as each of them alone, to the bit whatever its neighbours, and none of them lost."""
+"""Many motions with losses at once: each as alone, to the bit whatever its neighbours, and complete."""
 
 import numpy as np
 import pytest
@@ -24,7 +24,7 @@ CONTACTS = {"rolling": "rolling", "smooth": "smooth", "Coulomb": sc.Coulomb(0.2)
 
 
 def starts(body):
-    """States that turn, nod and fall, one of them from rest."""
+    """States that turn, nod and fall, one of them at rest."""
     i = np.arange(COUNT)
     w1, w3 = np.sin(7.0 * i) * 1.5, np.cos(5.0 * i) * 2.0
     w2 = np.where(i % 3, 0.2 * np.sin(3.0 * i), 0.0)
@@ -69,7 +69,7 @@ def test_together_a_motion_with_losses_is_what_it_is_alone(name, contact):
 
 
 def energy(body, states):
-    """Of a body that rolls, in M g R."""
+    """Energy of a rolling body, in M g R."""
     s, c = np.sin(states.theta), np.cos(states.theta)
     w1, w2, w3 = states.w1, states.w2, states.w3
     i1, ell = body.i1 + body.ell**2, body.ell
@@ -85,7 +85,7 @@ def test_what_is_missing_of_the_energy_has_been_lost():
     missing = energy(DISK, start) - energy(DISK, final)
     assert np.abs(missing - found["work_lost"].to_numpy()).max() < 1e-12
     assert (found["work_lost"] > 1e-3).all()
-    # by the power along the way of a single motion
+    # the integral of the power along a single motion
     alone = sc.roll(DISK, DISK.steady(0.1).kicked(0.05), [5.0], t0=0.0, losses=losses, tol=1e-12)
     assert abs(alone.work_lost[-1] - float(found["work_lost"][0])) < 1e-9
 

@@ -1,4 +1,4 @@
-"""What leaves the hand: throws and presses, single and in arrays, in natural units and SI."""
+"""Starts of thrown bodies: throws and presses, single and in arrays, in natural units and SI."""
 
 import csv
 from pathlib import Path
@@ -143,7 +143,7 @@ def test_a_great_friction_stops_the_slip_at_once():
     assert ends[0] / ends[1] == pytest.approx(2, rel=0.02) and ends[1] / ends[2] == pytest.approx(2, rel=0.02)
 
 
-# Flicks by their rates.
+# Flicks given by their rates.
 
 PVC = sc.measured(outer_diameter="15.875mm", inner_diameter="12.7mm", length="95.25mm")
 

@@ -1,4 +1,4 @@
-"""What the core refuses of a measured body is told in seconds, or with the unit in which it is told."""
+"""Errors of the core about a measured body speak of seconds, or name the unit of their numbers."""
 
 import re
 from pathlib import Path
@@ -14,7 +14,7 @@ TUBE = sc.measured(outer_diameter=15.875e-3, inner_diameter=12.7e-3, length=95.2
 STONE = sc.Ellipsoid.rattleback((0.12, 0.06, 0.03), twist=0.35).in_metres(0.5)
 SECOND = float(TUBE.scale.seconds(1.0))
 ERRORS = (Path(__file__).parents[1] / "src" / "error.rs").read_text("utf-8")
-#: What the core says of a time, or of a step of time: each with the names of its numbers.
+#: Messages of the core about a time or a step, with the names of their numbers.
 TEXTS = [
     re.sub(r"\\\n\s*", "", text)
     for text in re.findall(r'#\[error\(\s*"((?:[^"\\]|\\.)*)"', ERRORS, re.DOTALL)

@@ -1,4 +1,4 @@
-"""Torn, odd and hostile files: each is read rightly, or refused with its name; none is read wrongly, none for ever."""
+"""Damaged, odd and hostile files are read correctly or refused with their name, in bounded time."""
 
 import contextlib
 import io
@@ -31,7 +31,7 @@ def written(tmp_path, raw, name="file.csv"):
     return path
 
 
-# what was read wrongly
+# files that were once read wrongly
 
 
 @pytest.mark.parametrize("read", [sc.data.read_table, sc.data.read_phyphox])
@@ -92,7 +92,7 @@ def test_names_that_look_like_each_other_lose_no_column(tmp_path):
 def zipped(*tables, method=zipfile.ZIP_DEFLATED):
     raw = io.BytesIO()
     with zipfile.ZipFile(raw, "w", method) as file, warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of two names that are the same
+        warnings.simplefilter("ignore")  # about two equal names
         for name, text in tables:
             file.writestr(name, text)
     return raw.getvalue()
@@ -143,11 +143,11 @@ def test_a_sound_with_samples_that_are_no_numbers_is_refused(tmp_path, bad, kind
 
 def test_a_sound_whose_size_is_zero_goes_to_the_end_only_if_it_was_cut_off(tmp_path):
     assert sc.data.read_sound(written(tmp_path, wav(whole=False)))[1].size == 32
-    with pytest.raises(ValueError, match="no samples"):  # what follows are no samples
+    with pytest.raises(ValueError, match="no samples"):  # the bytes that follow are no samples
         sc.data.read_sound(written(tmp_path, wav(whole=None)))
 
 
-# too much
+# size
 
 
 @pytest.mark.parametrize("read", READERS)
@@ -169,7 +169,7 @@ def test_a_zip_bomb_is_refused_whatever_its_header_says(tmp_path, monkeypatch, m
     assert lying != raw
     monkeypatch.setattr(_sound, "MOST_BYTES", 300_000)
     with pytest.raises(ValueError, match="file.csv: holds more than"):
-        sc.data.read_phyphox(written(tmp_path, raw))  # each alone is below the limit
+        sc.data.read_phyphox(written(tmp_path, raw))  # each table alone is below the limit
     with pytest.raises(ValueError, match="file.csv: "):
         sc.data.read_phyphox(written(tmp_path, lying))
     monkeypatch.setattr(_sound, "MOST_BYTES", 400_008)
@@ -213,15 +213,15 @@ def seconds(read, path):
 )  # fmt: skip
 def test_the_time_of_a_table_grows_as_its_length(tmp_path, made):
     short, long = (written(tmp_path, made(n), f"{n}.csv") for n in (4000, 32_000))
-    # as the square it would be 64 times as long
+    # quadratic time would be 64 times as long
     assert seconds(sc.data.read_table, long) < 25 * seconds(sc.data.read_table, short) + 0.05
 
 
-# whatever it is
+# random damage
 
 
 def refused(read, path):
-    """What is wrong with an answer to a file: only a table of finite numbers, ValueError and OSError are right."""
+    """What is wrong with the response to a file: a table of finite numbers or a named error is right."""
     try:
         found = read(path)
     except ValueError as e:
@@ -238,7 +238,7 @@ def refused(read, path):
 
 
 def seeds():
-    """Files that are right, of every kind that is read."""
+    """Valid files of every supported kind."""
     flicks, film, down = (
         sc.data.example(name).read_bytes() for name in ("flicks", "tube_from_above", "spin_down")
     )
@@ -260,7 +260,7 @@ def seeds():
 
 
 def torn(raw, rng):
-    """A file with a few bytes changed, lost, moved or put in."""
+    """A file with a few bytes changed, removed, moved or inserted."""
     raw = bytearray(raw)
     for _ in range(rng.randint(1, 5)):
         k, what = rng.randrange(len(raw) + 1), rng.randrange(4)
@@ -278,7 +278,7 @@ def torn(raw, rng):
 
 
 def odd():
-    """Files that are no tables and no sounds, by what is odd."""
+    """Files that are neither tables nor sounds, by their oddity."""
     digits, many = 10**6 * b"9", b",".join(b"c%d" % k for k in range(3000))
     return {
         "nothing": b"", "a line": b"t,x", "a mark": b"\xef\xbb\xbf", "marks": b"\xff\xfe", "zeros": bytes(100),
@@ -305,7 +305,7 @@ def test_whatever_a_file_holds_it_is_read_or_refused_with_its_name(tmp_path, rea
         f"text {n}": bytes(rng.choices(b'tx",; \n\n.-+e12#()inf', k=rng.randint(0, 40))) for n in range(150)
     }
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)  # of films that are none
+        warnings.simplefilter("ignore", UserWarning)  # about tracks that are no film of a tube
         wrong = {name: refused(read, written(tmp_path, raw)) for name, raw in files.items()}
     wrong = {name: said for name, said in wrong.items() if said}
     assert not wrong, "\n".join(f"{name}: {said}" for name, said in wrong.items())

@@ -1,4 +1,4 @@
-"""The page, in a real browser: it draws the Motion, asks for nothing, and text stays text."""
+"""The recorded page in a browser: it draws the motion, requests nothing, and text stays text."""
 
 import json
 import re
@@ -35,18 +35,18 @@ def test_the_drawn_pose_is_that_of_the_motion(shown):
     page = shown(page_of(*BODIES), "#t=0", viewport=SMALL, keep=True)
     for i, (kind, m) in enumerate(motions.items()):
         t = np.linspace(0.0, float(m.t[-1]), 2001)
-        # as one text, which playwright need not look through
+        # as a single text, which playwright need not inspect
         told = "([i, t]) => JSON.stringify(t.map(t => window.spincyl.pose(i, t)))"
         shapes = json.loads(page.evaluate(told, [i, t.tolist()]))
         m = m.wanting("pose", t=t)
         matrix = np.array([pose["matrix"] for pose in shapes]).reshape(-1, 4, 4).transpose(0, 2, 1)
-        # 0.003 rad of three angles, at the distance of the body's farthest point
+        # 0.003 rad in each of three angles, at the farthest point of the body
         off = 0.008 * np.hypot(1, m.body.ell)
         assert np.abs(matrix[:, :3, 3] - m.centre).max() < off, kind
         contact = np.array([pose["contact"] for pose in shapes])[:, :2]
         assert np.abs(contact - m.contact_point).max() < off, kind
         assert np.abs(matrix[:, :3, :3] - rotations(m.orientation)).max() < 6e-3, kind
-        # the angular velocity of what is drawn is that of the motion, along the axes that follow the tilt
+        # the drawn angular velocity is that of the motion, along axes that follow the tilt
         frame = frames(m)
         size = np.linalg.norm(m.w, axis=1).max()
         w = np.einsum("nij,nj->ni", frame, m.w)
@@ -67,7 +67,8 @@ def test_a_body_with_a_fillet_stands_on_the_table_and_on_its_path(shown):
         for pose in page.evaluate("([i, t]) => t.map(t => window.spincyl.pose(i, t))", [i, times]):
             matrix = np.array(pose["matrix"]).reshape(4, 4).T
             there = places @ matrix[:3, :3].T + matrix[:3, 3]
-            # a facet's middle is 3e-4 R lower than its corners; so much of a height is 0.025 R sideways
+            # the middle of a facet is 3e-4 R lower than its corners; such a height corresponds to 0.025 R
+            # sideways
             assert there[:, 2].min() == pytest.approx(0.0, abs=7e-4)
             lowest = there[there[:, 2].argmin()]
             assert np.hypot(*(lowest[:2] - pose["contact"][:2])) < 0.06 and pose["contact"][2] == 0
@@ -78,12 +79,12 @@ def test_a_page_of_sharp_bodies_knows_nothing_of_fillets():
     alone, both = page_of("steady").html, sc.view(motion_of("steady"), rounded).html
     assert "fillet" not in alone and "onSharpRim" not in alone
     assert '"fillet":0.3' in both and both.count("onSharpRim=pose") == 1
-    # what is written into the page of a sharp body is written in the same way beside a rounded one
+    # the data of a sharp body are the same beside those of a rounded one
     data = alone.split('<script type="application/json" id="data">')[1].split("</script>")[0]
     (shape,) = json.loads(data)["shapes"]
     assert json.dumps(shape, separators=(",", ":")) in both
     assert [len(corner) for piece in shape["turned"] for corner in piece["corners"]] == [2] * 6
-    # and its script is that of the other without a part, to the last letter
+    # its script is that of the other page without one part, to the last letter
     script, longer = (page.split('<script>\n"use strict"')[1] for page in (alone, both))
     before, after = longer.split("for(const m of motions)if(m.fillet)")
     assert script.startswith(before) and after.endswith(script[len(before) :])
@@ -198,7 +199,7 @@ def test_a_page_of_twenty_seconds_takes_less_than_sixty_kilobytes():
         for scaled in (None, scale):
             m = sc.roll(body, state, 20.0 if scaled is None else 20.0 / scale.seconds(1.0))
             assert len(sc.view(m, scale=scaled).html.encode()) <= 45_000
-    # and if nothing repeats exactly
+    # also if no period repeats exactly
     m = sc.roll(PIPE, near_steady_tube.start, 700.0, step=2e-2)
     assert len(sc.view(m).html.encode()) <= 60_000
 
@@ -246,7 +247,7 @@ def test_white_space_in_text_is_a_space_and_the_rest_stays(shown, tmp_path):
     assert [x["name"] for x in tree["nodes"]] == ["table", seen] and tree["meshes"][0]["name"] == seen
 
 
-#: What the page says of a form that is sent, and of another base of its links.
+#: Outcomes of submitting a form and of changing the base of links.
 LEAVING = """async () => {
   const said = [];
   addEventListener("securitypolicyviolation", e => said.push(e.effectiveDirective));
@@ -267,7 +268,7 @@ def test_nothing_on_a_page_can_send_a_form_or_turn_its_links_elsewhere(shown, ma
 
 
 def test_arrows_point_along_angular_velocity_and_momentum_seen_from_above(shown):
-    # of a coin that leans and spins upright, both horizontal parts are known
+    # for a coin that leans and spins as a whole, both horizontal components are known
     m = sc.roll(COIN, COIN.circular(1.2, 0.5), 3.0)
     page = shown(sc.view(m), "#t=1")
     page.check("#above")

@@ -1,4 +1,4 @@
-"""Stones to look at: the drawn one stands on the table where the motion says, turns as it does, and says so."""
+"""Views of stones: the drawn stone stands on the table and turns as in the motion, with correct text."""
 
 import gzip
 import json
@@ -71,7 +71,7 @@ def test_its_surface_is_closed_and_its_marks_lie_on_it(stone, upper):
     cut = height(stone)
     volume = np.pi * np.prod(stone.axes) * (cut - cut**3 / 3 + 2 / 3)
     assert surface.volume == pytest.approx(volume, rel=2e-3)
-    # the centre of the ellipsoid is where the offset says
+    # the offset gives the centre of the ellipsoid
     beyond = (surface.vertices + stone.offset) / stone.axes
     assert np.linalg.norm(beyond, axis=1).max() == pytest.approx(1.0, abs=1e-9)
     first, second = marks(stone, upper)
@@ -107,10 +107,10 @@ def test_friction_of_a_stone_is_that_of_the_law_and_against_its_slip():
     assert np.allclose(np.hypot(found[:, 2], found[:, 3]), there.friction, atol=1e-6)
     assert np.allclose(found[:, 4], there.normal)
     slips = there.phase == 1
-    slips[[0, -1]] = False  # where the difference has one side
+    slips[[0, -1]] = False  # finite differences there are one-sided
     u, f = (x[slips] @ [1, 1j] for x in (found[:, :2], found[:, 2:4]))
     assert slips.sum() > 20 and np.abs(u / np.abs(u) + f / np.abs(f)).max() < 1e-6
-    # and the slip is that of the contact point: the centre goes as the slip and the turning say
+    # the slip is that of the contact point: it agrees with the centre's velocity and the rotation
     h = 1e-5
     around = m.wanting("pose", t=np.column_stack([t - h, t, t + h]).ravel())
     v = ((around.centre[2::3] - around.centre[::3]) / (2 * h))[:, :2] @ [1, 1j]
@@ -167,7 +167,7 @@ def test_the_drawn_pose_is_that_of_the_motion(shown):
         contact = np.array([pose["contact"] for pose in poses])
         assert np.abs(contact[:, :2] - there.contact_point).max() < 4e-3 and (contact[:, 2] == 0).all(), kind
         assert [pose["theta"] for pose in poses] == pytest.approx(there.theta, abs=3e-3)
-        # it turns as it is drawn to turn
+        # the drawn angular velocity agrees with the drawn rotation
         size = np.linalg.norm(there.w, axis=1).max()
         omega = np.einsum("nij,nj->ni", turn, there.w)
         momentum = np.einsum("nij,nj->ni", turn, there.w @ np.asarray(m.body.inertia))
@@ -188,12 +188,12 @@ def test_it_stands_on_the_table_where_it_touches_it(shown):
             matrix = np.array(pose["matrix"]).reshape(4, 4).T
             there = places @ matrix[:3, :3].T + matrix[:3, 3]
             assert there[:, 2].min() == pytest.approx(0.0, abs=1e-3)
-            # the contact point is one of the surface, and there it is level
+            # the contact point is on the surface, where the surface is level
             touched = (np.array(pose["contact"]) - matrix[:3, 3]) @ matrix[:3, :3] + m.body.offset
             assert np.linalg.norm(touched / m.body.axes) == pytest.approx(1.0, abs=1e-6)
             level = touched / np.square(m.body.axes)
             assert matrix[2, :3] @ level == pytest.approx(-np.linalg.norm(level), rel=1e-6)
-            # so near a place that the mesh has it
+            # a vertex of the mesh is close to it
             assert np.linalg.norm(there - pose["contact"], axis=1).min() < 0.06
 
 
@@ -204,7 +204,7 @@ def test_it_is_drawn_with_its_marks_and_asks_for_nothing(shown):
         assert near(image, BLUE, 0.2) > 1e-3 and near(image, ORANGE, 0.25) > 5e-4
         assert near(image, IVORY, 0.05) > 0.01
         assert len(page.requests) == 1 and page.complaints == []
-    # the other way round
+    # the other sense of rotation
     page.check("#above")
     ahead = picture(page)
     page = shown(page_of("measured", upper="X"), "#t=1")
@@ -289,7 +289,8 @@ def test_the_page_stretches_a_ball_as_python_does(shown, stone):
     page.wait_for_selector("html[data-drawn]")
     rows = [x.reshape(-1, 3) for x in sent(page) if len(x) % 3 == 0]
     for part in parts(stone):
-        # Buffers come in pairs, places and normals. Each place of the coarser surface is near one of the page.
+        # Buffers come in pairs, positions and normals. Each vertex of the coarser mesh is close to one of the
+        # page.
         some = slice(None, None, max(1, len(part.vertices) // 60))
         found = []
         for places, normals in pairwise(rows):
@@ -311,13 +312,13 @@ def photograph(page, turns):
 
 
 def test_a_photograph_of_a_stone_is_open_for_its_turns(shown):
-    # in which the marks glow, and which is closed after one turn about the vertical
+    # the marks glow, and the shutter closes after one turn about the vertical
     turn = 2 * np.pi / 4
     longer, once = (sc.roll(EGG, EGG.spinning(4.0), k * turn) for k in (1.2, 1.0))
     page, alone = (shown(sc.view(m), "#t=0", viewport=SQUARE) for m in (longer, once))
     one, expected = photograph(page, "1"), photograph(alone, "Infinity")
     assert near(one, BLUE, 0.2) > 1e-3
-    assert np.abs(one - expected).mean() < 1e-4  # 4e-4 if it were open to the end
+    assert np.abs(one - expected).mean() < 1e-4  # 4e-4 if the shutter stayed open to the end
     assert page.complaints == []
 
 
@@ -330,7 +331,7 @@ def test_a_stone_and_a_body_of_revolution_are_side_by_side(shown):
     assert page.evaluate(there.format(1)) == alone.evaluate(there.format(0))
 
 
-# what is written
+# size of the page
 
 
 def test_a_page_without_a_stone_has_nothing_of_it_and_one_with_it_is_little_longer():
@@ -339,7 +340,7 @@ def test_a_page_without_a_stone_has_nothing_of_it_and_one_with_it_is_little_long
     assert stone.count("unspun=doing") == stone.count("unstretched=lathe") == 1
     packed = [len(gzip.compress(page.encode(), 9)) for page in (body, stone)]
     assert packed[1] - packed[0] < 15_000
-    # in its scripts and its shape, without its motion
+    # the difference is in the scripts and the shape; the motion is excluded
     bare = [re.sub(r'"(knots|slopes)":"[^"]*"', "", page) for page in (body, stone)]
     assert len(bare[1]) - len(bare[0]) < 10_000
 

@@ -1,7 +1,7 @@
-"""The core of the live page is that of the package: it was built from these sources, and gives the same answers.
+"""The core of the live page is that of the package: built from these sources, with the same results.
 
-Region codes are equal; motions differ by less than the errors that both state, although sine and cosine are not the
-same library's. Beside the committed artefact one that `make core` has built anew is asked, if it is there.
+Region codes are equal. Motions differ by less than both claimed errors, although sine and cosine come from
+another library. Besides the committed core, one newly built by `make core` is compared if it exists.
 """
 
 import importlib.util
@@ -98,7 +98,7 @@ def test_steady_states_are_those_of_the_package(ask, which):
 
 
 def compared(ask, given, start, table, mu, native, losses=(0, 0.0)):
-    """Both motions at the same times, within what both say that they may be off."""
+    """Compare both motions at the same times, within both claimed errors."""
     t = native.t
     end = 20.0
     answers = ask(
@@ -164,16 +164,16 @@ def test_motions_that_slip_or_lose_energy_agree_within_the_error_that_they_state
     start = (state.theta, state.w1, state.w2, state.w3, *slip)
     told, rows, few = compared(ask, given, start, code, mu, native, losses)
     assert told[0] == 1.0
-    # a time between two rows is found from the row before it
+    # a time between two rows is computed from the row before it
     there = sc.roll(body, state, few[:, 0], t0=0.0, contact=contact, losses=loss, want=WANT)
     assert np.abs(few[:, 1] - there.theta).max() <= 2 * told[8] + there.error
     assert np.abs(few[:, 7:9] - there.contact_point).max() <= 2 * told[9] + there.pose_error
-    # what is lost and what is left of the energy are constant
+    # energy plus losses is constant
     whole = rows[:, 13] + rows[:, 15]
     assert np.ptp(whole) < 1e-8 * np.abs(whole).max()
 
 
-ROW, HEADER = 17, 18  # numbers of a row of a stone, and before the first one
+ROW, HEADER = 17, 18  # numbers in a row of a stone, and before the first row
 
 
 @pytest.mark.parametrize(("twist", "spin"), [(2.0, -5.0), (2.0, 5.0), (0.0, -5.0), (-4.5, 5.0)])
@@ -199,7 +199,7 @@ def test_a_rattleback_rolls_and_rocks_as_the_package_says_within_the_error_that_
     up = np.cos(native.inclinations[:, :2])
     assert np.abs(up - rows[:, 14:16]).max() < 2 * most
     assert np.abs(native.normal - rows[:, 16]).max() < 50 * most
-    # a cubic leads from row to row
+    # a cubic interpolates between rows
     h = np.diff(rows[:, 0])[:, None]
     a, b, ra, rb = rows[:-1, 1:7], rows[1:, 1:7], rows[:-1, 7:13], rows[1:, 7:13]
     between = (a + b) / 2 + h * (ra - rb) / 8
@@ -301,6 +301,6 @@ def test_no_call_traps_whatever_the_numbers(ask):
             chance.choice(odd) if chance.random() < 0.5 else chance.uniform(0, 3) for _ in range(CALLS[name])
         ]
         questions.append((str(name), numbers))
-    answers = ask(*questions)  # a trap would be an error of the one who asks
+    answers = ask(*questions)  # a trap of the core would raise here
     assert {x.code for x in answers} >= {0, 1, 9}
     assert {x.code for x in answers} <= set(range(13))

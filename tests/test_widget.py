@@ -1,4 +1,4 @@
-"""The live page in a notebook, both ways; the front end of anywidget is played by a page of our own."""
+"""The live page in a notebook, both ways; a page of the tests replaces the front end of anywidget."""
 
 import json
 from types import SimpleNamespace
@@ -11,7 +11,7 @@ pytest.importorskip("anywidget")
 import spincyl as sc
 from spincyl._pages.widget import _SCRIPT
 
-#: What anywidget gives a script: a model with values, and what is called when one changes.
+#: The model that anywidget gives a script: values, and callbacks for their changes.
 MODEL = """
 const values = %s, calls = {};
 window.saved = [];
@@ -32,14 +32,14 @@ SHOWN = "() => window.spincyl?.state?.().theta === "
 
 
 def shown(page):
-    """The widget behind what a notebook would show."""
+    """The widget behind the output of a page in a notebook."""
     page._repr_html_()
     return page._widget
 
 
 @pytest.fixture
 def notebook(chromium, tmp_path):
-    """Opens a page with these outputs and the model of a widget, which is made at once, or when it is asked for."""
+    """A function that opens a page with outputs and a widget's model, which is created at once or later."""
     opened = []
 
     def show(widget, *outputs, late=False):
@@ -66,7 +66,7 @@ def notebook(chromium, tmp_path):
 
 
 def push(frame, knob, value):
-    """A hand on a slider in a frame."""
+    """Move a slider in a frame."""
     frame.locator(f"#knob-{knob}").evaluate(
         "(e, value) => { e.value = value; e.dispatchEvent(new Event('input')); }", value
     )
@@ -181,7 +181,7 @@ def test_all_pages_follow_python_and_each_other(notebook):
             arg=[play.theta, play.kick],
         )
     assert (play.theta, play.kick) == (1.2, 0.2) and play.state == sc.Body.solid(2.5).steady(1.2).kicked(0.2)
-    # a page that is opened anew begins with it, too
+    # a reloaded page starts with this state
     page.frames[1].evaluate("location.reload()")
     page.wait_for_timeout(300)
     page.frames[1].wait_for_function(SHOWN + "1.2")
@@ -253,7 +253,7 @@ def test_in_the_frame_of_a_notebook_every_control_is_whole_by_day_and_by_night(n
     inner.wait_for_function("light => (" + PAINTED + ")().every((sum, i) => sum < 0.7 * light[i])", arg=light)
 
 
-#: How bright the map and the tracks are.
+#: Brightness of the map and the tracks.
 PAINTED = """() => ["map", "chart"].map(id => {
   const c = document.getElementById(id), { data } = c.getContext("2d").getImageData(0, 0, c.width, c.height);
   return data.reduce((sum, x, i) => i % 4 < 3 ? sum + x : sum, 0) / data.length;

@@ -1,4 +1,4 @@
-"""Files: whole or as they were, in the place that was named, as `open` would have it."""
+"""Written files: complete or unchanged, in the given place, with permissions as from `open`."""
 
 import ast
 import errno
@@ -23,17 +23,17 @@ PARTS = ".spincyl-*"
 
 
 def script(*words, **how):
-    """A process of its own, which imports what this one does."""
+    """Run a process with the imports of this one."""
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(HERE), *sys.path])}
     return subprocess.run([sys.executable, *words], env=environment, capture_output=True, text=True, **how)
 
 
-# where something fails
+# failures
 
 
 @pytest.fixture(scope="module")
 def cramped(tmp_path_factory):
-    """Folders with files that were there, and what was said where there was no room for others: of saves that fail or die."""
+    """Folders with older files, and the errors of saving to them without room: saves that fail or die."""
     folders = [tmp_path_factory.mktemp(name) for name in ("fails", "dies")]
     for folder in folders:
         for name in JOBS:
@@ -54,7 +54,7 @@ def test_a_save_that_fails_leaves_what_was_there_and_says_of_which_file(cramped,
 @pytest.mark.parametrize("name", JOBS)
 def test_a_process_that_is_killed_while_it_saves_leaves_what_was_there(cramped, name):
     folder, told = cramped[1]
-    # where ffmpeg writes, it is ffmpeg that is killed
+    # for a film the signal kills ffmpeg, which writes the file
     assert told[name].startswith("film.mp4: ffmpeg: it ended with -" if name == "film.mp4" else "signal ")
     assert told[name] != "signal 0" and (folder / name).read_text() == f"an older {name}"
 
@@ -83,7 +83,7 @@ def test_of_a_scene_both_files_are_new_or_none(tmp_path):
     assert sorted(os.listdir(tmp_path)) == ["a.json", "a.xml"]
 
 
-# where it is
+# places
 
 
 def files(folder):
@@ -138,7 +138,7 @@ def test_every_kind_of_file_has_the_name_that_it_was_given(tmp_path, monkeypatch
     monkeypatch.chdir(tmp_path / "here")
     suffix = Path(kind).suffix
     names = [f"~/in{suffix}", f"a::b{suffix}", f"-y{suffix}"]
-    if kind != "scene.json":  # whose suffixes are its own
+    if kind != "scene.json":  # a scene fixes its suffixes
         names.append(f"http:c{suffix.upper()}")
     for name in names:
         JOBS[kind](name)
@@ -147,7 +147,7 @@ def test_every_kind_of_file_has_the_name_that_it_was_given(tmp_path, monkeypatch
     assert files(".") == sorted(names) and not files("../home")
 
 
-# as `open` has it
+# permissions and links as with `open`
 
 
 def test_a_new_file_has_the_permissions_of_new_files_and_a_later_one_those_that_it_had(tmp_path):
@@ -176,7 +176,7 @@ def test_links_lead_to_what_is_written(tmp_path):
     target, link, second = tmp_path / "there" / "spin", tmp_path / "link.html", tmp_path / "second.html"
     link.symlink_to("there/spin")
     second.symlink_to(link)
-    for old in (None, "an older page"):  # a link may lead to what is not there yet
+    for old in (None, "an older page"):  # the target of a link may not exist yet
         if old is not None:
             target.write_text(old)
         assert shown(second) == second
@@ -257,7 +257,7 @@ def test_what_may_be_written_to_but_not_replaced_is_written_to(tmp_path):
     for name, mode in (("old.html", 0o666), ("fixed.html", 0o444)):
         (folder / name).write_text("older")
         (folder / name).chmod(mode)
-    theirs = tmp_path / "theirs.html"  # in a folder that takes new files, of an owner who cannot be kept
+    theirs = tmp_path / "theirs.html"  # replaceable, but a replacement would not have its owner
     theirs.write_text("older")
     theirs.chmod(0o666)
     before = theirs.stat()
@@ -291,11 +291,11 @@ def test_a_file_of_somebody_else_stays_theirs(tmp_path):
     assert (found.st_uid, found.st_gid, stat.S_IMODE(found.st_mode)) == (65534, 65534, 0o640)
 
 
-# nobody else writes
+# no other way of writing
 
 SOURCES = sorted(Path(sc.__file__).parent.rglob("*.py"))
 WRITERS = {*"write_text write_bytes savefig savetxt savez_compressed savez to_netcdf to_csv".split()}
-#: What may: to a stream, to memory, and where nothing is written over.
+#: Exceptions: writing to a stream, to memory, or to a new place.
 ALLOWED = {
     ("cli/_files.py", "np.savetxt(file, table, **how)"),
     ("_input/files.py", "path.open('ab')"),
@@ -307,7 +307,7 @@ ALLOWED = {
 
 
 def writing(tree):
-    """The calls of a module that write a file, other than to the part that a `with replaced(...)` gives."""
+    """The calls of a module that write a file, except to the part of a `with replaced(...)`."""
     for call in (x for x in ast.walk(tree) if isinstance(x, ast.Call)):
         name = getattr(call.func, "attr", getattr(call.func, "id", ""))
         words = [x.value for x in call.args if isinstance(x, ast.Constant) and isinstance(x.value, str)]

@@ -1,9 +1,9 @@
-"""The cores of the live page: built, packed, and put beside a record of what they were built from.
+"""Build and pack the cores of the live page, with a record of the sources that they were built from.
 
-core.wasm.gz has what every page needs; core.friction.wasm.gz also bodies that slip and lose energy.
+core.wasm.gz has what every page needs; core.friction.wasm.gz also has friction and losses.
 
-python web/build.py            renews both where rustup has the target, else says what to do
-python web/build.py FOLDER     packs them there, for a comparison; the committed ones stay
+    python web/build.py            builds both if rustup has the target, else says how to install it
+    python web/build.py FOLDER     writes them there, for a comparison; the committed ones stay
 """
 
 import gzip
@@ -25,21 +25,21 @@ FLAGS = ["-C", "target-feature=+simd128", "-C", "link-arg=--compress-relocations
 
 
 def sources():
-    """The digest of all that the artefact is made of: sources, dependencies, profiles."""
+    """A digest of everything that the cores are built from: sources, dependencies, profiles."""
     cargo = tomllib.loads((HOME / "Cargo.toml").read_text(encoding="utf-8"))
     profiles = {name: cargo["profile"][name] for name in ("release", "web")}
     needed = {name: what for name, what in cargo["dependencies"].items() if name not in ("pyo3", "numpy")}
     found = hashlib.sha256(json.dumps([needed, profiles], sort_keys=True).encode())
     files = [*(HOME / "src").rglob("*.rs"), *(HOME / "web").rglob("*.rs"), HOME / "web/Cargo.toml"]
     for path in sorted(path for path in files if not path.is_relative_to(HOME / "src/python")):
-        # however a checkout ends its lines
+        # a checkout may have other line endings
         text = path.read_bytes().replace(b"\r\n", b"\n")
         found.update(f"\n{path.relative_to(HOME).as_posix()} {len(text)}\n".encode() + text)
     return found.hexdigest()
 
 
 def said(*words):
-    """What a command prints."""
+    """The output of a command."""
     return subprocess.run(words, cwd=HOME, capture_output=True, text=True, check=True).stdout.strip()
 
 
@@ -49,7 +49,7 @@ def can():
 
 
 def built(features):
-    """The module, built anew if anything has changed."""
+    """The module, rebuilt if anything has changed."""
     cargo = os.environ.get("CARGO_HOME") or Path.home() / ".cargo"
     flags = [*FLAGS, f"--remap-path-prefix={cargo}=cargo"]
     environment = os.environ | {"CARGO_ENCODED_RUSTFLAGS": "\x1f".join(flags)}
@@ -61,7 +61,7 @@ def built(features):
 
 
 def crates():
-    """The versions of the crates that are in it."""
+    """The versions of the crates in the module."""
     words = [
         "--package",
         "spincyl-web",
@@ -78,7 +78,7 @@ def crates():
 
 
 def main(to=None):
-    """Builds and packs; the committed cores get their record."""
+    """Build and pack the cores; write the record of the committed ones."""
     folder = Path(to) if to else COMMITTED
     if to:
         folder.mkdir(parents=True, exist_ok=True)

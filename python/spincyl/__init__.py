@@ -11,11 +11,11 @@ them into metres and seconds, and the motions of a body that is `measured` are i
 # _input     numbers, units, words, threads, whole files: no physics, and nothing else of spincyl
 # .          the thin wrapper of `_core`: bodies, states, motions, laws of friction and loss
 # sweep      maps of steady states, and many motions at once
-# _studio    what bodies and motions look and sound like
-# data       what was measured, and what fits it
-# plot       pictures, also of what was measured
-# _pages     pages for a browser: recorded motions, and the core itself
-# __init__   this front door, which finds each name and the function behind each method in `_upward`
+# _studio    shapes, drawings, films and sound of bodies and motions
+# data       measurements, and what is fitted to them
+# plot       figures, also of measurements
+# _pages     pages for a browser: recorded motions, and live ones that the core computes in the page
+# __init__   this front door; lists each public name, and in `_upward` the function behind each method
 # report     speed against error
 # cli        the command line, and `__main__`
 
@@ -90,7 +90,7 @@ __all__ = [
 ]
 
 
-# what most scenes do not need is loaded when it is used
+# modules and names that most scenes do not need are loaded at first use
 _LATER = {
     "data": None,
     "loss": None,
@@ -113,7 +113,7 @@ _LATER = {
 }
 
 
-# and so are the functions behind methods of nouns that a layer above theirs carries out
+# methods whose functions stand in a layer above the class: those are loaded at first use, too
 HOMES.update(
     {
         "Body.roll": ("spincyl._roll", "roll"),

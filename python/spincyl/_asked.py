@@ -1,4 +1,4 @@
-"""What `roll` is asked for: times, settings, and what is wanted at each time."""
+"""The arguments of `roll`: times, settings and optional outputs, with their checks."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from spincyl._loss import Loss
 
 Method: TypeAlias = Literal["exact", "rk4"]
-#: What is computed if it is wanted.
+#: Optional outputs of `roll`.
 Want: TypeAlias = Literal["pose", "force"]
 WANTS: tuple[Want, ...] = ("pose", "force")
 NOTHING: frozenset[Want] = frozenset()
@@ -23,7 +23,7 @@ _DOUBLE = np.dtype(np.float64)
 
 
 class Asked(NamedTuple):
-    """What `roll` was asked for: of one motion, or of many, whose coefficients may be arrays."""
+    """The arguments of `roll`: of one motion, or of many, whose coefficients may be arrays."""
 
     times: Floats
     t0: float = 0.0
@@ -37,13 +37,13 @@ class Asked(NamedTuple):
     restitution: float | None = None
     losses: "Loss | None" = None
     stop_at: Literal["rolling"] | None = None
-    spread: bool = False  # whether the states of many are wanted at all times
+    spread: bool = False  # whether many motions return their states at all times
 
 
 def crossing(asked: Asked, slip: Sequence[float] | None = None) -> dict[str, Any]:
-    """The options of one motion or of many, as the core takes them: the one place where they cross to it.
+    """The options of one motion or of many as keyword arguments of the core.
 
-    What is the default does not cross, since to tell it would take longer than a short motion may.
+    Defaults are left out: passing them would take longer than a short motion may.
     """
     _, t0, step, tol, _, contact, mu, beyond, want, restitution, losses, stop_at, spread = asked
     options: dict[str, Any] = {"t0": t0} if t0 else {}
@@ -77,7 +77,7 @@ def times_of(t: Reals) -> Floats:
     times = reals("t", t)
     if np.ndim(times) > 1:
         raise ValueError(f"t: expected a number or one dimension, not shape {np.shape(times)}")
-    found = np.array(floats(times)).reshape(-1)  # a copy, which the caller does not change
+    found = np.array(floats(times)).reshape(-1)  # a copy, so that the caller's array can change
     if found.size == 0:
         raise ValueError("t: expected at least one time")
     return found
@@ -94,7 +94,7 @@ def choices(want: Want | Iterable[Want]) -> frozenset[Want]:
 
 
 def chosen(wants: tuple[Want | Iterable[Want], ...]) -> frozenset[Want]:
-    """All that several arguments want, each of them as `roll` takes it."""
+    """The union of several arguments `want`, each as `roll` takes it."""
     return frozenset().union(*map(choices, wants))
 
 
@@ -112,7 +112,7 @@ def ask(
     restitution: float | None,
     losses: "Loss | None",
 ) -> Asked:
-    """What `roll` is asked for, in natural units, or an error by name."""
+    """Check the arguments of `roll`, in natural units; an error names the argument."""
     times = times_of(t)
     if t0 is not None:
         t0 = number("t0", t0)
@@ -149,7 +149,7 @@ def ask(
         raise ValueError("method = 'rk4' needs step=, as in step=1e-3")
     mu = mu if type(mu) is float else number("mu", mu)
     plain = word and state.slip is None and restitution is None and losses is None
-    if not plain:  # of the others there is something to refuse
+    if not plain:  # otherwise no combination of the arguments is invalid
         given = {"step": step, "method": method, "mu": None if mu == np.inf else mu, "beyond": beyond or None}
         given = {name: x for name, x in given.items() if x is not None}
         if losses is not None:
@@ -157,6 +157,6 @@ def ask(
 
             _lossy.check(losses, times, t0, given)
         check(state, contact, restitution, given)
-    # the default is told by its type: to look at its words would take longer
+    # the default `want` is an empty tuple: `choices` would take longer than this test
     want = NOTHING if type(want) is tuple and not want else choices(want)
     return Asked(times, t0, step, tol, method, contact, mu, beyond, want, restitution, losses)

@@ -36,7 +36,7 @@ from spincyl._upward import above
 if TYPE_CHECKING:
     from spincyl._motion import Motion
 
-# looked up once: a single rate costs little more than these
+# looked up once: a single rate takes little longer than the two look-ups
 _rate_of_one, _float64 = _core.rate_of_one, np.float64
 
 
@@ -93,9 +93,9 @@ class Body(Laws):
     fillet: Reals = 0.0
     theta_end: Reals = np.nan
     scale: Scale | None = field(default=None, kw_only=True)
-    # what `from_metres` was given, to be shown again
+    # the arguments of `from_metres`, for `__repr__`
     _measured: ClassVar[dict[str, float]] = {}
-    # whether it is one body, of which every field is a float
+    # whether every field is a float: one body, not a family
     _single: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
@@ -103,7 +103,7 @@ class Body(Laws):
             raise TypeError(f"scale: expected a Scale, not {type(self.scale).__name__}")
         given = [reals(name, getattr(self, name)) for name in FIELDS]
         if is_scalar(*given):
-            given = [float(x) + 0.0 for x in given]  # no -0.0
+            given = [float(x) + 0.0 for x in given]  # turns -0.0 into 0.0
             moments: tuple[Reals, Reals] = _core.check_body(given)
             object.__setattr__(self, "_single", True)
         else:
@@ -111,7 +111,8 @@ class Body(Laws):
             given = [x if is_scalar(x) else x + 0.0 for x in given]
             moments = _core.body_i1(*given), _core.body_i3(*given)
         for name, value, own in zip(("i1", "i3"), given[1:3], moments, strict=True):
-            # only a tube's moments can differ from those given; a lazy array is not looked into
+            # the moments of a tube follow from its bore and must agree; values of a lazy array are not
+            # computed
             if getattr(own, "chunks", None) is None and np.any(np.abs(own - value) > 1e-15 * own):
                 raise ValueError(f"{name} = {value!r}: a tube of this bore has {own!r}")
         for name, value in zip(FIELDS, (given[0], *moments, *given[3:]), strict=True):
@@ -145,7 +146,7 @@ class Body(Laws):
         theta_end: Reals = np.nan
         if is_lazy(fillet) or np.any(np.asarray(fillet) == 1):
             theta_end = _core.capsule_end(ell, fillet)
-        # the moments of a tube follow from its bore
+        # with a bore given, the core computes the moments of the tube
         return cls(depth, np.nan, np.nan, bore, fillet, theta_end)
 
     @classmethod
@@ -225,10 +226,11 @@ class Body(Laws):
         """
         bore, fillet = reals("bore", bore), reals("fillet", fillet)
         if is_scalar(bore, fillet):
-            _core.check_tube(1.0, float(bore), float(fillet))  # of any length that it fits
+            # aspect ratio 1 leaves room for every valid fillet
+            _core.check_tube(1.0, float(bore), float(fillet))
         return _core.critical_aspect(bore, fillet)
 
-    # What its size decides.
+    # Quantities of a measured body.
 
     @property
     def critical_hertz(self) -> Result:
@@ -264,7 +266,7 @@ class Body(Laws):
 
     # Steady states with the centre at rest.
 
-    # to a type checker the body is a single one
+    # the type of the result is that of a single body, also for a family
     @overload
     def rate(self, theta: float, **ufunc: Any) -> np.float64: ...
     @overload
@@ -293,7 +295,7 @@ class Body(Laws):
         Jackson et al., Am. J. Phys. 87, 85 (2019), Eq. 15, in a form without its cancellation.
         """
         if type(theta) is float and self._single and not ufunc:
-            # one number of one body: a name for each saves a tuple
+            # one angle of one body: separate arguments are faster than unpacking a tuple
             one = _rate_of_one(theta, self.ell, self.i1, self.i3, self.bore, self.fillet, self.theta_end)
             if one == one:
                 return _float64(one)
@@ -395,7 +397,7 @@ class Body(Laws):
         return str(above("card")(self))
 
     def _sized(self, what: str) -> Scale:
-        """Its scale, or AttributeError that says how it gets one."""
+        """The scale of the body, or AttributeError that says how to give the body one."""
         if self.scale is None:
             how = (
                 "sc.measured(...) makes a tube that does, dataclasses.replace(body, scale=sc.Scale(...)) any"
@@ -404,7 +406,7 @@ class Body(Laws):
         return self.scale
 
     def _reduced(self, of: Reals, rate: Reals, hertz: Reals) -> Reals:
-        """The reduced rate, given as such or in turns per second."""
+        """The reduced rate, given directly or in turns per second."""
         if sum(x is not None for x in (of, rate, hertz)) != 1:
             raise TypeError("rate and hertz: give one of them, hertz= of a measured body")
         if hertz is None and (of is None or self.scale is None):
@@ -420,7 +422,7 @@ class Body(Laws):
 
     @property
     def _second(self) -> float:
-        """The natural unit of time in that of its motions."""
+        """The natural unit of time in the unit of the body's motions: seconds if measured, else 1."""
         return 1.0 if self.scale is None else self.scale._units[1]
 
     @property
@@ -431,17 +433,17 @@ class Body(Laws):
 
     @property
     def _is_sharp(self) -> bool:
-        """Whether no body of the family has a fillet, as far as can be seen without computing it."""
+        """Whether no body of the family has a fillet; False if a lazy array would have to be computed."""
         return not is_lazy(self.fillet) and not np.any(np.asarray(self.fillet) != 0)
 
     @property
     def _most(self) -> int:
-        """How many inclinations a question can have for an answer: the length of the axis "root"."""
+        """Largest number of inclinations that one rate can have: the length of the axis "root"."""
         return 3 if self._is_sharp else 5
 
 
 def one_body(body: object) -> Body:
-    """A single body, or TypeError or ValueError."""
+    """Return `body` if it is a single body, else raise TypeError or ValueError."""
     found = made("body", body, Body)
     if not is_scalar(*found._numbers):
         raise ValueError("body: expected a single one, not an array of them")

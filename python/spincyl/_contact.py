@@ -1,4 +1,4 @@
-"""What a table does to a body: it holds the rim, it lets it slide freely, or it rubs."""
+"""Contacts of a body with the table: rolling, a smooth table, or a law of friction."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, Literal, Self, TypeAlias
@@ -14,17 +14,17 @@ from spincyl._scale import Scale, other, scale_of
 if TYPE_CHECKING:
     from spincyl._body import Body
 
-#: Contacts without friction laws of their own: what friction rolling needs, or none.
+#: Contacts without a law of friction: rolling without slip, or no friction.
 Contact: TypeAlias = Literal["rolling", "smooth"]
 
 #: Names and codes of the enumerations of the core.
 CODES = {name: dict(values) for name, values in _core.codes()}
-#: The code of each kind of table, of the laws of friction too.
+#: Code of each kind of table, including the laws of friction.
 TABLES = CODES["Table"]
 
 
 class _Law:
-    """What the laws of friction share: numbers or arrays that are compared by value, and shown as typed."""
+    """Base of the laws of friction: coefficients are numbers or arrays, compared by value."""
 
     @property
     def _numbers(self) -> tuple[Reals, Reals]:
@@ -108,7 +108,7 @@ class Viscous(_Law):
     """
 
     c: Reals
-    #: Whether its coefficient was given in SI, and for a body of which scale.
+    #: False for a coefficient in natural units; True, or the scale, if it was given in SI.
     _sized: ClassVar[Scale | bool] = False
 
     @classmethod
@@ -119,7 +119,7 @@ class Viscous(_Law):
         return cls(_coefficient("c", si("c", c, "second/metre")) * speed)._known(of)
 
     def _known(self, of: Scale | bool = True) -> Self:
-        """The same table, known to have been given in SI, for this scale: a measured body takes no other."""
+        """Mark the coefficient as given in SI for this scale; a measured body accepts no other scale."""
         object.__setattr__(self, "_sized", of)
         return self
 
@@ -138,21 +138,21 @@ class Viscous(_Law):
 
 #: A law of friction.
 Friction: TypeAlias = Coulomb | Viscous
-#: Whatever a scene can have for a table.
+#: Every kind of contact.
 AnyContact: TypeAlias = Contact | Friction
 
 
 def _coefficient(name: str, value: Reals) -> Reals:
-    """A coefficient of friction, not negative, or an error by name."""
+    """Return a coefficient of friction that is not negative, or raise an error that names it."""
     found = reals(name, value)
     if is_scalar(found):
-        found = float(found) + 0.0  # no -0.0
+        found = float(found) + 0.0  # turns -0.0 into 0.0
     refuse(name, found, lambda x: ~(x >= 0), f"expected 0 <= {name}")
     return kept(found)
 
 
 def code(contact: object, rubs: bool = False) -> int:
-    """The code of a contact that is a word, or ValueError; `rubs` where it could be a law of friction."""
+    """Code of a contact given by a word, or ValueError; with `rubs` its message offers laws of friction."""
     if not isinstance(contact, str) or contact not in ("rolling", "smooth"):
         last = ", 'smooth', sc.Coulomb(mu) or sc.Viscous(c)" if rubs else " or 'smooth'"
         raise ValueError(f"contact = {contact!r}: expected 'rolling'{last}")
@@ -160,12 +160,12 @@ def code(contact: object, rubs: bool = False) -> int:
 
 
 def rolls(contact: object) -> bool:
-    """Whether the contact rolls rather than slides, or ValueError."""
+    """Whether the contact is "rolling" and not "smooth"; ValueError for any other."""
     return code(contact) == TABLES["rolling"]
 
 
 def table(contact: AnyContact, mu: float) -> tuple[int, tuple[float, float]]:
-    """Code and coefficients of a table, as the core takes them; ValueError for arrays of them."""
+    """Code and coefficients of a table for the core; ValueError if the coefficients are arrays."""
     if isinstance(contact, str):
         return TABLES[contact], (mu, 0.0)
     if not is_scalar(*contact._numbers):
@@ -175,12 +175,12 @@ def table(contact: AnyContact, mu: float) -> tuple[int, tuple[float, float]]:
 
 
 def kind(contact: AnyContact) -> AnyContact:
-    """A contact without coefficients of its own: those of many motions stand in columns."""
+    """The contact with coefficient 0: the coefficients of many motions stand in columns."""
     return contact if isinstance(contact, str) else type(contact)(0.0)
 
 
 def fitting(contact: AnyContact, scale: Scale | None) -> None:
-    """Refuse a coefficient without a unit that needs one, since the body is measured."""
+    """Refuse a viscous coefficient of a measured body unless it was given in SI for the body's scale."""
     if scale is not None and isinstance(contact, Viscous) and not contact._sized:
         why = "a coefficient of a measured body has its unit, sc.Viscous.from_si(..., scale=body)"
         raise ValueError(f"contact = {contact!r}: {why}; body.natural takes this one")
@@ -194,5 +194,5 @@ def law(contact: Friction) -> int:
 
 
 def named(contact: AnyContact) -> str:
-    """A contact in words: of a law of friction, with its numbers."""
+    """The word for a contact, or the repr of a law of friction with its numbers."""
     return contact if isinstance(contact, str) else repr(contact)

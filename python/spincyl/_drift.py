@@ -146,7 +146,7 @@ class Drift:
         return f"{what}shape {self._shape}>"
 
     def _asked(self, name: str, x: Reals, question: int) -> list[Result]:
-        """The five numbers of the answer."""
+        """The five numbers that the core returns for each x; the code `question` gives the meaning of x."""
         if question == 1 and self.body.scale is not None:
             x = si(name, x, "second")
         x = reals(name, x)
@@ -285,7 +285,7 @@ def drift(
     return Drift(body, losses, centre, state, *reshaped, known, columns, shape)
 
 
-#: The columns of drifts: bodies, states, and the parameters of the laws of loss.
+#: The columns of drifts: bodies, states, and the coefficients of the laws of loss.
 _COLUMNS: tuple[str, ...] = (
     *("ell", "i1", "i3", "bore", "fillet", "theta_end", "theta", "w1", "w2", "w3"),
     *(name for name, _ in _core.loss_laws()),
@@ -295,7 +295,7 @@ _COLUMNS: tuple[str, ...] = (
 def _resting(
     body: Body, state: State, columns: dict[str, Floats], shape: tuple[int, ...]
 ) -> dict[str, Floats]:
-    """The same with no start where the centre of a given state does not rest, to six digits."""
+    """`columns` with theta = NaN, so no start, where the state's centre does not rest to six digits."""
     rests = np.broadcast_to(_core.rests(*state._numbers, *body._numbers) == 1, shape)
     if shape == () and not rests:
         own = body.steady(state.theta)

@@ -105,9 +105,9 @@ class Ellipsoid:
     offset: Reals = (0.0, 0.0, 0.0)
     theta_end: Reals = math.nan
     scale: Scale | None = field(default=None, kw_only=True)
-    # the largest semi-axis in the unit of the lengths that were given at first; a copy keeps it
+    # largest semi-axis in the unit of the lengths that the constructor was given; a copy keeps it
     _unit: Any = field(default=1.0, kw_only=True, repr=False, compare=False)
-    # whether its moments have been warned of
+    # whether a warning about the moments has been issued
     _doubted: bool = field(default=False, kw_only=True, repr=False, compare=False)
 
     def __post_init__(self) -> None:
@@ -133,7 +133,7 @@ class Ellipsoid:
 
     @classmethod
     def _of(cls, make: Callable[..., Any], **given: Any) -> Self:
-        """The stone, or a family, that a constructor of the core makes of single numbers or of arrays."""
+        """Make a stone, or a family, with a constructor of the core from single numbers or arrays."""
         there = {name: (x, wide) for name, (x, wide) in given.items() if x is not None}
         fitting({name: x[..., 0] if wide else x for name, (x, wide) in there.items()})
         each = partial(made_by, make=make, names=tuple(given), wide={name: x[1] for name, x in there.items()})
@@ -231,7 +231,7 @@ class Ellipsoid:
             )
         scale = Scale(float(units[0]), kilograms, gravity)
         volume = float(np.max(4 / 3 * math.pi * np.prod(np.asarray(self.axes), axis=-1))) * scale.radius**3
-        # of one that is cut off about half is left
+        # a stone with an edge is about half of its ellipsoid
         cut = not bool(np.isnan(self.theta_end).all())
         why = dubious("stone", (2 * scale.radius, 2 * scale.radius), volume / 2 if cut else volume, kilograms)
         if why:
@@ -272,7 +272,7 @@ class Ellipsoid:
         spin = self._spin(spin, hertz)
         pitch, roll = _tilt("pitch", pitch), _tilt("roll", roll)
         fitting({"spin": spin, "pitch": pitch, "roll": roll})
-        with np.errstate(invalid="ignore"):  # of what is not finite comes no number
+        with np.errstate(invalid="ignore"):  # angles and spins that are not finite give NaN without a warning
             n = _core.stone_tilted(*several(3, pitch, roll))
             return EllipsoidState(n, n * spin[..., None])
 
@@ -341,7 +341,7 @@ class Ellipsoid:
         return np.all(self.rocking(spin, hertz=hertz).growth <= 0, axis=-1)
 
     def _spin(self, spin: Reals | None, hertz: Reals | None) -> Reals:
-        """A spin in sqrt(g/a), which is given as such or in turns per second."""
+        """The spin in sqrt(g/a), given directly or in turns per second."""
         if hertz is None:
             return doubles(reals("spin", spin))
         if spin is not None:
@@ -383,7 +383,7 @@ class Ellipsoid:
 
     @property
     def _numbers(self) -> list[float]:
-        """Those of a single stone, as the core takes them."""
+        """The numbers of a single stone, as the core takes them."""
         if self.shape:
             raise ValueError(f"body: expected a single stone, not a family of shape {self.shape}")
         inertia = np.asarray(self.inertia)
@@ -395,13 +395,13 @@ class Ellipsoid:
         ]
 
     def _columns(self) -> list[Floats]:
-        """The thirteen numbers of a family, each of its shape or of one number."""
+        """The thirteen numbers of a family, each an array of the family's shape or a single number."""
         inertia: Any = self.inertia
         moments = (inertia[..., i, j] for i, j in SIX)
         return [*components(self.axes), *moments, *components(self.offset), self.theta_end]
 
     def _each(self, law: Callable[..., Any], width: int, *given: Floats) -> Floats:
-        """What the core finds of each stone of a family; of a single one its error, of others NaN."""
+        """Apply a function of the core to each stone of a family; NaN, or the error of a single stone."""
         if not self.shape and all(x.ndim == 0 for x in given):
             return np.array(law(self._numbers, *(float(x) for x in given)))
         fitting({"body": np.broadcast_to(0.0, self.shape), **dict(zip(("spin",), given, strict=False))})
@@ -419,5 +419,5 @@ class Ellipsoid:
 
 
 def _tilt(name: str, value: Reals) -> Reals:
-    """An angle, which may be meant in degrees already beyond a right angle: a twist is of some degrees."""
+    """An angle in radians; warns beyond pi/2 already, where a tilt of some degrees was probably meant."""
     return doubles(radians(name, value, likely=math.pi / 2))

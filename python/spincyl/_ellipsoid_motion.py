@@ -74,7 +74,7 @@ class EllipsoidMotion(Motion):
             return float(self._asked.times[-1]) if self.event is None else self.event.time
         return until if self.scale is None else float(self.scale.seconds(until))
 
-    # set by the core if it is not known to its end
+    # set by the core if the motion is not known up to its end
     _known_until: float | None = None
 
     @property
@@ -86,7 +86,7 @@ class EllipsoidMotion(Motion):
 
     @property
     def _doubt(self) -> str:
-        """Until when it is known, in words; empty of a motion that is known to its end."""
+        """The time up to which the motion is known, in words; empty if that is its end."""
         if self.natural._known_until is None:  # type: ignore[attr-defined]
             return ""
         second = "" if self.scale is None else " s"
@@ -143,7 +143,7 @@ def roll(
     restitution: float | None,
     losses: "Loss | None",
 ) -> "EllipsoidMotion":
-    """What `spincyl.roll` does with a stone."""
+    """Compute the motion of a stone: `spincyl.roll` calls this."""
     made("state", state, EllipsoidState)
     if not rubs(contact) and state._slips:
         raise ValueError(f"state: slips, and contact={contact!r} has no law for that: contact=sc.Coulomb(mu)")
@@ -168,7 +168,7 @@ def roll(
 
 
 def rolled(body: Ellipsoid, state: EllipsoidState, asked: Asked) -> EllipsoidMotion:
-    """The motion that was asked for, in natural units."""
+    """Compute the motion of a stone in natural units from checked arguments."""
     n, w, slip = (np.asarray(x) for x in (state.vertical, state.w, state._pair))
     if not n.ndim == w.ndim == slip.ndim == 1:
         raise ValueError("state: expected a single one; spincyl.sweep.roll takes many")

@@ -1,4 +1,4 @@
-"""Stones in rows of numbers, as the core gives them: at once, or block by block of arrays of dask."""
+"""Stones as rows of numbers from the core: computed at once, or block by block for arrays of dask."""
 
 import math
 from collections.abc import Callable
@@ -14,25 +14,25 @@ SIX = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))
 
 
 def six(inertia: Floats) -> list[float]:
-    """The six numbers of a symmetric tensor."""
+    """The six independent numbers of a symmetric tensor, in the order of `SIX`."""
     return [float(inertia[i, j]) for i, j in SIX]
 
 
 def whole(numbers: Floats) -> Floats:
-    """Rows whose numbers 3 to 8 are the six of a symmetric tensor, with all nine of them instead."""
+    """Rows with all nine components of a symmetric tensor in place of its six, the numbers 3 to 8."""
     return numbers[
         ..., [0, 1, 2, *(3 + i for i in (0, 5, 4, 5, 1, 3, 4, 3, 2)), *range(9, numbers.shape[-1])]
     ]
 
 
 def parts(rows: Reals) -> tuple[Reals, ...]:
-    """Axes, tensor, offset and theta_end of such rows, and each number behind them."""
+    """Axes, tensor, offset and theta_end of rows from `whole`, then each further number."""
     tensor = rows[..., 3:12].reshape(*rows.shape[:-1], 3, 3)
     return rows[..., :3], tensor, rows[..., 12:15], *(rows[..., i][()] for i in range(15, rows.shape[-1]))
 
 
 def blockwise(law: Callable[..., Floats], signature: str, size: int, *arrays: Reals) -> Reals:
-    """What a law gives of arrays, with a last axis of this size; lazily, by blocks, if one of them is lazy.
+    """Apply `law`, whose last axis has length `size`, to arrays: by blocks, lazily, if one of them is lazy.
 
     `signature` is that of a generalised ufunc of NumPy.
     """
@@ -45,7 +45,7 @@ def blockwise(law: Callable[..., Floats], signature: str, size: int, *arrays: Re
 
 
 def checked(axes: Floats, inertia: Floats, offset: Floats, theta_end: Floats) -> Floats:
-    """Rows of stones, with the unit of each and how far out its mass lies; (..., 18)."""
+    """Rows of checked stones, with largest semi-axis and reach of each (`Ellipsoid::reach`); (..., 18)."""
     each = axes, inertia.reshape(*inertia.shape[:-2], 9), offset, theta_end[..., None]
     shape = np.broadcast_shapes(*(x.shape[:-1] for x in each))
     given = np.concatenate([np.broadcast_to(x, (*shape, x.shape[-1])) for x in each], axis=-1)
@@ -58,9 +58,10 @@ def checked(axes: Floats, inertia: Floats, offset: Floats, theta_end: Floats) ->
 def made_by(
     *arrays: Floats, make: Callable[..., Any], names: tuple[str, ...], wide: dict[str, bool]
 ) -> Floats:
-    """Rows of stones that a constructor of the core makes, with the unit of each; (..., 17).
+    """Rows of stones from a constructor of the core, with the largest semi-axis of each; (..., 17).
 
-    The arrays are of the names in `wide`, which says whether their last axis has components; others are None.
+    The arrays belong to the names in `wide`, which says whether the last axis of each has components. Names
+    that are not in `wide` are passed as None.
     """
     inputs = dict(zip(wide, arrays, strict=True))
     shape = np.broadcast_shapes(*(x.shape[:-1] if wide[name] else x.shape for name, x in inputs.items()))

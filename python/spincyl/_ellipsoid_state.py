@@ -11,7 +11,7 @@ from spincyl._input.reprs import call, is_lazy
 
 
 def doubles(value: Reals) -> Reals:
-    """Real numbers as doubles in memory, without the names of axes; a lazy array stays lazy."""
+    """Real numbers as an array of doubles without named axes; a lazy array stays lazy."""
     if not is_lazy(value):
         return floats(value)
     lazy = value.data if hasattr(value, "dims") else value
@@ -19,7 +19,7 @@ def doubles(value: Reals) -> Reals:
 
 
 def vectors(name: str, value: Reals, *last: int) -> Reals:
-    """An array whose last axes have these lengths, or an error by name."""
+    """A read-only array whose last axes have the lengths `last`; an error names the argument."""
     array = doubles(reals(name, value))
     array = array if is_lazy(array) else np.array(array)
     if array.shape[array.ndim - len(last) :] != last or array.ndim < len(last):
@@ -101,5 +101,5 @@ class EllipsoidState:
 
     @property
     def _slips(self) -> bool:
-        """Whether it has a slip that is not zero, or not known to be."""
+        """Whether the state has a slip that is not zero, or that is lazy and may not be."""
         return self.slip is not None and (is_lazy(self.slip) or bool(np.any(self.slip != 0)))

@@ -22,7 +22,7 @@ class Ending(IntEnum):
         return self.name
 
 
-#: why, and what the body then does
+#: Why the motion ended, and what the body does then.
 MESSAGES = {
     Ending.DONE: ("the last time was reached", ""),
     Ending.FACE: ("the face landed on the table", "lies flat"),

@@ -1,4 +1,4 @@
-"""A motion as labelled arrays of xarray's, and as a table of pandas'."""
+"""Motions as labelled arrays of xarray and as tables of pandas."""
 
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from spincyl._motion import Motion
 
-#: Of what has several components: their axis, their names on it, and those of columns.
+#: Outputs with several components: axis, labels along the axis, and names of the columns.
 Components: TypeAlias = dict[str, tuple[str, list[str], list[str]]]
 AXES: Components = {
     "w": ("axis", ["e1", "e2", "e3"], ["w1", "w2", "w3"]),
@@ -26,7 +26,7 @@ AXES: Components = {
 
 
 def wanted(m: "Motion") -> dict[str, tuple[Any, str]]:
-    """Everything that was wanted of a motion, times aside: numbers and their unit."""
+    """The values and units of all outputs of a motion but its times."""
     found: dict[str, tuple[Any, str]] = {}
     for name in ("theta", "w", "energy", *m._extra):
         factor, said = unit(name, m.scale)
@@ -36,7 +36,7 @@ def wanted(m: "Motion") -> dict[str, tuple[Any, str]]:
 
 
 def columns(m: "Motion") -> dict[str, tuple[Any, str]]:
-    """The same in columns (n,)."""
+    """The values (n,) and units of all outputs, a column for each component."""
     found: dict[str, tuple[Any, str]] = {}
     axes = m._axes
     for name, (values, said) in wanted(m).items():
@@ -46,7 +46,7 @@ def columns(m: "Motion") -> dict[str, tuple[Any, str]]:
 
 
 def frame(m: "Motion") -> "pandas.DataFrame":
-    """Everything that was wanted of a motion as a table by times, with units."""
+    """A table of all outputs of a motion by time, with units."""
     lib: Any = extra("pandas", "sweep")
     told_ = columns(m)
     found: pandas.DataFrame = lib.DataFrame(
@@ -57,7 +57,7 @@ def frame(m: "Motion") -> "pandas.DataFrame":
 
 
 def labelled(m: "Motion") -> "xarray.Dataset":
-    """Everything that was wanted of a motion, with units."""
+    """A dataset of all outputs of a motion, with units."""
     lib: Any = extra("xarray", "sweep")
     data: dict[str, Any] = {}
     axes = m._axes

@@ -1,4 +1,4 @@
-"""What the laws say of any body: angles of its shape, stability, and what can be read off a state."""
+"""Properties of a body, its stability, and quantities of its states: each is one function of the core."""
 
 import warnings
 from dataclasses import replace
@@ -30,7 +30,7 @@ class Region(IntEnum):
 
 
 def _say_why(body: "Laws", state: State, kappa: Result) -> None:
-    """Warn of states that are not steady since the body stands on more than a point; not of lazy ones."""
+    """Warn of states that are not steady because the body stands on more than one point; skip lazy arrays."""
     theta = state.theta
     if any(is_lazy(x) or hasattr(x, "dims") for x in (kappa, theta, *body._numbers)):
         return
@@ -48,7 +48,7 @@ def _say_why(body: "Laws", state: State, kappa: Result) -> None:
 
 
 class Laws:
-    """The questions to a `Body` that one law each answers."""
+    """Base of `Body`: the methods that evaluate one law each."""
 
     ell: Reals
     i1: Reals
@@ -67,10 +67,10 @@ class Laws:
 
     @property
     def _leans(self) -> str:
-        """How far it leans, as the core says it."""
+        """The range of theta, in the words of the core, for messages of errors."""
         raise NotImplementedError
 
-    # What the shape alone decides.
+    # Quantities of the shape alone.
 
     @property
     def theta_balance(self) -> Result:
@@ -92,7 +92,7 @@ class Laws:
         """Omega = Omega~ / sqrt(I3): precession rate in sqrt(g/R) of a reduced rate."""
         return reals("rate", rate) / np.sqrt(self.i3)
 
-    # Stability: two questions, named.
+    # Stability, on a smooth table or in rolling.
 
     @elementwise
     def stability(self, at: Reals | State, contact: Contact = "rolling", **ufunc: Any) -> Result:
@@ -188,7 +188,7 @@ class Laws:
         """Inclinations where the energy is stationary along the branch: shape and limits as `folds`."""
         return _core.ridge(*several(self._most, *self._numbers))
 
-    # What can be read off a state.
+    # Quantities of a state.
 
     @elementwise
     def energy(self, state: State, contact: AnyContact = "rolling") -> Result:

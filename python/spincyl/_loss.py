@@ -1,4 +1,4 @@
-"""What all laws of loss share: one positive coefficient, a power, a couple, and that they can be added."""
+"""The base of the laws of loss: one positive coefficient, power, couple, and sums of laws."""
 
 import warnings
 from dataclasses import dataclass, fields
@@ -44,7 +44,7 @@ class Loss:
 
     @property
     def _coefficients(self) -> list[Reals]:
-        """The coefficient of each law in the order of the core, 0 of what is absent."""
+        """The coefficient of each law in the order of the core; 0 for absent laws."""
         own = {law._parameter: law.coefficient for law in self.laws}
         return [own.get(name, 0.0) for name in _LAWS]
 
@@ -86,7 +86,7 @@ class Loss:
         return NotImplemented if not isinstance(other, Loss) else _added((*self.laws, *other.laws))
 
     def __radd__(self, other: int) -> "Loss":
-        return self if type(other) is int and other == 0 else NotImplemented  # sum() begins with 0
+        return self if type(other) is int and other == 0 else NotImplemented  # sum() starts with 0
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Loss):
@@ -100,7 +100,7 @@ class Loss:
 class Law(Loss):
     """A law with its coefficient."""
 
-    #: Whether its coefficient was given in SI, and for a body of which scale.
+    #: False for a coefficient in natural units; True, or the scale, if it was given in SI.
     _sized: "Scale | bool" = False
 
     def __init__(self, coefficient: Reals) -> None:
@@ -129,7 +129,7 @@ class Law(Loss):
 
     def in_si(self, scale: "Scale | Body") -> Reals:
         """The coefficient in the unit that its `from_si` takes."""
-        small = 2.0**-40  # which no law takes for millimetres
+        small = 2.0**-40  # no law warns of so small a coefficient
         law = type(self).from_si(small, scale=scale)  # type: ignore[attr-defined]
         return self.coefficient / law.coefficient * small
 
@@ -179,7 +179,7 @@ class Sum(Loss):
             for law in loss.laws:
                 kind = type(law)
                 before = found.get(kind)
-                # a law takes its one coefficient
+                # two laws of one kind have one coefficient, the sum
                 if before is not None:
                     if isinstance(before._sized, Scale):
                         other(f"laws: {law!r}", law._sized, before._sized)
@@ -201,13 +201,13 @@ class Sum(Loss):
 
 
 def _added(laws: tuple[Law, ...]) -> Loss:
-    """A sum, or the one law that it is."""
+    """A sum of laws, or the law itself if there is only one kind."""
     found = Sum(laws)
     return found if len(found.laws) > 1 else found.laws[0]
 
 
 def titled(losses: Loss, scale: Scale | None = None) -> str:
-    """Laws with their coefficients, of a measured body in SI, as a title has room for them."""
+    """Laws with their coefficients to four digits for a title; in SI if `scale` is given."""
 
     def told(law: Law) -> str:
         return f"{float(law.coefficient if scale is None else law.in_si(scale)):.4g}"
@@ -216,7 +216,7 @@ def titled(losses: Loss, scale: Scale | None = None) -> str:
 
 
 def positive(name: str, value: Reals, unit: str = "") -> Reals:
-    """A coefficient that is positive and finite, in a unit of SI if it has one, or an error by name."""
+    """Return a positive finite coefficient, converted to `unit` of SI; an error names the coefficient."""
     found = reals(name, si(name, value, unit))
     if is_scalar(found):
         found = float(found)
@@ -225,13 +225,13 @@ def positive(name: str, value: Reals, unit: str = "") -> Reals:
 
 
 def over(value: Reals, unit: float) -> Reals:
-    """A coefficient in a natural unit; one that overflows is refused by its law, and needs no warning."""
+    """A coefficient in natural units. Overflow gives inf without a warning: the law refuses it."""
     with np.errstate(over="ignore"):
         return value / unit
 
 
 def arm(name: str, value: Reals, scale: "Scale | Body") -> Reals:
-    """An arm in metres as one in R; one of half the radius was given in millimetres, and is warned of."""
+    """Convert an arm from metres to R; warn if it exceeds R/2, since millimetres were probably meant."""
     found = over(positive(name, value, "metre"), units(scale)[0])
     if np.any(np.asarray(found) > 0.5):
         told = f"{name}: half the radius of the body or more; it is in metres, or a text such as '0.1mm'"
@@ -240,13 +240,13 @@ def arm(name: str, value: Reals, scale: "Scale | Body") -> Reals:
 
 
 def sized(law: _Kind, of: "Scale | Body | bool" = True) -> _Kind:
-    """The same law, known to have been given in SI, for this scale: a measured body takes no other."""
+    """Mark the law as given in SI for this scale; a measured body accepts no other scale."""
     object.__setattr__(law, "_sized", of if isinstance(of, bool) else scale_of(of))
     return law
 
 
 def made_law(losses: object, body: Body | None = None) -> Loss:
-    """A law of loss, or TypeError; of a measured body ValueError if a coefficient has no unit."""
+    """Return a law of loss, or TypeError; ValueError if it is not in SI and the body is measured."""
     if not isinstance(losses, Loss):
         like = "sc.loss.DryContour(1e-3), or laws added with +"
         raise TypeError(f"losses: expected a law of loss, as {like}, not {type(losses).__name__}")
@@ -261,7 +261,7 @@ def made_law(losses: object, body: Body | None = None) -> Loss:
 
 
 def units(scale: "Scale | Body", weighed: bool = False) -> tuple[float, float, float]:
-    """Metres, seconds and joules of the natural units; `weighed` asks for a mass that was given."""
+    """Metres, seconds and joules of the natural units; with `weighed` the mass has to be known."""
     found = scale_of(scale)
     if weighed and found.mass == 1.0 and not isinstance(scale, Body):
         message = (

@@ -1,4 +1,4 @@
-"""Motions that lose energy on their way: what does not go with losses."""
+"""Checks of the arguments of motions with losses."""
 
 from typing import Any
 
@@ -14,7 +14,7 @@ _WHY = {
 
 
 def check(losses: object, times: Floats, t0: float, settings: dict[str, Any]) -> None:
-    """Refuse what does not go with losses, by name; `settings` are those that were given."""
+    """Refuse arguments that exclude losses; `settings` are those that were given, by name."""
     if not is_scalar(*made_law(losses)._coefficients):
         raise ValueError(
             f"losses = {losses!r}: expected single numbers, not arrays of them; sc.drift takes these"

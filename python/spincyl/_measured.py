@@ -1,7 +1,7 @@
-"""Bodies that know their size, and the one way from SI into natural units and back.
+"""Measured bodies, and the conversion of their motions from SI to natural units and back.
 
-A motion of a measured body is asked for in seconds, found in natural units by what finds any other, and told
-in SI. `Motion.natural` is what was found; pictures, pages and files take it and its scale from there.
+The motion of a measured body takes times in seconds, is computed in natural units like any other motion, and
+is returned in SI. `Motion.natural` is the motion in natural units, from which plots, pages and files start.
 """
 
 import math
@@ -122,26 +122,26 @@ def measured(
 def doubt(
     outer_diameter: float, inner_diameter: float, length: float, fillet: float, mass: float = math.nan
 ) -> str:
-    """What speaks of millimetres or grams taken for metres or kilograms; empty if nothing does."""
+    """A reason to suspect millimetres or grams taken for metres or kilograms; empty if there is none."""
     volume = math.pi / 4 * (outer_diameter - inner_diameter) * (outer_diameter + inner_diameter) * length
     return dubious("tube", (length, outer_diameter), volume, mass)
 
 
 def natural_time(name: str, time: Reals, scale: Scale) -> Reals:
-    """A time in seconds, or times, in sqrt(R/g)."""
-    with np.errstate(over="ignore"):  # what is infinite then is refused by name
+    """Convert a time or times from seconds to sqrt(R/g)."""
+    with np.errstate(over="ignore"):  # an infinite time is refused by name later
         return reals(name, si(name, time, "second")) / scale._units[1]
 
 
-# what is refused as out of range is told as the core got it, and a time on the way in seconds
+# numbers out of range stay in natural units in a message; times on the way are converted to seconds
 _OUT_OF_RANGE = re.compile("(t|t0|step|w[123]|slip|error) = .*: expected ")
 _TIME = re.compile(r"(\bt = |\bt0 = |\bstep = |\ba step of )([-+]?[0-9.]+(?:e[-+]?[0-9]+)?)")
 
 
 def speaking(scale: Scale | None, length: str = "R") -> AbstractContextManager[None]:
-    """What the core refuses within it is told in the units of a measured body: times in seconds.
+    """Context in which errors of the core speak of the units of a measured body: times in seconds.
 
-    The ranges of what is out of range are those of natural units, and that is said.
+    Ranges of valid numbers stay in natural units, and the message says so.
     """
     return _AS_TOLD if scale is None else _in_seconds(scale, length)
 
@@ -164,15 +164,15 @@ def _in_seconds(scale: Scale, length: str) -> Iterator[None]:
 
 
 def _seconds(before: str, number: str, second: float) -> str:
-    """A time in seconds; a step that would do is told as one that is not longer."""
+    """A time in seconds; a proposed step is rounded so that it does not become longer."""
     told = float(number) * second
     return f"{0.99 * told:.3g}" if before == "a step of " else f"{told:.12g}"
 
 
 def in_si(m: "Motion", body: Body, seconds: Floats, step: float | None) -> "Motion":
-    """A motion found in natural units as that of a measured body, with times and step as they were given.
+    """The motion of a measured body from one in natural units; times and step are those of the user.
 
-    What is computed when it is asked for is converted then, by `told`.
+    `told` converts the outputs that are computed on access.
     """
     scale = body.scale
     assert scale is not None
@@ -198,7 +198,7 @@ def in_si(m: "Motion", body: Body, seconds: Floats, step: float | None) -> "Moti
 
 
 def told(name: str, values: Any, scale: Scale | None) -> Any:
-    """Numbers of a motion in the units in which it is told; AttributeError if that takes an unknown mass."""
+    """Convert an output of a motion to the motion's units; AttributeError if it needs an unknown mass."""
     factor, said = unit(name, scale)
     if factor is None and scale is not None and said in ("M g", "M g R"):
         in_si = {"M g": "N", "M g R": "J"}[said]

@@ -1,4 +1,4 @@
-"""Motion: how a body rolls, slides or slips on from a state."""
+"""Motion: the rolling, sliding or slipping of a body from an initial state."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -39,7 +39,7 @@ _Six: TypeAlias = tuple[float, float, float, float, float, float]
 _Four: TypeAlias = tuple[float, float, float, float]
 
 
-# how to get numbers that are not there, by their name and the contact
+# messages about missing outputs: how to get them, by output and contact
 _LACKS = "{{}} was not asked for: roll(..., want={}), or m.wanting of the same"
 _POSE, _FORCE, _BOTH = (_LACKS.format(want) for want in ('"pose"', '"force"', '("pose", "force")'))
 FRICTION = "{} is not there: the contact is {!r}; roll(..., contact=sc.Coulomb(mu)) has it"
@@ -47,7 +47,7 @@ _LOSSES = "{} is not there: nothing is lost; roll(..., losses=sc.loss.DryContour
 
 
 class Number(property):
-    """A number at each time, in the units of the motion, if it was asked for."""
+    """An output at each time, in the units of the motion; AttributeError if it was not computed."""
 
     def __init__(self, lacking: str, said: str) -> None:
         super().__init__(lambda m: _of(m, self._name, lacking))
@@ -128,7 +128,7 @@ class Motion:
     _setting: float
     _extra: dict[str, Any]
     _phases: tuple[Phase, ...] | None = None
-    _natural: "Motion | None" = None  # what a motion in SI was found as
+    _natural: "Motion | None" = None  # for a motion in SI: the same in natural units
     _axes: ClassVar[Components] = AXES
 
     @property
@@ -278,7 +278,7 @@ class Motion:
         asked = self._asked._replace(want=have | more)
         if t is not None:
             asked = asked._replace(times=times_of(t))
-        return rolled(self.body, self.start, asked)  # what there is to warn of has been said
+        return rolled(self.body, self.start, asked)  # warnings were issued for the first computation
 
     def at(self, t: Reals) -> "Motion":
         """The same motion at other times: of the same start, found in the same way, with the same extras.
@@ -351,7 +351,7 @@ class Motion:
         return written
 
     def _told(self, name: str, values: Floats) -> Floats:
-        """Numbers in natural units in those of the motion."""
+        """Convert an output from natural units to those of the motion."""
         found: Floats = values if self._natural is None else told(name, values, self.scale)
         return found
 
@@ -360,20 +360,20 @@ class Motion:
         angle: Floats = 2 * np.pi * turns + rest
         return angle
 
-    # What a motion of another kind of body says otherwise.
+    # Motions of other kinds of bodies override these.
 
     @property
     def _by_steps(self) -> bool:
-        """Whether all of it was found by steps within a tolerance."""
+        """Whether the whole motion was integrated with steps within a tolerance."""
         return self.losses is not None
 
     @property
     def _doubt(self) -> str:
-        """Until when it is known, in words; empty of a motion that is known to its end."""
+        """The time up to which the motion is known, in words; empty if that is its end."""
         return ""
 
     def _about(self) -> dict[str, Any]:
-        """The body, as a labelled result has it."""
+        """The numbers of the body for a labelled result."""
         return {name: getattr(self.body, name) for name in ("ell", "i1", "i3")}
 
     def _repr_html_(self) -> str:
@@ -385,7 +385,7 @@ class Motion:
 
 
 def rolled(body: Body, state: State, asked: Asked, numbers: tuple[_Six, _Four] | None = None) -> Motion:
-    """The motion that was asked for, without a warning; `numbers` are those of body and state, if known."""
+    """Compute a motion without warnings; `numbers` are those of body and state, if known."""
     of, start = numbers or single(body, state)
     slip = None if state.slip is None else single_slip(state)
     found = _core.roll(of, start, asked.times, crossing(asked, slip))
@@ -394,7 +394,7 @@ def rolled(body: Body, state: State, asked: Asked, numbers: tuple[_Six, _Four] |
     if "event" in found:
         time, *where = found["event"]
         event = Event(status, time, slipping(*where))
-    # the core names what it finds as the fields do: set one by one, frozen fields take longer than a motion
+    # the core's names are those of the fields: setting frozen fields one by one takes longer than a motion
     found |= {
         "body": body,
         "start": state,

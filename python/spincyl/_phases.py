@@ -10,7 +10,7 @@ from spincyl._input.numbers import number
 from spincyl._state import State, gripping
 
 Kind: TypeAlias = Literal["rolling", "slipping"]
-#: The kind of each code, as in `Motion.phase`.
+#: Kind of phase for each code in `Motion.phase`.
 KINDS: tuple[Kind, ...] = ("rolling", "slipping")
 
 
@@ -31,9 +31,9 @@ def rubs(contact: object) -> bool:
 
 
 def check(state: State, contact: AnyContact, restitution: object, settings: dict[str, Any]) -> None:
-    """Refuse what does not go with the contact: a slip where there can be none, settings of another method.
+    """Refuse arguments that the contact excludes: a slip without friction, settings of other methods.
 
-    `settings` are those of rolling that were given, by name.
+    `settings` are the settings of rolling that were given, by name.
     """
     if not isinstance(contact, Coulomb | Viscous):
         gripping(state, f"contact={contact!r} has no law for that; give contact=sc.Coulomb(mu)")
@@ -58,19 +58,19 @@ _WHY = {
 
 
 def slipping(four: Sequence[float], slip: Sequence[float] | None) -> State:
-    """The state of theta, w1, w2, w3 and the slip along the lean and across it, if there can be one."""
+    """The state of theta, w1, w2, w3 and of the slip along and across the lean; None: without a slip."""
     return State(*four, slip=None if slip is None else (slip[0], slip[1]))
 
 
 def phases(
     found: Iterable[tuple[float, int, Sequence[float], Sequence[float]]], state: Callable[..., Any] = slipping
 ) -> tuple[Phase, ...]:
-    """The phases that the core found; `state` makes a state of its numbers and its slip."""
+    """Phases from the numbers of the core; `state` makes a state of numbers and slip."""
     return tuple(Phase(time, KINDS[kind], state(numbers, slip)) for time, kind, numbers, slip in found)
 
 
 def told(phases: Sequence[Phase], unit: str = "") -> str:
-    """Phases in words: "slipping from t = 0, rolling from t = 28.3"; of many, the first two and the last."""
+    """Phases in words, "slipping from t = 0, rolling from t = 28.3"; of many, the first two and the last."""
     words = [f"{phase.kind} from t = {phase.time:.6g}{unit}" for phase in phases]
     if len(words) > 4:
         words[2:-1] = [f"... ({len(words)} phases)"]
@@ -78,14 +78,14 @@ def told(phases: Sequence[Phase], unit: str = "") -> str:
 
 
 def how_found(phases: Sequence[Phase], within: float) -> str:
-    """How phases were found, in words."""
+    """The methods that computed the phases, in words."""
     how = {"slipping": f"slip found by steps within {within:g}", "rolling": "rolling by first integrals"}
     kinds = {phase.kind for phase in phases}
     return ", ".join(text for kind, text in how.items() if kind in kinds)
 
 
 def duration(phases: Sequence[Phase], end: float) -> float:
-    """For how long it slips up to a time, in all."""
+    """Total time of slipping up to the time `end`."""
     begins = np.array([phase.time for phase in phases] + [end])
     slips = np.array([phase.kind == "slipping" for phase in phases], bool)
     return float(np.abs(np.diff(begins))[slips].sum())

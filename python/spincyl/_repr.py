@@ -1,4 +1,4 @@
-"""How a body writes itself: as the constructor that makes it."""
+"""The repr of a body: a call of the constructor that makes it."""
 
 from typing import TYPE_CHECKING
 
@@ -15,7 +15,7 @@ FIELDS = ("ell", "i1", "i3", "bore", "fillet", "theta_end")
 
 
 def body(found: "Body") -> str:
-    """A body as the constructor that makes it; in full where none of them does."""
+    """A call of the shortest constructor that makes the body: `Body` with all fields if no other does."""
     if found._measured:
         return call("Body.from_metres" if found.scale is None else "measured", **found._measured)
     fields = dict(zip(FIELDS, found._numbers, strict=True))
@@ -28,7 +28,7 @@ def body(found: "Body") -> str:
         unsaid |= {"fillet"} if sharp else set()
         return call("Body", **{name: x for name, x in fields.items() if name not in unsaid})
     half = found.ell if sharp else found.ell + found.fillet
-    # of a length that is rounded, or with an end of its own, it is no tube that can be said
+    # `Body.tube` cannot reproduce a length with rounding errors or a `theta_end`
     rounded = not sharp and not is_lazy(half) and not np.array_equal(half - found.fillet, found.ell)
     if rounded or "theta_end" not in unsaid:
         return call("Body", **fields)

@@ -1,4 +1,4 @@
-"""How a body moves on from a state: what is asked for is read, found, and told in the units of the body."""
+"""`roll`: reads the arguments, computes the motion, and converts it to the units of the body."""
 
 import warnings
 from collections.abc import Iterable
@@ -28,7 +28,7 @@ class StepWarning(UserWarning):
 
 
 def is_stone(body: object) -> TypeGuard["Ellipsoid"]:
-    """Whether this is a stone and no body of revolution: what stones need is loaded where it may be one."""
+    """Whether the body is a stone. The module of stones is imported only if it may be one."""
     if type(body) is Body:
         return False
     from spincyl._ellipsoid import Ellipsoid
@@ -194,7 +194,7 @@ def roll(
             why = f"beyond, its estimated error comes to {found.error:.2g}"
             warn(f"the motion is {found._doubt} (known_until): {why}", ErrorWarning)
         return found
-    # `single` refuses others
+    # `single` raises for other types
     one: Body = body  # type: ignore[assignment]
     start: State = state  # type: ignore[assignment]
     numbers = single(one, start)

@@ -15,7 +15,7 @@ from spincyl._upward import above
 if TYPE_CHECKING:
     from spincyl._body import Body
 
-#: The natural unit of each number that a motion has; what is not here has none.
+#: Natural unit of each output of a motion; outputs that are not listed are pure numbers.
 UNITS = {
     "t": "sqrt(R/g)",
     "theta": "rad",
@@ -101,7 +101,7 @@ class Scale:
     @elementwise
     def hertz(self, body: "Body", rate: Reals) -> Result:
         """Turns per second of a reduced rotation rate Omega~ = Omega sqrt(I3) of `body`."""
-        if not hasattr(body, "angular_rate"):  # what knows bodies knows scales
+        if not hasattr(body, "angular_rate"):  # `_body` imports this module, so `Body` is not known here
             raise TypeError(f"body: expected a Body, not {type(body).__name__}")
         return body.angular_rate(rate) * self._units[3]
 
@@ -118,7 +118,7 @@ class Scale:
 
     @property
     def _units(self) -> tuple[float, float, float, float]:
-        """Metres, seconds, joules (NaN of an unknown mass) and turns per second of the natural units."""
+        """The natural units in SI: metres, seconds, joules (NaN if the mass is unknown), turns per second."""
         metres, seconds, joules, turns = _core.units(
             self.radius, self.mass if self._is_weighed else 1.0, self.gravity
         )
@@ -130,16 +130,16 @@ class Scale:
 
     @property
     def _worst(self) -> float:
-        """The largest unit of states, slips and times: what a bound of all their errors is multiplied by."""
+        """The largest of the units of states, slips and times, which converts a bound of all their errors."""
         metre, second, *_ = self._units
         return max(1.0, 1 / second, second, metre / second)
 
     def _newton_seconds(self) -> float:
-        """The unit of impulse in newton seconds, or ValueError."""
+        """The unit of impulse in newton seconds, or ValueError if the mass is unknown."""
         return self._joule("an impulse") * self._units[1] / self._units[0]
 
     def _joule(self, what: str) -> float:
-        """The unit of energy in joules, or ValueError."""
+        """The unit of energy in joules, or ValueError if the mass is unknown."""
         if not self._is_weighed:
             raise ValueError(
                 f"{what} in SI needs the mass of the body: give mass=, in kilograms, "
@@ -149,12 +149,12 @@ class Scale:
 
 
 def unit(name: str, scale: Scale | None) -> tuple[float | None, str]:
-    """What a number of a motion is multiplied by, None if by nothing, and the unit that it then has."""
+    """The factor that converts an output of a motion, None without a conversion, and the resulting unit."""
     return si_of(UNITS.get(name, "1"), scale)
 
 
 def si_of(natural: str, scale: Scale | None) -> tuple[float | None, str]:
-    """What a number in a natural unit is multiplied by, None if by nothing, and the unit that it then has.
+    """The factor that converts from a natural unit, None without a conversion, and the resulting unit.
 
     Without a mass, forces and energies stay in natural units.
     """
@@ -188,16 +188,16 @@ def scale_of(scale: "Scale | Body", *bodies: "Body") -> Scale: ...
 @overload
 def scale_of(scale: "Scale | Body | None", *bodies: "Body") -> Scale | None: ...
 def scale_of(scale: "Scale | Body | None", *bodies: "Body") -> Scale | None:
-    """The one scale that is meant: the given one, or that of measured bodies; None if there is none.
+    """The given scale, or the common scale of measured bodies; None without any.
 
     A measured body may be given in place of a scale.
 
     Raises
     ------
     ValueError
-        If bodies have another scale than the given one, or not all the same one.
+        If a body has another scale than the given one, or the bodies have different scales.
     TypeError
-        If what is given is no scale, or there is nothing to have one.
+        If `scale` is no scale, or neither a scale nor a body is given.
     """
     given = scale if scale is None or isinstance(scale, Scale) else getattr(scale, "scale", None)
     if scale is not None and not isinstance(given, Scale):
@@ -216,7 +216,7 @@ def scale_of(scale: "Scale | Body | None", *bodies: "Body") -> Scale | None:
 
 
 def dubious(what: str, sides: tuple[float, float], volume: float, mass: float) -> str:
-    """What speaks of millimetres or grams in the measures of a body (length and width); empty if nothing."""
+    """A reason to suspect millimetres or grams in the measures (length, width) of a body; empty if none."""
     why = ""
     if max(sides) > _LENGTHS[1]:
         why = f"{sides[0]:.4g} m long and {sides[1]:.4g} m wide; 1 mm is 1e-3"

@@ -14,12 +14,12 @@ if TYPE_CHECKING:
 
 
 def _rim(body: "Laws") -> tuple[Reals, ...]:
-    """A body with the same rim, as the core takes it: its moments do not decide a velocity, nor its shape."""
+    """Numbers of a body with the same rim: a velocity depends neither on the moments nor on the bore."""
     return body.ell, 1.0, 1.0, np.nan, body.fillet, np.nan
 
 
 def slip_of(body: "Laws", state: State, along: Reals, across: Reals) -> tuple[Result, Result]:
-    """The slip that a velocity of the centre means."""
+    """The slip for a given horizontal velocity of the centre."""
     given = *numbers(state), 0.0, 0.0, *_rim(body)
     return along - _core.centre_along(*given), across - _core.centre_across(*given)
 
@@ -31,15 +31,15 @@ def velocity_of(body: "Laws", state: State) -> tuple[Result, Result]:
 
 
 def lever(stone: "Ellipsoid", vertical: Floats) -> Floats:
-    """From the centre of mass of a stone to its lowest point, along its axes; (..., 3)."""
+    """Vector from the centre of mass of a stone to its lowest point, along the stone's axes; (..., 3)."""
     found: Floats = _core.stone_lever(*several(3, *stone._columns(), *components(vertical)))
     return found
 
 
 def slip_of_stone(stone: "Ellipsoid", vertical: Floats, w: Floats, x: Reals, y: Reals) -> Floats:
-    """The slip that a velocity of the centre means, along the laboratory's x and y; (..., 2).
+    """The slip for a given velocity of the centre, along the laboratory's x and y; (..., 2).
 
-    The stone has turned from upright by the smallest angle, upside down by half a turn about axis 1.
+    The stone is turned from upright by the smallest angle; upside down, by half a turn about axis 1.
     """
     at_rest = _core.stone_slip(*several(2, *stone._columns(), *components(vertical), *components(w)))
     slip: Floats = at_rest + np.stack(np.broadcast_arrays(x, y, at_rest[..., 0])[:2], axis=-1)

@@ -159,17 +159,17 @@ class State:
 
     @property
     def _slips(self) -> bool:
-        """Whether it has a slip that is not zero, or not known to be."""
+        """Whether the state has a slip that is not zero, or that is lazy and may not be."""
         return self.slip is not None and any(is_lazy(x) or bool(np.any(x != 0)) for x in self.slip)
 
 
 def numbers(state: object) -> tuple[Reals, Reals, Reals, Reals]:
-    """The four numbers of a state, slip aside, or TypeError."""
+    """The four numbers of a state, without its slip, or TypeError."""
     return made("state", state, State)._numbers
 
 
 def gripping(state: object, why: str) -> tuple[Reals, Reals, Reals, Reals]:
-    """The four numbers of a state that does not slip, or ValueError that says what to do: `why`."""
+    """The four numbers of a state without slip, or ValueError with the remedy `why`."""
     found = numbers(state)
     if isinstance(state, State) and state._slips:
         raise ValueError(f"state: slips, slip = {text(state._slip)}: {why}")

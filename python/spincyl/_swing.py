@@ -1,4 +1,4 @@
-"""The nutation of a motion: what the turning points and the period of its swing are."""
+"""The nutation of a motion: its turning points and its period."""
 
 from typing import NamedTuple, TypeAlias
 
@@ -85,7 +85,7 @@ _Six: TypeAlias = tuple[float, float, float, float, float, float]
 
 
 def single(body: Body, state: State) -> tuple[_Six, _Four]:
-    """The numbers of one body and one state."""
+    """The numbers of a single body and a single state."""
     of, at = made("body", body, Body)._numbers, numbers(state)
     (ell, i1, i3, bore, fillet, most), (theta, w1, w2, w3) = of, at
     shape = type(ell) is type(i1) is type(i3) is type(bore) is type(fillet) is type(most) is float
@@ -101,7 +101,7 @@ def single(body: Body, state: State) -> tuple[_Six, _Four]:
 
 
 def single_slip(state: State) -> tuple[float, float]:
-    """The slip of one state, 0 where there is none."""
+    """The slip of a single state; 0 without one."""
     if state.slip is None:
         return 0.0, 0.0
     along, across = state._slip

@@ -259,7 +259,7 @@ def _on_its_side(w1: Reals, w3: Reals, across: Reals) -> State:
 
 
 def _known(body: object, scale: Scale | None) -> Scale | None:
-    """The scale that is meant."""
+    """The given scale, or that of a measured body."""
     return scale_of(scale, made("body", body, Body))
 
 

@@ -1,4 +1,4 @@
-"""What a motion says of itself: how it ended, how it was got, how large the errors are."""
+"""Motions in words: how they ended, how they were computed, and how large the errors are."""
 
 from typing import TYPE_CHECKING
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def message(m: "Motion") -> str:
-    """How it ended and how it was got, in words."""
+    """How a motion ended and how it was computed, in words."""
     why = MESSAGES[m.status][0]
     if m.event and m._phases == () and m.status == Ending.SIDE and m.event.state.w2 == 0:
         why = "the other rim does not rise"
@@ -28,14 +28,14 @@ def message(m: "Motion") -> str:
 
 
 def ends(m: "Motion") -> str:
-    """What the body does where the motion ends: "slips"; a body wider than high stands, on its edge."""
+    """The behaviour of the body at the end of the motion, as "slips"; a wide body stands on its edge."""
     if m.status == Ending.SIDE and m.body.ell < 1:
         return "stands on its edge"
     return MESSAGES[m.status][1]
 
 
 def _second(m: "Motion") -> str:
-    """The unit of its times, as it is said after one."""
+    """The unit of the motion's times, to append to a number."""
     return "" if m.scale is None else " s"
 
 

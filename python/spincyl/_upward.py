@@ -1,7 +1,7 @@
-"""What a noun does by a layer above its own: `m.plot()`, `m.sound(path)`, its card in a notebook.
+"""Methods that a layer above their class carries out: `m.plot()`, `m.sound(path)`, cards in a notebook.
 
-The method, with its arguments and its docstring, belongs to the noun; the function behind it belongs to a
-layer that knows the noun. No module imports from a layer above its own: the front door says where each is.
+The method, with its arguments and docstring, belongs to the class; the function behind it stands in a layer
+that imports the class. Since no module imports from a layer above its own, `spincyl/__init__.py` lists them.
 """
 
 from collections.abc import Callable
@@ -9,7 +9,7 @@ from functools import cache
 from importlib import import_module
 from typing import Any
 
-#: By method: the module that has the function, which is loaded at the first call, and the function's name.
+#: Module and name of the function behind each method; the module is loaded at the first call.
 HOMES: dict[str, tuple[str, str]] = {}
 
 

@@ -233,7 +233,7 @@ class BoundaryLayer(Law):
 
 
 def _told(kind: type[_Kind], coefficient: Reals, names: str, scale: Scale | Body) -> _Kind:
-    """A law of this coefficient, or ValueError that names what it was found from."""
+    """A law with this coefficient, or ValueError that names the quantities it was computed from."""
     try:
         return sized(kind(coefficient), scale)
     except ValueError as e:

@@ -1,1 +1,1 @@
-"""What comes in, and what goes out as text: numbers, units, words, threads and whole files. No physics."""
+"""Reading of arguments and writing of numbers: units, words, threads and whole files. No physics."""

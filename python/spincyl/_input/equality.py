@@ -1,4 +1,4 @@
-"""Values that are compared: also those with arrays in them, number by number, NaN equal to NaN."""
+"""Equality of objects whose fields may be arrays: number by number, NaN equal to NaN."""
 
 from collections.abc import Hashable, Mapping
 from dataclasses import fields
@@ -10,7 +10,7 @@ _Kind = TypeVar("_Kind")
 
 
 def key(value: Any) -> Hashable:
-    """What is equal, and has one hash, for equal values: numbers and arrays go by value, not by type."""
+    """A hashable key, the same for equal values: numbers and arrays count by value, not by type."""
     if hasattr(type(value), "_compared"):
         return value  # type: ignore[no-any-return]
     if isinstance(value, Mapping):
@@ -22,12 +22,12 @@ def key(value: Any) -> Hashable:
     array = np.ma.filled(value.astype(np.float64), np.nan) if np.ma.isMA(value) else np.asarray(value)
     if array.dtype.kind not in "biuf":
         return array.shape, tuple(array.ravel().tolist())
-    plain = array.astype(np.float64) + 0.0  # no -0.0
+    plain = array.astype(np.float64) + 0.0  # turns -0.0 into 0.0
     return plain.shape, np.where(np.isnan(plain), np.nan, plain).tobytes()
 
 
 def compared(kind: type[_Kind]) -> type[_Kind]:
-    """A class of named fields whose instances are equal, and have one hash, if all their fields are."""
+    """Class decorator: instances are equal, and have the same hash, if all their named fields are equal."""
     named: Any = kind
     names: tuple[str, ...] = getattr(kind, "_fields", ()) or tuple(x.name for x in fields(named))
 
@@ -37,7 +37,7 @@ def compared(kind: type[_Kind]) -> type[_Kind]:
     def equal(self: Any, other: object) -> bool:
         if type(other) is type(self):
             return keys(self) == keys(other)
-        # a plain tuple would compare arrays by itself
+        # else the == of a tuple would compare arrays
         return False if isinstance(other, tuple) else NotImplemented
 
     def unequal(self: Any, other: object) -> bool:
@@ -45,6 +45,6 @@ def compared(kind: type[_Kind]) -> type[_Kind]:
         return same if same is NotImplemented else not same
 
     named.__eq__, named.__ne__, named.__hash__ = equal, unequal, lambda self: hash((kind, keys(self)))
-    named.__array_ufunc__ = None  # NumPy's arrays do not compare themselves with it element by element
+    named.__array_ufunc__ = None  # without this, an array of NumPy would compare its elements with the object
     named._compared = True
     return kind

@@ -1,6 +1,6 @@
-"""Files that are whole: each is made beside its place, and takes it when it is done.
+"""Whole files: each is written beside its target, which it replaces only when it is complete.
 
-What was there stays until then, whatever fails or is killed. Every file of the package is written so.
+Until then the old file stays, even if the program fails or is killed. All files of the package go this way.
 """
 
 import os
@@ -16,17 +16,17 @@ from uuid import uuid4
 
 @contextmanager
 def replaced(path: str | os.PathLike[str]) -> Iterator[Path]:
-    """An empty file to write to, which takes the place of `path` at the end, or is removed if anything fails.
+    """An empty file to write to, which replaces `path` at the end, or is removed if anything fails.
 
-    Its name is absolute and ends in the suffix of `path` in small letters: what is given to a program or a
-    library is nothing but a file. A new file has the permissions that `open` gives it, a later one those and
-    the owner of the file before it; links are followed. A device, a pipe, and a file whose folder or owner
-    forbids that it be replaced are written to in place when all is made.
+    Its name is absolute and ends in the suffix of `path` in small letters, so that other programs and
+    libraries take it for a plain file. A new file has the permissions that `open` gives; a file that replaces
+    an older one has the older one's owner and permissions. Links are followed. A device, a pipe, and a file
+    whose folder or owner forbids its replacement are written in place at the end.
 
     Raises
     ------
     OSError
-        Where `open` raises one, and where the writing does; with the path that was given.
+        Where `open` or the writing raises one; with the path that was given.
     """
     path = Path(path)
     there = _there(path)
@@ -48,18 +48,18 @@ def replaced(path: str | os.PathLike[str]) -> Iterator[Path]:
 
 
 def _there(path: Path) -> os.stat_result | None:
-    """What there is, if it can be written to."""
+    """The status of the existing file, None without one; an error if it is not writable."""
     try:
         there = path.stat()
     except FileNotFoundError:
         return None
-    if not S_ISFIFO(there.st_mode):  # whose reader would take this for all there is
+    if not S_ISFIFO(there.st_mode):  # the reader of a pipe would take the closing for the end of the data
         path.open("ab").close()
     return there
 
 
 def _target(path: Path, there: os.stat_result | None) -> Path | None:
-    """The file that can be replaced, behind all links; None if there is none."""
+    """The file to replace, behind all links; None if it has to be written in place."""
     target = Path(os.path.realpath(path))
     if there is None:
         return target
@@ -68,7 +68,7 @@ def _target(path: Path, there: os.stat_result | None) -> Path | None:
 
 
 def _is_open(path: Path) -> bool:
-    """Whether it leads to what a process has open, as /dev/stdout does: there a new file would not be it."""
+    """Whether the path is a link to an open file of a process, as /dev/stdout, which cannot be replaced."""
     while path.is_symlink():
         folder = Path(os.path.realpath(path.parent))
         if folder.parts[:2] == ("/", "proc"):
@@ -78,7 +78,7 @@ def _is_open(path: Path) -> bool:
 
 
 def _moved(part: Path, target: Path, there: os.stat_result | None) -> bool:
-    """Whether the part is now the target; where there was a file, with its owner and permissions."""
+    """Move the part to the target, with the owner and permissions of an older file. Returns success."""
     try:
         if there is not None:
             made = part.stat()
@@ -92,7 +92,7 @@ def _moved(part: Path, target: Path, there: os.stat_result | None) -> bool:
 
 
 def _of(path: Path, part: Path, error: OSError) -> OSError:
-    """An error of the part as one of the path."""
+    """An error about the part as one about the path."""
     if error.errno is None:
         return OSError(f"{path}: {str(error).replace(str(part), str(path))}")
     if error.filename not in (None, part, str(part)):

@@ -1,4 +1,4 @@
-"""What comes in: numbers or arrays of real numbers, refused by name if anything else."""
+"""Checks of arguments: numbers or arrays of real numbers; errors begin with the name of the argument."""
 
 import math
 import os
@@ -28,16 +28,16 @@ _Found = TypeVar("_Found")
 
 
 def reals(name: str, value: Reals) -> Reals:
-    """`value` as something NumPy's ufuncs take, or TypeError naming the argument."""
+    """`value` as numbers that NumPy's ufuncs take, or TypeError naming the argument."""
     if type(value) is float:
         return value
     if type(value) is not np.ndarray and is_quantity(value):
         value = _magnitude(name, value, "radian", "a number in natural units, or an angle")
-    if type(value).__module__.startswith("polars."):  # whose types are none of NumPy's
+    if type(value).__module__.startswith("polars."):  # which has dtypes of its own
         value = value.to_numpy()
     array = value if hasattr(value, "__array_ufunc__") else _ndarray(name, value)
     kinds = _dtypes(array)
-    if kinds is None:  # pandas.NA speaks of ufuncs, but holds no number
+    if kinds is None:  # pandas.NA supports ufuncs, but is no number
         raise TypeError(f"{name}: expected real numbers, not {type(value).__name__}")
     for dtype in kinds:
         if getattr(dtype, "kind", "O") in "US":
@@ -49,9 +49,9 @@ def reals(name: str, value: Reals) -> Reals:
 
 
 def radians(name: str, value: Reals, expected: str | None = None, likely: float = math.pi) -> Reals:
-    """An angle in radians. What is beyond pi looks like degrees: a ValueError, in an array NaN and a warning.
+    """Return an angle in radians. Beyond pi, as degrees are: ValueError, in an array NaN and a warning.
 
-    Between `likely` and pi there is the warning alone. A lazy array is not looked into.
+    Between `likely` and pi there is only a warning. The values of a lazy array are not computed.
     """
     if type(value) is float and abs(value) <= likely:
         return value
@@ -86,9 +86,9 @@ def _doubted(name: str, value: float) -> None:
 
 
 def warn(why: str, kind: type[Warning] = UserWarning) -> None:
-    """A warning at the line that called this library."""
+    """Issue a warning that points at the line that called this library."""
     level, frame = 1, sys._getframe()
-    # labelled arrays call back what works on plain ones
+    # functions of this library run inside xarray when it applies them to plain arrays
     within = "spincyl.", "xarray."
     while frame.f_back and str(frame.f_globals.get("__name__")).startswith(within):
         level, frame = level + 1, frame.f_back
@@ -96,7 +96,7 @@ def warn(why: str, kind: type[Warning] = UserWarning) -> None:
 
 
 def _own(value: Any) -> Any:
-    """A copy of an array, of which an axis that only repeats its numbers takes no room."""
+    """A copy of an array; an axis along which its numbers repeat (stride 0) takes no memory."""
     if not isinstance(value, np.ndarray) or 0 not in value.strides:
         return value.copy()
     once = value[tuple(slice(None if step else 1) for step in value.strides)].copy()
@@ -104,9 +104,9 @@ def _own(value: Any) -> Any:
 
 
 def kept(value: Reals) -> Reals:
-    """`value` as a field keeps it: a copy that its caller cannot change, read-only if it can be.
+    """`value` for storage in a field: a copy that the caller cannot change, read-only if possible.
 
-    A lazy array stays as it is: it cannot be changed.
+    A lazy array needs no copy, since it cannot be changed.
     """
     if type(value) is float or isinstance(value, np.generic) or not hasattr(value, "copy"):
         return value
@@ -120,19 +120,19 @@ def kept(value: Reals) -> Reals:
 
 
 def is_quantity(value: object) -> bool:
-    """Whether a number has a unit of pint's, which is not loaded for that."""
+    """Whether `value` is a quantity of pint, without importing pint."""
     return hasattr(type(value), "m_as")
 
 
 def si(name: str, value: Reals, unit: str) -> Reals:
-    """`value` in a unit of SI that pint knows by this name; "120mm" and a quantity are converted to it."""
+    """`value` in the unit of SI that pint calls `unit`; a text such as "120mm" or a quantity is converted."""
     if isinstance(value, str):
         return _read(name, value, unit)
     return _magnitude(name, value, unit, f"a number or a quantity in {unit}") if is_quantity(value) else value
 
 
 def alike(measures: dict[str, Any]) -> None:
-    """ValueError where a text with its unit stands beside a bare number, which may be one in any unit."""
+    """ValueError if some measures are texts with a unit and others bare numbers, whose unit is uncertain."""
     bare = [(name, x) for name, x in measures.items() if isinstance(x, Real) and x != 0]
     if bare and any(isinstance(x, str) for x in measures.values()):
         name, x = bare[0]
@@ -140,7 +140,7 @@ def alike(measures: dict[str, Any]) -> None:
 
 
 def turns_per_second(name: str, value: Reals) -> Reals:
-    """A frequency in hertz; of a quantity in radians or degrees a time, the turns in a second."""
+    """A frequency in hertz; a quantity with an angle per time is converted to turns per second."""
     if isinstance(value, str):
         return _read(name, value, "hertz")
     if not is_quantity(value):
@@ -151,14 +151,14 @@ def turns_per_second(name: str, value: Reals) -> Reals:
 
 
 def radians_per_second(name: str, value: Reals) -> Reals:
-    """An angular velocity in rad/s; a quantity in hertz is turns in a second."""
+    """An angular velocity in rad/s; hertz of a quantity are turns per second."""
     if isinstance(value, str):
         return _read(name, value, "radian/second")
     return 2 * np.pi * turns_per_second(name, value) if is_quantity(value) else value
 
 
 def _read(name: str, text: str, unit: str) -> float:
-    """What the command line reads in a text such as "120mm", or an error by name."""
+    """Read a text such as "120mm" like the command line; an error names the argument."""
     from argparse import ArgumentTypeError
 
     from spincyl._input import units
@@ -173,26 +173,26 @@ def _read(name: str, text: str, unit: str) -> float:
 def _magnitude(name: str, value: Any, unit: str, expected: str) -> Reals:
     try:
         return value.m_as(unit)
-    except TypeError:  # pint's error of dimensions is one
+    except TypeError:  # includes pint's error about dimensions
         raise TypeError(f"{name}: expected {expected}, not {value.units}") from None
 
 
 def _ndarray(name: str, value: object) -> NDArray[Any]:
     try:
         return np.asarray(value)
-    except (ValueError, TypeError) as e:  # a ragged list, or one of quantities
+    except (ValueError, TypeError) as e:  # a ragged list, or a list of quantities
         raise TypeError(f"{name}: expected real numbers, not {type(value).__name__} ({e})") from None
 
 
 def _dtypes(array: Any) -> Any:
-    """The types of an array's or a table's elements; None of what has none."""
+    """The dtypes of an array or of a table; None if `array` has none."""
     return [array.dtype] if hasattr(array, "dtype") else getattr(array, "dtypes", None)
 
 
 def keywords(law: np.ufunc, given: dict[str, Any]) -> dict[str, Any]:
-    """Keywords of a ufunc, with `out` and `where` refused by name if they cannot be that.
+    """The keywords of a ufunc; an unsuitable `out` or `where` raises an error that names it.
 
-    pandas and xarray would put `where` in place by position, whatever its labels say.
+    A labelled `where` is refused, since pandas and xarray would apply it by position and ignore its labels.
     """
     out = given.get("out")
     if isinstance(out, tuple) and len(out) != 1:
@@ -208,7 +208,7 @@ def keywords(law: np.ufunc, given: dict[str, Any]) -> dict[str, Any]:
         for dtype in kinds:
             own = law.resolve_dtypes((np.dtype(np.float64),) * law.nin + (None,))[-1]
             casting = given.get("casting", "same_kind")
-            # NumPy would cut the words of a number to the length of a text
+            # NumPy would write numbers into an array of texts, truncated to its width
             fits = (
                 dtype.kind not in "SUmM" and np.can_cast(own, dtype, casting)
                 if isinstance(dtype, np.dtype)
@@ -228,9 +228,9 @@ def keywords(law: np.ufunc, given: dict[str, Any]) -> dict[str, Any]:
 
 
 def floats(value: Reals) -> Floats:
-    """`value` as compiled functions read arrays: doubles, contiguous, aligned; copied only if it is not that.
+    """`value` as contiguous, aligned doubles, as compiled functions need it; copied only if necessary.
 
-    What comes from a file, a network or another process may lie at any address. What is masked is NaN.
+    An array from a file, a network or another process may be unaligned. Masked values become NaN.
     """
     if isinstance(value, np.ma.MaskedArray):
         value = np.ma.filled(value.astype(np.float64), np.nan)
@@ -239,7 +239,7 @@ def floats(value: Reals) -> Floats:
 
 
 def in_columns(values: Iterable[Reals], shape: tuple[int, ...]) -> list[Floats]:
-    """`values` as columns of one length for compiled functions; a single number stays one beside a column."""
+    """`values` as columns of one length for compiled functions; single numbers stay columns of length 1."""
     found = [
         floats(x).reshape(-1) if np.size(x) == 1 else floats(np.broadcast_to(floats(x), shape)).reshape(-1)
         for x in values
@@ -274,7 +274,7 @@ def whole(name: str, value: object, low: int, high: int) -> int:
 
 
 def fitting(named: dict[str, Reals]) -> tuple[int, ...]:
-    """The shape as which they broadcast, named dimensions aside, or ValueError with the names and shapes."""
+    """The common shape of unlabelled arrays by broadcasting, or ValueError with the names and shapes."""
     shapes = {name: np.shape(x) for name, x in named.items() if not hasattr(x, "dims")}
     try:
         return np.broadcast_shapes(*shapes.values())
@@ -284,9 +284,9 @@ def fitting(named: dict[str, Reals]) -> tuple[int, ...]:
 
 
 def elementwise(law: Callable[_Given, _Found]) -> Callable[_Given, _Found]:
-    """A function whose arguments broadcast: shapes that do not fit are named, and NumPy warns of nothing.
+    """Decorator of functions with broadcast arguments: names shapes that do not fit, silences NumPy.
 
-    What overflows is infinite, and what is no number NaN, as the functions of the core have it.
+    Overflow gives inf and invalid operations NaN, without warnings, as in the functions of the core.
     """
 
     @wraps(law)
@@ -306,7 +306,7 @@ def elementwise(law: Callable[_Given, _Found]) -> Callable[_Given, _Found]:
 
 
 def of_its_shape(*values: Any) -> Reals:
-    """An array of the shape as which values broadcast, those of bodies and states being their fields."""
+    """An array of the common shape of the values; a body or a state counts by its fields."""
     fields: list[Any] = []
     for value in values:
         own = getattr(value, "_numbers", getattr(value, "_coefficients", None))
@@ -315,12 +315,12 @@ def of_its_shape(*values: Any) -> Reals:
         return 0.0
     try:
         return np.broadcast_to(0.0, np.broadcast_shapes(*map(np.shape, fields)))
-    except ValueError:  # a ragged list, say, of which the error speaks
+    except ValueError:  # such as a ragged list, about which the error to come is clearer
         return 0.0
 
 
 def refuse(name: str, value: Reals, bad: Callable[[Any], Any], expected: str) -> None:
-    """ValueError that names the first value that is wrong; a lazy array is not looked into."""
+    """ValueError that names the first bad value; the values of a lazy array are not computed."""
     if getattr(value, "chunks", None) is not None:
         return
     numbers = np.asarray(value, np.float64)
@@ -339,7 +339,7 @@ def within(name: str, value: object, low: float, high: float, unit: str = "") ->
 
 
 def made(name: str, value: object, kind: type[_Kind]) -> _Kind:
-    """What is of this class, or TypeError naming the argument."""
+    """Return `value` if it is an instance of `kind`, else raise TypeError naming the argument."""
     if not isinstance(value, kind):
         like = f"{'an' if kind.__name__[0] in 'AEIO' else 'a'} {kind.__name__}"
         raise TypeError(f"{name}: expected {like}, not {type(value).__name__}")
@@ -347,7 +347,7 @@ def made(name: str, value: object, kind: type[_Kind]) -> _Kind:
 
 
 def one_of(name: str, value: Any, known: Sequence[object]) -> Any:
-    """One of a few words or numbers, or ValueError naming the argument."""
+    """Return `value` if it is one of `known`, else raise ValueError naming the argument."""
     if not (value is None or isinstance(value, str | int | float | np.integer)) or value not in known:
         *most, last = map(repr, known)
         raise ValueError(f"{name} = {value!r}: expected {', '.join(most)} or {last}")
@@ -355,7 +355,7 @@ def one_of(name: str, value: Any, known: Sequence[object]) -> Any:
 
 
 def words(name: str, value: str | Iterable[str], known: Sequence[str]) -> tuple[str, ...]:
-    """One word or several of those known, as a tuple, or an error naming the argument."""
+    """One or several of the known words, as a tuple, or an error naming the argument."""
     try:
         found = (value,) if isinstance(value, str) else tuple(value)
     except TypeError:
@@ -382,17 +382,17 @@ def path_of(name: str, value: str | PathLike[str]) -> Path:
     except TypeError:
         raise TypeError(f"{name}: expected the path of a file, not {type(value).__name__}") from None
     try:
-        with suppress(OSError):  # which is told by who opens it
+        with suppress(OSError):  # opening the file will report this
             os.stat(found)
-    except ValueError as e:  # a zero in it, or half a character
+    except ValueError as e:  # a null character, or half of a surrogate pair
         raise ValueError(f"{name} = {str(found)!r}: no file can have this name ({e})") from None
     return found
 
 
 def several(most: int, *values: Reals, name: str = "root") -> tuple[Reals, ...]:
-    """`values` with a new last axis and, as one more, the numbers 0, 1, ... along it.
+    """`values` with a new last axis, followed by the numbers 0, 1, ... along it.
 
-    For laws with up to `most` answers. xarray broadcasts by name: there the axis is called `name`.
+    For laws with up to `most` results. xarray broadcasts by name: there the new axis is called `name`.
     """
     named = next((v for v in values if hasattr(v, "dims")), None)
     if named is not None:

@@ -1,4 +1,4 @@
-"""How numbers write themselves: single numbers as they were typed, many by their ends, as NumPy does."""
+"""Numbers as text: single numbers with all digits, arrays abridged as in NumPy."""
 
 from typing import Any
 
@@ -10,14 +10,14 @@ _FEW = 6
 
 
 def call(name: str, *plain: Reals, **named: Reals) -> str:
-    """A call that makes the thing, which Python can evaluate unless an array was shortened."""
+    """A call of a constructor, which Python can evaluate unless an array was abridged."""
     words = [text(x) for x in plain] + [f"{key}={text(x)}" for key, x in named.items()]
     line = f"{name}({', '.join(words)})"
     return line if len(line) <= 110 else f"{name}({(',' + chr(10) + ' ' * (len(name) + 1)).join(words)})"
 
 
 def text(value: Reals) -> str:
-    """A number with all its digits, a few of them as a list, more of them by their ends and shape; pairs."""
+    """A number with all digits, a short array as a list, a long one by its ends and shape; tuples, too."""
     if isinstance(value, tuple):
         return f"({', '.join(map(text, value))})"
     if is_scalar(value):
@@ -34,7 +34,7 @@ def text(value: Reals) -> str:
 
 
 def is_lazy(value: Any) -> bool:
-    """Whether to look at the numbers would mean to compute them."""
+    """Whether reading the numbers would start a computation, as for arrays of dask."""
     return getattr(value, "chunks", None) is not None
 
 

@@ -1,4 +1,4 @@
-"""How many threads work at a job, and who is called while they do."""
+"""The number of threads for a computation, and its callback for progress."""
 
 import os
 import threading
@@ -18,7 +18,7 @@ _BORN = os.getpid()
 
 def is_roomy() -> bool:
     """Whether the calling thread has a stack of some MiB: the main one, with the usual limit."""
-    # the main thread of a forked child was any thread of its parent
+    # in a forked child the main thread is a copy of any thread of the parent, perhaps one with a small stack
     if resource is None or os.getpid() != _BORN or threading.current_thread() is not threading.main_thread():
         return False
     limit: int = resource.getrlimit(resource.RLIMIT_STACK)[0]
@@ -26,7 +26,7 @@ def is_roomy() -> bool:
 
 
 def thread_count(threads: int | None) -> int:
-    """How many threads: as asked, as RAYON_NUM_THREADS says, or every core this process may use."""
+    """The number of threads: as given, else RAYON_NUM_THREADS, else every core this process may use."""
     if threads is None:
         cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
         asked = os.environ.get("RAYON_NUM_THREADS", "") or "0"

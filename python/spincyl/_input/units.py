@@ -8,7 +8,7 @@ from decimal import Decimal
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?", re.I)
 _PLAIN_NEGATIVE = re.compile(r"-\d+|-\d*\.\d+")
-# by quantity and unit; what goes without a unit has the first one
+# factors to SI by quantity and unit; the first unit is that of a number without one
 _UNITS = {
     "length": {
         "m": "1",
@@ -53,7 +53,7 @@ class MetresPerSecond(float):
 
 
 def joined(argv: Sequence[str]) -> list[str]:
-    """Words in which a unit is again at its number, and a negative power of ten at its option."""
+    """Join units to their numbers, and negative numbers that argparse does not recognise to their options."""
     words: list[str] = []
     for word in argv:
         last = words[-1] if words else ""
@@ -103,7 +103,7 @@ def _one(kind: str) -> str:
 
 
 def quantity(kind: str) -> Callable[[str], float]:
-    """What reads a length, mass, gravity, frequency or duration."""
+    """A function that reads a length, mass, gravity, frequency or duration."""
     units = _UNITS[kind]
 
     def read(text: str) -> float:
@@ -113,9 +113,9 @@ def quantity(kind: str) -> Callable[[str], float]:
             raise ArgumentTypeError(f"{text!r}: expected {_one(kind)}, bare or in {known}")
         factor = units[unit] if unit else "1"
         try:
-            # in decimals, so that 15.875mm is what 0.015875 is
+            # decimal arithmetic, so that 15.875mm equals 0.015875
             found = float(Decimal(number) * Decimal(factor))
-        except ArithmeticError:  # of an exponent that decimals do not have: infinite, or 0
+        except ArithmeticError:  # an exponent beyond those of Decimal: infinite, or 0
             found = float(number)
         if math.isinf(found):
             raise ArgumentTypeError(
@@ -126,7 +126,7 @@ def quantity(kind: str) -> Callable[[str], float]:
     return read
 
 
-#: The kind of a quantity by the name that pint has for its unit of SI.
+#: Kind of quantity by pint's name for its unit of SI.
 _KINDS = {
     "metre": "length",
     "kilogram": "mass",
@@ -144,7 +144,7 @@ _KINDS = {
 
 
 def read(text: str, unit: str) -> float:
-    """A text that ends in its unit as a number in this unit of SI; TypeError where one of both is missing."""
+    """A number with its unit as a number in the unit `unit` of SI; TypeError if either is missing."""
     known = unit in _KINDS or unit == "radian"
     if not known or _NUMBER.match(text.strip()) is None or not has_unit(text):
         like = ", or a text with its unit as '16mm' or '85deg'" if known else ""
@@ -153,7 +153,7 @@ def read(text: str, unit: str) -> float:
 
 
 def _natural_or(kind: str, si: type[float]) -> Callable[[str], float]:
-    """What reads a number in natural units, or a quantity of this kind if it has a unit."""
+    """A function that reads a number in natural units or, if a unit is given, a quantity of this kind."""
 
     def read(text: str) -> float:
         number, unit = _parts(text)
@@ -181,7 +181,7 @@ def whole(text: str) -> int:
         try:
             value = Decimal(number)
             found = value.copy_abs() <= 10**15 and value == value.to_integral_value()
-        except ArithmeticError:  # of an exponent that decimals do not have
+        except ArithmeticError:  # an exponent beyond those of Decimal
             found = False
         if unit or not found:
             raise ArgumentTypeError(f"{text!r}: expected a whole number") from None

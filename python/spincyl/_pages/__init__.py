@@ -1,1 +1,1 @@
-"""Pages that need nothing but a browser: recorded motions, and the core itself to play with."""
+"""Pages that need only a browser: recorded motions, and a live page that contains the core."""

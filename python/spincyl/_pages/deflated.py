@@ -1,17 +1,17 @@
-"""What a page carries packed: bytes by deflate, and those as text; play.loader.js is the inverse."""
+"""Compressed content of a page: deflated bytes as text; `play.loader.js` decodes it."""
 
 import zlib
 
 import numpy as np
 
-#: What does not survive in a page: NUL, CR, and what a tag begins with.
+#: Characters that an HTML page would change: NUL, CR and "<".
 _UNFIT = 0, 13, 60
 
 
 def packed(first: bytes, second: bytes) -> str:
-    """Two pieces as text that can stand in a script element.
+    """Two byte strings as text for a script element.
 
-    A head has how long the deflated stream is, which a browser does not guess, and the first piece.
+    A header holds the length of the deflated stream, which a browser needs, and that of the first string.
     """
     stream = zlib.compress(first + second, 9)
     return characters(len(stream).to_bytes(4, "big") + len(first).to_bytes(4, "big") + stream)
@@ -20,7 +20,7 @@ def packed(first: bytes, second: bytes) -> str:
 def characters(data: bytes) -> str:
     """Bytes as text, seven bits in each character.
 
-    A character that is unfit is told beside the next one, by one of 128 or above: two bytes in UTF-8 for two.
+    An unfit character is combined with the next one into a character of 128 or above: two bytes in UTF-8.
     """
     bits = np.unpackbits(np.frombuffer(data, np.uint8))
     sevens = np.append(bits, np.zeros(-bits.size % 7, np.uint8)).reshape(-1, 7)

@@ -1,4 +1,4 @@
-"""Numbers and surfaces in few bytes, as the page reads them."""
+"""Numbers and surfaces in few bytes, for the page."""
 
 from base64 import b64encode
 from typing import Any
@@ -9,7 +9,7 @@ from spincyl._studio.shape import Part, Profile
 
 
 def corners(profile: Profile) -> list[tuple[float, ...]]:
-    """Corners of a profile, of a smooth one with their normals, to a millionth."""
+    """Corners of a profile; for a smooth profile with their normals, rounded to 1e-6."""
     if profile.normals is None:
         return profile.corners  # type: ignore[return-value]
     pairs = zip(profile.corners, profile.normals, strict=True)
@@ -17,8 +17,9 @@ def corners(profile: Profile) -> list[tuple[float, ...]]:
 
 
 def packed_part(part: Part) -> dict[str, Any]:
-    """A part in few bytes: places in 16 bits, normals in 8."""
-    unit = float(f"{np.abs(part.vertices).max() / 32500:.3g}")  # a little more than needed
+    """A part in few bytes: positions in 16 bits, normals in 8."""
+    # slightly more than the smallest unit that fits
+    unit = float(f"{np.abs(part.vertices).max() / 32500:.3g}")
     return {
         "colour": part.colour,
         "unit": unit,
@@ -29,5 +30,5 @@ def packed_part(part: Part) -> dict[str, Any]:
 
 
 def base64(values: Any, dtype: str) -> str:
-    """An array of numbers of this type, as text."""
+    """An array of numbers of type `dtype`, in base 64."""
     return b64encode(np.ascontiguousarray(values, dtype).tobytes()).decode("ascii")

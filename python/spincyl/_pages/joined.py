@@ -1,11 +1,11 @@
-"""Pages out of their files: style, script and a template with fields."""
+"""Assembly of pages: style sheets, scripts and templates with fields."""
 
 import html
 import re
 from collections.abc import Iterable, Mapping
 from importlib.resources import files
 
-#: What cannot stand in HTML: controls but white space, halves of characters, and what is no character.
+#: Characters that HTML excludes: controls other than white space, surrogates and noncharacters.
 _UNFIT = re.compile(
     "[\0-\x08\x0b\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufdd0-\ufdef"
     + "".join(chr(plane << 16 | low) for plane in range(17) for low in (0xFFFE, 0xFFFF))
@@ -14,12 +14,12 @@ _UNFIT = re.compile(
 
 
 def text(name: str) -> str:
-    """A file of the folder `js`."""
+    """The text of a file in the folder `js`."""
     return files(__package__).joinpath("js", name).read_text("utf-8")
 
 
 def line(name: str, value: str) -> str:
-    """Text for people to read, in which tabs and new lines are spaces; or what is wrong with it."""
+    """Text with tabs and newlines replaced by spaces; an error if it contains characters unfit for HTML."""
     if not isinstance(value, str):
         raise TypeError(f"{name}: expected text, not {type(value).__name__}")
     if unfit := _UNFIT.search(value):
@@ -29,13 +29,13 @@ def line(name: str, value: str) -> str:
 
 
 def style(names: Iterable[str]) -> str:
-    """Style sheets without their comments and the spaces round their signs."""
+    """Style sheets without comments and without spaces next to punctuation."""
     bare = re.sub(r"/\*.*?\*/", "", "".join(map(text, names))).strip()
     return re.sub(r"[ \n]*([{};,])[ \n]*|(?<=:) ", r"\1", bare)
 
 
 def colours(names: Iterable[str]) -> dict[str, tuple[float, float, float]]:
-    """The colours that style sheets have in daylight, by name: red, green and blue from 0 to 1."""
+    """The daylight colours of style sheets, by name: red, green and blue from 0 to 1."""
     found = {}
     for name in names:
         for word, code in re.findall(r"--(\w+): #([0-9a-f]{6})", text(name).split("[data-night]")[0]):
@@ -45,13 +45,13 @@ def colours(names: Iterable[str]) -> dict[str, tuple[float, float, float]]:
 
 
 def script(names: Iterable[str]) -> str:
-    """Scripts in one strict function: a page is to be small, the source to be read."""
+    """Scripts as one strict function without comments and needless spaces, since a page has to be small."""
     joined = re.sub(r"^\s+|(^|\s+)//( .*)?$\n?|^\n", "", "".join(map(text, names)), flags=re.M)
     return f'"use strict";\n(() => {{\n{_tight(joined)}}})();'
 
 
 def _tight(code: str) -> str:
-    """A script without the spaces round its signs; what stands in quotes stays as it is."""
+    """A script without spaces next to punctuation; strings and templates stay unchanged."""
     found, at = [], 0
     while at < len(code):
         end = _quoted(code, at) if code[at] in _QUOTES else _next(code, at, _QUOTES)
@@ -62,19 +62,19 @@ def _tight(code: str) -> str:
 
 
 _QUOTES = "\"'`"
-#: A space beside a sign, but for those that keep "a + +b" and "a - -b" apart.
+#: A space next to punctuation, except those that separate "a + +b" and "a - -b".
 _SPACED = re.compile(
     r"(?<=[][{}(),;=<>?:&|!*/%]) | (?=[][{}(),;=<>?:&|!*/%])|(?<=[+-]) (?![+-])|(?<![+-]) (?=[+-])"
 )
 
 
 def _next(code: str, at: int, signs: str) -> int:
-    """Where the next of these signs is, or the end."""
+    """Index of the first of these characters from `at` on, or the end."""
     return min((i for i in (code.find(sign, at) for sign in signs) if i >= 0), default=len(code))
 
 
 def _quoted(code: str, at: int) -> int:
-    """Where what is quoted from here on ends; a template may hold code, with quotes of its own."""
+    """Index after the string that begins at `at`; a template may contain code with strings of its own."""
     quote, at, depth = code[at], at + 1, 0
     while code[at] != quote or depth:
         if depth and code[at] in _QUOTES:
@@ -96,9 +96,9 @@ _UNTRUSTED = "Here is a page of spincyl. It is shown when this notebook is trust
 
 
 def frame(page: str, sandbox: str, look: str, name: str = "") -> str:
-    """A page in a frame that may do no more than this; a notebook that has a theme tells it there.
+    """A page in a sandboxed frame; in a notebook with a theme, the frame is told whether it is dark.
 
-    What stands in the frame is seen where a notebook that is not trusted takes the frame away.
+    The text inside the frame shows where a notebook that is not trusted removes the frame.
     """
     told, called = html.escape(_TELLS.replace("\n", " ")), f' name="{name}"' if name else ""
     return (
@@ -108,6 +108,6 @@ def frame(page: str, sandbox: str, look: str, name: str = "") -> str:
 
 
 def filled(template: str, fields: Mapping[str, str]) -> str:
-    """A template with each field once, in its order: what is put in is not looked at again."""
+    """A template with each field replaced once, in order; the inserted text is not searched for fields."""
     before, *rest = text(template).split("{")
     return before + "".join(fields[name] + after for name, after in (x.split("}", 1) for x in rest))

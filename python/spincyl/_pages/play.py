@@ -1,4 +1,4 @@
-"""A page to play with: the core itself, as WebAssembly, in one file that asks for nothing from anywhere."""
+"""The live page: a single HTML file that contains the core as WebAssembly and loads nothing."""
 
 import html
 import json
@@ -41,10 +41,10 @@ from spincyl._state import State
 from spincyl._studio.cards import drawing
 
 if TYPE_CHECKING:
-    #: Unknown while a notebook completes what is typed: jedi gives up a class with a property of Literal.
+    #: Not defined at run time: completion by jedi fails for classes with a property of a Literal type.
     from spincyl._contact import AnyContact as Table
 
-#: The scripts in the order of reading: the renderer is that of the recorded page.
+#: The scripts in their order; the renderer is that of the recorded page.
 _SCRIPTS = (
     "play.core.js",
     "play.state.js",
@@ -68,12 +68,12 @@ _SCRIPTS = (
     "play.stone.js",
     "play.hands.js",
 )
-#: Of a page without friction, which has no stones.
+#: The scripts of a page without friction, which has no stones.
 _LEAN = tuple(name for name in _SCRIPTS if "stone" not in name)
 _BODY = ("ell", "bore", "fillet", "i1", "i3", "end", "radius", "mass", "gravity")
 #: The core without friction and losses, and the one with them.
 CORES = "core.wasm.gz", "core.friction.wasm.gz"
-#: What a frame in a notebook may do, and how it looks.
+#: Permissions and style of the frame in a notebook.
 SANDBOX = "allow-scripts allow-downloads"
 FRAME = "width:100%;height:clamp(600px,100vh - 130px,900px);border:0"
 
@@ -168,18 +168,18 @@ class Play:
         return roll(body, self.state, t, want=("pose", "force"), contact=self.contact, losses=self.losses)
 
     def _of_revolution(self) -> None:
-        """Refuse where a stone is seen."""
+        """Raise ValueError if the page shows a stone."""
         if self._told.get("stone"):
             raise ValueError("the page shows a rattleback, which is no body of revolution: see its motion")
 
     def _set(self, words: dict[str, Any], gone: Iterable[str] = ()) -> None:
-        """Change what is told, here and on the page."""
+        """Change the state here and on the page; entries in `gone` are removed."""
         self._told = {k: v for k, v in self._told.items() if k not in gone or k in words} | words
         if self._widget is not None:
             self._widget.state = self._told
 
     def _heard(self, change: Any) -> None:
-        """What a hand has done on the page."""
+        """Take over a change that the user has made on the page."""
         self._told = {k: v for k, v in change["new"].items() if v is not None}
 
     @property
@@ -221,11 +221,11 @@ class Play:
         return path
 
     def _repr_html_(self) -> str:
-        """The page in a frame that can run its script and nothing else, with a name if it follows."""
+        """The page in a frame that may only run its script and save files; named if it follows the object."""
         return frame(self.html, SANDBOX, FRAME, self._followed())
 
     def _followed(self) -> str:
-        """The name of the frames that follow this object, or none where nobody passes on what is set."""
+        """The name of the frames that follow this object; empty if no widget can pass changes to them."""
         if self._widget is None:
             with suppress(ImportError):
                 from spincyl._pages.widget import watched, widget
@@ -331,7 +331,7 @@ def play(
 
 
 def _rattling(words: dict[str, Any]) -> EllipsoidMotion:
-    """The motion of the rattleback that they tell, as long as the page follows it."""
+    """The motion of the rattleback described by `words`, for the time that the page computes."""
     stone = Ellipsoid.rattleback(words["stone"], twist=words["twist"]).in_metres(
         gravity=words.get("gravity") or Scale.gravity
     )
@@ -343,7 +343,7 @@ def _rattling(words: dict[str, Any]) -> EllipsoidMotion:
 
 
 def _needed(friction: bool, contact: AnyContact, losses: Loss | None, body: Body | None = None) -> None:
-    """Refuse what a page without friction does not know, and of a measured body what has no unit."""
+    """Refuse friction or losses on a page without them, and numbers without a unit for a measured body."""
     if losses is not None:
         made_law(losses, body)
     if body is not None:
@@ -353,13 +353,13 @@ def _needed(friction: bool, contact: AnyContact, losses: Loss | None, body: Body
 
 
 def _json(what: Any) -> str:
-    """Text that cannot end the script it stands in."""
+    """JSON that cannot end the script element around it."""
     return json.dumps(what, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
 
 
 @cache
 def _packed(friction: bool) -> str:
-    """The core and all that is text, as the loader unpacks it."""
+    """The core and all text of the page, in the format that the loader unpacks."""
     core = decompress(files("spincyl._pages").joinpath("cores", CORES[friction]).read_bytes())
     presets = _json([{"name": name, "state": told} for name, told in scenes(friction)])
     shown = filled("play.body.html", {"presets": presets})

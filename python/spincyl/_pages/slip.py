@@ -1,4 +1,4 @@
-"""What a page shows of friction: phases, and at even times the slip and the forces on the contact."""
+"""Data about friction for the page: phases, and slip and contact forces at equally spaced times."""
 
 from typing import Any
 
@@ -14,7 +14,7 @@ _IN_A_NUTATION, _FEWEST, _MOST = 48, 480, 6000
 
 
 def rubbing(m: Motion) -> dict[str, Any]:
-    """Phases as (time, code), and what `forces` finds at even times, in sixteen bits between bounds."""
+    """Phases as (time, code), and `forces` at equally spaced times, as 16-bit integers between bounds."""
     first, last = span(m)
     count = _IN_A_NUTATION * (last - first) / pace(m)
     found = forces(m, np.linspace(first, last, int(np.clip(count, _FEWEST, _MOST))))
@@ -27,12 +27,12 @@ def rubbing(m: Motion) -> dict[str, Any]:
 def forces(m: Motion, t: Floats) -> Floats:
     """Slip, friction and normal force at ascending times: u_h, u_2, F_h, F_2, N along a last axis.
 
-    Of a stone, slip and friction stand along the axes x and y of the laboratory.
+    For a stone, slip and friction have components along x and y of the laboratory.
     """
     there = m.wanting("pose", "force", t=t)
     push = there.contact_force[:, :2] @ [1, 1j]
     if isinstance(there, EllipsoidMotion):
-        # what the slip of a state is told along has been turned by this about the vertical
+        # the axes of a state's slip are rotated by this angle about the vertical
         z, w = there.orientation[:, 2:].T
         slip = (there.slip @ [1, 1j]) * np.exp(2j * np.arctan2(z, w))
     else:

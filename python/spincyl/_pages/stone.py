@@ -1,4 +1,4 @@
-"""What a page shows of a stone: its numbers, the surfaces that it stretches, and when the spin turns back."""
+"""Data about a stone for the page: its numbers, its surfaces, and the times at which the spin reverses."""
 
 from itertools import pairwise
 from typing import Any
@@ -14,17 +14,17 @@ from spincyl._studio.poses import seen
 from spincyl._studio.shape import Letter, Profile, marks, profiles, reach
 from spincyl._studio.stone_shape import turned_marks
 
-_SHARE = 0.1  # of the first spin, to which one comes that has turned back
-_BETWEEN = 8  # looks between two knots
+_SHARE = 0.1  # a reversed spin counts from this share of the first spin on
+_BETWEEN = 8  # samples between two knots
 
 
 def stone(m: Motion) -> bool:
-    """Whether it is the motion of one."""
+    """Whether the motion is that of a stone."""
     return isinstance(m, EllipsoidMotion)
 
 
 def numbers(m: EllipsoidMotion, t: Floats) -> dict[str, Any]:
-    """Those of the stone, and when it turns back; `ell` is half the length of a cylinder of its reach."""
+    """Numbers of the stone and the times of its reversals; `ell` gives a cylinder the same reach."""
     far = reach(m.body)
     return {
         "ell": max(0.0, far * far - 1) ** 0.5,
@@ -36,7 +36,7 @@ def numbers(m: EllipsoidMotion, t: Floats) -> dict[str, Any]:
 
 
 def turned(body: Ellipsoid, upper: Letter) -> dict[str, Any]:
-    """Its surface, and its marks."""
+    """The surface of a stone, and its marks."""
     flat = turned_marks(body, upper)
     return {
         "turned": [*map(_stretched, profiles(body)), *(_stretched(p, mark=True) for p in flat)],
@@ -45,16 +45,16 @@ def turned(body: Ellipsoid, upper: Letter) -> dict[str, Any]:
 
 
 def _stretched(profile: Profile, **more: bool) -> dict[str, Any]:
-    """A surface that is turned, and how it is stretched."""
+    """A surface of revolution with the factors that stretch it."""
     assert profile.stretch is not None
     how = {"corners": corners(profile)} | profile.stretch._asdict() | more
     return {"colour": profile.colour, "corners": how}
 
 
 def turns_back(m: EllipsoidMotion, t: Floats) -> list[float]:
-    """When the spin has passed zero and come to a tenth of the first spin in the other direction.
+    """The times at which the spin has crossed zero and reached a tenth of the first spin the other way.
 
-    Looked for between times in order, of which a few show each rocking.
+    Samples the spin between times in order, which have to include a few per rocking.
     """
     share = np.arange(_BETWEEN) / _BETWEEN
     t = np.append((t[:-1, np.newaxis] + np.diff(t)[:, np.newaxis] * share).ravel(), t[-1])

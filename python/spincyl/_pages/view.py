@@ -1,4 +1,4 @@
-"""A motion to look at: a page that needs nothing but a browser, or a file for graphics tools."""
+"""A motion to view: an HTML page that needs only a browser, or a file for graphics tools."""
 
 import html
 import json
@@ -25,9 +25,8 @@ from spincyl._studio.glb import glb
 from spincyl._studio.poses import knots, packed, repeats, seen, span
 from spincyl._studio.shape import Letter, marks, profiles, reach
 
-#: The styles of the page, and its scripts in the order of reading; "rounded" only where a body has a fillet
-#: or is a stone, "stone" and "spin" only where there is one, "forces" and "slip" only where a contact has a
-#: law of friction.
+#: The style sheets and scripts of the page, in their order. "rounded" is used if a body has a fillet or is a
+#: stone, "stone" and "spin" if there is a stone, "forces" and "slip" if a contact has a law of friction.
 _STYLES = ("page.css", "page.slip.css")
 _SCRIPTS = tuple(
     f"page.{x}.js"
@@ -86,7 +85,7 @@ class View:
             [x for x in names if not any(f".{word}." in x for word in useless)]
             for names in (_STYLES, _SCRIPTS)
         )
-        # no "<" in the data, so that no text in it can end the script
+        # without "<" no text in the data can end the script
         data = json.dumps(self._data(), allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
         fields = {
             "title": html.escape(self.title),
@@ -212,22 +211,22 @@ class View:
 
     @property
     def _symbol(self) -> str:
-        """The unit of its times."""
+        """The unit of the page's times."""
         return f"√({self._length}/g)" if self.scale is None else "s"
 
     @property
     def _spun(self) -> str:
-        """The unit of its angular velocities."""
+        """The unit of the page's angular velocities."""
         return f"√(g/{self._length})" if self.scale is None else "rad/s"
 
     @property
     def _length(self) -> str:
-        """The letter of the unit of length: the largest semi-axis of stones, else the radius."""
+        """The symbol of the unit of length: the largest semi-axis of stones, else the radius."""
         return "a" if all(map(stone, self.motions)) else "R"
 
     @property
     def _colours(self) -> dict[str, tuple[float, float, float]]:
-        """The colours of the page in daylight, which a film takes from it."""
+        """The daylight colours of the page, for films."""
         return colours(reversed(_STYLES))
 
     @property
@@ -235,18 +234,18 @@ class View:
         return any(rubs(m.contact) for m in self.motions)
 
     def _speeds(self) -> dict[str, Any]:
-        """The unit in which the page tells how fast a body slips."""
+        """The unit in which the page gives the speed of slip."""
         if self.scale is None:
             return {"speed": 1.0, "speeds": f"√(g {self._length})"}
         return {"speed": self.scale.metres_per_second(1.0), "speeds": "m/s"}
 
     def _rates(self) -> dict[str, Any]:
-        """The unit in which the page tells how fast a stone spins."""
+        """The unit in which the page gives the spin of a stone."""
         second = 1.0 if self.scale is None else float(self.scale.seconds(1.0))
         return {"rate": 1 / second, "rates": self._spun}
 
     def _repr_html_(self) -> str:
-        """The page in a frame that can run its script and nothing else."""
+        """The page in a frame that may only run its script."""
         return frame(self.html, "allow-scripts", "width:100%;height:480px;border:0")
 
     def __repr__(self) -> str:
@@ -338,7 +337,7 @@ def view(
         raise ValueError(f"labels: expected {len(motions)}, one for each motion, not {len(labels)}")
     title, labels = line("title", title), [line(f"labels[{i}]", label) for i, label in enumerate(labels)]
     for m in motions:
-        marks(m.body, upper)  # refuses a letter that is none
+        marks(m.body, upper)  # raises ValueError if `upper` is neither "O" nor "X"
     return View([m.natural for m in motions], labels, title, scale, slow, upper)
 
 
@@ -346,13 +345,13 @@ _SLOW = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 
 
 def _shown(m: Motion) -> tuple[dict[str, Any], float]:
-    """What the page needs of a motion, and how many turns it makes at most in a unit of time."""
+    """The data of a motion for the page, and its largest number of turns per unit of time."""
     first, last = sorted(span(m))
     again = repeats(m)
     found = knots(m) if again is None else knots(m, until=first + again.period)
     data: dict[str, Any] = {"first": first, "last": last, "again": None}
     if again is not None:
-        # the centre's path turns about a pivot, or shifts
+        # the centre's path is rotated about a pivot, or shifted
         pivot = again.shift / (1 - again.turn) if abs(1 - again.turn) > 1e-9 else None
         data["again"] = {
             "period": again.period,
@@ -371,14 +370,14 @@ def _shown(m: Motion) -> tuple[dict[str, Any], float]:
     data |= {name: base64(*x) if isinstance(x, tuple) else x for name, x in packets}
     fastest = float(np.abs(found[:, 6:9]).max())
     if isinstance(m, EllipsoidMotion) or m.body.fillet == 1:
-        # where a ball passes its pole, phi and psi run fast and against each other, which nobody sees
+        # at the pole of a ball, phi' and psi' are large and nearly cancel: use the angular velocity instead
         (w,) = seen(m, found[:, 0], "w")
         fastest = float(np.linalg.norm(w, axis=1).max())
     return data, fastest / (2 * np.pi)
 
 
 def _edges(m: Motion) -> dict[str, Any]:
-    """What is said of the motion before and after the times at which it is shown, and of its end."""
+    """The notes for times before and after those shown, and for the end of the motion."""
     start, last = span(m)
     first, until = sorted((start, last))
     edges = {
@@ -386,7 +385,7 @@ def _edges(m: Motion) -> dict[str, Any]:
         "after": {"said": "shown until ", "at": until, "t": until, "event": False},
     }
     if m.event is not None:
-        # `at` is where the page says so, `t` the time that it tells
+        # `at` is the time from which the page shows the note, `t` the time in its text
         beyond = m._asked.beyond and abs(m.event.time - start) < abs(last - start)
         said = ("beyond the model: " if beyond else "ended: ") + m.message.split(" at t =")[0] + ", "
         at = m.event.time if beyond else last
@@ -400,6 +399,6 @@ def _edges(m: Motion) -> dict[str, Any]:
 
 
 def _slow(turns: float, scale: Scale | None) -> int:
-    """How many times slower it has to be so that nothing turns much faster than once a second."""
+    """The slow-motion factor with which nothing turns much faster than once a second."""
     second = 1.0 if scale is None else float(scale.seconds(1.0))
     return next((x for x in _SLOW if turns / second <= 1.5 * x), _SLOW[-1])

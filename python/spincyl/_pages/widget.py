@@ -1,7 +1,7 @@
-"""The live page in a notebook, both ways: what is set in Python moves the body, a drag is seen in Python.
+"""The live page in a notebook: changes from Python move the body, and dragging is visible in Python.
 
-The output of a cell is the page itself, in a frame with a name. The widget has no view: where its model is
-made the script below listens to the frames of this name and passes on one state, so that all of them show it.
+The output of a cell is the page itself, in a frame with a name. The widget has no view: its script, which
+runs where its model is created, keeps the state of all frames of that name the same.
 """
 
 from collections.abc import Callable
@@ -11,7 +11,7 @@ from uuid import uuid4
 import anywidget
 import traitlets
 
-#: A frame that opens asks, with null; a model that is made later than a frame tells it unasked.
+#: A new frame requests the state by sending null; a model that is created later sends it unrequested.
 _SCRIPT = """
 export default {
   initialize({ model }) {
@@ -38,7 +38,7 @@ export default {
 
 
 class Widget(anywidget.AnyWidget):  # type: ignore[misc, unused-ignore]
-    """The one state of all frames of a name."""
+    """The shared state of all frames with one name."""
 
     _esm = _SCRIPT
     name = traitlets.Unicode().tag(sync=True)
@@ -46,17 +46,17 @@ class Widget(anywidget.AnyWidget):  # type: ignore[misc, unused-ignore]
 
 
 def widget(state: dict[str, Any], heard: Callable[[Any], None]) -> Any:
-    """A widget with this state, that calls when another one is set."""
+    """A widget with this state, which calls `heard` when the state changes."""
     made = Widget(name=f"spincyl-{uuid4().hex}", state=state)
     made.observe(heard, "state")
     return made
 
 
 def watched() -> bool:
-    """Whether somebody may sit at the notebook.
+    """Whether a user may be at the notebook.
 
-    A program that runs a notebook, such as nbconvert, takes no input. It would keep the widget, and the page
-    that it writes would ask a network for the script that shows widgets.
+    A program that runs a notebook, such as nbconvert, accepts no input. It would store the widget, and its
+    page would load the script for widgets from a network.
     """
     try:
         from IPython import get_ipython

@@ -1,4 +1,4 @@
-"""The words by which the live page knows bodies, starts, tables and losses, and the scenes that it offers."""
+"""The words in which the live page describes bodies, starts, tables and losses, and its scenes."""
 
 import re
 from collections.abc import Iterator, Mapping
@@ -20,7 +20,7 @@ from spincyl._throw import pressed, thrown
 
 
 def words_of_body(body: Body) -> dict[str, Any]:
-    """A tube by its half length, bore and fillet; any other body by its numbers."""
+    """Words for a body: a tube by half length, bore and fillet; any other body by its numbers."""
     if isinstance(body, Ellipsoid):
         raise TypeError(
             "body: of stones the page knows a rattleback, in its scenes; view(motion) shows any stone"
@@ -38,7 +38,7 @@ def words_of_body(body: Body) -> dict[str, Any]:
 
 
 def _words_of_scale(scale: Scale | None) -> dict[str, float]:
-    """The radius in metres, where it is known, and what is known besides."""
+    """Words for a scale: the radius in metres, the mass if it is known, and gravity unless it is standard."""
     if scale is None:
         return {}
     told = {"radius": scale.radius, "mass": scale.mass, "gravity": scale.gravity}
@@ -46,7 +46,7 @@ def _words_of_scale(scale: Scale | None) -> dict[str, float]:
 
 
 def words_of_state(state: State) -> dict[str, Any]:
-    """Inclination, and w1, w2, w3 with the slip."""
+    """Words for a state: the inclination, and w1, w2, w3 with the slip."""
     made("state", state, State)
     numbers = state.theta, state.w1, state.w2, state.w3
     if not is_scalar(*numbers):
@@ -56,7 +56,7 @@ def words_of_state(state: State) -> dict[str, Any]:
 
 
 def words_of_table(contact: AnyContact) -> dict[str, Any]:
-    """The table, with its one number."""
+    """Words for a contact, with its coefficient."""
     if isinstance(contact, Coulomb | Viscous) and not is_scalar(*contact._numbers):
         raise ValueError(f"contact = {contact!r}: the page knows single numbers, not arrays of them")
     if isinstance(contact, Coulomb):
@@ -70,7 +70,7 @@ def words_of_table(contact: AnyContact) -> dict[str, Any]:
 
 
 def words_of_loss(losses: Loss | None) -> dict[str, Any]:
-    """A law of loss by its name on the command line, with its coefficient."""
+    """Words for a law of loss: its name on the command line, and its coefficient."""
     if losses is None:
         return {}
     if not isinstance(losses, Loss):
@@ -83,7 +83,7 @@ def words_of_loss(losses: Loss | None) -> dict[str, Any]:
 
 
 def body_of(words: Mapping[str, Any]) -> Body:
-    """The body that the words tell, with its size where they tell it."""
+    """The body that the words describe, with its size if they give one."""
     natural, radius = _natural_of(words), words.get("radius")
     if radius is None:
         return natural
@@ -101,7 +101,7 @@ def _natural_of(words: Mapping[str, Any]) -> Body:
 
 
 def state_of(words: Mapping[str, Any]) -> State:
-    """The state that they tell: any, or the steady one, or at rest where there is none; kicked."""
+    """The state that the words describe: given, steady, or at rest where no state is steady; then kicked."""
     theta, given, turning = words["theta"], words.get("w"), words.get("precession")
     if given:
         start = State(theta, *given[:3], slip=tuple(given[3:]) if any(given[3:]) else None)
@@ -115,25 +115,25 @@ def state_of(words: Mapping[str, Any]) -> State:
 
 
 def table_of(words: Mapping[str, Any]) -> AnyContact:
-    """The table that they tell."""
+    """The contact that the words describe."""
     found: Any = words.get("contact", "rolling")
     if found == "viscous":
-        return Viscous(words["c"])._known()  # which was seen when it was set
+        return Viscous(words["c"])._known()  # its unit was checked when it was set
     plain: AnyContact = Coulomb(words["mu"]) if found == "coulomb" else found
     return plain
 
 
 def losses_of(words: Mapping[str, Any]) -> Loss | None:
-    """The law of loss that they tell."""
+    """The law of loss that the words describe."""
     name = words.get("law", "none")
     if name == "none" or not words.get("loss"):
         return None
     law: Law = getattr(loss, "".join(map(str.capitalize, name.split("-"))))(words["loss"])
-    return sized(law)  # which was seen when it was set
+    return sized(law)  # its unit was checked when it was set
 
 
 def scenes(friction: bool = True) -> Iterator[tuple[str, dict[str, Any]]]:
-    """The scenes that the page offers: a name, and what is set. Without `friction`, those that need none."""
+    """The scenes of the page: name and words. Without `friction`, only scenes that need none."""
     for name, told in _all():
         if friction or not (
             "stone" in told or told.get("contact") in ("coulomb", "viscous") or "law" in told

@@ -1,1 +1,1 @@
-"""What bodies and motions look and sound like: shapes, poses, films, photographs, scenes, cards, sound."""
+"""Shapes, poses, films, photographs, scenes, notebook cards and sound of bodies and motions."""

@@ -1,6 +1,6 @@
-"""How the nouns show themselves in a notebook: a drawing of the tilted body, and a table of the main numbers.
+"""Cards in a notebook: a drawing of the tilted body, and a table of the main numbers.
 
-Everything takes the colour of the text around it; there is no script, and what is text is escaped.
+A card takes the colour of the text around it and has no script; its text is escaped.
 """
 # ruff: noqa: RUF001 (Greek, for people to read)
 
@@ -24,19 +24,19 @@ from spincyl._studio.shape import landing, profiles, skin
 from spincyl._swing import Swing
 from spincyl._swing import swing as nutation
 
-_SIZE = 120.0  # of the drawn body, in pixels
+_SIZE = 120.0  # largest size of the drawn body, in pixels
 _ROOM = 16.0
-_LEANING = math.radians(60)  # of a ball, in its own card
+_LEANING = math.radians(60)  # inclination of a ball in its own card
 _BALLS = {"capsule": "capsule", "balls": "two balls", "ball": "ball"}
 
 
 def card(found: object) -> str:
-    """The card of a noun."""
+    """The card of a body, state, motion, swing or scale, as HTML."""
     return next(made(found) for kind, made in _CARDS.items() if isinstance(found, kind))
 
 
 def body(found: Body) -> str:
-    """A body, balanced on its rim."""
+    """The card of a body, balanced on its rim."""
     excess = found.excess
     kind = "a family of bodies"
     if is_scalar(excess):
@@ -68,13 +68,13 @@ def body(found: Body) -> str:
         ]
     picture = ""
     if is_scalar(found.ell, found.i1, found.fillet, found.theta_end):
-        ball = found.fillet == 1  # which balances nowhere
+        ball = found.fillet == 1  # a ball balances at no inclination
         picture = drawing(found, *((_LEANING, "θ") if ball else (found.theta_balance, "θ₀")))
     return framed(repr(found), rows, picture)
 
 
 def state(found: State) -> str:
-    """A state: the rim that touches the table, and the axis."""
+    """The card of a state: the rim that touches the table, and the axis."""
     w = [_number(x, "√(g/R)") for x in (found.w1, found.w2, found.w3)]
     rows = [
         ("inclination θ", _angle(found.theta)),
@@ -91,13 +91,13 @@ def state(found: State) -> str:
 
 
 def motion(found: Motion) -> str:
-    """A motion: the body where it starts, and the inclinations that it reaches."""
+    """The card of a motion: the body at its start, and the range of its inclination."""
     rows, reached = _motion(found)
     return framed("Motion", rows, drawing(found.body, found.start.theta, "θ", reached))
 
 
 def stone_motion(found: EllipsoidMotion) -> str:
-    """A motion of a stone: its inclination, and its spin, which may change its sign."""
+    """The card of a stone's motion: its inclination, and its spin, which may change sign."""
     rows, _ = _motion(found)
     if found.t.size:
         spin, unit = found.spin, "√(g/a)" if found.scale is None else "rad/s"
@@ -106,7 +106,7 @@ def stone_motion(found: EllipsoidMotion) -> str:
 
 
 def _motion(found: Motion) -> tuple[list[tuple[str, str]], tuple[float, ...]]:
-    """What is said of any motion, and between which inclinations it stays."""
+    """The rows of any motion, and the inclinations between which the body nods."""
     rows = [("body", repr(found.body)), ("contact", named(found.contact))]
     if found.losses is not None:
         rows.append(("losses", repr(found.losses)))
@@ -120,7 +120,7 @@ def _motion(found: Motion) -> tuple[list[tuple[str, str]], tuple[float, ...]]:
         reached = float(found.theta.min()), float(found.theta.max())
     plain = found.losses is None and found.event is None and not isinstance(found, EllipsoidMotion)
     if found.t.size and plain and isinstance(found.contact, str):
-        with suppress(ValueError):  # next to where a body lies flat no nod is known
+        with suppress(ValueError):  # `nutation` fails close to a body that lies flat
             turns = nutation(found.body, found.start, found.contact)
             reached = turns.theta_min, turns.theta_max
             if turns.theta_max - turns.theta_min > 1e-6:
@@ -130,7 +130,7 @@ def _motion(found: Motion) -> tuple[list[tuple[str, str]], tuple[float, ...]]:
 
 
 def swing(found: Swing) -> str:
-    """A nutation: the rim at both turning points."""
+    """The card of a nutation: the rim at both turning points."""
     rows = [
         ("period", _number(found.period, _time(found.scale))),
         ("inclination θ", f"{_angle(found.theta_min)} to {_angle(found.theta_max)}"),
@@ -151,7 +151,7 @@ def _length(scale: Scale | None) -> str:
 
 
 def scale(found: Scale) -> str:
-    """A scale: what one of each natural unit is."""
+    """The card of a scale: the natural units in SI."""
     length, time, energy, hertz = found._units
     rows = [
         ("radius R", f"{length:.6g} m"),
@@ -167,7 +167,7 @@ def scale(found: Scale) -> str:
 
 _CARDS: dict[type, Callable[..., str]] = {
     Body: body,
-    EllipsoidMotion: stone_motion,  # before what it is a kind of
+    EllipsoidMotion: stone_motion,  # before Motion, of which it is a subclass
     Motion: motion,
     Scale: scale,
     State: state,
@@ -176,9 +176,9 @@ _CARDS: dict[type, Callable[..., str]] = {
 
 
 def drawing(of: Body | None, theta: float, label: str, others: Iterable[float] = ()) -> str:
-    """SVG of a body on the table, seen from the side; of no body, the rim. `others`: outlines elsewhere.
+    """SVG of a body on the table from the side; of its rim if `of` is None. `others`: further outlines.
 
-    Empty where there is nothing to draw: no inclination, or one that would be under the table.
+    Empty without an inclination, or if the body would reach below the table.
     """
     ell = 0.0 if of is None else float(of.ell)
     lying = math.pi / 2 + 1e-9 if ell > 0 else math.pi
@@ -193,7 +193,7 @@ def drawing(of: Body | None, theta: float, label: str, others: Iterable[float] =
         shapes = [_silhouette(ell, x) for x in drawn]
     else:
         shapes = [_round(rounded, x, 8 if k else 4) for k, x in enumerate(drawn)]
-    # places are complex, in R, with the contact at 0; the body leans to the right
+    # points are complex numbers, in R, with the contact at 0; the body leans to the right
     across, up = 1j * _axis(thetas[0]), _axis(thetas[0])
     end, half = across + 2 * ell * up, ell
     if rounded is not None:
@@ -201,7 +201,7 @@ def drawing(of: Body | None, theta: float, label: str, others: Iterable[float] =
         across = _centre(rounded, thetas[0]) + (middle - half) * up
         end = across + 2 * half * up
     unit = _SIZE / (2 * max(half, 1.0))
-    reach = 0.3 * _SIZE / unit  # of the angle, which is drawn at the upper end
+    reach = 0.3 * _SIZE / unit  # of the angle's arc, which is drawn at the upper end
     far = [p for shape in shapes for p in shape] + [end + 1.2 * reach * up, end + 1.6j * reach]
     left, right = unit * min(p.real for p in far) - _ROOM, unit * max(p.real for p in far) + _ROOM
     top = unit * max(p.imag for p in far)
@@ -240,24 +240,24 @@ def drawing(of: Body | None, theta: float, label: str, others: Iterable[float] =
 
 
 def _axis(theta: float) -> complex:
-    """The direction that leans to the right by an angle."""
+    """Unit vector that leans to the right of the vertical by `theta`."""
     return complex(math.sin(theta), math.cos(theta))
 
 
 def _silhouette(ell: float, theta: float) -> list[complex]:
-    """The corners of a cylinder from the side: the contact, round the lower face, and the upper."""
+    """The corners of a cylinder seen from the side: the contact, then round the lower and the upper face."""
     across, up = 2j * _axis(theta), 2 * ell * _axis(theta)
     return [0j, across, across + up, up]
 
 
 def _centre(of: Body, theta: float) -> complex:
-    """The centre of mass of a body with a fillet, from its contact."""
+    """The centre of mass of a body with a fillet, relative to its contact."""
     rim = 1 - float(of.fillet)
     return 1j * rim * _axis(theta) + float(of.ell) * _axis(theta) + 1j * float(of.fillet)
 
 
 def _round(of: Body, theta: float, every: int) -> list[complex]:
-    """The outline of a body with a fillet from the side, with every so-many-th corner of its profiles."""
+    """The outline of a body with a fillet seen from the side; `every` skips corners of round profiles."""
     right = []
     for profile in profiles(of):
         if profile.name not in ("faces", "lower face", "bore"):
@@ -269,18 +269,18 @@ def _round(of: Body, theta: float, every: int) -> list[complex]:
 
 
 def _number(x: Reals, unit: str = "") -> str:
-    """A number with its unit, or the least and the greatest of many."""
+    """A number with its unit, or the least and the greatest number of an array."""
     return _told(x, lambda value: f"{value:.6g} {unit}".rstrip())
 
 
 def _angle(x: Reals) -> str:
-    """Degrees and radians of an angle, or degrees of many."""
+    """An angle in degrees and radians, or the range of an array in degrees."""
     radians = "({:.6g} rad)" if is_scalar(x) else ""
     return _told(x, lambda value: f"{math.degrees(value):.4g}° {radians.format(value)}".rstrip())
 
 
 def span(theta: Floats) -> str:
-    """The least and the greatest angle; of one, it."""
+    """The least and the greatest angle in degrees; of a single angle only that."""
     if theta.size == 1:
         return f"{math.degrees(theta.item()):.4g}°"
     return f"{math.degrees(theta.min()):.4g}° to {math.degrees(theta.max()):.4g}°"
@@ -298,12 +298,12 @@ def _told(x: Reals, write: Callable[[float], str]) -> str:
 
 
 def _name(text: str, name: str) -> str:
-    """What a single thing evaluates to; of many, its name."""
+    """The repr of a single object, or only its name if the repr takes several lines."""
     return text if "\n" not in text else name
 
 
 def framed(title: str, rows: Iterable[tuple[str, str]], picture: str) -> str:
-    """A card: a title, a picture that may be missing, and a table."""
+    """A card: a title, a picture that may be empty, and a table."""
     cell = 'style="text-align:left;padding:0 0.8em 0 0;background:none"'
     lines = "".join(
         f"<tr><td {cell}>{html.escape(name)}</td><td {cell}>{html.escape(value)}</td></tr>"

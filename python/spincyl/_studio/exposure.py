@@ -1,8 +1,8 @@
-"""What the eye sees: the photograph from above with the shutter open for a while.
+"""The photograph from above with the shutter open for a while.
 
-The share of the time during which each place of the picture shows lit ink. The two marks, O and X, glow,
-and the body only hides what is behind it. A mark that comes to rest each time it is uppermost, as the one on
-the upper end does while the centre rests, leaves an image; one that races past leaves a blur.
+Its brightness is the share of the time during which each place of the picture shows ink. The two marks, O
+and X, glow, and the body only hides what lies behind it. A mark that stops whenever it is uppermost, as the
+one on the upper end does while the centre rests, leaves an image; one that moves fast leaves a blur.
 """
 
 import math
@@ -95,11 +95,11 @@ def exposure(
 
     ink = marks(motion.body, upper)
     area = sum(_area(part) for part in ink)
-    # what moves is smooth and what rests is seen often: more times than places, and other places each time
+    # Motion is smooth and a mark at rest counts often: so more times than places, in several sets of places.
     places = max(16, int(np.sqrt(samples) / 8))
     times = max(_SETS, int(samples / places))
     place, normal = _sampled(ink, places * _SETS)
-    # somewhere in each part of the time: even steps would keep step with the turning
+    # a random time in each interval: equal steps could be in step with the precession
     steps = (np.arange(times) + np.random.default_rng(0).random(times)) / times
     centre, orientation = seen(motion, first + (last - first) * steps, "centre", "orientation")
     plan = centre[:, :2]
@@ -116,7 +116,7 @@ def exposure(
             light = turned[:, 2] @ normal[spot].T
             up = light > 0
             if upper_ball:
-                # seen from above, the lower ball is hidden where the upper one is
+                # seen from above, the upper ball hides the lower one
                 aside = [turned[:, i] @ (place[spot] - upper_ball).T for i in (0, 1)]
                 up &= (place[spot, 2] > 0) | (np.hypot(*aside) > 1)
             x, y = (
@@ -128,15 +128,15 @@ def exposure(
             within = (column >= 0) & (column < size) & (row >= 0) & (row < size)
             spots = (row * size + column)[within]
             image += np.bincount(spots, weights=light[up][within], minlength=size * size)
-    # a place of the ink stands for its share of the area, which it shows foreshortened
+    # each place stands for an equal share of the area of the ink, seen foreshortened
     image *= area / (places * times * pixel**2)
     return image.reshape(size, size)
 
 
 def frame(motion: Motion, seconds: float | None = None, scale: Scale | None = None) -> float:
-    """Width of a square that holds all that the body reaches, about the middle of its centre's path.
+    """Width of a square about the middle of the centre's path that holds the whole motion of the body.
 
-    In R, of a measured body in metres.
+    In R; for a measured body in metres.
     """
     (centre,) = seen(motion.natural, np.linspace(*_open(motion, seconds, scale), 500), "centre")
     path = math.hypot(*np.ptp(centre[:, :2], axis=0))
@@ -144,7 +144,7 @@ def frame(motion: Motion, seconds: float | None = None, scale: Scale | None = No
 
 
 def _open(motion: Motion, seconds: float | None, scale: Scale | None) -> tuple[float, float]:
-    """When the shutter opens and when it closes, in natural units."""
+    """The times at which the shutter opens and closes, in natural units."""
     made("motion", motion, Motion)
     first, last = span(motion.natural)
     scale = scale_of(scale, motion.body)
@@ -170,13 +170,13 @@ def _area(part: Part) -> float:
 
 
 def _sampled(ink: list[Part], count: int) -> tuple[Floats, Floats]:
-    """Places spread evenly over the marks, as are those of each of `_SETS` strides, and their normals."""
+    """Places spread evenly over the marks, and so is each of `_SETS` interleaved sets; their normals."""
     corners = np.concatenate([part.vertices[part.triangles] for part in ink])
     normals = np.concatenate([part.normals[part.triangles] for part in ink])
     sides = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     along = np.cumsum(np.linalg.norm(sides, axis=1))
     which = np.searchsorted(along, (np.arange(count) + 0.5) / count * along[-1])
-    # from one to the next, an additive recurrence with powers of the plastic number fills a square evenly
+    # an additive recurrence with powers of the plastic number fills a square evenly
     u, v = ((0.5 + np.arange(count) * 1.324717957244746**-k) % 1 for k in (1, 2))
     beyond = u + v > 1
     u, v = np.where(beyond, 1 - u, u), np.where(beyond, 1 - v, v)

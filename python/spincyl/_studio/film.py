@@ -1,4 +1,4 @@
-"""Films: what a page shows, as MP4 by ffmpeg or as GIF by Pillow; `frames` draws it."""
+"""Films of pages, as MP4 by ffmpeg or as GIF by Pillow; `frames` draws them."""
 
 import subprocess
 import warnings
@@ -17,8 +17,8 @@ from spincyl._input.threads import Progress
 from spincyl._studio.frames import Reel, frames, pictures
 from spincyl._studio.poses import span
 
-_LONG = 10.0  # seconds of a film, if nobody says how many
-_LARGE = 20e6  # bytes
+_LONG = 10.0  # seconds, the default length of a film
+_LARGE = 20e6  # bytes; a larger file causes a warning
 _NEEDS = "a film in MP4 needs ffmpeg: pip install 'spincyl[film]', or the program ffmpeg on the search path"
 
 
@@ -30,7 +30,7 @@ def reel(
     size: tuple[int, int] | None,
     seconds: float | None = None,
 ) -> Reel:
-    """What a page shows, as a film of this kind; or what is wrong with its measures."""
+    """The film of a page, for this kind of file; an error names a wrong measure."""
     gif = suffix == ".gif"
     fps = (25 if gif else 30) if fps is None else whole("fps", fps, 1, 240)
     if gif and 100 % fps:
@@ -54,11 +54,11 @@ def reel(
 
 
 def film(what: Reel, path: Path, progress: Progress | None = None) -> None:
-    """Write the film, and say how much of it is done."""
+    """Write the film, and report its progress."""
     write = _gif if path.suffix.lower() == ".gif" else _mp4
     extra("matplotlib", "film")
     program = _program() if write is _mp4 else ""
-    count = what.times.size  # what is too long is refused before anything is written
+    count = what.times.size  # too long a film is refused before anything is written
 
     def shown() -> Iterator[np.ndarray]:
         for k, picture in enumerate(frames(what), 1):
@@ -75,7 +75,7 @@ def film(what: Reel, path: Path, progress: Progress | None = None) -> None:
 
 
 def still(what: Reel, path: Path, t: float | None) -> None:
-    """Write the picture at a time, in the unit of the page."""
+    """Write the picture at a time, in the page's unit of time."""
     extra("matplotlib", "film")
     from PIL import Image
 
@@ -88,7 +88,7 @@ def still(what: Reel, path: Path, t: float | None) -> None:
 
 
 def _program() -> str:
-    """ffmpeg: the one that imageio brings, or the one on the search path."""
+    """The path of ffmpeg: the one in imageio-ffmpeg, or the one on the search path."""
     try:
         from imageio_ffmpeg import get_ffmpeg_exe
 
@@ -101,11 +101,11 @@ def _program() -> str:
 
 
 def _mp4(what: Reel, pictures: Iterator[np.ndarray], path: Path, program: str) -> None:
-    """H.264 by ffmpeg, in the colours that every player knows."""
+    """Write H.264 by ffmpeg, in colours that every player reads."""
     width, height = what.size
     words = [program, "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24"]
     words += ["-s", f"{width}x{height}", "-r", str(what.fps), "-i", "-", "-an"]
-    # players take what has no mark for BT.709, ffmpeg converts by BT.601 unless it is told
+    # players assume BT.709 for a file without a mark, but ffmpeg converts by BT.601 unless told otherwise
     words += ["-vf", "scale=out_color_matrix=bt709:out_range=tv", "-c:v", "libx264", "-crf", "18"]
     words += ["-pix_fmt", "yuv420p", "-colorspace", "bt709", "-color_primaries", "bt709"]
     words += ["-color_trc", "bt709"]
@@ -114,7 +114,7 @@ def _mp4(what: Reel, pictures: Iterator[np.ndarray], path: Path, program: str) -
         process = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=said)
         assert process.stdin is not None
         try:
-            with suppress(BrokenPipeError):  # it has ended, and says why
+            with suppress(BrokenPipeError):  # ffmpeg has ended early; its message follows
                 for picture in pictures:
                     process.stdin.write(picture.tobytes())
         except BaseException:
@@ -131,7 +131,7 @@ def _mp4(what: Reel, pictures: Iterator[np.ndarray], path: Path, program: str) -
 
 
 def _gif(what: Reel, pictures: Iterator[np.ndarray], path: Path, program: str) -> None:
-    """By Pillow, which comes with matplotlib; one palette for all frames, so that nothing flickers."""
+    """Write a GIF by Pillow, which comes with matplotlib; one palette for all frames avoids flicker."""
     from PIL import Image
 
     count = what.times.size

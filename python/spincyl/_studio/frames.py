@@ -1,8 +1,8 @@
-"""The picture of the page, one for each frame of a film, drawn without a browser.
+"""The picture of the page for each frame of a film, drawn without a browser.
 
-Bodies, marks, camera, light and colours are those of the page; the triangles are filled by Agg (matplotlib),
-twice as fine as the film, and averaged. Which piece hides which follows from the shape: pieces that a plane
-across the axis parts are drawn from the far ones to the near ones, what is inside first, marks last.
+Bodies, marks, camera, light and colours are those of the page. Agg (matplotlib) fills the triangles at twice
+the resolution of the film, which is then averaged. Pieces of a body are drawn in painter's order: along the
+axis from far to near, inner surfaces before outer ones, marks last.
 """
 
 import math
@@ -21,34 +21,34 @@ from spincyl._studio.shape import Letter, Part, lathe, marks, profiles, rotation
 from spincyl._studio.shape import reach as farthest
 
 _MOST = 20_000  # frames
-_FINE = 2  # pixels of Agg to one of the film, along each side
-_PATH = 6000  # places of the contact's path
-_AZIMUTH, _ELEVATION = -1.1, 0.55  # from where the page looks at first
-_SPREAD = math.tan(0.3)  # of half the view
+_FINE = 2  # pixels of Agg for one pixel of the film, along each side
+_PATH = 6000  # points of the contact's path
+_AZIMUTH, _ELEVATION = -1.1, 0.55  # direction of the page's first view
+_SPREAD = math.tan(0.3)  # tangent of half the angle of view
 _SUN = np.array([-0.45, -0.5, 0.75]) / math.sqrt(0.45**2 + 0.5**2 + 0.75**2)
 
 
 class Reel(NamedTuple):
-    """What is filmed, and how."""
+    """A film: its motions and settings."""
 
     motions: Sequence[Motion]
     labels: Sequence[str]
-    edges: Sequence[dict[str, Any]]  #: what the page says before and after each
-    unit: float  #: seconds, or what stands for them, of a unit of time
+    edges: Sequence[dict[str, Any]]  #: notes of the page before and after each motion
+    unit: float  #: seconds in a unit of time; an assumed number without a scale
     symbol: str
     rates: str  #: the unit of angular velocities
     slow: int
     upper: Letter
     fps: int
     size: tuple[int, int]
-    seconds: float  #: how long the film may be
+    seconds: float  #: longest duration of the film
     colours: Mapping[str, tuple[float, float, float]]  #: those of the page in daylight, by name
 
     @property
     def times(self) -> Floats:
-        """Of the frames, in units of time: from the first that there is to show to the last.
+        """Times of the frames in units of time, from the first to the last time of the motions.
 
-        The last frame is the last state, and stays for a second where something has ended there.
+        The last frame shows the last state; it stays for a second if a motion has ended there.
         """
         spans = [sorted(span(m)) for m in self.motions]
         first, last = min(a for a, _ in spans), max(b for _, b in spans)
@@ -66,7 +66,7 @@ class Reel(NamedTuple):
 
 
 class _Piece(NamedTuple):
-    """A part of the surface, and between which heights along the axis it lies."""
+    """A part of the surface and its range of heights along the axis."""
 
     part: Part
     low: float
@@ -75,7 +75,7 @@ class _Piece(NamedTuple):
 
 
 def _pieces(m: Motion, upper: Letter) -> list[_Piece]:
-    """The surface in pieces, each with the marks on it after it."""
+    """The pieces of the surface, each followed by the marks on it."""
     found = []
     for profile in profiles(m.body):
         part = lathe(profile)
@@ -94,7 +94,7 @@ def _pieces(m: Motion, upper: Letter) -> list[_Piece]:
 
 
 class _Camera(NamedTuple):
-    """Where the page looks from: the middle of its view, the distance, and the three directions."""
+    """The page's camera: the middle of its view, its distance, and its three directions."""
 
     at: Floats
     far: float
@@ -103,12 +103,12 @@ class _Camera(NamedTuple):
 
     @property
     def eye(self) -> Floats:
-        """The place of the camera."""
+        """Position of the camera."""
         found: Floats = self.at + self.far * self.rows[2]
         return found
 
     def __call__(self, places: Floats) -> Floats:
-        """Where places (..., 3) are in the picture: half its height is 1."""
+        """Positions of points (..., 3) in the picture, whose half height is 1."""
         x, y, back = np.moveaxis((places - self.at) @ self.rows.T, -1, 0)
         found: Floats = self.far / self.high * np.stack([x, y], -1) / (self.far - back)[..., np.newaxis]
         return found
@@ -123,7 +123,7 @@ def _camera(at: Floats, reach: float, half: float, aspect: float) -> _Camera:
 
 
 class _Shown(NamedTuple):
-    """A motion at the times of the frames."""
+    """A motion, evaluated at the times of the frames."""
 
     centre: Floats  #: (n, 3)
     rotation: Floats  #: (n, 3, 3)
@@ -131,7 +131,7 @@ class _Shown(NamedTuple):
     spin: Floats | None  #: of a stone
     path: Floats  #: (k, 3) of the contact point
     along: Floats  #: (k,) times of these
-    slips: np.ndarray  #: (k,) whether it slips there
+    slips: np.ndarray  #: (k,) whether the contact slips there
     pieces: list[_Piece]
     caster: Caster
     middle: Floats
@@ -168,12 +168,12 @@ def _shown(m: Motion, times: Floats, upper: Letter) -> _Shown:
 
 
 def _held(reach: float, top: float) -> float:
-    """Half the height of what the camera has to hold."""
+    """Half the height that the camera has to show."""
     return 1.06 * max((0.52 + 0.26) * reach + 0.38 * top, 0.44 * reach + 0.57 * top)
 
 
 def frames(what: Reel, which_of: np.ndarray | None = None) -> Iterator[np.ndarray]:
-    """The pictures, (height, width, 3) of 8 bits: all of them, or those of these numbers."""
+    """The pictures, (height, width, 3) of 8 bits: all, or those with the given indices."""
     yield from pictures(what, what.times if which_of is None else what.times[which_of])
 
 
@@ -186,7 +186,7 @@ def pictures(what: Reel, times: Floats) -> Iterator[np.ndarray]:
 
 
 class _Stage:
-    """A figure of matplotlib's on which each frame is drawn."""
+    """A matplotlib figure on which each frame is drawn."""
 
     def __init__(self, what: Reel, panels: list[_Shown], times: Floats) -> None:
         from matplotlib.figure import Figure
@@ -230,7 +230,7 @@ class _Stage:
         whole = what.times
         shown = float(whole[-1] - whole[0]) * what.unit
         self.digits = max(2, 4 - math.floor(math.log10(max(1e-9, shown))))
-        # what stays is drawn once: all but the artists that each frame changes
+        # draw everything once that no frame changes
         self.canvas.draw()
         self.still = self.canvas.copy_from_bbox(self.figure.bbox)
 
@@ -248,12 +248,12 @@ class _Stage:
         return (total // (_FINE * _FINE)).astype(np.uint8)
 
     def _ground(self, ax: Any, index: int, reach: float, aspect: float) -> None:
-        """The table: lines that are one radius apart, or five, and fade into the distance."""
+        """Draw the table: lines one radius apart, or five, that fade into the distance."""
         from matplotlib.collections import LineCollection
 
         camera = self.cameras[index]
         cell, far = (5.0 if reach > 12 else 1.0), 4 * reach
-        # which place of the table is behind each place of the picture
+        # the point of the table behind each point of the picture
         x, y = np.meshgrid(np.linspace(-aspect, aspect, 160), np.linspace(-1, 1, 90))
         share = camera.high / camera.far
         rays = share * (x[..., None] * camera.rows[0] + y[..., None] * camera.rows[1]) - camera.rows[2]
@@ -275,7 +275,7 @@ class _Stage:
         self._rule(ax, camera)
 
     def _moving(self, ax: Any, clock: Any) -> "_Moving":
-        """What each frame changes."""
+        """The artists that each frame changes."""
         from matplotlib.patches import PathPatch
         from matplotlib.path import Path as Outline
 
@@ -291,7 +291,7 @@ class _Stage:
         return _Moving(rolled, slipped, shades, surface, clock)
 
     def _rule(self, ax: Any, camera: _Camera) -> None:
-        """The lines of the table that this camera sees."""
+        """Set the lines of the table that this camera sees."""
         steps = np.arange(-math.ceil(ax.far / ax.cell), math.ceil(ax.far / ax.cell) + 1)
         pieces = np.linspace(-ax.far, ax.far, 81)
         sets = []
@@ -310,7 +310,7 @@ class _Stage:
         ax.grid_lines.set_color([(*self.colour["grid"], a) for a in there[seen_]])
 
     def _draw(self, index: int, panel: _Shown, k: int) -> None:
-        """A motion at frame k."""
+        """Draw a motion at frame k."""
         ax, camera, t = self.axes[index], self.cameras[index], float(self.times[k])
         if self.follows:
             camera = camera._replace(at=np.array([*panel.centre[k, :2], panel.middle[2]]))
@@ -337,12 +337,12 @@ class _Stage:
         return f"t = {t * self.what.unit:.{self.digits}f} {self.what.symbol}"
 
     def _spin(self, spin: float) -> str:
-        """How fast a stone spins about the vertical."""
+        """The spin of a stone about the vertical, in words."""
         told = f"{spin / self.what.unit:+.3f}".replace("-", "\N{MINUS SIGN}")
         return f"spin {told} {self.what.rates}"
 
     def _note(self, index: int, t: float) -> tuple[str, float] | None:
-        """What is said of a motion at a time outside of what there is of it, or at its end."""
+        """The note about a motion before its first time, at its end or later; and the time to show."""
         before, after = (self.what.edges[index][name] for name in ("before", "after"))
         if t > after["at"] or (after["event"] and t >= after["at"]):
             return after["said"], after["t"]
@@ -352,21 +352,21 @@ class _Stage:
 
 
 class _Moving(NamedTuple):
-    """What each frame changes, in the order of drawing."""
+    """The artists that each frame changes, in the order of drawing."""
 
-    rolled: Any  #: the path of the contact where it rolls
-    slipped: Any  #: and where it slips
-    shades: list[Any]  #: the shadow, for each place of the lamp
+    rolled: Any  #: path of the contact while it rolls
+    slipped: Any  #: path of the contact while it slips
+    shades: list[Any]  #: the shadow from each point of the lamp
     surface: Any
     clock: Any
 
 
 def _triangles(panel: _Shown, k: int, camera: _Camera, over: bool) -> tuple[Floats, Floats]:
-    """Corners (n, 3, 2) in the picture and colours (n, 3, 4), in the order of drawing."""
+    """Corners (n, 3, 2) in the picture and colours (n, 3, 4) of triangles, in the order of drawing."""
     rotation, centre = panel.rotation[k], panel.centre[k]
-    eye = (camera.eye - centre) @ rotation  # from the body
+    eye = (camera.eye - centre) @ rotation  # position of the eye in the axes of the body
     height = float(eye[2])
-    # what a plane across the axis parts from the eye is drawn before what is on its side
+    # painter's order: pieces beyond a plane across the axis come before those on the eye's side
     away = [max(p.low - height, height - p.high, 0.0) for p in panel.pieces]
     order = sorted(range(len(away)), key=lambda i: (-away[i], not panel.pieces[i].inside, i))
     places, colours = [], []
@@ -378,7 +378,7 @@ def _triangles(panel: _Shown, k: int, camera: _Camera, over: bool) -> tuple[Floa
         turned = normals[facing] @ rotation.T
         light = 0.52 + 0.16 * turned[..., 2] + 0.36 * np.maximum(turned @ _SUN, 0.0)
         colour = np.array(part.colour)
-        if over:  # what remains of a colour without its hue
+        if over:  # after the end of a motion the colour loses most of its hue
             colour = 0.06 * colour + 0.94 * (0.42 + 0.3 * colour @ [0.3, 0.59, 0.11])
         lit = np.clip(light[..., np.newaxis] * colour, 0.0, 1.0)
         places.append(camera(corners[facing] @ rotation.T + centre))
@@ -387,14 +387,14 @@ def _triangles(panel: _Shown, k: int, camera: _Camera, over: bool) -> tuple[Floa
 
 
 def _fades(share: Floats) -> Floats:
-    """1 near the middle, 0 far away: the page's way from table to paper."""
+    """1 near the middle, 0 far away: the page's blend from the table to the background."""
     u = np.clip((1.0 - share) / 0.5, 0.0, 1.0)
     found: Floats = u * u * (3 - 2 * u)
     return found
 
 
 def _columns(count: int, aspect: float) -> tuple[int, int]:
-    """As many columns as leave few places empty and panels of a good shape, and rows."""
+    """Columns and rows that leave few panels empty and give the others a good shape."""
 
     def cost(columns: int) -> float:
         rows = math.ceil(count / columns)
@@ -405,11 +405,11 @@ def _columns(count: int, aspect: float) -> tuple[int, int]:
 
 
 def _surface(ax: Any) -> Any:
-    """Triangles in the axes, in their order, each corner with its colour."""
+    """An artist in the axes that draws triangles in their order, each corner with its colour."""
     from matplotlib.artist import Artist
 
     class Surface(Artist):
-        """What Agg fills."""
+        """Gouraud triangles for Agg."""
 
         def put(self, corners: Floats, colours: Floats) -> None:
             self.corners, self.colours = corners, np.ascontiguousarray(colours)

@@ -24,7 +24,7 @@ _MOST = 1_000_000
 
 
 def glb(motions: Sequence[Motion], labels: Sequence[str], scale: Scale | None, upper: Letter) -> bytes:
-    """The file's bytes. Frames are so close that the body turns by a quarter of a radian at most."""
+    """The bytes of the file. Its frames are so close that a body turns by a quarter of a radian at most."""
     metre, second = (1.0, 1.0) if scale is None else (scale.metres(1.0), scale.seconds(1.0))
     views: list[dict[str, Any]] = []
     accessors: list[dict[str, Any]] = []
@@ -41,7 +41,7 @@ def glb(motions: Sequence[Motion], labels: Sequence[str], scale: Scale | None, u
         accessors.append(found | {"min": rows.min(0).tolist(), "max": rows.max(0).tolist()})
         return len(accessors) - 1
 
-    # glTF has y up
+    # the vertical is y in glTF
     upright = [-np.sqrt(0.5), 0.0, 0.0, np.sqrt(0.5)]
     nodes: list[dict[str, Any]] = [
         {"name": "table", "rotation": upright, "scale": [metre] * 3, "children": []}
@@ -54,7 +54,7 @@ def glb(motions: Sequence[Motion], labels: Sequence[str], scale: Scale | None, u
     for m, label in zip(motions, labels, strict=True):
         primitives = []
         for part in parts(m.body, upper):
-            colour = [c**2.2 for c in part.colour]  # linear light
+            colour = [c**2.2 for c in part.colour]  # to linear light
             look = {"baseColorFactor": [*colour, 1.0], "metallicFactor": 0.0, "roughnessFactor": 0.6}
             materials.append({"name": part.name, "pbrMetallicRoughness": look})
             primitive: dict[str, Any] = {"material": len(materials) - 1}
@@ -81,7 +81,7 @@ def glb(motions: Sequence[Motion], labels: Sequence[str], scale: Scale | None, u
         )
         nodes[0]["children"].append(len(nodes) - 1)
         seconds = ((t - t[0]) * second).astype("<f4")
-        later = np.append(True, np.diff(seconds) > 0)  # the file's numbers have seven digits
+        later = np.append(True, np.diff(seconds) > 0)  # in single precision, close times may coincide
         seconds, centre, orientation = seconds[later], centre[later], orientation[later]
         times = accessor(seconds, "SCALAR", _FLOAT)
         for path, kind, values in (("translation", "VEC3", centre), ("rotation", "VEC4", orientation)):
@@ -104,7 +104,8 @@ def glb(motions: Sequence[Motion], labels: Sequence[str], scale: Scale | None, u
         "animations": [{"name": "motion", "samplers": samplers, "channels": channels}],
     }
     text = json.dumps(tree, allow_nan=False, separators=(",", ":")).encode()
-    text += b" " * (-len(text) % 4)  # chunks end on four bytes; the binary one consists of fours
+    # chunks have multiples of four bytes; the binary chunk consists of 4-byte numbers
+    text += b" " * (-len(text) % 4)
     total = 12 + 8 + len(text) + 8 + len(binary)
     header = struct.pack("<4sII", b"glTF", 2, total)
     return (
@@ -117,11 +118,11 @@ def glb(motions: Sequence[Motion], labels: Sequence[str], scale: Scale | None, u
 
 
 def _frames(m: Motion) -> tuple[Floats, Floats, Floats]:
-    """Ascending times, centres and orientations, each quaternion on the side of the one before."""
-    repeats(m)  # which refuses what is too long
+    """Ascending times, centres and orientations; signs of successive quaternions agree."""
+    repeats(m)  # refuses motions that are too long
     coarse = knots(m)[:, 0]
-    # between knots it turns smoothly, at about the rates that it has at them: the body, and its axis
-    # round the vertical, which may be faster
+    # between knots the motion is smooth, with about the rates at the knots: those of the body, and of its
+    # axis about the vertical, which may be faster
     w, theta = seen(m, coarse, "w", "theta")
     rates = np.linalg.norm(w, axis=1)
     if not isinstance(m, EllipsoidMotion):

@@ -1,11 +1,12 @@
-"""Poses of a motion for a machine that only interpolates: few knots, and a cubic between them.
+"""Poses of a motion as knots with cubics between them, for programs that only interpolate.
 
-Angles and places run smoothly even when a body whirls, so that a steady spin needs two knots and a nutation
-four to eight. Every interval is halved until its cubic meets the motion within the tolerance. An exact motion
-is the same period after period, but for a turn about the vertical and one about the axis: one tells all.
+Angles and positions are smooth even when a body whirls: a steady spin needs two knots, a nutation four to
+eight. Every interval is halved until its cubic agrees with the motion within the tolerance. An exact motion
+repeats itself after a period, apart from a rotation about the vertical and one about the axis, so the knots
+of one period suffice.
 
-A stone has no axis from which such angles could be told: in their place are the four numbers of a quaternion,
-each a cubic between knots, of which the length is made 1 afterwards.
+A stone has no axis of symmetry for such angles: its knots hold the four components of a quaternion, which
+is normalised after interpolation.
 """
 
 from contextlib import suppress
@@ -27,25 +28,27 @@ if TYPE_CHECKING:
     from spincyl._motion import Motion
 
 _MOST, _LONGEST, _LOOKS = 200_000, 3000, 65
-_EVALUATIONS = 900  # to a rocking of a stone for steps within 1e-14; fewer as the tenth root of that bound
-_TURN, _PLACE = [0, 1, 2, 5], [3, 4]  # the numbers of a stone's pose; its place is where a body has it
+# per rocking of a stone, with steps within 1e-14; fewer with a larger tolerance, as its -1/10 power
+_EVALUATIONS = 900
+# columns of a stone's quaternion, and of its place, which are those of a body's
+_TURN, _PLACE = [0, 1, 2, 5], [3, 4]
 
 
 def span(m: "Motion") -> tuple[float, float]:
-    """First and last time that there is to show, in the motion's own direction.
+    """First and last time to show, in the direction of the motion.
 
     Raises
     ------
     ValueError
-        If there is none between them.
+        If the motion has no duration.
     """
     times, start = m._asked.times, m._asked.t0
     first = start if times.size == 1 else float(times[0])
     last = float(times[-1])
     if m.event is not None and not m._asked.beyond:
-        # just before the event, where the state is still one of the model
+        # just before the event, where the model still holds
         last = m.event.time - 1e-9 * (m.event.time - start)
-    elif m.t.size < times.size:  # beyond the landing of a face there is nothing
+    elif m.t.size < times.size:  # after the landing of a face there are no states
         last = float(m.t[-1]) if m.t.size else first
     if not (last - first) * (times[-1] - start) > 0:
         raise ValueError(f"the motion has no duration to show from t = {first:.6g} on: {m.message}")
@@ -53,9 +56,9 @@ def span(m: "Motion") -> tuple[float, float]:
 
 
 def seen(m: "Motion", t: Floats, *names: str) -> list[Floats]:
-    """Attributes of the motion, such as "phi" or "centre", at times in any order; pose included.
+    """Attributes of the motion, such as "phi" or "centre", at times in any order, computed with the pose.
 
-    Found step by step anew, a motion may end a little earlier: its last state then stands for the rest.
+    Steps to other times may end the motion a little earlier: its last state then fills the rest.
     """
     times, back = np.unique(t, return_inverse=True)
     backward = -1 if m._asked.times[-1] < m._asked.t0 else 1
@@ -67,10 +70,10 @@ def seen(m: "Motion", t: Floats, *names: str) -> list[Floats]:
 
 
 def pace(m: "Motion") -> float:
-    """How long a nutation takes: the exact period, or with friction the shortest of those of its phases.
+    """Duration of a nutation: the exact period, or with friction the shortest period of any phase.
 
-    With losses the mean of those on the way, which become shorter as a disk falls. Of a stone the mean of its
-    rockings, about, as the steps tell it in which they were found.
+    With losses it is the mean over the motion, since nutations become shorter as a disk falls. For a stone it
+    is roughly the mean duration of its rockings, from the number of evaluations.
     """
     if isinstance(m.body, Ellipsoid):
         many = m.nfev / _EVALUATIONS * (m._setting / 1e-14) ** 0.1
@@ -82,13 +85,13 @@ def pace(m: "Motion") -> float:
     found = [np.inf]
     for phase in m.phases:
         contact: Contact = "rolling" if phase.kind == "rolling" else "smooth"
-        with suppress(ValueError):  # where the first integrals have no digits
+        with suppress(ValueError):  # where the first integrals lose their digits
             found.append(swing(m.body, replace(phase.state, slip=None), contact).period)
     return min(found)
 
 
 def _mean_pace(m: "Motion") -> float:
-    """The time that is shown over the number of nutations in it."""
+    """The shown time divided by the number of nutations in it."""
     first, last = span(m)
     t = np.linspace(first, last, _LOOKS)
     theta, w = seen(m, t, "theta", "w")
@@ -104,22 +107,22 @@ def _mean_pace(m: "Motion") -> float:
 
 
 def _end(m: "Motion") -> float:
-    """Up to where it was found."""
+    """The time up to which the motion was computed."""
     return float(m._asked.times[-1]) if m.event is None or m._asked.beyond else m.event.time
 
 
 class Repeat(NamedTuple):
-    """How an exact motion goes on after a period."""
+    """The relation of an exact motion to itself one period later."""
 
     period: float
-    phi: float  #: what it grows by
-    psi: float  #: what it grows by
-    turn: complex  #: the centre's path z goes on as turn z + shift
+    phi: float  #: increase per period
+    psi: float  #: increase per period
+    turn: complex  #: the centre's path z becomes turn z + shift
     shift: complex
 
 
 def repeats(m: "Motion") -> Repeat | None:
-    """How it goes on if it is exact and shown for longer than a period; ValueError if for 3000 of them."""
+    """The repetition of an exact motion shown for more than a period; ValueError beyond 3000 periods."""
     first, last = sorted(span(m))
     period = pace(m)
     if last - first > _LONGEST * period:
@@ -142,12 +145,12 @@ def knots(m: "Motion", tolerance: float = 2e-3, until: float | None = None) -> F
     tolerance : float
         Largest error of an angle (radians) or of the centre (R) at the places looked at.
     until : float, optional
-        Where to stop. Default: where the motion does.
+        Last time. Default: the end of the motion.
 
     Returns
     -------
     ndarray, shape (n, 11)
-        t; theta, phi, psi, x and y of the centre; the slopes of these five. Ascending times. Of a stone
+        t; theta, phi, psi, x and y of the centre; the slopes of these five. Ascending times. For a stone
         (n, 13): x, y, z of its quaternion in place of the angles, and w after the centre.
 
     Raises
@@ -161,7 +164,7 @@ def knots(m: "Motion", tolerance: float = 2e-3, until: float | None = None) -> F
     count = 4 if not np.isfinite(period) else 3 * (last - first) / period
     share = np.linspace(0, 1, max(4, int(count)) + 1)
     if m.losses is not None:
-        share = 1 - (1 - share) ** 3  # what comes to rest is fastest at its end
+        share = 1 - (1 - share) ** 3  # a body that comes to rest is fastest at the end
     t = first + (last - first) * share
     open_ = np.ones(len(t) - 1, bool)
     smallest = 1e-8 * (last - first)
@@ -178,7 +181,7 @@ def knots(m: "Motion", tolerance: float = 2e-3, until: float | None = None) -> F
         still = np.zeros(len(open_), bool)
         still[at - 1] = True
         open_ = np.insert(still, at, True)
-    # and coarser where more than one interval makes a cubic
+    # merge pairs of intervals where one cubic suffices
     while len(found) > 2:
         dropped = np.arange(1, len(found) - 1, 2)
         left, right = found[dropped - 1], found[dropped + 1]
@@ -192,7 +195,7 @@ def knots(m: "Motion", tolerance: float = 2e-3, until: float | None = None) -> F
 
 
 def _missed(m: "Motion", left: Floats, right: Floats) -> Floats:
-    """How far the cubics between these knots are off, at places that no symmetry of a motion favours."""
+    """Largest error of the cubics between these knots, at points that no symmetry of a motion favours."""
     worst = np.zeros(len(left))
     for share in (0.19, 0.46, 0.77):
         t = left[:, 0] + share * (right[:, 0] - left[:, 0])
@@ -201,9 +204,9 @@ def _missed(m: "Motion", left: Floats, right: Floats) -> Floats:
 
 
 def _apart(m: "Motion", drawn: Floats, true: Floats) -> Floats:
-    """How far numbers of poses are from those of the motion: the largest of angles and of places.
+    """Distance between numbers of drawn and true poses: the largest difference of an angle or a position.
 
-    Of a stone that of the contact, too: where it is flat, a small angle is a long way of the contact.
+    For a stone also of its contact point, which moves far under a small rotation where the surface is flat.
     """
     if not isinstance(m.body, Ellipsoid):
         apart: Floats = np.abs(drawn - true).max(axis=1)
@@ -215,7 +218,7 @@ def _apart(m: "Motion", drawn: Floats, true: Floats) -> Floats:
 
 
 def _stood(stone: Ellipsoid, numbers: Floats) -> tuple[Floats, Floats, Floats]:
-    """The quaternion, the centre and the contact point of a stone's poses."""
+    """The quaternion, the centre and the contact point of a stone for the numbers of its poses."""
     q, place = numbers[:, _TURN], numbers[:, _PLACE]
     q = q / np.linalg.norm(q, axis=1, keepdims=True)
     turned = rotations(q)
@@ -234,7 +237,7 @@ def _places(m: "Motion", t: Floats) -> Floats:
 
 
 def _poses(m: "Motion", t: Floats) -> Floats:
-    """Rows of `knots` at ascending times, the slopes by differences a thousand times finer than these."""
+    """Rows of `knots` at ascending times; slopes are differences over a thousandth of the interval."""
     gaps = np.diff(t)
     h = 1e-3 * np.minimum(np.append(gaps, gaps[-1]), np.append(gaps[0], gaps))
     around = np.clip(np.stack([t - h, t, t + h], -1), t[0], t[-1])
@@ -244,12 +247,12 @@ def _poses(m: "Motion", t: Floats) -> Floats:
 
 
 def _wide(found: Floats) -> int:
-    """How many numbers of a knot are no slopes: its time, and those of its pose."""
+    """Number of columns of a knot before the slopes: its time, and the numbers of its pose."""
     return int(found.shape[1] + 1) // 2
 
 
 def _cubic(left: Floats, right: Floats, t: Floats) -> Floats:
-    """The numbers of a pose at t between two knots: the page's interpolation."""
+    """The numbers of a pose at t between two knots, interpolated as on the page."""
     wide = _wide(left)
     h = (right[:, 0] - left[:, 0])[:, np.newaxis]
     s = (t[:, np.newaxis] - left[:, :1]) / h
@@ -259,14 +262,14 @@ def _cubic(left: Floats, right: Floats, t: Floats) -> Floats:
 
 
 def packed(found: Floats) -> dict[str, Any]:
-    """Knots in few bytes: whole numbers between bounds, and slopes by what they differ from a guess.
+    """Knots in few bytes: values as integers between bounds, slopes as differences from a prediction.
 
-    The guess is the slope at a knot of the parabola through it and its neighbours; the difference is
-    weighed by the longer of the intervals beside it, where its error shows most.
+    The prediction is the slope of the parabola through a knot and its neighbours. The difference is
+    multiplied by the longer of the adjacent intervals, in which its error has the largest effect.
     """
     wide = _wide(found)
     low, high = found[:, :wide].min(axis=0), found[:, :wide].max(axis=0)
-    # what the page will read: slopes are to fit that
+    # the values that the page will read, to which the slopes have to fit
     whole = np.round((found[:, :wide] - low) / np.where(high > low, high - low, 1.0) * 0xFFFFFFFF)
     read = low + (high - low) * (whole / 0xFFFFFFFF)
     gaps = np.diff(read[:, 0])

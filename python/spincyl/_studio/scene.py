@@ -1,10 +1,10 @@
-"""A scene with a known answer, for engines that simulate contacts.
+"""Test scenes for engines that simulate contacts, with their exact solution.
 
-A body on a table with its initial velocities in SI units, and what must come of it: inclination, pose,
-energy, contact point and contact force from the exact solution, with the error of each.
+A scene has a body on a table, its initial velocities in SI units, and the expected inclination, pose,
+energy, contact point and contact force with the error of each.
 
-A body with a fillet is a core swollen by the fillet: all places within that distance of a smaller cylinder,
-of a line (a capsule), of two points or of one (balls). A table cannot tell it from the round body.
+A body with a fillet is a smaller core enlarged by the radius of the fillet: all points within that distance
+of a smaller cylinder, of a line (capsule), of two points or of one (balls). On a table they are equivalent.
 """
 
 import json
@@ -28,7 +28,7 @@ from spincyl._scale import Scale, scale_of
 from spincyl._state import State, gripping
 from spincyl._studio.shape import kind, landing, profiles, rotations, skin
 
-#: Of the pieces of a profile, how many become one in a mesh that is only looked at.
+#: Number of pieces of a profile that become one in a mesh for display.
 _PIECES = 4
 
 
@@ -148,7 +148,7 @@ class Scene:
 """
 
     def _round(self) -> dict[str, Any]:
-        """What the data say of a body with a fillet, in place of what they say of a sharp one."""
+        """The data of a body with a fillet, which replace those of a sharp one."""
         body, metre = self.motion.body, float(self.scale.metres(1.0))
         if not body.fillet > 0:
             return {}
@@ -170,11 +170,11 @@ class Scene:
         }
 
     def _geometry(self) -> tuple[str, str, str, str]:
-        """What MuJoCo is told of table and body: two geoms, what is only looked at, and their contact.
+        """The geoms of table and body for MuJoCo, the mesh for display, and the pair's contact.
 
-        A cylinder with a fillet is a smaller one with a margin: its contact begins where plane and cylinder
-        are two fillets apart, half way between which MuJoCo puts the contact point. So the plane lies a
-        fillet deeper than the table. This is the true shape, without facets.
+        A cylinder with a fillet is a smaller one with a margin: contact begins when plane and cylinder are
+        two fillets apart, and MuJoCo puts the contact point half way between them. So the plane lies one
+        fillet below the table. The shape is exact, without facets.
         """
         body, metre, second = self.motion.body, float(self.scale.metres(1.0)), self.scale.seconds(1.0)
         stiff = f'solref="{-1e6 / second**2:.6g} {-1e3 / second:.6g}" solimp="0.9999 0.9999 0.001 0.5 2"'
@@ -223,25 +223,25 @@ class Scene:
         if skin(self.motion.body).wall or self.motion.body.fillet == 1:
             texts[f"{stem}.xml"] = self.mjcf
         paths = [path.parent / name for name in texts]
-        with ExitStack() as all_:  # either is there, or neither
+        with ExitStack() as all_:  # both files are written, or neither
             for part, text in zip(map(all_.enter_context, map(replaced, paths)), texts.values(), strict=True):
                 part.write_text(text, encoding="utf-8")
         return paths
 
     def _energy_error(self) -> float:
-        """A bound of what an error of the states makes of the energy, in natural units.
+        """A bound of the error of the energy that follows from the error of the states, in natural units.
 
-        Every term of it has two angular velocities at most, and moments below J.
+        Each term of the energy has at most two angular velocities, and moments below `inertia`.
         """
         m = self.motion
         inertia = 1 + (abs(m.body.ell) + m.body.fillet) ** 2 + m.body.i1 + m.body.i3
         return float(m.error * inertia * (1 + 3 * np.abs(m.w).max()))
 
     def _start(self) -> tuple[Floats, Floats, Floats, Floats]:
-        """Place, velocity, angular velocity along the body's axes, orientation, in natural units."""
+        """Position, velocity, angular velocity along the body's axes, and orientation, in natural units."""
         m = self.motion
         turned = m.orientation[0]
-        # at the start the body's axes are those that follow the tilt
+        # at the start, psi = 0: e1, e2, e3 are the body's axes
         w = m.w[0]
         arm = m.centre[0] - np.append(m.contact_point[0], 0.0)
         velocity = np.cross(rotations(turned) @ w, arm)  # the contact point is at rest
@@ -339,16 +339,15 @@ def scene(
 
 
 def friction_needed(body: Body, state: State, until: float) -> float:
-    """The coefficient of friction that rolling takes up to a time, at 4001 places of it."""
+    """The coefficient of friction that rolling needs up to a time, at 4001 sampled times."""
     m = roll(body, state, np.linspace(0.0, until, 4001), want="force")
     return float(m.friction_coefficient.max(initial=0.0))
 
 
 def enough(body: Body, state: State, until: float, mu: float) -> float:
-    """A coefficient of friction from this one on with which it rolls so long; infinite if there is none.
+    """A rounded coefficient of friction above `mu` with which the body rolls until then; inf without one.
 
-    What is needed may have peaks between the places that were looked at, and with more friction it may end
-    otherwise.
+    The need may have peaks between the sampled times, and with more friction the motion may end otherwise.
     """
     mu = 1.01 * mu
     while mu < 1e12:
@@ -361,7 +360,7 @@ def enough(body: Body, state: State, until: float, mu: float) -> float:
 
 
 def _outside(body: Body) -> Floats:
-    """Places on the surface of a body, of which it is the hull; (n, 3)."""
+    """Points on the surface of a body, which is their convex hull; (n, 3)."""
     wall = profiles(body)[0]
     corners = np.array([*wall.corners[::_PIECES], wall.corners[-1]])
     angle = np.linspace(0, 2 * np.pi, 48, endpoint=False)[:, np.newaxis]

@@ -1,6 +1,7 @@
-"""The soft shadow of a body on the table: the shadows from some places of a round lamp lie over one another.
+"""The soft shadow of a body on the table: overlapping shadows from several points of a round lamp.
 
-The triangles that see such a place end at edges beyond which no triangle sees it: the outline of the shadow.
+The triangles that face a point of the lamp are bounded by edges to triangles that do not: these edges cast
+the outline of the shadow.
 """
 
 import math
@@ -11,29 +12,29 @@ import numpy as np
 from spincyl._input.numbers import Floats
 from spincyl._studio.shape import Part
 
-#: How far the shadow of each place of the lamp falls aside for a height of one.
+#: Horizontal displacement of the shadow for each point of the lamp, per unit height.
 _LAMPS = np.array(
     [
         (0.36 + far * math.cos(2.4 * k), 0.4 + far * math.sin(2.4 * k))
         for k, far in enumerate(0.15 * np.sqrt((np.arange(12) + 0.5) / 12))
     ]
 )
-#: How dark the full shadow is, the number of places of the lamp, and the share of each.
+#: Darkness of the full shadow, the number of points of the lamp, and the darkness of each one's shadow.
 DARK = 0.24
 LAMPS = len(_LAMPS)
 LAYER = 1 - (1 - DARK) ** (1 / LAMPS)
 
 
 class Caster(NamedTuple):
-    """A surface that throws a shadow."""
+    """A surface that casts a shadow."""
 
     vertices: Floats  #: (n, 3)
     triangles: np.ndarray  #: (m, 3) indices of vertices
-    mates: np.ndarray  #: (m, 3) the triangle beyond each edge; m where there is none
+    mates: np.ndarray  #: (m, 3) the triangle across each edge; m if there is none
 
 
 def caster(parts: list[Part]) -> Caster:
-    """The surface of these parts."""
+    """The combined surface of several parts."""
     before = np.cumsum([0, *(len(part.vertices) for part in parts)])
     triangles = np.concatenate([part.triangles + n for part, n in zip(parts, before, strict=False)])
     begin, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
@@ -45,7 +46,7 @@ def caster(parts: list[Part]) -> Caster:
 
 
 def shadows(of: Caster, rotation: Floats, centre: Floats) -> list[list[Floats]]:
-    """The closed lines (n, 3) on the table round the shadow of each place of the lamp."""
+    """The closed outlines (n, 3) on the table of the shadow from each point of the lamp."""
     places = of.vertices @ rotation.T + centre
     corners = places[of.triangles]
     flat = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -60,7 +61,7 @@ def shadows(of: Caster, rotation: Floats, centre: Floats) -> list[list[Floats]]:
 
 
 def _closed(edges: np.ndarray) -> list[list[int]]:
-    """The closed lines of which directed edges (n, 2) are parts."""
+    """Closed lines assembled from directed edges (n, 2)."""
     after: dict[int, list[int]] = {}
     for begin, end in edges.tolist():
         after.setdefault(begin, []).append(end)
@@ -79,7 +80,7 @@ def _closed(edges: np.ndarray) -> list[list[int]]:
 
 
 def outline(lines: list[Floats]) -> Any:
-    """A path along closed lines (n, 2): filled, it darkens once where they overlap."""
+    """A path along closed lines (n, 2), for filling; overlapping lines darken only once."""
     from matplotlib.path import Path as Outline
 
     corners = np.concatenate([np.concatenate([line, line[:1]]) for line in lines])

@@ -1,13 +1,13 @@
-"""What a body looks like: triangles of its surface and of the two marks, O and X, in units of R.
+"""Drawn shapes of bodies: triangles of the surface and of the two marks, O and X, in units of R.
 
-The body's axes are those of `Motion.orientation`: the origin is the centre of mass, the third axis is
-that of symmetry, and at the start the first points to the top of the rim. The upper end is at
-z = ell + fillet. One geometry serves the page, the photograph, the glTF file and the scene for engines; the
-page turns the profiles on a lathe of its own, so that sides cost no bytes.
+The axes are those of `Motion.orientation`: the origin is the centre of mass, the third axis is the axis of
+symmetry, and at the start the first axis points to the top of the rim. The upper end is at z = ell + fillet.
+The page, the photograph, the glTF file and the scenes for engines share this geometry; the page turns the
+profiles itself, so that only profiles are stored.
 
-A quarter of a fillet is drawn with 32 flat pieces whose corners lie on it, and with the normals of the
-circle: the profile lies inside the true one by (1 - cos(pi/128)) fillet = 3.0e-4 fillet at most, and with 128
-sides the surface by another 3.0e-4 of its radius.
+A quarter of a fillet is drawn with 32 flat pieces whose corners lie on the circle and have its normals. The
+profile lies at most (1 - cos(pi/128)) fillet = 3.0e-4 fillet inside the true one, and with 128 sides the
+surface another 3.0e-4 of its radius.
 """
 
 import math
@@ -34,15 +34,16 @@ from spincyl._studio.surface import (
 )
 
 Letter = Literal["O", "X"]
-#: "cylinder": a cylinder or a tube, of sharp or rounded edges. "balls": two, one on the other. "ball": one.
+#: "cylinder": a cylinder or tube, sharp or rounded. "balls": two balls, one on the other. "ball": one ball.
 Kind = Literal["cylinder", "capsule", "balls", "ball", "stone"]
 
 #: Below this aspect ratio the marks are on the faces, since the wall has no room for them.
 _DISK = 0.4
 _QUARTER = 32  # pieces of a quarter of a circle
-_ROD = 0.06  # radius of what holds two balls together
-_STEM, _LONGEST = 0.15, 2.5  # radius of the stem of a ball, and how far its end may be from the ball's centre
-_LIFT = 0.006  # of the marks above the surface
+_ROD = 0.06  # radius of the rod between two balls
+# radius of a ball's stem, and largest distance of the stem's end from the ball's centre
+_STEM, _LONGEST = 0.15, 2.5
+_LIFT = 0.006  # height of the marks above the surface
 
 __all__ = [
     "BLUE", "IVORY", "ORANGE", "SHADE", "Kind", "Letter", "Part", "Profile", "kind", "landing", "lathe",
@@ -51,7 +52,7 @@ __all__ = [
 
 
 def kind(body: Body | Ellipsoid) -> Kind:
-    """What a body is drawn as; what is not known of a general body is guessed from where it lands."""
+    """The kind of shape to draw; for a general body a guess from the inclination at which it lands."""
     if isinstance(body, Ellipsoid):
         return "stone"
     if body.fillet < 1:
@@ -62,36 +63,36 @@ def kind(body: Body | Ellipsoid) -> Kind:
 
 
 def landing(body: Body) -> float:
-    """The inclination at which something else than its lower rim lands."""
+    """The inclination at which something other than the lower rim lands."""
     if not np.isnan(body.theta_end):
         return float(body.theta_end)
     return np.pi / 2 if body.ell > 0 and kind(body) != "ball" else np.pi
 
 
 def steepest(body: Body) -> float:
-    """The largest inclination of its steady states: where it lands, with a sharp rim at most on its side."""
+    """The largest inclination of steady states: that of landing, but at most pi/2 with a sharp rim."""
     return min(landing(body), np.pi / 2) if body.fillet == 0 else landing(body)
 
 
 def reach(body: Body | Ellipsoid) -> float:
-    """How far the body's surface reaches from its centre of mass."""
+    """Largest distance of the body's surface from its centre of mass."""
     if isinstance(body, Ellipsoid):
         return stone_shape.reach(body)
     return max(math.hypot(r, z) for profile in profiles(body) for r, z in profile.corners)
 
 
 def size(body: Body | Ellipsoid) -> float:
-    """How far a camera that looks at the centre of a body has to see."""
+    """Radius round the centre of a body that a camera has to show."""
     return reach(body) if isinstance(body, Ellipsoid) else math.hypot(1.0, float(body.ell))
 
 
 class Skin(NamedTuple):
-    """The round surface of a body: a wall between two fillets, alike above and below its middle."""
+    """The round surface of a body: a wall between two equal fillets."""
 
-    middle: float  #: height of its middle above the centre of mass
-    wall: float  #: half its length
+    middle: float  #: height of the wall's middle above the centre of mass
+    wall: float  #: half the length of the wall
     fillet: float
-    rim: float  #: radius of the circles round which the fillets run
+    rim: float  #: radius of the circles along which the centres of the fillets run
     bore: float
 
     @property
@@ -101,11 +102,10 @@ class Skin(NamedTuple):
 
 
 def skin(body: Body) -> Skin:
-    """The surface of a body that is symmetric top to bottom, as are all but balls with a stem.
+    """The surface of a body that is symmetric top to bottom, like all except balls with a stem.
 
-    A general body is drawn as long above its centre as below, and solid; where it goes on beyond pi/2
-    although its centre is above its rim, the other side must be out of the way, and its lower end alone is
-    drawn.
+    A general body is drawn solid, and as long above its centre as below. If it continues beyond pi/2 although
+    its centre is above its rim, the upper side must not be in the way, and only the lower end is drawn.
     """
     ell, fillet = float(body.ell), float(body.fillet)
     lower = kind(body) == "ball" or (fillet > 0 and np.isnan(body.bore) and landing(body) > np.pi / 2 + 1e-9)
@@ -113,9 +113,9 @@ def skin(body: Body) -> Skin:
 
 
 def profiles(body: Body | Ellipsoid) -> list[Profile]:
-    """The surface of a body but for its marks.
+    """The surface of a body without its marks.
 
-    A body of unknown bore is drawn solid, a tube at least 0.02 R thick.
+    A body of unknown bore is drawn solid, a tube with a wall of at least 0.02 R.
     """
     if isinstance(body, Ellipsoid):
         return stone_shape.profiles(body)
@@ -138,7 +138,7 @@ def _rounded(body: Body) -> list[Profile]:
     if kind(body) == "ball":
         return _ball(body)
     if kind(body) == "balls":
-        # one ends where the rod begins, in a point, or where they cut each other
+        # each ball ends in a point where the rod begins, or where the balls intersect
         end = math.acos(_ROD) if wall > 1 else math.asin(min(1.0, wall))
         lower = arc((0.0, -wall), 1.0, -np.pi / 2, end, 2 * _QUARTER)
         upper = [[(x, -z) for x, z in reversed(pairs)] for pairs in lower]
@@ -147,7 +147,7 @@ def _rounded(body: Body) -> list[Profile]:
         return [balls[0], Profile("rod", SHADE, rod), balls[1]] if wall > 1 else balls
     below = arc((rim, middle - wall), fillet, -np.pi / 2, 0.0, _QUARTER)
     above = arc((rim, middle + wall), fillet, 0.0, np.pi / 2, _QUARTER)
-    joint = 0 if wall else 1  # without a wall they have a corner in common
+    joint = 0 if wall else 1  # without a wall the two fillets share a corner
     corners, normals = (a + b[joint:] for a, b in zip(below, above, strict=True))
     surface = [Profile("wall", IVORY, corners, normals)]
     (_, low), (_, high) = surface[0].corners[0], surface[0].corners[-1]
@@ -162,13 +162,13 @@ def _rounded(body: Body) -> list[Profile]:
 
 
 def _ball(body: Body) -> list[Profile]:
-    """One ball, and what lands where the body does: a stem with a round end, or a plate if that is too long.
+    """A ball, and the part on which it lands: a stem with a round end, or a plate if the stem is too long.
 
-    A stem that would not reach out of the ball, where the body lands beyond 149 degrees, is left out.
+    A stem that would not reach out of the ball, for landings beyond 149 degrees, is left out.
     """
     middle, land = skin(body).middle, landing(body)
     c, s = math.cos(land), math.sin(land)
-    far = (1 - _STEM) / max(-c, 1e-9)  # from the centre of the ball to that of the stem's end
+    far = (1 - _STEM) / max(-c, 1e-9)  # from the centre of the ball to that of the stem's round end
     root = (_STEM, middle + math.sin(math.acos(_STEM)))
     if middle + far <= root[1]:
         whole = arc((0.0, middle), 1.0, -np.pi / 2, np.pi / 2, 2 * _QUARTER)
@@ -185,7 +185,7 @@ def _ball(body: Body) -> list[Profile]:
 
 
 def marks(body: Body | Ellipsoid, upper: Letter = "O") -> list[Part]:
-    """The two marks; `upper` is the letter on the upper end, or gives its colour to the first of a stone."""
+    """The two marks; `upper` is the letter on the upper end, or the colour of a stone's first mark."""
     one_of("upper", upper, ("O", "X"))
     if isinstance(body, Ellipsoid):
         return stone_shape.marks(body, upper)
@@ -194,7 +194,7 @@ def marks(body: Body | Ellipsoid, upper: Letter = "O") -> list[Part]:
 
 
 def parts(body: Body | Ellipsoid, upper: Letter = "O") -> list[Part]:
-    """The surface of a body, its marks last."""
+    """The surface of a body, then its marks."""
     return [*map(lathe, profiles(body)), *marks(body, upper)]
 
 
@@ -204,10 +204,10 @@ def _bore(body: Body) -> float:
 
 
 def _mark(body: Body, letter: Letter, end: int) -> Part:
-    """A letter near the rim of the upper (end = 1) or lower (-1) end: on the wall, or a disk's face.
+    """A letter near the rim of the upper (end = 1) or lower (-1) end: on the wall or on a disk's face.
 
-    On the wall it goes round the fillet, to the latitude of 45 degrees or so: on two balls its middle is on
-    the equator, where O and X are at pi/2. Its strokes are as wide along a curved surface as on the wall.
+    On the wall it continues round the fillet to a latitude of about 45 degrees; on two balls its middle is on
+    the equator, where O and X are at pi/2. Its strokes have the same width on curved surfaces as on the wall.
     """
     middle, wall, fillet, rim, bore = skin(body)
     bend = fillet * np.pi / 4
@@ -218,7 +218,7 @@ def _mark(body: Body, letter: Letter, end: int) -> Part:
     for u, v in _glyph(letter, 4 if fillet else 1):
         u, v = size * u, size * v
         if on_wall:
-            # how far from the middle along the profile, and how much of that is straight
+            # distance from the middle along the profile, and the straight part of it
             along = max(wall - 0.56 * size + min(0.56 * size, bend), 0.56 * size) + v
             straight = np.full(v.shape, wall) if kind(body) == "balls" else np.minimum(along, wall)
             angle = (along - straight) / fillet if fillet else np.zeros(v.shape)
@@ -235,9 +235,10 @@ def _mark(body: Body, letter: Letter, end: int) -> Part:
             across = rim - 0.56 * size
             place = np.stack([across + v, u, np.full(u.shape, middle + end * (wall + fillet + _LIFT))], -1)
             direction = np.broadcast_to([0.0, 0.0, float(end)], place.shape)
-        # seen from outside, the letters of the two ends run in opposite senses
+        # seen from outside, the letters on the two ends run in opposite senses
         turned = (end > 0) == on_wall
-        # the page of a sharp body is kept as it is, to the last digit of a normal
+        # without a fillet, normals are not reversed: the page of a sharp body stays the same to the last
+        # digit
         pieces.append(
             strip(place[::-1] if turned else place, direction[::-1] if turned and fillet else direction)
         )
@@ -245,13 +246,13 @@ def _mark(body: Body, letter: Letter, end: int) -> Part:
 
 
 def _glyph(letter: Letter, strips: int) -> list[tuple[Floats, Floats]]:
-    """Rows of points (strips + 1, n) that cover a letter of height 1 once: across and along."""
+    """Rows of points (strips + 1, n) that cover a letter of height 1 once: coordinates across and along."""
     stroke = 0.2
     if letter == "O":
         angle = np.linspace(0, 2 * np.pi, 49)
         radius = np.linspace(0.5 - stroke, 0.5, strips + 1)[:, np.newaxis]
         return [(radius * np.cos(angle), radius * np.sin(angle))]
-    # a bar and two halves that leave the crossing to it
+    # a bar, and two halves of the other bar that leave out the crossing
     half, side = 0.5 * np.sqrt(2) - 0.5 * stroke, np.linspace(0.5, -0.5, strips + 1)[:, np.newaxis] * stroke
     bars = []
     for turn, start, stop in ((1, -half, half), (-1, 0.5 * stroke, half), (-1, -half, -0.5 * stroke)):

@@ -1,12 +1,12 @@
-"""The sound of a whirr: a ring that is loudest each time the contact point comes round.
+"""The sound of a whirr: a ringing that is loudest each time the contact point passes the listener.
 
-    x = r(t) exp(b (cos(phi) - 1)),    r = what a few resonances make of noise, v^(1/2) strong
+    x = r(t) exp(b (cos(phi) - 1)),    r = noise of strength v^(1/2), filtered by a few resonances
 
-v is how fast the contact moves along the body, round its rim by psi' A and over a fillet by rho theta'. phi
-turns the contact about the vertical, as heard by somebody who stands beside the table: one beat a turn, at
-phi'/(2 pi). The resonances are those of a steel disk or so; their pitch means nothing. Towards the end of a
-whirr psi' grows without bound: what comes round faster than the body rings makes it no louder, and beats that
-samples cannot show are heard as their mean.
+v is the speed of the contact along the body: psi' A round its rim, rho theta' over a fillet. phi turns the
+contact about the vertical, for a listener who stands beside the table: one beat per turn, phi'/(2 pi). The
+resonances are roughly those of a steel disk; their pitch has no meaning. Towards the end of a whirr psi'
+grows without bound: a contact faster than the ringing makes it no louder, and beats faster than the samples
+resolve are replaced by their mean.
 """
 
 import math
@@ -29,8 +29,8 @@ if TYPE_CHECKING:
 #: Hertz, decay time in seconds, strength.
 _RESONANCES = ((1150.0, 0.030, 1.0), (2710.0, 0.020, 0.6), (4890.0, 0.012, 0.35))
 _SHARPNESS = 2.0
-_STILL = 1e-9  # of sqrt(g R): a contact that moves no faster along the body is at rest but for rounding
-_LOOKS = 2000  # a second, at which the pose is asked for
+_STILL = 1e-9  # in sqrt(g R): a contact that moves more slowly along the body is at rest up to rounding
+_LOOKS = 2000  # samples of the pose per second
 _AFTER, _LONGEST = 0.25, 180.0  # seconds
 
 
@@ -71,7 +71,7 @@ def sound(
 
 
 def _heard(m: "Motion", first: float, unit: float, lasting: float, rate: int) -> Floats:
-    """The pressure at each sample, between -1 and 1, and a while of ringing after the end."""
+    """The pressure at each sample, between -1 and 1, with some ringing after the end."""
     looks = np.linspace(0.0, lasting, max(64, math.ceil(_LOOKS * lasting)))
     phi, speed = _contact(m, first + looks / unit)
     if not speed.max() > _STILL:
@@ -87,10 +87,10 @@ def _heard(m: "Motion", first: float, unit: float, lasting: float, rate: int) ->
 
 
 def _contact(m: "Motion", times: Floats) -> tuple[Floats, Floats]:
-    """Where the contact is about the vertical, and how fast it moves along the body, at times."""
+    """The azimuth of the contact, and its speed along the body, at times."""
     phi, theta, w = seen(m, times, "phi", "theta", "w")
     s, c, fillet = np.sin(theta), np.cos(theta), m.body.fillet
-    # of a ball finite at its poles; where a face lies down there is none, and the last one before it stands
+    # finite at a ball's poles; after a face has landed there is no speed: the last one is repeated
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         round_the_rim = (1 - fillet) * (w[:, 2] - w[:, 0] * c / s) if fillet < 1 else 0.0
         speed = np.hypot(round_the_rim + fillet * (s * w[:, 2] - c * w[:, 0]), fillet * w[:, 1])
@@ -102,16 +102,16 @@ def _contact(m: "Motion", times: Floats) -> tuple[Floats, Floats]:
 
 
 def _beat(phi: Floats) -> Floats:
-    """How loud the ring is, by where the contact is; the mean where that is faster than samples show."""
+    """Loudness of the ringing by the azimuth of the contact; its mean where the beat is too fast."""
     step = np.abs(np.gradient(phi)) if phi.size > 1 else np.zeros(phi.size)
-    shown = np.clip(2 - step * 2 / math.pi, 0.0, 1.0)  # nothing of it from two samples a turn on
+    shown = np.clip(2 - step * 2 / math.pi, 0.0, 1.0)  # 0 from two samples per turn on
     mean = math.exp(-_SHARPNESS) * float(np.i0(_SHARPNESS))
     found: Floats = mean + shown * (np.exp(_SHARPNESS * (np.cos(phi) - 1)) - mean)
     return found
 
 
 def _through(scrape: Floats, rate: int) -> Floats:
-    """What resonances that decay make of a force."""
+    """The response of decaying resonances to a force."""
     t = np.arange(math.ceil(0.25 * rate)) / rate
     answer = sum(
         size * np.exp(-t / decay) * np.sin(2 * np.pi * hertz * t) for hertz, decay, size in _RESONANCES

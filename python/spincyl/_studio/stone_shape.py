@@ -1,15 +1,15 @@
-"""What a stone looks like: the ball of radius 1, turned in pieces on a lathe and stretched to an ellipsoid.
+"""Drawn shapes of stones: pieces of the unit ball, turned on a lathe and stretched to an ellipsoid.
 
-The origin is the centre of mass. A stone with an edge is cut by the plane at whose height the edge lands,
+The origin is the centre of mass. A stone with an edge is cut by the plane of the edge, at the height
 
-    z = -a3^2 cos(theta_end)/hypot(a sin(theta_end), a3 cos(theta_end)),
+    z = -a3^2 cos(theta_end)/hypot(a sin(theta_end), a3 cos(theta_end))
 
-above the centre, with that of the semi-axes a1 and a2 for which it is highest; so whatever touches the table
-is drawn. On the plane lies a needle along the longer axis, and round the hull a stripe in its colours. A
-whole stone has a band round its longer side and a dot beside it, so that any turn of it is seen.
+above the centre, where a is the one of a1 and a2 that gives the larger z; so everything that touches the
+table is drawn. A needle lies on the plane along the longer axis, and a stripe in its colours surrounds the
+hull. A whole stone has a band round its longer side and a dot beside the band, which show any rotation.
 
-As of other bodies the corners lie on the surface: that of the ball lies inside the true one by 6e-4 at most,
-and that of the stone by as much of the height of its centre above the table.
+As for other bodies the corners lie on the true surface. The drawn ball lies at most 6e-4 inside the true
+one, and the stone by that share of the height of its centre above the table.
 """
 
 import math
@@ -33,14 +33,15 @@ from spincyl._studio.surface import (
 )
 
 _QUARTER = 32  # pieces of a quarter of a circle
-_LIFT = 0.004  # of the marks above the surface, of the ball of radius 1
-_BAND, _DOT = 0.07, 0.2  # half the width of the band, and the radius of the dot, in radians of that ball
-_STRIPE = (0.84, 0.95)  # where the hull has its stripe, of the way from below to the edge
-_LONG, _WIDE = 0.88, 0.34  # half of the needle, as shares of the plane's semi-axes
+_LIFT = 0.004  # height of the marks above the surface of the unit ball
+_BAND, _DOT = 0.07, 0.2  # half the width of the band and the radius of the dot, in radians on the unit ball
+# ends of the stripe on the hull, as shares of the arc from the lowest point to the edge
+_STRIPE = (0.84, 0.95)
+_LONG, _WIDE = 0.88, 0.34  # half length and half width of the needle, as shares of the plane's semi-axes
 
 
 def height(stone: Ellipsoid) -> float:
-    """At which height the ball of radius 1 is cut, from -1 to 1: 1 if the stone is whole."""
+    """The height at which the unit ball is cut, from -1 to 1; 1 for a whole stone."""
     end = float(stone.theta_end)
     if not end < math.pi:
         return 1.0
@@ -51,7 +52,7 @@ def height(stone: Ellipsoid) -> float:
 
 
 def profiles(stone: Ellipsoid) -> list[Profile]:
-    """The surface of a stone but for its marks."""
+    """The surface of a stone without its marks."""
     cut, whole = height(stone), _stretch(stone)
     if cut == 1:
         halves = [arc((0.0, 0.0), 1.0, low, low + np.pi / 2, _QUARTER) for low in (-np.pi / 2, 0.0)]
@@ -66,7 +67,7 @@ def profiles(stone: Ellipsoid) -> list[Profile]:
 
 
 def turned_marks(stone: Ellipsoid, upper: str) -> list[Profile]:
-    """Marks that a lathe turns: band and dot of a whole stone."""
+    """The marks that are turned on a lathe: band and dot of a whole stone."""
     if height(stone) < 1:
         return []
     first, second = _inks(upper)
@@ -83,7 +84,7 @@ def marks(stone: Ellipsoid, upper: str) -> list[Part]:
     cut = height(stone)
     if cut == 1:
         return [lathe(profile) for profile in turned_marks(stone, upper)]
-    # along the longer axis, aside, up
+    # columns: along the longer axis, across it, up
     turn = np.eye(3) if _long(stone) == 0 else np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
     found = []
     for (name, colour), end in zip(_inks(upper), (1, -1), strict=True):
@@ -96,14 +97,14 @@ def marks(stone: Ellipsoid, upper: str) -> list[Part]:
 
 
 def _needle(cut: float, end: int) -> tuple[Floats, Floats, np.ndarray]:
-    """Half of the needle on the plane."""
+    """One half of the needle on the plane."""
     long, wide = end * math.sqrt(1 - cut * cut) * np.array([_LONG, _WIDE])
     corners = np.array([[long, 0.0, cut + _LIFT], [0.0, wide, cut + _LIFT], [0.0, -wide, cut + _LIFT]])
     return corners, np.tile([0.0, 0.0, 1.0], (3, 1)), np.array([[0, 1, 2]])
 
 
 def _stripe(cut: float, end: int) -> tuple[Floats, Floats, np.ndarray]:
-    """Half of the stripe round the hull, below the edge."""
+    """One half of the stripe round the hull, below the edge."""
     up = -np.pi / 2 + np.linspace(*_STRIPE, 3)[:, np.newaxis] * math.acos(-cut)
     angle = np.linspace(-np.pi / 2, np.pi / 2, _QUARTER + 9)
     around = [end * np.cos(up) * np.cos(angle), end * np.cos(up) * np.sin(angle), np.sin(up)]
@@ -112,7 +113,7 @@ def _stripe(cut: float, end: int) -> tuple[Floats, Floats, np.ndarray]:
 
 
 def reach(stone: Ellipsoid) -> float:
-    """How far its surface reaches from its centre of mass."""
+    """Largest distance of the stone's surface from its centre of mass."""
     return max(float(np.linalg.norm(lathe(p).vertices, axis=1).max()) for p in profiles(stone))
 
 
@@ -125,7 +126,7 @@ def _inks(
 
 
 def _long(stone: Ellipsoid) -> int:
-    """Which of the first two axes, counted from 0, is the longer one."""
+    """Index of the longer of the first two axes."""
     return int(np.argmax(np.asarray(stone.axes)[:2]))
 
 

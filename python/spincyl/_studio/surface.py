@@ -1,4 +1,4 @@
-"""Surfaces as triangles: what a polygon sweeps on a lathe, stretched where it is that of a stone."""
+"""Surfaces as triangles: a profile is turned on a lathe and, for a stone, stretched."""
 
 from itertools import pairwise
 from typing import NamedTuple
@@ -12,14 +12,14 @@ IVORY, SHADE, BLUE, ORANGE = (0.87, 0.85, 0.80), (0.72, 0.70, 0.66), (0.0, 0.36,
 
 
 class Stretch(NamedTuple):
-    """How a surface that was turned becomes that of a stone: along its axes by these factors, then aside."""
+    """Map from a surface of revolution to that of a stone: scale along its axes, then shift."""
 
     axes: tuple[float, float, float]
     centre: tuple[float, float, float]
-    about: int = 2  #: which axis of the stone, counted from 0, is that of the lathe
+    about: int = 2  #: index of the stone's axis that is the axis of the lathe
 
     def __call__(self, part: "Part") -> "Part":
-        """The same part, stretched."""
+        """Return the stretched part."""
         order = np.roll(np.arange(3), self.about - 2)
         places, normals = (
             part.vertices[:, order] * self.axes + self.centre,
@@ -30,13 +30,15 @@ class Stretch(NamedTuple):
 
 
 class Profile(NamedTuple):
-    """A piece of surface in one colour, as the polygon that sweeps it round the axis."""
+    """A piece of surface in one colour, as a polygon to turn round the axis."""
 
     name: str
     colour: tuple[float, float, float]
-    corners: list[tuple[float, float]]  #: radius and height; outside is on the right of its direction
-    normals: list[tuple[float, float]] | None = None  #: the same of the normals; None: those of flat pieces
-    stretch: Stretch | None = None  #: of a stone
+    #: radius and height; the outside is on the right of the polygon's direction
+    corners: list[tuple[float, float]]
+    #: radius and height components; None: normals of flat pieces
+    normals: list[tuple[float, float]] | None = None
+    stretch: Stretch | None = None  #: for a stone
 
 
 class Part(NamedTuple):
@@ -50,12 +52,12 @@ class Part(NamedTuple):
 
 
 def lathe(profile: Profile) -> Part:
-    """The surface that a profile sweeps."""
+    """The surface that a profile makes when it is turned and, for a stone, stretched."""
     return _turned(profile) if profile.stretch is None else profile.stretch(_turned(profile))
 
 
 def _turned(profile: Profile) -> Part:
-    """The same before it is stretched."""
+    """The surface of revolution of a profile."""
     angle = np.linspace(0, 2 * np.pi, _AROUND + 1)
     circle = np.stack([np.cos(angle), np.sin(angle)], -1)
     pieces = []
@@ -84,14 +86,14 @@ def arc(
     """Corners on a circle and their normals, from one latitude to another."""
     angle = np.linspace(start, stop, pieces + 1)
     across, up = np.cos(angle), np.sin(angle)
-    across[np.abs(angle) > np.pi / 2 - 1e-12] = 0.0  # a pole is a point
+    across[np.abs(angle) > np.pi / 2 - 1e-12] = 0.0  # a pole is exactly on the axis
     up[angle == 0] = 0.0
     normals = list(zip(across.tolist(), up.tolist(), strict=True))
     return [(centre[0] + radius * x, centre[1] + radius * z) for x, z in normals], normals
 
 
 def strip(rows: Floats, normals: Floats) -> tuple[Floats, Floats, np.ndarray]:
-    """Vertices, normals and triangles between rows of n points each, from below."""
+    """Vertices, normals and triangles between rows of n points each, from the lowest row up."""
     n = rows.shape[1]
     triangles = np.concatenate(
         [
@@ -105,7 +107,7 @@ def strip(rows: Floats, normals: Floats) -> tuple[Floats, Floats, np.ndarray]:
 def joined(
     name: str, colour: tuple[float, float, float], pieces: list[tuple[Floats, Floats, np.ndarray]]
 ) -> Part:
-    """A part of such pieces, without the triangles that are a line."""
+    """A part made of pieces, without triangles of zero area."""
     if not pieces:
         return Part(name, colour, np.empty((0, 3)), np.empty((0, 3)), np.empty((0, 3), np.intp))
     offsets = np.cumsum([0, *(len(vertices) for vertices, _, _ in pieces)])

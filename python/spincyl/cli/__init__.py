@@ -1,7 +1,7 @@
-"""The command line: steady states as a table, motions as files, the map and the figures as pictures.
+"""The command line: steady states as a table, motions as files, the map and other figures as pictures.
 
-Exit status: 0 if done, 1 if something failed that was asked rightly (a file, an extra, memory), 2 if the
-question is wrong, 130 if interrupted. A reader that closes the pipe, as `head` does, is no failure.
+Exit status: 0 for success, 1 for a failure of a valid command (a file, a missing extra, memory), 2 for an
+invalid command, 130 if interrupted. A reader that closes the pipe, as `head` does, is no failure.
 """
 
 import contextlib
@@ -26,7 +26,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     except BrokenPipeError:
         _close_stdout()
         return 0
-    except OSError as e:  # of the flush
+    except OSError as e:  # from the flush
         _close_stdout()
         print(f"spincyl: {e.strerror}", file=sys.stderr)
         return 1
@@ -52,6 +52,6 @@ def _run(argv: Sequence[str]) -> int:
 
 
 def _close_stdout() -> None:
-    """Let nothing be flushed any more when Python ends."""
+    """Prevent Python from flushing stdout when it ends."""
     with contextlib.suppress(OSError, ValueError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -1,4 +1,4 @@
-"""What each command does with its options."""
+"""The commands: each is a function of its parsed options."""
 
 import math
 import re
@@ -39,14 +39,14 @@ _TUBE = "ell", "bore", "i1", "i3", "inner", "length", "fillet"
 
 
 def _refuse(args: Namespace, kind: str, names: Sequence[str], why: str) -> None:
-    """Refuse options that do not go with a kind of body, naming the first of them."""
+    """Refuse options that exclude a kind of body, naming the first of them."""
     for name in names:
         if getattr(args, name) is not None:
             raise ValueError(f"--{name} does not go with {kind}: {why}")
 
 
 def _ball_of(args: Namespace) -> Body:
-    """One ball or two."""
+    """One ball or two, from the options."""
     if args.balls is not None:
         _refuse(args, "--balls", (*_TUBE, "ball"), "two balls are told by the distance of their centres")
         with _naming("separation", "--balls"):
@@ -65,7 +65,7 @@ def _ball_of(args: Namespace) -> Body:
 
 @contextmanager
 def _naming(name: str, option: str) -> Iterator[None]:
-    """What is said of an argument of the library is said of the option that gave it."""
+    """Context in which errors about an argument of the library name the option that gave it."""
     try:
         yield
     except ValueError as e:
@@ -73,7 +73,7 @@ def _naming(name: str, option: str) -> Iterator[None]:
 
 
 def _measured(args: Namespace) -> Body:
-    """A tube by its measures, all of which are in metres."""
+    """A tube from its measures, all of which are in metres."""
     if args.outer is None or args.length is None:
         raise ValueError("a measured tube needs --outer and --length")
     bore = args.bore if isinstance(args.bore, Metres) else None
@@ -97,7 +97,7 @@ def _measured(args: Namespace) -> Body:
 
 
 def _told(args: Namespace) -> Body:
-    """A body by its numbers in natural units."""
+    """A body from its numbers in natural units."""
     if args.ell is None:
         raise ValueError("no body: give --ell, or --balls, or --ball, or --outer and --length")
     fillet = 0.0 if args.fillet is None else args.fillet
@@ -120,7 +120,7 @@ def _told(args: Namespace) -> Body:
 
 
 def body_of(args: Namespace) -> tuple[Body, Scale | None]:
-    """The body, and its scale if its radius is known."""
+    """The body, and its scale if the radius is known."""
     radius = args.radius
     if args.outer is not None:
         if radius is not None and args.ell is None:
@@ -143,7 +143,7 @@ def body_of(args: Namespace) -> tuple[Body, Scale | None]:
 
 
 def steady(args: Namespace) -> None:
-    """Steady states as a table."""
+    """Print steady states as a table."""
     body, scale = body_of(args)
     if args.hertz and scale is None:
         raise ValueError("--hertz needs --radius, or a body measured in metres")
@@ -176,7 +176,7 @@ def steady(args: Namespace) -> None:
 
 
 def portrait(args: Namespace) -> None:
-    """The map, as a picture or as data."""
+    """Write the map, as a picture or as data."""
     if not 2 <= args.points <= 100_000:
         raise ValueError(f"--points {args.points}: expected 2 to 100000")
     if not args.ell_max > 0:
@@ -226,7 +226,7 @@ def _draw(data: Any, args: Namespace) -> None:
 
 
 def figures(args: Namespace) -> None:
-    """The pictures of a lecture."""
+    """Draw the figures of a lecture."""
     extra("matplotlib", "plot").use("agg")
     from spincyl import plot
 
@@ -247,7 +247,7 @@ def _start(args: Namespace, body: Body) -> State:
 
 
 def _contact(args: Namespace) -> AnyContact:
-    """The contact that is named, with its numbers."""
+    """The contact given by the options, with its coefficients."""
     for name, law in (("static", "coulomb"), ("viscosity", "viscous")):
         if getattr(args, name) is not None and args.contact != law:
             raise ValueError(f"--{name} goes with --contact {law}")
@@ -265,7 +265,7 @@ def _contact(args: Namespace) -> AnyContact:
 
 
 def natural(name: str, time: float | None, scale: Scale | None) -> float | None:
-    """A time in units of sqrt(R/g), also if it was given in seconds."""
+    """Convert a time to units of sqrt(R/g) if it was given in seconds."""
     if not isinstance(time, Seconds):
         return time
     if scale is None:
@@ -274,7 +274,7 @@ def natural(name: str, time: float | None, scale: Scale | None) -> float | None:
 
 
 def roll_(args: Namespace) -> None:
-    """A motion, in words and as a file."""
+    """Compute a motion; print it in words, or write a file."""
     body, scale = body_of(args)
     if args.points < 2:
         raise ValueError(f"--points {args.points}: expected at least 2")
@@ -297,7 +297,7 @@ def roll_(args: Namespace) -> None:
 
 
 def recipient(args: Namespace) -> Callable[[Motion, Scale | None, Path], None] | None:
-    """What writes the file that is asked for, which can be written; None if there is none."""
+    """The function that writes the requested file, once the path has been checked; None without a file."""
     if args.output is None or args.output == "-":
         return None
     writer = writer_of(Path(args.output))
@@ -312,13 +312,13 @@ def delivered(
     rows: Iterable[Row] = (),
     numbers: dict[str, Any] | None = None,
 ) -> None:
-    """Say what there is to say of a motion, after rows and numbers of a command's own."""
+    """Print or write a motion, after rows and numbers of the command itself."""
     piped = args.output == "-"
     if args.json:
         told = motion_numbers(m, scale) | (numbers or {})
         print_json(told | ({"columns": columns(m, scale)} if piped else {}))
         return
-    said = sys.stderr if piped else sys.stdout  # of a pipe, what comes out is the table alone
+    said = sys.stderr if piped else sys.stdout  # only the table goes into a pipe
     print(f"{m.body!r}", file=said)
     table(chain(rows, motion_rows(m, scale, weighed=args.mass is not None)), said)
     if piped:
@@ -329,7 +329,7 @@ def delivered(
 
 
 def report(args: Namespace) -> None:
-    """Speed against error on this machine."""
+    """Measure speed against error on this machine."""
     from spincyl import report as found
 
     place = None if args.folder is None else folder(args.folder)

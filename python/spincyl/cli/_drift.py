@@ -1,4 +1,4 @@
-"""The command `drift`: how a body that loses energy slowly passes from one steady state to the next."""
+"""The command `drift`: the slow passage of a body that loses energy from one steady state to the next."""
 
 import math
 import sys
@@ -43,7 +43,7 @@ _ROWS = 11
 
 
 def options(sub: ArgumentParser) -> None:
-    """Options that say where a drift begins, what drives it and where it goes."""
+    """Add the options for the start, the losses and the output of a drift."""
     how = sub.add_argument_group("the drift")
     how.add_argument("--theta", type=angle, required=True, metavar="ANGLE", help="inclination at the start")
     option(how, "--law", required=True)
@@ -60,7 +60,7 @@ def options(sub: ArgumentParser) -> None:
 
 
 def drift(args: Namespace) -> None:
-    """A drift, in words and as a file."""
+    """Compute a drift; print it in words, or write a file."""
     body, scale = body_of(args)
     if args.points is not None and args.points < 2:
         raise ValueError(f"--points {args.points}: expected at least 2")
@@ -76,7 +76,7 @@ def drift(args: Namespace) -> None:
             write_csv(columns, Path(args.output))
         elif suffix in _PICTURES:
             _draw(spincyl.drift(replace(body, scale=scale), args.theta, losses, centre=args.centre), args)
-    # the rows of a table are nobody's question
+    # drop warnings about single times: the user did not choose the rows of the table
     messages = (str(warning.message) for warning in caught if "asked there" not in str(warning.message))
     for message in dict.fromkeys(messages):
         print(f"spincyl drift: {message}", file=sys.stderr)
@@ -84,7 +84,7 @@ def drift(args: Namespace) -> None:
         told = {"body": body_numbers(body, scale), "losses": repr(losses), "centre": args.centre}
         print_json(told | _numbers(found, scale) | {"columns": columns})
         return
-    said = sys.stderr if suffix == "-" else sys.stdout  # of a pipe, what comes out is the table alone
+    said = sys.stderr if suffix == "-" else sys.stdout  # only the table goes into a pipe
     print(f"{body!r}", file=said)
     table(iter(rows), said)
     if suffix == "-":
@@ -100,7 +100,7 @@ _PICTURES = ".png", ".pdf", ".svg"
 
 
 def _suffix(output: str | None) -> str | None:
-    """What the output is to be, refused before any work if it cannot."""
+    """The kind of output, by suffix; refused before any work if it is unknown or cannot be written."""
     if output is None or output == "-":
         return output
     suffix = Path(output).suffix.lower()
@@ -112,11 +112,11 @@ def _suffix(output: str | None) -> str | None:
 
 
 def _columns(found: Any, theta: float, scale: Scale | None, count: int) -> dict[str, Floats]:
-    """Inclinations from the start to the end, even, and what there is at each."""
+    """Columns at equal steps of inclination from the start to the end."""
     tilt = np.linspace(theta, float(found.ends_at_theta), count)
-    t = np.append(found.time(tilt[:-1]), float(found.stops_at))  # never, where the end is a limit
+    t = np.append(found.time(tilt[:-1]), float(found.stops_at))  # inf if the end is only a limit
     rate = np.asarray(found.precession(t), np.float64)
-    rate[-1] = np.inf if float(tilt[-1]) == 0.0 else rate[-1]  # a face that lands, by this drift
+    rate[-1] = np.inf if float(tilt[-1]) == 0.0 else rate[-1]  # a face that lands, according to this drift
     told = {"theta": tilt, "precession": rate, "t": t}
     if scale is not None:
         told |= {"hertz": scale.turns(told["precession"]), "seconds": scale.seconds(t)}
@@ -124,7 +124,7 @@ def _columns(found: Any, theta: float, scale: Scale | None, count: int) -> dict[
 
 
 def _numbers(found: Any, scale: Scale | None) -> dict[str, Any]:
-    """When and how it ends."""
+    """When and where a drift ends, as numbers for JSON."""
     told = {name: float(getattr(found, name)) for name in ("stops_at", "ends_at_theta", "stable_until")}
     told["friction_coefficient"] = float(found.friction_coefficient(0.0))
     if scale is not None:
@@ -133,7 +133,7 @@ def _numbers(found: Any, scale: Scale | None) -> dict[str, Any]:
 
 
 def _rows(found: Any, losses: Any, centre: str, scale: Scale | None) -> Iterator[Row]:
-    """The same as rows."""
+    """When and where a drift ends, as rows of a table."""
     n = _numbers(found, scale)
     yield "losses", repr(losses), ""
     yield "centre", {"rest": "kept at rest", "rolling": "on circles: rolling without slip"}[centre], ""
@@ -152,7 +152,7 @@ def _rows(found: Any, losses: Any, centre: str, scale: Scale | None) -> Iterator
 
 
 def _print(columns: dict[str, Floats]) -> None:
-    """The table of the drift."""
+    """Print the table of a drift."""
     heads = {"theta": "theta (rad)", "precession": "Omega", "t": "time", "hertz": "turns/s", "seconds": "s"}
     print("  " + "".join(f"{heads[name]:>16}" for name in columns))
     for row in zip(*columns.values(), strict=True):
@@ -160,7 +160,7 @@ def _print(columns: dict[str, Floats]) -> None:
 
 
 def _draw(found: Any, args: Namespace) -> None:
-    """Inclination and precession over time."""
+    """Draw inclination and precession rate against time."""
     extra("matplotlib", "plot").use("agg")
     from spincyl.plot._style import saved
 

@@ -1,4 +1,4 @@
-"""Motions as files: tables, arrays, pictures, pages; what a file becomes follows from its suffix."""
+"""Motions as files: tables, arrays, pictures and pages; the suffix determines the format."""
 
 from collections.abc import Callable
 from importlib.util import find_spec
@@ -17,7 +17,7 @@ from spincyl._scale import Scale
 
 
 def columns(m: Motion, scale: Scale | None) -> dict[str, np.ndarray]:
-    """Everything that was wanted of a motion, by name (n,); with a scale its times in seconds, too."""
+    """All outputs of a motion by name, (n,) each; with a scale also its times in seconds."""
     told = {"t": m.t}
     if scale is not None:
         told["seconds"] = scale.seconds(m.t)
@@ -28,7 +28,7 @@ _PICTURES = (".png", ".pdf", ".svg")
 
 
 def writer_of(path: Path) -> Callable[[Motion, Scale | None, Path], None]:
-    """What writes a motion into a file of this suffix; ImportError if something it needs is missing."""
+    """The function that writes a motion to a file with this suffix; ImportError if a library is missing."""
     writers = {".csv": _write_csv, ".npz": _write_npz, ".nc": _write_nc}
     writers |= dict.fromkeys(_PICTURES, _write_picture)
     writers |= dict.fromkeys((".html", ".glb"), _write_view)
@@ -40,7 +40,7 @@ def writer_of(path: Path) -> Callable[[Motion, Scale | None, Path], None]:
 
 
 def needed(suffix: str) -> None:
-    """Load what a file of this suffix takes to write, or ImportError naming it."""
+    """Import the libraries that a file of this suffix needs, or raise ImportError naming one."""
     if suffix in _PICTURES:
         extra("matplotlib", "plot")
     if suffix == ".nc":
@@ -54,7 +54,7 @@ def _write_csv(m: Motion, scale: Scale | None, path: Path) -> None:
 
 
 def write_csv(told: dict[str, Any], file: Path | TextIO) -> None:
-    """Columns of numbers with seventeen digits: what is read back is what was written."""
+    """Write columns with seventeen digits, so that reading gives the same numbers."""
     table = np.column_stack([np.ravel(x) for x in told.values()])
     how: dict[str, Any] = {"fmt": "%.17g", "delimiter": ",", "header": ",".join(told), "comments": ""}
     if not isinstance(file, Path):

@@ -1,4 +1,4 @@
-"""The command `flick`: a tube on its side, pressed or launched, that slips until it rolls."""
+"""The command `flick`: a tube on its side that is pressed or launched, and slips until it rolls."""
 
 from argparse import ArgumentParser, Namespace
 from collections.abc import Iterator
@@ -53,7 +53,7 @@ spincyl flick --ell 6 --bore 0.8 --mu 0.3 --w1 3 --launch-number 1.3 --loss roll
 
 
 def options(sub: ArgumentParser) -> None:
-    """Options that launch a tube and say where its motion goes."""
+    """Add the options for the launch of a tube and the output of its motion."""
     launch = sub.add_argument_group("the launch")
     hertz: dict[str, Any] = {"type": quantity("frequency"), "metavar": "HERTZ"}
     launch.add_argument("--precession", **hertz, help="turns per second about the vertical")
@@ -90,7 +90,7 @@ def options(sub: ArgumentParser) -> None:
 
 
 def flick(args: Namespace) -> None:
-    """A flick: its launch, its phases, and a file."""
+    """Compute a flick; print its launch and phases, and write a file."""
     body, scale = body_of(args)
     if args.points < 2:
         raise ValueError(f"--points {args.points}: expected at least 2")
@@ -119,7 +119,7 @@ def flick(args: Namespace) -> None:
 
 
 def _launched(args: Namespace, body: Body, scale: Scale | None) -> State:
-    """The state of a launch that is told by its speeds."""
+    """The state of a launch given by speeds."""
     for name in ("angle", "finger", "table"):
         if getattr(args, name) is not None:
             raise ValueError(f"--{name} goes with --impulse")
@@ -142,7 +142,7 @@ def _launched(args: Namespace, body: Body, scale: Scale | None) -> State:
 
 
 def _pushed(args: Namespace, body: Body, scale: Scale | None) -> State:
-    """The state of a launch by a finger."""
+    """The state of a launch by the impulse of a finger."""
     for name in ("precession", "w1", "spin", "launch_number", "centre"):
         if getattr(args, name) is not None:
             raise ValueError(
@@ -161,13 +161,13 @@ def _pushed(args: Namespace, body: Body, scale: Scale | None) -> State:
 
 
 def launch_numbers(body: Body, state: State) -> dict[str, Any]:
-    """What there is to say of a launch."""
+    """Properties of a launch, as numbers for JSON."""
     number = float(launch_number(body, state))
     return {"number": number, "rises": number > 1, "centre": float(body.centre_velocity(state)[1])}
 
 
 def launch_rows(body: Body, state: State, scale: Scale | None) -> Iterator[Row]:
-    """The same as rows."""
+    """Properties of a launch, as rows of a table."""
     n = launch_numbers(body, state)
     turns = "" if scale is None else f"{scale.turns(state.w1):.6g}, {scale.turns(state.w3):.6g} turns/s"
     yield "launch w1, w3", f"{state.w1:.9g}, {state.w3:.9g}", turns

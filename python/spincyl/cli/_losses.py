@@ -1,4 +1,4 @@
-"""Laws of loss as they are typed: dry-contour=5e-3, rolling-resistance=0.2mm, air-film=18uPas."""
+"""Laws of loss on the command line: dry-contour=5e-3, rolling-resistance=0.2mm, air-film=18uPas."""
 
 import re
 from argparse import ArgumentTypeError, Namespace
@@ -9,7 +9,7 @@ from spincyl import Scale, loss
 from spincyl._input.units import has_unit, quantity
 from spincyl._loss import Law, Loss, sized
 
-#: The kind of the quantity that each law takes in SI units.
+#: The kind of quantity that each law takes in SI.
 _KINDS: dict[type[Law], str] = {
     loss.DryContour: "length",
     loss.ViscousContour: "damping",
@@ -35,7 +35,7 @@ A law of loss is one of these, in natural units of M, R and g, or in SI with --r
 
 
 class Given(NamedTuple):
-    """A law that was typed."""
+    """A law of loss from the command line."""
 
     text: str
     law: Any
@@ -44,7 +44,7 @@ class Given(NamedTuple):
 
 
 def law(text: str) -> Given:
-    """What reads a law and its coefficient."""
+    """Read a law and its coefficient."""
     name, equals, number = text.partition("=")
     if name not in _NAMES or not equals:
         raise ArgumentTypeError(f"{text!r}: expected NAME=VALUE with one of {', '.join(_NAMES)}")
@@ -53,7 +53,7 @@ def law(text: str) -> Given:
 
 
 def option(sub: Any, *names: str, required: bool = False) -> None:
-    """An option that takes laws; it may be given several times."""
+    """Add an option for laws of loss, which may be repeated."""
     sub.add_argument(
         *names,
         dest="losses",
@@ -66,7 +66,7 @@ def option(sub: Any, *names: str, required: bool = False) -> None:
 
 
 def losses_of(args: Namespace, scale: Scale | None) -> Loss | None:
-    """The losses that are asked for; None if there are none."""
+    """The losses given by the options; None without any."""
     if args.losses is None:
         return None
     return loss.Sum(_made(given, scale, weighed=args.mass is not None) for given in args.losses)
@@ -85,4 +85,5 @@ def _made(given: Given, scale: Scale | None, *, weighed: bool) -> Law:
         found: Law = made(given.value)
     except ValueError as e:
         raise ValueError(f"{given.text}: {e}") from None
-    return sized(found)  # a number without a unit is in natural units here, as the help says
+    # as the help says, a number without a unit is in natural units, also for a measured body
+    return sized(found)

@@ -1,4 +1,4 @@
-"""The options of every command, and what its --help teaches."""
+"""The options and help texts of all commands."""
 
 from argparse import ArgumentParser, Namespace, RawDescriptionHelpFormatter
 from collections.abc import Callable
@@ -105,7 +105,7 @@ _length, _mass, _duration = quantity("length"), quantity("mass"), quantity("dura
 
 
 def parser() -> ArgumentParser:
-    """Everything that can be typed."""
+    """The parser of the whole command line."""
     top = ArgumentParser(
         prog="spincyl",
         description="Bodies that spin and roll on their rim.",
@@ -229,7 +229,7 @@ def _json_option(sub: ArgumentParser, text: str) -> None:
 
 
 def _shape_options(sub: ArgumentParser) -> None:
-    """Options that make a body."""
+    """Add the options that define a body."""
     shape = sub.add_argument_group("the body")
     shape.add_argument("--ell", type=float, help="aspect ratio: half length over outer radius")
     shape.add_argument(
@@ -266,7 +266,7 @@ def _shape_options(sub: ArgumentParser) -> None:
 
 
 def _roll_options(sub: ArgumentParser) -> None:
-    """Options that make a motion and say where it goes."""
+    """Add the options that define a motion and its output."""
     start = sub.add_argument_group("the start")
     start.add_argument("--theta", type=angle, required=True, metavar="ANGLE", help="inclination")
     start.add_argument("--kick", type=float, default=0.0, help="theta' given to it (default 0)")
@@ -311,7 +311,7 @@ def _output_option(sub: ArgumentParser) -> None:
 
 
 def _scale_options(sub: ArgumentParser) -> None:
-    """Options that make a scale."""
+    """Add the options that define a scale."""
     scale = sub.add_argument_group("SI units")
     scale.add_argument("--radius", type=_length, metavar="LENGTH", help="outer radius R")
     scale.add_argument("--mass", type=_mass, help="in kg or as in 20g, for energies in joules")

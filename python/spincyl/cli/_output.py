@@ -1,4 +1,4 @@
-"""Where results go: refused before the work if they cannot; and how far long work is."""
+"""Output: paths are checked before the work begins, and long work shows its progress."""
 
 import os
 import sys
@@ -11,18 +11,18 @@ from typing import Self
 
 
 def writable(path: str | Path) -> Path:
-    """The path of a file that can be written, or OSError naming it; nothing is left behind."""
+    """Return the path of a writable file, or raise OSError naming it; leaves nothing behind."""
     path = Path(path)
     if path.exists():
         if path.is_dir() or not os.access(path, os.W_OK):
-            path.open("ab").close()  # says why
+            path.open("ab").close()  # raises the error
         return path
-    _try(Path(os.path.realpath(path)).parent, path)  # where a link leads
+    _try(Path(os.path.realpath(path)).parent, path)  # the target of a link
     return path
 
 
 def folder(path: str | Path) -> Path:
-    """A folder, made if need be, in which files can be written, or OSError naming it."""
+    """Return a writable folder, creating it if necessary, or raise OSError naming it."""
     path = Path(path)
     path.mkdir(parents=True, exist_ok=True)
     _try(path, path)
@@ -37,9 +37,9 @@ def _try(place: Path, asked: Path) -> None:
 
 
 class Working:
-    """A line on a terminal that says how long work has taken and, where it is known, how much is done.
+    """A line on a terminal with the time that work has taken and, if known, the share that is done.
 
-    Called with the share that is done. Nothing is shown in the first second, nor where stderr is no terminal.
+    Call it with the share. It shows nothing in the first second, or if stderr is no terminal.
     """
 
     def __init__(self, what: str) -> None:

@@ -1,4 +1,4 @@
-"""The command `play`: the page to play with, as one file."""
+"""The command `play`: the live page as one file."""
 
 import math
 import sys
@@ -31,7 +31,7 @@ spincyl play --balls --theta 78deg --open -o balls.html"""
 
 
 def options(sub: ArgumentParser) -> None:
-    """Options that say what the page begins with, and where it goes."""
+    """Add the options for the initial state and the output of the page."""
     how = sub.add_argument_group("what the page begins with")
     how.add_argument(
         "--theta", type=angle, metavar="ANGLE", help="inclination (default: 1.3, of the tube 89.5deg)"
@@ -57,7 +57,7 @@ def options(sub: ArgumentParser) -> None:
 
 
 def run(args: Namespace) -> None:
-    """A page, as a file."""
+    """Write the live page."""
     told = args.ell, args.balls, args.ball, args.outer, args.inner, args.length, args.bore, args.fillet
     body, scale = (None, None) if all(x is None for x in told) else body_of(args)
     if body is not None and scale is not None:
@@ -83,7 +83,7 @@ def run(args: Namespace) -> None:
 
 
 def _table(args: Namespace) -> AnyContact:
-    """The table with its number."""
+    """The contact given by the options, with its coefficient."""
     numbers = {"coulomb": ("mu", Coulomb), "viscous": ("viscosity", Viscous)}  # in natural units
     for contact, (name, law) in numbers.items():
         value = getattr(args, name)

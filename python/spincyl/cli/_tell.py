@@ -1,4 +1,4 @@
-"""What there is to say of bodies, states and motions: as numbers for JSON, and as rows of a table."""
+"""Bodies, states and motions as output: numbers for JSON, and rows of a table."""
 
 import json
 import math
@@ -23,7 +23,7 @@ def table(rows: Iterator[Row], file: TextIO | None = None) -> None:
 
 
 def print_json(value: Any, file: TextIO | None = None) -> None:
-    """Print strict JSON: what is not finite is null."""
+    """Print strict JSON, with null for numbers that are not finite."""
     wide = isinstance(value, dict) and "columns" in value
     json.dump(_plain(value), file or sys.stdout, indent=None if wide else 2, allow_nan=False)
     print(file=file)
@@ -42,7 +42,7 @@ def _plain(value: Any) -> Any:
 
 
 def body_numbers(body: Body, scale: Scale | None) -> Numbers:
-    """What the shape decides; with a scale, the critical rate in hertz."""
+    """Properties of a shape; with a scale, also the critical rate in hertz."""
     found: Numbers = {"call": repr(body), "ell": body.ell, "i1": body.i1, "i3": body.i3, "bore": body.bore}
     found |= {"fillet": body.fillet, "theta_end": body.theta_end}
     found |= {"theta_balance": body.theta_balance, "theta_limit": body.theta_limit}
@@ -52,7 +52,7 @@ def body_numbers(body: Body, scale: Scale | None) -> Numbers:
 
 
 def body_rows(body: Body, scale: Scale | None) -> Iterator[Row]:
-    """The same as rows."""
+    """Properties of a shape, as rows."""
     n = body_numbers(body, scale)
     if n["fillet"] == 0:
         yield "aspect ratio l/R", f"{n['ell']:.9g}", ""
@@ -72,15 +72,16 @@ def body_rows(body: Body, scale: Scale | None) -> Iterator[Row]:
 
 
 def state_numbers(body: Body, state: State, scale: Scale | None, *, weighed: bool = False) -> Numbers:
-    """What can be read off a steady state with the centre at rest; with a scale, in SI units, too.
+    """Properties of a steady state with the centre at rest; with a scale, also in SI units.
 
-    The energy in joules only if the mass is known.
+    The energy is in joules only if the mass is known.
     """
     found: Numbers = {name: getattr(state, name) for name in ("theta", "w1", "w2", "w3")}
     found["rate"] = state.precession * math.sqrt(body.i3)
     names = "precession", "spin", "angular_velocity", "gamma", "contact_radius"
     found |= {name: getattr(state, name) for name in names}
-    # the circle of contact of a rounded rim is smaller than its outer radius, which the ratio does not know
+    # `State` does not know the fillet: the circle of contact of a rounded rim is smaller than its outer
+    # radius
     found["still_symbols"] = found["contact_radius"]
     found["contact_radius"] *= 1 - body.fillet + body.fillet * math.sin(state.theta)
     names = "angular_momentum", "beta", "speed_o", "speed_x", "energy"
@@ -97,14 +98,14 @@ def state_numbers(body: Body, state: State, scale: Scale | None, *, weighed: boo
 
 
 def state_rows(body: Body, state: State, scale: Scale | None, *, weighed: bool = False) -> Iterator[Row]:
-    """The same as rows."""
+    """Properties of a steady state, as rows."""
     n = state_numbers(body, state, scale, weighed=weighed)
 
     def si(name: str, unit: str) -> str:
         return "" if scale is None else f"{n[name]:.6g} {unit}"
 
     def tilt(name: str) -> str:
-        """A vector's angle to the axis, if it has a direction."""
+        """Angle of a vector to the axis, if the vector has a direction."""
         return f"{name} = {math.degrees(n[name]):.4f} deg to the axis" if n["angular_velocity"] else ""
 
     yield "reduced rate", f"{n['rate']:.9g}", ""
@@ -128,7 +129,7 @@ def state_rows(body: Body, state: State, scale: Scale | None, *, weighed: bool =
 def _lasting(
     body: Body, state: State, contact: Contact, kappa: float, scale: Scale | None
 ) -> tuple[str, str]:
-    """Whether a state lasts, and how fast it nods or falls."""
+    """Whether a state is stable, and its nutation or growth rate."""
     if kappa > 0:
         nutation = body.nutation(state, contact)
         turns = "" if scale is None else f"{scale.turns(nutation):.6g} turns/s"
@@ -141,7 +142,7 @@ def _lasting(
 
 
 def motion_numbers(m: Motion, scale: Scale | None) -> Numbers:
-    """What there is to say of a motion: its start, its nutation, how it ended."""
+    """Properties of a motion: its start, nutation and end."""
     found: Numbers = {"body": body_numbers(m.body, scale), "contact": named(m.contact)}
     found["start"] = {name: getattr(m.start, name) for name in ("theta", "w1", "w2", "w3")}
     found |= {"status": m.status.name, "message": m.message, "method": m.method, "error": m.error}
@@ -166,7 +167,7 @@ def motion_numbers(m: Motion, scale: Scale | None) -> Numbers:
 
 
 def motion_rows(m: Motion, scale: Scale | None, *, weighed: bool = False) -> Iterator[Row]:
-    """The same as rows; heat in joules only if weighed."""
+    """Properties of a motion, as rows; heat is in joules only with `weighed`."""
 
     def seconds(t: float) -> str:
         return "" if scale is None else f"{scale.seconds(t):.6g} s"
@@ -193,7 +194,7 @@ def motion_rows(m: Motion, scale: Scale | None, *, weighed: bool = False) -> Ite
 
 
 def _swing_rows(m: Motion, contact: Contact, scale: Scale | None) -> Iterator[Row]:
-    """The nutation of a motion without phases."""
+    """The nutation of a motion without phases, as rows."""
     found = swing(m.body, m.start, contact)
     ends = (found.theta_min, found.theta_max)
     yield "turning points", " to ".join(f"{x:.9g}" for x in ends) + " rad", ""
@@ -216,7 +217,7 @@ def _swing_rows(m: Motion, contact: Contact, scale: Scale | None) -> Iterator[Ro
 
 
 def _energy(m: Motion, lost: float, scale: Scale | None) -> tuple[str, str]:
-    """An energy that a motion has lost, and its share."""
+    """Energy that a motion has lost, and its share."""
     first = float(m.energy[0])
     first += float(m.dissipated[0]) if rubs(m.contact) else 0.0
     first += 0.0 if m.losses is None else float(m.work_lost[0])
@@ -225,22 +226,22 @@ def _energy(m: Motion, lost: float, scale: Scale | None) -> tuple[str, str]:
 
 
 def _end(m: Motion) -> float:
-    """When a motion ended, or the last time asked for."""
+    """The time of a motion's event, or the last requested time."""
     return float(m._asked.times[-1]) if m.event is None else m.event.time
 
 
 def _at_its_end(m: Motion) -> Motion:
-    """The motion with its end as its last time, where it loses energy and ends between two of its times."""
+    """The motion with its end as last time, if it loses energy and ends between two requested times."""
     loses = rubs(m.contact) or m.losses is not None
     if not loses or m.event is None or not m.t.size or m.t[-1] >= m.event.time:
         return m
-    # a face that lands is followed to 1e-12 before it does
+    # a motion is integrated to 1e-12 before a face lands
     end = m.at([m.event.time * (1 - 1e-9), m.event.time])
     return end if end.t.size else m
 
 
 def _phase_numbers(body: Body, phase: Phase, scale: Scale | None) -> Numbers:
-    """A phase and where it begins; with a scale, in SI units, too."""
+    """A phase and its first state; with a scale, also in SI units."""
     state = phase.state
     found: Numbers = {"time": phase.time, "kind": phase.kind}
     found |= {name: getattr(state, name) for name in ("theta", "w1", "w2", "w3")}
@@ -260,7 +261,7 @@ _MOST_PHASES = 6
 
 
 def _phase_rows(m: Motion, scale: Scale | None) -> Iterator[Row]:
-    """Phases of a motion with friction, and where each begins."""
+    """The phases of a motion with friction and their first states, as rows."""
 
     def si(text: str) -> str:
         return "" if scale is None else text

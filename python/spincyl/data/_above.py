@@ -1,4 +1,4 @@
-"""A film from above: the direction of the line between a tube's ends turns, and its length tells the tilt.
+"""A film from above: the line between a tube's ends turns, and its length gives the inclination.
 
 ```text
 direction(t) = 2 pi hertz t + const,    sin theta = line / length of the tube
@@ -23,11 +23,11 @@ from spincyl.data._tracker import read_tracker
 
 _METRES = {"": 1.0, "m": 1.0, "cm": 1e-2, "mm": 1e-3, "in": 0.0254, "inch": 0.0254, "ft": 0.3048}
 _SECONDS = {"": 1.0, "s": 1.0, "sec": 1.0, "seconds": 1.0, "ms": 1e-3, "min": 60.0}
-_RULER = 1.05  # a line longer than the tube by more than that is no matter of noise
-_SHORT = 0.0105  # of the tube's length, a line that is a matter of units
-_FAR = math.radians(10.0)  # from the nearest steady inclination
-_FARTHEST = 1e12  # metres or seconds: nothing that was filmed is there
-_WANDERS = 0.3  # radians, of a direction about an even turning
+_RULER = 1.05  # times the tube's length: a longer line is refused, since noise does not explain it
+_SHORT = 0.0105  # times the tube's length: a shorter line is refused, since a unit is probably wrong
+_FAR = math.radians(10.0)  # an inclination farther than this from every steady one causes a warning
+_FARTHEST = 1e12  # metres or seconds: larger numbers are refused
+_WANDERS = 0.3  # radians: a direction that deviates more from uniform rotation causes a warning
 
 
 @compared
@@ -164,7 +164,7 @@ def from_above(
     hertz, hertz_err = abs(slope) / (2 * math.pi), slope_err / (2 * math.pi)
     one = float(scale.hertz(body, 1.0))
     inclinations = np.atleast_1d(np.asarray(body.inclinations(rate=hertz / one), np.float64))
-    # the errors are not small beside the distance from 90 degrees, where the sine hardly changes
+    # near 90 degrees the sine hardly changes, so errors are not small beside the distance from 90 degrees
     low, high = (math.asin(min(max(share + k * share_err, 0.0), 1.0)) for k in (-1, 1))
     theta = math.asin(share) if share <= 1 else math.nan
     found = Filmed(
@@ -195,7 +195,7 @@ def from_above(
 
 
 def sized(tube: Any, scale: Scale | None) -> tuple[Body, Scale]:
-    """A single body and its scale: the one given, its own, or that of the measures it was made from."""
+    """A single body and its scale: the given one, its own, or that of the measures that made the body."""
     if not isinstance(tube, Body):
         raise TypeError(f"tube: expected a Body, not {type(tube).__name__}")
     if not is_scalar(*tube._numbers):
@@ -209,7 +209,7 @@ def sized(tube: Any, scale: Scale | None) -> tuple[Body, Scale]:
 
 
 def _ends(tracks: Mapping[str, Any], ends: Sequence[str] | None) -> tuple[str, str]:
-    """The names of the two tracks."""
+    """The names of the two tracks of the tube's ends."""
     known = ", ".join(map(repr, tracks)) or "none"
     if ends is None:
         found = ["O", "X"] if {"O", "X"} <= tracks.keys() else list(tracks)
@@ -232,7 +232,7 @@ def _ends(tracks: Mapping[str, Any], ends: Sequence[str] | None) -> tuple[str, s
 
 
 def _track(tracks: Mapping[str, Any], name: str) -> tuple[Floats, Floats]:
-    """Times in seconds and places x + iy in metres of a track."""
+    """Times in seconds and positions x + iy in metres of a track."""
     columns = tracks[name]
     if not hasattr(columns, "keys"):
         raise TypeError(f"tracks[{name!r}]: expected columns by name, not {type(columns).__name__}")
@@ -259,9 +259,9 @@ def _track(tracks: Mapping[str, Any], name: str) -> tuple[Floats, Floats]:
 
 
 def _between(first: tuple[Floats, Floats], second: tuple[Floats, Floats]) -> tuple[Floats, Floats, int]:
-    """Ascending times, from one end to the other at each, and how many rows lack an end."""
+    """Ascending times, the vector from the second end to the first, and the number of rows without one."""
     (t, one), (s, two) = (_ordered(*track) for track in (first, second))
-    # two files of one film have the same times to the digits that were written
+    # two files of one film have the same times to the written digits
     fine = 1e-6 + 1e-3 * (float(np.median(np.diff(t))) if t.size > 1 else 0.0)
     _, rows, others = np.intersect1d(np.round(t / fine), np.round(s / fine), return_indices=True)
     t, between = t[rows], one[rows] - two[others]
@@ -278,7 +278,7 @@ def _between(first: tuple[Floats, Floats], second: tuple[Floats, Floats]) -> tup
 
 
 def _ordered(t: Floats, place: Floats) -> tuple[Floats, Floats]:
-    """By ascending times, those without one left out; what stands twice is there once."""
+    """A track in order of time, without rows that have no time or repeat an earlier row."""
     known = np.isfinite(t)
     t, place = t[known], place[known]
     order = np.argsort(t, kind="stable")
@@ -288,13 +288,13 @@ def _ordered(t: Floats, place: Floats) -> tuple[Floats, Floats]:
     if differ.any():
         at = t[same[differ][0]]
         raise ValueError(f"tracks: two places at t = {at:.6g}; are these two films in one table?")
-    # of two equal times the row that has a place
+    # of two rows with the same time, keep the one with a position
     lost = np.append(same[~np.isfinite(place[same])], same[np.isfinite(place[same])] + 1).astype(int)
     return np.delete(t, lost), np.delete(place, lost)
 
 
 def _share(shares: Floats, ruler: float) -> tuple[float, float]:
-    """The sine of the inclination, the median of lines over the tube's length; and its standard error."""
+    """The sine of the inclination, as the median of line over length of the tube; and its standard error."""
     share = float(np.median(shares))
     scatter = 1.4826 * float(np.median(np.abs(shares - share)))
     error = math.hypot(1.2533 * scatter / math.sqrt(shares.size), ruler * share)
@@ -322,7 +322,7 @@ def _share(shares: Floats, ruler: float) -> tuple[float, float]:
 
 
 def _turning(t: Floats, between: Floats) -> tuple[float, float, Floats]:
-    """Radians per second, its standard error, and the direction unwrapped across gaps."""
+    """Angular velocity, its standard error, and the direction unwrapped across gaps."""
     gaps, steps = np.diff(t), np.angle(between[1:] * between[:-1].conj())
     close = gaps < 1.5 * np.median(gaps)
     slope = float(np.median(steps[close] / gaps[close]))
@@ -338,7 +338,7 @@ def _turning(t: Floats, between: Floats) -> tuple[float, float, Floats]:
         expected = direction[k] + slope * gap
         off = np.angle(between[k + 1] * np.exp(-1j * expected))
         direction[k + 1] = expected + off
-        if gap > 3 * np.median(gaps):  # what comes after a gap knows the slope better
+        if gap > 3 * np.median(gaps):  # refit the slope to the points before the gap
             slope = float(np.polyfit(t[: k + 1], direction[: k + 1], 1)[0]) if k > 3 else slope
     table = t - t.mean()
     squares = float(table @ table)
@@ -352,7 +352,7 @@ def _turning(t: Floats, between: Floats) -> tuple[float, float, Floats]:
             UserWarning,
             stacklevel=3,
         )
-    # neighbours that err together, as while it nods, tell less than as many single ones
+    # correlated errors of neighbours, as during nutation, carry less information than independent ones
     alike = float(rest[1:] @ rest[:-1]) / float(rest @ rest) if spread > 0 else 0.0
     alike = min(max(alike, 0.0), 0.95)
     return slope, math.sqrt(spread / squares * (1 + alike) / (1 - alike)), direction

@@ -1,11 +1,11 @@
-"""Measured points about the curve of steady states: orthogonal distance regression of the implicit curve.
+"""Fit of measured points to the curve of steady states, by orthogonal distance regression.
 
 ```text
 theta''(theta, rate / factor; I1/I3) = 0
 ```
-of the body as it was built, its rim sharp or rounded, or a ball. Both errors count, and forbidden bands and
-folds do no harm (Boggs and Donaldson 1989, odrpack). The torque is linear in the ratio, also beyond those of
-real bodies. A factor that is known to some error is one more point of the fit, (factor - 1)/error.
+The body is as built, with a sharp or rounded rim, or a ball. The implicit curve allows for errors of both
+variables, for forbidden bands and for folds (Boggs and Donaldson 1989, odrpack). The torque is linear in the
+ratio, also beyond the range of real bodies. A factor known with some error adds a point, (factor - 1)/error.
 """
 
 import math
@@ -19,35 +19,36 @@ from spincyl._body import Body
 from spincyl._input.numbers import Floats, extra
 from spincyl._state import State
 
-_ROUNDED = 1e-10  # of the errors that points may have: those of exact ones, which are rounded
-_ALIKE = 0.9995  # two variables that change all points alike to this correlation are one
+_ROUNDED = 1e-10  # least scatter, in units of the errors: exact points scatter by their rounding
+# two variables whose effects on the points are correlated more than this cannot be told apart
+_ALIKE = 0.9995
 
 
 class Fit(NamedTuple):
-    """What a fit gave: the variables in order, their covariance in units of the errors given."""
+    """The result of a fit: values of the variables, and their covariance in units of the given errors."""
 
-    names: tuple[str, ...]  #: of "ratio" and "factor"
+    names: tuple[str, ...]  #: varied variables, of "ratio" and "factor"
     values: Floats
     covariance: Floats
-    squares: float  #: sum over the errors, what is known of the factor included
+    squares: float  #: sum of squares over the errors, including the point for the factor
     freedom: int
     success: bool
-    fixed: dict[str, float]  #: those that were not varied
+    fixed: dict[str, float]  #: values of variables that were not varied
 
     @property
     def chi2(self) -> float:
-        """Per degree of freedom."""
+        """Sum of squares per degree of freedom."""
         return self.squares / self.freedom
 
     @property
     def correlation(self) -> float:
-        """Of the two variables; NaN if only one was varied."""
+        """Correlation of the two variables; NaN if only one was varied."""
         if len(self.names) < 2:
             return math.nan
         return float(self.covariance[0, 1] / math.sqrt(self.covariance[0, 0] * self.covariance[1, 1]))
 
     def told(self, known: bool) -> tuple[float, float, float, float]:
-        """Ratio, its error, factor, its error: from the scatter if those of the points are not known."""
+        """Ratio, its error, factor, its error; the errors follow from the scatter unless `known`."""
         errors = np.sqrt(np.diag(self.covariance) * (1.0 if known else max(self.chi2, _ROUNDED**2)))
         found = {name: (value, 0.0) for name, value in self.fixed.items()}
         pairs = zip(self.values.tolist(), errors.tolist(), strict=True)
@@ -56,12 +57,12 @@ class Fit(NamedTuple):
 
 
 def with_ratio(body: Body, ratio: float) -> Body:
-    """The same body with this I1/I3, its axial moment, rim, end and size kept."""
+    """The body with another ratio I1/I3 through I1; I3, rim, end and size stay the same."""
     return replace(body, i1=ratio * float(body.i3), bore=math.nan)
 
 
 class Balance:
-    """Measured inclinations and rates with their errors, and the torque left where the centre rests."""
+    """Measured inclinations and rates with their errors, and the torque that is left at each point."""
 
     def __init__(self, body: Body, theta: Floats, rate: Floats, theta_err: Floats, rate_err: Floats) -> None:
         self.odrpack = extra("odrpack", "lab")
@@ -71,23 +72,23 @@ class Balance:
         self.sigma = np.stack([theta_err, rate_err])
         self.places = np.stack([theta, rate]) / self.sigma
         self.bodies = [with_ratio(body, ratio) for ratio in (1.0, 2.0)]
-        # how much an error of theta and of the rate change it: odrpack enforces the curve by a penalty, and
-        # converges where both are of one size
+        # Change of the torque by one error of theta and of the rate: odrpack enforces the curve by a penalty,
+        # and converges if both terms are of the same order.
         own = self.own["ratio"], 1.0
         sides = (
             self.off(self.places + d, *own) - self.off(self.places - d, *own)
             for d in np.eye(2)[..., np.newaxis]
         )
         self.size = np.hypot(*sides) / 2 + 1e-300
-        # a first guess of the factor, where the body as built has a rate
+        # first guess of the factor, from points where the body as built has a rate
         shares = rate / np.asarray(body.rate(theta))
         shares = shares[np.isfinite(shares)]
         self.guess = float(np.median(shares)) if shares.size else 1.0
 
     def off(self, place: Floats, ratio: float, factor: float) -> Floats:
-        """Torque left at places in units of their errors: theta'' times the inertia of tilting."""
+        """Torque at points in units of their errors: theta'' times the moment of inertia of tilting."""
         inclination, rate = place * self.sigma
-        # a trial may be beyond the pole, where a state is known by its other angle
+        # an inclination beyond the pole is the same state as one with theta - 2 pi
         inclination = np.where(np.abs(inclination) > np.pi, inclination - 2 * np.pi, inclination)
         precession = rate / factor / np.sqrt(self.i3)
         state = self._resting(inclination, precession)
@@ -99,9 +100,9 @@ class Balance:
         return found
 
     def _resting(self, theta: Floats, precession: Floats) -> State:
-        """The rolling state whose centre rests, steady or not: the same whatever the moments are."""
+        """The rolling state whose centre is at rest, steady or not; it does not depend on the moments."""
         body, w1 = self.bodies[0], precession * np.sin(theta)
-        # with the centre at rest, the point that touches the table moves with w1 and with w3
+        # the slip of a body whose centre is at rest is linear in w1 and w3
         by_w1, by_w3 = (
             body.with_centre_velocity(State(theta, one, 0.0, 1.0 - one), 0.0, 0.0).slip for one in (1.0, 0.0)
         )
@@ -109,7 +110,7 @@ class Balance:
         return State(theta, w1, 0.0 * w1, -w1 * by_w1[1] / by_w3[1])
 
     def tells(self, names: tuple[str, ...]) -> bool:
-        """Whether the points say something of each of these, and tell two of them apart."""
+        """Whether the points determine each of these variables, and can tell two of them apart."""
         if self.places.shape[1] < len(names) + 2 - (len(names) < 2):
             return False
         changes = self._changes(names, self.own)
@@ -119,7 +120,7 @@ class Balance:
         return len(names) < 2 or abs(float(changes[0] @ changes[1])) < _ALIKE * lengths[0] * lengths[1]
 
     def _changes(self, names: tuple[str, ...], there: dict[str, float]) -> list[Floats]:
-        """By how many errors the points are off if one of these grows by its own size."""
+        """Shifts of the points, in errors, per unit relative change of each variable."""
         found = []
         for name in names:
             step = 1e-4 * self.own[name]
@@ -130,13 +131,13 @@ class Balance:
         return found
 
     def fit(self, names: tuple[str, ...], common: float = math.inf) -> Fit:
-        """The values that explain the points best; `common` is what the factor may differ from 1 by."""
+        """Fit the named variables; `common` is the standard error of the factor, about 1."""
         begin = np.array([self.guess if name == "factor" else self.own[name] for name in names])
         if math.isfinite(common):
             begin[names.index("factor")] = 1.0
         fixed = {name: value for name, value in self.own.items() if name not in names}
         places, prior = self.places, math.isfinite(common)
-        if prior:  # one more point, at the origin of its own line
+        if prior:  # one more point, on its own line through the origin
             places = np.column_stack([places, np.zeros(2)])
 
         def left(place: Floats, beta: Floats) -> Floats:
@@ -156,7 +157,7 @@ class Balance:
         values = np.asarray(found.beta, np.float64)
         covariance = np.asarray(found.cov_beta, np.float64)
         if not (np.diag(covariance) > 0).all():
-            # about points without scatter the penalty is so steep that odrpack sees no rank: to first order
+            # for points without scatter odrpack's penalty hides the rank: take the linearised covariance
             there = fixed | dict(zip(names, values.tolist(), strict=True))
             table = np.stack(self._changes(names, there), -1) / [self.own[name] for name in names]
             if prior:

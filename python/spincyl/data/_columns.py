@@ -1,4 +1,4 @@
-"""Columns of a table: their names are told from their units."""
+"""Columns of a table, whose written names contain their units."""
 
 from collections import Counter
 from collections.abc import Iterable, Mapping
@@ -7,7 +7,7 @@ from typing import Any
 from spincyl._input.equality import key
 from spincyl._input.numbers import Floats
 
-#: What is a unit where it stands alone.
+#: Words that are units when they stand alone.
 UNITS = frozenset(
     (
         "s",
@@ -31,12 +31,12 @@ UNITS = frozenset(
 
 
 def cleaned(name: str) -> tuple[str, str]:
-    """The name of a column without marks of a comment, quotes and unit; and the unit, or nothing.
+    """The name of a column without comment marks, quotes and unit; and the unit, or "".
 
     "# degrees" is "degrees"; "t (s)", "t [s]" and "t / s" are "t" in "s".
     """
     bare = name.strip(" \t\ufeff\xa0#%\"'") or name.strip()
-    # a unit in brackets at its end; what begins with a digit is none
+    # a unit in brackets at the end; brackets that begin with a digit hold no unit
     begin = max(bare.rfind("("), bare.rfind("["))
     plain, unit = bare[: max(begin, 0)].rstrip(), bare[begin + 1 : -1]
     if plain and bare[-1] in ")]" and unit and not unit[0].isdecimal() and not set(unit) & set(")]"):
@@ -70,7 +70,8 @@ class Columns(dict[str, Floats]):
         for (written, values), (name, unit) in zip(pairs, bare, strict=True):
             if written in self._written:
                 raise ValueError(f"columns: two are called {written!r}")
-            # "x (cm)" beside "x (m)", and what is the whole name of another one
+            # keep the written name if two columns differ only in unit, or if the bare name is another
+            # column's
             if names[name] > 1 or not name or (name != written and name in given):
                 name = written
             self[name] = values
@@ -102,4 +103,4 @@ class Columns(dict[str, Floats]):
     def __ne__(self, other: object) -> bool:
         return not self == other
 
-    __hash__ = None  # as of any dict
+    __hash__ = None  # unhashable, like a dict

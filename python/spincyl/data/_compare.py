@@ -1,4 +1,4 @@
-"""How far measured inclinations and rates are from a body's steady states."""
+"""Comparison of measured inclinations and rates with the steady states of a body."""
 
 import math
 import warnings
@@ -188,11 +188,11 @@ def compare(
             )
         free = both if both is not None and math.isinf(common) else curve.fit(("ratio", "factor"), common)
         if not known and not math.isinf(common) and free.chi2 > 0:
-            # errors are from the scatter, but what is known of the factor is not
+            # the fit takes its errors from the scatter, but that of the factor is given
             free = curve.fit(("ratio", "factor"), common / math.sqrt(free.chi2))
         found = free
     ratio, ratio_err, factor, factor_err = found.told(known)
-    # of a real body, I3 is at most 2 I1; errors may make it look like a little more
+    # a real body has I3 <= 2 I1; measurement errors may bring the ratio slightly below 1/2
     if not found.success or not ratio + 5 * ratio_err >= 0.5:
         raise ValueError(f"no real body fits: I1/I3 = {ratio:.3g}; is rate in units of scale.hertz(body, 1)?")
     said = _doubts(found, alone, both, own, known, fitted=common > 0)
@@ -223,7 +223,7 @@ def compare(
 def _points(
     theta: Reals, rate: Reals, theta_err: Reals | None, rate_err: Reals | None, body: Body
 ) -> dict[str, Floats]:
-    """What was measured, with its errors, without empty places; or what is wrong with it, by name."""
+    """The measured points with errors, without missing values; an error names a wrong argument."""
     x = {name: np.asarray(reals(name, v), np.float64) for name, v in (("theta", theta), ("rate", rate))}
     if x["theta"].ndim != 1 or x["rate"].shape != x["theta"].shape:
         shapes = f"{x['theta'].shape} and {x['rate'].shape}"
@@ -256,7 +256,7 @@ def _points(
 
 
 def _doubts(found: Fit, alone: Fit, both: Fit | None, own: float, known: bool, *, fitted: bool) -> str:
-    """What has to be said of a fit: no ratio explains the points, or a common factor does, too."""
+    """A warning about a fit: no ratio explains the points, or a common factor explains them as well."""
     one, one_err = alone.told(known)[2:]
     off = f"{abs(one - 1):.1%} too {'large' if one > 1 else 'small'}"
     if one > 1.5 or one < 0.7:
@@ -288,7 +288,7 @@ def _doubts(found: Fit, alone: Fit, both: Fit | None, own: float, known: bool, *
 
 
 def _sure(errors: float, freedom: int, known: bool) -> float:
-    """As many standard errors as are as rare as `errors` of a Gauss curve: more if few points gave them.
+    """The number of standard errors as unlikely as `errors` of a normal deviate; more for few points.
 
     Student's t from the normal deviate, after Wallace (1959), Ann. Math. Statist. 30, 1121.
     """

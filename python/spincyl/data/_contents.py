@@ -1,11 +1,11 @@
-"""What a file holds: its bytes, and not more of them than a limit."""
+"""Reading of files up to a limit of size."""
 
 from os import PathLike
 from typing import IO
 
 from spincyl._input.numbers import path_of
 
-#: How many bytes a file may hold, and all that a zip file unpacks to, together: more of them are refused.
+#: Largest size of a file, and of all the contents of a zip file together; more is refused.
 MOST_BYTES = 100_000_000
 _PIECE = 1 << 20
 
@@ -18,7 +18,7 @@ def contents(path: str | PathLike[str]) -> bytes:
 
 
 def limited(file: IO[bytes], name: str, most: int) -> bytes:
-    """All that a file holds, whatever is said of its size, or ValueError if it is more than `most`."""
+    """The bytes of a file, whatever size its directory gives; ValueError for more than `most`."""
     pieces, left = [], most
     while piece := file.read(_PIECE):
         pieces.append(piece)

@@ -1,9 +1,9 @@
-"""The drift of a law as a curve to be fitted: smooth in its coefficients and in where it stands on the clock.
+"""The drift of a law as a curve to fit: smooth in the coefficients and in the position on the clock.
 
-Every law is linear in its coefficient, so a drift with coefficients `lam * k` is that of `k` with a clock
-that runs `lam` times as fast. With the centre at rest one drift of unit coefficient therefore serves every
-coefficient and every start. When rolling, the path depends on where the centre rested: at the first time, or
-before it, since what is seen or heard first is seldom the moment at which a body is let go.
+Every law is linear in its coefficient, so the drift with coefficients `lam * k` is that with `k` and a clock
+that runs `lam` times as fast. With the centre at rest one drift of unit coefficient therefore serves all
+coefficients and starts. For rolling, the path also depends on where the centre was at rest: at the first
+time or before, since a measurement seldom begins at the moment of release.
 """
 
 import math
@@ -20,18 +20,19 @@ from spincyl._loss import sized
 from spincyl._studio.shape import steepest
 from spincyl.loss import ViscousContour
 
-#: Coefficients are this small when a drift is tabulated, so that no law is over where the points are.
+#: Total coefficient of tabulated drifts: so small that each law holds at all inclinations of the points.
 _UNIT = 1e-9
-#: How far from the end of the clock, as a share of it, a curve is continued by its tangent.
+#: Distance from the end of the clock, as a share of it, at which the tangent replaces the curve.
 _NEAR = 1e-6
 
 
 class Curve:
-    """The drift of a body under one law, or under several that add, by coefficients and first inclination.
+    """The drift of a body under one law or a sum, as a function of coefficients and first inclination.
 
-    `ends` are the least and the greatest first inclination; the drift is tabulated from the one that comes
-    first, which is the greatest if it goes `down`. When rolling, one more number may follow the coefficients:
-    how far from the first inclination to the end before it the centre rested, 0 at the first one.
+    `ends` are the least and the greatest first inclination. The tabulated drift starts at the end that it
+    passes first, the greatest if it goes `down`. For rolling, one more number may follow the coefficients:
+    the inclination at which the centre was at rest, as a share of the way from the first inclination to that
+    end.
     """
 
     def __init__(
@@ -42,7 +43,7 @@ class Curve:
         self._known: dict[tuple[float, ...], Any] = {}
 
     def law(self, coefficients: Sequence[float] | Floats) -> Any:
-        """The law with these coefficients, a sum if there are several."""
+        """The law, or sum of laws, with these coefficients."""
         shares = coefficients[: len(self.laws)]
         made = [sized(law(float(k))) for law, k in zip(self.laws, shares, strict=True)]
         total = made[0]
@@ -51,7 +52,7 @@ class Curve:
         return total
 
     def drift(self, coefficients: Sequence[float] | Floats, theta: float) -> Any:
-        """The drift itself, from an inclination on, with all that it warns of."""
+        """The drift from an inclination on, with its warnings."""
         law, rested = self.law(coefficients), self.rested(coefficients, theta)
         start: Any = theta
         if rested != theta:
@@ -60,18 +61,18 @@ class Curve:
         return drift(self.body, start, law, centre=self.centre)
 
     def rested(self, coefficients: Sequence[float] | Floats, theta: float) -> float:
-        """The inclination at which the centre rested, if it is at `theta` at the first time."""
+        """The inclination of a centre at rest, for a drift that is at `theta` at the first time."""
         share = float(coefficients[-1]) if len(coefficients) > len(self.laws) else 0.0
         return theta + share * (self.ends[1 if self.down else 0] - theta)
 
     def quietly(self, coefficients: Sequence[float] | Floats, theta: float) -> Any:
-        """The same without warnings, of a trial."""
+        """The same drift without warnings, for trials of a fit."""
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             return self.drift(coefficients, theta)
 
     def times(self, coefficients: Sequence[float] | Floats, theta: Floats) -> Floats:
-        """When it passes inclinations: on a clock that begins at `top`, when rolling at the first of them."""
+        """Times at which the drift passes inclinations, from `top` on; for rolling from the first one."""
         begin = self.top
         if self.centre != "rest":
             begin = float(theta.max() if self.down else theta.min())
@@ -80,21 +81,21 @@ class Curve:
         return found
 
     def stops_at(self, coefficients: Sequence[float] | Floats, theta: float) -> float:
-        """How long after `theta` it ends; infinite if never."""
+        """Time from `theta` to the end of the drift; infinite if it never ends."""
         drift, pace, begun = self._on_the_clock(coefficients, theta)
         return (float(drift.stops_at) - begun) / pace
 
     def __call__(
         self, names: Sequence[str], time: Floats, coefficients: Sequence[float] | Floats, theta: float
     ) -> Floats:
-        """Rows of "theta" and of "precession" at times after the one at which it is at `theta`."""
+        """Rows of "theta" and "precession", at times after the passage of `theta`."""
         drift, pace, begun = self._on_the_clock(coefficients, theta)
         clock = begun + pace * time
         return np.stack([_continued(getattr(drift, name), clock, float(drift.stops_at)) for name in names])
 
     def _on_the_clock(self, coefficients: Sequence[float] | Floats, theta: float) -> tuple[Any, float, float]:
-        """A drift, how much faster its clock runs than time, and what it shows at `theta`."""
-        if self.centre == "rest":  # a bound of a fit is a bit off
+        """A tabulated drift, the factor by which its clock runs fast, and its reading at `theta`."""
+        if self.centre == "rest":  # a fit may exceed its bounds slightly
             theta = min(max(float(theta), self.ends[0]), self.ends[1])
         total = float(sum(coefficients[: len(self.laws)]))
         shares = [float(k) / total for k in coefficients[: len(self.laws)]]
@@ -109,7 +110,7 @@ class Curve:
 
 
 def _continued(shown: Any, clock: Floats, stop: float) -> Floats:
-    """What a drift shows at times, beyond its beginning and its end continued by tangents."""
+    """Values of a drift at times, continued by tangents beyond its beginning and end."""
     last = (1 - _NEAR) * stop
     inside = np.clip(clock, 0.0, last)
     found = np.array(shown(inside), np.float64)
@@ -122,10 +123,10 @@ def _continued(shown: Any, clock: Floats, stop: float) -> Floats:
 
 
 def branches(body: Body, centre: str) -> list[Floats]:
-    """The stretches of inclinations that one drift can pass.
+    """The ranges of inclination that a single drift can pass.
 
-    They end at the forbidden band and, with the centre at rest, where the energy has an extreme; when
-    rolling, where stability is lost.
+    They end at the forbidden band; with the centre at rest also at extremes of the energy, for rolling also
+    where stability is lost.
     """
     most = steepest(body)
     wide = np.linspace(0.0, most, math.ceil(4000 * most / (np.pi / 2)) + 1)[1:]
@@ -135,7 +136,7 @@ def branches(body: Body, centre: str) -> list[Floats]:
     if centre == "rest":
         energy = body.energy(steady)
         mark = np.sign(np.gradient(energy, theta))
-        # one-sided where the next one has no energy
+        # one-sided differences next to points without an energy
         for slope in (np.r_[np.diff(energy), np.nan], np.r_[np.nan, np.diff(energy)]):
             mark = np.where(np.isnan(mark), np.sign(slope), mark)
         mark = np.nan_to_num(np.where(allowed, mark, 0)).astype(int)
@@ -146,8 +147,8 @@ def branches(body: Body, centre: str) -> list[Floats]:
 
 
 def goes_down(body: Body, centre: str, theta: float) -> bool:
-    """Whether a drift from an inclination, which is inside a branch, goes to smaller ones."""
-    if centre == "rest":  # to where the energy is less
+    """Whether a drift from `theta`, which is inside a branch, goes to smaller inclinations."""
+    if centre == "rest":  # towards smaller energy
         low, high = (body.energy(body.steady(theta * (1 + sign * 1e-5))) for sign in (-1, 1))
         return bool(low < high)
     return float(drift(body.natural, theta, ViscousContour(_UNIT), centre=centre).ends_at_theta) < theta

@@ -1,9 +1,9 @@
-"""The text of a file: its encoding is known by a mark, by UTF-8 or as no other makes sense, or it is given.
+"""The text of a file in UTF-8, in UTF-16 with a mark, in an encoding that is given, or in Windows-1252.
 
-A short text cannot be told by its letters: the bytes of a Czech, Russian or Chinese name are letters of
-Western Europe, too. So of a file that is not UTF-8 only that is read, as Windows-1252, which is the same in
-every other usual encoding, or nonsense: signs where units have them, and a few accented letters inside of
-words. All else stays unknown bytes, which do no harm in a comment; a name that has some is refused.
+A short text does not reveal its encoding: the bytes of a Czech, Russian or Chinese name are also letters of
+Western Europe. So a file that is not UTF-8 is read as Windows-1252 only where every other usual encoding
+would give the same or nonsense: symbols in units, and a few accented letters inside words. All other bytes
+remain undecoded, which does no harm in a comment; a name that has any is refused.
 """
 
 import codecs
@@ -15,14 +15,14 @@ from io import BytesIO
 from itertools import pairwise
 
 _UTF_16 = (b"\xff\xfe", b"\xfe\xff")
-#: What is tried to show how an unknown name may read.
+#: Encodings that are tried to suggest readings of an undecoded name.
 _USUAL = ("utf-8", "gbk", "big5", "cp932", "cp949", "cp1250", "cp1251", "cp1252", "cp1253")
-_SHOWN = 8  # readings in a message
-#: What stands between names, columns and lines: less than the second byte of any character of two.
+_SHOWN = 8  # largest number of readings in a message
+#: A cell with characters beyond ASCII. No separator can be the second byte of a two-byte character.
 _CELL = re.compile(r"[^\t\n\r;,\"]*[^\x00-\x7f][^\t\n\r;,\"]*")
 _NONE, _END = r"(?<![^\x00-\x7f])", r"(?![@-~]|[^\x00-\x7f])"
-#: What is Windows-1252 for certain. A letter that is a symbol in Greek, or a word in Russian, has to be
-#: within a word; none may begin or end a character of two bytes of a Chinese name.
+#: Characters that are certainly Windows-1252. A letter that might be a symbol in Greek or a word in Russian
+#: has to be inside a word; none may begin or end a two-byte character of a Chinese name.
 _CERTAIN = re.compile(
     "|".join(
         (
@@ -39,8 +39,8 @@ _CERTAIN = re.compile(
         )
     )
 )
-#: What is UTF-8, but of two bytes that rather are a character of Chinese or Korean: letters of no alphabet
-#: that has many readers, marks that no letter bears, and signs that are no unit.
+#: Characters that are valid UTF-8, but more probably two-byte characters of Chinese or Korean: letters of
+#: rare alphabets, accents without a letter, and symbols that are no units.
 _ODD = re.compile(
     r"[\x80-\x9f\u0180-\u019f\u01a2-\u01ae\u01b1-\u0258\u025a-\u02ff\u0370-\u0385\u03cf-\u0400\u0460-\u048f]"
     r"|[\u0492-\u05cf\u05eb-\u0620\u0653-\u065f\u0700-\u07ff]|(?<![A-Za-z])[\u0300-\u036f]|[\u030d-\u0326\u0329-\u036f]"
@@ -50,7 +50,7 @@ _LETTERS = re.compile(r"[^\W\d_]+")
 
 
 def decoded(raw: bytes, name: str, encoding: str | None = None) -> str:
-    """The text of a file; bytes whose encoding is not known are the lone surrogates of `legible`."""
+    """The text of a file; undecoded bytes are lone surrogates, which `legible` refuses in names."""
     if raw[:4] == b"PK\x03\x04":
         not_packed_project(raw, name)
         raise ValueError(f"{name}: a workbook or a zip file, not text; export it as CSV")
@@ -71,14 +71,14 @@ def decoded(raw: bytes, name: str, encoding: str | None = None) -> str:
         raise ValueError(f"{name}: {_PROJECT}")
     if top.startswith("<") and "<phyphox" in top:
         raise ValueError(f"{name}: an experiment of phyphox's, not what it recorded: export that as CSV")
-    return text.replace("\u2212", "-")  # the minus sign of typesetters
+    return text.replace("\u2212", "-")  # the typographic minus sign
 
 
 _PROJECT = "a project of Tracker's, not an export: File > Export > Data writes a table"
 
 
 def legible(name: str, names: Iterable[str]) -> None:
-    """Refuses names in a file that have bytes whose encoding is not known, and says how they may read."""
+    """Refuse names in a file that have undecoded bytes, and suggest readings."""
     for one in names:
         if one.isascii() or not any("\udc80" <= letter <= "\udcff" for letter in one):
             continue
@@ -91,7 +91,7 @@ def legible(name: str, names: Iterable[str]) -> None:
 
 
 def _readings(raw: bytes) -> dict[str, list[str]]:
-    """How a name may read, and in which encodings; those in which words mix alphabets come last."""
+    """Readings of a name with their encodings; those with words of mixed alphabets come last."""
     found: dict[str, list[str]] = {}
     for encoding in _USUAL:
         try:
@@ -104,9 +104,9 @@ def _readings(raw: bytes) -> dict[str, list[str]]:
 
 
 def _mixed(text: str) -> bool:
-    """Whether letters of one alphabet stand in the midst of another's."""
+    """Whether letters of one alphabet stand in the middle of a word in another."""
     kinds = [unicodedata.name(c, "?").split()[0] if c.isalpha() else "" for c in text]
-    alphabets = {"LATIN", "CYRILLIC"}  # of Greek a single letter may be a symbol
+    alphabets = {"LATIN", "CYRILLIC"}  # a single Greek letter may be a symbol
     beside = {frozenset(pair) for pair in pairwise(kinds)}
     between = any(
         a == c == "LATIN" and b and b != a for a, b, c in zip(kinds, kinds[1:], kinds[2:], strict=False)
@@ -115,11 +115,11 @@ def _mixed(text: str) -> bool:
 
 
 def not_packed_project(raw: bytes, name: str) -> None:
-    """Refuses a zip file that has a project of Tracker's in it."""
+    """Refuse a zip file that contains a Tracker project."""
     try:
         with zipfile.ZipFile(BytesIO(raw)) as file:
             names = file.namelist()
-    except Exception:  # whatever is said of what is torn
+    except Exception:  # a damaged file raises errors of many kinds
         return
     if any(inside.endswith(".trk") for inside in names):
         raise ValueError(f"{name}: {_PROJECT}")
@@ -132,13 +132,14 @@ def _as_told(raw: bytes, name: str, encoding: str) -> str:
         return raw.decode(encoding)
     except UnicodeDecodeError as e:
         told = f"byte {e.start} of {len(raw)} is none of {encoding}"
-    except (LookupError, ValueError):  # also of what codes no text, or of a name with a zero in it
+    # includes codecs that are not for text, and names with a null character
+    except (LookupError, ValueError):
         raise ValueError(f"encoding = {encoding!r}: expected the name of one, such as 'gbk'") from None
     raise ValueError(f"{name}: not in encoding = {encoding!r}: {told}")
 
 
 def _found_out(raw: bytes) -> str:
-    """Text in UTF-8 or, for certain, in Windows-1252; else its ASCII, and surrogates for the rest."""
+    """Text decoded from UTF-8 or, if certain, from Windows-1252; otherwise ASCII with surrogates."""
     if raw.isascii():
         return raw.decode("ascii")
     try:
@@ -156,14 +157,14 @@ def _found_out(raw: bytes) -> str:
 
 
 def _doubtful(text: str) -> bool:
-    """Whether what is UTF-8 may as well be a few characters of two bytes each in another encoding."""
+    """Whether valid UTF-8 could as well be a few two-byte characters of another encoding."""
     cells = _CELL.findall(text)
     letters = "".join({word for cell in cells for word in re.findall(r"[^\x00-\x7f]+", cell)})
     if len(letters) > 3 or max(letters) >= "\u0800":
         return False
     if not letters.replace("\xa0", "").isprintable() or any(map(_ODD.search, cells)):
         return True
-    # a letter of Eastern Europe stands among others, one of Russia not among Latin ones, and few stand alone
+    # expect Eastern European letters among others, Cyrillic ones not among Latin ones, few letters alone
     words = [word for cell in cells for word in _LETTERS.findall(cell) if not word.isascii()]
     return any(
         (len(letters) == len(word) == 1 and not re.match("[\u0386-\u03ceéàñåÅøØ]", word))
@@ -174,11 +175,11 @@ def _doubtful(text: str) -> bool:
 
 
 def _western(cell: str) -> bool:
-    """Whether a cell is in Windows-1252 for certain."""
+    """Whether a cell is certainly in Windows-1252."""
     if not _CERTAIN.sub("", cell).isascii():
         return False
     for word in _LETTERS.findall(cell):
-        # letters of Latin beside it, and not "dφdt" in Greek
+        # require Latin letters beside an accented one, but not the pattern of Greek "dφdt"
         plain = sum(map(str.isascii, word))
         if re.search("[äöóÄÖÓüß]", word) and plain < (2 if re.search("[üß]", word) else 3):
             return False

@@ -1,9 +1,9 @@
-"""The sample data of the lab page, inside the package: made up by docs/lab/make.py, no measurement."""
+"""The sample data of the lab page, in the package: made by docs/lab/make.py, not measured."""
 
 from importlib.resources import files
 from pathlib import Path
 
-#: By name: the file, and what is in it.
+#: File and content of each example.
 _EXAMPLES = {
     "tube_from_above": ("tube_from_above.txt", "both ends of a tube, as Tracker exports them; 34 frames"),
     "flicks": ("flicks.csv", "inclination in degrees and turns per second of ten flicks of that tube"),

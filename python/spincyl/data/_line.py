@@ -1,7 +1,7 @@
-"""The quick look of the literature: a power of the time left, a straight line in a log-log diagram.
+"""The usual first analysis in the literature: a power of the time left, a straight log-log line.
 
-Its exponent is biased where the inclination is not small: by 0.01 to 0.03 from 0.3 rad on, which is many
-times the error that its scatter gives it. It shows what kind of law to look for, and decides nothing.
+Its exponent is biased unless the inclination is small: by 0.01 to 0.03 from 0.3 rad on, which is many times
+the error from the scatter. It suggests which laws to try, but cannot decide between them.
 """
 
 from typing import NamedTuple
@@ -21,7 +21,7 @@ class Line(NamedTuple):
 
 
 def line(t: Floats, y: Floats) -> Line | None:
-    """The straightest log-log line of positive values over the time left, its stopping time free.
+    """The straightest log-log line of positive values against the time left, with a free stopping time.
 
     None if no stopping time within a hundred spans after the last time makes it straightest.
     """

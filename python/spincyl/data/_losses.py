@@ -1,4 +1,4 @@
-"""Which loss a measured spin-down is explained by: drifts are fitted, and laws compared by AIC."""
+"""Fits of drifts to a measured spin-down, and comparison of laws of loss by AIC."""
 
 import math
 import warnings
@@ -14,8 +14,8 @@ from spincyl.data._line import line
 from spincyl.data._lossfit import FittedLoss, LossFit, Refused, called, in_si
 from spincyl.data._spindown import CENTRES, Several, SpinDown, asked, measured
 
-_RESTED = 0.02  #: how far before the first time, as a share, the centre is first thought to have rested
-_CORRELATED = 0.999  #: two coefficients more than this are one
+_RESTED = 0.02  #: First guess of the share in `Curve` that gives where the centre was at rest.
+_CORRELATED = 0.999  #: Two coefficients with a higher correlation cannot be told apart.
 
 
 def fit_losses(
@@ -119,7 +119,7 @@ def fit_losses(
             except ValueError as e:
                 refused.append((called(law), one, e))
     if found and found[0].data.estimated:
-        # all laws with the same errors, so that their AIC can be compared
+        # fit all laws with the same errors, so that their AIC can be compared
         best = min(found, key=lambda f: f.chi2 + 2 * len(f.beta))
         shown = best.curve(best.data.names, best.data.clock, best.beta[:-1], best.beta[-1])
         errors = best.data.weighed(shown, len(best.beta)).errors
@@ -137,7 +137,7 @@ def fit_losses(
     best, data = whole[0], whole[0].data
     spread = best.spread
     fits = [_told(f, _aic(f), (_aic(f) - _aic(best)) / spread) for f in whole]
-    # which is the one that may warn
+    # only the best drift may issue warnings
     fits[0] = fits[0]._replace(drift=best.curve.drift(best.beta[:-1], float(best.beta[-1])))
     said = _doubts(body, best, fits[0])
     for doubt in said:
@@ -166,13 +166,13 @@ def fit_losses(
 
 
 class _Raw(NamedTuple):
-    """A fit by odrpack: coefficients and first inclination, and their covariance in units of the errors."""
+    """A fit by odrpack: parameters, and their covariance in units of the errors."""
 
     data: SpinDown
     curve: Curve
     beta: Floats
     covariance: Floats
-    chi2: float  # the sum
+    chi2: float  # sum of squares, not per degree of freedom
 
     @property
     def freedom(self) -> int:
@@ -180,12 +180,12 @@ class _Raw(NamedTuple):
 
     @property
     def spread(self) -> float:
-        """How much larger than that of the errors that are given the square of the scatter is; at least 1."""
+        """Factor by which the variance of the points exceeds that of their given errors; at least 1."""
         return 1.0 if self.data.estimated else max(self.chi2 / self.freedom, 1.0)
 
 
 def _doubts(body: Body, best: _Raw, fit: FittedLoss) -> list[str]:
-    """What has to be said of the best fit: units that do not agree, or points that no law explains."""
+    """Warnings about the best fit: inconsistent units, or points that no law explains."""
     said, data = [], best.data
     units = "natural units" if body.scale is None else "seconds and rad/s"
     factor = data.off_by(body)
@@ -207,7 +207,7 @@ def _doubts(body: Body, best: _Raw, fit: FittedLoss) -> list[str]:
 
 
 def _fitted(odrpack: Any, data: SpinDown, curve: Curve, begin: Floats | None) -> _Raw:
-    """The fit of one law, from coefficients and an inclination to begin with, or from a guess."""
+    """Fit one law, or a sum, from given parameters or from a guess."""
     at: Floats = _guess(odrpack, data, curve) if begin is None else begin.copy()
     many = len(curve.laws)
     if curve.centre == "rolling" and at.size == many + 1:
@@ -239,7 +239,7 @@ def _fitted(odrpack: Any, data: SpinDown, curve: Curve, begin: Floats | None) ->
 
     found = fit(at, None)
     if at.size > many + 1 and not (np.diag(np.asarray(found.cov_beta)) > 0).all():
-        # where the centre rested is at an end of what is possible: the other errors are those with it there
+        # the inclination of rest is at a bound: fix it there, so that the other parameters have errors
         at = np.asarray(at * np.asarray(found.beta), np.float64)
         at[-2] = max(at[-2], 1e-12)
         found = fit(at, np.arange(at.size) == at.size - 2)
@@ -248,7 +248,7 @@ def _fitted(odrpack: Any, data: SpinDown, curve: Curve, begin: Floats | None) ->
 
 
 def _guess(odrpack: Any, data: SpinDown, curve: Curve) -> Floats:
-    """Coefficients and first inclination: the times are linear in those of the drift of unit coefficient."""
+    """A guess of coefficients and first inclination. Times are proportional to those of a tabulated drift."""
     if len(curve.laws) > 1:
         alone = [
             _fitted(odrpack, data, Curve(curve.body, [law], curve.centre, data.ends, data.down), None)
@@ -282,7 +282,7 @@ def _squares(data: SpinDown, curve: Curve, beta: Floats) -> float:
 
 
 def _refuse_degenerate(found: _Raw) -> None:
-    """Refuses a law that no coefficient fits, and two, by their names, that the points cannot tell apart."""
+    """Refuse a law that no coefficient fits, or two laws that the points cannot tell apart."""
     errors = np.sqrt(np.diag(_covariance(found)))[: len(found.curve.laws)]
     if len(errors) < 2:
         if not (np.isfinite(found.beta).all() and 0 < errors[0] < 100 * found.beta[0]):
@@ -304,9 +304,9 @@ def _refuse_degenerate(found: _Raw) -> None:
 
 
 def _covariance(found: _Raw) -> Floats:
-    """The covariance of coefficients and inclination; where errors are from the scatter, about this law.
+    """The covariance of the parameters; estimated errors follow from the scatter about this law.
 
-    Where points scatter by more than the errors that are given, that of larger ones.
+    If points scatter by more than their given errors, it is enlarged accordingly.
     """
     return found.covariance * (found.chi2 / found.freedom if found.data.estimated else found.spread)
 
@@ -319,13 +319,13 @@ def _aic(found: _Raw) -> float:
 
 
 def _told(found: _Raw, aic: float, daic: float) -> FittedLoss:
-    """What a fit says, with the stopping time and its error."""
+    """The result of a fit, with the stopping time and its error."""
     data, curve, beta = found.data, found.curve, found.beta
     chi2 = found.chi2 / found.freedom
     covariance = _covariance(found)
     errors, many = np.sqrt(np.diag(covariance)), len(curve.laws)
     left = curve.stops_at(beta[:-1], beta[-1])
-    # an inclination at the end of its branch has no error
+    # an inclination at the end of its branch has zero variance
     with np.errstate(divide="ignore", invalid="ignore"):
         other = 1 if many > 1 else -1
         stop_err, correlation = math.nan, covariance[0, other] / (errors[0] * errors[other])
@@ -357,12 +357,12 @@ def _told(found: _Raw, aic: float, daic: float) -> FittedLoss:
 
 
 def _slope(curve: Curve, beta: Floats, k: int, error: float) -> float:
-    """How the stopping time changes with a parameter."""
+    """Derivative of the stopping time by a parameter."""
     size = beta[k]
     low, high = curve.ends if k == len(beta) - 1 else (0.5 * size, 2 * size)
     if len(curve.laws) <= k < len(beta) - 1:
         low, high, size = 0.0, 0.95, _RESTED
-    step = max(min(0.1 * error, 0.01 * size), 1e-7 * size)  # exact data have no errors
+    step = max(min(0.1 * error, 0.01 * size), 1e-7 * size)  # exact data have zero errors
     places = np.clip([beta[k] - step, beta[k] + step], low, high)
     times = []
     for place in places:

@@ -1,4 +1,4 @@
-"""What a fitted spin-down is: laws by AIC, with coefficients, stopping times, and what must be said."""
+"""The result of fitting a spin-down: laws ranked by AIC, their parameters, stopping times and notes."""
 
 import math
 from collections.abc import Sequence
@@ -16,8 +16,8 @@ from spincyl.data._report import section, variables, written
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-#: A law whose AIC is larger than the least by no more than this is not told apart from the best: twenty times
-#: less likely, exp(-6/2).
+#: A law whose AIC exceeds the least by no more than this is not told apart from the best; at this difference
+#: it is twenty times less likely, exp(-6/2).
 APART = 6.0
 
 
@@ -64,7 +64,7 @@ class FittedLoss(NamedTuple):
 
 @compared
 class Refused(NamedTuple):
-    """A law that was asked for and cannot be, and why."""
+    """A law that was to be fitted but cannot be, and the reason."""
 
     name: str
     centre: str
@@ -176,7 +176,7 @@ class LossFit(NamedTuple):
 
 
 def in_si(found: LossFit, body: Body, second: float) -> LossFit:
-    """A fit in natural units as that of a measured body, whose unit of time is so many seconds."""
+    """Convert a fit from natural units to those of a measured body with this unit of time in seconds."""
 
     def told(fit: FittedLoss) -> FittedLoss:
         residual = fit.residual | {
@@ -192,7 +192,7 @@ def in_si(found: LossFit, body: Body, second: float) -> LossFit:
 
     line = found.line
     if line is not None:
-        # the value a second before the end
+        # the value one second before the end
         factor = line.factor * second**-line.exponent / (1.0 if found.theta is not None else second)
         line = line._replace(stops_at=line.stops_at * second, factor=factor)
     return found._replace(
@@ -214,14 +214,14 @@ def _stops(found: FittedLoss) -> str:
     if math.isinf(found.stops_at):
         return "never stops"
     unit = "" if found.drift.body.scale is None else " s"
-    # as many decimals as two digits of the error have: more would be rounding
+    # as many decimals as two digits of the error have
     error = f"{found.stops_at_err:.2g}"
     decimals = max(0, 1 - math.floor(math.log10(float(error)))) if 0 < found.stops_at_err < math.inf else 4
     return f"stops at {found.stops_at:.{decimals}f} +- {error}{unit}"
 
 
 def cells(found: FittedLoss) -> tuple[str, str, str, str, str, str]:
-    """A law as a row of a table: name, centre, coefficients, stopping time, chi2, dAIC."""
+    """A row of the table: name, centre, coefficients, stopping time, chi2, dAIC."""
     told = ", ".join(
         f"{k:.4g} +- {e:.1g}" for k, e in zip(found.coefficients, found.coefficient_errs, strict=True)
     )
@@ -230,14 +230,14 @@ def cells(found: FittedLoss) -> tuple[str, str, str, str, str, str]:
 
 
 def remark(found: FittedLoss) -> str:
-    """Whether a law is the best, or not told apart from it."""
+    """A note on whether a law is the best, or not told apart from it."""
     if found.daic == 0:
         return "best"
     return "not told apart" if found.daic <= APART else ""
 
 
 def notes(found: LossFit) -> list[str]:
-    """What has to be said below a table."""
+    """Notes below the table."""
     which = "with the centre at rest, or by rolling" if found.centre == "either" else _CENTRE[found.centre]
     said = [f"{len(found.t)} points; drift {which}"]
     said += [f"errors of {name} from its scatter about the best law" for name in found.estimated]

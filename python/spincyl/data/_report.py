@@ -1,14 +1,14 @@
-"""What a fit says, as lmfit reports it: sections in brackets, and variables with their errors."""
+"""Reports in the style of lmfit: sections with titles in brackets, and variables with their errors."""
 
 import math
 import textwrap
 from collections.abc import Sequence
 
-WIDE = 88  # columns of a report
+WIDE = 88  # columns
 
 
 def section(title: str, rows: Sequence[tuple[str, str]], joint: str = " = ") -> list[str]:
-    """Lines of a section: its title, and rows of a name and what is said of it, on several if it is long."""
+    """Lines of a section: its title, and rows of name and text, which are wrapped."""
     wide = max((len(name) for name, _ in rows), default=0)
     lines = [f"[[{title}]]"]
     for name, said in rows:
@@ -25,7 +25,7 @@ def section(title: str, rows: Sequence[tuple[str, str]], joint: str = " = ") -> 
 
 
 def variables(rows: Sequence[tuple[str, float, float, str]]) -> list[str]:
-    """Lines of the section "Variables": name, value, standard error, and what else there is to say."""
+    """Lines of the section "Variables": name, value, standard error and note."""
     told = []
     for name, value, error, note in rows:
         said = written(value)
@@ -40,11 +40,11 @@ def variables(rows: Sequence[tuple[str, float, float, str]]) -> list[str]:
 
 
 def written(value: float) -> str:
-    """A number with the digits that a report needs."""
+    """A number with six digits."""
     return f"{value:.6g}"
 
 
 def counted(many: int) -> str:
-    """A number of things, in words if it is small."""
+    """A count, in words if it is small."""
     words = ("none", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine")
     return words[many] if many < len(words) else str(many)

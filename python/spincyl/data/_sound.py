@@ -1,7 +1,7 @@
-"""Sound and other tables as a phone records them: exports of phyphox, and WAV files.
+"""Sound and tables that a phone has recorded: exports of phyphox, and WAV files.
 
-Python's `wave` knows no floating-point samples, and SciPy's reader no recording that was cut off within a
-frame: so the few fields of a WAV file are read here.
+Python's `wave` does not read floating-point samples, and SciPy's reader fails for a recording that breaks off
+within a frame; so the few fields of a WAV file are read here.
 """
 
 import struct
@@ -19,7 +19,7 @@ from spincyl.data._contents import MOST_BYTES, contents, limited
 from spincyl.data._encoding import not_packed_project
 from spincyl.data._tracker import table
 
-_LOUDEST = 2.0**31  # of whole numbers; of floating-point ones a thousand million times what is usual
+_LOUDEST = 2.0**31  # largest sample; floating-point samples are usually below 1
 
 
 def read_phyphox(path: str | PathLike[str], *, encoding: str | None = None) -> dict[str, Columns]:
@@ -64,7 +64,7 @@ def read_phyphox(path: str | PathLike[str], *, encoding: str | None = None) -> d
         raise ValueError(f"{name}: no CSV in this zip file; export from phyphox as CSV")
     paths = [PurePosixPath(inside) for inside, _ in found]
     stems = Counter(inside.stem for inside in paths)
-    # two folders may each have a table of one name
+    # tables in two folders may have the same name
     names = [inside.stem if stems[inside.stem] == 1 else str(inside) for inside in paths]
     twice = next((n for n, many in Counter(names).items() if many > 1), None)
     if twice is not None:
@@ -75,7 +75,7 @@ def read_phyphox(path: str | PathLike[str], *, encoding: str | None = None) -> d
 
 
 def _unpacked(raw: bytes, name: str) -> list[tuple[str, bytes]]:
-    """The tables in a zip file, each with its name: not those that tell of the phone or of a Macintosh."""
+    """Names and contents of the tables in a zip file, without those about the phone and of macOS."""
     found: list[tuple[str, bytes]] = []
     left = MOST_BYTES
     try:
@@ -94,7 +94,7 @@ def _unpacked(raw: bytes, name: str) -> list[tuple[str, bytes]]:
         raise ValueError(str(e) if name in str(e) else f"{name}: a torn zip file: {e}") from None
     except (
         Exception
-    ) as e:  # whatever unpacking says of what is torn, or has a password: all of it is in memory
+    ) as e:  # a damaged or encrypted file raises errors of many kinds; nothing is read from disk here
         raise ValueError(f"{name}: a torn zip file, or one that needs a password: {e!r}") from None
     return found
 
@@ -133,7 +133,7 @@ def read_sound(path: str | PathLike[str]) -> tuple[Floats, Floats]:
         if kind == b"fmt ":
             form = raw[begin : begin + size]
         if kind == b"data":
-            # a recorder that was cut off leaves sizes that are too large, or zero
+            # a recording that broke off has sizes that are too large, or zero
             finished = size or struct.unpack_from("<I", raw, 4)[0] + 8 == len(raw)
             return _samples(raw[begin : begin + size] if finished else raw[begin:], form, str(path))
     raise ValueError(f"{path}: this WAV file has no samples")
@@ -143,7 +143,7 @@ def _samples(raw: bytes, form: bytes, name: str) -> tuple[Floats, Floats]:
     if len(form) < 16:
         raise ValueError(f"{name}: this WAV file does not say of what kind its samples are")
     code, channels, hertz, pace, frame, bits = struct.unpack_from("<HHIIHH", form)
-    if code == 0xFFFE and len(form) >= 26:  # extensible: the code is the first of the sub-format
+    if code == 0xFFFE and len(form) >= 26:  # extensible format: the code is the first field of the sub-format
         (code,) = struct.unpack_from("<H", form, 24)
     kinds = {(1, 8): "u1", (1, 16): "<i2", (1, 24): "u1", (1, 32): "<i4", (3, 32): "<f4", (3, 64): "<f8"}
     kind = kinds.get((code, bits))
@@ -155,12 +155,12 @@ def _samples(raw: bytes, form: bytes, name: str) -> tuple[Floats, Floats]:
     raw = raw[: len(raw) // frame * frame]
     if not raw:
         raise ValueError(f"{name}: this WAV file has no samples")
-    if bits == 24:  # in the upper bytes of 32 bits
+    if bits == 24:  # shift to the upper bytes of 32 bits
         wide = np.zeros((len(raw) // 3, 4), np.uint8)
         wide[:, 1:] = np.frombuffer(raw, np.uint8).reshape(-1, 3)
         values = wide.view("<i4")[:, 0] / 2.0**31
     else:
-        with np.errstate(invalid="ignore"):  # a NaN may be one that signals
+        with np.errstate(invalid="ignore"):  # converting a signalling NaN would warn
             values = np.frombuffer(raw, kind).astype(np.float64)
         if not (np.abs(values) <= _LOUDEST).all():
             at = int(np.argmin(np.abs(values) <= _LOUDEST))

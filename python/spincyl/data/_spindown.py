@@ -1,4 +1,4 @@
-"""A spin-down as it was measured: what is asked of it, and what must be refused before anything is fitted."""
+"""A measured spin-down: its columns and errors, and checks before anything is fitted."""
 
 import math
 from collections.abc import Sequence
@@ -15,39 +15,39 @@ from spincyl.data._report import counted
 
 LAWS = tuple(CODES["Law"])
 CENTRES = ("rest", "rolling")
-_SHARE = 0.01  # of a value, that it errs by as long as nothing is known
+_SHARE = 0.01  # relative error of values as long as nothing is known about it
 
 
 class Several(ValueError):
-    """What was measured may start from several inclinations."""
+    """The measured spin-down may start from several inclinations."""
 
 
 class SpinDown(NamedTuple):
-    """Measured columns and errors in natural units, and the inclinations about which the drift is sought."""
+    """Measured columns and errors in natural units, and the range of inclinations of the drift."""
 
     t: Floats  #: (n,)
     t_err: Floats  #: (n,) all zero if times are exact
-    names: tuple[str, ...]  #: of "theta" and "precession", what was measured
-    values: Floats  #: (rows, n), NaN where it was not measured
+    names: tuple[str, ...]  #: the measured ones of "theta" and "precession"
+    values: Floats  #: (rows, n); NaN where nothing was measured
     errors: Floats  #: (rows, n)
-    estimated: tuple[str, ...]  #: names of rows whose errors have to be found from the scatter
-    near: Floats  #: (n,) inclinations, from the precession where they were not measured
+    estimated: tuple[str, ...]  #: names of rows whose errors are estimated from the scatter
+    near: Floats  #: (n,) approximate inclinations; from the precession where theta was not measured
     ends: tuple[float, float]  #: least and greatest first inclination
-    down: bool  #: whether the drift goes down there
+    down: bool  #: whether the drift goes to smaller inclinations
 
     @property
     def clock(self) -> Floats:
-        """Times after the first one."""
+        """Times from the first one on."""
         after: Floats = self.t - self.t[0]
         return after
 
     @property
     def numbers(self) -> int:
-        """How many numbers were measured, times aside."""
+        """Number of measured values, without times."""
         return int(np.isfinite(self.values).sum())
 
     def off_by(self, body: Body) -> float:
-        """The median of the precession over that of steady states so inclined; 1 where not both are known."""
+        """Median of measured over steady precession at the measured inclinations; 1 if not both are known."""
         both = np.isfinite(self.values).all(axis=0)
         if len(self.names) < 2 or not both.any():
             return 1.0
@@ -55,20 +55,20 @@ class SpinDown(NamedTuple):
         return float(np.median(precession / np.asarray(body.steady(np.clip(theta, *self.ends)).precession)))
 
     def weighed(self, shown: Floats, parameters: int) -> "SpinDown":
-        """The same with errors from the scatter about what a fitted drift shows."""
+        """The spin-down with errors estimated from the scatter about a fitted drift."""
         errors = self.errors.copy()
         for row, name in enumerate(self.names):
             if name in self.estimated:
                 off = (self.values[row] / shown[row] - 1)[np.isfinite(self.values[row])]
                 freedom = max(off.size - parameters / len(self.names), 1.0)
-                # exact points still need some error
+                # exact points also need an error
                 share = max(float(np.sqrt(off @ off / freedom)), 1e-12)
                 errors[row] = share * np.abs(shown[row])
         return self._replace(errors=errors)
 
 
 def asked(laws: Sequence[Any] | None, centre: str | None) -> list[tuple[Any, ...]]:
-    """The laws to fit, each as a tuple of the one or two classes that add."""
+    """The laws to fit, each as a tuple of one class or of two whose laws add."""
     from spincyl import loss
 
     if centre is not None:
@@ -103,7 +103,7 @@ def measured(
     start: float | None,
     laws: int,
 ) -> SpinDown:
-    """What was measured, without the points of which nothing is known; or what is wrong with it, by name."""
+    """The measured spin-down without points where nothing is known; an error names a wrong argument."""
     if not isinstance(body, Body):
         raise TypeError(f"body: expected a Body, not {type(body).__name__}")
     if not is_scalar(*body._numbers):
@@ -165,7 +165,7 @@ def measured(
 
 
 def leaning(name: str, theta: Floats, body: Body) -> None:
-    """Refuses inclinations at which this body is never steady, such as those in degrees; NaN is none."""
+    """Refuse inclinations at which the body has no steady state, such as degrees; NaN is allowed."""
     known = theta[np.isfinite(theta)]
     if not ((known > 0) & (known <= steepest(body))).all():
         degrees = (known > 0).all() and known.max() <= math.degrees(steepest(body))
@@ -174,7 +174,7 @@ def leaning(name: str, theta: Floats, body: Body) -> None:
 
 
 def _reach(body: Body) -> str:
-    """The inclinations of a body's steady states, in words."""
+    """The range of inclinations of a body's steady states, in words."""
     named = {math.pi / 2: "pi/2", math.pi: "pi"}
     most = steepest(body)
     return f"(0, {named.get(most, f'{most:.6g}')}]"
@@ -192,7 +192,7 @@ def _errors(name: str, given: Reals | None, t: Floats, default: Floats) -> Float
 
 
 def _rises(name: str, t: Floats, values: Floats) -> bool:
-    """Whether values rise, by the correlation of ranks; refused if they do neither."""
+    """Whether values rise, by rank correlation; refused if they neither rise nor fall."""
     seen = np.isfinite(values)
     first, second = (np.argsort(np.argsort(x[seen], kind="stable"), kind="stable") for x in (t, values))
     correlation = float(np.corrcoef(first.astype(np.float64), second.astype(np.float64))[0, 1])
@@ -206,7 +206,7 @@ def _rises(name: str, t: Floats, values: Floats) -> bool:
 def _near(
     body: Body, columns: dict[str, Floats], rises: dict[str, bool], centre: str, start: float | None
 ) -> tuple[Floats, tuple[float, float], bool]:
-    """Inclinations about which to seek, the ends of their branch, and whether the drift goes down on it."""
+    """Approximate inclinations, the ends of their branch, and whether the drift goes down on it."""
     pieces = branches(body, centre)
     if start is not None and not 0 < number("start", start) <= steepest(body):
         raise ValueError(f"start = {start!r}: expected an inclination in {_reach(body)}, in radians")
@@ -243,7 +243,7 @@ def _near(
         )
     least, greatest = float(piece[0]), float(piece[-1])
     known = near[np.isfinite(near)]
-    if centre == "rest":  # one drift serves all starts: from beyond them
+    if centre == "rest":  # one drift serves all starts: begin it beyond all of them
         beyond = 1.3 * float(known.max()) if down else 0.7 * float(known.min())
         least, greatest = (least, min(greatest, beyond)) if down else (max(least, beyond), greatest)
     return np.clip(near, least, greatest), (least, greatest), down
@@ -252,7 +252,7 @@ def _near(
 def _from_precession(
     body: Body, precession: Floats, rises: bool, pieces: list[Floats], centre: str, start: float | None
 ) -> tuple[Floats, Floats, bool]:
-    """Inclinations of which this is the precession, where the loss changes it as it was seen to change."""
+    """Inclinations that have this precession, on a branch where the loss changes it in the measured sense."""
     found = []
     for piece in pieces:
         steady = np.asarray(body.steady(piece).precession)

@@ -1,4 +1,4 @@
-"""Tables of numbers as Tracker and others export them; delimiter, decimal sign and encoding are found out."""
+"""Tables of numbers as exported by Tracker and others; delimiter, decimal sign and encoding are detected."""
 
 import math
 import re
@@ -11,11 +11,11 @@ from spincyl.data._columns import UNITS, Columns
 from spincyl.data._contents import MOST_BYTES, contents
 from spincyl.data._encoding import decoded, legible
 
-#: What Tracker separates columns with; spaces last, since names have them.
+#: Delimiters of columns in the order of trial; spaces come last, since names contain them.
 _DELIMITERS = ("\t", ";", ",", None)
-#: Among so many lines, empty ones aside, names and the first numbers are sought.
+#: Names and the first row of numbers have to be within this many lines that are not empty.
 _TOP = 10_000
-#: What people write where there is no number, in small letters; "nan" is one to Python.
+#: Cells without a number, in lower case; float() accepts "nan" by itself.
 _MISSING = frozenset(
     (
         "",
@@ -81,7 +81,7 @@ def read_table(path: str | PathLike[str], *, encoding: str | None = None) -> Col
 
 
 def table(raw: bytes, name: str, encoding: str | None = None) -> Columns:
-    """The one table that a file holds, by what it holds and its name."""
+    """The only table in a file; an error for several."""
     tracks = _named(raw, name, encoding, "a table", 1)
     if len(tracks) > 1:
         legible(name, tracks)
@@ -128,7 +128,7 @@ def read_tracker(path: str | PathLike[str], *, encoding: str | None = None) -> d
 
 
 def _named(raw: bytes, name: str, encoding: str | None, kind: str, least: int) -> dict[str, Columns]:
-    """The tracks of a file, or why it has none, with its name."""
+    """The tracks of a file; an error names the file and the reason."""
     text = decoded(raw, name, encoding)
     try:
         found = _read(text, least)
@@ -139,12 +139,12 @@ def _named(raw: bytes, name: str, encoding: str | None, kind: str, least: int) -
 
 
 def _read(text: str, least: int) -> dict[str, Columns]:
-    """The tracks of a text, each of at least so many columns."""
+    """The tracks of a text, each with at least `least` columns."""
     lines = [(i, line) for i, line in enumerate(text.splitlines(), 1) if line.strip()]
     several = len(lines)
     lines = [(i, line) for i, line in lines if not _is_marker(line)]
     several -= len(lines)
-    lines = [(i, line) for i, line in lines if not re.match(r"\ufeff?sep=.\s*$", line)]  # Excel's
+    lines = [(i, line) for i, line in lines if not re.match(r"\ufeff?sep=.\s*$", line)]  # written by Excel
     kinds = [
         (delimiter, comma)
         for delimiter in _DELIMITERS
@@ -156,7 +156,7 @@ def _read(text: str, least: int) -> dict[str, Columns]:
     none += f" of at least {least} columns" if least > 1 else ""
     if not lines:
         raise ValueError(f"it is empty: {none}")
-    # what cannot read the last line fails in the end: it is tried when all else has
+    # formats in which the last line is no row of numbers come last: they would fail there
     kinds.sort(key=lambda kind: _numbers(lines[-1][1], *kind) is None)
     why = ""
     for kind in kinds:
@@ -178,13 +178,13 @@ def _read(text: str, least: int) -> dict[str, Columns]:
 
 
 class _Garbled(ValueError):
-    """Why a line is none of names, in whatever way it is read."""
+    """The reason why a line cannot be one of names, in any format."""
 
 
 def _found(
     lines: list[tuple[int, str]], first: int, kind: tuple[str | None, bool], several: bool, least: int
 ) -> dict[str, Columns] | None:
-    """The tracks of lines of one kind, of which this is the first of numbers; None if no names are above."""
+    """The tracks of lines in one format, of which line `first` has the first numbers; None without names."""
     delimiter, comma = kind
     at, line = lines[first - 1]
     columns, units = _names(at, line, delimiter), []
@@ -202,7 +202,7 @@ def _found(
         raise ValueError(
             f"line {at} has numbers that are not written as those of line {below}: {_shown(line)}"
         )
-    if any(numbers):  # a line of numbers, of which one is none
+    if any(numbers):  # a row of numbers with a cell that is no number
         raise _Garbled(f"line {at} has something that is no number: {_shown(line)}")
     alone = delimiter is None or len(columns) == 1
     if not any(columns) or (
@@ -220,7 +220,7 @@ def _found(
         raise ValueError(f"line {at}: {e}") from None
 
 
-#: A unit in brackets, which may have a comma.
+#: A unit in brackets, which may contain a comma.
 _BRACKETS = re.compile(r"[(\[][^()\[\]]*[)\]]")
 
 
@@ -229,13 +229,13 @@ def _is_marker(line: str) -> bool:
 
 
 def _shown(line: str) -> str:
-    """A line as a message has it."""
+    """A line for a message, shortened."""
     line = line.strip()
     return repr(line if len(line) <= 60 else line[:60] + "...")
 
 
 def _above(line: str, delimiter: str | None, columns: list[str], several: bool) -> list[str]:
-    """Names of tracks above columns, with gaps, since a track has more than one; or one, whatever it is."""
+    """Names of tracks above columns, empty above their further columns; else the line as a single name."""
     try:
         names = [cell.strip() for cell in _split(line, delimiter)]
     except ValueError:
@@ -245,7 +245,7 @@ def _above(line: str, delimiter: str | None, columns: list[str], several: bool) 
 
 
 def _split(line: str, delimiter: str | None) -> list[str]:
-    """The cells of a line, those at its end not empty; ValueError where a quote is not closed."""
+    """The cells of a line without empty ones at its end; ValueError for an unclosed quote."""
     if delimiter is None:
         return line.split()
     if '"' not in line:
@@ -259,7 +259,7 @@ def _split(line: str, delimiter: str | None) -> list[str]:
             continue
         begun.append(piece)
         many += piece.count('"')
-        if many % 2 == 0:  # what separates was inside of the quotes
+        if many % 2 == 0:  # the delimiters so far were inside quotes
             cell = delimiter.join(begun).strip()
             bare = cell[1:-1].replace('""', "")
             if '"' in bare or not cell.endswith('"'):
@@ -274,7 +274,7 @@ def _split(line: str, delimiter: str | None) -> list[str]:
 
 
 def _names(at: int, line: str, delimiter: str | None) -> list[str]:
-    """Names of columns in a line; between spaces without the sign of a comment, and with their units."""
+    """Names of columns in a line; between spaces, without comment marks and joined to their units."""
     if delimiter is None:
         names: list[str] = []
         for word in line.lstrip("#%\ufeff \t").split():
@@ -290,8 +290,8 @@ def _names(at: int, line: str, delimiter: str | None) -> list[str]:
 
 
 def _numbers(line: str, delimiter: str | None, comma: bool) -> list[float] | None:
-    """The numbers of a line, NaN for an empty cell; None if something else is there, or nothing."""
-    if "_" in line:  # which Python allows in numbers
+    """The numbers of a line, NaN for an empty cell; None if a cell is no number or all are empty."""
+    if "_" in line:  # which float() would accept
         return None
     try:
         cells = _split(line, delimiter)
@@ -299,7 +299,7 @@ def _numbers(line: str, delimiter: str | None, comma: bool) -> list[float] | Non
         return None
     if comma:
         if "." in line and any("." in cell and cell.strip().lower() not in _MISSING for cell in cells):
-            return None  # a point among decimal commas parts thousands, or is an error
+            return None  # a point beside decimal commas is a thousands separator or an error
         cells = [cell.replace(",", ".") for cell in cells]
     try:
         found = [float(cell) if cell and not cell.isspace() else math.nan for cell in cells]
@@ -315,13 +315,13 @@ def _numbers(line: str, delimiter: str | None, comma: bool) -> list[float] | Non
 
 
 def _number(cell: str) -> bool:
-    """Whether this is a number, with a point or a comma, also one of whose quotes one is lost."""
+    """Whether a cell is a number, with a point or a comma, even if it has lost one of its quotes."""
     bare = cell.strip(" \t\"'")
     return any(_numbers(bare, None, comma) is not None for comma in (False, True))
 
 
 def _missing(line: str, delimiter: str | None) -> list[float] | None:
-    """A line that says of every column that there is no number."""
+    """NaN for each cell, if every cell of the line says that there is no number; else None."""
     try:
         cells = _split(line, delimiter)
     except ValueError:
@@ -330,10 +330,11 @@ def _missing(line: str, delimiter: str | None) -> list[float] | None:
 
 
 def _table(lines: list[tuple[int, str]], delimiter: str | None, comma: bool, width: int) -> Floats:
-    """(n, width) numbers of lines, NaN where a cell is empty or a line short."""
-    if len(lines) * width > MOST_BYTES:  # more than the bytes of any table whose lines are not cut off
+    """The (n, width) numbers of lines, NaN where a cell is empty or missing at the end of a line."""
+    # no complete table of a file has more cells than the file may have bytes
+    if len(lines) * width > MOST_BYTES:
         raise ValueError(f"{width} column names stand above {len(lines)} lines: these are too many cells")
-    if delimiter is not None:  # cells at the end of a line may be left out, but not in every line
+    if delimiter is not None:  # cells at the end may be missing in some lines, but not in all
         widest = max(line.count(delimiter) for _, line in lines) + 1
         if widest < width:
             raise ValueError(f"{width} column names stand above {widest} numbers in line {lines[0][0]}")
@@ -359,7 +360,7 @@ def _table(lines: list[tuple[int, str]], delimiter: str | None, comma: bool, wid
 
 
 def _trouble(line: str, delimiter: str | None, comma: bool) -> str:
-    """What is wrong with a line that is not one of numbers."""
+    """The reason why a line is no row of numbers."""
     try:
         _split(line, delimiter)
     except ValueError as e:
@@ -370,7 +371,7 @@ def _trouble(line: str, delimiter: str | None, comma: bool) -> str:
 
 
 def _refuse_thousands(lines: list[tuple[int, str]]) -> None:
-    """ValueError if the commas in the quotes of all lines may as well part thousands: "1,234"."""
+    """ValueError if all quoted commas could be thousands separators as well as decimal commas: "1,234"."""
     found = [(i, cell) for i, line in lines for cell in _quoted(line) if "," in cell]
     if found and all(_THOUSANDS.fullmatch(cell) for _, cell in found):
         i, cell = found[0]
@@ -378,12 +379,12 @@ def _refuse_thousands(lines: list[tuple[int, str]]) -> None:
         raise ValueError(f"line {i}: {cell!r} may be {readings}: write it as one of these")
 
 
-#: What is a whole number with its thousands parted as well as one with three decimals.
+#: A number that reads as an integer with thousands separators, or as one with three decimals.
 _THOUSANDS = re.compile(r"\s*[+-]?[1-9][0-9]{0,2}(,[0-9]{3})+\s*")
 
 
 def _quoted(line: str) -> list[str]:
-    """The cells of a line of commas that have some in quotes; none if a quote is not closed."""
+    """The cells of a comma-separated line that has quotes; empty for an unclosed quote."""
     try:
         return _split(line, ",") if '"' in line else []
     except ValueError:
@@ -391,12 +392,12 @@ def _quoted(line: str) -> list[str]:
 
 
 def _plain(lines: list[str], delimiter: str | None, comma: bool, width: int) -> Floats | None:
-    """The same by NumPy's reader, five times faster; None if it finds anything unusual."""
+    """The result of `_table` by NumPy's reader, five times faster; None if lines have anything unusual."""
     if any('"' in line or (comma and "." in line) for line in lines):
         return None
     if comma:
         lines = [line.replace(",", ".") for line in lines]
-    if delimiter is not None:  # every row of one width and every cell filled: NumPy knows no empty ones
+    if delimiter is not None:  # fill empty and missing cells with nan, which NumPy's reader needs
         d, filled = delimiter, f"{delimiter}nan{delimiter}"
         lines = [line.rstrip(d + " ") for line in lines]
         if "" in lines:
@@ -413,7 +414,7 @@ def _plain(lines: list[str], delimiter: str | None, comma: bool, width: int) -> 
 
 def _tracks(above: list[str], columns: list[str], table: Floats) -> dict[str, Columns]:
     names = [name.lstrip("#\ufeff \t").strip() for name in above]
-    # a name alone is that of the only track
+    # a single name above the columns is that of the only track
     starts = [(k if len(names) > 1 else 0, name) for k, name in enumerate(names) if name] or [(0, "track")]
     shared = range(starts[0][0])
     found = {}

@@ -1,11 +1,11 @@
-"""The wobble of a whirring body in its sound: how often the contact goes round, from the ring's envelope.
+"""The rate at which the contact of a whirring body goes round, from the envelope of its ringing.
 
-The body rings at frequencies of its own, some kHz; once a turn of the contact, Omega/(2 pi), it rings louder.
-So the wobble is no peak of the spectrum of the sound, but one of the spectrum of its envelope. The envelope
-is the magnitude of the analytic signal (Gabor 1946), its frequencies weighed by how far they stand out of the
-noise. Its fundamental is followed through a bank of filters of equal relative width by dynamic programming
-(Viterbi 1967) and then measured by its phase: averaged over each turn of the track, the envelope turns, in a
-window of some turns, by how much the track is wrong.
+The body rings at frequencies of its own, some kHz, and it rings louder once per turn of the contact, with
+frequency Omega/(2 pi). This frequency appears in the spectrum of the envelope, not in that of the sound. The
+envelope is the magnitude of the analytic signal (Gabor 1946) with frequencies weighted by their excess over
+the noise. Dynamic programming (Viterbi 1967) follows its fundamental through a bank of filters of equal
+relative width. The phase then refines this track: the envelope, averaged over each turn of the track, turns
+within a window of several turns by the error of the track.
 """
 
 from typing import NamedTuple
@@ -15,17 +15,18 @@ import numpy as np
 from spincyl._input.equality import compared
 from spincyl._input.numbers import Floats, Reals, number, reals
 
-_TURNS = 8  # in a window
-_PER_OCTAVE = 24  # filters
-_COHERENT = 0.9  # share of the envelope's fundamental that keeps the phase of the fit; of noise about 0.7
+_TURNS = 8  # turns in a window
+_PER_OCTAVE = 24  # filters per octave
+# least coherence: share of the fundamental that is in phase with the fit; noise has about 0.7
+_COHERENT = 0.9
 _MAINS = (50.0, 60.0)  # hertz
-_HUMS = 2000.0  # up to which their overtones are left out, each so many hertz to either side:
+_HUMS = 2000.0  # hertz: harmonics of the mains up to here are removed, each within `_NARROW` hertz
 _NARROW = 1.0
-_LEAP = 0.4  # of the logarithm of its rate, which is another sound
-_EVEN = 0.2  # share of their mean that every turn of a window has of the fundamental
-_KNOCK = 4.0  # times the scatter of its neighbours that a window may have
-_RUN = 4  # windows in a row that have to be coherent
-_BIAS = 1e-3  # what a window may be off by without noise
+_LEAP = 0.4  # a larger jump of the logarithm of the rate means another sound
+_EVEN = 0.2  # least fundamental in any turn of a window, as a share of the window's mean
+_KNOCK = 4.0  # a window whose scatter exceeds that of its neighbours by this factor contains a knock
+_RUN = 4  # least number of coherent windows in a row
+_BIAS = 1e-3  # relative systematic error of a window without noise
 
 
 @compared
@@ -86,25 +87,25 @@ def wobble(t: Reals, sound: Reals, *, between: tuple[float, float] = (2.0, 200.0
         keep = _one(_runs(heard), turns)
         if not keep.any():
             raise ValueError(_unheard(heard, float(track.mean() * rest.size / pace), low, high))
-        # beyond where it is heard the track goes on as it was
+        # outside the audible range keep the previous track
         half = 0.5 * _TURNS / turns[keep]
         better = np.exp(_curve(clock, time[keep], np.log(turns[keep])))
         within = (clock >= time[keep][0] - half[0]) & (clock <= time[keep][-1] + half[-1])
         track = np.where(within, better, track)
     time, turns, errors = time[keep], turns[keep], errors[keep]
-    # found with sounds without noise: a thousandth, and the cube of how much it quickens within a window
+    # errors that remain in sounds without noise: 1e-3, and the cube of the relative change within a window
     quickens = np.abs(np.gradient(np.log(turns)))
     return Wobble(begin + time, turns, np.hypot(errors, turns * (_BIAS + quickens**3)))
 
 
 def _unheard(heard: np.ndarray, turns: float, low: float, high: float) -> str:
-    """Why there is no wobble: too few turns of one that can be heard, or none."""
+    """The reason why no wobble was detected: too few audible turns, or none."""
     needed = _RUN * _TURNS
     if turns < needed and heard.size and heard.mean() > 0.5:
         return f"sound: too short: {int(turns)} turns, {needed} needed"
     edges = np.flatnonzero(np.diff(np.r_[0, heard.astype(int), 0])).reshape(-1, 2)
-    row = int(np.diff(edges, axis=1).max(initial=0))  # windows one turn apart
-    if row >= 2 * _TURNS:  # in noise some are
+    row = int(np.diff(edges, axis=1).max(initial=0))  # consecutive windows start one turn apart
+    if row >= 2 * _TURNS:  # noise has short rows of audible windows
         return f"sound: too short: {row + _TURNS - 1} turns are heard in a row, {needed + 2} needed"
     return f"sound: no wobble between {low:g} and {high:g} turns a second stands out of the noise"
 
@@ -121,7 +122,7 @@ def _range(between: object) -> tuple[float, float]:
 
 
 def _recording(t: Reals, sound: Reals, low: float, high: float) -> tuple[Floats, float, float]:
-    """The sound without its mean, its first time, and how many samples it has a second; or what is wrong."""
+    """The sound without its mean, its first time, and its sampling rate; an error names a wrong argument."""
     time, x = (np.asarray(reals(name, v), np.float64) for name, v in (("t", t), ("sound", sound)))
     if x.ndim != 1 or time.shape != x.shape:
         raise ValueError(f"t and sound: expected one shape (n,), not {time.shape} and {x.shape}")
@@ -132,7 +133,7 @@ def _recording(t: Reals, sound: Reals, low: float, high: float) -> tuple[Floats,
     if x.size < 2 or time[-1] - time[0] < least:
         raise ValueError(f"sound: too short: expected at least {_RUN * _TURNS} turns, {least:.2g} s or more")
     step = (time[-1] - time[0]) / (x.size - 1)
-    # what was written with few digits may be off by some of them
+    # times written with few digits may be off by some of these
     if not step > 0 or np.abs(time - time[0] - step * np.arange(x.size)).max() > 0.1 / high:
         raise ValueError("t: expected evenly spaced times")
     if step * high > 0.05:
@@ -145,7 +146,7 @@ def _recording(t: Reals, sound: Reals, low: float, high: float) -> tuple[Floats,
 
 
 def _envelope(x: Floats, hertz: float, high: float) -> tuple[Floats, float]:
-    """The magnitude of the ring, averaged over blocks, and how many blocks there are a second."""
+    """The envelope of the ringing, averaged over blocks, and the number of blocks per second."""
     frequency: Floats = np.fft.rfftfreq(x.size, 1 / hertz).astype(np.float64)
     spectrum = _without_mains(np.fft.rfft(x), frequency)
     ring = frequency > 2 * high
@@ -154,7 +155,7 @@ def _envelope(x: Floats, hertz: float, high: float) -> tuple[Floats, float]:
     first, last = (np.clip(np.arange(frequency.size) + k, 0, frequency.size) for k in (-wide, wide + 1))
     power = (total[last] - total[first]) / (last - first)
     weight = np.clip(1 - 2 * np.median(power[ring]) / (power + 1e-300), 0, 1) * ring
-    if not weight.any():  # the ring is as broad as the noise
+    if not weight.any():  # no frequency stands out of the noise
         weight = 1.0 * ring
     analytic = np.zeros(x.size, np.complex128)
     analytic[: spectrum.size] = 2 * weight * spectrum
@@ -165,7 +166,7 @@ def _envelope(x: Floats, hertz: float, high: float) -> tuple[Floats, float]:
 
 
 def _without_mains(spectrum: np.ndarray, frequency: Floats) -> np.ndarray:
-    """A spectrum without the overtones of the mains, which beat together as evenly as a wobble does."""
+    """A spectrum without the harmonics of the mains, whose beats are as regular as a wobble."""
     power = np.abs(spectrum) ** 2
     for mains in _MAINS:
         lines = [k * mains for k in range(1, int(_HUMS / mains) + 1) if (k + 1) * mains < frequency[-1]]
@@ -181,7 +182,7 @@ def _without_mains(spectrum: np.ndarray, frequency: Floats) -> np.ndarray:
 
 
 def _levelled(level: Floats, pace: float, low: float) -> Floats:
-    """The envelope over its own mean of the slowest turn and a half to either side, less 1."""
+    """The envelope divided by its mean over 1.5 of the slowest turns to either side, minus 1."""
     half = int(1.5 * pace / low) + 1
     total = np.cumsum(np.r_[0.0, level])
     first, last = (np.clip(np.arange(level.size) + k, 0, level.size) for k in (-half, half + 1))
@@ -191,9 +192,9 @@ def _levelled(level: Floats, pace: float, low: float) -> Floats:
 
 
 def _track(rest: Floats, pace: float, low: float, high: float) -> Floats:
-    """The fundamental of the envelope at every sample, roughly: the loudest path through the filters."""
+    """A first estimate of the fundamental of the envelope: the loudest path through the filters."""
     count = int(_PER_OCTAVE * np.log2(high / low)) + 1
-    # up to the third harmonic of the greatest
+    # up to the third harmonic of the highest fundamental
     bank = low * 2 ** (np.arange(count + int(1.6 * _PER_OCTAVE)) / _PER_OCTAVE)
     spectrum, frequency = np.fft.fft(rest), np.fft.fftfreq(rest.size, 1 / pace)
     frames = np.linspace(0, rest.size - 1, min(rest.size, 2000)).astype(int)
@@ -230,10 +231,10 @@ def _track(rest: Floats, pace: float, low: float, high: float) -> Floats:
 
 
 def _windows(rest: Floats, pace: float, track: Floats) -> tuple[Floats, Floats, Floats, np.ndarray]:
-    """Of windows from every turn on: middles, turns a second, their errors, and whether they are heard."""
+    """Windows that start at every turn: middles, turns per second, errors, and whether they are audible."""
     phase = np.cumsum(track) / pace  # turns
     turn = np.floor(phase - phase[0]).astype(int)
-    # the last one is whole but for rounding, or left out
+    # the last turn counts if it is complete up to rounding
     many = turn[-1] + int(phase[-1] - phase[0] - turn[-1] + track[-1] / pace > 0.95)
     if many < _TURNS:
         return (np.empty(0),) * 3 + (np.empty(0, bool),)
@@ -243,7 +244,7 @@ def _windows(rest: Floats, pace: float, track: Floats) -> tuple[Floats, Floats, 
     z = np.lib.stride_tricks.sliding_window_view(z[:many] / np.maximum(size, 1), _TURNS)
     n = np.arange(_TURNS) - (_TURNS - 1) / 2
     bend = n**2 - np.mean(n**2)
-    # a grid of how wrong the track may be, by slope and by bend, then least squares of the phases left
+    # search a grid for the error of the track, slope and curvature of its phase; then fit by least squares
     slopes = np.linspace(-1.2, 1.2, 61)
     bends = np.linspace(-0.12, 0.12, 13)
     trial = np.exp(-1j * (slopes[:, None, None] * n + bends[:, None] * bend)).reshape(-1, _TURNS)
@@ -255,7 +256,7 @@ def _windows(rest: Floats, pace: float, track: Floats) -> tuple[Floats, Floats, 
     left = left * np.exp(-1j * np.angle(left.sum(axis=1)))[:, None]
     weight = np.abs(left) + 1e-300
     coherent = np.abs(left.sum(axis=1)) / weight.sum(axis=1)
-    # half a window of silence is coherent, too: every turn has to be heard
+    # half a window of silence would be coherent, too: every turn has to be audible
     even = left.real.min(axis=1) > _EVEN * weight.mean(axis=1)
     angle = np.angle(left)
     weight /= weight.mean(axis=1, keepdims=True)
@@ -264,13 +265,13 @@ def _windows(rest: Floats, pace: float, track: Floats) -> tuple[Floats, Floats, 
     more = np.einsum("kab,ib,ki->ka", covariance, table, weight * angle)
     off = angle - more @ table.T
     scatter = (weight * off**2).sum(axis=1) / (_TURNS - 3)
-    # eight phases give three numbers and a poor scatter: that of the neighbours is joined to it
+    # eight phases for three parameters give a poor estimate of the scatter: average it with the neighbours'
     joined = _joined(scatter)
     errors = np.sqrt(covariance[:, 1, 1] * joined)
     middle = np.interp(np.arange(len(z)) + _TURNS / 2, phase - phase[0], np.arange(phase.size) / pace)
     there = np.interp(middle, np.arange(phase.size) / pace, track)
     turns = there * (1 + (slope + more[:, 1]) / (2 * np.pi))
-    # a knock within it shows by a scatter that its neighbours do not have
+    # a knock makes the scatter of its window exceed that of the neighbours
     return (
         middle,
         turns,
@@ -280,7 +281,7 @@ def _windows(rest: Floats, pace: float, track: Floats) -> tuple[Floats, Floats, 
 
 
 def _joined(scatter: Floats) -> Floats:
-    """The mean scatter about each window of those that share no turn with it, the largest held back."""
+    """The mean scatter of each window and its neighbours without common turns; outliers are limited."""
     reach = np.arange(-3, 4) * _TURNS
     at = np.arange(scatter.size)[:, None] + reach
     near = np.where((at >= 0) & (at < scatter.size), scatter[np.clip(at, 0, scatter.size - 1)], np.nan)
@@ -289,7 +290,7 @@ def _joined(scatter: Floats) -> Floats:
 
 
 def _curve(at: Floats, x: Floats, y: Floats) -> Floats:
-    """A smooth curve through points, its slopes those of parabolas; beyond the ends the last of these."""
+    """A smooth cubic through points, with the slopes of parabolas; linear beyond the ends."""
     slope = np.gradient(y, x, edge_order=2)
     k = np.clip(np.searchsorted(x, at) - 1, 0, x.size - 2)
     step = x[k + 1] - x[k]
@@ -303,10 +304,10 @@ def _curve(at: Floats, x: Floats, y: Floats) -> Floats:
 
 
 def _runs(heard: np.ndarray) -> np.ndarray:
-    """Windows that do not overlap, several in a row, each heard and not the first or last that may be.
+    """Windows that do not overlap, several in a row, each of which and both neighbours are audible.
 
-    What begins or ends in the midst of the recording begins or ends within a turn: the windows that have this
-    turn are left out.
+    A sound that begins or ends during the recording does so within a turn: windows with that turn are left
+    out.
     """
     keep = np.zeros_like(heard)
     inner = heard.copy()
@@ -323,7 +324,7 @@ def _runs(heard: np.ndarray) -> np.ndarray:
 
 
 def _one(keep: np.ndarray, turns: Floats) -> np.ndarray:
-    """Of windows those of one whirr: where the rate leaps there is another sound, and the longer is kept."""
+    """The windows of a single whirr: the longest run without a jump of the rate."""
     rows = np.flatnonzero(keep)
     leaps = np.flatnonzero(np.abs(np.diff(np.log(turns[rows]))) > _LEAP) + 1
     longest = max(np.split(rows, leaps), key=len)

@@ -1,4 +1,4 @@
-"""A slow drift: how far a body leans, and how fast it precesses, until it stops."""
+"""A slow drift: inclination and precession rate against time, until the body stops."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -40,7 +40,7 @@ def drift(found: Drift, ax: "Axes | None" = None) -> "Axes":
     if made("found", found, Drift)._shape:
         raise ValueError(f"found: expected a single drift, not those of shape {found._shape}")
     first, last = float(np.asarray(found.start.theta)), float(found.ends_at_theta)
-    # even in the inclination, and not where its law has no meaning any more, which is told by `drift`
+    # equal steps of inclination; inclinations where the law of loss is no longer valid are left out
     low = float(found._columns["eps"][0])
     tilt = np.linspace(first, last, _MANY)[:-1]
     tilt = tilt[(tilt >= low) | (tilt == first)]

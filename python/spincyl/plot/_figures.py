@@ -1,4 +1,4 @@
-"""The pictures of a lecture, as files."""
+"""The figures of a lecture, as files."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -129,7 +129,7 @@ def figures(
 
 
 def _motions() -> "dict[str, list[Motion]]":
-    """The motions among the figures of a lecture."""
+    """The motions among the figures, by name."""
     cylinder, can, coin, disk = (Body.solid(ell) for ell in (2.5, 1.0, 0.17, 0.375))
     rocking = State(0.3, 1e-3, 0.0, 0.0)
     # unstable on a smooth table, stable when rolling
@@ -147,12 +147,12 @@ def _slipping() -> "dict[str, list[Motion]]":
     """Motions with friction: tube and coin from the finger on, a hoop, Euler's disk, a tippe top."""
     pipe, hoop, top = Body.tube(6.0, 0.8), Body.tube(0.0, 0.97), Body.ball(-0.2, 16 / 27, 14 / 27)
     flicked = pressed(pipe, 8.67, np.radians(60), finger=0.3)
-    # nearly upright, with the velocity and the backspin of the page on slip
+    # nearly upright, with the velocity and backspin of the page about slip
     thrown = hoop.with_centre_velocity(State(1.5, 0.0, 0.0, -3.0), 0.0, 1.43)
     coin = Body.from_metres(outer_diameter=0.02426, length=0.00175)
     upright = coin.with_centre_velocity(State(np.pi / 2, 0.663, 0.0, 0.0), 0.663 * float(coin.i1) / 0.9, 0.0)
     euler = Body.from_metres(outer_diameter=0.0751, length=0.0128, fillet=0.002)
-    held = State(1.2, 2 * np.sin(1.2), 0.0, 2 * np.cos(1.2))  # it turns as a whole
+    held = State(1.2, 2 * np.sin(1.2), 0.0, 2 * np.cos(1.2))  # rotates about the vertical as a whole
     turned = euler.with_centre_velocity(held, 0.0, 0.0)
     spun = top.with_centre_velocity(State(0.1, 0.0, 0.0, 7.04), 0.0, 0.0)
     return {
@@ -165,7 +165,7 @@ def _slipping() -> "dict[str, list[Motion]]":
 
 
 def _exposed() -> "list[tuple[str, Motion, Letter]]":
-    """What is photographed among the figures, and the letter on the upper end."""
+    """The motions to photograph, and the letter on the upper end of each."""
     pipe, coin = Body.tube(6.0, 0.8), Body.solid(0.05)
 
     def turns(body: Body, degrees: float, count: int) -> "Motion":
@@ -181,7 +181,7 @@ def _exposed() -> "list[tuple[str, Motion, Letter]]":
 
 
 def _tubes(axes: Any) -> None:
-    """Thin tubes beside the solid cylinder: one branch each, and the critical aspect ratio."""
+    """Draw thin tubes beside the solid cylinder: a branch for each, and the critical aspect ratio."""
     colours = [BLUE, GREEN, ORANGE]
     for bore, colour in zip((0.0, 0.8, 1.0), colours, strict=True):
         body = Body.tube(6.0, bore)

@@ -1,4 +1,4 @@
-"""A map of flicks: which settle, and after how long, which lie down, and which lift off."""
+"""A map of flicks: which settle and how long that takes, which lie down, and which lift off."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     import xarray
     from matplotlib.axes import Axes
 
-#: A tube that slips in every nod has slipped within this share of the time before the end.
+#: A tube whose last slip is within this share of the time before the end probably slips in every nod.
 _SHORTLY = 0.05
 _AXES = {
     "hertz": "turns per second about the vertical, at first",
@@ -21,7 +21,7 @@ _AXES = {
     "launch": r"launch number  $I_3 \omega_1 \omega_3/\ell$",
     "centre": "velocity of the centre, at first",
 }
-#: Colours end at this many medians: few tubes slip much longer than the rest, and not to the end.
+#: Upper end of the colours, in medians: few tubes slip much longer than most without slipping to the end.
 _MEDIANS = 2.0
 
 

@@ -1,4 +1,4 @@
-"""The angles, axes and points that the equations speak of, drawn on a tilted body."""
+"""The angles, axes and points of the equations, drawn on a tilted body."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _ELL, _THETA, _PHI, _PSI = 1.7, np.radians(52), np.radians(38), np.radians(68)
-_AZIMUTH, _ELEVATION = np.radians(-67), np.radians(27)  # where it is seen from
+_AZIMUTH, _ELEVATION = np.radians(-67), np.radians(27)  # direction of view
 _GREY = "#8A8A8A"
 
 
@@ -52,7 +52,7 @@ def frame(*, ax: "Axes | None" = None) -> "Axes":
     _line(ax, 0 * up, centre, color=_GREY, ls="--", lw=1.2)
     _arrow(ax, centre, centre + 2.3 * up, BLACK, "$z$", (0, 9))
     _arc(ax, centre, up, across=-lean, radius=1.3, to=_THETA, name=r"$\theta$")
-    # psi, on the upper end: between e1 and a line that is painted on it
+    # psi, on the upper end: from e1 to a line painted on the body
     painted = np.cos(_PSI) * e1 + np.sin(_PSI) * e2
     _line(ax, top, top + e1, color=_GREY, ls="--", lw=1.2)
     _line(ax, top, top + painted, color=PURPLE, lw=2)
@@ -89,20 +89,20 @@ def _level(angle: float) -> Floats:
 
 
 def _view() -> Floats:
-    """The direction from which it is seen."""
+    """The direction of view."""
     view: Floats = np.cos(_ELEVATION) * _level(_AZIMUTH) + np.array([0.0, 0.0, np.sin(_ELEVATION)])
     return view
 
 
 def _seen(places: Floats) -> Floats:
-    """Places in space, along a last axis, as places in the picture: to the right and up."""
+    """Projection of points (..., 3) to picture coordinates: right and up."""
     right = _level(_AZIMUTH + np.pi / 2)
     found: Floats = np.array([places @ right, places @ np.cross(_view(), right)])
     return found
 
 
 def _spot(place: Floats) -> tuple[float, float]:
-    """One place in space as one in the picture."""
+    """Projection of one point."""
     right, above = _seen(place).tolist()
     return right, above
 
@@ -119,7 +119,7 @@ def _word(ax: "Axes", at: Floats, word: str, off: tuple[float, float], colour: s
 def _arrow(ax: "Axes", start: Floats, end: Floats, colour: str, word: str, off: tuple[float, float]) -> None:
     style: dict[str, Any] = {"arrowstyle": "-|>", "color": colour, "lw": 2, "shrinkA": 0, "shrinkB": 0}
     ax.annotate("", _spot(end), _spot(start), arrowprops=style, zorder=5)
-    ax.plot(*_seen(end), alpha=0)  # so that the picture reaches so far
+    ax.plot(*_seen(end), alpha=0)  # an invisible point, so that the limits of the axes include the arrow
     _word(ax, end, word, off, colour)
 
 
@@ -134,7 +134,7 @@ def _arc(
     name: str,
     colour: str = BLACK,
 ) -> None:
-    """An angle, with an arrow in the direction in which it grows, and its name outside, before the middle."""
+    """Draw an angle: an arc with an arrow in the positive direction, and its name outside near the middle."""
     angle = np.linspace(0, to, 60)[:, np.newaxis]
     place = centre + radius * (np.cos(angle) * along + np.sin(angle) * across)
     ax.plot(*_seen(place), color=colour, lw=1.8, zorder=4)
@@ -145,7 +145,7 @@ def _arc(
 
 
 def _table(ax: "Axes", radius: float) -> None:
-    """The table, and the circle on which the contact point runs."""
+    """Draw the table, and the circle of the contact point on it."""
     corners = np.array([[3.0, -2.2], [3.0, 2.6], [-2.6, 2.6], [-2.6, -2.2]])
     ax.fill(*_seen(np.column_stack([corners, np.zeros(4)])), color="#F3F0EA", lw=0, zorder=0)
     angle = np.linspace(0, 2 * np.pi, 200)
@@ -154,12 +154,12 @@ def _table(ax: "Axes", radius: float) -> None:
 
 
 def _cylinder(ax: "Axes", top: Floats, low: Floats, e1: Floats, e2: Floats) -> None:
-    """Its outline: the upper end whole, of the lower rim what is hidden dashed."""
+    """Draw the outline of the cylinder; the hidden part of the lower rim is dashed."""
     angle = np.linspace(0, 2 * np.pi, 721)[:, np.newaxis]
     out = np.cos(angle) * e1 + np.sin(angle) * e2
     front = out @ _view() > 0
     edges = out[np.flatnonzero(front[1:] != front[:-1])]
-    # the half of the lower rim that is seen, in order round it
+    # the visible half of the lower rim, in order round it
     start = int(np.flatnonzero(front[1:] & ~front[:-1])[0]) + 1
     order = np.roll(np.arange(720), -start)
     near, far = order[front[order]], order[~front[order]]

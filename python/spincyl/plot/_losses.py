@@ -1,4 +1,4 @@
-"""A spin-down with the drifts that were fitted, what they leave, and the quick look in a log-log diagram."""
+"""A spin-down with the fitted drifts, their residuals, and a log-log diagram of the time left."""
 
 import warnings
 from collections.abc import Sequence
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 _NATURAL = {"t": r"$\sqrt{R/g}$", "precession": r"$\sqrt{g/R}$"}
 _SECONDS = {"t": "s", "precession": "rad/s"}
-_MOST = 4  # laws that are drawn
+_MOST = 4  # number of laws that are drawn
 
 
 @sized
@@ -74,7 +74,8 @@ def losses(found: "LossFit", axes: "Sequence[Axes] | None" = None) -> "list[Axes
         last = min(float(found.t[-1]), fit.stops_at)
         clock = np.linspace(0.0, last - float(found.t[0]), 601)[:-1]
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # of laws beyond their end: they are drawn to be judged
+            # drifts beyond their end warn; they are drawn for comparison only
+            warnings.simplefilter("ignore")
             shown = getattr(fit.drift, name)(clock)
         label = f"{fit.name}, {fit.centre}" if found.centre == "either" else fit.name
         label += f", $\\Delta$AIC {fit.daic:.3g}" if fit.daic else ""
@@ -104,7 +105,7 @@ def losses(found: "LossFit", axes: "Sequence[Axes] | None" = None) -> "list[Axes
 
 
 def _logs(found: "LossFit", ax: "Axes", values: Any, unit: str) -> None:
-    """The log-log line over the time left until its own stopping time, or words that there is none."""
+    """Draw the log-log line against the time left until its own stopping time, or a note without one."""
     ticker: Any = extra("matplotlib.ticker", "plot")
     ax.set_xscale("log")
     ax.set_yscale("log")

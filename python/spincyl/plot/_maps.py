@@ -266,7 +266,7 @@ def energy(*, bore: float = 0.0, ax: "Axes | None" = None, ell_max: float = 3.0)
 
 
 def _ells(ells: Iterable[float | Body]) -> list[float | Body]:
-    """Half lengths and bodies to draw, or an error by name."""
+    """The half lengths and bodies to draw; an error names the argument."""
     try:
         given = [ells] if isinstance(ells, Body) else list(ells)
     except TypeError:
@@ -293,7 +293,7 @@ def _mapped(data: Any) -> tuple[Any, Any, Any, float, float]:
 def pieces(
     body: Body, contact: Contact, rate_max: float
 ) -> list[tuple[bool, npt.NDArray[np.float64], npt.NDArray[np.float64]]]:
-    """The branch in pieces of one stability each: (stable, theta, rate)."""
+    """A branch in pieces of constant stability: (stable, theta, rate)."""
     special = np.concatenate([body.folds(), body.boundaries(contact), [body.theta_balance, body.theta_limit]])
     special = special[~np.isnan(special)]
     near = np.outer(
@@ -309,7 +309,7 @@ def pieces(
     for piece in np.split(np.arange(theta.size), cuts):
         if kind[piece[0]] < 0:
             continue
-        # to the next piece if it goes on from there, so that no gap shows
+        # include the first point of an adjacent next piece, so that there is no gap
         joined = (
             np.append(piece, piece[-1] + 1)
             if piece[-1] + 1 < theta.size and kind[piece[-1] + 1] >= 0
@@ -317,7 +317,7 @@ def pieces(
         )
         pieces.append((bool(kind[piece[0]]), theta[joined], rate[joined]))
     if abs(body.theta_limit - body.theta_balance) < 1e-9:
-        # at the critical shape every rate is steady at theta0
+        # at the critical aspect ratio every rate is steady at theta0
         rates = np.linspace(0, 1.2 * rate_max, 2001)[1:]
         w1 = body.angular_rate(rates) * np.sin(body.theta_balance)
         stable = body.stable(State(body.theta_balance, w1, 0.0, body.ell * w1), contact)
@@ -327,7 +327,7 @@ def pieces(
 
 
 def _roots(ax: "Axes", ell: npt.NDArray[np.float64], roots: npt.NDArray[np.float64], **style: Any) -> None:
-    """Curves of up to five roots over ell; where two appear or vanish together they are joined."""
+    """Draw up to five roots against ell as curves; two that appear or vanish together are joined."""
     many = np.count_nonzero(~np.isnan(roots), axis=1)
     runs = np.split(np.arange(ell.size), np.flatnonzero(np.diff(many)) + 1)
     for run in runs:
@@ -342,7 +342,7 @@ def _roots(ax: "Axes", ell: npt.NDArray[np.float64], roots: npt.NDArray[np.float
 
 
 def _shade(ax: "Axes", body: Body, contact: Contact) -> None:
-    """Bands of inclinations: forbidden, unstable, stable."""
+    """Shade inclinations by stability: forbidden, unstable, stable."""
     edges = np.concatenate([[0, body.theta_balance, body.theta_limit, _HALF_PI], body.boundaries(contact)])
     edges = np.sort(edges[~np.isnan(edges)])
     for low, high in pairwise(edges):

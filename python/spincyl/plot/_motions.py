@@ -1,4 +1,4 @@
-"""Motions: what they do, what the eye sees of them, and what was measured."""
+"""Motions, photographs of them, and comparisons with measurements."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
@@ -87,7 +87,7 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
     else:
         fillet = rf", $\rho = {m.body.fillet:.4g}$" if m.body.fillet else ""
         tilt.set_title(rf"{how}, $\ell = {m.body.ell:.4g}${fillet}")
-    # so that rounding does not fill the picture where theta is constant
+    # at least one radian high, so that a constant theta does not show rounding
     low, high = tilt.get_ylim()
     if high - low < 1e-3:
         tilt.set_ylim(low - 0.5, high + 0.5)
@@ -96,7 +96,7 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
         slips = m.phase == 1
         for mask, colour, label in ((slips, RED, "contact slips"), (~slips, BLUE, "contact rolls")):
             if mask.any():
-                # with the next place, so that no piece of the path is left out between two colours
+                # include the next point, so that there is no gap between two colours
                 mask = mask | np.append(False, mask[:-1])
                 path.plot(*np.where(mask, [x, y], np.nan), color=colour, label=label, **thin)
     else:
@@ -138,7 +138,7 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
 
 
 def _spin(ax: "Axes", m: EllipsoidMotion, t: Any, scale: "Scale | None", style: dict[str, Any]) -> None:
-    """The spin of a stone about the vertical beside its inclination; it turns back where the spin is zero."""
+    """Draw the spin of a stone about the vertical beside its inclination; the stone turns back at zero."""
     right = ax.twinx()
     right.plot(t, _in(scale, "w", m.spin), color=ORANGE, **style)
     right.axhline(0.0, color="#888888", lw=0.8, ls=":")
@@ -150,10 +150,10 @@ _MOST = 100_000
 
 
 def _close(m: "Motion") -> "tuple[Motion, bool]":
-    """The motion with all that is drawn, at times close enough for curves, and whether they are that."""
+    """The motion with all drawn outputs, and whether its times are close enough for curves."""
     asked = m._asked
     if rubs(m.contact) or m.losses is not None:
-        asked = asked._replace(tol=None)  # which is that of its own steps, and no reason to draw at its times
+        asked = asked._replace(tol=None)  # the default tolerance, unlike a given one, does not fix the times
     if asked.step is not None or asked.tol is not None:
         if m.t.size < 2:
             many = f"{m.t.size} time{'' if m.t.size == 1 else 's'}"
@@ -165,7 +165,7 @@ def _close(m: "Motion") -> "tuple[Motion, bool]":
     m = m.wanting("pose", "force")
     period = pace(m)
     share = np.linspace(0, 1, int(min(1001 + 40 * abs(last - first) / period, _MOST)))
-    if isinstance(m, EllipsoidMotion):  # which is found by steps, anew for any times
+    if isinstance(m, EllipsoidMotion):  # is integrated anew for any times
         return m.at(first + share * (last - first)), True
     while share.size < _MOST:
         there = m.at(first + share * (last - first))
@@ -174,26 +174,26 @@ def _close(m: "Motion") -> "tuple[Motion, bool]":
         if not long.any():
             return there, True
         share = np.sort(np.append(share, ((share[1:] + share[:-1]) / 2)[: long.size][long]))
-    # in step with no nutation, so that the dots show all places where it has been
+    # dots at times that keep step with no nutation show the whole range
     share = (np.arange(_MOST) + np.arange(_MOST) * 0.618034 % 1) / _MOST
     return m.at(first + share * (last - first)), False
 
 
 def _in(scale: "Scale | None", name: str, values: Any) -> Any:
-    """Numbers of a motion in the units in which they are drawn."""
+    """Convert an output of a motion to the units of the plot."""
     factor, _ = unit_of(name, scale)
     return values if factor is None else values * factor
 
 
 def _said(name: str, scale: "Scale | None") -> str:
-    """The unit of these, for a label."""
+    """The unit of an output, for a label."""
     said = unit_of(name, scale)[1]
     known = {"sqrt(R/g)": r"$\sqrt{R/g}$", "sqrt(g/R)": r"$\sqrt{g/R}$", "R": "$R$", "M g": "$Mg$"}
     return known.get(said, said)
 
 
 def _law(m: "Motion") -> str:
-    """A law of friction as a title has it."""
+    """A law of friction, for a title."""
     if isinstance(m.contact, Viscous):
         return rf"viscous, $c = {m.contact.c:.4g}$"
     mu, static = m.contact._numbers if isinstance(m.contact, Coulomb) else (0.0, 0.0)
@@ -201,7 +201,7 @@ def _law(m: "Motion") -> str:
 
 
 def _shade_the_slip(axes: "Sequence[Axes]", m: "Motion", second: float) -> None:
-    """A tint where the body slips; `second` is the unit of time of the axes."""
+    """Tint the times at which the body slips; `second` is the unit of time of the axes."""
     ends = [phase.time for phase in m.phases[1:]] + [float(m.t[-1])]
     for phase, end in zip(m.phases, ends, strict=True):
         if phase.kind == "slipping":
@@ -211,7 +211,7 @@ def _shade_the_slip(axes: "Sequence[Axes]", m: "Motion", second: float) -> None:
 
 
 def _mark_the_end(ax: "Axes", m: "Motion") -> None:
-    """Grey where the motion has ended, and in words how."""
+    """Shade the time after the end of the motion, with a note on how it ended."""
     if m.event is None:
         return
     end, last = m.event.time, m._asked.times[-1]
@@ -303,7 +303,7 @@ def comparison(found: "Comparison", ax: "Axes | None" = None) -> "Axes":
     most = steepest(found.body)
     wide = np.linspace(0, most, 4001)[1:]
     for body, colour, line, label in curves:
-        balance = float(body.theta_balance)  # NaN of a ball
+        balance = float(body.theta_balance)  # NaN for a ball
         theta = np.sort(np.append(wide, balance)) if balance < most else wide
         ax.plot(body.rate(theta), np.degrees(theta), line, color=colour, lw=2, label=label)
     bars: dict[str, Any] = {"fmt": "o", "color": BLACK, "ms": 4, "lw": 1.2, "capsize": 2, "label": "measured"}

@@ -1,4 +1,4 @@
-"""What the pictures share: axes, sizes, and the colours of Okabe and Ito, told apart by the colour-blind."""
+"""Axes, sizes and colours of the figures; the colours of Okabe and Ito are safe for the colour-blind."""
 
 import inspect
 from collections.abc import Callable
@@ -18,10 +18,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 BLUE, ORANGE, GREEN, PURPLE, SKY, BLACK = "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#222222"
-RED = "#B2182B"  # where a body slips
+RED = "#B2182B"  # times of slipping
 FORBIDDEN, UNSTABLE, ROLLING, STABLE = "#BDBDBD", "#F6C9A8", "#F0E442", "#BFDDF2"
-SMOOTH = "#DDB3CD"  # stable only on a smooth table
-# of figures that are made here; axes that were given keep the sizes of their owner
+SMOOTH = "#DDB3CD"  # stable on a smooth table only
+# sizes in figures that this package makes; the user's own axes keep their sizes
 SIZES = {
     "font.size": 13.0,
     "axes.titlesize": "medium",
@@ -36,7 +36,7 @@ _Drawn = TypeVar("_Drawn")
 
 
 def sized(draw: Callable[_Given, _Drawn]) -> Callable[_Given, _Drawn]:
-    """A drawing function whose words have our sizes where it makes its own axes, and only there."""
+    """Decorator of a drawing function: `SIZES` apply while it makes its own axes."""
     given = inspect.signature(draw)
     axes = "ax" if "ax" in given.parameters else "axes"
 
@@ -46,7 +46,7 @@ def sized(draw: Callable[_Given, _Drawn]) -> Callable[_Given, _Drawn]:
         if bound is not None:
             _refuse(axes, bound)
             return draw(*args, **kwargs)
-        # Only these are put back: the first figure of a notebook makes all others interactive.
+        # Restore only these settings: the first figure in a notebook switches others to interactive mode.
         now: Any = extra("matplotlib", "plot").rcParams
         before = {key: now[key] for key in SIZES}
         now.update(SIZES)
@@ -59,7 +59,7 @@ def sized(draw: Callable[_Given, _Drawn]) -> Callable[_Given, _Drawn]:
 
 
 def _refuse(name: str, value: Any) -> None:
-    """TypeError for what is no matplotlib Axes, or not three of them for `axes`."""
+    """Raise TypeError unless `value` is a matplotlib Axes, or three of them for the argument `axes`."""
     kind = extra("matplotlib.axes", "plot").Axes
     if name == "ax":
         if not isinstance(value, kind):
@@ -74,7 +74,7 @@ def _refuse(name: str, value: Any) -> None:
 
 
 def new_axes(ax: "Axes | None") -> "Axes":
-    """The axes given, or new ones."""
+    """The given axes, or new ones."""
     if ax is None:
         plt: Any = extra("matplotlib.pyplot", "plot")
         _, ax = plt.subplots(figsize=(8, 5.6), layout="constrained")
@@ -83,19 +83,19 @@ def new_axes(ax: "Axes | None") -> "Axes":
 
 
 def own_ticks(*axes: "Axes") -> None:
-    """Ticks of our size also where they are made later than the axes."""
+    """Set the size of tick labels, also for ticks that are made later."""
     for ax in axes:
         ax.tick_params(labelsize=SIZES["xtick.labelsize"])
 
 
 def saved(figure: "Figure", path: Path, *, slide: bool = False, dpi: float = 150.0) -> None:
-    """The figure as a file, in the format of its suffix; as a slide, 16:9 and as large as before."""
+    """Save a figure in the format of its suffix; a slide is 16:9 with the same area."""
     if slide:
         width, height = figure.get_size_inches()
         height = 0.75 * float(np.sqrt(width * height))
         figure.set_size_inches(16 / 9 * height, height)
         dpi = 1080.001 / height
-    made = BytesIO()  # matplotlib hides what a full disk says of a PDF
+    made = BytesIO()  # in memory first: matplotlib hides errors of a full disk while it writes a PDF
     figure.savefig(made, format=path.suffix[1:].lower(), dpi=dpi)
     with replaced(path) as part:
         part.write_bytes(made.getvalue())

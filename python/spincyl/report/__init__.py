@@ -1,8 +1,8 @@
-"""Speed against error on this machine: what a trajectory costs by every method, and what it is worth.
+"""Speed against error on this machine: the cost and the accuracy of a trajectory by every method.
 
-The error of a final state is its distance from the exact one (the largest of its four numbers), plus what the
-exact one claims as its own error. Given a file of high-precision motions (tests/reference/motion.csv in the
-repository), the exact solution is measured against those.
+The error of a final state is its distance from the exact one (the largest difference of its four numbers),
+plus the error that the exact solution claims for itself. With a file of high-precision motions
+(tests/reference/motion.csv in the repository), the exact solution is compared with those.
 """
 
 import csv
@@ -29,7 +29,7 @@ _TARGETS = (1e-6, 1e-9, 1e-12)
 
 
 class Scene(NamedTuple):
-    """A motion to measure by."""
+    """A motion for measurements."""
 
     name: str
     body: Body
@@ -47,7 +47,7 @@ class Point(NamedTuple):
 
 @dataclass(frozen=True)
 class Row:
-    """What was measured of a scene: points by method; the exact solution's claim and, if known, error."""
+    """The measurements of a scene: points by method; the exact solution's claim and, if known, error."""
 
     scene: Scene
     curves: dict[str, list[Point]]
@@ -58,11 +58,11 @@ class Row:
 
 
 def scenes() -> list[Scene]:
-    """The scenes of the report: easy ones, fast ones, nearly flat, near a saddle, long."""
+    """The scenes of the report: easy, fast, nearly flat, near a saddle, long."""
     tube, can = Body.tube(6.0, 0.8), Body.solid(1.0)
     disk, critical = Body.solid(0.17043941411451397), Body.solid(math.sqrt(0.75))
     nutating = can.steady(0.5).kicked(0.3)
-    # there every rate is a steady state
+    # at theta0 of a body with I1 = I3 every rate is a steady state
     turning = critical.circular(critical.theta_balance, 1.5 / math.sqrt(critical.i3)).kicked(0.05)
     return [
         Scene("near-steady tube", tube, tube.steady(math.radians(85)).kicked(0.05), 20.0),
@@ -81,7 +81,7 @@ def measure(
     reference: str | None = None,
     progress: Callable[[float], object] = lambda share: None,
 ) -> list[Row]:
-    """Measure every scene by every method in about so many seconds; `progress` gets the share done."""
+    """Measure every scene by every method in about `seconds`; `progress` gets the share that is done."""
     known = _references(reference) if reference else {}
     found = [known.get((scene.name, scene.t), (scene, None)) for scene in scenes()]
     budget = seconds / (4 * len(found))
@@ -144,7 +144,7 @@ def _row(scene: Scene, budget: float, known: Floats | None) -> Row:
 
 
 def costs(steps: int = 20_000) -> list[tuple[str, float, float]]:
-    """Nanoseconds per RK4 step by what is wanted: name, with the last state only, with every state."""
+    """Nanoseconds per RK4 step by outputs: name, with the last state only, with every state."""
     scene = scenes()[1]
     last = steps * 1e-3
     every = np.arange(steps + 1) * 1e-3
@@ -154,7 +154,7 @@ def costs(steps: int = 20_000) -> list[tuple[str, float, float]]:
         "force": ("force",),
         "both": ("pose", "force"),
     }
-    # alternating, so that a busy moment of the machine meets all of them
+    # take turns, so that other load on the machine affects all of them
     best = {name: [math.inf, math.inf] for name in wants}
     for _ in range(12):
         for name, want in wants.items():
@@ -170,7 +170,7 @@ def _fastest_turn(body: Body, start: State, times: Floats) -> float:
 
 
 def _rate(body: Body) -> Callable[[float, Floats], list[float]]:
-    """The equations of motion as somebody types them who uses SciPy."""
+    """The equations of motion as a user of SciPy would write them."""
     ell, i1, i3 = float(body.ell), float(body.i1), float(body.i3)
     j, d = i1 + 1 + ell**2, i1 * i3 + i1 + i3 * ell**2
 
@@ -196,12 +196,12 @@ def _distance(a: Floats, b: Floats) -> float:
 
 
 def _best(run: Callable[[], object], budget: float) -> float:
-    """Least time of a run, over as many as fit in the budget, at least two."""
+    """Least time of all runs that fit in the budget, at least two."""
     return _best_of(run, budget)[0]
 
 
 def _best_of(run: Callable[[], Any], budget: float) -> tuple[float, int, Any]:
-    """Least time of a run, of how many runs it is the least, and what a run gave."""
+    """Least time of a run, the number of runs, and the result of a run."""
     best, spent, count = math.inf, 0.0, 0
     while True:
         begun = time.perf_counter()
@@ -218,9 +218,9 @@ def _curve(
     error: Callable[["ArrayLike"], float],
     budget: float,
 ) -> list[Point]:
-    """Points from coarse to fine, as long as the next one fits in the budget.
+    """Points from coarse to fine settings, as long as the next one fits in the budget.
 
-    A point counts with its least time, so that a machine that was busy elsewhere for a moment ends no curve.
+    A point counts with its least time, so that short load on the machine does not end the curve.
     """
     import warnings
 
@@ -233,7 +233,7 @@ def _curve(
             warnings.simplefilter("ignore")
             try:
                 took, count, end = _best_of(partial(run, setting), 0.02 * budget)
-            except ValueError:  # a step that would be refused
+            except ValueError:  # the step is too large
                 continue
         spent += took * count
         points.append(Point(float(setting), took, error(end)))
@@ -241,7 +241,7 @@ def _curve(
 
 
 def _references(path: str) -> dict[tuple[str, float], tuple[Scene, Floats]]:
-    """Rolling motions of the three-dimensional model by scene and time: the start, and the final state."""
+    """Rolling motions of the three-dimensional model by scene and time: start and final state."""
     found = {}
     with open(path, encoding="utf-8", newline="") as file:
         for kind, name, contact, *numbers in csv.reader(file):
@@ -253,7 +253,7 @@ def _references(path: str) -> dict[tuple[str, float], tuple[Scene, Floats]]:
 
 
 def _at(points: list[Point], target: float) -> str:
-    """Time of the cheapest setting whose error is below the target."""
+    """Time of the fastest setting whose error is below the target."""
     good = [p.seconds for p in points if p.error <= target]
     return _time(min(good)) if good else "-"
 
@@ -266,7 +266,7 @@ def _time(seconds: float) -> str:
 
 
 def table(rows: list[Row]) -> str:
-    """Markdown: a table of all scenes, the points of every curve, the cost of what is wanted."""
+    """Markdown: a table of all scenes, the points of every curve, the cost of each output."""
     head = ["scene", "t", "exact: true error", "claimed", "one call", "a state of 1000"]
     methods = list(rows[0].curves)
     head += [f"{name} to {target:g}" for name in methods for target in _TARGETS]
@@ -296,7 +296,7 @@ def table(rows: list[Row]) -> str:
 
 
 def figure(rows: list[Row], path: Path) -> bool:
-    """Draw error over time per trajectory, a panel a scene; False where matplotlib is missing."""
+    """Draw error against time per trajectory, a panel for each scene; False if matplotlib is missing."""
     try:
         import matplotlib
     except ImportError:

@@ -1,4 +1,4 @@
-"""How large a block of a lazy sweep should be."""
+"""The size of a block of a lazy sweep."""
 
 import math
 import os
@@ -14,7 +14,7 @@ from spincyl.sweep import _records
 if TYPE_CHECKING:
     import xarray
 
-#: Least share of the time of a sample that its motions take, and not the block itself.
+#: Least share of a sample's time that is counted for its motions; the rest is the fixed cost of a block.
 OWN = 0.25
 
 
@@ -85,8 +85,9 @@ def block_size(
         raise ValueError("sample: expected at least one motion")
     taken = _cost(found, asked)
     if count > 1:
-        # A block has a cost of its own, which a large block hardly feels and a sample does. Two motions are
-        # tried, since one may be slow.
+        # A block has a fixed cost, which matters in a small sample and hardly in a large block. It is
+        # measured with blocks of one motion, the first and the last of the sample, since one of these may be
+        # slow.
         ends = slice(0, 1), slice(-1, None)
         least = min(_cost(job(*(_part(x, end) for x in blocks)), asked) for end in ends)
         taken = max(taken - least, OWN * taken)
@@ -95,7 +96,7 @@ def block_size(
 
 
 def _cost(found: Any, enough: float) -> float:
-    """Seconds of the processor that a Dataset takes: the least of two to five tries."""
+    """Processor time in seconds to compute a Dataset: the least of two to five runs."""
     times: list[float] = []
     while len(times) < 2 or (len(times) < 5 and sum(times) < enough):
         began = time.process_time()
@@ -105,14 +106,14 @@ def _cost(found: Any, enough: float) -> float:
 
 
 def _part(x: Any, of: slice) -> Any:
-    """The same part of a sample along each of its axes."""
+    """The same slice of a sample along each of its axes."""
     if hasattr(x, "isel"):
         return x.isel({axis: of for axis in x.dims})
     return x[(of,) * np.ndim(x)] if np.ndim(x) else x
 
 
 def _one_block(x: Any, array: Any) -> Any:
-    """A sample as a lazy array of one block, so that what is timed is what a worker will do."""
+    """A sample as a lazy array of one block, so that the timed work is that of a worker."""
     if hasattr(x, "chunk"):
         return x.chunk()
     kept = reals("sample", x)
@@ -122,13 +123,13 @@ def _one_block(x: Any, array: Any) -> Any:
 
 
 def _round(most: float) -> int:
-    """The largest of 1, 2, 5, 10, ... up to this."""
+    """The largest of 1, 2, 5, 10, ... that is not above `most`."""
     power: int = 10 ** math.floor(math.log10(max(most, 1.0)))
     return max(n * power for n in (1, 2, 5) if n * power <= max(most, 1.0))
 
 
 def _begun(path: str | os.PathLike[str]) -> int | None:
-    """Motions in the first block of the sweep that began at `path`, or None; an error if no sweep could."""
+    """Motions in the first block of a sweep saved at `path`, or None; an error for an unusable path."""
     store = _records.place(path)
     with _records.naming(store):
         for record in _records.recorded(store):

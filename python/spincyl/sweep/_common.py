@@ -1,4 +1,4 @@
-"""What the sweeps share: blocks of dask arrays, targets, units."""
+"""Helpers of all sweeps: blocks of dask arrays, arrays to fill, units."""
 
 import math
 import warnings
@@ -19,14 +19,14 @@ def is_lazy(*values: object) -> bool:
 
 @contextmanager
 def many_blocks() -> Iterator[None]:
-    """A map is to have as many blocks as those of its axes multiplied: dask need not warn of it."""
+    """Silence dask's warning about many blocks: a map has as many as its axes' blocks multiplied."""
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Increasing number of chunks")
         yield
 
 
 def targets(out: Any, want: Iterable[str]) -> dict[str, Any]:
-    """By name what is to be filled, None where that is to be made; or an error by name."""
+    """The arrays to fill, by name; None for those to be allocated. An error names a wrong entry."""
     if out is None:
         return dict.fromkeys(want)
     if not isinstance(out, Mapping):
@@ -40,7 +40,7 @@ def targets(out: Any, want: Iterable[str]) -> dict[str, Any]:
 
 
 def apart(arrays: Mapping[str, np.ndarray], read: Mapping[str, np.ndarray]) -> None:
-    """Refuse results that would be written over each other, or over what they are made of."""
+    """Refuse results that share memory with each other or with their inputs."""
     names = list(arrays)
     for i, name in enumerate(names):
         others = {f"out[{other!r}]": arrays[other] for other in names[:i]} | dict(read)
@@ -50,7 +50,7 @@ def apart(arrays: Mapping[str, np.ndarray], read: Mapping[str, np.ndarray]) -> N
 
 
 def target(name: str, shape: tuple[int, ...], dtype: Any, given: Any) -> np.ndarray:
-    """A contiguous array for a result: a fresh one, or the given one if it fits."""
+    """A contiguous array for a result: a new one, or the given one if it fits."""
     dtype = np.dtype(dtype)
     if given is None:
         return np.empty(shape, dtype)
@@ -63,7 +63,7 @@ def target(name: str, shape: tuple[int, ...], dtype: Any, given: Any) -> np.ndar
 
 
 def in_si(found: Any, scale: Scale | None) -> Any:
-    """A Dataset in natural units as that of measured bodies: what has a natural unit is in SI."""
+    """Convert the variables of a Dataset from natural units to the SI of measured bodies."""
     if scale is None:
         return found
     for name, array in found.variables.items():
@@ -78,7 +78,7 @@ def in_si(found: Any, scale: Scale | None) -> Any:
 
 
 def signature(job: str, inputs: dict[str, object], **parameters: object) -> dict[str, str]:
-    """What decides the numbers of a lazy result: `save` compares it before it goes on with an earlier one."""
+    """The inputs that determine the numbers of a lazy result: `save` resumes only a sweep with equal ones."""
     from dask.base import tokenize
 
     told = {"spincyl": version("spincyl"), "job": job}

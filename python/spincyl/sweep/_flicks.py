@@ -1,4 +1,4 @@
-"""Many flicks of a tube: which settle, which lie down again, and which lift off."""
+"""Many flicks of a tube: which settle on one rim, which lie down again, and which lift off."""
 
 from enum import IntEnum
 from typing import TYPE_CHECKING, Any
@@ -105,12 +105,12 @@ def flicks(
 
 
 def _axis(lib: Any, name: str, value: Reals) -> Any:
-    """A number, or an axis of this name."""
+    """A number, or an array with a dimension of this name."""
     given = reals(name, value)
     given = float(given) if is_scalar(given) else given
     if is_scalar(given) or hasattr(given, "dims"):
         return given
     if np.ndim(given) != 1:
         raise ValueError(f"{name}: expected a number or one dimension, not shape {np.shape(given)}")
-    axis = "precession" if name == "w1" else name  # which it is, of a body on its side
+    axis = "precession" if name == "w1" else name  # for a body on its side, w1 is the precession
     return lib.DataArray(floats(given), dims=axis, coords={axis: floats(given)})

@@ -1,4 +1,4 @@
-"""Named dimensions for many motions: what goes in, what comes out."""
+"""Named dimensions for the inputs and outputs of many motions."""
 
 from collections.abc import Callable, Sequence
 from enum import IntEnum
@@ -25,7 +25,7 @@ class Status(IntEnum):
 
 
 def flags(codes: type[IntEnum]) -> dict[str, object]:
-    """Attributes of an array of codes."""
+    """Attributes that list the codes in an array and their meanings."""
     return {
         "flag_values": [int(c) for c in codes],
         "flag_meanings": " ".join(c.name.lower() for c in codes),
@@ -33,7 +33,7 @@ def flags(codes: type[IntEnum]) -> dict[str, object]:
 
 
 def given_up(status: np.ndarray) -> None:
-    """Warn of motions that were given up."""
+    """Warn of motions that the core has given up."""
     count = int(np.count_nonzero(status == Status.BOUNDED))
     if count:
         told = f"{count} of {status.size} motions hardly advance and were given up: NaN, Status.BOUNDED"
@@ -41,7 +41,7 @@ def given_up(status: np.ndarray) -> None:
 
 
 def labelled(fields: dict[str, Reals]) -> list[Any]:
-    """Every field with named dimensions: its own, or those of the broadcast of the plain ones."""
+    """Every field with named dimensions: its own, or "motion" names for the broadcast plain fields."""
     lib: Any = extra("xarray", "sweep")
     plain = [np.shape(x) for x in fields.values() if not hasattr(x, "dims")]
     try:
@@ -56,13 +56,13 @@ def labelled(fields: dict[str, Reals]) -> list[Any]:
             return x
         return lib.DataArray(x, dims=dims[rank - np.ndim(x) :])
 
-    # a length of one broadcasts, by name as well
+    # xarray does not broadcast lengths of one by name: drop them where another field is longer
     named = [label(x) for x in fields.values()]
     return [x.squeeze([d for d in x.dims if x.sizes[d] == 1]) if _longer(x, named) else x for x in named]
 
 
 def _longer(x: Any, others: list[Any]) -> bool:
-    """Whether a dimension of one is longer elsewhere."""
+    """Whether `x` has a dimension of length one that is longer in one of the others."""
     return any(x.sizes[d] == 1 and any(o.sizes.get(d, 1) > 1 for o in others) for d in x.dims)
 
 
@@ -74,7 +74,7 @@ def applied(
     spread: list[bool],
     times: Floats,
 ) -> dict[str, Any]:
-    """The arrays that `run` gives for all fields, by name; what is spread has a dimension of times."""
+    """The output arrays of `run`, by name; those that are `spread` have a dimension of times."""
     lib: Any = extra("xarray", "sweep")
     with many_blocks():
         found = lib.apply_ufunc(

@@ -37,7 +37,7 @@ _LONG_NAMES = {
     "energy": "energy",
     "region": "code of spincyl.Region",
 }
-# in the order of the compiled map
+# in the order of the compiled function
 _UNITS = {"rate": "1", "kappa_rolling": "g/R", "kappa_smooth": "g/R", "energy": "M g R", "region": "1"}
 _AXES = {"theta": "rad", "ell": "R", "bore": "1", "fillet": "R"}
 _DEFAULT = ("rate", "kappa_rolling", "kappa_smooth", "region")
@@ -237,7 +237,7 @@ def survey(
         each = _core.areas(columns | {"weights": weights}, cores).reshape(-1, 2, 8)
         shares = [_cells(axes[name].ravel()) for name in ("ell", "bore", "fillet")]
         across = np.multiply.outer(np.multiply.outer(shares[0], shares[1]), shares[2]).ravel()
-        with np.errstate(invalid="ignore"):  # axes that are not finite have no area
+        with np.errstate(invalid="ignore"):  # axes that are not finite have no area: NaN without a warning
             counts, areas = each[:, 0].sum(0), across @ each[:, 1]
         total = areas.sum()
         found["count"] = {region: int(counts[region]) for region in Region}
@@ -300,7 +300,7 @@ def _grid(
     shape: tuple[int, ...],
     given: dict[str, Any],
 ) -> list[np.ndarray]:
-    """The wanted arrays, of this shape; of axes of any rank, one dimension of which is longer than one."""
+    """The wanted arrays, of this shape. Of each axis, at most one dimension is longer than one."""
     arrays = {name: target(name, shape, np.uint8 if name == "region" else cell, given[name]) for name in want}
     columns = _bodies(theta, np.ravel(ell), np.ravel(bore), np.ravel(fillet))
     apart(arrays, columns)
@@ -309,25 +309,25 @@ def _grid(
 
 
 def _block(*axes: Floats, want: tuple[str, ...], **kinds: Any) -> Any:
-    """One block of a lazy map."""
+    """One block of a lazy map, for dask."""
     shape = np.broadcast_shapes(*(np.shape(x) for x in axes))
     found = _grid(*axes, want=want, shape=shape, given=dict.fromkeys(want), **kinds)
     return found[0] if len(found) == 1 else tuple(found)
 
 
 def _flat(arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """The arrays of a map as the compiled map fills them."""
+    """The arrays of a map, flattened, as the compiled function fills them."""
     return {name: array.reshape(-1) for name, array in arrays.items()}
 
 
 def _bodies(theta: Floats, ell: Floats, bore: Floats, fillet: Floats) -> dict[str, Floats]:
-    """The inclinations of a map, and its tubes one after the other."""
+    """The inclinations of a map and the flattened grid of its tubes, by name of the axis."""
     tubes = np.meshgrid(ell, bore, fillet, indexing="ij")
     return dict(zip(_AXES, (floats(x).reshape(-1) for x in (theta, *tubes)), strict=True))
 
 
 def _cells(axis: Floats) -> Floats:
-    """How much of an axis each of its points stands for: the trapezoid rule; 1 for a single point."""
+    """Weight of each point of an axis by the trapezoid rule; 1 for a single point."""
     if axis.size < 2:
         return np.ones(axis.size)
     steps = np.abs(np.diff(axis))
@@ -335,7 +335,7 @@ def _cells(axis: Floats) -> Floats:
 
 
 def _ends(name: str, ends: list[tuple[float, int, int]], axes: dict[str, Floats]) -> dict[str, Any]:
-    """Values and places of a least and a greatest."""
+    """The least and the greatest value of a map, and the coordinates of each."""
     told = {}
     for end, (value, row, body) in zip(("min", "max"), ends, strict=True):
         ell, rest = divmod(body, axes["bore"].size * axes["fillet"].size)
@@ -349,7 +349,7 @@ def _ends(name: str, ends: list[tuple[float, int, int]], axes: dict[str, Floats]
 
 
 def _tube(body: Body, bore: Reals, fillet: Reals) -> tuple[Reals, Reals, Reals]:
-    """Half length, bore and fillet of tubes that differ in one of them, or an error by name."""
+    """Half length, bore and fillet of tubes; an error if bore or fillet is given besides the body's own."""
     if not (is_scalar(bore, fillet) and bore == 0.0 == fillet):
         raise TypeError("bore, fillet: the body has its own")
     found = body.ell + body.fillet if np.any(body.fillet != 0) else body.ell, body.bore, body.fillet
@@ -375,7 +375,7 @@ def _cell(dtype: Any) -> np.dtype[Any]:
 
 
 def _dims(name: str, axis: Any) -> tuple[str, ...]:
-    """The dimension of an axis: none for a number."""
+    """The dimension of an axis; none if the axis is a number."""
     return (name,) if axis.ndim else ()
 
 

@@ -1,7 +1,6 @@
-"""What shows that a store is of a sweep: records within it; and marks beside it, of the blocks that are done.
+"""Records within a store, which show that it belongs to a sweep, and marks beside it for completed blocks.
 
-A folder in which no whole record stands is not ours, whatever lies beside it: nothing in it is written or
-deleted.
+A folder without an intact record is not ours, whatever lies beside it: nothing in it is written or deleted.
 """
 
 import errno
@@ -18,9 +17,9 @@ from typing import Any, NamedTuple
 from spincyl._input.files import replaced
 from spincyl._input.numbers import path_of
 
-#: The record, in the folder of every array of a store, where zarr looks for nothing; and beside it.
+#: Name of the record in each array's folder, where zarr ignores it; and of its copy in the folder of marks.
 RECORD, BESIDE = "spincyl.json", "job.json"
-# what a writer that was killed leaves behind: ours, and zarr's
+# files that killed writers leave behind: those of this package, and those of zarr
 _LEFT = re.compile(r"\.spincyl-[0-9a-f]{32}\.part.*|.+\.[0-9a-f]{32}\.partial", re.DOTALL)
 _MARK = re.compile(rb'\{"sweep": "[0-9a-f]{16}", "chunks": \{[^{}]*\}\}')
 
@@ -28,19 +27,19 @@ Record = dict[str, Any]
 
 
 class Store(NamedTuple):
-    """A folder for a sweep: as it was named, and where it is behind all links."""
+    """A folder for a sweep: its path as given, and with all links resolved."""
 
     said: str
     folder: Path
 
     @property
     def marks(self) -> Path:
-        """The folder beside it, with a file for each block that is done."""
+        """The folder beside the store, with a file for each completed block."""
         return self.folder.with_name(f"{self.folder.name}.sweep")
 
 
 def place(path: str | os.PathLike[str]) -> Store:
-    """The store that a path names, or an error by name."""
+    """The store at a path, or an error that names the argument."""
     found = path_of("path", path)
     if found.name in ("", ".."):
         raise ValueError(f"path = {os.fspath(path)!r}: expected a folder by its own name, as in 'sweep.zarr'")
@@ -49,7 +48,7 @@ def place(path: str | os.PathLike[str]) -> Store:
 
 @contextmanager
 def naming(store: Store) -> Iterator[None]:
-    """An OSError within it has the path that was given."""
+    """Context in which an OSError speaks of the path as given."""
     try:
         yield
     except OSError as e:
@@ -60,13 +59,13 @@ def naming(store: Store) -> Iterator[None]:
 
 
 def sealed(record: Record) -> bytes:
-    """A record as it stands in a file, with a checksum."""
+    """The text of a record's file, with a checksum."""
     text = json.dumps(record)
     return json.dumps(record | {"checksum": zlib.crc32(text.encode())}, indent=1).encode()
 
 
 def _whole(file: Path) -> Record | None:
-    """The record of a file, or None if there is none or a byte of it is another."""
+    """The record in a file; None if there is no file or any byte of it has changed."""
     try:
         raw = file.read_bytes()
         found = json.loads(raw)
@@ -77,14 +76,14 @@ def _whole(file: Path) -> Record | None:
 
 
 def recorded(store: Store) -> list[Record]:
-    """What the records in a store say; none where nothing has begun.
+    """The intact records in a store; empty if there is no folder or it is empty.
 
     Raises
     ------
     FileExistsError
-        If there is something in which no record stands.
+        If the folder holds anything, but no records; or if the path is no folder.
     ValueError
-        If all of its records are damaged.
+        If all records are damaged.
     """
     if not store.folder.exists():
         return []
@@ -103,7 +102,7 @@ def recorded(store: Store) -> list[Record]:
 
 
 def same(store: Store, record: Record) -> Record | None:
-    """The record of this sweep in a store, None where nothing has begun; ValueError for another sweep's."""
+    """The record of this sweep in a store, None in a store without one; ValueError for another sweep's."""
     found = recorded(store)
     for there in found:
         if _differs(there, record) is None:
@@ -114,12 +113,12 @@ def same(store: Store, record: Record) -> Record | None:
 
 
 def beside(store: Store, record: Record) -> None:
-    """Refuse a folder beside the store that is not of this sweep; one that is empty can become it.
+    """Refuse a folder of marks that is not of this sweep; an empty one is accepted.
 
     Raises
     ------
     FileExistsError
-        If there is something else in it.
+        If it holds anything else.
     ValueError
         If its record is of another sweep.
     """
@@ -150,7 +149,7 @@ def _is_mark(file: Path) -> bool:
 
 
 def _differs(there: Record, here: Record) -> str | None:
-    """The first thing in which two records differ, in words."""
+    """The first difference between two records, in words."""
     pairs = [
         (name, there["job"].get(name), here["job"].get(name)) for name in {**here["job"], **there["job"]}
     ]
@@ -162,7 +161,7 @@ def _differs(there: Record, here: Record) -> str | None:
 
 
 def lay_out(store: Store, record: Record, files: dict[str, bytes]) -> None:
-    """Write what is not as it is to be; the records first, so that a kill leaves nothing that is not ours."""
+    """Write files that are not as wanted; records first, so that a kill leaves no folder without one."""
     seal = sealed(record)
     records = {f"{name}/{RECORD}": seal for name in record["variables"]}
     store.folder.mkdir(exist_ok=True)
@@ -175,21 +174,21 @@ def lay_out(store: Store, record: Record, files: dict[str, bytes]) -> None:
 
 
 def settle(store: Store, record: Record) -> None:
-    """Write the record beside the store, if it is not there."""
+    """Write the record in the folder of marks, if it is missing there."""
     if _bytes(store.marks / BESIDE) != (seal := sealed(record)):
         with replaced(store.marks / BESIDE) as part:
             part.write_bytes(seal)
 
 
 def damaged(store: Store, record: Record) -> list[str]:
-    """Which files of metadata, coordinates and records are not those that were written."""
+    """The names of files of metadata, coordinates and records whose bytes have changed."""
     seal = zlib.crc32(sealed(record))
     expected = record["layout"] | {f"{name}/{RECORD}": seal for name in record["variables"]}
     return [name for name, sum_ in expected.items() if checksum(store.folder / name) != sum_]
 
 
 def sweep_up(store: Store) -> None:
-    """Remove what writers that were killed have left behind."""
+    """Remove the unfinished files of writers that were killed."""
     for folder in (store.folder, store.marks):
         for where, _, names in os.walk(folder):
             for name in names:
@@ -198,17 +197,17 @@ def sweep_up(store: Store) -> None:
 
 
 def digest(record: Record) -> str:
-    """What the marks of a sweep begin with: no other sweep's, and of no other layout, are taken for them."""
+    """A hash in every mark of a sweep, so that marks of other sweeps or layouts do not count."""
     return blake2b(sealed(record), digest_size=8).hexdigest()
 
 
 def mark(of: str, chunks: dict[str, int | None]) -> bytes:
-    """What says that a block is done: of which sweep, and the checksums of its files."""
+    """The content of a mark for a completed block: the sweep's hash, and the checksums of its files."""
     return json.dumps({"sweep": of, "chunks": chunks}).encode()
 
 
 def checksum(file: Path) -> int | None:
-    """That of a file; None if there is none."""
+    """The checksum of a file; None if the file is missing."""
     raw = _bytes(file)
     return None if raw is None else zlib.crc32(raw)
 

@@ -220,7 +220,7 @@ def roll(
 
 
 def _checked(asked: Asked, losses: Loss | None) -> Asked:
-    """What is asked of all motions, or an error by name."""
+    """Check the arguments for all motions; an error names the argument."""
     contact, step = asked.contact, asked.step
     if not rubs(contact):
         code(contact, rubs=True)
@@ -241,7 +241,7 @@ def _checked(asked: Asked, losses: Loss | None) -> Asked:
 
 
 def _fields(bodies: Body, states: State, contact: AnyContact, losses: Loss | None) -> dict[str, Any]:
-    """The columns of all motions, by the core's names."""
+    """The columns of all motions, by the names that the core uses."""
     fields: dict[str, Any] = {
         name: getattr(bodies, name) for name in ("ell", "i1", "i3", "fillet", "theta_end")
     }
@@ -259,7 +259,7 @@ def _times(t: Reals) -> tuple[Floats, bool]:
     """The times, and whether they were given as an array."""
     given = reals("t", t)
     if is_scalar(given):
-        # the sum makes 0 of -0
+        # adding 0.0 turns -0.0 into 0.0
         return np.array([within("t", given, -1e15, 1e15, "sqrt(R/g)") + 0.0]), False
     at = floats(given) + 0.0
     if at.ndim != 1 or at.size == 0:

@@ -1,4 +1,4 @@
-"""Results on disk: block by block, so that a sweep killed at any moment goes on where it was."""
+"""Results saved block by block, so that a sweep killed at any moment resumes where it stopped."""
 
 import errno
 import json
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 def _zarr(folder: str | os.PathLike[str]) -> Any:
-    """The store for zarr and xarray, to whom a name like `~` is another folder, and `a::b` an address."""
+    """The store for zarr and xarray, which would interpret a plain path such as `~` or `a::b`."""
     from zarr.storage import LocalStore
 
     return LocalStore(os.fspath(folder))
@@ -115,7 +115,7 @@ def save(
 
 
 def _pass(ask: Any) -> int:
-    """How many blocks are asked for at once: eight for each thread that computes them."""
+    """Number of blocks in one request: eight for each thread that computes them."""
     client: Any = getattr(ask, "__self__", None)
     threads = sum(client.nthreads().values()) if hasattr(client, "nthreads") else os.cpu_count() or 1
     return 8 * max(1, threads)
@@ -135,7 +135,7 @@ else:
 
 @contextmanager
 def _alone(store: Store) -> Iterator[None]:
-    """Nobody else saves to the store until the end of this, or the death of this process."""
+    """Context in which no other process or thread saves to the store; the lock ends with the process."""
     with naming(store):
         lock = (store.marks / "lock").open("ab")
     with lock as file:
@@ -152,7 +152,7 @@ def _alone(store: Store) -> Iterator[None]:
         try:
             yield
         finally:
-            _lock(file.fileno(), False)  # of a forked child's copy, too
+            _lock(file.fileno(), False)  # releases the lock also if a forked child has inherited the file
 
 
 Block = dict[str, tuple[int, int]]
@@ -160,7 +160,7 @@ Chunks = dict[str, tuple[int, int]]
 
 
 def _chunks(result: "xarray.Dataset") -> Chunks:
-    """Along every chunked dimension, how long a block is (the last may be shorter), and all of them."""
+    """For each chunked dimension: length of a block (the last may be shorter) and of the dimension."""
     chunks = {}
     for dim, sizes in result.chunksizes.items():
         if len(set(sizes[:-1])) > 1 or (len(sizes) > 1 and sizes[-1] > sizes[0]):
@@ -170,7 +170,7 @@ def _chunks(result: "xarray.Dataset") -> Chunks:
 
 
 def _blocks(chunks: Chunks) -> Iterator[Block]:
-    """Where each block begins and ends, along every chunked dimension."""
+    """The begin and end of each block along every chunked dimension."""
     edges = [
         [(a, min(a + size, length)) for a in range(0, max(length, 1), max(size, 1))]
         for size, length in chunks.values()
@@ -180,10 +180,10 @@ def _blocks(chunks: Chunks) -> Iterator[Block]:
 
 
 def _written(result: "xarray.Dataset", store: Store, record: Record) -> Any:
-    """A lazy array with one number for each block, which is there when the block is written.
+    """A lazy array with one number for each block; computing the number writes the block.
 
-    Nothing but that number goes back to who asked. All blocks are one plan of dask's: making one for each
-    takes the client longer than a worker needs for a block.
+    Only this number returns to the caller. All blocks are in one graph of dask: to build a graph for each
+    block takes the client longer than a worker needs for the block.
     """
     array = extra("dask.array", "sweep")
     chunks, arguments = record["chunks"], list[Any]()
@@ -209,17 +209,17 @@ def _written(result: "xarray.Dataset", store: Store, record: Record) -> Any:
 
 
 def _key(written: Any, block: Block, chunks: Chunks) -> tuple[Any, ...]:
-    """The name that dask has for a block of `_written`."""
+    """The key of a block of `_written` in dask's graph."""
     return written.name, *(_number(block, dim, chunks) for dim in chunks)
 
 
 def _number(block: Block, dim: str, chunks: Chunks) -> int:
-    """Which block it is along a dimension; one that is not chunked is a single block."""
+    """Index of a block along a dimension; 0 along one that is not chunked."""
     return block[dim][0] // max(1, chunks[dim][0]) if dim in block else 0
 
 
 def _record(result: "xarray.Dataset") -> Record:
-    """What the sweep is, as it is written and read again."""
+    """The description of a sweep, as it is written to disk and compared later."""
     chunks = _chunks(result)
     record = {
         "job": result.attrs["spincyl_sweep"],
@@ -239,10 +239,11 @@ def _record(result: "xarray.Dataset") -> Record:
 
 
 def _begin(result: "xarray.Dataset", store: Store, record: Record) -> tuple[Record, list[str]]:
-    """Lays out the store, or what is damaged of its layout: the record with it, and what was damaged.
+    """Write the layout of the store, or repair it. Returns the record and the names of damaged files.
 
-    The layout that it was begun with stays, also if another version of zarr would write another one. If what
-    is damaged is no longer written as it was, all is laid out anew, and no block is marked as one of that.
+    An existing layout stays, even if another version of zarr would write a different one. But if a damaged
+    file cannot be restored byte for byte, the layout is written anew, and the marks of blocks no longer
+    count.
     """
     _records.beside(store, record)
     there, wrong = _records.same(store, record), list[str]()
@@ -262,7 +263,7 @@ def _begin(result: "xarray.Dataset", store: Store, record: Record) -> tuple[Reco
 
 
 def _layout(result: "xarray.Dataset", record: Record) -> dict[str, bytes]:
-    """The files of a store without its blocks: metadata, coordinates, and what else is no block of dask."""
+    """The files of a store without its blocks: metadata, coordinates, and variables that are not lazy."""
     import zarr
     from zarr.storage import MemoryStore
 
@@ -270,24 +271,24 @@ def _layout(result: "xarray.Dataset", record: Record) -> dict[str, bytes]:
     chunks, columns = record["chunks"], record["columns"]
     layout = result.drop_vars(columns).load()
     for name in columns:
-        # one block that nobody computes: a plan of as many as there are would take long to make
+        # one block that is never computed: a graph with the real blocks would take long to build
         x = result[name]
         layout[name] = x.dims, array.zeros(x.shape, x.dtype, chunks=-1), x.attrs
         layout[name].encoding["chunks"] = tuple(chunks.get(d, (n,))[0] for d, n in x.sizes.items())
     layout.attrs = {**result.attrs, "spincyl_sweep": json.dumps(result.attrs["spincyl_sweep"])}
     made: dict[str, Any] = {}
     with warnings.catch_warnings(), zarr.config.set({"array.write_empty_chunks": True}):
-        # that other readers may pass over the consolidated metadata: they then read those of each array
+        # other readers may ignore the consolidated metadata: then they read those of each array
         warnings.filterwarnings("ignore", "Consolidated metadata")
         how: dict[str, Any] = {"consolidated": True, "zarr_format": 3, "safe_chunks": False}
         layout[list(result.variables)].to_zarr(MemoryStore(made), compute=False, **how)
-    # that of the whole comes last: a store that has it was laid out
+    # the metadata of the whole store come last: a store that has them is completely laid out
     names = sorted(made, key=lambda name: (name == "zarr.json", name))
     return {name: made[name].to_bytes() for name in names}
 
 
 def _todo(store: Store, blocks: list[Block], record: Record, wrong: list[str], lost: bool) -> list[Block]:
-    """The blocks that are not done; a warning if some of them were, or if some of the layout was damaged."""
+    """The blocks that are not done; warns if some of them were done before, or if files were damaged."""
     _records.sweep_up(store)
     sweep = _records.digest(record)
     todo = [block for block in blocks if not _is_done(store, block, record, sweep)]
@@ -307,12 +308,12 @@ def _todo(store: Store, blocks: list[Block], record: Record, wrong: list[str], l
 
 
 def _marker(store: Store, block: Block) -> Path:
-    """The file that marks a block as done, whatever its dimensions are called."""
+    """The file that marks a block as done, with a name valid for any names of dimensions."""
     return store.marks / ("_".join(f"{quote(dim, safe='')}-{a}" for dim, (a, _) in block.items()) or "all")
 
 
 def _is_done(store: Store, block: Block, record: Record, sweep: str) -> bool:
-    """Whether the block is marked and its bytes on disk are those."""
+    """Whether the block is marked as done and its bytes on disk have the checksums of the mark."""
     try:
         told = _marker(store, block).read_bytes()
         return told == _mark(store, block, record["chunks"], record["columns"], sweep)
@@ -321,7 +322,7 @@ def _is_done(store: Store, block: Block, record: Record, sweep: str) -> bool:
 
 
 def _mark(store: Store, block: Block, chunks: Chunks, columns: dict[str, list[str]], sweep: str) -> bytes:
-    """What marks a block as done: the checksum of every chunk file; None where zarr writes no fill values."""
+    """The mark of a completed block: a checksum for each chunk, None where zarr omits fill values."""
     found: dict[str, int | None] = {}
     for name, dims in columns.items():
         at = (str(_number(block, dim, chunks)) for dim in dims)
@@ -332,9 +333,9 @@ def _mark(store: Store, block: Block, chunks: Chunks, columns: dict[str, list[st
 def _write(
     *arrays: np.ndarray, store: Store, chunks: Chunks, columns: dict[str, list[str]], sweep: str
 ) -> np.ndarray:
-    """A computed block to its place, and then the mark that it is there.
+    """Write a computed block, and then the mark that it is complete.
 
-    The first arrays say which block it is, one along each dimension.
+    The first arrays are the indices of the block along each dimension.
     """
     import zarr
 

@@ -1,4 +1,4 @@
-"""Many stones at once: how they end, and which of them turn back."""
+"""Many stones at once: how they end, and which of them reverse their spin."""
 
 from collections.abc import Iterable
 from typing import Any
@@ -17,7 +17,7 @@ from spincyl._measured import natural_time
 from spincyl.sweep._labels import given_up
 from spincyl.sweep._swept import Question
 
-#: Units and meanings of what there is of a motion; first of all the state at its end.
+#: Units and meanings of the columns of a motion; the state at its end comes first.
 LABELS = {name: (unit, meaning) for name, unit, meaning in _core.stone_columns()}
 _FINAL = ("n1", "n2", "n3", "w1", "w2", "w3")
 _TOLD = tuple(name for name in LABELS if name not in _FINAL)
@@ -32,7 +32,7 @@ def question(
     tol: float,
     mu: float,
 ) -> Question:
-    """What `spincyl.sweep.roll` is asked for of stones, or an error by name."""
+    """The arguments of `spincyl.sweep.roll` for stones, checked; an error names the argument."""
     states, scale, seconds = made("states", states, EllipsoidState), stones.scale, t
     if scale is not None:
         fitting(contact, scale)
@@ -67,7 +67,7 @@ def fill(
     progress: Progress | None,
 ) -> None:
     """Fill the columns of a block of stones."""
-    # which motions are known to their end depends on that
+    # the core computes `known_until` only together with `end`
     all_of = {"end": np.empty(out["status"].size)} | out
     _core.stones(columns, times, asked, all_of, threads, progress)
     given_up(out["status"])

@@ -1,4 +1,4 @@
-"""What all sweeps of motions do: columns in, a Dataset out; at once, or block by block of dask's arrays."""
+"""Sweeps of motions: columns in, a Dataset out, at once or block by block for arrays of dask."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -20,20 +20,20 @@ from spincyl.sweep._labels import Status, applied, flags, labelled
 if TYPE_CHECKING:
     import xarray
 
-#: Numbers that stand in columns of codes.
+#: Columns of codes.
 CODES = ("method", "status")
 
 
 class Question(NamedTuple):
-    """What many motions are asked for, in natural units."""
+    """The arguments of a sweep of motions, in natural units."""
 
-    fields: dict[str, Reals]  # what goes in, by the core's names
-    names: list[str]  # what comes out
-    spread: frozenset[str]  # what of that has a dimension of times
+    fields: dict[str, Reals]  # inputs, by the names that the core uses
+    names: list[str]  # outputs
+    spread: frozenset[str]  # outputs with a dimension of times
     asked: Asked
-    want: tuple[str, ...]  # as the caller has it
+    want: tuple[str, ...]  # as the caller gave it
     scale: Scale | None
-    seconds: Reals  # the times as they were given
+    seconds: Reals  # the times as the caller gave them
 
 
 def swept(
@@ -45,7 +45,7 @@ def swept(
     progress: Progress | None,
     length: str = "R",
 ) -> "xarray.Dataset":
-    """The answers to a question. `law` fills columns of a block; `labels` are their units and meanings."""
+    """The Dataset of a sweep. `law` fills the columns of a block; `labels` are their units and meanings."""
     lib: Any = extra("xarray", "sweep")
     fields, names, spread, asked, want, scale, seconds = question
     lazy, at = is_lazy(*fields.values()), asked.times
@@ -53,7 +53,7 @@ def swept(
     share = 1 if lazy and threads is None else thread_count(threads)
     fill = partial(_block, law=law, given=tuple(fields), names=names, spread=spread, times=at, asked=options)
     run = partial(fill, threads=share, progress=callback(progress))
-    # what is asked wrongly is said before any work
+    # an empty block raises errors about the arguments before any work
     with speaking(scale, length):
         fill(*(np.empty(0) for _ in fields), threads=1, progress=None)
     data = applied(
@@ -70,7 +70,7 @@ def swept(
         own = {} if scale is None else {"scale": scale}
         attrs["spincyl_sweep"] = signature("roll", fields, t=at.tolist(), want=want, **options, **own)
     result: xarray.Dataset = in_si(lib.Dataset(data, coords, attrs), scale)
-    if scale is not None:  # times as they were given
+    if scale is not None:  # the times as the caller gave them
         told = floats(seconds).reshape(-1)
         result.attrs["t"] = float(told[-1])
         if spread:

@@ -1,17 +1,18 @@
-// The WebGL context. A browser has sixteen of them: it is taken when the picture is seen and yielded back when it is not.
+// The WebGL context. A browser keeps about sixteen at a time: a page takes one when its picture becomes
+// visible, and releases it when the picture is out of view.
 
 let canvas = $("canvas"), gl = null, era = 0, without = "", yielded = false;
 const inside = window.top !== window;
-let seen = !inside; // in a frame, which may be far below what is seen, the browser says so
-// what hands do with a canvas goes to the next one
+let seen = !inside; // a frame may be scrolled out of view: the observer below decides
+// handlers that move to a new canvas
 const HANDS = ["onpointerdown", "onpointermove", "onpointerup", "onpointercancel", "onwheel"];
 
-// whether there is something to draw with; what was made before `era` grew is gone
+// returns whether there is a context to draw with; objects made before `era` grew are lost
 function lit() {
   if (gl && !gl.isContextLost()) return true;
   if (!seen || without) return false;
   if (gl && !yielded) { unlit("The browser has taken this picture back: it keeps only so many at a time."); return false; }
-  if (gl) { // a canvas that had a context never has another one
+  if (gl) { // a canvas never gets a second context: replace it
     const old = canvas, at = document.activeElement === old;
     canvas = old.cloneNode();
     for (const hand of HANDS) canvas[hand] = old[hand];
@@ -19,10 +20,11 @@ function lit() {
     if (at) canvas.focus({ preventScroll: true });
   }
   yielded = false;
-  gl = canvas.getContext("webgl2", { antialias: true, stencil: true, alpha: false, preserveDrawingBuffer: !!window.spincyl }); // the live page is photographed
+  // the live page copies the canvas into films
+  gl = canvas.getContext("webgl2", { antialias: true, stencil: true, alpha: false, preserveDrawingBuffer: !!window.spincyl });
   if (!gl) { unlit("The body is drawn with WebGL 2, which this browser does not offer or has switched off."); return false; }
   era++;
-  gl.vertexAttrib3f(1, 0, 0, 1); // what has no normals lies on the table
+  gl.vertexAttrib3f(1, 0, 0, 1); // meshes without normals lie on the table
   canvas.addEventListener("webglcontextlost", () => show());
   const adds = gl.getExtension("EXT_color_buffer_float");
   $("shutter").disabled = !adds;
@@ -35,7 +37,7 @@ function unlit(why) {
   $("unlit").hidden = !why;
   $("relight").hidden = !gl;
   $("drawn").disabled = $("shutter").disabled = !!why;
-  queueMicrotask(() => { forget(); show(); }); // when all of the page is there
+  queueMicrotask(() => { forget(); show(); }); // after the rest of the page is defined
 }
 function relit() { if (gl && without) { yielded = true; unlit(""); } }
 $("relight").onclick = relit;

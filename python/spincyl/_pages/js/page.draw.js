@@ -1,8 +1,8 @@
-// One picture of one motion, from what the camera holds to the arrows.
+// Draws one motion: camera, table, path, shadow, body and arrows.
 
-// what the camera sees of the near side from its first elevation, nearer things being larger
+// half the height that the camera must show at its first elevation, where nearer parts look larger
 const held = (reach, top) => 1.06 * Math.max((0.52 + 0.26) * reach + 0.38 * top, 0.44 * reach + 0.57 * top);
-// the contact path as a ribbon through poses at ascending times, and what the camera must hold
+// the contact path as a ribbon through poses at ascending times, and the extent that the camera must show
 function trace(m, times, poses) {
   const box = [[Infinity, Infinity], [-Infinity, -Infinity]];
   let top = 0;
@@ -23,10 +23,11 @@ function trace(m, times, poses) {
     const d = [b[0] - a[0], b[1] - a[1]], n = (m.wide || 0.008 * m.reach) / (Math.hypot(...d) || 1);
     ribbon.push(p[0] - n * d[1], p[1] + n * d[0], 0.004, p[0] + n * d[1], p[1] - n * d[0], 0.004);
   });
-  m.path = { ...mesh(ribbon, null, null, m.path), times, runs: m.runs?.(times) || [[0, "trace"]] }; // places from which it has a colour
+  // `runs`: index from which each colour applies
+  m.path = { ...mesh(ribbon, null, null, m.path), times, runs: m.runs?.(times) || [[0, "trace"]] };
 }
 
-// what is said of a motion on the stage: its label, its clock, the letters at its arrows
+// labels of a motion on the stage: its name, its clock, the letters at its arrows
 function panelled(m) {
   const make = (kind, name, text = "") => Object.assign(m.panel.appendChild(document.createElement(kind)), { className: name, textContent: text });
   m.panel = stage.appendChild(document.createElement("div"));
@@ -35,10 +36,10 @@ function panelled(m) {
   m.clock = make("output", "clock");
   m.clock.setAttribute("aria-live", "off");
   m.tips = Object.fromEntries(ARROWS.map(v => [v, make("i", "tip " + v, letters[v])]));
-  for (const v of ARROWS) m.tips[v].ariaHidden = true; // the switches say what is drawn
+  for (const v of ARROWS) m.tips[v].ariaHidden = true; // screen readers get this from the switches
 }
 
-// one distance for all, so that sizes can be compared
+// the same distance for all motions, so that sizes can be compared
 let reach, half;
 const measured = () => { reach = Math.max(...motions.map(m => m.reach)); half = Math.max(...motions.map(m => m.half)); };
 
@@ -51,25 +52,25 @@ function camera(m, aspect, flat) {
   const [ce, se, ca, sa] = [Math.cos(elevation), Math.sin(elevation), Math.cos(azimuth), Math.sin(azimuth)];
   const back = [ce * ca, ce * sa, se], right = [-sa, ca, 0], up = cross(back, right);
   const whole = Math.max(flat ? 1.08 * reach : half, 1.12 * reach / aspect), high = whole / eye.zoom;
-  // to zoom is to narrow the view, so that the camera never enters the body
+  // zooming narrows the angle of view, so that the camera never enters the body
   const d = whole / Math.tan(0.3), f = d / high, near = 0.02 * d, far = d + 30 * reach;
   m.from = along([1, m.at], [flat ? 1e3 * d : d, back]);
   const rows = [right, up, back].map((v, i) => [...v, -dot(v, m.at) - (i === 2 ? d : 0)]);
-  const p = flat // without perspective, as a camera far above
+  const p = flat // orthographic
     ? [rows[0].map(x => x / high / aspect), rows[1].map(x => x / high), rows[2].map((x, i) => (-2 * x - (i === 3 ? far + near : 0)) / (far - near)), [0, 0, 0, 1]]
     : [rows[0].map(x => x * f / aspect), rows[1].map(x => x * f), rows[2].map((x, i) => -x * (far + near) / (far - near) - (i === 3 ? 2 * far * near / (far - near) : 0)), rows[2].map(x => -x)];
   return [0, 1, 2, 3].flatMap(k => p.map(row => row[k]));
 }
 
-// where a place of the laboratory is on a panel of this width and height, from its left upper corner
+// position of a laboratory point on a panel of this width and height, from its top left corner
 function project(m, place, width, height) {
   const c = camera(m, width / height, $("above").checked), at = k => [...place, 1].reduce((sum, x, j) => sum + c[4 * j + k] * x, 0);
   return [width * (at(0) / at(3) + 1) / 2, height * (1 - at(1) / at(3)) / 2];
 }
 
-// ---- one picture of one motion
+// ---- a frame of one motion
 
-// the colours have their home in the style sheet
+// the style sheet defines the colours
 function paints() {
   const style = getComputedStyle(document.documentElement), paint = { shadow: dusk.matches ? 0.45 : 0.24 };
   for (const name of ["paper", "ground", "grid", "trace", ...ARROWS]) {
@@ -78,13 +79,14 @@ function paints() {
   }
   return paint;
 }
-// of a motion that has ended: what remains of a colour without its hue
+// after the end of a motion, colours lose most of their hue
 const faded = colour => { const grey = 0.42 + 0.3 * dot(colour, [0.3, 0.59, 0.11]); return colour.map(x => 0.06 * x + 0.94 * grey); };
 
-// what there is to say of a motion at a time outside of what is shown of it, or at its end
+// the note about a motion after its last time, before its first, or at its end; else null
 const note = (m, t) => t > m.after.at || m.after.event && t >= m.after.at ? m.after : t < m.before.at || m.before.event && t <= m.before.at ? m.before : null;
 
-// direction, length and width of an arrow that is shown; both are seen where they are parallel
+// direction, length and width of an arrow, or null; omega is shorter and wider than L, so that both show
+// where parallel
 function arrowOf(p, v) {
   const size = Math.hypot(...p[v]), [long, wide] = v === "omega" ? [0.64, 1.3] : [0.8, 0.85], length = long * half * size / fastest[v];
   return $(v).checked && size > 1e-9 ? { along: p[v].map(x => x / size), length, wide: wide * length, root: p.centre } : null;
@@ -99,7 +101,8 @@ function fill(piece, model, colour, lit = 1) {
   gl.drawElements(gl.TRIANGLES, piece.count, gl.UNSIGNED_SHORT, 0);
 }
 
-// onto the table, along the light from each of some places of a round lamp, which throw a shadow that is soft far from the body
+// projections onto the table along the light from several points of a round lamp, whose overlapping shadows
+// are soft
 const LAMPS = Array.from({ length: 6 }, (_, k) => {
   const far = 0.15 * Math.sqrt((k + 0.5) / 6), way = 2.4 * k;
   return [1, 0, 0, 0, 0, 1, 0, 0, 0.36 + far * Math.cos(way), 0.4 + far * Math.sin(way), 0, 0, 0, 0, 0.002, 1];
@@ -144,8 +147,8 @@ function draw(m, t, aspect) {
   gl.useProgram(shadow.made);
   gl.uniformMatrix4fv(shadow.camera, false, view);
   gl.uniform1f(shadow.dark, 1 - (1 - paint.shadow) ** (1 / LAMPS.length));
-  gl.enable(gl.CULL_FACE); // of a closed surface half of it throws the shadow of all
-  gl.enable(gl.STENCIL_TEST); // the shadow of a lamp darkens once
+  gl.enable(gl.CULL_FACE); // half of a closed surface casts its whole shadow
+  gl.enable(gl.STENCIL_TEST); // the shadow of each lamp point darkens a pixel only once
   gl.stencilOp(gl.KEEP, gl.KEEP, gl.REPLACE);
   LAMPS.forEach((flatten, k) => {
     gl.stencilFunc(gl.NOTEQUAL, k + 1, 255);
@@ -156,13 +159,14 @@ function draw(m, t, aspect) {
   gl.depthMask(true);
   gl.useProgram(surface.made);
   for (const piece of shapes[m.shape]) fill(piece, p.matrix, shade(piece.colour), piece.edge ? 0 : piece.mark ? MATT : 1);
-  gl.clear(gl.DEPTH_BUFFER_BIT); // arrows are seen through the body
+  gl.clear(gl.DEPTH_BUFFER_BIT); // arrows show through the body
   for (const v of ARROWS) {
     const a = arrowOf(p, v);
     if (!a) continue;
     const e3 = a.along, any = Math.abs(e3[2]) < 0.9 ? [0, 0, 1] : [1, 0, 0], e1 = cross(any, e3), n = a.wide / Math.hypot(...e1), e2 = cross(e3, e1);
     const model = [...e1.map(x => x * n), 0, ...e2.map(x => x * n), 0, ...e3.map(x => x * a.length), 0, ...a.root, 1];
-    gl.cullFace(gl.FRONT); // of the halo only what is behind: a rim in the colour of the paper, on whatever ground
+    // only back faces of the halo: a rim in the colour of the paper, visible on any ground
+    gl.cullFace(gl.FRONT);
     fill(halo, model, paint.paper, 0);
     gl.cullFace(gl.BACK);
     fill(arrow, model, paint[v], MATT);

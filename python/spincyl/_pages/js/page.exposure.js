@@ -1,7 +1,7 @@
 // The long exposure: the sum of many pictures in a dark room.
 
-// Pictures are added up by blending, sixteen at most in half precision, then to the sum in single precision. A few of
-// them at a time: the next are asked for when the graphics card, or what stands for it, has done with these.
+// Blending adds up to sixteen pictures in half precision, then adds them to the sum in single precision. The
+// next few are drawn when the graphics card, or the software in its place, has finished the previous ones.
 const PICTURES = 720, TOGETHER = 16;
 const exposing = { targets: null };
 const REST = "ω, L, path and view rest until the photograph is closed.";
@@ -32,12 +32,12 @@ function forget() {
     gl.deleteFramebuffer(t.buffer);
     if (t.depth) gl.deleteRenderbuffer(t.depth);
   }
-  // pictures that were asked for, that are done, that are enough; how many at a time, and those under way
+  // pictures begun (`count`), finished (`shown`), wanted (`most`); size (`some`) and fence of a batch
   Object.assign(exposing, { targets: null, count: 0, shown: 0, most: PICTURES, some: 4, fence: null, gain: 1, measured: 0 });
 }
 forget();
 
-// when the body has turned so often from t on, at most the end
+// the time at which the body has made so many turns since t, at most the end of the motion
 function closing(m, t, turns) {
   const end = m.last;
   if (turns === Infinity || t >= end) return end;
@@ -60,7 +60,7 @@ function open() {
   }
 }
 
-// this many more pictures, on top of the sum
+// adds `many` pictures to the sum
 function add(views, many) {
   const [frame, sum, next] = exposing.targets;
   gl.bindFramebuffer(gl.FRAMEBUFFER, frame.buffer);
@@ -82,7 +82,8 @@ function add(views, many) {
       const p = pose(m, m.open + share * (m.shut - m.open));
       for (const piece of shapes[m.shape]) {
         if (piece.mark) fill(piece, p.matrix, piece.colour.map(c => Math.min(1, c * 1.15 + 0.12)), 0);
-        else if (piece.cast) fill(piece.cast, p.matrix, [0.006, 0.006, 0.0065]); // so dark a body may be coarse, without edges
+        // nearly black, so a coarse mesh without edges suffices
+        else if (piece.cast) fill(piece.cast, p.matrix, [0.006, 0.006, 0.0065]);
       }
     }
   }
@@ -101,7 +102,7 @@ function add(views, many) {
   exposing.targets = [frame, next, sum];
 }
 
-// the brightest place sets the gain: measured anew when there are four times as many pictures
+// the brightest pixel sets the gain; measured again whenever there are four times as many pictures
 function measure() {
   const light = new Float32Array(4 * canvas.width * canvas.height);
   gl.bindFramebuffer(gl.FRAMEBUFFER, exposing.targets[1].buffer);
@@ -124,14 +125,15 @@ function develop() {
   exposing.shown = exposing.count;
 }
 
-// goes on with the photograph, shows what there is of it, and asks to be called again if there is more to come
+// continues the photograph, shows its present state, and schedules the next batch
 function expose(views) {
   if (!exposing.targets) open();
   if (exposing.fence) {
     if (gl.getSyncParameter(exposing.fence, gl.SYNC_STATUS) !== gl.SIGNALED) { setTimeout(show, 30); return; }
     gl.deleteSync(exposing.fence);
     exposing.fence = null;
-    const spent = performance.now() - exposing.asked; // so many at a time that the picture changes about once a second
+    // adapts the batch so that the picture changes about once a second
+    const spent = performance.now() - exposing.asked;
     exposing.some = Math.min(64, Math.max(8, spent > 1000 ? exposing.some >> 1 : spent < 500 ? 2 * exposing.some : exposing.some));
     develop();
   }

@@ -1,12 +1,13 @@
-// The eye: letters at the tips of arrows, and how hands turn the view.
+// Letters at the tips of arrows, and control of the view by mouse, touch and keys.
 
-// the arrows' letters beside their tips, each on the side where the other arrow is not
+// places the letters beside the tips, each on the side away from the other arrow
 function named(m, p, arrows, width, height) {
   const flat = arrows.map(arrow => {
     if (!arrow) return null;
     const [root, tip] = [arrow.root, along([1, arrow.root], [arrow.length, arrow.along])].map(place => project(m, place, width, height));
     const [dx, dy] = [tip[0] - root[0], tip[1] - root[1]], size = Math.hypot(dx, dy);
-    return { tip, to: size < 1 ? [0, -1] : [dx / size, dy / size] }; // one that points at the eye has a letter all the same
+    // an arrow towards the eye has a letter as well
+    return { tip, to: size < 1 ? [0, -1] : [dx / size, dy / size] };
   });
   ARROWS.forEach((v, k) => {
     const [a, b] = [flat[k & ~1], flat[k | 1]].map(f => f?.to), swapped = a && b && a[0] * b[1] - a[1] * b[0] < -1e-3;
@@ -38,6 +39,6 @@ canvas.onpointermove = e => {
   else turn((is[0] - was[0]) / 200, (is[1] - was[1]) / 200);
   fingers.set(e.pointerId, is);
 };
-// inside another page its wheel and its fingers come first, until this one is asked for
+// in a frame, scrolling the outer page has priority until the canvas has the focus
 if (inside) canvas.style.touchAction = "pan-y";
 canvas.onwheel = e => { if (inside && !e.ctrlKey && document.activeElement !== canvas) return; e.preventDefault(); zoom(Math.exp(-e.deltaY / 800)); };

@@ -1,11 +1,11 @@
-// Arrows of the forces on the contact, N and F, beside those of the turning; before the drawing, one of whose functions it
-// replaces.
+// Arrows of the contact forces, N and F, beside those of the rotation. This file comes before the drawing,
+// whose `arrowOf` it replaces.
 
 ARROWS.push("normal", "friction");
 Object.assign(letters, { normal: "N", friction: "F" });
 Object.assign(fastest, { normal: 0, friction: 0 });
 const ofTurning = arrowOf;
-// forces are told apart by their lengths, and a small one is to be seen all the same; a fall may end with a great one
+// the length shows the size of the force up to a limit, since a fall may end with a very large force
 arrowOf = (p, v) => {
   if (v !== "normal" && v !== "friction") return ofTurning(p, v);
   const size = Math.hypot(...p[v]);

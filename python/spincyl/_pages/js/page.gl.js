@@ -1,7 +1,7 @@
-// Shaders and meshes: what any page of ours draws bodies with. The recorded page and the live one share it.
+// Shaders and meshes, shared by the recorded page and the live one.
 
-// linked when it is first used, in each context: what is not shown yet costs nothing in opening the page; what is shown
-// `first` is begun at once, and the graphics card makes it while the page goes on
+// Links at first use in each context, so that the page opens fast. A program that is needed `first` starts at
+// once, and the graphics card compiles it while the page continues.
 function program(vertex, fragment, first) {
   const begun = () => {
     const made = gl.createProgram();
@@ -31,7 +31,7 @@ function program(vertex, fragment, first) {
 const surface = program(
   `in vec3 place, normal; uniform mat4 camera, model; uniform vec3 eye; out vec3 n, v;
    void main() { vec4 p = model * vec4(place, 1.0); n = mat3(model) * normal; v = eye - p.xyz; gl_Position = camera * p; }`,
-  // where a round surface turns away from the eye it has an edge two pixels wide; what is lit by less than 1 is matt, without one
+  // round surfaces have an outline, two pixels wide, where they turn away from the eye, if `lit` is 1
   `in vec3 n, v; uniform vec4 colour; uniform float lit; out vec4 o;
    void main() { vec3 m = normalize(n), e = normalize(v), sun = normalize(vec3(-0.45, -0.5, 0.75));
      float light = 0.52 + 0.16 * m.z + 0.36 * max(dot(m, sun), 0.0);
@@ -54,7 +54,7 @@ const developing = program(screen,
   `in vec2 p; uniform sampler2D sum; uniform float gain; out vec4 o;
    void main() { o = vec4(1.0 - exp(-gain * texture(sum, p).rgb), 1.0); }`);
 
-// what is to be bound before it is drawn, and then is on the graphics card; `old` is a mesh whose place it takes
+// a mesh that is sent to the graphics card when it is first bound; `old` is a mesh that it replaces
 function mesh(places, normals, triangles, old) {
   old?.free();
   const corners = [places, normals].map(values => values && new Float32Array(values)), buffers = [];
@@ -77,7 +77,8 @@ function mesh(places, normals, triangles, old) {
   return { bind, free, count: triangles ? triangles.length : places.length / 3 };
 }
 
-// the surface that a polygon of radius and height sweeps, outside on the right of its direction; round at any size
+// surface of revolution of a polygon (radius, height), whose outside is on the right of its direction; smooth
+// at any size
 function lathe(corners, around = 256) {
   const places = [], normals = [], triangles = [];
   corners.slice(1).forEach(([r1, z1], k) => {
@@ -92,7 +93,8 @@ function lathe(corners, around = 256) {
   });
   return mesh(places, normals, new Uint16Array(triangles));
 }
-// a surface of revolution out of its profiles, a coarser one that casts its shadow, and a dark line where two plain ones meet in an edge
+// a body of revolution: its surfaces, coarser ones that cast the shadow, and dark lines along edges between
+// flat surfaces
 const INK = [0.24, 0.24, 0.25], THICK = 0.011;
 function surfaces(turned) {
   const plain = turned.flatMap(p => (p.corners.corners || p.corners).filter(c => c.length === 2 && c[0] > 0)), same = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1]) < 1e-9;
@@ -100,6 +102,6 @@ function surfaces(turned) {
   const ring = ([r, z]) => [[0, 1], [-1, 0], [0, -1], [1, 0], [0, 1]].map(([x, y]) => [r + THICK * x, z - THICK * y]);
   return [...turned.map(p => ({ ...lathe(p.corners), colour: p.colour, cast: lathe(p.corners, 64) })), ...edges.map(c => ({ ...lathe(ring(c)), colour: INK, edge: true }))];
 }
-// of an arrow along z, in its length: shaft and head; and its halo, a little larger
+// an arrow of length 1 along z, shaft and head; and its halo, slightly larger
 const [arrow, halo] = [0, 0.011].map(d => lathe([[0, -d], [0.016 + d, -d], [0.016 + d, 0.86 - d], [0.045 + 1.7 * d, 0.86 - d], [0, 1 + 3 * d]], 48));
 const quad = mesh([-1, -1, 0, 1, -1, 0, -1, 1, 0, 1, 1, 0]);

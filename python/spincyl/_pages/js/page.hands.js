@@ -1,8 +1,8 @@
-// The whole canvas, and the hands that steer it.
+// The frame loop and the controls of the recorded page.
 
 let now = first, playing = false, before = null, asked = false;
 const show = () => { if (!asked) { asked = true; requestAnimationFrame(frame); } };
-const speed = () => Number($("speed").value) / data.unit; // units of t in a second
+const speed = () => Number($("speed").value) / data.unit; // units of t per second
 const say = which => { $("said").textContent = which.map(m => (m.label ? m.label + ": " : "") + m.clock.value.replace("\n", ", ")).join("; "); };
 
 function frame(at) {
@@ -11,13 +11,13 @@ function frame(at) {
   const drawing = lit();
   $("controls").hidden = !gl;
   if (playing) {
-    // a picture's time may be earlier than the press that began the play: the first picture tells where to count from
+    // a frame may have an earlier time than the press of play, so count from the first frame
     if (before !== null) now = Math.min(last, now + speed() * Math.min(0.25, Math.max(0, at - before) / 1000));
   }
   before = at;
   const ratio = Math.min(2, devicePixelRatio || 1), width = Math.max(1, Math.round(stage.clientWidth * ratio)), height = Math.max(1, Math.round(stage.clientHeight * ratio));
   if (canvas.width !== width || canvas.height !== height) { canvas.width = width; canvas.height = height; forget(); }
-  // as many columns as leave few places empty and panels of a good shape
+  // columns that leave few panels empty and give the others a good shape
   const cost = c => { const r = Math.ceil(motions.length / c); return 0.7 * (r * c - motions.length) + Math.abs(Math.log(width * r / height / c / 1.3)); };
   const columns = motions.map((_, i) => i + 1).reduce((a, b) => cost(b) < cost(a) ? b : a), rows = Math.ceil(motions.length / columns);
   const views = motions.map((m, i) => {
@@ -55,7 +55,7 @@ function frame(at) {
   else if (playing) show();
 }
 
-// ---- hands
+// ---- controls
 
 function play(on) {
   playing = on;
@@ -68,7 +68,7 @@ function play(on) {
   forget();
   show();
 }
-// the slider's ends are rounded: what is a hair from an end is the end
+// the slider rounds its ends: a time next to an end becomes that end
 function go(t) {
   const hair = 1e-9 * (last - first);
   now = t > last - hair ? last : t < first + hair ? first : t;
@@ -85,11 +85,11 @@ $("time").oninput = () => { playing && play(false); go($("time").valueAsNumber);
 $("drawn").onchange = show;
 $("shutter").onchange = () => {
   playing && play(false);
-  if (now >= last) now = first; // an exposure begins now, and takes time
+  if (now >= last) now = first; // an exposure starts now and needs time
   shuttered();
   show();
 };
-// the photograph has a row of its own while it is there: how far it is, and why other things rest
+// the row of the photograph shows its progress, and why other controls are disabled
 function shuttered() {
   const open = $("shutter").value !== "0";
   if (!open && document.activeElement === $("stop")) $("shutter").focus();
@@ -105,14 +105,15 @@ function stopped() {
 $("stop").onclick = stopped;
 
 const full = () => document.fullscreenElement ? document.exitFullscreen() : document.documentElement.requestFullscreen().catch(() => { $("full").hidden = true; });
-$("full").hidden = !document.fullscreenEnabled; // as in a frame that may not
+$("full").hidden = !document.fullscreenEnabled; // as in a frame without permission
 $("full").onclick = full;
 document.onfullscreenchange = () => { $("full").ariaPressed = !!document.fullscreenElement; };
 $("controls").onsubmit = () => false;
 addEventListener("keydown", e => {
   const help = document.querySelector("details");
   if (e.key === "Escape") help.open ? help.open = false : $("shutter").value !== "0" && stopped();
-  const has = ["BUTTON", "SUMMARY"].includes(e.target.tagName) || e.target.type === "checkbox"; // its own use of the space bar
+  // these use the space bar themselves
+  const has = ["BUTTON", "SUMMARY"].includes(e.target.tagName) || e.target.type === "checkbox";
   if (e.ctrlKey || e.metaKey || e.altKey || e.target.tagName === "SELECT" || e.key === " " && has) return;
   const keys = { __proto__: null, " ": () => play(!playing), ",": () => go(now - speed() / 60), ".": () => go(now + speed() / 60), 0: () => go(first), f: () => document.fullscreenEnabled && full() };
   if (e.target === canvas) Object.assign(keys, {
@@ -130,7 +131,7 @@ const wished = Number(wish.get("t") ?? NaN) / data.unit;
 if (Number.isFinite(wished)) go(wished);
 else if (!matchMedia("(prefers-reduced-motion: reduce)").matches) play(true);
 show();
-// for those who look in: a pose, the time, and where on the stage a body's centre is
+// for tests: a pose, the time, and the position of a body's centre on the stage
 window.spincyl = {
   pose: (i, t) => pose(motions[i], t),
   at: () => now * data.unit,

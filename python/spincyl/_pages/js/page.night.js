@@ -1,4 +1,5 @@
-// Day or night: the theme of the notebook around the page, where that can be asked or tells it; else what the browser prefers.
+// Day or night: the theme of the notebook around the page, if it can be read or is sent; else the browser's
+// preference.
 
 const dusk = { matches: false, onchange: null };
 {
@@ -16,7 +17,7 @@ const dusk = { matches: false, onchange: null };
       const { body } = window.parent.document, ask = () => { around = { false: true, true: false }[body.dataset.jpThemeLight] ?? null; set(); };
       new MutationObserver(ask).observe(body, { attributes: true });
       ask();
-    } catch { /* a page of another origin may not be asked */ }
+    } catch { /* a page of another origin cannot be read */ }
     addEventListener("message", e => { if (e.source === window.parent && typeof e.data?.spincylNight === "boolean") { around = e.data.spincylNight; set(); } });
   }
   set();

@@ -1,10 +1,11 @@
-// Where a body is and how it turns, for any page.
+// Pose and angular velocity of a body, for both pages.
 
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 const along = (...terms) => [0, 1, 2].map(k => terms.reduce((sum, [a, v]) => sum + a * v[k], 0));
 
-// axes in the laboratory, the body's matrix, and how it turns, from angles, the place of the centre and angular velocity
+// pose, matrix, angular velocity and momentum in the laboratory from angles, x and y of the centre, and w
+// along e1, e2, e3
 function posed(m, theta, phi, psi, x, y, w) {
   const [s, c, sp, cp] = [Math.sin(theta), Math.cos(theta), Math.sin(phi), Math.cos(phi)];
   const e1 = [c * cp, c * sp, s], e2 = [-sp, cp, 0], e3 = [-s * cp, -s * sp, c];
@@ -18,13 +19,13 @@ function posed(m, theta, phi, psi, x, y, w) {
   };
 }
 
-// what is drawn of a pose as an arrow, its letter, and the largest there is
+// vectors that have arrows, their letters, and the largest size of each
 const ARROWS = ["omega", "momentum"], letters = { omega: "ω", momentum: "L" }, fastest = { omega: 1e-9, momentum: 1e-9 };
-// more of what is said and looked at, where bodies slip
+// replaced where bodies slip: further text of the clock, and the centre of the view
 function doing() { return ""; }
 function aim(m) { return m.middle; }
 
-function knot(t, sorted) { // the interval that holds t
+function knot(t, sorted) { // index of the interval that contains t
   let low = 0, high = sorted.length - 1;
   while (high - low > 1) { const mid = (low + high) >> 1; if (sorted[mid] <= t) low = mid; else high = mid; }
   return low;

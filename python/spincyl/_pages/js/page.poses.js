@@ -1,5 +1,5 @@
-// Poses. What the page knows of a motion are poses at knots, and how to interpolate between these.
-// The page's files are joined in the order that view.py has, in one strict function.
+// Poses, interpolated between the knots that the page stores for each motion. The files are joined in the
+// order of view.py, in one strict function.
 
 const $ = id => document.getElementById(id);
 const data = JSON.parse($("data").textContent);
@@ -13,7 +13,7 @@ const motions = data.motions.map(m => {
   const y = t.map((_, i) => most.map((_, k) => read(i, k + 1)));
   const slopes = t.map((_, i) => {
     const before = i ? t[i] - t[i - 1] : t[1] - t[0], after = i < n - 1 ? t[i + 1] - t[i] : before;
-    return most.map((most, k) => { // a parabola's slope, and what it is off by
+    return most.map((most, k) => { // slope of a parabola, plus the stored difference
       const secant = j => (y[j + 1][k] - y[j][k]) / (t[j + 1] - t[j]);
       return (secant(Math.max(0, i - 1)) * after + secant(Math.min(n - 2, i)) * before) / (before + after) + off[(wide - 1) * i + k] / 32767 * most / Math.max(before, after);
     });
@@ -23,9 +23,10 @@ const motions = data.motions.map(m => {
 const first = Math.min(...motions.map(m => m.first)), last = Math.max(...motions.map(m => m.last));
 
 const digits = Math.max(2, 4 - Math.floor(Math.log10(Math.max(1e-9, (last - first) * data.unit))));
-const clock = t => `t = ${(t * data.unit).toFixed(digits)} ${data.symbol}`.replaceAll(" ", "\u00a0"); // never broken over two lines
+// with spaces that do not break
+const clock = t => `t = ${(t * data.unit).toFixed(digits)} ${data.symbol}`.replaceAll(" ", "\u00a0");
 
-// theta, phi, psi, x, y and their rates, or the numbers of a stone: the cubic between two knots
+// theta, phi, psi, x, y, or the numbers of a stone, and their rates: the cubic between two knots
 function interpolate(m, t) {
   t = Math.min(Math.max(t, m.first), m.last);
   const rounds = m.again ? Math.floor((t - m.first) / m.again.period) : 0;
@@ -37,7 +38,7 @@ function interpolate(m, t) {
     value.push(y0 + s * (d0 + s * (b + s * c)));
     rate.push((d0 + s * (2 * b + s * 3 * c)) / h);
   });
-  if (rounds) { // each period is the last one, turned about the vertical and about the axis
+  if (rounds) { // each period is the previous one, rotated about the vertical and about the axis
     const { phi, psi, pivot, shift } = m.again, [c, s] = [Math.cos(rounds * phi), Math.sin(rounds * phi)];
     value[1] += rounds * phi;
     value[2] += rounds * psi;
@@ -48,7 +49,7 @@ function interpolate(m, t) {
   return [value, rate];
 }
 
-// the drawn pose, and how it turns
+// the drawn pose, with its angular velocity
 function pose(m, t) {
   const [[theta, phi, psi, x, y], [tilting, turning, spinning]] = interpolate(m, t);
   return posed(m, theta, phi, psi, x, y, [turning * Math.sin(theta), -tilting, turning * Math.cos(theta) + spinning]);

@@ -1,4 +1,4 @@
-// What the recorded page draws: surfaces as they came with it, and paths through the poses of its motions.
+// Content of the recorded page: stored surfaces, and paths through the poses of its motions.
 
 const shapes = data.shapes.map(({ turned, marks }) => [
   ...surfaces(turned),
@@ -8,7 +8,7 @@ const shapes = data.shapes.map(({ turned, marks }) => [
   })),
 ]);
 
-// at times between which a body turns little
+// sampling times between which a body turns little
 for (const m of motions) {
   const times = [];
   const turns = i => Math.abs(m.y[i + 1][1] - m.y[i][1]) + Math.abs(m.y[i + 1][2] - m.y[i][2]);

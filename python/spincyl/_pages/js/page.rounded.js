@@ -1,9 +1,10 @@
-// Bodies with a fillet: where they touch the table, and surfaces that look round. Pages of sharp bodies have no need of
-// this file; where it is there, it comes before the drawing and replaces two functions.
+// Bodies with a fillet: their contact with the table, and surfaces that look round. Pages of sharp bodies
+// omit this file. It comes before the drawing and replaces `pose` and `lathe`.
 
 for (const m of motions) if (m.fillet) {
   m.depth = m.ell;
-  m.ell = Math.sqrt(Math.max(0, m.far ** 2 - 1)); // the camera takes this for half the length of a sharp cylinder
+  // half length of a sharp cylinder of the same reach, for the camera
+  m.ell = Math.sqrt(Math.max(0, m.far ** 2 - 1));
 }
 
 const onSharpRim = pose;
@@ -16,7 +17,7 @@ pose = (m, t) => {
   return p;
 };
 
-// as the one that it replaces, but a corner may have the normal of the surface as its third and fourth number
+// like the function it replaces, but a corner may have a normal as its third and fourth number
 lathe = (corners, around = 256) => {
   const places = [], normals = [], triangles = [];
   corners.slice(1).forEach(([r1, z1, ...n1], k) => {

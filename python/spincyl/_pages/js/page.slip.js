@@ -1,17 +1,17 @@
-// Bodies that slip: the forces on the contact, whose arrows are in `forces`, the path in two colours, phases on the time line, and a camera that goes
-// along. Pages of motions without friction have no need of this file; where it is there, it comes before the drawing,
+// Bodies that slip: contact forces (page.forces.js has their arrows), a path in two colours, phases on the
+// time line, and a camera that can follow. Pages without friction omit this file. It comes before the drawing
 // and replaces some of its functions.
 
 for (const m of motions) if (m.phases) {
   const whole = new Uint16Array(bytes(m.forces)), n = whole.length / 5;
   const read = (i, k) => m.lows[k] + (m.highs[k] - m.lows[k]) * (whole[5 * i + k] / 0xffff);
-  // slip and friction along the lean and across it, normal force: straight lines between even times
+  // slip and friction along and across the lean, and normal force, interpolated between equally spaced times
   m.rubs = t => {
     const x = Math.min(Math.max((t - m.first) / (m.last - m.first), 0), 1) * (n - 1), i = Math.min(Math.floor(x), n - 2);
     return [0, 1, 2, 3, 4].map(k => read(i, k) + (x - i) * (read(i + 1, k) - read(i, k)));
   };
   const presses = Array.from({ length: n }, (_, i) => read(i, 4)).sort((a, b) => a - b);
-  m.press = Math.max(1e-9, presses[n >> 1]); // a usual N
+  m.press = Math.max(1e-9, presses[n >> 1]); // the median of N
   m.slips = t => m.phases.findLast(([begin], i) => begin <= t || i === 0)[1] === 1;
   m.runs = times => m.phases.map(([t, kind]) => [t > m.first ? knot(t, times) : 0, kind ? "friction" : "trace"]);
 }
@@ -24,10 +24,10 @@ pose = (m, t) => {
   return Object.assign(p, { normal: [0, 0, n], friction: [c * f - s * g, s * f + c * g, 0], usual: m.press, slips, speed: Math.hypot(u, v) });
 };
 
-// what the clock says besides
+// further text of the clock
 doing = (m, p) => m.phases ? "\n" + (p.slips ? `slipping ${(p.speed * data.speed).toPrecision(3)} ${data.speeds}`.replaceAll(" ", "\u00a0") : "rolling") : "";
 
-// switches for both forces, and for the camera: what slips goes far, and is then looked at where it is
+// switches for the forces, and for a camera that follows a body that moves far
 for (const [id, text, before] of [["forces", '<i class="normal">N</i> <i class="friction">F</i>', $("path").parentNode], ["follow", "follow", null]]) {
   const label = document.createElement("label");
   label.innerHTML = `<input type="checkbox" id="${id}"> ${text}`;
@@ -37,7 +37,7 @@ document.querySelector("details p").append(" Where a body slips its path is red,
 $("forces").ariaLabel = "normal force and friction";
 $("forces").checked = true;
 let asPlanned = false;
-// the middle of what is seen: the body's place, or of a photograph that of where it goes meanwhile
+// centre of the view: the body, or for a photograph the middle of its path while the shutter is open
 aim = (m, p) => {
   const alone = Math.max(...motions.map(m => Math.hypot(1, m.ell))), all = Math.max(...motions.map(m => m.reach));
   if (!asPlanned) { $("follow").checked = all > 2.5 * alone; asPlanned = true; }
@@ -49,7 +49,7 @@ aim = (m, p) => {
   return [0, 1].map(k => (Math.min(...places.map(x => x[k])) + Math.max(...places.map(x => x[k]))) / 2).concat(m.middle[2]);
 };
 
-// under the slider a line for each motion that slips, on which slipping is red
+// under the slider a line for each motion with phases, red while the body slips
 {
   const slider = $("time"), line = document.createElement("div"), share = t => 100 * Math.min(Math.max((t - first) / (last - first), 0), 1);
   line.id = "line";

@@ -1,4 +1,4 @@
-// What is said of a stone: how fast it spins about the vertical, and when its spin turns back.
+// Text about a stone: its spin about the vertical, and when the spin reverses.
 
 const spun = motions.reduce((most, m) => m.axes ? m.t.reduce((most, t) => Math.max(most, Math.abs(pose(m, t).omega[2] * data.rate)), most) : most, 1e-9);
 const places = Math.max(0, 2 - Math.floor(Math.log10(spun)));

@@ -1,22 +1,23 @@
-// Stones: poses from quaternions, and surfaces that are stretched. Pages without one have no need of this file; where it
-// is there, it comes before the drawing and replaces some functions.
+// Stones: poses from quaternions, and stretched surfaces. Pages without stones omit this file. It comes
+// before the drawing and replaces some of its functions.
 
 for (const m of motions) if (m.axes) m.wide = 0.005 * Math.sqrt(Math.hypot(1, m.ell) * (Math.hypot(1, m.ell) + 0.5 * Math.hypot(m.high[4] - m.low[4], m.high[5] - m.low[5])));
 
-// the numbers between two knots are x, y, z of a quaternion of any length, the place, and w
+// numbers of a pose: x, y, z of a quaternion of any length, the place, and w of the quaternion
 const ofRevolution = pose;
 pose = (m, t) => {
   if (!m.axes) return ofRevolution(m, t);
   const [[a, b, c, left, ahead, d], [ra, rb, rc, , , rd]] = interpolate(m, t), size = Math.hypot(a, b, c, d);
   const [x, y, z, w] = [a, b, c, d].map(q => q / size);
-  const axes = [ // of the stone, in the laboratory
+  const axes = [ // axes of the stone in the laboratory
     [1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w)],
     [2 * (x * y - z * w), 1 - 2 * (x * x + z * z), 2 * (y * z + x * w)],
     [2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)],
   ];
   const of = v => along(...v.map((part, i) => [part, axes[i]]));
   const up = axes.map(e => e[2]), depth = Math.hypot(...up.map((n, i) => n * m.axes[i]));
-  const arm = of(up.map((n, i) => -(m.axes[i] ** 2) * n / depth - m.offset[i])), centre = [left, ahead, -arm[2]]; // to the lowest point
+  // from the centre of mass to the lowest point
+  const arm = of(up.map((n, i) => -(m.axes[i] ** 2) * n / depth - m.offset[i])), centre = [left, ahead, -arm[2]];
   const omega = along([2 * w / size, [ra, rb, rc]], [-2 * rd / size, [x, y, z]], [2 / size, cross([x, y, z], [ra, rb, rc])]);
   const turning = axes.map(e => dot(e, omega));
   return {
@@ -26,7 +27,7 @@ pose = (m, t) => {
   };
 };
 
-// what comes with how it is stretched is that of a stone
+// a profile with `axes` belongs to a stone, whose surface is stretched
 const unstretched = lathe;
 lathe = (p, around) => {
   if (!p.axes) return unstretched(p, around);
@@ -38,7 +39,7 @@ lathe = (p, around) => {
   return { ...made, mark: p.mark };
 };
 
-// it has turned as often about the vertical as its spin tells
+// the turns of a stone about the vertical are the integral of its spin
 const closed = closing;
 closing = (m, t, turns) => {
   if (!m.axes || turns === Infinity) return closed(m, t, turns);

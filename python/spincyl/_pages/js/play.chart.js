@@ -1,4 +1,4 @@
-// Inclination, normal force and friction demand over time, one above the other on one time axis.
+// Inclination, normal force and friction demand against time, in tracks above a common time axis.
 
 const charted = $("chart");
 let kept = null, span = [0, 1];
@@ -9,9 +9,9 @@ const TRACKS = [
 ];
 const MEANING = { "θ": "inclination", N: "normal force per weight", "μ": "friction it takes, F/N" };
 
-// The greatest value on an axis that begins at 0: one of a few steps, which a hand that drags leaves only for a greater one, or
-// for one of less than a third. It holds all values but those of a fall or a hop, of which a moment would flatten all others:
-// they are cut, and the greatest that was found is written where it is.
+// The upper end of an axis that begins at 0 is one of a few steps. While the user drags, it changes only to a
+// larger step, or to one below a third. It covers all values, except in a fall or a hop, whose peak would
+// flatten the rest: there the curve is cut, and the largest value is written at the peak.
 const STEPS = [1, 1.5, 2, 3, 5, 7, 10];
 const stepAbove = x => { const ten = 10 ** Math.floor(Math.log10(x)); return ten * STEPS.find(k => k * ten >= 0.98 * x); };
 function limit(track, sorted) {
@@ -43,7 +43,7 @@ function drawChart() {
     g.fillStyle = colour("well");
     g.fillRect(span[0], top, span[1] - span[0], bottom - top);
     g.save();
-    g.globalAlpha = 0.16; // where it slips
+    g.globalAlpha = 0.16; // while the body slips
     g.fillStyle = colour("friction");
     for (let k = 0, from = -1; k < all.length; k++) {
       const slips = !s.stone && all[k][OF_ROW.slips] > 0;
@@ -77,7 +77,7 @@ function drawChart() {
   if (kept.width !== w || kept.height !== h) { kept.width = w; kept.height = h; } else kept.getContext("2d").clearRect(0, 0, w, h);
   kept.getContext("2d").drawImage(charted, 0, 0);
 }
-// where we are: what has been drawn, and a line
+// the present time: the stored drawing, and a line
 function drawCursor() {
   if (!kept || !(tracked.last > tracked.first)) return;
   const g = charted.getContext("2d"), x = span[0] + (span[1] - span[0]) * Math.min(1, Math.max(0, (now - tracked.first) / Math.max(1e-9, tracked.last - tracked.first)));

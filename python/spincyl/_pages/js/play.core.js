@@ -1,14 +1,15 @@
-// What the page asks of the core: numbers go in, a code comes back, and the answer lies in the core's memory.
+// Calls of the core: arguments are numbers, the return value is a code, and results lie in the core's memory.
 
 const $ = id => document.getElementById(id);
-const { core, given, dusk } = window.spincyl; // from the loader: the exports, what the page begins with, and day or night
+// from the loader: the exports of the core, the initial state, and day or night
+const { core, given, dusk } = window.spincyl;
 
-const rubs = "phases" in core; // whether this core knows friction and losses
+const rubs = "phases" in core; // whether this core has friction and losses
 const TURN = 2 * Math.PI, deg = Math.PI / 180;
-// an answer, copied: memory may move with the next question
+// a copy of the results, since memory may move at the next call
 const answer = () => Array.from(new Float64Array(core.memory.buffer, core.out(), core.len()));
 const ask = (name, ...numbers) => { const code = core[name](...numbers); return { code, out: answer() }; };
-// an answer in rows
+// results in rows of `wide` numbers
 const rowsOf = (name, wide, ...numbers) => {
   const { code, out } = ask(name, ...numbers);
   return code ? [] : Array.from({ length: out.length / wide }, (_, i) => out.slice(wide * i, wide * (i + 1)));
@@ -20,7 +21,7 @@ const OF_START = ["integrated", "ending", "ends", "period", "low", "high", "phi"
 const OF_ROW = { t: 0, theta: 1, phi: 5, psi: 6, x: 7, y: 8, normal: 9, demand: 10, along: 11, across: 12, energy: 13, slips: 14, lost: 15 };
 const labelled = (names, numbers) => Object.fromEntries(names.map((name, i) => [name, numbers[i]]));
 
-// why there is no answer
+// reasons for a code without results
 const REFUSED = {
   2: "There is no such body: its axial moment of inertia is more than twice the transverse one.",
   5: "This motion cannot be followed: its equations lose their digits here.",

@@ -1,4 +1,4 @@
-// A picture and a film of what is shown: the map, the body, the tracks and the sentence in one frame.
+// Pictures and films of the page: the map, the body, the tracks and the sentence in one frame.
 
 const page = document.createElement("canvas");
 let recorder = null;

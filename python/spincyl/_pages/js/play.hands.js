@@ -1,6 +1,7 @@
-// Hands: sliders, the point on the map, the body itself, time, keys, presets and the address.
+// Controls: sliders, the point on the map, the body, time, keys, presets and the address.
 
-// name of a number, words, least, greatest, from the slider to the number and back, how it is told
+// name of a number, label, least, greatest, conversions from the slider to the number and back, text of the
+// number
 const same = { to: x => x, from: x => x }, square = { to: x => x ** 2, from: Math.sqrt }, power = { to: x => 10 ** x, from: Math.log10 };
 const KNOBS = [
   { name: "ell", text: "aspect ratio ℓ", low: 0, high: () => Math.sqrt(8), ...square, told: x => decimal(x, 3) },
@@ -18,7 +19,7 @@ const KNOBS = [
 ];
 if (!rubs) {
   for (const law of ["coulomb", "viscous"]) delete KNOBS.find(knob => knob.name === "contact").choices[law];
-  KNOBS.splice(KNOBS.findIndex(knob => knob.name === "mu"), 4); // with c and the losses, which come after it
+  KNOBS.splice(KNOBS.findIndex(knob => knob.name === "mu"), 4); // also removes c and the losses, which follow
   $("flick").hidden = true;
 }
 const form = $("knobs");
@@ -33,12 +34,13 @@ for (const knob of KNOBS) {
   } else {
     knob.input = label.appendChild(Object.assign(document.createElement("input"), { type: "range", step: "any", min: knob.low }));
     knob.output = label.appendChild(document.createElement("output"));
-    knob.output.ariaLive = "off"; // the slider tells its value itself
+    knob.output.ariaLive = "off"; // the slider announces its value itself
     knob.input.oninput = () => turned(knob, knob.to(knob.input.valueAsNumber));
   }
   knob.input.id = "knob-" + knob.name;
 }
-// the circle of the centre: how much the precession differs from that of the centre at rest, in its shares
+// applies the value of a knob; for the centre's circle it is the relative change of the precession from its
+// value with the centre at rest
 function turned(knob, value) {
   held_ = true;
   if (knob.name === "rate") {
@@ -50,13 +52,14 @@ function turned(knob, value) {
     change({ precession: Math.abs(value) < 0.02 ? NaN : still * (1 + value) });
   } else change({ [knob.name]: value });
 }
-// sliders show what is
+// sets the sliders to the present state
 function knobs() {
   const rest = Number.isFinite(s.precession) && ask("at_rest", s.theta), still = rest && !rest.code ? rest.out[8] : 1;
   for (const knob of KNOBS) {
     const value = knob.name === "rate" ? here.rate : knob.name === "precession" ? (Number.isFinite(s.precession) ? s.precession / still - 1 : 0) : s[knob.name];
     const off = knob.name === "mu" ? s.contact !== "coulomb" : knob.name === "c" ? s.contact !== "viscous" : knob.name === "loss" ? s.law === "none" : ["ell", "bore", "fillet"].includes(knob.name) && !isTube() || knob.name === "rate" && (s.w || !(here.rate > 0));
-    if (["mu", "c"].includes(knob.name)) knob.label.hidden = (s.contact === "viscous") !== (knob.name === "c"); // one law of friction at a time
+    // shows only the coefficient of the present law of friction
+    if (["mu", "c"].includes(knob.name)) knob.label.hidden = (s.contact === "viscous") !== (knob.name === "c");
     knob.label.classList.toggle("off", off);
     knob.input.disabled = off && knob.name !== "rate";
     if (knob.choices) { knob.input.value = value; continue; }
@@ -87,7 +90,7 @@ map.onpointerdown = e => {
 };
 map.onpointermove = e => { if (map.hasPointerCapture(e.pointerId)) drag(e); };
 
-// ---- the body itself: who takes it tilts it, who takes the table turns the view
+// ---- the body: dragging the body tilts it, dragging the table turns the view
 const turnsView = { down: canvas.onpointerdown, move: canvas.onpointermove, up: canvas.onpointerup };
 let tilting = null;
 function onBody(e) {
@@ -179,7 +182,7 @@ addEventListener("keydown", e => {
   if (keys[key]) { keys[key](); e.preventDefault(); }
 });
 
-// ---- the legend, and what is there in the beginning
+// ---- the legend, and the initial state
 for (const code of [7, 5, 6, 4, 1]) {
   const item = $("legend").appendChild(document.createElement("li"));
   item.append(Object.assign(document.createElement("canvas"), { width: 34, height: 22 }), REGIONS[code].name);
@@ -194,7 +197,7 @@ function legend() {
 const still = matchMedia("(prefers-reduced-motion: reduce)");
 panelled(live);
 dusk.onchange = () => requestAnimationFrame(() => { legend(); redrawn(); }); // a notebook may hide its frames while it changes its theme
-// what an address says besides the state: the time at which it opens paused, and how long the shutter is open
+// parts of an address besides the state: the time at which the page opens paused, and the exposure
 function arrive({ t = 0, expose = 0 }) {
   delete s.t;
   delete s.expose;
@@ -205,7 +208,7 @@ function arrive({ t = 0, expose = 0 }) {
   show();
 }
 addEventListener("hashchange", e => {
-  const { hash } = new URL(e.newURL); // what is there now may be our own again
+  const { hash } = new URL(e.newURL); // meanwhile the page may have set an address of its own
   if (hash === address()) return;
   const found = parsed(hash), heard = odd;
   scene(found);
@@ -215,21 +218,23 @@ addEventListener("hashchange", e => {
   arrive(found);
 });
 const first = parsed(location.hash);
-Object.assign(s, "ell" in first || first.stone ? BLANK : {}, first); // an address that names a body stands for itself
-held_ = true; // the first map is a coarse one
+// an address that names a body is complete: the other numbers are defaults
+Object.assign(s, "ell" in first || first.stone ? BLANK : {}, first);
+held_ = true; // the first map is coarse
 if (!still.matches) play_(true);
 solve({ restart: true });
 arrive(s);
-// the body is seen first; whoever is observed anew is drawn
+// the body is drawn first; the observer draws the other parts when it starts
 requestAnimationFrame(() => requestAnimationFrame(() => { legend(); new ResizeObserver(redrawn).observe(document.querySelector("main")); }));
-// for those who look in, and for a notebook
+// for tests and notebooks
 Object.assign(window.spincyl, {
   state: () => ({ ...s }), set: (part, more = { restart: true }) => change(part, more), timing, at: () => now, head: () => head, here: () => here, body: () => body, ghosts: () => ghosts,
   look: lookOf, pose: t => pose(live, t), rows: () => rows, map: () => ({ names: chart.names, widest: widest(), steep: steep() }), solve,
   tracked: () => tracked.rows, tracks: () => TRACKS.filter(track => track.zero).map(({ name, most, cut }) => ({ name, most, cut })),
   on: () => project(live, pose(live, now).centre, stage.clientWidth, stage.clientHeight),
 });
-// in a frame of a notebook: the state there is asked for and shown, and what a hand does here is told there, twenty times a second
+// In the frame of a notebook: requests the notebook's state, and sends changes by the user, at most twenty a
+// second
 if (window.parent !== window) {
   const post = words => window.parent.postMessage({ spincyl: words }, "*");
   const plain = () => Object.fromEntries(Object.entries(s).map(([name, value]) => [name, Number.isNaN(value) ? null : value]));
@@ -245,7 +250,7 @@ if (window.parent !== window) {
     heard = words;
     change(words, { restart: true });
   });
-  // what was heard is not told again, but for what can only be shown otherwise
+  // does not send back a state just received, unless the page cannot show it as it is
   window.spincyl.told = () => {
     const echo = heard && shown(heard);
     heard = null;

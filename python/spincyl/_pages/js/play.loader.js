@@ -1,4 +1,4 @@
-// Opens the page: the core, and style, page and script, all in one packed text.
+// Opens the page: unpacks the core, the style, the page and the script.
 
 const $ = id => document.getElementById(id);
 const fail = why => {
@@ -7,7 +7,8 @@ const fail = why => {
   for (const shown of document.querySelectorAll("header, main")) shown.hidden = true;
   document.documentElement.dataset.failed = why;
 };
-// seven bits in each character; one above 127 is one of three that a page cannot hold, and the next one
+// seven bits in each character; one above 127 stands for a character that a page cannot contain, and the next
+// one
 function bytesOf(text) {
   const bytes = new Uint8Array(text.length * 7 >> 2), unfit = [0, 13, 60];
   let n = 0;
@@ -19,7 +20,8 @@ function bytesOf(text) {
   }
   return bytes.subarray(0, n);
 }
-// two pieces out of a text: a head has the length of the deflated stream and of the first piece; the stream has a checksum
+// two byte strings from a text: a header has the lengths of the deflated stream and of the first string; the
+// stream has a checksum
 async function unpacked(text) {
   if (!window.DecompressionStream) throw Error("This page needs DecompressionStream, which this browser does not have.");
   try {
@@ -36,7 +38,7 @@ async function started(core) {
 async function opened() {
   const [packed, text] = await unpacked($("packed").textContent), core = await started(packed);
   const [style, page, script] = new TextDecoder().decode(text).split("\0");
-  // what is seen comes at once, so that nothing moves
+  // inserts all visible parts at once, so that nothing moves
   document.head.append(Object.assign(document.createElement("style"), { textContent: style }));
   document.body.insertAdjacentHTML("afterbegin", page);
   document.querySelector("h1").textContent = document.title;

@@ -1,7 +1,8 @@
-// The map of inclination over aspect ratio: regions told by hatching, name and hue, lines, the finger, and ghosts.
+// The map of inclination against aspect ratio: regions with hatching, name and colour; lines; the present
+// state; and other inclinations with the same rate, the ghosts.
 
-// for each code of the core: its name, its colour and that of its hatching by day and by night, and what is hatched, in a
-// pattern that comes again after 72 pixels
+// for each code of the core: name, colour and colour of the hatching by day and by night, and whether a pixel
+// is hatched, in a pattern with a period of 72 pixels
 const REGIONS = {
   7: { name: "stable", colour: ["#bfe0c8", "#1d4a35"], ink: ["#bfe0c8", "#1d4a35"], hatch: () => false },
   5: { name: "stable because it rolls", colour: ["#ffe9a8", "#57460f"], ink: ["#c99a00", "#a5852a"], hatch: (x, y) => (x + y) % 9 < 1.2 },
@@ -11,7 +12,8 @@ const REGIONS = {
   2: { name: "too close to decide", colour: ["#8f8b84", "#777d87"], ink: ["#8f8b84", "#777d87"], hatch: () => false },
   0: { name: "no such body", colour: ["#f6f4ef", "#16181c"], ink: ["#d5d2ca", "#30343b"], hatch: (x, y) => y % 12 < 1 },
 };
-// columns of `curves`: the aspect ratio, theta0, thetaInf, and so many folds and ridges, and boundaries of two kinds
+// columns of `curves`: the aspect ratio, theta0, thetaInf, then `SOME` folds, ridges, and boundaries of two
+// kinds
 const SOME = 5, COLUMNS = 3 + 4 * SOME, LINES = [["θ₀", 1, 1], ["θ∞", 2, 1], ["fold", 3, SOME], ["ridge", 3 + SOME, SOME]];
 const map = $("map"), chart = { picture: null, key: "", names: [], curves: [], codes: null };
 const rgba = text => (255 << 24 | parseInt(text.slice(5, 7), 16) << 16 | parseInt(text.slice(3, 5), 16) << 8 | parseInt(text.slice(1, 3), 16)) >>> 0;
@@ -23,7 +25,7 @@ function context2d(c) {
   return [c.getContext("2d"), w, h, ratio];
 }
 
-// codes of the regions, w along the aspect ratio; of a body that is no tube the same column everywhere
+// codes of the regions, in w columns of aspect ratio; for a body that is no tube all columns are equal
 function codesOf(w, h) {
   if (isTube()) {
     core.map(w, h, 0, widest(), 0, Math.PI / 2, s.bore, s.fillet);
@@ -37,7 +39,7 @@ function codesOf(w, h) {
   return codes;
 }
 
-// a place for the name of each region: the middle of the largest box of every fourth cell that holds nothing else
+// a position for the name of each region: the middle of its largest rectangle, on a grid of every fourth cell
 function namesOf(codes, wide, high) {
   const found = [], w = wide >> 2, h = high >> 2;
   for (const code of [7, 5, 6, 4, 1]) {
@@ -52,8 +54,8 @@ function namesOf(codes, wide, high) {
   return found;
 }
 
-// the regions as a picture as fine as the screen; coarser while a hand moves what the whole map hangs on, most so of
-// rounded rims, whose boundaries take roots of high polynomials
+// The regions at the resolution of the screen; coarser while the user drags a quantity that changes the whole
+// map, coarsest for rounded rims, whose boundaries are roots of high polynomials.
 function paintMap(coarse) {
   const night = dusk.matches ? 1 : 0, [, w, h, ratio] = context2d(map);
   const key = [isTube() ? [widest(), s.bore, s.fillet] : [body.ell, body.i1, body.i3, body.fillet, body.most], night, w, h].join(), rough = key + coarse;
@@ -82,7 +84,7 @@ function paintMap(coarse) {
   timing.paint = performance.now() - began;
 }
 
-// from the numbers to the screen: shares of its width and height
+// from numbers to shares of the screen's width and height
 const across = ell => isTube() ? ell / widest() : 0.5 + ell - s.ell, upward = theta => 1 - theta / steep();
 
 function pen(g, ratio) {
@@ -95,7 +97,7 @@ function pen(g, ratio) {
   };
   return { colour, em, write };
 }
-// θ0, θ∞, folds and ridges, with the names of all, onto the picture of the regions
+// draws theta0, thetaInf, folds, ridges and all names onto the picture of the regions
 function drawLines() {
   const { width: w, height: h } = chart.picture, g = chart.picture.getContext("2d"), ratio = Math.min(2, devicePixelRatio || 1), { colour, em, write } = pen(g, ratio);
   const ends = [], used = [];
@@ -116,7 +118,7 @@ function drawLines() {
   g.setLineDash([]);
   for (const { code, size, x, y } of chart.names) if (size * h > 2 * em) {
     const lines = size * h > 7 * em || code !== 5 ? [REGIONS[code].name] : ["stable", "because it rolls"], wide = 0.31 * em * Math.max(...lines.map(line => line.length));
-    if (size * h < wide) continue; // what is too narrow for its name has it below the map
+    if (size * h < wide) continue; // the legend below the map names a region that is too narrow
     const middle = Math.min(Math.max(w * x, wide), w - wide), top = Math.max(em, h * (1 - y) - 0.6 * em * (lines.length - 1));
     lines.forEach((line, i) => write(line, middle, top + 1.2 * em * i, "center", "600"));
     used.push([middle, top + 0.6 * em * (lines.length - 1), wide + 1.5 * em]);
@@ -157,7 +159,7 @@ function drawMap(coarse) {
   dot(y, 10, true);
 }
 
-// the inclination of a line near one that a finger points to, on its allowed side, and the line's name
+// the inclination on a line close to the pointed one, on the line's allowed side, and the name of the line
 const SIDE = { "θ₀": 1e-4, "θ∞": 4e-3 };
 function snapped(ell, theta, near) {
   const [row] = isTube() ? rowsOf("curves", COLUMNS, 2, ell, ell, s.bore, s.fillet) : [];

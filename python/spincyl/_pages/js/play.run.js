@@ -1,13 +1,13 @@
-// From a change by hand to what is seen: solved at most once a picture, drawn at each.
+// From a change by the user to the picture: solves at most once per frame, draws in each.
 
 const timing = { opened: performance.now() };
 let asked = false, changed = null, before = null, on = "", held_ = false, resting = 0;
 const show = () => { if (!asked) { asked = true; requestAnimationFrame(frame); } };
 
-// the one way in: a part of the state, from wherever it comes; `rest` when a hand has let go
+// every change of the state goes through here; `more` has options of `solve`, and the text `on`
 function change(part, more = {}) {
   const tilts = ["theta", "ell", "bore", "fillet", "i1", "i3", "precession"].some(name => name in part && !Object.is(part[name], s[name]));
-  if (tilts && !("w" in part)) s.w = null; // a state that was given by itself belonged to what was there before
+  if (tilts && !("w" in part)) s.w = null; // a given state belonged to the previous body
   for (const [name, value] of Object.entries(part)) {
     const [low, high] = RANGE[name] || [];
     s[name] = typeof value === "number" && Number.isFinite(value) && low !== undefined ? Math.min(high, Math.max(low, value)) : value;
@@ -20,17 +20,17 @@ function change(part, more = {}) {
 }
 
 function solve({ restart, name = "" } = {}) {
-  $("preset").value = name; // what is changed by hand is no scene any more
+  $("preset").value = name; // a state changed by hand is no preset
   const began = performance.now();
   begin();
   if (!body.code) dress();
-  // what has no end goes on from where it is; what ends begins anew
+  // a motion without an end continues from the present time; any other starts anew
   if (restart || !lasting() || now > head.lasts || head.integrated || head.ending) now = 0;
   live.span = lasting() ? windowed() : 1;
   look(Math.floor(now / live.span) * live.span);
   timing.solve = performance.now() - began;
   say(on);
-  if (timing.first) { drawChart(); drawMap(held_); } // in the beginning they come after the first picture
+  if (timing.first) { drawChart(); drawMap(held_); } // at the beginning, these follow the first picture
   knobs();
   $("slow").value = SLOW.find(x => x >= s.slow) ?? 1000;
   forget();
@@ -39,9 +39,9 @@ function solve({ restart, name = "" } = {}) {
   solve.later = setTimeout(settled, 250);
   window.spincyl.told?.();
 }
-// the same on another screen, or by night
+// redraws everything for another screen or theme
 function redrawn() { drawMap(held_); drawChart(); forget(); show(); }
-// a moment after the last change: the fine map, the path with more places, the address
+// shortly after the last change: the fine map, a finer path, the address
 function settled() {
   held_ = false;
   drawMap(false);

@@ -1,19 +1,21 @@
-// What is seen and why, in sentences.
+// The text about the body: its behaviour, and the reason for it.
 
 const decimal = (x, d = 2) => Number.isFinite(x) ? x.toFixed(d) : "–", degrees = (x, d = 1) => decimal(x / deg, d) + "°";
-const rated = rate => decimal(rate, 3) + (sized() ? ` (${decimal(hertzOf(rate))} Hz)` : ""); // the reduced one, and its hertz
+// the reduced rate, and the rate in hertz if the size is known
+const rated = rate => decimal(rate, 3) + (sized() ? ` (${decimal(hertzOf(rate))} Hz)` : "");
 const ENDINGS = ["", "its face lands on the table", body => body.fillet === 1 ? "the other end lands" : "the other rim lands: it lies on its side", "it lifts off", "rolling needs more friction than there is", "", "no single force obeys the law of friction", "its contact point stops", "the computation gives up: something changes ever faster"];
-// whether what comes late hangs on a push that is smaller than the digits of the start
+// whether the later motion depends on a disturbance below the digits of the start
 const unsure = () => known() && !(head.error < 1e-3);
 const ending = () => { const e = ENDINGS[head.ending]; return typeof e === "function" ? e(body) : e; };
 
-// where a body has no rate: between both lines, or on one side of the one that it has; a ball balances nowhere
+// inclinations without a steady state: between both lines, or on one side of the only line; a ball balances
+// nowhere
 function band() {
   const { theta0, limit } = body, two = Number.isFinite(theta0) && Number.isFinite(limit), line = two ? 0 : Number.isFinite(theta0) ? theta0 : limit;
   if (two) return `between θ₀ = ${degrees(theta0)} and θ∞ = ${degrees(limit)}`;
   return Number.isFinite(line) ? `${s.theta < line ? "below" : "above"} ${line === theta0 ? "θ₀" : "θ∞"} = ${degrees(line)}` : "here";
 }
-// what comes of a slip, as far as it is followed
+// the outcome of a slip, as far as it was computed
 function slowed() {
   if (s.contact === "viscous") return "friction fades with the slip, so that it slips less and less and never rolls.";
   if (known() && head.slipTime < head.lasts) return "friction slows its rim down until the rim is at rest; then it rolls.";
@@ -72,8 +74,8 @@ function say(on) {
   const others = ghosts.map(degrees);
   const button = (textContent, title, onclick) => Object.assign(document.createElement("button"), { type: "button", textContent, title, onclick });
   $("others").replaceChildren(...ghosts.map((theta, i) => button(`also at ${others[i]}`, "the same rate at another inclination", () => change({ theta }))));
-  // the mystery of the paper, one tap away
+  // the still symbols of the paper, with one click
   if (known() && !s.w && !without && here.letters > 1.5 && here.letters < 40) $("others").append(button("see letters stand still", "open the shutter for one turn", () => { $("shutter").value = "1"; $("shutter").onchange(); }));
-  clearTimeout(say.later); // who listens is told when the hand rests
+  clearTimeout(say.later); // screen readers get the text when the user pauses
   say.later = setTimeout(() => { $("said").textContent = `${$("what").textContent}. ${$("because").textContent} Aspect ratio ${decimal(s.ell)}, inclination ${degrees(s.theta)}. ${$("details").textContent}`; }, 700);
 }

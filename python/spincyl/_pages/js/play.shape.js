@@ -1,16 +1,17 @@
-// What a body looks like, after `_studio/shape.py`, which a test holds it to: profiles for the lathe, and the two letters.
+// The drawn shape of a body: profiles for the lathe, and the two letters. A test compares it with
+// `_studio/shape.py`.
 
 const IVORY = [0.87, 0.85, 0.8], SHADE = [0.72, 0.7, 0.66], BLUE = [0, 0.36, 0.65], ORANGE = [0.8, 0.3, 0];
 const DISK = 0.4, QUARTER = 32, ROD = 0.06, STEM = 0.15, LONGEST = 2.5, LIFT = 0.006;
 
-// b: ell, bore (NaN of a general body), fillet, most (where it lands)
+// b: ell, bore (NaN for a general body), fillet, most (the inclination at which it lands)
 const kindOf = b => b.fillet < 1 ? "cylinder" : !Number.isNaN(b.bore) ? b.ell > 0 ? "capsule" : "ball" : b.ell > 0 && Math.abs(b.most - Math.PI / 2) < 1e-9 ? "balls" : "ball";
 const landing = b => Number.isFinite(b.most) ? b.most : b.ell > 0 && kindOf(b) !== "ball" ? Math.PI / 2 : Math.PI;
 function skin(b) {
   const lower = kindOf(b) === "ball" || b.fillet > 0 && Number.isNaN(b.bore) && landing(b) > Math.PI / 2 + 1e-9, bore = Math.min(b.bore, 0.98);
   return { middle: lower ? -b.ell : 0, wall: lower ? 0 : b.ell, fillet: b.fillet, rim: 1 - b.fillet, bore: bore > 0 ? bore : 0 };
 }
-// corners on a circle, each with its normal, from one latitude to another
+// corners on a circle with their normals, from one latitude to another
 function arc(r, z, radius, from, to, pieces) {
   return Array.from({ length: pieces + 1 }, (_, i) => {
     const a = from + (to - from) * i / pieces, x = Math.abs(a) > Math.PI / 2 - 1e-12 ? 0 : Math.cos(a), y = a ? Math.sin(a) : 0;
@@ -26,7 +27,7 @@ function profiles(b) {
   ];
   if (kindOf(b) === "ball") return ball(b, middle);
   const low = -Math.PI / 2;
-  if (kindOf(b) === "balls") { // one ends where the rod begins, in a point, or where they cut each other
+  if (kindOf(b) === "balls") { // each ball ends in a point where the rod begins, or where the balls intersect
     const lower = arc(0, -wall, 1, low, wall > 1 ? Math.acos(ROD) : Math.asin(Math.min(1, wall)), 2 * QUARTER);
     const upper = lower.map(([r, z, n, k]) => [r, -z, n, -k]).reverse();
     return [of(IVORY, ...lower), ...wall > 1 ? [of(SHADE, lower.at(-1).slice(0, 2), upper[0].slice(0, 2))] : [], of(IVORY, ...upper)];
@@ -39,7 +40,7 @@ function profiles(b) {
     ...bore ? [of(SHADE, [bore, top], [bore, bottom])] : [],
   ];
 }
-// one ball, and a stem or a plate that lands where the body does
+// a ball, and the stem or plate on which it lands
 function ball(b, middle) {
   const land = landing(b), c = Math.cos(land), s = Math.sin(land), far = (1 - STEM) / Math.max(-c, 1e-9), low = -Math.PI / 2;
   const root = [STEM, middle + Math.sin(Math.acos(STEM))], of = (colour, ...corners) => ({ colour, corners });
@@ -51,23 +52,25 @@ function ball(b, middle) {
   return [of(IVORY, ...whole), of(SHADE, root, ...[[STEM, near], [wide, near], [wide, distant], [0, distant]].map(([r, z]) => [r, middle + z]))];
 }
 
-// rows of points that cover a letter of height 1: across and along
+// rows of points that cover a letter of height 1: coordinates across and along
 function glyph(letter, strips) {
   const rowed = (n, at) => Array.from({ length: strips + 1 }, (_, j) => Array.from({ length: n }, (_, i) => at(i, j / strips)));
   if (letter === "O") return [rowed(49, (i, j) => { const a = TURN * i / 48, r = 0.3 + 0.2 * j; return [r * Math.cos(a), r * Math.sin(a)]; })];
-  const half = 0.5 * Math.SQRT2 - 0.1, n = 9 + 4 * strips; // a bar and two halves that leave the crossing to it
+  // a bar, and two halves of the other bar that leave out the crossing
+  const half = 0.5 * Math.SQRT2 - 0.1, n = 9 + 4 * strips;
   return [[1, -half, half], [-1, 0.1, half], [-1, -half, -0.1]].map(([way, from, to]) => rowed(n, (i, j) => {
     const x = from + (to - from) * i / (n - 1), side = 0.2 * (0.5 - j);
     return [(x - way * side) / Math.SQRT2, (way * x + side) / Math.SQRT2];
   }));
 }
-// a letter near the rim of the upper (end = 1) or the lower end, on the wall or on a disk's face
+// a letter near the rim of the upper (end = 1) or lower end, on the wall or on the face of a disk
 function mark(b, letter, end) {
   const { middle, wall, fillet, rim, bore } = skin(b), bend = fillet * Math.PI / 4;
   const high = Math.min(1, 0.8 * (wall + bend)), wide = Math.min(0.6, 0.85 * (rim - bore)), onWall = wall + bend >= DISK || high > wide, size = onWall ? high : wide;
   const places = [], normals = [], triangles = [];
   for (const strip of glyph(letter, fillet ? 4 : 1)) {
-    if ((end > 0) === onWall) strip.reverse(); // seen from outside, the letters of the two ends run in opposite senses
+    // seen from outside, the letters on the two ends run in opposite senses
+    if ((end > 0) === onWall) strip.reverse();
     const base = places.length / 3, n = strip[0].length;
     for (const row of strip) for (const [x, y] of row) {
       const u = size * x, v = size * y;
@@ -89,5 +92,5 @@ function mark(b, letter, end) {
   return { colour: letter === "O" ? BLUE : ORANGE, places, normals, triangles };
 }
 const lookOf = b => ({ turned: profiles(b), marks: [mark(b, "O", 1), mark(b, "X", -1)] });
-// how far the surface reaches from the centre of mass
+// largest distance of the surface from the centre of mass
 const farOf = turned => Math.max(...turned.flatMap(p => p.corners.map(([r, z]) => Math.hypot(r, z))));

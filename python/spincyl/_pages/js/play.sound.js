@@ -1,4 +1,5 @@
-// The sound of the whirr, after `_studio/sound.py`: noise through a few resonances, loudest when the contact comes round.
+// The sound of the whirr, after `_studio/sound.py`: noise through a few resonances, loudest when the contact
+// passes the listener.
 
 let audio = null;
 const RESONANCES = [[1150, 0.03, 1], [2710, 0.02, 0.6], [4890, 0.012, 0.35]];
@@ -15,7 +16,7 @@ function hear() {
   $("hear").ariaPressed = true;
   show();
 }
-// as loud as the contact is fast, and nearer when it comes round to the one who listens
+// louder with the speed of the contact along the body, and when the contact passes the listener
 function heard(p, row) {
   if (!audio) return;
   const slides = Math.abs(row[4] - row[2] / Math.tan(row[1])) * (1 - body.fillet + body.fillet * Math.sin(row[1]));

@@ -1,4 +1,4 @@
-// The stage: the one motion that the renderer of the recorded page draws, with poses from the core.
+// The stage: the renderer of the recorded page draws a single motion, with poses from the core.
 
 const stage = $("stage");
 
@@ -13,7 +13,7 @@ function placed(row) {
 }
 let latest = null;
 const placeAt = t => rowAt(Math.min(Math.max(t, 0), head?.lasts ?? t)) || latest;
-// with the forces on the contact: N, and what accelerates the centre, by differences of its place
+// adds the contact forces: N, and friction from second differences of the centre's position
 function pose(m, t) {
   const row = placeAt(t), p = placed(row), h = 2e-3;
   if (s.contact !== "smooth" && head.lasts > 2 * h) {
@@ -23,7 +23,7 @@ function pose(m, t) {
   return p;
 }
 
-// the surface of the body, if it is another one
+// makes the surface anew if the body has changed
 let drawnBody = "";
 function dress() {
   const b = { ...body, bore: isTube() ? s.bore : NaN }, key = [b.ell, b.bore, b.fillet, b.most].join();
@@ -42,24 +42,24 @@ function clothe({ turned, marks }) {
   return turned;
 }
 
-// the middle of what is seen: the body itself, where it goes far
+// centre of the view: the body, if it moves far
 aim = (m, p) => live.far ? [...(p || pose(live, now)).centre.slice(0, 2), m.middle[2]] : m.middle;
 
-// how much of the motion is looked at once: some nutations, some turns
+// duration of the part of a motion that is shown at once: some nutations, some turns
 function windowed() {
   const turns = 3 * TURN / Math.max(Math.abs(here.precession || head.phi / head.period || 0), 0.2);
   const nods = Number.isFinite(head.period) ? 4 * head.period : 0;
   return Math.min(head.lasts, Math.max(2, Math.min(60, Math.max(turns, nods))));
 }
 const STATES = 300;
-// what the tracks show: of a motion that is integrated all of it, which costs nothing
+// rows for the tracks: an integrated motion is shown completely, since its rows are stored
 let tracked = { rows: [], first: 0, last: 1 };
-// the one row of a body that stands still at the start, with its centre where that of a motion is
+// the only row of a body at rest at the start; its centre is placed as in a motion
 function standing() {
   const { w1, w2, w3 } = start, out = body.ell * Math.sin(s.theta) - (1 - body.fillet) * Math.cos(s.theta);
   return [0, s.theta, w1, w2, w3, 0, 0, out, 0, NaN, NaN, 0, 0, 0, 0, 0];
 }
-// rows from one time on, the path through them, and what the camera must hold
+// loads rows from a time on, the path through them, and the extent that the camera must show
 function look(first, many = STATES) {
   live.first = lasting() ? first : 0;
   live.last = lasting() ? Math.min(head.lasts, first + live.span) : 0;
@@ -74,7 +74,7 @@ function look(first, many = STATES) {
   live.runs = () => rows.reduce((runs, row, i) => { const colour = row[14] ? "friction" : "trace"; if (runs.at(-1)?.[1] !== colour) runs.push([i, colour]); return runs; }, []);
   trace(live, rows.map(row => row[0]), poses);
   const alone = Math.hypot(1, live.ell);
-  live.far = live.reach > 2.2 * alone; // what goes far is looked at where it is
+  live.far = live.reach > 2.2 * alone; // the camera follows a body that moves far
   reach = live.far ? 1.6 * alone : live.reach;
   half = live.far ? held(1.6 * alone, live.middle[2] / 0.45) : live.half;
 }

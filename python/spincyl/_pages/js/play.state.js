@@ -1,21 +1,22 @@
-// The state of the page: what is set by hand. It lives in the address, and everything else follows from it.
+// The state of the page, as the user has set it. The address stores it, and everything else follows from it.
 
-// what each number is, its least and its greatest value; the order is that of the address
+// least and greatest value of each number, in the order of the address
 const RANGE = {
-  __proto__: null, // an address may name what every object has, as "toString"
+  __proto__: null, // no inherited keys: an address may contain "toString"
   ell: [-1, 8], bore: [0, 1], fillet: [0, 1], i1: [0, 1e3], i3: [0, 1e3], end: [0, Math.PI], theta: [1e-3, Math.PI], kick: [-3, 3],
   precession: [-20, 20], mu: [0, 5], c: [0, 20], loss: [0, 1], until: [1, 2000], slow: [1, 1000], t: [0, 1e9], expose: [0, 3], radius: [1e-6, 1e3], mass: [1e-9, 1e9], gravity: [1e-6, 1e6], twist: [-0.3, 0.3], spin: [-50, 50],
 };
-const CONTACTS = ["rolling", "smooth", "coulomb", "viscous"]; // by their numbers in the core
-// the laws of loss in the order of the core, with their words
+const CONTACTS = ["rolling", "smooth", "coulomb", "viscous"]; // in the order of the codes of the core
+// the laws of loss in the order of the core: name and label
 const LAWS = { none: "none", "dry-contour": "dry contour", "viscous-contour": "viscous contour", "rolling-resistance": "rolling resistance", drilling: "drilling", "air-linear": "air, linear", "air-quadratic": "air, quadratic", "air-film": "air film", "boundary-layer": "boundary layer" };
-// i1 and i3 belong to a body that is no tube, end is where it lands, w a state that is not steady: w1, w2, w3 and the slip;
-// radius, mass and gravity are those of a body that is measured, in metres, kilograms and m/s^2; a rattleback is a stone with
-// its semi-axes in metres, its twist in radians and its spin in radians per second
+// i1 and i3 belong to a body that is no tube, end is the inclination at which it lands, w is a state that is
+// not steady: w1, w2, w3 and the slip. radius, mass and gravity belong to a measured body, in metres,
+// kilograms and m/s^2. stone has the semi-axes of a rattleback in metres, twist is in radians and spin in
+// radians per second.
 const BLANK = { ell: 2.5, bore: 0, fillet: 0, i1: NaN, i3: NaN, end: NaN, theta: 1.3, kick: 0, precession: NaN, contact: "rolling", mu: 0.3, c: 0.3, law: "none", loss: 1e-3, w: null, until: 60, slow: 20, radius: NaN, mass: NaN, gravity: 9.80665, stone: null, twist: 2 * Math.PI / 180, spin: -5 };
 const s = { ...BLANK, ...given };
 
-// in a page of prose a part of the page is a figure: the body, and the map or the tracks beside it
+// a figure in a page of text shows the body, and the map or the tracks beside it
 const figure = /[#&]figure=(body|map|chart)\b/.exec(location.hash)?.[1];
 if (figure) document.documentElement.dataset.figure = figure;
 
@@ -31,14 +32,14 @@ function address() {
   }
   return "#" + (figure ? [`figure=${figure}`, ...words] : words).join("&");
 }
-// the size of the body, where it is known: then times are told in seconds, and rates in hertz, too
+// the size of the body, if known: then times are shown in seconds, and rates also in hertz
 const size = () => s.stone ? Math.max(...s.stone) : s.radius, sized = () => Number.isFinite(size()), second = () => Math.sqrt(size() / s.gravity);
 const timed = (t, d = 2) => sized() ? `${decimal(t * second(), d + 1)} s` : `${decimal(t, d)} √(R/g)`;
 const hertz = turning => turning / (TURN * second()), hertzOf = rate => hertz(rate / Math.sqrt(body.i3));
-// units of time in a second as it is played: of a body of that size, or of one of R = 1 cm
+// units of time per second at real speed; without a size, for a body with R = 1 cm
 const real = () => sized() ? 1 / second() : Math.sqrt(9.80665 / 0.01);
 
-// what an address says, but for what makes no sense: that is told until a hand changes something
+// the state in an address, without invalid parts, which are reported until the user changes anything
 let odd = [];
 function parsed(hash) {
   const found = {};
@@ -54,15 +55,16 @@ function parsed(hash) {
       if (found[name] !== numbers[0]) odd.push(`${name}=${text} (from ${short(low)} to ${short(high)}${["theta", "end"].includes(name) ? " radians" : ""})`);
     } else odd.push(`${name}=${text}`);
   }
-  // an address is short: what lands on its side does so at a right angle
+  // addresses have few digits: an inclination next to a right angle becomes one
   for (const name of ["theta", "end"]) if (Math.abs(found[name] - Math.PI / 2) < 1e-6) found[name] = Math.PI / 2;
-  if (found.stone) found.slow ??= 1; // a stone is seen in real time
+  if (found.stone) found.slow ??= 1; // a stone is shown in real time
   return found;
 }
 const isTube = () => !Number.isFinite(s.i1);
-const steep = () => isTube() ? Math.PI / 2 : Math.min(body.most || Math.PI / 2, Math.PI); // as far as theta goes
+// largest inclination
+const steep = () => isTube() ? Math.PI / 2 : Math.min(body.most || Math.PI / 2, Math.PI);
 
-// ---- what follows from it
+// ---- derived quantities
 
 let body = {}, start = null, here = {}, head = null, said = "", ghosts = [], rows = [];
 
@@ -75,9 +77,10 @@ function embody() {
 const lossy = () => s.law !== "none";
 function damped() { const law = Object.keys(LAWS).indexOf(s.law) - 1; core.losses(Math.max(law, 0), law < 0 ? 0 : s.loss); }
 
-// how many rows are kept of a motion that is integrated: to ask for these again costs nothing; how long an exact one is shown
+// number of stored rows of an integrated motion, which can be read again at no cost; duration of an exact
+// motion
 const ROWS = 601, LONG = 1e4;
-// from the numbers set by hand to a motion that can be asked for any time; what cannot be has a reason
+// from the state to a motion that can be evaluated at any time; an impossible state gets a reason
 function begin() {
   head = null;
   ghosts = [];
@@ -100,9 +103,9 @@ function begin() {
   else head = { code: 0, ...labelled(OF_START, begun.out) };
 }
 const known = () => head && !head.code;
-// a motion that ends where it begins has no length, and what has no answer none either: then the body stands still
+// whether the motion has a duration: without one, or without results, the body stands still
 const lasting = () => known() && head.lasts > 0;
-// its row at a time, or at its end
+// the row of the motion at a time, or at its end
 function rowAt(t) {
   if (!lasting()) return latest;
   const { code, out } = ask("follow", 1, t, t);

@@ -1,15 +1,15 @@
-// A rattleback: how it is drawn, spun and told. Pages without friction have no need of this file; where it is there, it
-// comes before the hands and replaces some functions.
+// A rattleback: drawing, controls and text. Pages without friction omit this file. It comes before the
+// controls and replaces some functions.
 
-// how many rows are kept of how many seconds, and by how much it is pushed about both axes
+// number of stored rows and the seconds that they cover, and the initial tilt about both axes
 const KEPT = 2401, SHOWN = 20, PUSH = 0.02 * deg;
 const usual = TRACKS.slice();
 let stone = null;
 
-// a row: t, the six numbers of a pose and their rates, the spin, how far axes 1 and 2 point upward, and N
+// a row: t, the six numbers of a pose and their rates, the spin, the upward components of axes 1 and 2, and N
 const spun = row => row[13] / second(), leaning = (row, k) => Math.asin(row[14 + k]) / deg;
 const lengthwise = () => stone.axes[0] < stone.axes[1] ? 1 : 0;
-const ROCKS = ["side to side", "end to end"]; // the slower one first
+const ROCKS = ["side to side", "end to end"]; // the slower mode first
 const SPUN = [
   { name: "spin", unit: "", of: spun, colour: "omega", dash: [], both: true, least: 0.5, line: 0 },
   { name: "end", unit: "°", of: row => leaning(row, lengthwise()), colour: "theta", dash: [], both: true, least: 0.05, line: 0 },
@@ -17,7 +17,7 @@ const SPUN = [
 ];
 Object.assign(MEANING, { spin: "angular velocity about the vertical, rad/s", end: "rocking " + ROCKS[1], side: "rocking " + ROCKS[0] });
 
-// half of the needle on its plane and of the stripe round its hull, as `_stone_shape` in Python has them
+// half of the needle on its plane and of the stripe round the hull, as in `_studio/stone_shape.py`
 function stoneMark(colour, end) {
   const lift = 0.004, n = QUARTER + 9, normals = [[0, 0, 1], [0, 0, 1], [0, 0, 1]], places = [[0.88, 0, lift], [0, 0.34, lift], [0, -0.34, lift]], triangles = [0, 1, 2];
   for (const share of [0.84, 0.895, 0.95]) for (let i = 0; i < n; i++) {
@@ -48,7 +48,7 @@ begin = () => {
   const [a, b, c, i, j, k, l, m, n, x, y, z] = out, axes = [a, b, c], offset = [x, y, z], found = [], back = [];
   stone = { axes, centre: offset.map(x => -x) };
   for (let at = 18; at < out.length; at += 17) found.push(out.slice(at, at + 17));
-  // where it would lift off it is followed no longer; it has turned back where its spin comes to a tenth of the first one
+  // the rows end where the stone lifts off; a reversal counts at a tenth of the first spin
   const ends = found.findIndex(row => row[16] < 0), kept = ends < 0 ? found : found.slice(0, Math.max(2, ends));
   let zero = 0, side = found[0][13], was = side;
   for (const [i, row] of kept.entries()) {
@@ -76,7 +76,7 @@ dress = () => {
   drawnBody = key;
   clothe(stoneLook());
 };
-// what is seen is still the other kind until the change has been solved
+// the previous kind of body is shown until a change has been solved
 const rattles = () => !!head?.kept;
 windowed = () => rattles() ? head.lasts : plainly.windowed();
 rowAt = t => rattles() ? null : plainly.rowAt(t);
@@ -100,7 +100,7 @@ clocked = row => {
   return `t = ${timed(now, 1)}\nspin ${turning(pose(live, now).omega[2] / second())} rad/s${past === undefined ? "" : `\nturned back at ${timed(past, 1)}`}${live.over ? "\nit lifts off" : ""}`;
 };
 
-// ---- what is said
+// ---- text
 const senses = spin => spin < 0 ? "clockwise" : "counterclockwise";
 function turnsBack() {
   const [slow, fast] = head.growth.map(x => x / second()), when = head.back[0], way = s.spin ? "Spun " + senses(s.spin) : "Not spun";
@@ -128,7 +128,7 @@ say = on => {
   say.later = setTimeout(() => { $("said").textContent = `${what}. ${why} Twist ${degrees(s.twist)}. ${$("details").textContent}`; }, 700);
 };
 
-window.spincyl.stone = stoneLook; // for those who look in
+window.spincyl.stone = stoneLook; // for tests
 
 // ---- the slider and the buttons
 $("knobs").insertAdjacentHTML("afterend", `<form id="twirl" autocomplete="off"><label><span>twist of its mass against its shape</span><input type="range" id="twist" min="-6" max="6" step="0.1"><output aria-live="off"></output></label>
