@@ -90,8 +90,8 @@ class Motion:
     event : Event or None
         The first thing that the model does not cover: its `ending`, `time` and `state`.
     method : str
-        "exact", "rk4" (a fixed step) or "dop853" (steps of eighth order within a tolerance, which friction and
-        losses always need).
+        "exact", "rk4" (a fixed step) or "dop853" (steps of eighth order within a tolerance; friction and
+        losses always need them).
     error : float
         Estimated absolute error: the largest of theta, w1, w2, w3 at any time, and of the event.
     pose_error : float

@@ -306,7 +306,11 @@ def figure(rows: list[Row], path: Path) -> bool:
 
     from spincyl.plot._style import BLACK, BLUE, GREEN, ORANGE, saved
 
-    style = {"RK4, fixed step": (BLUE, "o-"), "steps within tol": (GREEN, "s-"), "SciPy DOP853": (ORANGE, "^-")}
+    style = {
+        "RK4, fixed step": (BLUE, "o-"),
+        "steps within tol": (GREEN, "s-"),
+        "SciPy DOP853": (ORANGE, "^-"),
+    }
     across = 4
     down = -(-len(rows) // across)
     figure, axes = plt.subplots(
