@@ -67,7 +67,7 @@ def test_launches_are_told_by_speeds_or_by_a_push(capsys):
         and "seconds" not in natural["phases"][0]
     )
     still = launch(*FLICK, "--centre", "0")
-    assert still["phases"][0]["centre_speed"] == 0 and still["slipping"] < known["slipping"]
+    assert still["phases"][0]["centre_speed"] < 2e-15 and still["slipping"] < known["slipping"]
     moving = launch(*FLICK, "--centre", "-0.5m/s")
     assert moving["phases"][0]["centre_speed_metres_per_second"] == pytest.approx(0.5, rel=1e-12)
     pushed = launch(*FLICK[:9], "--mass", "20g", "--impulse", "50mNs", "--angle", "60deg", "--table", "0")

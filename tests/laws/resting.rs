@@ -52,6 +52,21 @@ fn a_uniform_ball_rolls_out_and_spins_on_whatever_axis_is_called_its_own() {
 }
 
 #[test]
+fn a_weighted_ball_that_rolling_resistance_holds_stays_at_rest_on_a_table_with_friction() {
+    let ball = Body::rounded(0.1, 0.3818, 0.3818, 1.0).unwrap();
+    let start = State { theta: 0.42471, w1: 0.0, w2: 0.0, w3: 0.0 };
+    // The weight pulls with the couple 0.1 sin(theta); the coefficients are above and below that.
+    for (k, stays) in [(0.454, true), (0.0413, true), (0.0411, false), (0.0, false)] {
+        let losses = Losses::of(Law::RollingResistance, k);
+        let ask = Ask { losses, ..Ask::on(Friction::coulomb(0.247)) };
+        let motion = roll_with(&ball, start, &[0.0, 1.0], &ask, || true).unwrap().unwrap();
+        let event = motion.event.map(|event| (event.ending, event.time, event.state));
+        let rest = Some((Ending::Stops, 0.0, start));
+        assert!((event == rest) == stays && motion.event.is_none() != stays, "{k}: {event:?}");
+    }
+}
+
+#[test]
 fn a_weighted_ball_that_is_let_go_rocks_to_rest_and_stays_there() {
     // the time and place of the stop by a separate planar model, integrated by SciPy at 1e-12
     let ball = Body::rounded(-0.3, 0.5, 0.3, 1.0).unwrap();

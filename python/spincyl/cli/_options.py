@@ -88,8 +88,7 @@ _PLAY = f"{_play.TEXT}{_BODY}"
 _REPORT = """\
 Measure the error of the final state against the time that a trajectory takes, on this machine: RK4
 over steps, steps of eighth order within tolerances, the exact solution and, where SciPy is
-installed, its DOP853. With
-a folder, writes report.md, and report.png where matplotlib is installed."""
+installed, its DOP853. With a folder, writes report.md, and report.png where matplotlib is installed."""
 
 _REPORT_EXAMPLES = """\
 spincyl report

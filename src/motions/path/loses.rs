@@ -18,7 +18,9 @@ impl<const N: usize> BodyWalk<'_, N> {
         let on = (&self.of.body, self.contact());
         let mut flow = LossyFlow::new(on, mu, &self.ask.losses, self.of.slide.tol, &self.of.state);
         let halt = flow.at_start(&self.of.state);
-        let rests = halt.is_none() && flow.rests(&self.of.state);
+        // The friction that would hold a moving contact point is not that of a body at rest.
+        let may_rest = halt.is_none_or(|halt| halt == Halt::Slips && self.of.is_still());
+        let rests = may_rest && flow.rests(&self.of.state);
         self.of.lossy = Some(LossyPhase { flow, since: self.at[7], still: 0, count: 0 });
         match halt {
             _ if rests => {

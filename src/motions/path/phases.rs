@@ -1,7 +1,7 @@
 //! The phases of a body of revolution: their beginnings, their flows and their ends.
 
 use super::check;
-use super::lossy::LossyFlow;
+use super::lossy::{LossyFlow, REST};
 use super::slide::Slide;
 use super::slow::BodySlips;
 use super::tail::LastTurns;
@@ -57,6 +57,14 @@ pub(super) struct LossyPhase {
     pub(super) since: f64,
     pub(super) still: u32,
     pub(super) count: usize,
+}
+
+impl BodyPhases {
+    /// Whether the body is at rest.
+    pub(super) fn is_still(&self) -> bool {
+        let State { w1, w2, w3, .. } = self.state;
+        [w1, w2, w3].into_iter().all(|w| w.abs() < REST)
+    }
 }
 
 impl<'a, const N: usize> BodyWalk<'a, N> {
@@ -242,7 +250,16 @@ impl<const N: usize> Phases<N> for BodyPhases {
     }
 
     fn rests(walk: &BodyWalk<'_, N>) -> Standstill {
-        standstill(&walk.of.body, &walk.of.state, &walk.friction(), &walk.ask.losses)
+        let (of, losses) = (&walk.of, &walk.ask.losses);
+        // A body that rolling resistance keeps at rest sticks: the law of a slip would let the resistance push it.
+        let held = || {
+            let on = (&of.body, walk.contact());
+            LossyFlow::new(on, f64::INFINITY, losses, of.slide.tol, &of.state).rests(&of.state)
+        };
+        if of.is_still() && !losses.is_none() && held() {
+            return Standstill::Sticks;
+        }
+        standstill(&of.body, &of.state, &walk.friction(), losses)
     }
     fn lets_go(walk: &BodyWalk<'_, N>) -> Standstill {
         let_go(&walk.of.body, &walk.of.state, &walk.friction(), &walk.ask.losses)
