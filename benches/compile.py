@@ -1,7 +1,9 @@
 """Cost of compiling: wall time, CPU time, and the memory of the largest compiler process.
 
 Compiles the wheel, and new programs in empty folders that use the crate, each from nothing, with its
-dependencies. Needs cargo, and maturin for the wheel; ten minutes in all.
+dependencies. Each time of the processor stands beside a yardstick that any machine has: a release build of nalgebra
+alone, compiled twice before the others (the smaller is taken) and once after them. Needs cargo, and maturin for the
+wheel; ten minutes.
 usage: python benches/compile.py
 """
 
@@ -14,6 +16,7 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
+YARDSTICK = ["nalgebra@=0.35.0", "--no-default-features", "--features", "std"]
 NO_NOALIAS = "-C llvm-args=-enable-noalias-to-md-conversion=false"
 #: Options of `cargo add`, options of `cargo build`, and additions to the environment.
 WAYS = {
@@ -34,25 +37,43 @@ def clean(**more):
     } | more
 
 
-def told(name, words, **how):
-    """Runs a command; prints its wall time, its CPU time, and the memory of the largest process in it."""
+def took(words, **how):
+    """Runs a command; gives its wall time, its CPU time, and the gigabytes of the largest process in it."""
     began = time.perf_counter()
     process = subprocess.Popen(words, stdout=subprocess.DEVNULL, **how)
     _, code, used = os.wait4(process.pid, 0)
     if code:
         raise RuntimeError(f"{' '.join(words)} ended with {code}")
     seconds, busy = time.perf_counter() - began, used.ru_utime + used.ru_stime
+    return seconds, busy, used.ru_maxrss / 1e6
+
+
+def told(name, times, yard):
+    """Prints what a command took, its CPU time also in units of the yardstick's."""
+    seconds, busy, memory = times
     print(
-        f"{name:46} {seconds:5.0f} s, {busy:5.0f} s of processor, {used.ru_maxrss / 1e6:5.2f} GB", flush=True
+        f"{name:46} {seconds:5.0f} s, {busy:5.0f} s of processor = {busy / yard:5.2f} yardsticks, {memory:5.2f} GB",
+        flush=True,
     )
 
 
+def built(added, how, more):
+    """What a program that uses something took to build."""
+    with tempfile.TemporaryDirectory() as folder:
+        return took(["cargo", "build", "--quiet", *how], cwd=program(folder, added), env=clean(**more))
+
+
+def yardstick():
+    """A release build of nalgebra alone, of one version and with one set of features."""
+    return built(YARDSTICK, ["--release"], {})
+
+
 def program(folder, added):
-    """An empty program that uses the crate."""
+    """An empty program with what `cargo add` is told to add."""
     app = Path(folder) / "app"
     for words in (
         ["init", "--quiet", "--vcs", "none", str(app)],
-        ["add", "--quiet", "--manifest-path", str(app / "Cargo.toml"), *added, "--path", str(ROOT)],
+        ["add", "--quiet", "--manifest-path", str(app / "Cargo.toml"), *added],
         ["fetch", "--quiet", "--manifest-path", str(app / "Cargo.toml")],
     ):
         subprocess.run(["cargo", *words], env=clean(), check=True)
@@ -63,15 +84,17 @@ def main():
     argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     ).parse_args()
+    yards = [yardstick() for _ in range(2)]
+    yard = min(busy for _, busy, _ in yards)
+    told("the yardstick: nalgebra alone, in release", yards[0], yard)
     with tempfile.TemporaryDirectory() as folder:
         words = [sys.executable, "-m", "maturin", "build", "--quiet", "--release", "--out", folder]
-        told("the wheel", words, cwd=ROOT, env=clean(CARGO_TARGET_DIR=f"{folder}/target"))
+        told("the wheel", took(words, cwd=ROOT, env=clean(CARGO_TARGET_DIR=f"{folder}/target")), yard)
         (wheel,) = Path(folder).glob("*.whl")
         print(f"{'':46} {wheel.stat().st_size / 1e6:.1f} MB")
     for name, (added, how, more) in WAYS.items():
-        with tempfile.TemporaryDirectory() as folder:
-            app = program(folder, added)
-            told(name, ["cargo", "build", "--quiet", *how], cwd=app, env=clean(**more))
+        told(name, built([*added, "--path", str(ROOT)], how, more), yard)
+    told("the yardstick again", yardstick(), yard)
 
 
 if __name__ == "__main__":
