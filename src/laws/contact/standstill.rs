@@ -19,7 +19,7 @@ use super::lossy::{self, Held, Lossy};
 use super::slip::{Friction, Slipping};
 use super::{Contact, Force, force};
 use crate::laws::body::Body;
-use crate::laws::loss::{Law, Losses, Ways, holds, rounded};
+use crate::laws::loss::{Law, Losses, Ways, rounded};
 use crate::laws::state::State;
 use crate::methods::roots::Trig;
 use crate::numbers::Sum;
@@ -181,10 +181,10 @@ fn rolling(body: &Body, y: &State, losses: &Losses) -> (Force, Option<Ways>) {
         law.losses.ways = Some(ways);
         law.at((s, c), y.precession(), w, held)
     };
-    let mut ways = Ways { contour, holds_drilling: true, ..Ways::default() };
+    let ways = Ways { contour, ..Ways::default() }.holding_drilling();
     let mut acted = under(ways, Held::Drilling);
-    if !holds(acted.held) {
-        ways = Ways { drilling: -acted.held[0].signum(), holds_drilling: false, ..ways };
+    let ways = ways.drilling_stopped(acted.held);
+    if !ways.holds_drilling {
         acted = under(ways, Held::Nothing);
     }
     let [normal, along, across] = acted.force;

@@ -100,8 +100,26 @@ pub(crate) struct Ways<T = f64> {
     pub drilling: T,
     /// The sign of w2 of a body that only rocks, otherwise 0; in lanes no body only rocks.
     pub rocking: f64,
-    /// Whether dry friction holds the drilling of a body that slips, by the couple about the vertical that this needs.
+    /// Whether dry friction holds the drilling, by the couple about the vertical that this needs.
     pub holds_drilling: bool,
+}
+
+impl Ways {
+    /// These signs with the drilling held.
+    pub fn holding_drilling(self) -> Self {
+        Self { drilling: 0.0, holds_drilling: true, ..self }
+    }
+
+    /// These signs with a drilling that begins where the body is pushed, from the couple that would hold it.
+    pub fn drilling_from(self, push: f64) -> Self {
+        Self { drilling: -push.signum(), holds_drilling: false, ..self }
+    }
+
+    /// These signs where the drilling has stopped: dry friction holds it if its limit suffices, otherwise it begins
+    /// anew. `needs` has the couple that holds the drilling, and the limit of friction.
+    pub fn drilling_stopped(self, needs: [f64; 2]) -> Self {
+        if holds(needs) { self.holding_drilling() } else { self.drilling_from(needs[0]) }
+    }
 }
 
 /// The losses in the form that the equations of motion use, of one body or of eight in lanes.

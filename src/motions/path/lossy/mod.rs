@@ -75,8 +75,6 @@ pub(crate) struct LossyFlow {
     /// The law without the couples along the contour.
     bare: Lossy<f64>,
     hold: Hold,
-    /// Whether dry friction holds the drilling.
-    holds_drilling: bool,
     /// Whether the flow starts from a state in which w_z vanishes exactly.
     starts_still: bool,
     /// Allowances for the rounding of psi', and of w_z (of w2 if the body only rocks), where these
@@ -105,14 +103,12 @@ impl LossyFlow {
         let mu = if contact == Contact::Smooth { f64::INFINITY } else { mu };
         let (hold, ways) = (Hold::No, Ways::default());
         let bare = Lossy { losses: law.losses.off_the_contour(), ..law };
-        let (holds_drilling, watch) = (false, true);
-        let (settled_way, starts_still, slack) = (0.0, false, [0.0; 2]);
+        let (settled_way, starts_still, slack, watch) = (0.0, false, [0.0; 2], true);
         let mut lossy = Self {
             law,
             sloped,
             bare,
             hold,
-            holds_drilling,
             starts_still,
             slack,
             ways,
@@ -128,7 +124,7 @@ impl LossyFlow {
     }
 
     pub fn holds_drilling(&self) -> bool {
-        self.holds_drilling
+        self.ways.holds_drilling
     }
 
     /// From now on only a landing of the face ends the flow.
@@ -147,7 +143,6 @@ impl LossyFlow {
         let (spin, drilling) = (y.w3 - c / s * y.w1, s * y.w1 + c * y.w3);
         let way = |x: f64| if x == 0.0 { 0.0 } else { x.signum() };
         self.ways = Ways { contour: way(spin), drilling: way(drilling), ..Ways::default() };
-        self.holds_drilling = false;
         self.hold = Hold::No;
         if y.w1 == 0.0 && y.w3 == 0.0 {
             self.only_rocks(angle, y.w2);
@@ -191,27 +186,25 @@ impl LossyFlow {
         let held = surely || holds(needs);
         self.hold = if held { Hold::Dry } else { Hold::No };
         self.turn(Ways { contour: if held { 0.0 } else { needs[0].signum() }, ..self.ways });
-        if held && self.holds_drilling {
+        if held && self.ways.holds_drilling {
             self.only_rocks(angle, w[1]);
         }
     }
 
     /// Lets the body only rock, since nothing turns it any more.
     fn only_rocks(&mut self, angle: (f64, f64), w2: f64) {
-        (self.hold, self.holds_drilling) = (Hold::Planar, false);
+        self.hold = Hold::Planar;
         self.turn(Ways::default());
         let falls = self.response(angle, 0.0, [0.0, w2, 0.0], Held::Nothing).w[1];
         let rocking = if w2 != 0.0 { w2.signum() } else { falls.signum() };
         self.turn(Ways { rocking, ..Ways::default() });
     }
 
-    /// Lets dry friction hold the drilling if its limit suffices; else the drilling begins where the
-    /// body is pushed.
+    /// Lets dry friction hold the drilling, or lets the drilling begin anew.
     fn stop_drilling(&mut self, angle: (f64, f64), w: [f64; 3]) {
-        self.turn(Ways { drilling: 0.0, ..self.ways });
+        self.turn(self.ways.holding_drilling());
         let needs = self.response(angle, w[0] / angle.0, w, Held::Drilling).held;
-        self.holds_drilling = holds(needs);
-        self.turn(Ways { drilling: if self.holds_drilling { 0.0 } else { -needs[0].signum() }, ..self.ways });
+        self.turn(self.ways.drilling_stopped(needs));
     }
 
     /// Whether the friction demand has jumped beyond mu N, as happens where a dry couple has just reversed.
@@ -261,17 +254,16 @@ impl LossyFlow {
                 self.stop_contour(angle, w, settled);
                 return self.hold == Hold::Dry;
             }
-            Halt::Drilling if self.holds_drilling => {
+            Halt::Drilling if self.ways.holds_drilling => {
                 let push = self.response(angle, w[0] / angle.0, w, Held::Drilling).held[0];
-                self.holds_drilling = false;
-                self.turn(Ways { drilling: -push.signum(), ..self.ways });
+                self.turn(self.ways.drilling_from(push));
             }
             // A body that neither runs along its rim nor drills does not turn at all.
             Halt::Drilling if self.hold != Hold::No => self.only_rocks(angle, w[1]),
             Halt::Drilling => self.stop_drilling(angle, w),
             Halt::Rocking => return !self.rocks_back(angle),
             Halt::Rests => return self.rests(y),
-            Halt::Settles if self.holds_drilling => self.only_rocks(angle, w[1]),
+            Halt::Settles if self.ways.holds_drilling => self.only_rocks(angle, w[1]),
             Halt::Settles => {
                 (self.hold, self.settled_way) = (Hold::Settled, self.ways.contour);
                 self.turn(Ways { contour: 0.0, ..self.ways });
@@ -381,7 +373,7 @@ impl LossyFlow {
 
     fn held<T: Real>(&self, like: T) -> Held<T> {
         match self.hold {
-            Hold::No if self.holds_drilling => Held::Drilling,
+            Hold::No if self.ways.holds_drilling => Held::Drilling,
             Hold::No => Held::Nothing,
             _ => Held::Contour(like.splat(0.0)),
         }

@@ -107,7 +107,7 @@ impl LossyFlow {
         };
         let drilling = if self.hold == Hold::Planar {
             if self.has(Law::RollingResistance) { number(self.ways.rocking) * w2 + slack[1] } else { one }
-        } else if self.holds_drilling {
+        } else if self.ways.holds_drilling {
             within
         } else if self.has(Law::Drilling) && self.ways.drilling != 0.0 {
             number(self.ways.drilling) * (s * w[0] + c * w[2]) + slack[1]

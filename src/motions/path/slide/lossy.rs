@@ -7,8 +7,7 @@ use crate::laws::contact::grip;
 use crate::laws::contact::lossy::DAMPED;
 use crate::laws::contact::slip::{SlipResponse, Slipping};
 use crate::laws::loss::{
-    Couples, GRACE, Kinematics, Law, Losses, NEAR, SLACK, Ways, going, holds, mirrored, rolling_growth,
-    rounded,
+    Couples, GRACE, Kinematics, Law, Losses, NEAR, SLACK, Ways, going, mirrored, rolling_growth, rounded,
 };
 use crate::laws::state::State;
 use crate::methods::flow::FlowPlace;
@@ -50,15 +49,12 @@ impl Slide {
         }
     }
 
-    /// Lets dry friction hold the drilling if its limit suffices; else the drilling begins where the
-    /// body is pushed.
+    /// Lets dry friction hold the drilling, or lets the drilling begin anew.
     fn stop_drilling(&mut self, angle: (f64, f64), w: [f64; 3], slip: [f64; 2], toward: [f64; 2]) {
         let ways = self.law.losses.and_then(|losses| losses.ways).unwrap_or_default();
-        self.turn(Ways { drilling: 0.0, holds_drilling: true, ..ways });
+        self.turn(ways.holding_drilling());
         let needs = self.response(angle, w, slip, toward).held;
-        if !holds(needs) {
-            self.turn(Ways { drilling: -needs[0].signum(), holds_drilling: false, ..ways });
-        }
+        self.turn(ways.drilling_stopped(needs));
     }
 
     pub fn holds_drilling(&self) -> bool {
@@ -111,7 +107,7 @@ impl Slide {
         if halt == Halt::Drilling {
             if before.holds_drilling {
                 let [push, _] = self.response(angle, w, slip, [0.0; 2]).held;
-                self.turn(Ways { drilling: -push.signum(), holds_drilling: false, ..before });
+                self.turn(before.drilling_from(push));
             } else {
                 self.stop_drilling(angle, w, slip, [0.0; 2]);
             }
