@@ -1,10 +1,15 @@
 """Speeds of two builds of the library, best of many runs: many motions, single ones, maps and drifts.
 
-    python benches/beside.py OLDER NEWER        ten minutes
+    python benches/beside.py OLDER NEWER                     ten minutes
+    python benches/beside.py --scenes 20000 OLDER NEWER      whether both give the same answers; a minute
 
 OLDER and NEWER are folders with one build of `spincyl` each, as `pip install --target OLDER some.whl` makes
 them. The builds run in turn, each in a process of its own and on one thread, so that other work on the
 machine affects both. Prints the time of each, per motion or point, and their ratio.
+
+With --scenes the builds compute random scenes of tests/scenes.py instead, each motion alone and all at once.
+Prints how many motions have the same bits, how many end in another way, and how many differ by more than the
+sum of both claims, with their calls. The command fails if there are any of the last two kinds.
 """
 
 import argparse
@@ -12,12 +17,17 @@ import json
 import os
 import subprocess
 import sys
+import tempfile
 import time
+import warnings
+from pathlib import Path
 
 import numpy as np
 
 #: Number of rounds of both builds, and least seconds of a case in each round.
 ROUNDS, SECONDS = 5, 0.2
+#: Number of motions in each random scene.
+FAMILY = 20
 
 
 def cases():
@@ -61,10 +71,26 @@ def cases():
         for may, how in told.items()
     }
 
+    starts = {
+        "narrow": (sc.Body.solid(2.5), sc.State(1.3, 0.7, 0.01, 0.6)),
+        "wide": (sc.Body.solid(1.0), sc.State(0.7, 1.1, 0.4, -0.8)),
+    }
+    stepped = {
+        f"one: {name}, {kind} {size:g}": one(body, y, beyond=True, **{kind: size})
+        for name, (body, y) in starts.items()
+        for kind, sizes in (("tol", (1e-4, 1e-6, 1e-9, 1e-12)), ("step", (1e-2, 1e-3)))
+        for size in sizes
+    }
+    stone = sc.Ellipsoid.rattleback((1.0, 0.15, 0.1), twist=np.radians(2.0))
+    stones = sc.Ellipsoid.rattleback((1.0, 0.15, 0.1), twist=np.radians(np.linspace(0.5, 3.0, 64)))
+
     grid = np.linspace(0.01, 1.5, 1000)
     ells = np.linspace(0.05, 3.0, 100)
     return {
         **all_swings,
+        **stepped,
+        "one: stone": one(stone, stone.spinning(-0.6, pitch=0.02)),
+        "many: stones": (lambda: sweep.roll(stones, stones.spinning(-0.6, pitch=0.02), 10.0), 64),
         "many: near a steady state": many(tube, near),
         "many: exact, any": many(bodies, wide),
         "many: exact, beyond ends": many(bodies, wide, beyond=True),
@@ -111,11 +137,74 @@ def measured():
     return best
 
 
+def answered(count):
+    """Of every motion of random scenes, alone and at once: status, claim, end and states; and how to call it."""
+    sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
+    import scenes
+    from limit import Late, limit
+
+    warnings.simplefilter("ignore")
+    rows, calls = [], []
+    for family in range(count // FAMILY):
+        scene = scenes.draw(np.random.default_rng([1, family]), FAMILY)
+        try:
+            with limit(60):
+                data = scenes.at_once(scene)
+            ends = np.stack([data[x] for x in ("status", "error", "end")], axis=1)
+            together = [(*ends[i], *np.atleast_2d(scenes.states_of(data, i))[-1]) for i in range(FAMILY)]
+        except Late:
+            together = [(-2.0, *[np.nan] * 6)] * FAMILY
+        for i, row in enumerate(together):
+            try:
+                with limit(60):
+                    m = scenes.alone(scene, i)
+                single = (m.status, m.error, m.end, *m.last)
+            except ValueError:
+                single = (-1.0, *[np.nan] * 6)
+            except Late:
+                single = (-2.0, *[np.nan] * 6)
+            rows += [row, single]
+            calls += [f"at once: {scene.call(i)}", f"alone: {scene.call(i)}"]
+    return np.array(rows, float), calls
+
+
+def compare(folders, count):
+    """Compares the answers of two builds; whether they agree."""
+    with tempfile.TemporaryDirectory() as made:
+        jobs = []
+        for k, folder in enumerate(folders):
+            words = [sys.executable, __file__, "--work", "--scenes", str(count), f"{made}/{k}.npz"]
+            jobs.append(subprocess.Popen(words, env=os.environ | {"PYTHONPATH": folder}))
+        if any([job.wait() for job in jobs]):
+            raise RuntimeError("a build did not answer")
+        older, newer = (np.load(f"{made}/{k}.npz") for k in range(2))
+        a, b, calls = older["rows"], newer["rows"], newer["calls"]
+    same = np.array([x.tobytes() == y.tobytes() for x, y in zip(a, b, strict=True)])
+    ends = a[:, 0] != b[:, 0]
+    off = np.nan_to_num(np.abs(a[:, 2:] - b[:, 2:])).max(axis=1)
+    beyond = ~ends & (off > np.nan_to_num(a[:, 1] + b[:, 1], nan=np.inf))
+    print(f"{len(a)} answers: {same.sum()} with the same bits, {ends.sum()} end in another way, ", end="")
+    print(f"{beyond.sum()} differ by more than both claims")
+    for i in np.flatnonzero(ends | beyond)[:30]:
+        print(
+            f"status {a[i, 0]:g} and {b[i, 0]:g}, apart {off[i]:.1e}, {a[i, 1]:.1e} and {b[i, 1]:.1e} claimed"
+        )
+        print(f"    {calls[i]}")
+    return not (ends | beyond).any()
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folders", nargs="*", metavar="FOLDER", help="OLDER NEWER")
+    parser.add_argument("--scenes", type=int, default=0, help="compare the answers to so many random motions")
     parser.add_argument("--work", action="store_true", help=argparse.SUPPRESS)
     given = parser.parse_args()
+    if given.work and given.scenes:
+        rows, calls = answered(given.scenes)
+        np.savez(given.folders[0], rows=rows, calls=calls)
+        return
+    if given.scenes:
+        sys.exit(not compare(given.folders, given.scenes))
     if given.work:
         print(json.dumps(measured()))
         return

@@ -11,10 +11,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import spincyl as sc
-from spincyl._contact import CODES
 from spincyl.sweep import Status
 
-LAWS = tuple(getattr(sc.loss, name) for name in CODES["Law"])
+#: by public names alone, since benches/beside.py draws the same scenes for older builds
+LAWS = tuple(x for x in vars(sc.loss).values() if isinstance(x, type) and sc.loss.Law in x.__bases__)
 CONTACTS = ("rolling", "mu", "smooth", "coulomb", "viscous")
 NUMBERS = ("theta", "w1", "w2", "w3")
 #: only one of the two computations may reach an end so close to the last time
@@ -232,18 +232,27 @@ class Apart(NamedTuple):
     call: str
 
 
+def at_once(scene):
+    """The columns of all motions of a scene, computed by `sc.sweep.roll`."""
+    body, state, how = scene.asked(slice(None))
+    spread = scene.times.size > 1
+    t = scene.times if spread else float(scene.times[0])
+    kept = ("states" if spread else "final", "end")
+    found = sc.sweep.roll(body, state, t, want=kept, tol=scene.tol, threads=1, **how)
+    return {name: found[name].to_numpy() for name in found.data_vars}
+
+
+def states_of(data, i):
+    """The states of motion i of the columns: (times, 4), or (4,) if there is one time."""
+    return np.stack([data[x][i] for x in NUMBERS], axis=-1)
+
+
 def compare(scene):
     """Compare every motion of a scene, at once and alone."""
-    count = len(scene.bodies)
-    body, state, how = scene.asked(slice(None))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        spread = scene.times.size > 1
-        t = scene.times if spread else float(scene.times[0])
-        kept = ("states" if spread else "final", "end")
-        found = sc.sweep.roll(body, state, t, want=kept, tol=scene.tol, threads=1, **how)
-        data = {name: found[name].to_numpy() for name in found.data_vars}
-        for i in range(count):
+        data = at_once(scene)
+        for i in range(len(scene.bodies)):
             yield _compared(scene, i, data)
 
 
@@ -262,7 +271,7 @@ def _compared(scene, i, data):
         # motions without a finite claim may end in any way
         return apart._replace(kind=status in (Status.INVALID, Status.BOUNDED))
     spread = scene.times.size > 1
-    rows = np.stack([data[x][i] for x in NUMBERS], axis=-1)
+    rows = states_of(data, i)
     last = rows[-1] if spread else rows
     if status != one.status:
         near = max(abs(end - one.end), 0.0) <= both + LATE and 0 in apart.status
