@@ -6,7 +6,7 @@ them into metres and seconds, and the motions of a body that is `measured` are i
 """
 
 # The layers from below, one a line. A module imports from its own layer and from those before it, wherever an
-# import stands; only for types may it know any other. `tests/test_house.py` reads this table.
+# import stands; only for types may it know any other. `tests/test_package.py` reads this table.
 #
 # _input     numbers, units, words, threads, whole files: no physics, and nothing else of spincyl
 # .          the thin wrapper of `_core`: bodies, states, motions, laws of friction and loss

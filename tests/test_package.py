@@ -1,0 +1,221 @@
+"""Rules for the Python package: its layers import downward, the wrapper is thin, and no file is long."""
+
+import ast
+import pathlib
+import re
+
+import pytest
+from circles import circle
+
+PACKAGE = pathlib.Path(__file__).parents[1] / "python" / "spincyl"
+CORE = "spincyl._core"
+TRIGONOMETRY = re.compile(r"a?(?:rc)?(?:sin|cos|tan)h?2?|hypot|sincos")
+
+
+def layers():
+    """The layers in `spincyl/__init__.py`, lowest first; "." is the wrapper, "__init__" the front door."""
+    return re.findall(r"^# (\S+) {2,}\S", (PACKAGE / "__init__.py").read_text("utf-8"), re.M)
+
+
+def modules_of_python():
+    """All modules of the package, by name; "spincyl" is the front door."""
+    names = ((path, path.relative_to(PACKAGE.parent).with_suffix("").parts) for path in PACKAGE.rglob("*.py"))
+    return {".".join(words).removesuffix(".__init__"): path for path, words in names}
+
+
+def layer(module):
+    """The layer of a module, by name."""
+    first = module.split(".")[1] if "." in module else "__init__"
+    return "cli" if first == "__main__" else first if first in layers() else "."
+
+
+def asked(text, known):
+    """The modules that a module imports anywhere or names in a string; imports for types do not count."""
+    tree = ast.parse(text)
+    hints = [x for x in ast.walk(tree) if isinstance(x, ast.If) and ast.unparse(x.test) == "TYPE_CHECKING"]
+    unseen = {id(x) for hint in hints for line in hint.body for x in ast.walk(line)}
+    for x in ast.walk(tree):
+        names = []
+        if isinstance(x, ast.ImportFrom):
+            assert not x.level, f"line {x.lineno}: write the whole name of a module"
+            whole = [f"{x.module}.{name.name}" for name in x.names]
+            names = [name if name in known else x.module for name in whole]
+        elif isinstance(x, ast.Import):
+            names = [name.name for name in x.names]
+        elif isinstance(x, ast.Constant) and x.value != "spincyl":  # an argument of import_module or files
+            names = [x.value]
+        if id(x) not in unseen:
+            yield from (name for name in names if name in known)
+
+
+def python_asks():
+    """The imports of each module; the front door imports all layers below it."""
+    known = modules_of_python()
+    names = {*known, CORE}
+    asks = {name: {*asked(path.read_text("utf-8"), names)} - {name} for name, path in known.items()}
+    place = layers().index("__init__")
+    asks["spincyl"] |= {name for name in known if layers().index(layer(name)) < place}
+    return asks
+
+
+def against(asks):
+    """Imports of a higher layer."""
+    order = {name: place for place, name in enumerate(layers())}
+    pairs = ((name, other) for name, others in asks.items() for other in others)
+    return [f"{name} asks {other}" for name, other in pairs if order[layer(name)] < order[layer(other)]]
+
+
+def code_lines(text):
+    """Number of lines with code, without empty lines, comments and docstrings."""
+    blocks = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
+    docs = set()
+    for x in ast.walk(ast.parse(text)):
+        if isinstance(x, blocks) and ast.get_docstring(x, clean=False) is not None:
+            docs |= set(range(x.body[0].lineno, x.body[0].end_lineno + 1))
+    lines = enumerate(text.splitlines(), 1)
+    return sum(bool(re.match(r"\s*[^\s#]", line)) and number not in docs for number, line in lines)
+
+
+def trigonometry(text):
+    """The names of functions that call a trigonometric function."""
+    tree = ast.parse(text)
+    inner = [x for x in ast.walk(tree) if isinstance(x, ast.FunctionDef)]
+    for x in ast.walk(tree):
+        word = x.attr if isinstance(x, ast.Attribute) else x.id if isinstance(x, ast.Name) else ""
+        if TRIGONOMETRY.fullmatch(word):
+            yield next((f.name for f in reversed(inner) if x in [*ast.walk(f)]), "")
+
+
+def test_every_folder_of_the_package_is_a_layer():
+    folders = {path.parent.relative_to(PACKAGE).as_posix() for path in PACKAGE.rglob("*.py")}
+    assert sorted(folders | {"__init__"}) == sorted(layers())
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "from spincyl._body import Body",
+        "def f():\n    from spincyl import _body",
+        "import spincyl._body",
+        "import_module('spincyl._body')",
+        "files('spincyl._body')",
+        "if TYPE_CHECKING:\n    pass\nelse:\n    from spincyl._body import Body",
+    ],
+)
+def test_an_import_is_known_wherever_it_stands(line):
+    assert {*asked(line, {"spincyl", "spincyl._body"})} == {"spincyl._body"}
+    assert not [*asked("if TYPE_CHECKING:\n    from spincyl._body import Body", {"spincyl._body"})]
+
+
+@pytest.mark.parametrize(
+    ("module", "line"),
+    [
+        ("_input.numbers", "from spincyl import _core"),
+        ("_input.numbers", "def f():\n    from spincyl._scale import Scale"),
+        ("_motion", "def f():\n    import spincyl"),
+        ("_motion", "import spincyl as sc"),
+        ("_drift", "from spincyl import view"),
+        ("_drift", "def f():\n    from spincyl import plot"),
+        ("_drift", "from spincyl.sweep._common import in_si"),
+        ("sweep._roll", "from spincyl._studio.poses import span"),
+        ("_studio.frames", "files('spincyl._pages')"),
+        ("data._compare", "def f():\n    from spincyl.plot import comparison"),
+        ("plot._motions", "from spincyl._pages.view import view"),
+        ("_pages.play", "import spincyl"),
+        ("report", "from spincyl.cli import main"),
+    ],
+)
+def test_an_import_against_the_layers_is_seen(module, line):
+    names = {*modules_of_python(), CORE}
+    assert f"spincyl.{module}" in names
+    assert against({f"spincyl.{module}": {*asked(line, names)}})
+
+
+@pytest.mark.parametrize(
+    ("module", "line"),
+    [
+        ("_body", "from spincyl import _core"),
+        ("_body", "from spincyl._input import numbers"),
+        ("_roll", "def f():\n    from spincyl._ellipsoid import Ellipsoid"),
+        ("plot._losses", "def f():\n    from spincyl.data import LossFit"),
+        ("cli._play", "from spincyl import play"),
+        ("__main__", "from spincyl.cli import main"),
+    ],
+)
+def test_an_import_along_the_layers_is_none_against_them(module, line):
+    names = {*modules_of_python(), CORE}
+    assert {*asked(line, names)}
+    assert not against({f"spincyl.{module}": {*asked(line, names)}})
+
+
+def hidden(text):
+    """Whether a text loads modules by names that it does not contain."""
+    calls = [x for x in ast.walk(ast.parse(text)) if isinstance(x, ast.Call)]
+    loads = [x for x in calls if ast.unparse(x.func).split(".")[-1] in ("import_module", "__import__")]
+    return any(not isinstance(arg, ast.Constant) for x in loads for arg in x.args)
+
+
+def test_only_three_places_load_a_module_by_a_name_that_they_are_given():
+    assert hidden("importlib.import_module(f'spincyl.{x}')") and not hidden("import_module('spincyl.plot')")
+    found = {name for name, path in modules_of_python().items() if hidden(path.read_text("utf-8"))}
+    assert found == {"spincyl", "spincyl._upward", "spincyl._input.numbers"}
+
+
+def test_no_module_imports_from_a_layer_above_its_own():
+    asks = python_asks()
+    assert sum(map(len, asks.values())) > 400
+    assert not against(asks)
+
+
+def test_no_modules_of_the_package_import_each_other_in_a_circle():
+    assert not circle(python_asks())
+
+
+def test_each_method_of_a_layer_above_has_one_function_and_each_function_its_method():
+    from spincyl._upward import HOMES, above
+
+    methods = set()
+    for path in modules_of_python().values():
+        methods |= set(re.findall(r"\babove\(\"([\w.]+)\"\)", path.read_text("utf-8")))
+    assert methods == set(HOMES)
+    assert all(callable(above(method)) for method in methods)
+
+
+def test_lines_of_code_are_neither_empty_nor_comments_nor_docstrings():
+    text = '"""A module.\n\nOf two.\n"""\n\n# why\nx = 1  # that\n\n\ndef f():\n    """It."""\n    return """a\nb"""\n'
+    assert code_lines(text) == 4
+
+
+def test_the_wrapper_is_thin_and_no_file_is_long():
+    texts = {name: path.read_text("utf-8") for name, path in modules_of_python().items()}
+    assert not {name: n for name, text in texts.items() if (n := len(text.splitlines())) > 450}
+    top = [path.read_text("utf-8") for path in PACKAGE.glob("*.py")]
+    assert len(top) > 20
+    assert sum(map(code_lines, top)) <= 3000
+
+
+@pytest.mark.parametrize(
+    ("line", "name"),
+    [
+        ("def f(x):\n    return np.sin(x)", "f"),
+        ("def f(x):\n    return math.atan2(x, 1)", "f"),
+        ("class A:\n    def f(self):\n        return np.hypot(1, 2)", "f"),
+        ("from numpy import arccos\ny = arccos(0.5)", ""),
+        ("law = np.tan", ""),
+    ],
+)
+def test_trigonometry_is_known_by_its_names(line, name):
+    assert [*trigonometry(line)] == [name]
+
+
+def test_what_is_no_trigonometry_is_not_taken_for_it():
+    assert not [*trigonometry("x = np.since(1) + math.inf + distance(2) + np.pi + cost")]
+
+
+def test_the_wrapper_leaves_trigonometry_to_the_core():
+    found = {
+        f"{path.stem}.{name}"
+        for path in PACKAGE.glob("*.py")
+        for name in trigonometry(path.read_text("utf-8"))
+    }
+    assert not found
