@@ -63,7 +63,7 @@ lint: $(VENV)/.tested
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
-	$(BIN)/python -m mypy.stubtest spincyl._core
+	$(BIN)/python -m mypy.stubtest --mypy-config-file tests/stubs.ini spincyl._core
 
 # What is seen and done in a browser.
 pages: $(VENV)/.tested browser
@@ -129,8 +129,8 @@ long: $(VENV)/.tested wheel core
 	python3 tests/fresh.py --runs 10
 	nice -n 10 python3 tests/thresholds.py
 	cargo clippy -p spincyl-benches --all-targets -- -D warnings
-	cargo test --release --tests
-	cargo test --release --tests -- --ignored --nocapture --test-threads 1
+	SPINCYL_LONG=1 cargo test --release --tests
+	SPINCYL_LONG=1 cargo test --release --tests -- --ignored --nocapture --test-threads 1
 	$(BIN)/python -m pip install --quiet --group release
 	$(BIN)/python -m twine check --strict dist/*.whl dist/*.tar.gz
 	cargo publish --dry-run --allow-dirty

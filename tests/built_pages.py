@@ -19,7 +19,6 @@ WIDE = "all => all.filter(e => e.scrollWidth > e.clientWidth + 1).map(e => e.tex
 def listened(page):
     """The page, which collects its errors from now on in `wrong`."""
     page.wrong = []
-    page.set_default_timeout(120_000)  # some pages show spinning bodies and are slow
     page.on("console", lambda m: m.type == "error" and page.wrong.append(m.text))
     page.on("pageerror", lambda e: page.wrong.append(str(e)))
     page.on("request", lambda r: r.url.startswith(LOCAL) or page.wrong.append(f"asks for {r.url}"))
@@ -59,8 +58,8 @@ NO_CORE = "delete window.WebAssembly;"
 
 
 def set_by(page, words):
-    """The words of a link that no figure in view shows within ten seconds; [] if a figure shows all."""
-    for _ in range(50):
+    """The words of a link that no figure in view shows in time; [] if a figure shows all."""
+    for _ in range(int(page.patience / 500)):
         page.wait_for_timeout(200)
         left = []
         for frame in page.locator("figure.live iframe").all():
@@ -135,12 +134,15 @@ def main():
         return 0
     found, formulas, live = [], 0, 0
     with sync_playwright() as driver:
-        chromium = driver.chromium.launch(executable_path=browser.executable(), args=browser.FLAGS)
+        chromium, patience = browser.started(driver.chromium)
         # three windows for all pages, since opening a window takes longer than loading most pages
         page = listened(chromium.new_page(reduced_motion="reduce"))
         phone = chromium.new_page(reduced_motion="reduce", viewport={"width": 390, "height": 844})
         without = chromium.new_page()
         without.add_init_script(NO_CORE)
+        for one in (page, phone, without):
+            one.set_default_timeout(patience)
+            one.patience = patience
         for path in sorted([*Path(sys.argv[1]).glob("*.html"), *Path(sys.argv[1]).glob("note/*.html")]):
             wrong, done = look(page, path)
             live += (here := page.locator("figure.live").count())

@@ -48,7 +48,7 @@ def chromium():
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as p:
-        running = p.chromium.launch(executable_path=browser.executable(), args=browser.FLAGS)
+        running, running.patience = browser.started(p.chromium)
         yield running
         running.close()
 
@@ -99,11 +99,12 @@ def shown(chromium, windows, written, kept):
             page = idle.pop()
         else:
             page = chromium.new_context(**how).new_page()
+            page.set_default_timeout(chromium.patience)
             page.add_init_script(script or browser.SELDOM)
         page.requests, page.complaints = [], []
         hears = {
             "request": lambda r: page.requests.append(r.url),
-            "console": lambda m: page.complaints.append(m.text),
+            "console": lambda m: browser.OF_ITSELF in m.text or page.complaints.append(m.text),
             "pageerror": lambda e: page.complaints.append(str(e)),
             "dialog": lambda d: (page.complaints.append(d.message), d.dismiss()),
         }

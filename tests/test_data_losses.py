@@ -16,7 +16,7 @@ ALL = list(LAWS)
 named = pytest.mark.parametrize("law", ALL, ids=lambda law: law.__name__)
 
 
-def spun(law, body=EULER, start=0.3, points=200, share=0.95, noise=0.01, seed=1, centre="rest"):
+def spun(law, body=EULER, start=0.3, points=100, share=0.95, noise=0.01, seed=1, centre="rest"):
     """Times, inclinations and rates with relative noise, and the true drift."""
     rng = np.random.default_rng(seed)
     drift = sc.drift(body, start, law, centre=centre)
@@ -122,7 +122,7 @@ def test_scaling_the_clock_scales_the_coefficient():
 
 def test_two_laws_that_add_are_found_beside_each_other():
     laws = sc.loss.DryContour, sc.loss.RollingResistance
-    t, theta, _, _ = spun(laws[0](1e-3) + laws[1](4e-3), points=400, share=0.97)
+    t, theta, _, _ = spun(laws[0](1e-3) + laws[1](4e-3), points=160, share=0.97)
     found = sc.data.fit_losses(t, theta, body=EULER, laws=[*laws, list(laws)])
     assert found.best is found.of(laws) and found.best.name == "DryContour + RollingResistance"
     for k, true in enumerate((1e-3, 4e-3)):

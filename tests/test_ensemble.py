@@ -5,6 +5,7 @@ import os
 import subprocess
 import sys
 import threading
+import time
 
 import dask.array as da
 import numpy as np
@@ -141,7 +142,7 @@ def test_progress_is_told_and_what_it_raises_stops_the_sweep():
 def test_c2_a_long_ensemble_obeys_ctrl_c_within_a_tenth_of_a_second():
     code = (
         "import os, signal, threading, time, numpy as np, spincyl as sc\n"
-        "body = sc.Body.solid(np.linspace(0.9, 3, 10**6)); start = body.steady(1.3).kicked(0.05)\n"
+        "body = sc.Body.solid(np.linspace(0.9, 3, 3 * 10**5)); start = body.steady(1.3).kicked(0.05)\n"
         "sc.sweep.roll(body, start, 1.0); delays = []\n"
         "for kw in ({}, {'step': 1e-3}, {'want': ('normal_min',)}):\n"
         "    for wait in (0.05, 0.11):\n"
@@ -169,7 +170,9 @@ def _child(queue=None):
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork here")
 @pytest.mark.filterwarnings("ignore:This process:DeprecationWarning")
 def test_c3_a_child_computes_whether_forked_or_spawned():
+    began = time.perf_counter()
     expected = _child()
+    longest = 60 + 1000 * (time.perf_counter() - began)  # a child imports the library anew
     stop = threading.Event()
 
     def busy():
@@ -184,8 +187,8 @@ def test_c3_a_child_computes_whether_forked_or_spawned():
             queue = context.Queue()
             process = context.Process(target=_child, args=(queue,))
             process.start()
-            assert np.array_equal(queue.get(timeout=60), expected)
-            process.join(60)
+            assert np.array_equal(queue.get(timeout=longest), expected)
+            process.join(longest)
             assert process.exitcode == 0
     finally:
         stop.set()

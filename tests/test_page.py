@@ -314,7 +314,7 @@ def test_f_and_a_button_fill_the_screen_and_leave_it(shown):
 def test_its_long_exposure_shows_what_the_photograph_shows(shown, upper, count):
     page = shown(page_of("still symbols", upper=upper), "#t=0", viewport={"width": 560, "height": 480})
     page.select_option("#shutter", "1")
-    page.wait_for_selector("html[data-exposed='720']", timeout=200_000)
+    page.wait_for_selector("html[data-exposed='720']")
     image = picture(page)
     # red minus blue or the reverse, so that neither text nor the body counts
     seen, other = (0, 2)[:: 1 if upper == "X" else -1]
@@ -340,8 +340,7 @@ def test_an_exposure_is_seen_as_it_comes_says_what_rests_meanwhile_and_can_be_st
           };
           of("stop").click();
           return found;
-        }""",
-        timeout=100_000,
+        }"""
     ).json_value()
     assert "of 720 pictures" in found["said"] and "rest until the photograph is closed" in found["said"]
     assert found["whole"], "all of it is read on a phone"

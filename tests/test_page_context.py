@@ -130,6 +130,7 @@ def test_of_twenty_views_in_a_notebook_all_that_are_seen_are_drawn(chromium, tmp
     path = tmp_path / "notebook.html"
     path.write_text("<meta charset=utf-8><body data-jp-theme-light=false>" + f"<div>{frame}</div>" * 20)
     page = chromium.new_page(viewport=LAPTOP, reduced_motion="reduce")
+    page.set_default_timeout(chromium.patience)
     page.goto(path.as_uri())
     drawn = page.locator("iframe").first.content_frame.locator("html[data-drawn]")
     drawn.wait_for()

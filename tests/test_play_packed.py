@@ -39,6 +39,7 @@ OPEN = """async text => {
 def opened(chromium):
     """A function that unpacks a text in a browser."""
     page = chromium.new_page()
+    page.set_default_timeout(chromium.patience)
     loader = text("play.loader.js").split("async function opened")[0]
     page.add_script_tag(content=loader)
     yield lambda packed: page.evaluate(OPEN, packed)

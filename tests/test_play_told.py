@@ -272,6 +272,7 @@ def test_in_a_notebook_it_runs_in_its_frame_and_asks_and_hears_and_tells(chromiu
         + sc.play()._repr_html_()
     )
     page = chromium.new_page(reduced_motion="reduce", viewport=LAPTOP)
+    page.set_default_timeout(chromium.patience)
     page.goto(path.as_uri())
     page.wait_for_function("() => window.told.length === 1 && window.told[0] === null")
     page.evaluate(

@@ -259,6 +259,7 @@ def test_a_card_says_the_numbers():
 
 def test_a_browser_draws_in_the_colour_of_the_page(chromium):
     page = chromium.new_page()
+    page.set_default_timeout(chromium.patience)
     page.set_content(f'<div style="color:rgb(1, 2, 3)">{PIPE._repr_html_()}</div>')
     stroke, fill = page.eval_on_selector(
         "svg",

@@ -146,7 +146,7 @@ def test_between_few_knots_a_cubic_meets_the_motion(body, state, until):
 def test_random_motions_are_met_between_their_knots():
     rng = np.random.default_rng(11)
     met = []
-    for k in range(150):
+    for k in range(60):
         body = sc.Body.solid(10 ** rng.uniform(-1.5, 0.7))
         start = sc.State(rng.uniform(0.05, 1.5), *rng.normal(0, 10 ** rng.uniform(-3, 0.3), 3))
         how = {"tol": 1e-9} if k % 3 == 0 else {}
@@ -158,7 +158,7 @@ def test_random_motions_are_met_between_their_knots():
         theta, phi, psi, centre = seen(m, t, "theta", "phi", "psi", "centre")
         true = np.column_stack([theta, phi, psi, centre[:, :2]])
         met.append(np.abs(between(found, t) - true).max())
-    assert len(met) > 100 and max(met) < 3e-3, max(met)
+    assert len(met) > 40 and max(met) < 3e-3, max(met)
 
 
 @pytest.mark.parametrize("how", [{"tol": 1e-9}, {"step": 1e-2}, {}], ids=["tol", "step", "exact"])
@@ -289,6 +289,7 @@ def test_without_webgl_it_says_so(shown):
 
 def test_in_a_notebook_it_shows_itself_in_a_frame_that_can_do_nothing_else(chromium):
     page = chromium.new_page()
+    page.set_default_timeout(chromium.patience)
     frame = page_of("nutating")._repr_html_()
     assert 'sandbox="allow-scripts"' in frame
     page.set_content(f"<p>above</p>{frame}")

@@ -307,7 +307,7 @@ def test_the_page_stretches_a_ball_as_python_does(shown, stone):
 
 def photograph(page, turns):
     page.select_option("#shutter", turns)
-    page.wait_for_selector("html[data-exposed='720']", timeout=60_000)
+    page.wait_for_selector("html[data-exposed='720']")
     return picture(page)
 
 

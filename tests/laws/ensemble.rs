@@ -3,7 +3,7 @@
 use crate::common::many::Many;
 use crate::common::rim::sharp;
 use crate::common::{
-    BOTH, almost_at_rest, any_body, any_rounded, any_state, by, distance, motions, moved, numbers,
+    BOTH, almost_at_rest, any_body, any_rounded, any_state, by, distance, drawn, motions, moved, numbers,
     ordinary_tube, wander, wild,
 };
 use proptest::prelude::*;
@@ -88,7 +88,7 @@ fn every_motion_in_lanes_has_the_state_that_is_claimed() {
 #[test]
 fn lanes_and_single_motions_agree_within_what_both_claim() {
     let times = [0.3, 5.0, 40.0];
-    for (all, least) in [(kicked(1000), 700), (kicked_rounded(600), 300)] {
+    for (all, least) in [(kicked(drawn(1000)), drawn(700)), (kicked_rounded(drawn(600)), drawn(300))] {
         for (contact, tol) in BOTH.into_iter().flat_map(|of| [1e-6, 1e-11, 1e-13].map(|tol| (of, tol))) {
             let many =
                 Many::of(&all).run(&Job { table: contact.into(), tol, beyond: true, ..Job::new(&times) }, 2);
@@ -188,7 +188,7 @@ fn the_extremes_are_those_of_a_dense_look() {
 #[test]
 fn c4_c5_no_bit_depends_on_threads_neighbours_or_place() {
     let times = [3.0, 20.0];
-    for (step, count, more) in [(None, 600, 1200), (Some(0.02), 100, 100)] {
+    for (step, count, more) in [(None, drawn(600), drawn(1200)), (Some(0.02), 100, 100)] {
         // sharp bodies between rounded ones in the same eight lanes, and many sharp ones
         let mixed = kicked_rounded(count).into_iter().zip(kicked_softly(count));
         let mut all: Vec<_> = mixed.flat_map(|(a, b)| [a, b]).collect();

@@ -1,7 +1,7 @@
 //! RK4, by fixed steps and within tolerances: rows D1 to D7, D11, D13, D14 of docs/hard-cases.md.
 
 use crate::common::rim::sharp;
-use crate::common::{BOTH, by, distance, motions, moved, numbers, rounded_starts, state, wander};
+use crate::common::{BOTH, by, distance, drawn, motions, moved, numbers, rounded_starts, state, wander};
 use spincyl::contact::Table;
 use spincyl::exact::Swing;
 use spincyl::motion::{Ask, Method};
@@ -356,7 +356,7 @@ fn called_without_a_method_the_answer_is_right_to_nine_digits_and_says_how() {
 fn near_the_flat_an_integrator_invents_no_end_and_loses_none() {
     let mut r = wander(19);
     let (mut compared, mut ended) = (0, 0);
-    for i in 0..600 {
+    for i in 0..drawn(600) {
         let (i1, fillet) = (0.3 + 1.7 * r(), if r() < 0.6 { 0.0 } else { 0.05 + 0.85 * r() });
         let body = Body::rounded(2.5 * r(), i1, i1 * (0.2 + 1.7 * r()), fillet).unwrap();
         // the body rises from the table, comes back, and passes it as flat as at its start
@@ -382,5 +382,5 @@ fn near_the_flat_an_integrator_invents_no_end_and_loses_none() {
             }
         }
     }
-    assert!(compared > 800 && ended > 300, "{compared} {ended}");
+    assert!(compared > drawn(800) && ended > drawn(300), "{compared} {ended}");
 }

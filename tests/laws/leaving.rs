@@ -1,6 +1,6 @@
 //! Random motions that leave the model end with an event, and others do not.
 
-use crate::common::{by, moved, wander, wild};
+use crate::common::{by, drawn, moved, wander, wild};
 use spincyl::contact::Table;
 use spincyl::contact::slip::Friction;
 use spincyl::exact::Swing;
@@ -71,9 +71,9 @@ fn random_runs(count: u64) -> [u64; 4] {
 
 #[test]
 fn a_run_that_leaves_the_model_says_so() {
-    let [left, silent, _, false_alarms] = random_runs(4_000);
+    let [left, silent, _, false_alarms] = random_runs(drawn(4_000) as u64);
     assert!(
-        left > 1000 && silent == 0 && false_alarms == 0,
+        left > drawn(1000) as u64 && silent == 0 && false_alarms == 0,
         "{left} left, {silent} silent, {false_alarms} false"
     );
 }

@@ -1,6 +1,6 @@
 //! Slips of a body that also loses energy by other laws.
 
-use crate::common::{numbers, path_of};
+use crate::common::{drawn, numbers, path_of};
 use crate::losses::{follow, quarters, total};
 use spincyl::contact::{Friction, Table, slip};
 use spincyl::loss::{Law, Losses};
@@ -193,7 +193,8 @@ fn a_whirr_that_slips_lands_where_its_turns_lead() {
         assert!((ratio - 2.0).abs() < 0.01, "arm {arm}, mu {mu}: {ratio}");
         // The claim holds for other tolerances, too.
         let losses = Losses::of(Law::RollingResistance, arm / 12.0);
-        for tol in [1e-10, 1e-12] {
+        let tried = if arm == 0.02 { 2 } else { drawn(2) };
+        for tol in [1e-10, 1e-12].into_iter().take(tried) {
             let table = Friction::coulomb(mu);
             let ask = Ask { method: Method::Tolerance(tol), losses, ..Ask::on(table) };
             let other = roll_with(&body, start, &[0.0, 1000.0], &ask, || true).unwrap().unwrap();

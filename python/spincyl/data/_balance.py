@@ -17,7 +17,6 @@ import numpy as np
 from spincyl import _core
 from spincyl._body import Body
 from spincyl._input.numbers import Floats, extra
-from spincyl._state import State
 
 _ROUNDED = 1e-10  # least scatter, in units of the errors: exact points scatter by their rounding
 # two variables whose effects on the points are correlated more than this cannot be told apart
@@ -93,21 +92,18 @@ class Balance:
         precession = rate / factor / np.sqrt(self.i3)
         state = self._resting(inclination, precession)
         one, two = (
-            trial.acceleration(state) * _core.inertia(*state._numbers, *trial._numbers)
+            _core.acceleration(*state, *trial._numbers) * _core.inertia(*state, *trial._numbers)
             for trial in self.bodies
         )
         found: Floats = one + (ratio - 1) * (two - one)
         return found
 
-    def _resting(self, theta: Floats, precession: Floats) -> State:
-        """The rolling state whose centre is at rest, steady or not; it does not depend on the moments."""
-        body, w1 = self.bodies[0], precession * np.sin(theta)
-        # the slip of a body whose centre is at rest is linear in w1 and w3
-        by_w1, by_w3 = (
-            body.with_centre_velocity(State(theta, one, 0.0, 1.0 - one), 0.0, 0.0).slip for one in (1.0, 0.0)
-        )
-        assert by_w1 is not None and by_w3 is not None
-        return State(theta, w1, 0.0 * w1, -w1 * by_w1[1] / by_w3[1])
+    def _resting(self, theta: Floats, precession: Floats) -> tuple[Floats, Floats, float, Floats]:
+        """Numbers of the rolling state whose centre is at rest, steady or not: they do not depend on the moments."""
+        body, w1 = self.bodies[0]._numbers, precession * np.sin(theta)
+        # where nothing slips, the velocity of the centre across the lean is linear in w1 and w3
+        by_w1, by_w3 = (_core.centre_across(theta, one, 0.0, 1.0 - one, 0.0, 0.0, *body) for one in (1.0, 0.0))
+        return theta, w1, 0.0, -w1 * by_w1 / by_w3
 
     def tells(self, names: tuple[str, ...]) -> bool:
         """Whether the points determine each of these variables, and can tell two of them apart."""

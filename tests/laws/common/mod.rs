@@ -9,8 +9,14 @@ use spincyl::motion::path::Path;
 use spincyl::motion::{Ask, Method, Motion, roll_with};
 use spincyl::{Body, Contact, Error, State, steady};
 
+/// How many of `count` random cases are drawn: a third in `make test`, all where `SPINCYL_LONG` is set, as in `make long`.
+pub fn drawn(count: usize) -> usize {
+    if std::env::var_os("SPINCYL_LONG").is_some() { count } else { count / 3 }
+}
+
 /// The number of cases of a property. Failures are not stored, since a case that failed becomes a test.
-pub fn cases(count: u32) -> ProptestConfig {
+pub fn cases(count: usize) -> ProptestConfig {
+    let count = drawn(count).max(64.min(count)) as u32;
     ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(count) }
 }
 
