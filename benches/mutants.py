@@ -2,10 +2,10 @@
 
 Draws places in the physics of `src` at random, plants one error in each (a sign, a comparison, a product for a quotient, a
 condition), and builds a copy of the crate once with all of them, each switched off. Every test is run once to see which
-places it reaches; then each error is switched on alone and the tests that reach it are run, the quickest first, until one
-fails. Prints those that no test catches, and those that no test reaches. With --python the tests of the wheel are tried
-on what lives, quickest first, for at most --seconds each. Needs `pip install --group mutants`; half an hour.
-usage: python benches/mutants.py [--count 200] [--seed 1] [--folder target/mutants] [--python]
+places it reaches. Then each error is switched on alone, and the tests that reach it are run, the quickest first, until one
+fails. Prints those that no test catches, and how many no test reaches. What lives may be caught by the tests of Python,
+or be no error: a start of an iteration, say. Needs `pip install --group mutants`; a quarter of an hour.
+usage: python benches/mutants.py [--count 200] [--seed 1] [--folder target/mutants]
 """
 
 import argparse
@@ -159,7 +159,7 @@ ENVIRONMENT = os.environ | {
 }
 
 
-def built(folder, taken, count):
+def built(folder, taken):
     """Plants and compiles until the compiler refuses none; what was planted, and the programs of the tests."""
     clean = {path: path.read_bytes() for path in taken}
     root = folder / "src" / "lib.rs"
@@ -169,9 +169,7 @@ def built(folder, taken, count):
         for path, source in clean.items():
             path.write_bytes(source)
         told = plant(folder, taken)
-        (folder / "src" / "mutant.rs").write_text(
-            SWITCH.replace("COUNT]", f"{max(len(told), 1)}]").replace("COUNT", "")
-        )
+        (folder / "src" / "mutant.rs").write_text(SWITCH.replace("COUNT", str(len(told))))
         done = subprocess.run(words, cwd=folder, env=ENVIRONMENT, capture_output=True, text=True)
         if not done.returncode:
             lines = [json.loads(x) for x in done.stdout.splitlines() if x.startswith("{")]
@@ -265,7 +263,7 @@ def main():
     for name in named.split("\0")[:-1]:
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(ROOT / name, folder / name)
-    told, programs = built(folder, drawn(folder, asked.count, asked.seed), asked.count)
+    told, programs = built(folder, drawn(folder, asked.count, asked.seed))
     print(f"{len(told)} planted", flush=True)
     by = reached(programs, folder)
     alive = []

@@ -1,5 +1,6 @@
 """Without a browser the tests of pages are skipped with a message; if CI is set, they fail."""
 
+import gc
 import os
 import signal
 import sys
@@ -21,6 +22,13 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 
 # tests import the scenes, and the reader of pages
 sys.path += [str(Path(__file__).parents[1] / folder) for folder in ("examples", "docs")]
+
+
+def pytest_collection_finish():
+    """Keeps the collector of garbage from looking through a million objects that stay: a tenth of the time."""
+    gc.collect()
+    gc.freeze()
+    gc.set_threshold(50_000, 20, 50)
 
 
 @pytest.hookimpl(tryfirst=True)

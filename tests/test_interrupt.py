@@ -54,9 +54,13 @@ assert body.rate(1.3) > 1 and np.isfinite(body.rate(np.full(1000, 1.3))).all()
 """
 
 NAMES = [line.split('"')[1] for line in JOB.splitlines() if line.startswith('    "')]
+#: One of each kind of loop: the others take as long, and wait for `make long`.
+KINDS = ("plain", "short rows", "one by one", "a wide map", "a motion")
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize(
+    "name", [name if name in KINDS else pytest.param(name, marks=pytest.mark.long) for name in NAMES]
+)
 def test_c2_ctrl_c_is_heard_in_the_middle(name):
     # the best of three tries, since a busy machine may delay the thread that handles the signal
     for _ in range(3):

@@ -135,7 +135,9 @@ def test_a_false_point_is_named_and_makes_no_law_sure():
     )
 
 
-@pytest.mark.parametrize("seed", [6, 15, 17, 22, 25, 113])
+@pytest.mark.parametrize(
+    "seed", [6, 15, 25, *(pytest.param(k, marks=pytest.mark.long) for k in (17, 22, 113))]
+)
 def test_a_made_up_recording_gives_its_law_or_says_that_it_does_not_know(seed):
     kind, said = recordings.verdict(seed, rivals=("DryContour", "AirLinear"))
     assert kind in ("right", "undecided"), said

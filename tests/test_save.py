@@ -121,6 +121,7 @@ def test_p5_the_second_of_two_processes_that_save_at_once_is_told_so(tmp_path):
     )
 
 
+@pytest.mark.long
 def test_p5_many_that_begin_at_once_leave_a_good_store(tmp_path):
     store = tmp_path / "map.zarr"
     pipes = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.PIPE)

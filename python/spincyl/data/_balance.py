@@ -99,10 +99,12 @@ class Balance:
         return found
 
     def _resting(self, theta: Floats, precession: Floats) -> tuple[Floats, Floats, float, Floats]:
-        """Numbers of the rolling state whose centre is at rest, steady or not: they do not depend on the moments."""
+        """Numbers of the rolling state whose centre is at rest, steady or not, whatever the moments."""
         body, w1 = self.bodies[0]._numbers, precession * np.sin(theta)
         # where nothing slips, the velocity of the centre across the lean is linear in w1 and w3
-        by_w1, by_w3 = (_core.centre_across(theta, one, 0.0, 1.0 - one, 0.0, 0.0, *body) for one in (1.0, 0.0))
+        by_w1, by_w3 = (
+            _core.centre_across(theta, one, 0.0, 1.0 - one, 0.0, 0.0, *body) for one in (1.0, 0.0)
+        )
         return theta, w1, 0.0, -w1 * by_w1 / by_w3
 
     def tells(self, names: tuple[str, ...]) -> bool:
