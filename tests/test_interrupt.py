@@ -4,6 +4,7 @@ import subprocess
 import sys
 
 import pytest
+from few import few
 
 JOB = """
 import os, signal, sys, threading, time, numpy as np, spincyl as sc
@@ -58,9 +59,7 @@ NAMES = [line.split('"')[1] for line in JOB.splitlines() if line.startswith('   
 KINDS = ("plain", "short rows", "one by one", "a wide map", "a motion")
 
 
-@pytest.mark.parametrize(
-    "name", [name if name in KINDS else pytest.param(name, marks=pytest.mark.long) for name in NAMES]
-)
+@pytest.mark.parametrize("name", few(sorted(NAMES, key=lambda name: name not in KINDS), len(KINDS)))
 def test_c2_ctrl_c_is_heard_in_the_middle(name):
     # the best of three tries, since a busy machine may delay the thread that handles the signal
     for _ in range(3):

@@ -5,6 +5,7 @@ import subprocess
 import sys
 
 import pytest
+from few import few
 
 pytestmark = pytest.mark.skipif(
     not sys.platform.startswith("linux"), reason="limits and reads memory by Linux"
@@ -62,23 +63,29 @@ def test_a8_a_motion_at_more_times_than_memory_holds_is_a_memory_error(count, ho
 
 @pytest.mark.parametrize(
     ("job", "most"),
-    [
-        ("sc.sweep.portrait(1.3, np.linspace(0.1, 3, 300_000))", 300_000 * 260),
-        ("sc.sweep.portrait(np.linspace(0.1, 1.5, 300_000), 2.5)", 300_000 * 40),
-        ("sc.sweep.points(np.linspace(0.1, 1.5, 300_000), 2.5)", 300_000 * 25),
-        ("sc.sweep.survey([0.5, 1.0], np.linspace(0.1, 3, 20_000), want=('region', 'rate'))", 20_000 * 500),
-        ("sc.sweep.roll(sc.Body.solid(np.linspace(2.4, 2.6, 50_000)), state, 1.0)", 50_000 * 150),
-        ("sc.sweep.roll(body, state, np.linspace(0, 5, 200_000), step=1e-2)", 200_000 * 80),
-        (
-            "sc.sweep.roll(sc.Body.solid(np.linspace(1, 3, 4000)), slips, 0.02, contact=sc.Coulomb(0.3))",
-            64 << 20,
-        ),
-        (
-            "sc.sweep.roll(sc.Body.solid(np.linspace(1, 3, 4000)), state, 0.02, losses=sc.loss.AirLinear(0.01))",
-            64 << 20,
-        ),
-        ("sc.sweep.roll(body, state, np.linspace(0, 5, 200_000), beyond=True, mu=0.01)", 200_000 * 80),
-    ],
+    few(
+        [
+            ("sc.sweep.portrait(1.3, np.linspace(0.1, 3, 300_000))", 300_000 * 260),
+            (
+                "sc.sweep.survey([0.5, 1.0], np.linspace(0.1, 3, 20_000), want=('region', 'rate'))",
+                20_000 * 500,
+            ),
+            ("sc.sweep.roll(sc.Body.solid(np.linspace(2.4, 2.6, 50_000)), state, 1.0)", 50_000 * 150),
+            (
+                "sc.sweep.roll(sc.Body.solid(np.linspace(1, 3, 4000)), slips, 0.02, contact=sc.Coulomb(0.3))",
+                64 << 20,
+            ),
+            (
+                "sc.sweep.roll(sc.Body.solid(np.linspace(1, 3, 4000)), state, 0.02, losses=sc.loss.AirLinear(0.01))",
+                64 << 20,
+            ),
+            ("sc.sweep.roll(body, state, np.linspace(0, 5, 200_000), beyond=True, mu=0.01)", 200_000 * 80),
+            ("sc.sweep.portrait(np.linspace(0.1, 1.5, 300_000), 2.5)", 300_000 * 40),
+            ("sc.sweep.points(np.linspace(0.1, 1.5, 300_000), 2.5)", 300_000 * 25),
+            ("sc.sweep.roll(body, state, np.linspace(0, 5, 200_000), step=1e-2)", 200_000 * 80),
+        ],
+        5,
+    ),
 )
 def test_a8_a_sweep_larger_than_memory_is_a_memory_error(job, most):
     survives(f"def job(): {job}", most)

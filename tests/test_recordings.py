@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from few import few
 
 import spincyl as sc
 
@@ -135,9 +136,7 @@ def test_a_false_point_is_named_and_makes_no_law_sure():
     )
 
 
-@pytest.mark.parametrize(
-    "seed", [6, 15, 25, *(pytest.param(k, marks=pytest.mark.long) for k in (17, 22, 113))]
-)
+@pytest.mark.parametrize("seed", few([6, 15, 25, 17, 22, 113], 3))
 def test_a_made_up_recording_gives_its_law_or_says_that_it_does_not_know(seed):
     kind, said = recordings.verdict(seed, rivals=("DryContour", "AirLinear"))
     assert kind in ("right", "undecided"), said
