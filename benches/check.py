@@ -54,15 +54,13 @@ def short(text):
 
 
 def made(target, clone, log, yard):
-    """Makes one target and prints what each line took; the processor time of all."""
+    """Makes one target and prints what each line took that took half a second; the processor time of these."""
     log.write_text("")
     subprocess.run(
         ["make", "--no-print-directory", target, f"SHELL={Path(__file__).resolve()}"],
         cwd=clone, env=builds.clean(**{LOG: str(log)}), check=True, stdout=sys.stderr,
     )  # fmt: skip
-    lines = [json.loads(text) for text in log.read_text().splitlines()]
-    # A line that runs make is told by its own lines.
-    lines = [took for took in lines if "$(MAKE)" not in took["line"] and took["busy"] > 0.5]
+    lines = [took for took in map(json.loads, log.read_text().splitlines()) if took["busy"] > 0.5]
     all_busy = sum(took["busy"] for took in lines)
     print(f"{target:92} {all_busy:6.1f} s = {all_busy / yard:5.2f} yardsticks")
     for took in lines:

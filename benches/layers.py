@@ -18,7 +18,7 @@ from pathlib import Path
 import compile as builds
 
 ROOT = Path(__file__).parents[1]
-LAYERS = ["numbers", "methods", "laws", "states", "motions", "many", "python"]
+LAYERS = sorted(p.name for p in (ROOT / "src").iterdir() if p.is_dir())
 #: Functions of other crates, compiled with this one since they are generic.
 OTHER = "others'"
 

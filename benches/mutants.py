@@ -25,7 +25,7 @@ import tree_sitter
 import tree_sitter_rust
 
 ROOT = Path(__file__).parents[1]
-ROOMS = ("numbers", "methods", "laws", "states", "motions", "many")
+ROOMS = sorted(p.name for p in (ROOT / "src").iterdir() if p.is_dir() and p.name != "python")
 PARSER = tree_sitter.Parser(tree_sitter.Language(tree_sitter_rust.language()))
 OPPOSITE = {
     "+": "-", "-": "+", "*": "/", "/": "*", "<": ">=", ">=": "<", ">": "<=", "<=": ">",
@@ -115,7 +115,9 @@ def drawn(folder, count, seed):
     random.Random(seed).shuffle(every)
     taken = defaultdict(list)
     for path, first, last, planted, what in every:
-        if count and all(last <= a or first >= b for a, b, *_ in taken[path]):
+        # a comment inside would reach to the end of the one line that is written
+        apart = all(last <= a or first >= b for a, b, *_ in taken[path])
+        if count and apart and "//" not in planted:
             taken[path].append((first, last, planted, what))
             count -= 1
     print(f"{len(every)} places in {len(files)} files", flush=True)
@@ -132,10 +134,7 @@ def plant(folder, taken):
             as_it_was = source[first:last].decode()
             code = f"(if crate::mutant::on({len(told)}) {{ {planted} }} else {{ {as_it_was} }})"
             told.append((str(path.relative_to(folder)), line, what, " ".join(as_it_was.split())))
-            parts += [
-                source[end:first],
-                code.replace("\n", " ").encode() if "//" not in code else source[first:last],
-            ]
+            parts += [source[end:first], code.replace("\n", " ").encode()]
             end = last
         path.write_bytes(b"".join([*parts, source[end:]]))
     return told

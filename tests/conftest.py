@@ -25,7 +25,7 @@ sys.path += [str(Path(__file__).parents[1] / folder) for folder in ("examples", 
 
 
 def pytest_collection_finish():
-    """Keeps the collector of garbage from looking through a million objects that stay: a tenth of the time."""
+    """Keeps the collector of garbage from looking through a million objects that stay: 8 % of the time."""
     gc.collect()
     gc.freeze()
     gc.set_threshold(50_000, 20, 50)
