@@ -33,9 +33,8 @@ pub struct Ask {
     /// Whether the motion goes on beyond events other than a landing of the face; with a law of friction
     /// it never does.
     pub beyond: bool,
-    /// The coefficient of restitution of a landing of the other rim. With 0 the rim does not bounce, and the
-    /// motion goes on; with `None` the motion ends there. Only `None` is allowed without a law of friction
-    /// and without losses.
+    /// The coefficient of restitution of impacts, from 0 to 1. With `None` the motion ends where the body leaves the
+    /// table or its other rim lands; otherwise it goes on in the air, on the other rim and on both rims.
     pub restitution: Option<f64>,
     /// Whether the motion ends where the body begins to roll, on a table with a law of friction.
     pub stop_at_rolling: bool,
@@ -54,7 +53,7 @@ impl Ask {
     /// Whether energy is conserved and no law of friction acts, so that three first integrals
     /// determine the motion.
     pub fn conserves(&self) -> bool {
-        !self.table.rubs() && self.losses.is_none()
+        !self.table.rubs() && self.losses.is_none() && self.restitution.is_none()
     }
 }
 
@@ -68,12 +67,15 @@ pub struct Start<S = State> {
     pub slip: [f64; 2],
     /// The time of the start.
     pub time: f64,
+    /// The height of the rim's lowest point over the table and its vertical velocity, for a body that starts in the
+    /// air; it needs a restitution.
+    pub aloft: Option<[f64; 2]>,
 }
 
 impl<S> From<S> for Start<S> {
-    /// The start at time 0 without a slip.
+    /// The start at time 0 on the table, without a slip.
     fn from(state: S) -> Self {
-        Self { state, slip: [0.0; 2], time: 0.0 }
+        Self { state, slip: [0.0; 2], time: 0.0, aloft: None }
     }
 }
 
@@ -87,10 +89,6 @@ impl From<&State> for Start {
 /// the last time.
 pub(crate) fn check(ask: &Ask, t0: f64, times: &[f64]) -> Result<f64, Error> {
     ask.table.check()?;
-    if let Some(value) = ask.restitution {
-        let expected = "none, where neither friction nor losses let a motion go on";
-        return Err(Error::OutOfRange { name: "restitution", value, expected });
-    }
     check_stop_at_rolling(ask)?;
     let span = check_times(t0, times)?;
     check_method(ask.method, span)?;
@@ -134,8 +132,7 @@ pub(crate) fn check_times_after(t0: f64, times: &[f64]) -> Result<(), Error> {
 
 /// Checks the options of a motion with friction or losses. Returns the tolerance of its steps.
 pub(crate) fn check_flow(ask: &Ask) -> Result<f64, Error> {
-    let expected = "0: the other rim lands without a bounce";
-    within("restitution", ask.restitution.unwrap_or(0.0), (0.0, 0.0), expected)?;
+    within("restitution", ask.restitution.unwrap_or(0.0), (0.0, 1.0), "0 <= restitution <= 1")?;
     check_stop_at_rolling(ask)?;
     match ask.method {
         Method::Exact => Ok(FINE),

@@ -130,6 +130,10 @@ impl<S: Moving> Followed<S> {
         self.path.slip.push(slip);
         self.path.dissipated.push(heat);
         self.path.kinds.push(kind);
+        if self.path.goes_on {
+            self.path.aloft.push([0.0; 2]);
+            self.path.other_rim.push([f64::NAN; 5]);
+        }
         if let Some((poses, pose)) = self.motion.poses.as_mut().zip(pose) {
             poses.push(pose);
             self.path.turned.push(self.path.upside_down);

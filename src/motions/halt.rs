@@ -31,6 +31,13 @@ pub(crate) enum Halt {
     Settles,
     /// The body neither rolls nor rocks any more; it may drill.
     Rests,
+    /// The other rim of a lying body rises, or the one from which the state is told.
+    Rises,
+    Changes,
+    /// The slip of the other rim of a lying body comes to rest.
+    OtherStandstill,
+    /// A lying body that pivots about one rim has stopped turning.
+    Turned,
     /// Time hardly advances, or the steps are too many.
     Endless,
 }

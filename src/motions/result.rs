@@ -4,6 +4,7 @@
 use super::Moving;
 use super::ask::Method;
 use crate::error::{Error, room};
+pub use crate::laws::contact::impact::Hit;
 use crate::laws::state::State;
 use crate::numbers::codes::coded;
 use core::f64::consts::PI;
@@ -30,6 +31,8 @@ coded! {
         /// The motion was given up at this time: slipping and rolling alternate too often, or it
         /// hardly advances.
         Bounded = 8,
+        /// A landing on both rims has no outcome, or more than one, that obeys the law of friction.
+        Landing = 9,
     }
 }
 
@@ -140,16 +143,24 @@ impl Motion {
 }
 
 coded! {
-    /// The kind of a phase: the contact point rests or slips.
+    /// The kind of a phase.
     pub enum Kind {
         /// The contact point rests.
         Rolling = 0,
         /// The contact point slips.
         Slipping = 1,
+        /// The body is in the air.
+        Flying = 2,
+        /// The body lies on both rims, and both slip.
+        Lying = 3,
+        /// The body lies on both rims, and one of them sticks.
+        Pivoting = 4,
+        /// The body lies on both rims, and rolls straight on.
+        RollingOnSide = 5,
     }
 }
 
-/// A part of a motion in which the contact point rests all the time or slips all the time.
+/// A part of a motion in which the body does one thing all the time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Phase<S = State> {
     /// The time at which the phase begins.
@@ -160,6 +171,27 @@ pub struct Phase<S = State> {
     pub state: S,
     /// The slip at the beginning of the phase, along the lean and across it.
     pub slip: [f64; 2],
+}
+
+/// An impact of a rim on the table.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Strike {
+    /// The time of the impact.
+    pub time: f64,
+    /// Whether the body landed on another rim than the one that was down before.
+    pub other: bool,
+    /// What the contact point does in the impact.
+    pub hit: Hit,
+    /// The state before and after the impact, as seen from the rim that lands.
+    pub states: [State; 2],
+    /// The velocity of the lowest point of that rim before and after: along the lean, across it, and upwards.
+    pub velocities: [[f64; 3]; 2],
+    /// The impulses along the lean, across it, and upwards, in M sqrt(g R).
+    pub impulse: [f64; 3],
+    /// The energy lost, in M g R.
+    pub lost: f64,
+    /// Whether this is the last of a sequence of bounces, after which the body stays on the table.
+    pub stays: bool,
 }
 
 /// The slip, the phases and the losses of a motion. The motion's estimated error also covers the slips,
@@ -183,11 +215,21 @@ pub struct Path<S = State> {
     pub lost: f64,
     /// The total time of slipping.
     pub slipping: f64,
+    /// The height of the lowest point of the rim and its vertical velocity at each time; empty if the motion ends
+    /// where it leaves the table.
+    pub aloft: Vec<[f64; 2]>,
+    /// The impacts.
+    pub impacts: Vec<Strike>,
+    /// Slip and force (N, across, along) of the other rim at each time, NaN unless the body lies on both; empty if the
+    /// motion ends where the body comes to lie.
+    pub other_rim: Vec<[f64; 5]>,
     /// The slip at the event that ended the motion.
     pub last_slip: [f64; 2],
     /// For a stone, the time up to which the claimed error is at most 1 % of the largest speed (at most 0.01
     /// for slow motions); infinite if this holds up to the end.
     pub known_until: f64,
+    /// Whether the motion goes on in the air and on both rims.
+    pub(crate) goes_on: bool,
     /// Whether the body stands on its other rim, now and, if poses were requested, at each time.
     pub(super) upside_down: bool,
     pub(super) turned: Vec<bool>,
@@ -213,6 +255,10 @@ impl<S> Path<S> {
             heat: 0.0,
             lost: 0.0,
             slipping: 0.0,
+            aloft: Vec::new(),
+            impacts: Vec::new(),
+            other_rim: Vec::new(),
+            goes_on: false,
             last_slip: [0.0; 2],
             known_until: f64::INFINITY,
             upside_down: false,

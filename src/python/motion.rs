@@ -132,7 +132,18 @@ fn columns<S: Told>(
     rows.add("t", 0, &|i, to| to.push(m.times[i]))?;
     S::tell(m, body, &mut rows)?;
     if let Some(path) = &m.path
-        && ask.table.rubs()
+        && !path.aloft.is_empty()
+    {
+        rows.add("height", 0, &|i, to| to.push(path.aloft[i][0]))?;
+        rows.add("lift", 0, &|i, to| to.push(path.aloft[i][1]))?;
+        rows.add("slip_other", 2, &|i, to| to.extend(&path.other_rim[i][..2]))?;
+        if m.forces.is_some() {
+            rows.add("normal_other", 0, &|i, to| to.push(path.other_rim[i][2]))?;
+            rows.add("friction_other", 0, &|i, to| to.push(path.other_rim[i][3].hypot(path.other_rim[i][4])))?;
+        }
+    }
+    if let Some(path) = &m.path
+        && rubs(ask)
     {
         rows.add("slip", 2, &|i, to| to.extend(path.slip[i]))?;
         rows.add("dissipated", 0, &|i, to| to.push(path.dissipated[i]))?;
@@ -171,20 +182,27 @@ pub fn roll<'py>(
     asked: MotionAsked,
 ) -> PyResult<Bound<'py, PyDict>> {
     let (times, ask, start) = (times.as_slice()?, asked.ask()?, (asked.slip, asked.t0));
+    let aloft = asked.aloft;
     match (body, state) {
         (AnyBody::Rim(body), AnyState::Rim(state)) => {
             let body = Body::of_numbers(body.into())?;
-            let start = Start { state: State::from(<[f64; 4]>::from(state)), slip: start.0, time: start.1 };
+            let state = State::from(<[f64; 4]>::from(state));
+            let start = Start { state, slip: start.0, time: start.1, aloft };
             found(py, &body, &ask, |watch| motion::roll_with(&body, start, times, &ask, || watch.still()))
         }
         (AnyBody::Stone(stone), AnyState::Stone([a, b, c, d, e, f])) => {
             let stone = stone_of(&stone)?;
             let state = StoneState { vertical: [a, b, c], w: [d, e, f] };
-            let start = Start { state, slip: start.0, time: start.1 };
+            let start = Start { state, slip: start.0, time: start.1, aloft: None };
             found(py, &stone, &ask, |watch| stone::roll(&stone, start, times, &ask, || watch.still()))
         }
         _ => Err(PyValueError::new_err("state: that of another kind of body")),
     }
+}
+
+/// Whether a motion has a slip and phases.
+fn rubs(ask: &Ask) -> bool {
+    ask.table.rubs() || ask.restitution.is_some()
 }
 
 /// Computes a motion with the GIL released, and converts it to a dictionary.
@@ -205,7 +223,7 @@ where
     })?;
     watch.done(py)?;
     let Some((m, columns)) = found else { return Err(PyRuntimeError::new_err("the motion was given up")) };
-    dictionary(py, &m, columns, ask.table.rubs())
+    dictionary(py, &m, columns, rubs(ask))
 }
 
 /// The dictionary for Python: the arrays, the end of the motion, the method and the error estimates.
@@ -266,6 +284,15 @@ fn dictionary<'py, S: Moving>(
             .map(|phase| (phase.time, phase.kind as u8, phase.state.numbers().as_ref().to_vec(), phase.slip))
             .collect();
         out.set_item(intern!(py, "phases"), phases)?;
+        let impacts: Vec<_> = path
+            .impacts
+            .iter()
+            .map(|at| {
+                let states = at.states.map(|state| <[f64; 4]>::from(state));
+                (at.time, at.other, at.hit as u8, states, at.velocities, at.impulse, at.lost, at.stays)
+            })
+            .collect();
+        out.set_item(intern!(py, "_impacts"), impacts)?;
     }
     out.set_item(intern!(py, "_extra"), extra)?;
     Ok(out)

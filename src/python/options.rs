@@ -62,6 +62,8 @@ options! {
         tol: Option<f64> = None,
         beyond: bool = false,
         restitution: Option<f64> = None,
+        /// The height and the vertical velocity of a start in the air.
+        aloft: Option<[f64; 2]> = None,
         stop_at_rolling: bool = false,
         pose: bool = false,
         force: bool = false,

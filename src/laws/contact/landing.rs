@@ -20,6 +20,7 @@
 //!
 //! Error: 1e-12 of the largest velocity; a test of `throw` compares with the three-dimensional model.
 
+use super::slip::Friction;
 use crate::error::{Error, within};
 use crate::laws::body::Body;
 use crate::laws::state::State;
@@ -96,25 +97,49 @@ pub fn normals(body: &Body, y: &State, slip: [f64; 2], mu: f64) -> [f64; 2] {
 /// an error, too.
 pub fn land(body: &Body, y: &State, slip: [f64; 2], mu: f64) -> Result<Landed, Error> {
     two_rims(body)?;
+    within("mu", mu, (0.0, 1e100), "0 <= mu <= 1e100")?;
+    land_at(body, y, (slip, 0.0), &Friction::coulomb(mu))
+}
+
+/// The plastic landing with any law of friction, also of a body whose lower rim comes down with it, at the velocity
+/// `lift` <= 0. A viscous film takes the impulse c P u, with the slip u after the impact, as dry friction does.
+pub(crate) fn land_at(
+    body: &Body,
+    y: &State,
+    (slip, lift): ([f64; 2], f64),
+    friction: &Friction,
+) -> Result<Landed, Error> {
     let most = 1e100;
     within("theta", y.theta, (FRAC_PI_2, FRAC_PI_2), "pi/2: the other rim lands there")?;
     within("w2", y.w2, (-most, 0.0), "-1e100 <= w2 <= 0: the other rim comes down")?;
-    within("mu", mu, (0.0, most), "0 <= mu <= 1e100")?;
     for (name, x) in [("w1", y.w1), ("w3", y.w3), ("u_h", slip[0]), ("u_2", slip[1])] {
         within(name, x, (-most, most), "-1e100 to 1e100")?;
     }
-    let before = energy(body, y, slip);
+    let mu = friction.strength();
+    let dry = matches!(friction, Friction::Coulomb { .. });
+    let before = energy(body, y, slip, lift);
     let end = |outcome, y: State, slip: [f64; 2]| {
-        let lost = (before - energy(body, &y, slip)).max(0.0);
+        let lost = (before - energy(body, &y, slip, 0.0)).max(0.0);
         Landed { outcome, state: y, slip, lost }
     };
-    let lies = Impact { body, y: *y, slip, mu, both: true }.solved();
-    let rocks = if y.w2 < 0.0 { Impact { body, y: *y, slip, mu, both: false }.solved() } else { None };
+    let comes = y.w2 < 0.0 || lift < 0.0;
+    let on = |y: &State, slip: [f64; 2], lift: f64, both| {
+        Impact { body, y: *y, slip, lift, mu, dry, both }.solved()
+    };
+    let lies = on(y, slip, lift, true);
+    let rocks = if comes { on(y, slip, lift, false) } else { None };
     // Where the lower rim barely stays, both solutions are the same motion up to rounding, and one is
     // dropped.
     let rocks = rocks.filter(|(after, _)| lies.is_none() || after.w2 < SAME * y.w2);
-    match (lies, rocks) {
-        (Some((y, slip)), None) => {
+    // If both rims come down, it may also be the other one that leaves the table.
+    let stands = if lift < 0.0 && lies.is_none() && rocks.is_none() {
+        let (there, other) = mirrored(body, y, slip);
+        on(&there, other, lift + 2.0 * body.ell() * y.w2, false)
+    } else {
+        None
+    };
+    match (lies, rocks, stands) {
+        (Some((y, slip)), None, _) => {
             let (there, other) = mirrored(body, &y, slip);
             Ok(if rises(body, &y, slip, mu) {
                 end(Outcome::Rises, y, slip)
@@ -124,11 +149,15 @@ pub fn land(body: &Body, y: &State, slip: [f64; 2], mu: f64) -> Result<Landed, E
                 end(Outcome::Lies, y, slip)
             })
         }
-        (None, Some((y, slip))) => {
+        (None, Some((y, slip)), _) => {
             let (there, other) = mirrored(body, &y, slip);
             Ok(end(Outcome::Changes, there, other))
         }
-        (lies, _) => Err(Error::Landing { mu, outcomes: if lies.is_some() { 2 } else { 0 } }),
+        (None, None, Some((there, other))) => {
+            let (y, slip) = mirrored(body, &there, other);
+            Ok(end(Outcome::Rises, y, slip))
+        }
+        (lies, ..) => Err(Error::Landing { mu, outcomes: if lies.is_some() { 2 } else { 0 } }),
     }
 }
 
@@ -143,10 +172,10 @@ pub fn mirrored(body: &Body, y: &State, slip: [f64; 2]) -> (State, [f64; 2]) {
     )
 }
 
-/// Kinetic energy at theta = pi/2, from the state and the slip of the lower rim.
-fn energy(body: &Body, y: &State, [along, across]: [f64; 2]) -> f64 {
+/// Kinetic energy at theta = pi/2, from the state, and the slip and the vertical velocity of the lower rim.
+fn energy(body: &Body, y: &State, [along, across]: [f64; 2], lift: f64) -> f64 {
     let ell = body.ell();
-    let [forth, aside, up] = [along + y.w2, across - ell * y.w1 + y.w3, ell * y.w2];
+    let [forth, aside, up] = [along + y.w2, across - ell * y.w1 + y.w3, lift + ell * y.w2];
     let turning = body.i1() * (y.w1 * y.w1 + y.w2 * y.w2) + body.i3() * y.w3 * y.w3;
     0.5 * (forth * forth + aside * aside + up * up + turning)
 }
@@ -156,7 +185,11 @@ struct Impact<'a> {
     body: &'a Body,
     y: State,
     slip: [f64; 2],
+    /// The vertical velocity of the lower rim, which is not positive.
+    lift: f64,
+    /// The coefficient mu of dry friction, or c of a viscous film.
     mu: f64,
+    dry: bool,
     both: bool,
 }
 
@@ -168,10 +201,10 @@ impl Impact<'_> {
     fn pushed(&self, q: &Impulses) -> ([f64; 2], f64) {
         let (ell, i1, w, along) = (self.body.ell(), self.body.i1(), -self.y.w2, q[0][0] + q[1][0]);
         if self.both {
-            let apart = (i1 * w + along) / ell;
-            return ([0.5 * (ell * w - apart), 0.5 * (ell * w + apart)], 0.0);
+            let (all, apart) = (ell * w - self.lift, (i1 * w + along) / ell);
+            return ([0.5 * (all - apart), 0.5 * (all + apart)], 0.0);
         }
-        let push = ell * (2.0 * i1 * w + along) / (i1 + ell * ell);
+        let push = (i1 * (2.0 * ell * w - self.lift) + ell * along) / (i1 + ell * ell);
         ([0.0, push], (ell * push - along) / i1 - w)
     }
 
@@ -203,7 +236,8 @@ impl Impact<'_> {
         let step = 1.0 / across.max(along);
         // This velocity, as an impulse, is the scale of the rounding errors of the slips.
         let other = (2.0 * ell * self.y.w1).abs();
-        let velocity = step * self.slip[0].abs().max(self.slip[1].abs()).max(other).max(-self.y.w2);
+        let velocity =
+            step * self.slip[0].abs().max(self.slip[1].abs()).max(other).max(-self.y.w2).max(-self.lift);
         let mut q: Impulses = [[0.0; 2]; 2];
         for _ in 0..STEPS {
             let (p, w2) = self.pushed(&q);
@@ -213,7 +247,11 @@ impl Impact<'_> {
                 let most = self.mu * p[k].max(0.0);
                 let tried = [q[k][0] - step * slips[k][0], q[k][1] - step * slips[k][1]];
                 let size = tried[0].hypot(tried[1]);
-                let share = if size > most { most / size } else { 1.0 };
+                let share = match self.dry {
+                    true if size <= most => 1.0,
+                    true => most / size,
+                    false => most / (most + step),
+                };
                 let next = tried.map(|x| x * share);
                 moved = moved.max((next[0] - q[k][0]).abs()).max((next[1] - q[k][1]).abs());
                 q[k] = next;
@@ -235,7 +273,7 @@ impl Impact<'_> {
         let (square, reach) = (ell * ell, self.mu * ell);
         let [least, most] = [square - reach - i1, square + reach - i1];
         let rounding = SAME * (i1 + square);
-        reach < i1 + square && if self.both { most < -rounding } else { least > rounding }
+        self.dry && self.lift == 0.0 && reach < i1 + square && if self.both { most < -rounding } else { least > rounding }
     }
 
     /// The result, if no rim pulls and a rim that leaves the table moves upwards.

@@ -11,8 +11,10 @@
 //!
 //! Error: 64 ulp of the largest term, by comparison with the three-dimensional model (a test of `laws` runs it).
 
+pub(crate) mod impact;
 pub mod landing;
 pub mod lossy;
+pub(crate) mod lying;
 pub(crate) mod reduced;
 pub mod rolling;
 pub mod slip;

@@ -53,6 +53,9 @@ pub(super) struct Walks<'a, const N: usize> {
 fn place<const N: usize>(walk: &BodyWalk<'_, N>) -> Option<(Among, [f64; NUMBERS])> {
     let (body, mut numbers) = (&walk.of.body, [0.0; NUMBERS]);
     numbers[..4].copy_from_slice(&[body.ell(), body.i1(), body.i3(), body.fillet()]);
+    if walk.of.lying.is_some() {
+        return None;
+    }
     if let Some(lossy) = walk.lossy() {
         let law = LossyKind { contact: walk.contact(), round: !body.is_sharp(), present: lossy.present() };
         numbers[4..4 + LOSSY_NUMBERS].copy_from_slice(&lossy.numbers());

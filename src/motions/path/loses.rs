@@ -118,7 +118,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             }
             Halt::Side => {
                 self.of.state.theta = body.theta_end();
-                if ask.restitution.is_some() { self.lands() } else { Next::Ends(Ending::Side) }
+                Next::Ends(Ending::Side)
             }
             Halt::Slips if matches!(ask.table, Table::Rubs(_)) && flow.jumps(&self.of.state) => {
                 let (state, by) = flow.on_its_way(&self.of.state);

@@ -14,9 +14,11 @@
 //! the ratio of the tolerances.
 
 pub(crate) mod face;
-mod lands;
+pub(crate) mod flight;
+mod flies;
 mod loses;
 pub(crate) mod lossy;
+pub(crate) mod lying;
 mod phases;
 mod rolls;
 pub(crate) mod settled;
@@ -95,6 +97,18 @@ fn check(body: &Body, start: &Start, ask: &Ask) -> Result<f64, Error> {
     let fine = check_flow(ask)?;
     for (name, u) in ["slip along the lean", "slip across"].into_iter().zip(start.slip) {
         within(name, u, (-1e6, 1e6), "at most 1e6 sqrt(g R) for a motion")?;
+    }
+    if let Some([height, lift]) = start.aloft {
+        within("height", height, (0.0, 1e6), "0 to 1e6 R")?;
+        within("lift", lift, (-1e6, 1e6), "at most 1e6 sqrt(g R)")?;
+        if ask.restitution.is_none() {
+            let expected = "None: a motion that starts in the air needs a restitution";
+            return Err(Error::OutOfRange { name: "height", value: height, expected });
+        }
+        if body.ell() > 0.0 && body.theta_end() < core::f64::consts::PI {
+            let other = height + 2.0 * body.ell() * start.state.theta.cos();
+            within("height", if other < -1e-15 { -height } else { height }, (0.0, 1e6), "both rims above the table")?;
+        }
     }
     if ask.table.rubs() { Ok(fine) } else { without_slip(start.slip).map(|()| fine) }
 }

@@ -1,14 +1,16 @@
 //! The phases of a body of revolution: their beginnings, their flows and their ends.
 
 use super::check;
+use super::flies::Takeoff;
 use super::lossy::{LossyFlow, REST};
+use super::lying::LyingPhase;
 use super::slide::Slide;
-use super::slow::BodySlips;
+use super::slow::{BodySlips, Slippery};
 use super::tail::LastTurns;
 use super::write::{self, state};
 use crate::error::Error;
 use crate::laws::body::Body;
-use crate::laws::contact::slip::painleve;
+use crate::laws::contact::slip::{Friction, centre_velocity, painleve};
 use crate::laws::contact::standstill::{Standstill, let_go, standstill, towards};
 use crate::laws::contact::{Contact, Table, force, lossy};
 use crate::laws::state::State;
@@ -41,6 +43,10 @@ pub(crate) struct BodyPhases {
     pub(super) integrates: bool,
     /// The present phase, if it loses energy without a slip.
     pub(super) lossy: Option<LossyPhase>,
+    /// The present phase, if the body lies on both rims.
+    pub(crate) lying: Option<LyingPhase>,
+    /// The start of the next flight, or the height and the vertical velocity of a body in the air.
+    pub(super) takeoff: Takeoff,
     /// Whether the body only tilts, so that rounding must not make the body turn.
     pub(super) planar: bool,
     /// Estimates of the end of a slipping whirr; None if the losses do not let a whirr last for
@@ -71,7 +77,15 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
     /// A walk at the start, with steps of the tolerance `tol`, which is the requested one or a larger one.
     pub fn of_body(body: &Body, ask: &Ask, tol: f64, times: &'a [f64], start: &Start) -> Result<Self, Error> {
         let fine = check(body, start, ask)?;
-        let &Start { state: start, slip, time } = start;
+        let &Start { state: start, mut slip, time, aloft } = start;
+        let mut ask = *ask;
+        if ask.table == Table::Smooth && ask.restitution.is_some() {
+            // On a smooth table the centre stands still until an impact; the body then slips without friction.
+            ask.table = Friction::coulomb(0.0).into();
+            let [v_h, v_2] = centre_velocity(body, &start, [0.0; 2]);
+            slip = [0.0 - v_h, 0.0 - v_2];
+        }
+        let ask = &ask;
         let (s, c) = start.theta.sin_cos();
         let mut at = [0.0; N];
         at[..7].copy_from_slice(&[s, c, start.w1, start.w2, start.w3, slip[0], slip[1]]);
@@ -82,11 +96,16 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
             start,
             integrates: ask.table == Table::Smooth || !ask.losses.is_none(),
             lossy: None,
+            lying: None,
+            takeoff: Takeoff::default(),
             planar: start.w1 == 0.0 && start.w3 == 0.0 && slip[1] == 0.0,
             tail: (!body.is_ball() && ask.losses.turn_endlessly()).then(LastTurns::default),
         };
         let mut walk = Self::new(of, at, ask, fine, (time, times))?;
-        walk.next = Some(walk.first_phase()?);
+        walk.next = Some(match aloft {
+            Some(aloft) => walk.starts_in_air(aloft),
+            None => walk.first_phase()?,
+        });
         if start.theta < body.theta_end() {
             BodyPhases::perturbs(&mut walk);
         }
@@ -213,6 +232,9 @@ impl<const N: usize> Phases<N> for BodyPhases {
     }
 
     fn write(walk: &mut BodyWalk<'_, N>, y: &[f64; N]) {
+        if let Some(phase) = walk.of.lying {
+            return walk.writes_lying(&phase.flow, y);
+        }
         walk.made.slid(&walk.ask, &walk.of.slide, y);
     }
 
@@ -288,6 +310,24 @@ impl<const N: usize> Phases<N> for BodyPhases {
         false
     }
 
+    fn goes_on(walk: &mut BodyWalk<'_, N>, ending: Ending) -> Next {
+        walk.continues_after(ending)
+    }
+    fn goes(
+        walk: &mut BodyWalk<'_, N>,
+        kind: Kind,
+        _: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<WalkStep<N>>, Error> {
+        if kind != Kind::Flying {
+            return Ok(walk.lies());
+        }
+        walk.flies();
+        Ok(None)
+    }
+    fn slip_kind(walk: &BodyWalk<'_, N>) -> Kind {
+        walk.kind_of_slip()
+    }
+
     fn gives_up(_: &BodyWalk<'_, N>, _: usize) -> Result<Next, Error> {
         Ok(Next::Ends(Ending::Bounded))
     }
@@ -301,11 +341,21 @@ impl<const N: usize> Phases<N> for BodyPhases {
     }
 
     fn slow(walk: &mut BodyWalk<'_, N>, way: [f64; 2]) -> BodySlips {
+        let tol = walk.of.slide.tol;
+        if let Some(phase) = walk.of.lying {
+            return BodySlips::of(&Slippery::Two(phase.flow.law, phase.flow.ways), tol, N);
+        }
         walk.of.slide.sets_ways(&walk.of.state, [0.0; 2], way);
-        BodySlips::of(&walk.of.slide.law, walk.of.slide.tol, N)
+        BodySlips::of(&Slippery::One(walk.of.slide.law), tol, N)
     }
 
     fn clear_until(walk: &BodyWalk<'_, N>, series: &SlowSeries<N>) -> f64 {
+        if let Some(phase) = walk.of.lying {
+            return clear_until(series.until, |_, moment| {
+                let place = FlowPlace { y: series.at(moment), carry: [0.0; N], rate: [0.0; N] };
+                phase.flow.margins(&place).map(|margin| margin.value)
+            });
+        }
         let slide = &walk.of.slide;
         clear_until(series.until, |t, moment| {
             let moved = series.at(moment);
@@ -322,7 +372,10 @@ impl<const N: usize> Phases<N> for BodyPhases {
     }
 
     fn nudged(walk: &BodyWalk<'_, N>, way: [f64; 2], growth: f64) -> [f64; N] {
-        walk.of.slide.nudged(&walk.at, way, growth)
+        match walk.of.lying {
+            Some(phase) => phase.flow.nudged(&walk.at, way, growth),
+            None => walk.of.slide.nudged(&walk.at, way, growth),
+        }
     }
 
     fn rolls(
@@ -336,7 +389,11 @@ impl<const N: usize> Phases<N> for BodyPhases {
     /// The first step of a rougher run is longer. Two runs with the same steps would have the same errors,
     /// whose growth from an unstable start their difference would not show.
     fn first(walk: &BodyWalk<'_, N>, y: &[f64; N]) -> f64 {
-        let first = walk.lossy().map_or_else(|| walk.of.slide.first(y), |flow| flow.first(y));
+        let first = match (&walk.of.lying, walk.lossy()) {
+            (Some(phase), _) => phase.flow.first(y),
+            (_, Some(flow)) => flow.first(y),
+            _ => walk.of.slide.first(y),
+        };
         if walk.perturbation > 0.0 { LONGER * first } else { first }
     }
 
@@ -346,6 +403,9 @@ impl<const N: usize> Phases<N> for BodyPhases {
         steps: Steps,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Pause<N>, Error> {
+        if walk.of.lying.is_some() {
+            return walk.lies_on(y, steps, go_on);
+        }
         match walk.of.lossy {
             Some(LossyPhase { flow, .. }) => walk.loses(&flow, y, steps, go_on),
             None => walk.slides(walk.of.slide.place(y), steps, go_on),
@@ -353,13 +413,17 @@ impl<const N: usize> Phases<N> for BodyPhases {
     }
 
     fn slip_halts(walk: &mut BodyWalk<'_, N>, y: [f64; N], halt: Halt) {
+        if walk.of.lying.is_some() {
+            walk.stops_lying(y, halt);
+            return;
+        }
         walk.slip_ends(y, halt);
     }
 
     /// The error of a margin that depends on a force is proportional to the largest speed.
     fn grows(&self, halt: Halt, y: &[f64; N]) -> Option<f64> {
         match halt {
-            Halt::Side | Halt::Rests => Some(1.0),
+            Halt::Side | Halt::Rests | Halt::Rises | Halt::Changes | Halt::Turned => Some(1.0),
             Halt::LiftOff | Halt::Slips | Halt::Jam => Some(Slide::fastest(y)),
             _ => None,
         }

@@ -85,7 +85,6 @@ impl<const N: usize> BodyWalk<'_, N> {
         self.of.state = event.state;
         let next = match event.ending {
             Ending::Slip if rubs => after_rest(Phases::lets_go(self)),
-            Ending::Side if self.ask.restitution.is_some() => self.lands(),
             ending => Next::Ends(ending),
         };
         self.continues_with(next);

@@ -90,10 +90,6 @@ impl<const N: usize> BodyWalk<'_, N> {
                 let turns = self.of.slide.turns(halt, &y, slip);
                 self.next = Some(if turns { Next::SlipsOn } else { Next::Ends(Ending::Stops) });
             }
-            Halt::Side if self.ask.restitution.is_some() => {
-                let next = self.lands();
-                self.continues_with(next);
-            }
             halt => self.next = Some(Next::Ends(ending(halt))),
         }
     }

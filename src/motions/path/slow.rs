@@ -1,10 +1,11 @@
 //! The slow slips of a body of revolution, as power series of all of its numbers.
 
+use crate::laws::contact::lying::Lying;
 use crate::laws::contact::slip::Slipping;
 use crate::motions::halt::{loses, poses};
 use crate::motions::walk::slow::{SlowRates, SlowSlips, turned};
 use crate::motions::walk::{SlowLaw, SlowSeries};
-use crate::numbers::Series;
+use crate::numbers::{Real, Series};
 
 /// The series of a body's slow slips.
 pub(crate) struct BodySlips {
@@ -13,9 +14,47 @@ pub(crate) struct BodySlips {
     lost: Option<usize>,
 }
 
+/// The law of a slip on one rim, or on two, of which the other one slips already, with the signs of its dry losses.
+pub(crate) enum Slippery {
+    One(Slipping<f64>),
+    Two(Lying<f64>, [f64; 2]),
+}
+
 impl BodySlips {
     /// The series for a motion with `count` numbers.
-    pub fn of(law: &Slipping<f64>, tol: f64, count: usize) -> Self {
+    pub fn of(law: &Slippery, tol: f64, count: usize) -> Self {
+        match law {
+            Slippery::One(law) => Self::on_one(law, tol, count),
+            Slippery::Two(law, ways) => Self::on_two(law, *ways, tol, count),
+        }
+    }
+
+    fn on_two(law: &Lying<f64>, ways: [f64; 2], tol: f64, count: usize) -> Self {
+        let mut lost = None;
+        let slips = SlowSlips::of(tol, |tape, [s, c, w1, _, w3], slip, way| {
+            let taped = law.map(|x| tape.number(x));
+            let y = [w1, w3, slip[0], slip[1]];
+            let mu = taped.strength;
+            let [u, v] = taped.other_slip(y);
+            let size = (u * u + v * v).sqrt();
+            let at = taped.slipping_along(y, [way.map(|x| mu * x), [mu * u / size, mu * v / size]], ways);
+            let [[_, low_2, low_h], [_, up_2, up_h]] = at.force;
+            let mut more = vec![-(low_2 * slip[1] + low_h * slip[0] + up_2 * v + up_h * u)];
+            if poses(count) {
+                more.extend([w1, w3, slip[0], slip[1] + w3]);
+            }
+            if loses(count) {
+                lost = Some(more.len());
+                more.push(-(at.couple[0] * w1 + at.couple[1] * w3));
+            }
+            let still = tape.number(0.0);
+            let _ = (s, c);
+            SlowRates { numbers: [still, still, at.w[0], still, at.w[1]], slip: at.u, more }
+        });
+        Self { slips, lost }
+    }
+
+    fn on_one(law: &Slipping<f64>, tol: f64, count: usize) -> Self {
         let mut lost = None;
         let slips = SlowSlips::of(tol, |tape, [s, c, w1, w2, w3], slip, way| {
             let number = |x: f64| tape.number(x);

@@ -29,7 +29,7 @@ pub(crate) fn check(
     times: &[f64],
     ask: &Ask,
 ) -> Result<(Start<StoneState>, f64), Error> {
-    let Start { mut state, slip, time } = *start;
+    let Start { mut state, slip, time, .. } = *start;
     let long = dot(state.vertical, state.vertical).sqrt();
     within("vertical", long, (1.0 - UNIT, 1.0 + UNIT), "a vector of length 1")?;
     state.vertical = state.vertical.map(|x| x / long);
@@ -60,5 +60,5 @@ pub(crate) fn check(
         return Err(Error::OutOfRange { name: "t", value, expected });
     }
     check_times_after(time, times)?;
-    Ok((Start { state, slip, time }, fine))
+    Ok((Start { state, slip, time, aloft: None }, fine))
 }

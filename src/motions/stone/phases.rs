@@ -51,7 +51,7 @@ impl<'a, 'n> StoneWalk<'a, 'n> {
         (tol, fine): (f64, f64),
         recorded: Option<&'n RefCell<Recorded>>,
     ) -> Result<Self, Error> {
-        let &Start { state: y, slip, time } = start;
+        let &Start { state: y, slip, time, .. } = start;
         let friction = ask.table.friction();
         let dry = matches!(friction, Friction::Coulomb { mu, .. } if mu > 0.0 || friction.sticks());
         let law = stone.law(friction.strength(), dry && ask.table.rubs());

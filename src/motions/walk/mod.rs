@@ -6,6 +6,7 @@
 //! slips    to u = 0: sticks, or slips off in another direction
 //! rolls    to |F_roll| = mu_s N: slips off
 //! both     to N = 0, or until a face, an edge or the other rim lands
+//! with restitution: in the air to a landing, an impact, and on; on both rims until one rises
 //! ```
 //! Bodies of revolution and stones share the walk. [`Phases`] has the differences: the numbers, the equations
 //! along a phase, and the conditions for its beginning and its end.
@@ -76,6 +77,8 @@ pub(crate) enum Next {
     Rolls {
         at_limit: bool,
     },
+    /// A phase of the body's own: in the air, or on both rims.
+    Own(Kind),
     Ends(Ending),
 }
 
@@ -146,7 +149,8 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
             (motion.forces, motion.force_error) = (Some(room(count)?), 0.0);
         }
         motion.method = Method::Tolerance(tol);
-        let path = Path::empty(count, if ask.losses.is_none() { 0 } else { count })?;
+        let mut path = Path::empty(count, if ask.losses.is_none() { 0 } else { count })?;
+        path.goes_on = ask.restitution.is_some();
         Ok(Self {
             // The claimed error is SAFETY fine/tol times the difference of the runs, to which this share
             // adds one rounding.
@@ -190,6 +194,10 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
     /// Goes through the phases up to one that is integrated, or to the end.
     pub fn advance(&mut self, go_on: &mut dyn FnMut() -> bool) -> Result<WalkStep<N>, Error> {
         while let Some(next) = self.next.take() {
+            let next = match next {
+                Next::Ends(ending) => P::goes_on(self, ending),
+                next => next,
+            };
             let now = self.at[TIME];
             self.still = if now > self.began { 0 } else { self.still + 1 };
             self.short = if now > self.began + SHORT { 0 } else { self.short + 1 };
@@ -215,6 +223,12 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
                     if self.ask.stop_at_rolling {
                         self.made.path.rolls_on = true;
                     } else if let Some(step) = P::rolls(self, at_limit, go_on)? {
+                        return Ok(step);
+                    }
+                }
+                Next::Own(kind) => {
+                    self.begins_phase(kind);
+                    if let Some(step) = P::goes(self, kind, go_on)? {
                         return Ok(step);
                     }
                 }
@@ -396,6 +410,7 @@ pub(crate) fn ending(halt: Halt) -> Ending {
         Halt::Jam => Ending::Painleve,
         Halt::Slips => Ending::Slip,
         Halt::Contour | Halt::Drilling | Halt::Rocking | Halt::Settles | Halt::Rests => Ending::Stops,
+        Halt::Rises | Halt::Changes | Halt::OtherStandstill | Halt::Turned => Ending::Side,
         Halt::Endless => Ending::Bounded,
     }
 }

@@ -5,7 +5,7 @@ use crate::error::Error;
 use crate::laws::contact::standstill::Standstill;
 use crate::methods::flow::Steps;
 use crate::motions::halt::Halt;
-use crate::motions::{Ending, Moving};
+use crate::motions::{Ending, Kind, Moving};
 
 /// The phases of a body of revolution or of a stone, whose motion has N numbers.
 pub(crate) trait Phases<const N: usize>: Sized {
@@ -49,6 +49,22 @@ pub(crate) trait Phases<const N: usize>: Sized {
     /// Ends the motion before the next phase if its end is known already. Returns whether it has ended.
     fn is_over(_: &mut Walk<'_, Self, N>, _: &Next) -> bool {
         false
+    }
+    /// The phase after an ending from which a motion with restitution goes on; otherwise the ending.
+    fn goes_on(_: &mut Walk<'_, Self, N>, ending: Ending) -> Next {
+        Next::Ends(ending)
+    }
+    /// Follows a phase of the body's own, or begins its flow.
+    fn goes(
+        _: &mut Walk<'_, Self, N>,
+        _: Kind,
+        _: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<WalkStep<N>>, Error> {
+        Ok(None)
+    }
+    /// The kind of a phase that slips from rest.
+    fn slip_kind(_: &Walk<'_, Self, N>) -> Kind {
+        Kind::Slipping
     }
     /// The ending or the error of a motion with too many phases, `count` in all.
     fn gives_up(walk: &Walk<'_, Self, N>, count: usize) -> Result<Next, Error>;

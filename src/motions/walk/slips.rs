@@ -3,7 +3,7 @@
 use super::{Next, Phases, Walk};
 use crate::laws::contact::standstill::towards;
 use crate::motions::halt::{Halt, TIME};
-use crate::motions::result::{Ending, Kind};
+use crate::motions::result::Ending;
 use crate::numbers::Series;
 
 /// A slip from rest whose speed grows at a higher rate than this does not stay slow: an integrator continues
@@ -62,7 +62,7 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
             self.next = Some(Next::Rolls { at_limit: true });
             return None;
         }
-        self.begins_phase(Kind::Slipping);
+        self.begins_phase(P::slip_kind(self));
         self.made.path.way = way;
         if !series.is_sound() {
             let y = P::nudged(self, way, growth);

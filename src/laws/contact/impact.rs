@@ -1,0 +1,302 @@
+//! Impact of a rim on the table: the impulses at one point, and how much of the normal velocity comes back.
+//!
+//! ```text
+//! M = [[a_h, 0, b], [0, a_2, 0], [b, 0, a_n]]        change of the contact point's velocity (e_h, e2, z) per impulse
+//! a_h = 1 + h^2/I1,  a_2 = 1 + L^2/I1 + A^2/I3,  a_n = 1 + g^2/I1,  b = h g/I1
+//! w1' - w1 = L P_2/I1,   w2' - w2 = -(h P_h + g P_n)/I1,   w3' - w3 = -A P_2/I3
+//! along the impact, p the normal impulse so far:   du/dp = M (-mu cos, -mu sin, 1),   u = sigma (cos, sin)
+//! compression ends at u_n = 0 with the work W_c < 0 of the normal force, the impact ends where W = (1 - e^2) W_c
+//! ```
+//! Restitution is energetic (Stronge, Proc. R. Soc. A 431, 169 (1990)), so that no impact gains energy. It equals the
+//! ratio of the normal velocities where the direction of the slip stays. Friction along the impact is Coulomb's
+//! (Routh 1860; Keller, J. Appl. Mech. 53, 1 (1986)): where a slip stops, it sticks if |b| <= mu_s a_h, otherwise it
+//! slips on along e_h. For every mu and every body the impact has one outcome. The motion is straight, and the
+//! formulas are closed, except for a first slip whose direction turns; a viscous film is linear.
+//!
+//! Error: 1e-13 of the largest velocity; a test of `laws` compares with integration in the laboratory's axes.
+
+use super::slip::Friction;
+use super::table::Table;
+use crate::laws::body::Shape;
+use crate::methods::rk8;
+use crate::methods::search::crossing;
+use crate::numbers::codes::coded;
+
+coded! {
+    /// What the contact point does in an impact.
+    pub enum Hit {
+        /// It slips to the end.
+        Slips = 0,
+        /// Its slip stops, and it sticks.
+        Sticks = 1,
+        /// Its slip stops, and friction cannot hold it.
+        SlipsOn = 2,
+        /// Without friction.
+        Smooth = 3,
+    }
+}
+
+/// The velocity of the lowest point of a rim before an impact, and the inverse of its inertia.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Impact {
+    /// The slip along e_h and along e2, and the normal velocity, which is negative.
+    pub slip: [f64; 2],
+    pub lift: f64,
+    /// a_h, a_2, a_n and b.
+    pub light: [f64; 4],
+}
+
+/// The impulses P_h, P_2 and P_n, and the velocity of the lowest point after the impact.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Struck {
+    pub impulse: [f64; 3],
+    pub slip: [f64; 2],
+    pub lift: f64,
+    pub hit: Hit,
+    /// Energy lost, in M g R.
+    pub lost: f64,
+}
+
+/// The inverse inertia a_h, a_2, a_n and b of the lowest point of a rim.
+pub(crate) fn lightness(shape: &Shape<f64>, angle: (f64, f64)) -> [f64; 4] {
+    let Shape { rim, i1, i3 } = shape;
+    let (height, lever) = (rim.height(angle), rim.lever(angle));
+    let (depth, radius) = (rim.depth(angle), rim.radius(angle));
+    [
+        1.0 + height * height / i1,
+        1.0 + depth * depth / i1 + radius * radius / i3,
+        1.0 + lever * lever / i1,
+        height * lever / i1,
+    ]
+}
+
+/// The angular velocity after these impulses.
+pub(crate) fn turned(shape: &Shape<f64>, angle: (f64, f64), w: [f64; 3], [p_h, p_2, p_n]: [f64; 3]) -> [f64; 3] {
+    let Shape { rim, i1, i3 } = shape;
+    [
+        w[0] + rim.depth(angle) * p_2 / i1,
+        w[1] - (rim.height(angle) * p_h + rim.lever(angle) * p_n) / i1,
+        w[2] - rim.radius(angle) * p_2 / i3,
+    ]
+}
+
+/// A slip slower than this share of the speed counts as none.
+const STOPPED: f64 = 1e-15;
+/// A slip whose sine is below this share runs along the lean, where its direction stays.
+const STRAIGHT: f64 = 1e-14;
+/// The logarithm of a slip, in units of the normal velocity, at which it has stopped.
+const OVER: f64 = -39.0;
+/// Tolerance of a step along the impact, and the largest number of steps.
+const TOL: f64 = 3e-14;
+const STEPS: usize = 5_000;
+
+/// The impact so far, with all velocities in units of the first normal velocity.
+struct Course {
+    impulse: [f64; 3],
+    lift: f64,
+    work: f64,
+    /// The work at the end of compression.
+    compressed: Option<f64>,
+    /// 1 - e^2.
+    keeps: f64,
+}
+
+impl Course {
+    /// Goes on in a direction that stays, in which the normal velocity grows at the rate `k`, for at most the normal
+    /// impulse `most`. Returns whether the impact ends.
+    fn straight(&mut self, k: f64, [p_h, p_2]: [f64; 2], most: f64) -> bool {
+        if self.compressed.is_none() && k > 0.0 && -self.lift / k <= most {
+            self.compressed = Some(self.work - self.lift * self.lift / (2.0 * k));
+        }
+        let (mut p, mut done) = (most, false);
+        if let Some(compressed) = self.compressed {
+            let left = self.keeps * compressed - self.work;
+            let square = self.lift * self.lift + 2.0 * k * left;
+            // Friction may press the body down again before the work is done.
+            if square >= 0.0 || most == f64::INFINITY {
+                let root = square.max(0.0).sqrt();
+                let end = if self.lift > 0.0 { 2.0 * left / (self.lift + root) } else { (root - self.lift) / k };
+                (p, done) = (end.min(most), end <= most);
+            }
+        }
+        self.work += p * (self.lift + 0.5 * k * p);
+        self.lift += k * p;
+        self.impulse = [self.impulse[0] + p_h * p, self.impulse[1] + p_2 * p, self.impulse[2] + p];
+        done
+    }
+}
+
+impl Impact {
+    /// The impact under the law of this table with the restitution `e`. None where a rolling table has no answer:
+    /// its friction would lift the body before the slip has stopped, or would exceed mu times the normal impulse.
+    pub fn on(&self, table: &Table, e: f64) -> Option<Struck> {
+        let (big, [a_h, a_2, a_n, b]) = (-self.lift, self.light);
+        let keeps = (1.0 - e) * (1.0 + e);
+        let mut course = Course { impulse: [0.0; 3], lift: -1.0, work: 0.0, compressed: None, keeps };
+        let (slip, mut stopped) = (self.slip.map(|u| u / big), false);
+        let hit = match *table {
+            Table::Rolling { .. } => {
+                // The slip is stopped before the normal impulse begins.
+                (course.impulse[0], course.impulse[1]) = (-slip[0] / a_h, -slip[1] / a_2);
+                course.lift += b * course.impulse[0];
+                if course.lift >= 0.0 {
+                    return None;
+                }
+                stopped = true;
+                Hit::Sticks
+            }
+            Table::Rubs(Friction::Viscous { c }) if c > 0.0 => {
+                course.film(c * big, slip, self.light);
+                Hit::Slips
+            }
+            Table::Rubs(friction @ Friction::Coulomb { mu, fixed }) if mu > 0.0 || friction.sticks() => {
+                stopped = !self.slides(&mut course, mu, slip);
+                if !stopped {
+                    Hit::Slips
+                } else if b.abs() <= fixed * a_h {
+                    Hit::Sticks
+                } else {
+                    course.straight(a_n - mu * b.abs(), [-mu * b.signum(), 0.0], f64::INFINITY);
+                    Hit::SlipsOn
+                }
+            }
+            _ => {
+                course.straight(a_n, [0.0; 2], f64::INFINITY);
+                Hit::Smooth
+            }
+        };
+        if hit == Hit::Sticks {
+            course.straight(a_n - b * b / a_h, [-b / a_h, 0.0], f64::INFINITY);
+        }
+        let [p_h, p_2, p_n] = course.impulse.map(|p| p * big);
+        let lift = if e > 0.0 { course.lift * big } else { 0.0 };
+        let [along, across] = [self.slip[0] + a_h * p_h + b * p_n, self.slip[1] + a_2 * p_2];
+        // A slip that has stopped has no direction left but that of the lean.
+        let slip = match hit {
+            Hit::Sticks => [0.0; 2],
+            _ if stopped => [along, 0.0],
+            _ => [along, across],
+        };
+        if let Table::Rolling { mu } = *table
+            && p_h.hypot(p_2) > mu * p_n
+        {
+            return None;
+        }
+        let lost = -0.5
+            * ((self.slip[0] + slip[0]) * p_h + (self.slip[1] + slip[1]) * p_2 + (self.lift + lift) * p_n);
+        Some(Struck { impulse: [p_h, p_2, p_n], slip, lift, hit, lost: lost.max(0.0) })
+    }
+
+    /// The first slip under Coulomb's friction. Returns whether the impact ends before the slip stops.
+    fn slides(&self, course: &mut Course, mu: f64, slip: [f64; 2]) -> bool {
+        let [a_h, a_2, a_n, b] = self.light;
+        let (speed, turns) = (slip[0].hypot(slip[1]), mu * (a_2 - a_h));
+        if speed <= STOPPED * (1.0 + speed) || mu == 0.0 {
+            return false;
+        }
+        let way = slip.map(|u| u / speed);
+        let slows = |[cos, sin]: [f64; 2]| b * cos - mu * (a_h * cos * cos + a_2 * sin * sin);
+        if way[1].abs() < STRAIGHT || b.abs() + turns.abs() < STOPPED {
+            let slow = slows(way);
+            let most = if slow < 0.0 { -speed / slow } else { f64::INFINITY };
+            return course.straight(a_n - mu * b * way[0], way.map(|x| -mu * x), most);
+        }
+        // alpha, ln sigma, P_h, P_2, p, u_n and W, with dp = sigma/(1 + sigma) dx.
+        let rates = |v: &[f64; 7], to: &mut [f64; 7]| {
+            let (sin, cos) = v[0].sin_cos();
+            let sigma = v[1].exp();
+            let (slow, pace) = (1.0 / (1.0 + sigma), if sigma > 1.0 { 1.0 / (1.0 + 1.0 / sigma) } else { sigma / (1.0 + sigma) });
+            *to = [
+                -(sin * (turns * cos + b) * slow),
+                slows([cos, sin]) * slow,
+                -(mu * cos * pace),
+                -(mu * sin * pace),
+                pace,
+                (a_n - mu * b * cos) * pace,
+                v[5] * pace,
+            ];
+        };
+        let mut place = [slip[1].atan2(slip[0]), speed.ln(), 0.0, 0.0, 0.0, -1.0, 0.0];
+        let (mut stages, mut h) = ([place; rk8::STAGES], 0.1);
+        let (mut done, keeps) = (false, course.keeps);
+        for _ in 0..STEPS {
+            let mut rate = place;
+            rates(&place, &mut rate);
+            let mut part = |h: f64| {
+                let made = rk8::step::<{ rk8::LOOPS }, _, _>(rates, &place, &rate, h, &mut stages);
+                (core::array::from_fn::<f64, 7, _>(|i| place[i] + made.change[i]), made)
+            };
+            let (there, made) = part(h);
+            let error = made.error(|_| 1.0 / TOL, 7.0);
+            if error.is_nan() || error > 1.0 {
+                h *= rk8::growth(error).min(0.7);
+                continue;
+            }
+            // The margin falls through zero where compression or the impact ends.
+            let margin = |v: &[f64; 7], compressed: Option<f64>| match compressed {
+                None => -v[5],
+                Some(work) => keeps * work - v[6],
+            };
+            let mut end = None;
+            let mut compressed = course.compressed;
+            let mut from = 0.0;
+            while end.is_none() && margin(&there, compressed) <= 0.0 {
+                let now = compressed;
+                let begin = margin(&part(from).0, now).max(f64::MIN_POSITIVE);
+                let x = crossing(|x| margin(&part(x).0, now), from, h, begin, margin(&there, now));
+                let at = part(x).0;
+                match now {
+                    None => (compressed, from) = (Some(at[6]), x),
+                    Some(_) => end = Some(at),
+                }
+                if keeps == 1.0 {
+                    end = Some(at);
+                }
+            }
+            course.compressed = compressed;
+            place = end.unwrap_or(there);
+            done = end.is_some();
+            if done || place[1] < OVER {
+                break;
+            }
+            h *= rk8::growth(error);
+        }
+        let [_, _, p_h, p_2, p, lift, work] = place;
+        course.impulse = [p_h, p_2, p];
+        (course.lift, course.work) = (lift, work);
+        done
+    }
+}
+
+impl Course {
+    /// The whole impact on a viscous film, whose force is c u times the normal force.
+    fn film(&mut self, c: f64, [u_h, u_2]: [f64; 2], [a_h, a_2, a_n, b]: [f64; 4]) {
+        let decay = |x: f64| -(-x).exp_m1();
+        // The integrals of exp(-c a_h p) over p, once and twice.
+        let once = |p: f64| decay(c * a_h * p) / (c * a_h);
+        let twice = |p: f64| {
+            let x = c * a_h * p;
+            if x > 0.1 {
+                return (p - once(p)) / (c * a_h);
+            }
+            p * p * (0.5 - x * (1.0 / 6.0 - x * (1.0 / 24.0 - x * (1.0 / 120.0 - x * (1.0 / 720.0 - x * (1.0 / 5040.0 - x / 40320.0))))))
+        };
+        let lift = |p: f64| -1.0 + a_n * p - c * b * u_h * once(p) - b * b / a_h * (p - once(p));
+        let work = |p: f64| {
+            -p + 0.5 * a_n * p * p - c * b * u_h * twice(p) - b * b / a_h * (0.5 * p * p - twice(p))
+        };
+        let rises = |f: &dyn Fn(f64) -> f64, from: f64| {
+            let mut far = from.max(1.0);
+            while f(far) < 0.0 {
+                far *= 2.0;
+            }
+            crossing(f, from, far, f(from).min(-f64::MIN_POSITIVE), f(far))
+        };
+        let middle = rises(&lift, 0.0);
+        let target = self.keeps * work(middle);
+        let p = if self.keeps == 1.0 { middle } else { rises(&|p| work(p) - target, middle) };
+        let along = u_h * once(p) + b / (c * a_h) * (p - once(p));
+        self.impulse = [-c * along, -(u_2 * decay(c * a_2 * p) / a_2), p];
+        (self.lift, self.work) = (lift(p), work(p));
+    }
+}

@@ -1,0 +1,182 @@
+//! A body that lies on both rims: its forces and accelerations while the rims slip or stick.
+//!
+//! ```text
+//! theta = pi/2, w2 = 0;   the rim from which the state is told touches at +ell e_h, the other one at -ell e_h
+//! u = (u_h, u_2),   u' = (u_h, u_2 - 2 ell w1);     v_h = u_h,   v_2 = u_2 - ell w1 + w3
+//! N + N' = 1,   ell (N - N') = K - F_h,   K = I3 w1 w3,   F_h the friction of both along e_h
+//! I1 w1' = ell (F_2 - F_2') + m1,   I3 w3' = -(F_2 + F_2') + m3,   v_h' = F_h + w1 v_2,   v_2' = F_2 + F_2' - w1 v_h
+//! both slip      F = -N d,  d = mu u/|u| or c u:   N = (ell + K + d_h')/(2 ell + d_h' - d_h)
+//! one sticks     v_h = 0,  F_h = -w1 v_2 at that rim alone;  F_2 from u_2' = 0
+//! both stick     w1 = 0: a straight line, (1 + I3) w3' = m3, and without losses no friction at all
+//! ```
+//! The fillet does not enter: both contact points lie 1 below the centre. The couple of the losses is that of one rim
+//! at theta = pi/2, once, shared as the normal forces are. A line of contact has an undetermined pressure; the model is
+//! that of a tube whose side is slightly hollow, or of a rounded rim. For mu < 2 ell one distribution of the normal
+//! forces exists for any velocities (a linear complementarity problem with positive diagonal).
+//!
+//! Error: a few roundings of the terms written above; a test of `laws` compares with Newton's equations.
+
+use super::slip::Friction;
+use crate::laws::body::{Body, Shape};
+use crate::laws::loss::{Couples, Losses};
+use crate::numbers::Real;
+
+/// A body that lies on both rims, on a table with friction.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Lying<T> {
+    pub shape: Shape<T>,
+    /// The coefficient mu, or c.
+    pub strength: T,
+    pub dry: bool,
+    pub losses: Option<Couples<T>>,
+    /// Whether dry losses hold w1, and w3, at zero.
+    pub held: [bool; 2],
+}
+
+/// Forces and accelerations on both rims.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Lain<T> {
+    /// N, F_2 and F_h at the rim from which the state is told, and at the other one.
+    pub force: [[T; 3]; 2],
+    /// w1' and w3'.
+    pub w: [T; 2],
+    /// u_h' and u_2'.
+    pub u: [T; 2],
+    /// The couples m1 and m3 of the losses.
+    pub couple: [T; 2],
+}
+
+/// The numbers of a body on both rims: w1, w3, u_h and u_2.
+pub(crate) type Flat<T> = [T; 4];
+
+/// The same numbers as seen from the other rim.
+#[inline(always)]
+pub(crate) fn from_other<T: Real>(ell: T, [w1, w3, u_h, u_2]: Flat<T>) -> Flat<T> {
+    let zero = ell.splat(0.0);
+    [w1, zero - w3, zero - u_h, (ell + ell) * w1 - u_2]
+}
+
+impl Lying<f64> {
+    pub fn on(body: &Body, friction: &Friction, losses: &Losses) -> Self {
+        let dry = matches!(*friction, Friction::Coulomb { mu, .. } if mu > 0.0 || friction.sticks());
+        let losses = Couples::some(losses);
+        Self { shape: body.shape(), strength: friction.strength(), dry, losses, held: [false; 2] }
+    }
+
+    /// The largest couples with which dry losses hold w1 and w3.
+    pub fn limits(&self) -> [f64; 2] {
+        // All couples that are not dry vanish at this speed.
+        const SLOW: f64 = 1e-100;
+        self.couple([SLOW, SLOW], [1.0; 2]).map(f64::abs)
+    }
+}
+
+impl<T: Real> Lying<T> {
+    /// These laws in another type of number.
+    pub fn map<U: Real>(&self, number: impl Fn(T) -> U) -> Lying<U> {
+        Lying {
+            shape: self.shape.map(&number),
+            strength: number(self.strength),
+            dry: self.dry,
+            losses: self.losses.as_ref().map(|losses| losses.map(&number)),
+            held: self.held,
+        }
+    }
+
+    /// The slip of the other rim.
+    pub fn other_slip(&self, [w1, _, u_h, u_2]: Flat<T>) -> [T; 2] {
+        [u_h, u_2 - (self.shape.rim.ell + self.shape.rim.ell) * w1]
+    }
+
+    /// The friction per normal force, with its sign reversed, at a rim that slips with `u`.
+    fn drag(&self, u: [T; 2]) -> [T; 2] {
+        let size = if self.dry { u[0].mac(u[0], u[1] * u[1]).sqrt() } else { u[0].splat(1.0) };
+        u.map(|u| self.strength * u / size)
+    }
+
+    /// The couples m1 and m3 of the losses; `ways` are the signs of w1 and w3 for the dry ones.
+    fn couple(&self, [w1, w3]: [T; 2], ways: [f64; 2]) -> [T; 2] {
+        let zero = w1.splat(0.0);
+        let Some(losses) = &self.losses else { return [zero; 2] };
+        let one = w1.splat(1.0);
+        let mut seen = losses.seen(&self.shape.rim, (one, zero), w1, [w1, zero, w3]);
+        seen.signs = [w1.splat(ways[1]), w1.splat(ways[0])];
+        let [m1, _, m3] = losses.at(&seen).under(one);
+        [m1, m3]
+    }
+
+    /// The motion under these normal forces and this friction.
+    fn under(&self, [w1, w3, u_h, u_2]: Flat<T>, force: [[T; 3]; 2], [m1, m3]: [T; 2]) -> Lain<T> {
+        let (ell, i1, i3) = (self.shape.rim.ell, self.shape.i1, self.shape.i3);
+        let [[_, low, low_h], [_, up, up_h]] = force;
+        let (apart, all) = (ell * (low - up), low + up);
+        let zero = w1.splat(0.0);
+        let m1 = if self.held[0] { zero - apart } else { m1 };
+        let m3 = if self.held[1] { all } else { m3 };
+        let (d1, d3) = ((apart + m1) / i1, (m3 - all) / i3);
+        let aside = u_2 - ell * w1 + w3;
+        let u = [low_h + up_h + w1 * aside, all - w1 * u_h + ell * d1 - d3];
+        Lain { force, w: [d1, d3], u, couple: [m1, m3] }
+    }
+
+    /// Both rims slip, with the friction per normal force and its sign reversed as given; `ways` as for the losses.
+    pub fn slipping_along(&self, y: Flat<T>, [low, up]: [[T; 2]; 2], ways: [f64; 2]) -> Lain<T> {
+        let [w1, w3, ..] = y;
+        let (ell, zero) = (self.shape.rim.ell, w1.splat(0.0));
+        let lift = self.shape.i3 * w1 * w3;
+        let room = ell + ell + up[0] - low[0];
+        let (n, m) = ((ell + lift + up[0]) / room, (ell - lift - low[0]) / room);
+        let force = [(n, low), (m, up)].map(|(n, d)| [n, zero - n * d[1], zero - n * d[0]]);
+        self.under(y, force, self.couple([w1, w3], ways))
+    }
+
+    /// Both rims slip.
+    pub fn slipping(&self, y: Flat<T>, ways: [f64; 2]) -> Lain<T> {
+        let drags = [self.drag([y[2], y[3]]), self.drag(self.other_slip(y))];
+        self.slipping_along(y, drags, ways)
+    }
+
+    /// The rim from which the state is told sticks, and the other one slips across the axis; `turn` is the sign of w1.
+    fn pivots_here(&self, y: Flat<T>, turn: f64, ways: [f64; 2]) -> Lain<T> {
+        let [w1, w3, ..] = y;
+        let Shape { rim, i1, i3 } = self.shape;
+        let (ell, one, zero) = (rim.ell, w1.splat(1.0), w1.splat(0.0));
+        let along = zero - w1 * (w3 - ell * w1);
+        let lean = (i3 * w1 * w3 - along) / (ell + ell);
+        let half = one.splat(0.5);
+        let (n, m) = (half + lean, half - lean);
+        let up = self.strength * m * one.splat(turn);
+        let [m1, m3] = self.couple([w1, w3], ways);
+        let (square, axial) = (ell * ell / i1, if self.held[1] { zero } else { one / i3 });
+        let pull = ell * m1 / i1 - axial * m3;
+        let low = zero - ((one + axial - square) * up + pull) / (one + axial + square);
+        self.under([w1, w3, zero, zero], [[n, low, along], [m, up, zero]], [m1, m3])
+    }
+
+    /// One rim sticks: the other one if `other`.
+    pub fn pivots(&self, y: Flat<T>, other: bool, turn: f64, ways: [f64; 2]) -> Lain<T> {
+        if !other {
+            return self.pivots_here(y, turn, ways);
+        }
+        let ell = self.shape.rim.ell;
+        let Lain { force: [there, here], w: [d1, d3], couple: [m1, m3], .. } =
+            self.pivots_here(from_other(ell, y), turn, [ways[0], -ways[1]]);
+        let zero = d1.splat(0.0);
+        let seen = |[n, across, along]: [T; 3]| [n, zero - across, zero - along];
+        // Axes e_h and e2 of the other rim point the other way.
+        let force = [seen(here), seen(there)];
+        let u = [zero, (ell + ell) * d1];
+        Lain { force, w: [d1, zero - d3], u, couple: [m1, zero - m3] }
+    }
+
+    /// Both rims stick, and the body rolls straight on.
+    pub fn rolls(&self, [_, w3, ..]: Flat<T>, ways: [f64; 2]) -> Lain<T> {
+        let (one, zero) = (w3.splat(1.0), w3.splat(0.0));
+        let half = w3.splat(0.5);
+        let [_, m3] = self.couple([zero, w3], ways);
+        let m3 = if self.held[1] { zero } else { m3 };
+        let d3 = m3 / (one + self.shape.i3);
+        let force = [half, half * d3, zero];
+        Lain { force: [force, force], w: [zero, d3], u: [zero; 2], couple: [zero, m3] }
+    }
+}

@@ -1,0 +1,314 @@
+//! A body in the air: its flight, its landings and impacts, and the contact that follows.
+//!
+//! ```text
+//! leaves the table    a slip as t^3 where N0 = 0 falls;  a contact at rest with N0 < 0 as t^2;  a bounce as t
+//! bounces             last 2 u_n/(G (1 - q)) in all,  G = a_n N0,  q the ratio of the next bounce to this one
+//! contact             where 2 u_n^2 < TAIL G (1 - q): the last impact is taken with e = 0
+//! both rims           land in turn, the faster one first, until none comes down
+//! ```
+//! N0 is the normal force without friction, whose sign decides, since friction scales the normal force by a positive
+//! factor. The impulses of the bounces that are summed agree with the contact force to first order, so that the error of
+//! their sum is about TAIL.
+
+use super::flight::{Aloft, Flight};
+use super::phases::BodyWalk;
+use crate::laws::contact::impact::{Hit, Impact, Struck, lightness, turned};
+use crate::laws::contact::landing::{Outcome, land_at};
+use crate::laws::contact::slip::Friction;
+use crate::laws::contact::{FLAT, Force, Table};
+use crate::laws::state::State;
+use crate::motions::halt::{TIME, loses, poses};
+use crate::motions::path::flight::lands::Leaves;
+use crate::motions::walk::Next;
+use crate::motions::{Ending, Kind, Strike};
+use core::f64::consts::FRAC_PI_2;
+
+/// Share of the state that the bounces which are summed may change.
+const TAIL: f64 = 1e-13;
+/// Both rims rattle until |cos theta| and the normal velocities of both are below this.
+const RATTLED: f64 = 1e-6;
+/// Both rims land together if |cos theta| is below this.
+const TOGETHER: f64 = 1e-9;
+/// Share of its terms below which N0 is a rounding error.
+const ROUNDED: f64 = 1e-12;
+/// Largest number of impacts of both rims in turn.
+const TURNS: u32 = 10_000;
+
+/// The start of a flight.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Takeoff {
+    /// The height of the lowest point of the rim, and its vertical velocity.
+    pub height: f64,
+    pub lift: f64,
+    /// How the rim leaves the table, as a power of time; None for a start above the table.
+    pub leaves: Leaves,
+}
+
+impl<const N: usize> BodyWalk<'_, N> {
+    fn has_two_rims(&self) -> bool {
+        let body = &self.of.body;
+        body.ell() > 0.0 && body.theta_end() == FRAC_PI_2
+    }
+
+    /// The present numbers, with those of a flight.
+    pub(super) fn aloft(&self) -> Aloft {
+        let [s, c, w1, w2, w3, u, v] = core::array::from_fn(|i| self.at[i]);
+        let pose = if poses(N) { core::array::from_fn(|i| self.at[9 + i]) } else { [0.0; 4] };
+        let Takeoff { height, lift, .. } = self.of.takeoff;
+        Aloft { angle: (s, c), w: [w1, w2, w3], slip: [u, v], lift, height, pose }
+    }
+
+    /// Moves the walk to these numbers.
+    pub(super) fn sets(&mut self, to: &Aloft) {
+        let ((s, c), [w1, w2, w3], [u, v]) = (to.angle, to.w, to.slip);
+        self.at[..7].copy_from_slice(&[s, c, w1, w2, w3, u, v]);
+        if poses(N) {
+            self.at[9..13].copy_from_slice(&to.pose);
+        }
+        self.of.state = State { theta: if c == 0.0 { FRAC_PI_2 } else { to.state().theta }, ..to.state() };
+        (self.of.takeoff.height, self.of.takeoff.lift) = (to.height, to.lift);
+    }
+
+    /// Passes to the view from the other rim.
+    pub(super) fn turns_over(&mut self) {
+        let other = self.aloft().from_other_rim(&self.of.slide.law.shape);
+        self.made.path.upside_down = !self.made.path.upside_down;
+        self.sets(&other);
+    }
+
+    /// The flight of a body that starts in the air, or its landing if it starts on the table and comes down.
+    pub(super) fn starts_in_air(&mut self, [height, lift]: [f64; 2]) -> Next {
+        if self.of.state.theta == FRAC_PI_2 {
+            (self.at[0], self.at[1]) = (1.0, 0.0);
+        }
+        self.of.takeoff = Takeoff { height, lift, leaves: (height == 0.0).then_some(1) };
+        Next::Own(Kind::Flying)
+    }
+
+    /// N0, the normal force without friction, and the size of its terms.
+    fn pressed(&self, from: &Aloft) -> [f64; 2] {
+        let law = &self.of.slide.law;
+        let (shape, angle) = (&law.shape, from.angle);
+        let at = law.towards(angle, from.w, [0.0; 2], [0.0; 2]);
+        let (lever, [w1, w2, w3]) = (shape.rim.lever(angle), from.w);
+        let square = (shape.rim.slope(angle) * w2 * w2).abs();
+        let turning = shape.i3 * w1 * w3 - shape.i1 * angle.1 / angle.0 * w1 * w1;
+        let size = (shape.i1 * (1.0 + square) + (lever * turning).abs()) / (shape.i1 + lever * lever);
+        [at.force[0], size]
+    }
+
+    /// The phase after an ending, from which a motion with restitution goes on.
+    pub(super) fn continues_after(&mut self, ending: Ending) -> Next {
+        let Some(e) = self.ask.restitution else { return Next::Ends(ending) };
+        match ending {
+            Ending::LiftOff => {
+                let [free, size] = self.pressed(&self.aloft());
+                let rolls = matches!(self.ask.table, Table::Rolling { .. });
+                if rolls && free > ROUNDED * size {
+                    // Friction lifts the body, and on a real table the contact point would slip first.
+                    return Next::Ends(Ending::Slip);
+                }
+                let leaves = if free < -ROUNDED * size { 2 } else { 3 };
+                self.of.takeoff = Takeoff { leaves: Some(leaves), ..Takeoff::default() };
+                Next::Own(Kind::Flying)
+            }
+            Ending::Side if self.has_two_rims() && self.of.state.theta == FRAC_PI_2 => {
+                (self.at[0], self.at[1]) = (1.0, 0.0);
+                self.of.takeoff = Takeoff::default();
+                let down = -self.at[3];
+                if down == 0.0 {
+                    return self.settles_on_side();
+                }
+                if e == 0.0 || down * self.of.body.ell() <= RATTLED { self.lands_on_both() } else { self.rattles(e) }
+            }
+            ending => Next::Ends(ending),
+        }
+    }
+
+    /// Follows a flight to its end, which sets the next phase.
+    pub(super) fn flies(&mut self) {
+        let shape = self.of.slide.law.shape;
+        let (from, now) = (self.aloft(), self.at[TIME]);
+        let Takeoff { leaves, .. } = self.of.takeoff;
+        let flight = Flight::new(&shape, &from);
+        let other = from.from_other_rim(&shape);
+        let touches = other.height == 0.0;
+        let leaves = [leaves, touches.then_some(if other.lift == 0.0 { 2 } else { 1 })];
+        let left = self.since.last().map_or(0.0, |t| t - now);
+        let Ok(landing) = flight.lands(leaves, self.has_two_rims(), left) else {
+            self.next = Some(Next::Ends(Ending::Bounded));
+            return;
+        };
+        let end = landing.map_or(left, |(t, _)| t);
+        while let Some(t) = self.until().filter(|t| *t <= now + end) {
+            let at = flight.at(t - now);
+            self.claims(flight.doubt(t - now, &at));
+            self.writes_in_air(&at);
+        }
+        let Some((t, upper)) = landing else { return };
+        let at = flight.at(t);
+        self.at[TIME] = now + t;
+        self.sets(&Aloft { height: if upper { at.height } else { 0.0 }, ..at });
+        if upper {
+            self.turns_over();
+        }
+        let doubt = flight.doubt(t, &at);
+        self.claims(doubt);
+        // The time of a landing is as uncertain as the height, over the normal velocity.
+        let high = f64::EPSILON * (1.0 + shape.rim.ell.abs() + at.height.abs());
+        self.claims((high / self.of.takeoff.lift.abs()).min(high.sqrt()));
+        self.of.takeoff.height = 0.0;
+        let next = self.strikes(upper);
+        self.continues_with(next);
+    }
+
+    /// The next phase after a landing, of another rim than before if `other`.
+    fn strikes(&mut self, other: bool) -> Next {
+        let (e, from) = (self.ask.restitution.unwrap_or(0.0), self.aloft());
+        if from.angle.0 < FLAT && self.of.body.rim() > 0.0 {
+            return Next::Ends(Ending::Face);
+        }
+        if from.lift >= 0.0 {
+            self.of.takeoff = Takeoff::default();
+            return self.touches_down();
+        }
+        let shape = self.of.slide.law.shape;
+        let there = from.from_other_rim(&shape);
+        if self.has_two_rims() && from.angle.1.abs() < TOGETHER && there.lift < 0.0 {
+            return if e == 0.0 { self.lands_on_both() } else { self.rattles(e) };
+        }
+        let Some(mut struck) = self.impact(&from, e) else { return Next::Ends(Ending::Slip) };
+        let [force, _] = self.pressed(&Aloft { w: turned(&shape, from.angle, from.w, struck.impulse), ..from });
+        let stays = struck.lift > 0.0 && force > 0.0 && self.stays(&from, &struck, force, e);
+        if stays && let Some(last) = self.impact(&from, 0.0) {
+            struck = last;
+        }
+        let after = self.struck(&from, &struck, (other, stays));
+        self.sets(&after);
+        let level = from.angle.1.abs().max(after.lift).max(after.from_other_rim(&shape).lift);
+        if self.has_two_rims() && e > 0.0 && level < RATTLED {
+            self.claims(from.angle.1.abs());
+            return self.lands_on_both();
+        }
+        if after.lift > 0.0 {
+            self.of.takeoff.leaves = Some(1);
+            return Next::Own(Kind::Flying);
+        }
+        self.touches_down()
+    }
+
+    /// The impact at these numbers; None where a rolling table has no answer.
+    fn impact(&self, from: &Aloft, e: f64) -> Option<Struck> {
+        let light = lightness(&self.of.slide.law.shape, from.angle);
+        Impact { slip: from.slip, lift: from.lift, light }.on(&self.ask.table, e)
+    }
+
+    /// Whether the bounces after an impact are over so soon that they are summed.
+    fn stays(&self, from: &Aloft, struck: &Struck, force: f64, e: f64) -> bool {
+        let law = &self.of.slide.law;
+        let light @ [.., a_n, b] = lightness(&law.shape, from.angle);
+        let (fall, w) = (a_n * force, turned(&law.shape, from.angle, from.w, struck.impulse));
+        let mut ratio = e;
+        if struck.hit == Hit::Sticks {
+            // Each bounce meets the slip that the flight before has made.
+            let [along, across] = law.towards(from.angle, w, [0.0; 2], [0.0; 2]).u;
+            let slip = [along - b * force, across].map(|rate| 2.0 * rate / fall);
+            ratio = Impact { slip, lift: -1.0, light }.on(&self.ask.table, e).map_or(1.0, |next| next.lift);
+        }
+        ratio < 1.0 && 2.0 * struck.lift * struck.lift < TAIL * fall * (1.0 - ratio)
+    }
+
+    /// The numbers after an impact, which is recorded.
+    fn struck(&mut self, from: &Aloft, struck: &Struck, (other, stays): (bool, bool)) -> Aloft {
+        let w = turned(&self.of.slide.law.shape, from.angle, from.w, struck.impulse);
+        let after = Aloft { w, slip: struck.slip, lift: struck.lift, ..*from };
+        let &Struck { impulse, hit, lost, .. } = struck;
+        let time = self.t0 + self.at[TIME];
+        let velocities = [from, &after].map(|at| [at.slip[0], at.slip[1], at.lift]);
+        let states = [from.state(), after.state()];
+        self.made.path.impacts.push(Strike { time, other, hit, states, velocities, impulse, lost, stays });
+        after
+    }
+
+    /// The contact that begins where the normal velocity is zero.
+    pub(super) fn touches_down(&mut self) -> Next {
+        self.of.takeoff = Takeoff::default();
+        self.first_phase().unwrap_or(Next::Ends(Ending::Painleve))
+    }
+
+    /// Both rims land in turn, the faster one first, until none comes down.
+    fn rattles(&mut self, e: f64) -> Next {
+        (self.at[0], self.at[1]) = (1.0, 0.0);
+        let shape = self.of.slide.law.shape;
+        let mut at = Aloft { angle: (1.0, 0.0), ..self.aloft() };
+        let fast = at.lift.min(at.from_other_rim(&shape).lift).abs();
+        let mut other = false;
+        for turn in 0.. {
+            let there = at.from_other_rim(&shape);
+            if at.lift.min(there.lift) > -TOGETHER * fast.min(1.0) {
+                break;
+            }
+            if turn > TURNS {
+                return Next::Ends(Ending::Bounded);
+            }
+            if there.lift < at.lift {
+                (at, other) = (there, !other);
+            }
+            let Some(struck) = self.impact(&at, e) else { return Next::Ends(Ending::Slip) };
+            at = self.struck(&at, &struck, (other, false));
+        }
+        let there = at.from_other_rim(&shape);
+        if there.lift < at.lift {
+            (at, other) = (there, !other);
+        }
+        if other {
+            self.made.path.upside_down = !self.made.path.upside_down;
+        }
+        at.height = 0.0;
+        self.sets(&at);
+        if at.from_other_rim(&shape).lift < RATTLED {
+            return self.lands_on_both();
+        }
+        if at.lift < TOGETHER {
+            self.at[TIME] += 0.0;
+            return self.touches_down();
+        }
+        self.of.takeoff.leaves = Some(1);
+        Next::Own(Kind::Flying)
+    }
+
+    /// The next phase after a landing on both rims without a bounce.
+    fn lands_on_both(&mut self) -> Next {
+        let friction = match self.ask.table {
+            Table::Rubs(friction) => friction,
+            _ if self.at[2] == 0.0 && self.at[4] == 0.0 => Friction::coulomb(1e100),
+            _ => return Next::Ends(Ending::Side),
+        };
+        let before = State { theta: FRAC_PI_2, ..self.of.state };
+        let lift = self.of.takeoff.lift.min(0.0);
+        let Ok(landed) = land_at(&self.of.body, &before, ([self.at[5], self.at[6]], lift), &friction) else {
+            return Next::Ends(Ending::Landing);
+        };
+        if landed.outcome == Outcome::Changes {
+            self.turns_over();
+        }
+        let (State { w1, w2, w3, .. }, slip) = (landed.state, landed.slip);
+        let pose = self.aloft().pose;
+        self.sets(&Aloft { angle: (1.0, 0.0), w: [w1, w2, w3], slip, lift: 0.0, height: 0.0, pose });
+        self.at[8] += landed.lost;
+        if landed.outcome == Outcome::Lies || w2 == 0.0 { self.settles_on_side() } else { self.touches_down() }
+    }
+
+    /// Writes a point of a flight to the outputs.
+    fn writes_in_air(&mut self, at: &Aloft) {
+        let force = self.ask.force.then_some((Force { normal: 0.0, along: 0.0, across: 0.0 }, 0.0));
+        let pose = poses(N).then(|| at.pose());
+        self.made.put(at.state(), at.slip, self.at[8], Kind::Flying, pose, force);
+        if let Some(last) = self.made.path.aloft.last_mut() {
+            *last = [at.height, at.lift];
+        }
+        if loses(N) {
+            self.made.path.work_lost.push(self.at[N - 1]);
+        }
+    }
+}

@@ -1,0 +1,201 @@
+//! The first landing of a rim in a flight; none is missed.
+//!
+//! ```text
+//! height of a rim   h = z - (side l c + a s + rho)     side = 1 for the rim that was down last, -1 for the other one
+//! h'' <= K = Lam^2 (|l| sin a sin b + a sin b) - 1     at all times, also where theta passes a pole
+//! no landing in [t1, t2]    if the least value of chord - K (t - t1)(t2 - t)/2 is positive
+//! one landing               if h(t1) > 0 >= h(t2) and h'(t1) + K (t2 - t1) < 0
+//! ```
+//! The bound is one-sided: s is the length of the horizontal part x of e3, so that s s'' >= x.x'' and s'' >= -Lam^2
+//! sin b, while s'' may be as large as it likes from above. An interval that is neither free nor certain is halved. A
+//! rim that touches at the start leaves as t^k, k = 1 after a bounce, 2 where a contact at rest loses its normal force,
+//! 3 where the normal force of a slip vanishes; a power series with the known zeros taken out carries it away from there.
+//!
+//! Error: that of h divided by the normal velocity; a rim that only grazes touches where h is a rounding error.
+
+use super::Flight;
+use crate::laws::body::Shape;
+
+/// Number of terms of the series at the start.
+const TERMS: usize = 30;
+/// A cell shorter than this, in units of the time since the start, in which the height is below `TOUCH` counts as a touch.
+const SHORT: f64 = 1e-9;
+const TOUCH: f64 = 1e-15;
+/// Largest number of evaluations of the height.
+const PATIENCE: u32 = 1_000_000;
+
+/// How a rim begins a flight: high above the table, or on it and leaving as t^k.
+pub(crate) type Leaves = Option<usize>;
+
+/// A function of time with its derivative, whose second derivative is at most `bend`.
+struct Falling<F: FnMut(f64) -> [f64; 2]> {
+    of: F,
+    bend: f64,
+    touch: f64,
+}
+
+impl<F: FnMut(f64) -> [f64; 2]> Falling<F> {
+    /// The first zero in (from, to], where the function is positive after `from`. An error after too many evaluations.
+    fn first_zero(&mut self, from: f64, to: f64) -> Result<Option<f64>, TooMany> {
+        let (mut t, [mut here, mut rate]) = (from, (self.of)(from));
+        let (mut ends, mut count) = (vec![to], 0);
+        while let Some(&end) = ends.last() {
+            count += 1;
+            if count > PATIENCE {
+                return Err(TooMany);
+            }
+            let [there, fall] = (self.of)(end);
+            let wide = end - t;
+            let tiny = wide < SHORT * end;
+            if there > 0.0 {
+                let tilt = (here - there) / (self.bend * wide);
+                let low = if tilt.abs() >= 0.5 * wide {
+                    here.min(there)
+                } else {
+                    0.5 * (here + there) - 0.5 * self.bend * (0.25 * wide * wide + tilt * tilt)
+                };
+                if low > 0.0 || tiny {
+                    if low <= 0.0 && here.min(there) < self.touch {
+                        return Ok(Some(end));
+                    }
+                    (t, here, rate) = (end, there, fall);
+                    ends.pop();
+                    continue;
+                }
+            } else if rate + self.bend * wide < 0.0 || tiny {
+                return Ok(Some(self.root(t, end)));
+            }
+            ends.push(t + 0.5 * wide);
+        }
+        Ok(None)
+    }
+
+    /// The zero between two times, between which the function falls.
+    fn root(&mut self, mut low: f64, mut high: f64) -> f64 {
+        let mut x = 0.5 * (low + high);
+        for _ in 0..100 {
+            let [value, slope] = (self.of)(x);
+            if value > 0.0 {
+                low = x;
+            } else {
+                high = x;
+            }
+            let newton = x - value / slope;
+            let next = if low < newton && newton < high { newton } else { 0.5 * (low + high) };
+            if (next - x).abs() <= 0.5 * f64::EPSILON * x {
+                break;
+            }
+            x = next;
+        }
+        x
+    }
+}
+
+/// The search for a landing takes too many evaluations.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct TooMany;
+
+impl Flight {
+    /// Height and vertical velocity of the lowest point of a rim. The height is that of the start and its change, which
+    /// keeps the digits of a small one.
+    fn rim(&self, side: f64, t: f64) -> [f64; 2] {
+        let ((s, c), (s0, c0), rim) = (self.angle(t), self.from.angle, self.shape.rim);
+        let cosine_rate = -(self.wide * self.rate * (self.begin + self.rate * t).sin());
+        let sine_rate = if s > 0.0 { -(c * cosine_rate / s) } else { 0.0 };
+        let cosine = self.cosine_change(t);
+        let sine = -(cosine * (c + c0) / (s + s0));
+        let first = if side > 0.0 { self.from.height } else { self.from.height + 2.0 * rim.ell * c0 };
+        let [.., up] = self.velocity;
+        [
+            first + t * (up - 0.5 * t) - (side * rim.ell * cosine + rim.a * sine),
+            up - t - side * rim.ell * cosine_rate - rim.a * sine_rate,
+        ]
+    }
+
+    /// The first time after the start at which a rim lands, and whether it is the other rim of a body that has two;
+    /// None if none lands up to the time `until`. `leaves` says how both rims begin.
+    pub fn lands(&self, leaves: [Leaves; 2], two: bool, until: f64) -> Result<Option<(f64, bool)>, TooMany> {
+        let mut first = None;
+        for (i, side) in [1.0, -1.0].into_iter().enumerate().take(if two { 2 } else { 1 }) {
+            let until = first.map_or(until, |(t, _)| t);
+            if let Some(t) = self.lands_on(side, leaves[i], until)? {
+                first = Some((t, i == 1));
+            }
+        }
+        Ok(first)
+    }
+
+    fn lands_on(&self, side: f64, leaves: Leaves, until: f64) -> Result<Option<f64>, TooMany> {
+        let Shape { rim, .. } = self.shape;
+        let [.., up] = self.velocity;
+        let reach = rim.ell.hypot(rim.a) + rim.rho;
+        // The centre is low enough for a landing before `falls` and after `comes`, and on the table at `end`.
+        let passes = |height: f64| {
+            let square = up * up + 2.0 * (self.height - height);
+            (square >= 0.0).then(|| (up - square.sqrt(), up + square.sqrt()))
+        };
+        let end = passes(0.0).map_or(0.0, |(_, end)| end + 1e-6).min(until);
+        let (rises, comes) = passes(reach).unwrap_or((end, 0.0));
+        let sine = self.b.sin();
+        let bend = (self.rate * self.rate * (rim.ell.abs() * self.wide + rim.a * sine) - 1.0).max(1e-9);
+        let touch = TOUCH * (1.0 + reach + self.height);
+        let mut from = 0.0;
+        if let Some(order) = leaves {
+            let (near, series) = self.series(side, order, end);
+            if series[0] <= 0.0 {
+                return Ok(Some(0.0));
+            }
+            let power = |x: f64| {
+                let fold = |f: &dyn Fn(usize) -> f64| (0..series.len()).rev().fold(0.0, |sum, k| sum * x + f(k));
+                let rate = (1..series.len()).rev().fold(0.0, |sum, k| sum * x + k as f64 * series[k]);
+                [fold(&|k| series[k]), rate]
+            };
+            let bend: f64 = (2..series.len()).map(|k| (k * (k - 1)) as f64 * series[k].abs()).sum();
+            let mut near_start = Falling { of: power, bend: bend.max(1e-9 * series[0]), touch: 0.0 };
+            if let Some(x) = near_start.first_zero(0.0, 1.0)? {
+                return Ok(Some(x * near));
+            }
+            from = near;
+        }
+        let mut falling = Falling { of: |t: f64| self.rim(side, t), bend, touch };
+        // While the centre is too high no rim lands.
+        let parts = if rises > 0.0 { [(from, rises.min(end)), (comes.max(from), end)] } else { [(from, from), (comes.max(from), end)] };
+        for (from, to) in parts {
+            if to > from && let Some(t) = falling.first_zero(from, to)? {
+                return Ok(Some(t));
+            }
+        }
+        Ok(None)
+    }
+
+    /// The series of h/t^k of a rim that touches at the start, in units of the time up to which it is used, and that time.
+    fn series(&self, side: f64, order: usize, end: f64) -> (f64, Vec<f64>) {
+        let (Shape { rim, .. }, (s, c)) = (self.shape, self.from.angle);
+        let sine = self.b.sin();
+        let near = if sine * self.rate > 0.0 && rim.a > 0.0 {
+            (0.4 * s / sine).ln_1p() / (3.0 * self.rate)
+        } else {
+            1.0 / (1.0 + self.rate)
+        };
+        let near = near.min(end);
+        let (p, q) = (self.wide * self.begin.cos(), self.wide * self.begin.sin());
+        let (mut cosines, mut sines) = ([0.0; TERMS], [0.0; TERMS]);
+        let mut scale = 1.0;
+        for k in 0..TERMS {
+            cosines[k] = [p, -q, -p, q][k % 4] * scale;
+            scale *= self.rate * near / (k + 1) as f64;
+        }
+        (cosines[0], sines[0]) = (c, s);
+        // The coefficients of s from s^2 = 1 - c^2.
+        for k in 1..TERMS {
+            let square: f64 = (0..=k).map(|i| cosines[i] * cosines[k - i]).sum();
+            let known: f64 = (1..k).map(|i| sines[i] * sines[k - i]).sum();
+            sines[k] = -(square + known) / (2.0 * s);
+        }
+        let mut all: Vec<f64> = (0..TERMS).map(|k| -(side * rim.ell * cosines[k] + rim.a * sines[k])).collect();
+        // The first coefficient is the normal velocity, which is known without a difference.
+        all[1] = near * if side > 0.0 { self.from.lift } else { self.from.from_other_rim(&self.shape).lift };
+        all[2] -= 0.5 * near * near;
+        (near, all.split_off(order))
+    }
+}

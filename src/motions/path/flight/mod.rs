@@ -1,0 +1,217 @@
+//! Flight: the free motion of a body of revolution in the air, in closed form.
+//!
+//! ```text
+//! the centre runs on a parabola; L and w3 stay;   n = L/|L|,   Lam = |L|/I1,   sig = w3 (1 - I3/I1)
+//! cos a = n.z,   cos b = n.e3,   C = C0 + Lam t the angle at n from z to e3
+//! cos theta = cos a cos b + sin a sin b cos C       w1 = W (cos a sin b - sin a cos b cos C)/s,   w2 = -W sin a sin C/s
+//! W = hypot(w1, w2) stays;   phi = phi0 - [X - Y],   psi = psi0 + sig t - [X + Y]       Napier's analogies
+//! tan X = cos((a-b)/2)/cos((a+b)/2) tan D,   tan Y = sin((a-b)/2)/sin((a+b)/2) tan D,   D = (pi - C)/2
+//! ```
+//! theta may pass pi/2 or come near a pole; nothing happens there. Near the poles sums are written so that no digits
+//! are lost. The symmetric top without a couple is Poinsot's and Euler's; Napier's analogies are those of spherical
+//! trigonometry. [`lands`] has the landing.
+//!
+//! Error: a few roundings times 1 + Lam t, and of w1, w2, phi and psi over sin(theta).
+
+pub(crate) mod lands;
+
+use crate::laws::body::Shape;
+use crate::laws::pose::{Angle, Pose};
+use crate::laws::state::State;
+use core::f64::consts::{PI, TAU};
+use nalgebra::Point2;
+
+/// A body in the air, or in an impact, as seen from one of its rims.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Aloft {
+    /// Sine and cosine of theta.
+    pub angle: (f64, f64),
+    pub w: [f64; 3],
+    /// The velocity of the lowest point of the rim: along e_h, along e2, and upwards.
+    pub slip: [f64; 2],
+    pub lift: f64,
+    /// The height of that point.
+    pub height: f64,
+    /// phi, psi, and the place on the table below that point.
+    pub pose: [f64; 4],
+}
+
+impl Aloft {
+    pub fn state(&self) -> State {
+        let [w1, w2, w3] = self.w;
+        State { theta: self.angle.0.atan2(self.angle.1), w1, w2, w3 }
+    }
+
+    pub fn pose(&self) -> Pose {
+        let [phi, psi, x, y] = self.pose;
+        let angle = |angle: f64| {
+            let turns = (angle / TAU).round();
+            Angle { turns, rest: angle - turns * TAU }.settled()
+        };
+        Pose { phi: angle(phi), psi: angle(psi), contact_point: Point2::new(x, y) }
+    }
+
+    /// The same motion as seen from the other rim of a body with two equal rims.
+    pub fn from_other_rim(&self, shape: &Shape<f64>) -> Self {
+        let ((s, c), [w1, w2, w3], [phi, psi, x, y]) = (self.angle, self.w, self.pose);
+        let apart = 2.0 * shape.rim.ell;
+        Self {
+            angle: (s, 0.0 - c),
+            w: [w1, 0.0 - w2, 0.0 - w3],
+            slip: [-(apart * c * w2) - self.slip[0], apart * w1 - self.slip[1]],
+            lift: self.lift + apart * s * w2,
+            height: self.height + apart * c,
+            pose: [phi + PI, 0.0 - psi, x - apart * s * phi.cos(), y - apart * s * phi.sin()],
+        }
+    }
+}
+
+/// Beyond this size of cos theta its small complement is computed.
+const FAR: f64 = 0.9;
+
+/// A flight from its start.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Flight {
+    shape: Shape<f64>,
+    from: Aloft,
+    /// Velocity of the centre along e_h and e2 of the start, and upwards; its height at the start.
+    velocity: [f64; 3],
+    height: f64,
+    /// Lam, sig and W.
+    rate: f64,
+    spin: f64,
+    transverse: f64,
+    /// The angles a, b and C0, and sin a sin b.
+    a: f64,
+    b: f64,
+    begin: f64,
+    wide: f64,
+    /// X and Y at the start.
+    napier: [f64; 2],
+    /// Whether the body only tumbles in a vertical plane, so that rounding must not make it turn.
+    planar: bool,
+}
+
+impl Flight {
+    pub fn new(shape: &Shape<f64>, from: &Aloft) -> Self {
+        let (Shape { rim, i1, i3 }, (s, c), [w1, w2, w3]) = (*shape, from.angle, from.w);
+        let (height, lever) = (rim.height(from.angle), rim.lever(from.angle));
+        let transverse = w1.hypot(w2);
+        let (axial, across) = (i3 * w3, i1 * transverse);
+        let size = axial.hypot(across);
+        // The components of L along e_h, e2 and z.
+        let [l_h, l_2, l_z] = [i1 * w1 * c - axial * s, i1 * w2, i1 * w1 * s + axial * c];
+        let (a, b) = (l_h.hypot(l_2).atan2(l_z), across.atan2(axial));
+        let begin = (-s * w2 * size).atan2(c * i1 * transverse * transverse - axial * w1 * s);
+        let velocity = [
+            from.slip[0] + height * w2,
+            from.slip[1] - rim.depth(from.angle) * w1 + rim.radius(from.angle) * w3,
+            from.lift + lever * w2,
+        ];
+        let mut flight = Self {
+            shape: *shape,
+            from: *from,
+            velocity,
+            height: from.height + height,
+            rate: size / i1,
+            spin: w3 * (1.0 - i3 / i1),
+            transverse,
+            a,
+            b,
+            begin,
+            wide: a.sin() * b.sin(),
+            napier: [0.0; 2],
+            planar: w1 == 0.0 && w3 == 0.0,
+        };
+        flight.napier = flight.analogies(0.0);
+        flight
+    }
+
+    /// X and Y at a time; they are continuous for any number of turns.
+    fn analogies(&self, t: f64) -> [f64; 2] {
+        let (sin, cos) = (0.5 * (PI - self.begin - self.rate * t)).sin_cos();
+        let turns = 0.5 * (PI - self.begin - self.rate * t);
+        let along = |over: f64, under: f64| {
+            let ratio = over / under;
+            let size = if ratio.is_nan() { 1.0 } else { ratio.abs().clamp(1e-300, 1e300) };
+            let more = ((size - 1.0) * sin * cos).atan2(cos * cos + size * sin * sin);
+            1f64.copysign(ratio) * (turns + more)
+        };
+        let (less, sum) = (0.5 * (self.a - self.b), 0.5 * (self.a + self.b));
+        [along(less.cos(), sum.cos()), along(less.sin(), sum.sin())]
+    }
+
+    /// The change of cos theta since the start.
+    fn cosine_change(&self, t: f64) -> f64 {
+        let half = (0.5 * self.rate * t).sin();
+        let [p, q] = [self.begin.cos(), self.begin.sin()].map(|x| self.wide * x);
+        -(2.0 * p * half * half) - q * (self.rate * t).sin()
+    }
+
+    /// Sine and cosine of theta at a time.
+    fn angle(&self, t: f64) -> (f64, f64) {
+        let c = self.from.angle.1 + self.cosine_change(t);
+        if c.abs() < FAR {
+            return (((1.0 - c) * (1.0 + c)).sqrt(), c);
+        }
+        // Near a pole both of these are sums of positive terms.
+        let (half, less, more) =
+            (0.5 * (self.begin + self.rate * t), 0.5 * (self.a - self.b), 0.5 * (self.a + self.b));
+        let down = 2.0 * (less.sin() * less.sin() + self.wide * half.sin() * half.sin());
+        let up = 2.0 * (more.cos() * more.cos() + self.wide * half.cos() * half.cos());
+        ((down * up).sqrt(), if down < 1.0 { 1.0 - down } else { up - 1.0 })
+    }
+
+    /// w1 and w2 at a time, where sine and cosine of theta are known.
+    fn tilting(&self, t: f64, (s, _): (f64, f64)) -> [f64; 2] {
+        let (sin, cos) = (self.begin + self.rate * t).sin_cos();
+        let half = 0.5 * (self.begin + self.rate * t);
+        let swing = self.a.sin() * self.b.cos();
+        let along = if cos > 0.0 {
+            (self.b - self.a).sin() + 2.0 * swing * half.sin() * half.sin()
+        } else {
+            (self.a + self.b).sin() - 2.0 * swing * half.cos() * half.cos()
+        };
+        let per = self.transverse / s.max(f64::MIN_POSITIVE);
+        [if self.planar { 0.0 } else { along * per }, -(self.a.sin() * sin * per)]
+    }
+
+    /// The body at a time since the start, as seen from the same rim.
+    pub fn at(&self, t: f64) -> Aloft {
+        if t == 0.0 {
+            return self.from;
+        }
+        let (rim, from) = (self.shape.rim, &self.from);
+        let angle = self.angle(t);
+        let [w1, w2] = self.tilting(t, angle);
+        let w3 = from.w[2];
+        let [x, y] = self.analogies(t);
+        let [x, y] = [x - self.napier[0], y - self.napier[1]];
+        let (phi, psi) = (from.pose[0] - (x - y), from.pose[1] + self.spin * t - (x + y));
+        let [forth, aside, up] = self.velocity;
+        let (sin, cos) = (phi - from.pose[0]).sin_cos();
+        let (v_h, v_2) = (forth * cos + aside * sin, aside * cos - forth * sin);
+        let (sin0, cos0) = from.pose[0].sin_cos();
+        let (begin, lever) = (rim.lever(from.angle), rim.lever(angle));
+        let (moved_x, moved_y) = ((forth * cos0 - aside * sin0) * t, (forth * sin0 + aside * cos0) * t);
+        Aloft {
+            angle,
+            w: [w1, w2, w3],
+            slip: [v_h - rim.height(angle) * w2, v_2 + rim.depth(angle) * w1 - rim.radius(angle) * w3],
+            lift: up - t - lever * w2,
+            height: self.height + t * (up - 0.5 * t) - rim.height(angle),
+            pose: [
+                phi,
+                psi,
+                from.pose[2] - begin * cos0 + moved_x + lever * phi.cos(),
+                from.pose[3] - begin * sin0 + moved_y + lever * phi.sin(),
+            ],
+        }
+    }
+
+    /// The error that rounding may leave in the numbers at a time.
+    pub fn doubt(&self, t: f64, at: &Aloft) -> f64 {
+        let fastest = at.w.iter().fold(1.0, |most: f64, w| most.max(w.abs()));
+        4.0 * f64::EPSILON * (1.0 + self.rate * t) * fastest / at.angle.0.clamp(1e-300, 1.0)
+    }
+}

@@ -1,0 +1,378 @@
+//! A body that lies on both rims: which phase begins, and how each of them ends.
+//!
+//! ```text
+//! both slip     to u = 0 of a rim: it sticks, or slips on in another direction;  both together: rolls straight
+//! one sticks    to w1 = 0: rolls straight;   to |F| = mu_s N: both slip
+//! both of these to N = 0 of a rim: the other one carries the body alone, with w2 = w2' = 0, and theta leaves as t^3
+//! rolls straight at constant speed, or until dry losses stop it
+//! ```
+//! The rim from which the state is told changes only where the other rim carries the body alone, or slips off first.
+//!
+//! Error: the tolerance of the steps; rolling straight without losses is exact.
+
+pub(crate) mod flow;
+
+use super::phases::BodyWalk;
+use crate::error::Error;
+use crate::laws::contact::landing::mirrored;
+use crate::laws::contact::lying::Lying;
+use crate::laws::contact::slip::Friction;
+use crate::laws::contact::standstill::{Standstill, towards};
+use crate::laws::contact::{Force, Table};
+use crate::laws::loss::GRACE;
+use crate::laws::state::State;
+use crate::methods::flow::{Flow, Steps};
+use crate::methods::search::crossing;
+use crate::motions::halt::{Halt, TIME, loses, poses};
+use crate::motions::path::write;
+use crate::motions::walk::{Next, Pause, Phases, STILL, WalkStep, most_phases};
+use crate::motions::{Ending, Kind};
+use core::f64::consts::{FRAC_PI_2, PI};
+use flow::{LyingFlow, Stance};
+
+/// A phase on both rims.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct LyingPhase {
+    pub flow: LyingFlow,
+    /// The number of changes of what dry losses hold, in succession at the same time, and the time of the last one.
+    still: u32,
+    since: f64,
+    count: usize,
+}
+
+/// A slip slower than this, in units of the largest speed, is none where a phase begins.
+const STILL_SLIP: f64 = 1e-12;
+/// Number of directions at which the growth of a slip is evaluated.
+const DIRECTIONS: usize = 240;
+/// A growth rate of the speed below this counts as zero.
+const GROWS: f64 = 1e-11;
+
+impl<const N: usize> BodyWalk<'_, N> {
+    /// The laws of the body on both rims; None on a rolling table, on which it cannot turn.
+    fn flat(&self) -> Option<LyingFlow> {
+        let friction = match self.ask.table {
+            Table::Rubs(friction) => friction,
+            Table::Rolling { mu } if self.at[2] == 0.0 && self.at[5] == 0.0 && self.at[6] == 0.0 => {
+                Friction::coulomb(mu.min(1e100))
+            }
+            _ => return None,
+        };
+        let law = Lying::on(&self.of.body, &friction, &self.ask.losses);
+        let fixed = match friction {
+            Friction::Coulomb { fixed, .. } => fixed,
+            Friction::Viscous { .. } => 0.0,
+        };
+        Some(LyingFlow::new(law, fixed, (self.of.slide.over(), self.of.slide.tol)))
+    }
+
+    /// The phase of a body at theta = pi/2 with w2 = 0: on both rims, or on one of them that rises.
+    pub(super) fn settles_on_side(&mut self) -> Next {
+        (self.at[0], self.at[1], self.at[3]) = (1.0, 0.0, 0.0);
+        self.of.state = State { theta: FRAC_PI_2, w2: 0.0, ..self.of.state };
+        let Some(mut flow) = self.flat() else { return Next::Ends(Ending::Side) };
+        let ell = self.of.body.ell();
+        let [w1, w3, u_h, u_2] = [self.at[2], self.at[4], self.at[5], self.at[6]];
+        let other = u_2 - 2.0 * ell * w1;
+        let size = STILL_SLIP * [w1 * ell, w3, u_h, u_2].into_iter().fold(1.0, |most: f64, x| most.max(x.abs()));
+        let still = [u_2, other].map(|across| flow.law.dry && u_h.hypot(across) <= size);
+        match still {
+            [true, true] => {
+                (self.at[2], self.at[5], self.at[6]) = (0.0, 0.0, 0.0);
+                self.sets_state();
+                self.begins_stance(flow, Stance::Rolls)
+            }
+            [false, false] => {
+                let [here, there] = self.normals(&mut flow);
+                let mu = flow.law.strength;
+                let room = if flow.law.dry { ell + ell + mu * (u_h / u_h.hypot(other) - u_h / u_h.hypot(u_2)) } else { 1.0 };
+                match (here >= 0.0, there >= 0.0) {
+                    (true, true) if room > 0.0 => self.begins_stance(flow, Stance::Slips),
+                    (true, true) => Next::Ends(Ending::Painleve),
+                    (carries, _) => self.rises_on(carries == (room > 0.0)),
+                }
+            }
+            [here, _] => {
+                (self.at[5], self.at[6]) = (0.0, if here { 0.0 } else { 2.0 * ell * w1 });
+                self.sets_state();
+                self.rests_on_one(flow, !here)
+            }
+        }
+    }
+
+    fn sets_state(&mut self) {
+        self.of.state = State { w1: self.at[2], w3: self.at[4], ..self.of.state };
+    }
+
+    /// The normal forces of both rims while both slip, with the signs of the dry losses set.
+    fn normals(&self, flow: &mut LyingFlow) -> [f64; 2] {
+        self.sets_ways(flow);
+        let [here, there] = flow.lain(&self.at).force;
+        [here[0], there[0]]
+    }
+
+    /// Sets the signs of the motions that dry losses resist, and which of them they hold.
+    fn sets_ways(&self, flow: &mut LyingFlow) {
+        let moving = [self.at[2], self.at[4]];
+        let way = |x: f64| if x == 0.0 { 0.0 } else { x.signum() };
+        flow.ways = moving.map(way);
+        let rolls = flow.stance == Stance::Rolls;
+        flow.holds([0, 1].map(|i| moving[i] == 0.0 && flow.limits[i] > 0.0 && !(i == 0 && rolls)));
+        let needs = flow.lain(&self.at).couple;
+        let held = flow.law.held;
+        for i in 0..2 {
+            if held[i] && needs[i].abs() > flow.limits[i] * (1.0 + GRACE) {
+                flow.ways[i] = -needs[i].signum();
+            }
+        }
+        flow.holds([0, 1].map(|i| held[i] && flow.ways[i] == 0.0));
+    }
+
+    /// Begins a phase on both rims.
+    fn begins_stance(&mut self, mut flow: LyingFlow, stance: Stance) -> Next {
+        (flow.stance, flow.turn) = (stance, self.at[2].signum());
+        self.sets_ways(&mut flow);
+        let law = &flow.law;
+        if stance == Stance::Rolls && flow.lain(&self.at).w[1].abs() > flow.fixed * (1.0 + GRACE) {
+            return Next::Ends(Ending::Slip);
+        }
+        if stance == Stance::Rolls && self.at[4] == 0.0 && law.held[1] {
+            return Next::Ends(Ending::Stops);
+        }
+        self.of.lying = Some(LyingPhase { flow, still: 0, since: self.at[TIME], count: 0 });
+        Next::Own(stance.kind())
+    }
+
+    /// The phase in which one rim alone carries the body, the one from which the state is told if `here`.
+    fn rises_on(&mut self, here: bool) -> Next {
+        if !here {
+            self.turns_over();
+        }
+        (self.at[0], self.at[1], self.at[3]) = (1.0, 0.0, 0.0);
+        self.of.state.w2 = 0.0;
+        let slips = self.at[5] != 0.0 || self.at[6] != 0.0 || !self.of.slide.law.dry;
+        if slips { Next::Slips } else { crate::motions::walk::after_rest(Phases::rests(self)) }
+    }
+
+    /// The phase of a body of which one rim is at rest while the other one slips: the other one rests if `other`.
+    fn rests_on_one(&mut self, mut flow: LyingFlow, other: bool) -> Next {
+        let ways = flow.ways;
+        flow.stance = Stance::Pivots { other };
+        flow.turn = self.at[2].signum();
+        self.sets_ways(&mut flow);
+        let at = flow.lain(&self.at);
+        let [n, across, along] = at.force[usize::from(other)];
+        let presses = at.force.iter().all(|force| force[0] >= 0.0);
+        if presses && across.hypot(along) <= flow.fixed * n * (1.0 + GRACE) {
+            return self.begins_stance(flow, Stance::Pivots { other });
+        }
+        flow.ways = ways;
+        // The rim at rest, or the other one, carries the body alone.
+        let seen = |view: bool| {
+            let slip = [self.at[5], self.at[6]];
+            if view { mirrored(&self.of.body, &self.of.state, slip) } else { (self.of.state, slip) }
+        };
+        let (state, _) = seen(other);
+        let friction = self.friction();
+        let found = crate::laws::contact::standstill::standstill(&self.of.body, &state, &friction, &self.ask.losses);
+        let alone = matches!(found, Standstill::Sticks | Standstill::Slips { .. });
+        if alone && self.lifts(&state, found) {
+            if other {
+                self.turns_over();
+            }
+            self.at[3] = 0.0;
+            return crate::motions::walk::after_rest(found);
+        }
+        let (state, slip) = seen(!other);
+        let law = &self.of.slide.law;
+        let (one, _) = law.at((1.0, 0.0), [state.w1, 0.0, state.w3], slip);
+        if one.room > 0.0 && one.force[0] > 0.0 && one.w[1] > 0.0 {
+            return self.rises_on(other);
+        }
+        self.slips_off_two(flow, other, None)
+    }
+
+    /// Whether the other rim rises while this one, which rests, carries the body alone.
+    fn lifts(&self, state: &State, found: Standstill) -> bool {
+        let law = &self.of.slide.law;
+        let w = [state.w1, 0.0, state.w3];
+        match found {
+            Standstill::Slips { alpha, .. } => law.towards((1.0, 0.0), w, [0.0; 2], towards(alpha)).w[1] > 0.0,
+            _ => {
+                let ell = self.of.body.ell();
+                let (i3, w1, w3) = (self.of.body.i3(), state.w1, state.w3);
+                w1 * ((1.0 + i3) * w3 - ell * w1) > ell
+            }
+        }
+    }
+
+    /// A slip of the rim at rest, which the state is told from hereafter, while the other one slips, too. `against` is the
+    /// direction of a slip that begins continuously.
+    fn slips_off_two(&mut self, mut flow: LyingFlow, other: bool, against: Option<f64>) -> Next {
+        if other {
+            self.turns_over();
+        }
+        (self.at[5], self.at[6]) = (0.0, 0.0);
+        flow.stance = Stance::Slips;
+        let y = [self.at[2], self.at[4], 0.0, 0.0];
+        let mu = flow.law.strength;
+        let [u, v] = flow.law.other_slip(y);
+        let up = [u, v].map(|u| mu * u / f64::hypot(0.0, v));
+        let way = |x: f64| if x == 0.0 { 0.0 } else { x.signum() };
+        flow.ways = [way(y[0]), way(y[1])];
+        flow.holds([false; 2]);
+        let ways = flow.ways;
+        // f and lambda; f is multiplied by the factor of the normal forces, so that it has no poles.
+        let turns = |alpha: f64| {
+            let [cos, sin] = towards(alpha);
+            let at = flow.law.slipping_along(y, [[mu * cos, mu * sin], up], ways);
+            let room = 2.0 * flow.law.shape.rim.ell + up[0] - mu * cos;
+            let sound = at.force.iter().all(|force| force[0] >= 0.0);
+            (room * (cos * at.u[1] - sin * at.u[0]), cos * at.u[0] + sin * at.u[1], sound)
+        };
+        let found = against.map(|alpha| (alpha, 0.0)).or_else(|| {
+            let place = |k: usize| -PI + 1e-3 + core::f64::consts::TAU * k as f64 / DIRECTIONS as f64;
+            let all = (0..DIRECTIONS).filter_map(|k| {
+                let (low, high) = (place(k), place(k + 1));
+                let (a, b) = (turns(low).0, turns(high).0);
+                (a.signum() != b.signum()).then(|| crossing(|alpha| turns(alpha).0, low, high, a, b))
+            });
+            let grows = all.map(|alpha| (alpha, turns(alpha))).filter(|(_, (_, growth, sound))| *sound && *growth > GROWS);
+            grows.map(|(alpha, (_, growth, _))| (alpha, growth)).max_by(|a, b| a.1.total_cmp(&b.1))
+        });
+        let Some((alpha, growth)) = found else { return Next::Ends(Ending::Painleve) };
+        self.of.lying = Some(LyingPhase { flow, still: 0, since: self.at[TIME], count: 0 });
+        Next::SlipsOff { alpha, growth }
+    }
+
+    /// Follows a phase on both rims, or begins its flow.
+    pub(super) fn lies(&mut self) -> Option<WalkStep<N>> {
+        let phase = self.of.lying?;
+        if phase.flow.stance == Stance::Rolls && self.ask.losses.is_none() {
+            let (begin, began) = (self.at, self.at[TIME]);
+            while let Some(t) = self.until() {
+                let mut y = begin;
+                y[TIME] = t;
+                if poses(N) {
+                    let (sin, cos) = begin[9].sin_cos();
+                    let way = begin[4] * (t - began);
+                    (y[10], y[11], y[12]) = (begin[10] + way, begin[11] - way * sin, begin[12] + way * cos);
+                }
+                self.writes_lying(&phase.flow, &y);
+            }
+            self.of.lying = None;
+            return None;
+        }
+        Some(WalkStep::Flows(self.at))
+    }
+
+    /// Follows the flow of a phase on both rims.
+    pub(super) fn lies_on(
+        &mut self,
+        y: [f64; N],
+        steps: Steps,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Pause<N>, Error> {
+        let Some(LyingPhase { flow, .. }) = self.of.lying else { return Ok(Pause::No) };
+        let first = self.made.motion.states.len();
+        let mut points = Vec::new();
+        let mut write = |y: &[f64; N]| points.push(*y);
+        let Some(flown) = flow.run(flow.place(y), steps, &self.since[first..], &mut write, go_on)? else {
+            return Ok(Pause::Interrupted);
+        };
+        for point in &points {
+            self.writes_lying(&flow, point);
+        }
+        self.has_spent(flown.spent);
+        self.claims_time_error(flown.halt, flown.steep, &flown.y);
+        if flown.halt == Halt::Pause {
+            return Ok(Pause::Here(flown.y, Some(flown.step)));
+        }
+        Ok(self.stops_lying(flown.y, flown.halt).map_or(Pause::No, |y| Pause::Here(y, None)))
+    }
+
+    /// Ends a phase on both rims at the numbers `y`, and chooses the next one. Returns the numbers from which the same
+    /// phase continues, if it does.
+    pub(super) fn stops_lying(&mut self, y: [f64; N], halt: Halt) -> Option<[f64; N]> {
+        let mut phase = self.of.lying.take()?;
+        self.at = y;
+        (self.at[0], self.at[1], self.at[3]) = (1.0, 0.0, 0.0);
+        self.sets_state();
+        self.made.path.slipping += if phase.flow.stance == Stance::Slips { y[TIME] - self.began } else { 0.0 };
+        let next = match halt {
+            Halt::Time | Halt::Pause => return None,
+            Halt::Rises => self.rises_on(true),
+            Halt::Changes => self.rises_on(false),
+            Halt::Slips => {
+                let other = phase.flow.stance == Stance::Pivots { other: true };
+                if phase.flow.stance == Stance::Rolls {
+                    Next::Ends(Ending::Slip)
+                } else {
+                    let [_, across, along] = phase.flow.lain(&self.at).force[usize::from(other)];
+                    let way = if other { 1.0 } else { -1.0 };
+                    let against = f64::atan2(way * across, way * along);
+                    let equal = matches!(self.friction(), Friction::Coulomb { mu, fixed } if mu == fixed);
+                    self.slips_off_two(phase.flow, other, equal.then_some(against))
+                }
+            }
+            Halt::Drilling | Halt::Contour => {
+                phase.still = if y[TIME] > phase.since { 0 } else { phase.still + 1 };
+                (phase.since, phase.count) = (y[TIME], phase.count + 1);
+                if phase.still > STILL || phase.count > most_phases(&self.since) {
+                    self.next = Some(Next::Ends(Ending::Bounded));
+                    return None;
+                }
+                let i = usize::from(halt == Halt::Contour);
+                let which = [2, 4][i];
+                if phase.flow.law.held[i] {
+                    // The push exceeds the limit: the motion begins against the couple that has held it.
+                    let needs = phase.flow.lain(&self.at).couple[i];
+                    phase.flow.ways[i] = -needs.signum();
+                    let mut held = phase.flow.law.held;
+                    held[i] = false;
+                    phase.flow.holds(held);
+                } else {
+                    self.at[which] = 0.0;
+                    self.sets_state();
+                    self.sets_ways(&mut phase.flow);
+                }
+                let rests = phase.flow.stance == Stance::Rolls && phase.flow.law.held[1];
+                if !rests {
+                    self.of.lying = Some(phase);
+                    return Some(self.at);
+                }
+                Next::Ends(Ending::Stops)
+            }
+            Halt::Turned => {
+                (self.at[2], self.at[5], self.at[6]) = (0.0, 0.0, 0.0);
+                self.settles_on_side()
+            }
+            Halt::Standstill | Halt::OtherStandstill => self.settles_on_side(),
+            halt => Next::Ends(crate::motions::walk::ending(halt)),
+        };
+        self.continues_with(next);
+        None
+    }
+
+    /// Writes a point on both rims to the outputs.
+    pub(super) fn writes_lying(&mut self, flow: &LyingFlow, y: &[f64; N]) {
+        let (pose, at) = (poses(N).then(|| write::pose(y)), flow.lain(y));
+        let force = |[normal, along, across]: [f64; 3]| Force { normal, along, across };
+        let doubt = flow.tol * (1.0 + y[2].abs().max(y[4].abs()));
+        let asked = self.ask.force.then(|| (force(at.force[0]), doubt));
+        let state = State { theta: FRAC_PI_2, w1: y[2], w2: 0.0, w3: y[4] };
+        self.made.put(state, [y[5], y[6]], y[8], flow.stance.kind(), pose, asked);
+        if let Some(last) = self.made.path.other_rim.last_mut() {
+            let [u, v] = flow.law.other_slip([y[2], y[4], y[5], y[6]]);
+            let [n, across, along] = at.force[1];
+            *last = [u, v, n, across, along];
+        }
+        if loses(N) {
+            self.made.path.work_lost.push(y[N - 1]);
+        }
+    }
+
+    /// The kind of a slip from rest: on both rims if the body lies.
+    pub(super) fn kind_of_slip(&self) -> Kind {
+        if self.of.lying.is_some() { Kind::Lying } else { Kind::Slipping }
+    }
+}
