@@ -326,6 +326,11 @@ pub(crate) fn beyond<T: Real>(ell: T, fillet: T) -> T {
     zero.select_lt(ell, fillet.select_lt(one, level, round), round)
 }
 
+/// Sine and cosine of an inclination at which something lands; those of a right angle are exact.
+pub(crate) fn landing_angle(theta: f64) -> (f64, f64) {
+    if theta == FRAC_PI_2 { (1.0, 0.0) } else { theta.sin_cos() }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

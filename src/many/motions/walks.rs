@@ -6,6 +6,7 @@
 
 use super::lossy_lanes::LossyKind;
 use crate::error::Error;
+use crate::laws::body::landing_angle;
 use crate::methods::flow::lanes::{Entry, Flows, LaneStatus, NUMBERS};
 use crate::methods::flow::schedule::{STEPS_ALONE, Waiting, follow};
 use crate::methods::flow::{Spent, until_tired};
@@ -62,7 +63,7 @@ fn place<const N: usize>(walk: &BodyWalk<'_, N>) -> Option<(Among, [f64; NUMBERS
         return lossy.is_free().then_some((Among::Lossy(law), numbers));
     }
     let slide = &walk.of.slide;
-    let (sine, cosine) = body.theta_end().sin_cos();
+    let (sine, cosine) = landing_angle(body.theta_end());
     let there = f64::from(u8::from(body.theta_end() < PI));
     numbers[4..9].copy_from_slice(&[slide.law.strength, slide.over(), sine, cosine, there]);
     slide.law.losses.is_none().then_some((Among::Slips { dry: slide.law.dry }, numbers))

@@ -28,6 +28,9 @@ const HALVINGS: u32 = 10;
 const CUBIC: f64 = 0.02;
 const MARGIN_ROUNDING: f64 = 1e-15;
 
+/// A margin that rises from zero at the start of a step and falls again within this share of it has not risen.
+const LEAST_RISE: f64 = 1e-15;
+
 /// How the margins behave within a step.
 enum Outlook {
     /// All stay positive.
@@ -261,6 +264,19 @@ pub(super) fn only_zero(on: impl Fn(f64) -> Dual<f64>, [begin, rise, end, last]:
     None
 }
 
+/// The zero before `x` of a margin that rises from zero at the start and has fallen to `value` there; the start if it does
+/// not rise.
+fn after_start(on: impl Fn(f64) -> f64, mut x: f64, mut value: f64) -> f64 {
+    while x > LEAST_RISE {
+        let before = on(0.5 * x);
+        if before > 0.0 {
+            return crossing(on, 0.5 * x, x, before, value);
+        }
+        (x, value) = (0.5 * x, before);
+    }
+    0.0
+}
+
 /// The first zero within [0, 1] of a margin that may fail in this interval, from its values at both ends;
 /// without a zero, the place of its minimum and the minimum.
 fn first_zero(on: impl Fn(f64) -> f64, begin: f64, end: f64) -> Result<f64, (f64, f64)> {
@@ -270,6 +286,9 @@ fn first_zero(on: impl Fn(f64) -> f64, begin: f64, end: f64) -> Result<f64, (f64
         values[k] = if k == PARTS { end } else { on(x) };
         if values[k] <= 0.0 {
             let from = (k - 1) as f64 / PARTS as f64;
+            if k == 1 && begin <= 0.0 {
+                return Ok(after_start(on, x, values[1]));
+            }
             return Ok(crossing(on, from, x, values[k - 1].max(f64::MIN_POSITIVE), values[k]));
         }
     }

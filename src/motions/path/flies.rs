@@ -13,7 +13,7 @@
 use super::flight::{Aloft, Flight};
 use super::phases::BodyWalk;
 use crate::laws::contact::impact::{Hit, Impact, Struck, lightness, turned};
-use crate::laws::contact::landing::{Outcome, land_at};
+use crate::laws::contact::landing::{Landed, Outcome, land_at};
 use crate::laws::contact::slip::Friction;
 use crate::laws::contact::{FLAT, Force, Table};
 use crate::laws::state::State;
@@ -26,7 +26,11 @@ use core::f64::consts::FRAC_PI_2;
 /// Share of the state that the bounces which are summed may change.
 const TAIL: f64 = 1e-13;
 /// Both rims rattle until |cos theta| and the normal velocities of both are below this.
-const RATTLED: f64 = 1e-6;
+const RATTLED: f64 = 1e-8;
+/// Error of the rest of a rattle, in units of the square of its velocities.
+const SUMMED: f64 = 1e2;
+/// A rocking with a larger w2 is followed hop by hop.
+const ROCKED: f64 = 1e-5;
 /// Both rims land together if |cos theta| is below this.
 const TOGETHER: f64 = 1e-9;
 /// Share of its terms below which N0 is a rounding error.
@@ -152,11 +156,9 @@ impl<const N: usize> BodyWalk<'_, N> {
         if upper {
             self.turns_over();
         }
-        let doubt = flight.doubt(t, &at);
-        self.claims(doubt);
         // The time of a landing is as uncertain as the height, over the normal velocity.
-        let high = f64::EPSILON * (1.0 + shape.rim.ell.abs() + at.height.abs());
-        self.claims((high / self.of.takeoff.lift.abs()).min(high.sqrt()));
+        let high = flight.doubt_of_height(t);
+        self.claims(flight.doubt(t, &at) + (high / self.of.takeoff.lift.abs()).min(high.sqrt()));
         self.of.takeoff.height = 0.0;
         let next = self.strikes(upper);
         self.continues_with(next);
@@ -187,7 +189,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         self.sets(&after);
         let level = from.angle.1.abs().max(after.lift).max(after.from_other_rim(&shape).lift);
         if self.has_two_rims() && e > 0.0 && level < RATTLED {
-            self.claims(from.angle.1.abs());
+            self.claims(level * level * SUMMED);
             return self.lands_on_both();
         }
         if after.lift > 0.0 {
@@ -289,14 +291,28 @@ impl<const N: usize> BodyWalk<'_, N> {
         let Ok(landed) = land_at(&self.of.body, &before, ([self.at[5], self.at[6]], lift), &friction) else {
             return Next::Ends(Ending::Landing);
         };
+        self.lands_as(&landed);
+        let rises = self.at[3];
+        if rises == 0.0 {
+            return self.settles_on_side();
+        }
+        if rises < ROCKED && let Some(end) = self.rocks_out() {
+            self.claims((end[TIME] - self.at[TIME]).powi(2));
+            self.at = end;
+            return self.settles_on_side();
+        }
+        self.touches_down()
+    }
+
+    /// Moves the walk to the numbers after a landing on both rims.
+    pub(super) fn lands_as(&mut self, landed: &Landed) {
         if landed.outcome == Outcome::Changes {
             self.turns_over();
         }
-        let (State { w1, w2, w3, .. }, slip) = (landed.state, landed.slip);
-        let pose = self.aloft().pose;
-        self.sets(&Aloft { angle: (1.0, 0.0), w: [w1, w2, w3], slip, lift: 0.0, height: 0.0, pose });
+        let State { w1, w2, w3, .. } = landed.state;
+        let after = Aloft { angle: (1.0, 0.0), w: [w1, w2, w3], slip: landed.slip, lift: 0.0, ..self.aloft() };
+        self.sets(&Aloft { height: 0.0, ..after });
         self.at[8] += landed.lost;
-        if landed.outcome == Outcome::Lies || w2 == 0.0 { self.settles_on_side() } else { self.touches_down() }
     }
 
     /// Writes a point of a flight to the outputs.

@@ -20,7 +20,7 @@ use crate::motions::judge::doubted;
 use crate::motions::walk::slow::clear_until;
 use crate::motions::walk::{Next, Pause, Phases, STILL, SlowSeries, Walk, WalkStep};
 use crate::motions::{Ask, Ending, Kind, Start};
-use core::f64::consts::PI;
+use core::f64::consts::{FRAC_PI_2, PI};
 
 /// The walk of a body of revolution.
 pub(crate) type BodyWalk<'a, const N: usize> = Walk<'a, BodyPhases, N>;
@@ -215,7 +215,7 @@ impl<const N: usize> Phases<N> for BodyPhases {
     }
 
     fn perturbs(walk: &mut BodyWalk<'_, N>) {
-        if walk.perturbation == 0.0 {
+        if walk.perturbation == 0.0 || walk.of.lying.is_some() {
             return;
         }
         let (down, up) = (1.0 - walk.perturbation, 1.0 + walk.perturbation);
@@ -224,8 +224,10 @@ impl<const N: usize> Phases<N> for BodyPhases {
         // zero stays zero.
         let (s, c) = theta.sin_cos();
         let (drilling, rolling) = ((s * w1 + c * w3) * up, (c * w1 - s * w3) * up);
-        let theta = theta * down;
-        let (s, c) = theta.sin_cos();
+        // On both rims cos theta vanishes exactly.
+        let level = walk.at[1] == 0.0;
+        let theta = if level { theta } else { theta * down };
+        let (s, c) = if level { (1.0, 0.0) } else { theta.sin_cos() };
         let (w1, w3) = (s * drilling + c * rolling, c * drilling - s * rolling);
         walk.of.state = State { theta, w1, w2: w2 * down, w3 };
         walk.at[..5].copy_from_slice(&[s, c, w1, w2 * down, w3]);
@@ -418,6 +420,12 @@ impl<const N: usize> Phases<N> for BodyPhases {
             return;
         }
         walk.slip_ends(y, halt);
+    }
+
+    fn leaves_margin(walk: &BodyWalk<'_, N>, halt: Halt) -> bool {
+        halt == Halt::Side
+            && walk.of.body.theta_end() == FRAC_PI_2
+            && walk.made.path.phases.last().is_some_and(|phase| phase.state.theta == FRAC_PI_2)
     }
 
     /// The error of a margin that depends on a force is proportional to the largest speed.

@@ -19,6 +19,9 @@ use nalgebra::Point2;
 /// A face nearer to the table than this angle has landed, since the first integrals lose their digits there.
 const LEAST: f64 = 1e-8;
 
+/// A hop that rises by less than this is integrated, and slower than this.
+const LOW: f64 = 0.1;
+
 impl<const N: usize> BodyWalk<'_, N> {
     /// Follows a rolling phase by the first integrals to its end, or begins its flow if the
     /// body loses energy.
@@ -35,7 +38,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         }
         let mu = if at_limit { fixed * (1.0 + GRACE) } else { fixed };
         let (body, y, rubs) = (self.of.body, self.of.state, self.ask.table.rubs());
-        if self.of.integrates {
+        if self.of.integrates || self.hops_low() {
             return Ok(self.begins_to_lose(mu)?.map(WalkStep::Flows));
         }
         let beyond = self.ask.beyond && !rubs;
@@ -89,6 +92,14 @@ impl<const N: usize> BodyWalk<'_, N> {
         };
         self.continues_with(next);
         Ok(None)
+    }
+
+    /// Whether the body has just left its other rim and comes back to it so soon that the first integrals would lose the
+    /// digits of the height: theta is known to 1e-16, and the hop is low.
+    fn hops_low(&self) -> bool {
+        let rises = self.at[3];
+        let falls = || -Contact::Rolling.derivative(&self.of.body, &self.of.state).w2;
+        self.at[1] == 0.0 && rises < LOW && rises * rises < LOW * falls()
     }
 
     /// A pose of a rolling phase, counted from the start of the motion.

@@ -370,8 +370,9 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         if let Some(grows) = self.of.grows(halt, y) {
             let erred = grows * (self.spent.erred * self.of.tol() + 8.0 * f64::EPSILON);
             // A margin that only touches zero does so with zero slope: the error of the time is
-            // a square root.
-            self.claims((erred / steep).min(erred.sqrt()));
+            // a square root. A hop from a margin of exactly zero is as long as its own speed says.
+            let hop = if P::leaves_margin(self, halt) { y[TIME] - self.began } else { f64::INFINITY };
+            self.claims((erred / steep).min(erred.sqrt()).min(erred * hop));
         }
     }
 

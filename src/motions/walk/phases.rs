@@ -98,6 +98,10 @@ pub(crate) trait Phases<const N: usize>: Sized {
     ) -> Result<Pause<N>, Error>;
     /// Ends a slip at the numbers `y`, and chooses the next phase.
     fn slip_halts(walk: &mut Walk<'_, Self, N>, y: [f64; N], halt: Halt);
+    /// Whether the margin of this halt vanished exactly where the present phase began.
+    fn leaves_margin(_: &Walk<'_, Self, N>, _: Halt) -> bool {
+        false
+    }
     /// The factor by which the error of a halt's margin exceeds that of the numbers; None for a halt
     /// without a margin.
     fn grows(&self, halt: Halt, y: &[f64; N]) -> Option<f64>;

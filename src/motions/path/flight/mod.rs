@@ -209,6 +209,12 @@ impl Flight {
         }
     }
 
+    /// The error that rounding may leave in the height of a rim at a time.
+    pub fn doubt_of_height(&self, t: f64) -> f64 {
+        let reach = self.shape.rim.ell.abs() + 1.0;
+        4.0 * f64::EPSILON * (self.from.height + t * (1.0 + self.velocity[2].abs() + self.rate * reach))
+    }
+
     /// The error that rounding may leave in the numbers at a time.
     pub fn doubt(&self, t: f64, at: &Aloft) -> f64 {
         let fastest = at.w.iter().fold(1.0, |most: f64, w| most.max(w.abs()));

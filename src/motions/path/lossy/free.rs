@@ -11,7 +11,7 @@
 //! exp(-sigma). Single motions and lanes of eight share this code.
 
 use super::{Hold, LOSSY_NUMBERS, LossyFlow, REST};
-use crate::laws::body::Shape;
+use crate::laws::body::{Shape, landing_angle};
 use crate::laws::contact::grip;
 use crate::laws::contact::lossy::{Acted, Held, Lossy};
 use crate::laws::loss::{COUNT, Couples, Law, Ways, going};
@@ -209,7 +209,7 @@ impl LossyFlow {
     /// of psi' and w_z.
     pub fn numbers(&self) -> [f64; LOSSY_NUMBERS] {
         let mut all = [0.0; LOSSY_NUMBERS];
-        let (sine, cosine) = self.theta_end.sin_cos();
+        let (sine, cosine) = landing_angle(self.theta_end);
         let there = f64::from(u8::from(self.theta_end < core::f64::consts::PI));
         all[..4].copy_from_slice(&[sine, cosine, there, self.mu]);
         for law in Law::ALL {

@@ -2,6 +2,7 @@
 
 use super::free::{error, fastest_of, from_side, pace_of, three_radians};
 use super::{Hold, LossyFlow, REST};
+use crate::laws::body::landing_angle;
 use crate::laws::contact::lossy::{Acted, Held, Lossy};
 use crate::laws::contact::{Contact, grip};
 use crate::laws::loss::{GRACE, Law, rolling_growth};
@@ -88,7 +89,7 @@ impl LossyFlow {
             s - lands_at(law.rates.reduced().shape.i1, (s, c), [w[0], w2], acted.w[1], endless)
         };
         let number = |x: f64| s.splat(x);
-        let (high, far) = self.theta_end.sin_cos();
+        let (high, far) = landing_angle(self.theta_end);
         let there = f64::from(u8::from(self.theta_end < PI));
         let side = from_side([high, far, there].map(number), (s, c));
         let [normal, along, across] = acted.force;

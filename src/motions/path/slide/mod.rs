@@ -14,7 +14,7 @@
 mod lossy;
 
 use super::settled::EFFORT;
-use crate::laws::body::{Body, Shape};
+use crate::laws::body::{Body, Shape, landing_angle};
 use crate::laws::contact::slip::{Friction, SlipResponse, Slipping};
 use crate::laws::loss::{Couples, Losses};
 use crate::laws::state::State;
@@ -199,7 +199,7 @@ impl Flow<MARGINS> for Slide {
         }
         let (at, _) = self.sloped.at((s, c), [w1, w2, w3], [u_h, u_2]);
         let one = s.splat(1.0);
-        let (high, far) = self.theta_end.sin_cos();
+        let (high, far) = landing_angle(self.theta_end);
         let side = if self.theta_end < PI { s.splat(high) * c - s.splat(far) * s } else { one };
         let [contour, drilling] = match self.sloped.losses.as_ref().filter(|_| loses(N)) {
             Some(losses) => {
@@ -231,7 +231,10 @@ impl Flow<MARGINS> for Slide {
             Halt::Drilling if self.settled && self.holds_drilling() => {
                 self.pushed_on(&self.bare, (s, c), [w1, w2, w3], [u_h, u_2])[1]
             }
-            Halt::Side => self.theta_end.sin() * c - self.theta_end.cos() * s,
+            Halt::Side => {
+                let (high, far) = landing_angle(self.theta_end);
+                high * c - far * s
+            }
             Halt::Contour | Halt::Drilling => {
                 let Some(losses) = self.law.losses else { return 1.0 };
                 let seen = losses.seen(&self.law.shape.rim, (s, c), w1 / s, [w1, w2, w3]);

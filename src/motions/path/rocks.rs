@@ -1,0 +1,77 @@
+//! Rocking from rim to rim without a bounce: infinitely many hops in a finite time, of which the last ones are summed.
+//!
+//! ```text
+//! a hop lasts 2 w/gamma, gamma = -w2' on one rim at theta = pi/2;   a landing turns w into r w
+//! the rest = the change in one cycle of two hops and two landings, over 1 - r r'
+//! ```
+//! The block of Housner, Bull. Seismol. Soc. Am. 53, 403 (1963). Error: the square of the time that is summed.
+
+use super::phases::BodyWalk;
+use crate::laws::contact::Contact;
+use crate::laws::contact::landing::{Outcome, land_at};
+use crate::laws::state::State;
+use crate::motions::halt::{TIME, poses};
+use core::f64::consts::{FRAC_PI_2, TAU};
+
+/// The longest time that is summed, over the time in which the body turns by a radian.
+const SHORT: f64 = 1e-6;
+
+impl<const N: usize> BodyWalk<'_, N> {
+    /// The numbers at the end of a rocking that has just begun another hop at theta = pi/2; None if it is not over soon.
+    pub(super) fn rocks_out(&mut self) -> Option<[f64; N]> {
+        let (begin, state, takeoff) = (self.at, self.of.state, self.of.takeoff);
+        let upside_down = self.made.path.upside_down;
+        let found = self.cycle(&begin);
+        (self.at, self.of.state, self.of.takeoff) = (begin, state, takeoff);
+        self.made.path.upside_down = upside_down;
+        found
+    }
+
+    fn cycle(&mut self, begin: &[f64; N]) -> Option<[f64; N]> {
+        for _ in 0..2 {
+            let y = State { theta: FRAC_PI_2, w2: 0.0, ..self.of.state };
+            let (slip, rises) = ([self.at[5], self.at[6]], self.at[3]);
+            let law = &self.of.slide.law;
+            let sticks = law.dry && slip[0].hypot(slip[1]) <= self.of.slide.over();
+            let w = [y.w1, 0.0, y.w3];
+            let (rate, drift, warms) = if sticks {
+                let dy = Contact::Rolling.derivative_at(&self.of.body, &y, (1.0, 0.0));
+                ([dy.w1, dy.w2, dy.w3], [0.0; 2], 0.0)
+            } else {
+                let at = law.at((1.0, 0.0), w, slip).0;
+                (at.w, at.u, -(at.force[1] * slip[1] + at.force[2] * slip[0]))
+            };
+            if rate[1] >= 0.0 {
+                return None;
+            }
+            let lasts = 2.0 * rises / -rate[1];
+            for (i, rate) in [(2, rate[0]), (4, rate[2]), (5, drift[0]), (6, drift[1]), (TIME, 1.0), (8, warms)] {
+                self.at[i] += lasts * rate;
+            }
+            if poses(N) {
+                let (sin, cos) = self.at[9].sin_cos();
+                let (out, on) = (slip[0], slip[1] + y.w3);
+                for (i, rate) in [(9, y.w1), (10, y.w3), (11, out * cos - on * sin), (12, out * sin + on * cos)] {
+                    self.at[i] += lasts * rate;
+                }
+            }
+            self.at[3] = -rises;
+            let before = State { theta: FRAC_PI_2, w1: self.at[2], w2: -rises, w3: self.at[4] };
+            let slip = [self.at[5], self.at[6]];
+            let landed = land_at(&self.of.body, &before, (slip, 0.0), &self.friction()).ok()?;
+            if landed.outcome != Outcome::Changes {
+                return None;
+            }
+            self.lands_as(&landed);
+        }
+        let share = 1.0 - self.at[3] / begin[3];
+        if poses(N) {
+            self.at[9] -= TAU;
+        }
+        let mut end: [f64; N] = core::array::from_fn(|i| begin[i] + (self.at[i] - begin[i]) / share);
+        (end[0], end[1], end[3]) = (1.0, 0.0, 0.0);
+        let fastest = [2, 4, 5, 6].into_iter().fold(1.0, |most: f64, i| most.max(begin[i].abs()));
+        let left = (end[TIME] - begin[TIME]) * fastest;
+        (share > 0.0 && left < SHORT).then_some(end)
+    }
+}
