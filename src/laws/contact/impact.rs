@@ -89,6 +89,8 @@ const OVER: f64 = -39.0;
 /// Tolerance of a step along the impact, and the largest number of steps.
 const TOL: f64 = 3e-14;
 const STEPS: usize = 5_000;
+/// Largest number of Newton's steps to an end of compression or of the impact.
+const NEWTON: u32 = 60;
 
 /// The impact so far, with all velocities in units of the first normal velocity.
 struct Course {
@@ -97,7 +99,8 @@ struct Course {
     work: f64,
     /// The work at the end of compression.
     compressed: Option<f64>,
-    /// 1 - e^2.
+    /// The restitution e, and 1 - e^2.
+    e: f64,
     keeps: f64,
 }
 
@@ -105,11 +108,15 @@ impl Course {
     /// Goes on in a direction that stays, in which the normal velocity grows at the rate `k`, for at most the normal
     /// impulse `most`. Returns whether the impact ends.
     fn straight(&mut self, k: f64, [p_h, p_2]: [f64; 2], most: f64) -> bool {
-        if self.compressed.is_none() && k > 0.0 && -self.lift / k <= most {
-            self.compressed = Some(self.work - self.lift * self.lift / (2.0 * k));
-        }
         let (mut p, mut done) = (most, false);
-        if let Some(compressed) = self.compressed {
+        if self.compressed.is_none() {
+            if k > 0.0 && -self.lift / k <= most {
+                let compressed = self.work - self.lift * self.lift / (2.0 * k);
+                self.compressed = Some(compressed);
+                let end = (self.e * (-2.0 * k * compressed).sqrt() - self.lift) / k;
+                (p, done) = (end.min(most), end <= most);
+            }
+        } else if let Some(compressed) = self.compressed {
             let left = self.keeps * compressed - self.work;
             let square = self.lift * self.lift + 2.0 * k * left;
             // Friction may press the body down again before the work is done.
@@ -132,7 +139,7 @@ impl Impact {
     pub fn on(&self, table: &Table, e: f64) -> Option<Struck> {
         let (big, [a_h, a_2, a_n, b]) = (-self.lift, self.light);
         let keeps = (1.0 - e) * (1.0 + e);
-        let mut course = Course { impulse: [0.0; 3], lift: -1.0, work: 0.0, compressed: None, keeps };
+        let mut course = Course { impulse: [0.0; 3], lift: -1.0, work: 0.0, compressed: None, e, keeps };
         let (slip, mut stopped) = (self.slip.map(|u| u / big), false);
         let hit = match *table {
             Table::Rolling { .. } => {
@@ -242,9 +249,25 @@ impl Impact {
             let mut from = 0.0;
             while end.is_none() && margin(&there, compressed) <= 0.0 {
                 let now = compressed;
-                let begin = margin(&part(from).0, now).max(f64::MIN_POSITIVE);
-                let x = crossing(|x| margin(&part(x).0, now), from, h, begin, margin(&there, now));
-                let at = part(x).0;
+                let (mut low, mut high, mut x) = (from, h, 0.5 * (from + h));
+                let mut at = place;
+                for _ in 0..NEWTON {
+                    let mut rate = at;
+                    at = part(x).0;
+                    rates(&at, &mut rate);
+                    let value = margin(&at, now);
+                    if value > 0.0 {
+                        low = x;
+                    } else {
+                        high = x;
+                    }
+                    let next = x + value / if now.is_none() { rate[5] } else { rate[6] };
+                    let next = if low < next && next < high { next } else { 0.5 * (low + high) };
+                    if (next - x).abs() <= f64::EPSILON * h {
+                        break;
+                    }
+                    x = next;
+                }
                 match now {
                     None => (compressed, from) = (Some(at[6]), x),
                     Some(_) => end = Some(at),

@@ -13,7 +13,7 @@
 use super::flight::{Aloft, Flight};
 use super::phases::BodyWalk;
 use crate::laws::contact::impact::{Hit, Impact, Struck, lightness, turned};
-use crate::laws::contact::landing::{Landed, Outcome, land_at};
+use crate::laws::contact::landing::{Landed, Outcome, land_at, settled};
 use crate::laws::contact::slip::Friction;
 use crate::laws::contact::{FLAT, Force, Table};
 use crate::laws::state::State;
@@ -49,7 +49,7 @@ pub(crate) struct Takeoff {
 }
 
 impl<const N: usize> BodyWalk<'_, N> {
-    fn has_two_rims(&self) -> bool {
+    pub(super) fn has_two_rims(&self) -> bool {
         let body = &self.of.body;
         body.ell() > 0.0 && body.theta_end() == FRAC_PI_2
     }
@@ -187,10 +187,9 @@ impl<const N: usize> BodyWalk<'_, N> {
         }
         let after = self.struck(&from, &struck, (other, stays));
         self.sets(&after);
-        let level = from.angle.1.abs().max(after.lift).max(after.from_other_rim(&shape).lift);
+        let level = from.angle.1.abs().max(after.lift).max(after.from_other_rim(&shape).lift.abs());
         if self.has_two_rims() && e > 0.0 && level < RATTLED {
-            self.claims(level * level * SUMMED);
-            return self.lands_on_both();
+            return self.ends_rattle();
         }
         if after.lift > 0.0 {
             self.of.takeoff.leaves = Some(1);
@@ -269,14 +268,29 @@ impl<const N: usize> BodyWalk<'_, N> {
         at.height = 0.0;
         self.sets(&at);
         if at.from_other_rim(&shape).lift < RATTLED {
-            return self.lands_on_both();
+            return self.ends_rattle();
         }
         if at.lift < TOGETHER {
-            self.at[TIME] += 0.0;
             return self.touches_down();
         }
         self.of.takeoff.leaves = Some(1);
         Next::Own(Kind::Flying)
+    }
+
+    /// The phase on both rims after a rattle, whose last impacts are summed.
+    fn ends_rattle(&mut self) -> Next {
+        let Table::Rubs(friction) = self.ask.table else { return self.lands_on_both() };
+        let from = self.aloft();
+        let left = from.angle.1.abs().max(from.w[1].abs()).max(from.lift.abs());
+        self.claims(if from.slip == [0.0; 2] { left } else { left * left * SUMMED });
+        let state = State { theta: FRAC_PI_2, ..self.of.state };
+        let (y, slip, lost) = settled(&self.of.body, &state, (from.slip, from.lift), &friction);
+        // The centre, too, comes down to the height of the rims.
+        let rim = &self.of.slide.law.shape.rim;
+        self.at[8] += lost + from.height + rim.height(from.angle) - rim.height((1.0, 0.0));
+        let after = Aloft { angle: (1.0, 0.0), w: [y.w1, 0.0, y.w3], slip, lift: 0.0, height: 0.0, ..from };
+        self.sets(&after);
+        self.settles_on_side()
     }
 
     /// The next phase after a landing on both rims without a bounce.

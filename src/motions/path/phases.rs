@@ -32,6 +32,9 @@ const ALL_BUT_FLAT: f64 = 1e-6;
 /// their steps differ.
 const LONGER: f64 = 3.0;
 
+/// Size of cos theta below which a rougher run perturbs this number and not theta.
+const LEVEL: f64 = 1e-3;
+
 /// The data of a body's walk: its equations, and the present phase.
 pub(crate) struct BodyPhases {
     pub body: Body,
@@ -224,10 +227,10 @@ impl<const N: usize> Phases<N> for BodyPhases {
         // zero stays zero.
         let (s, c) = theta.sin_cos();
         let (drilling, rolling) = ((s * w1 + c * w3) * up, (c * w1 - s * w3) * up);
-        // On both rims cos theta vanishes exactly.
-        let level = walk.at[1] == 0.0;
-        let theta = if level { theta } else { theta * down };
-        let (s, c) = if level { (1.0, 0.0) } else { theta.sin_cos() };
+        // Near its other rim the height of the body is known from cos theta, not from theta.
+        let near = walk.ask.restitution.is_some() && walk.at[1].abs() < LEVEL;
+        let theta = if near { theta } else { theta * down };
+        let (s, c) = if near { (walk.at[0], walk.at[1] * down) } else { theta.sin_cos() };
         let (w1, w3) = (s * drilling + c * rolling, c * drilling - s * rolling);
         walk.of.state = State { theta, w1, w2: w2 * down, w3 };
         walk.at[..5].copy_from_slice(&[s, c, w1, w2 * down, w3]);

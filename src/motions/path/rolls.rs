@@ -94,12 +94,15 @@ impl<const N: usize> BodyWalk<'_, N> {
         Ok(None)
     }
 
-    /// Whether the body has just left its other rim and comes back to it so soon that the first integrals would lose the
-    /// digits of the height: theta is known to 1e-16, and the hop is low.
+    /// Whether the body comes back to its other rim so soon that the first integrals would lose the digits of the height:
+    /// theta is known to 1e-16, and the hop is low.
     fn hops_low(&self) -> bool {
-        let rises = self.at[3];
-        let falls = || -Contact::Rolling.derivative(&self.of.body, &self.of.state).w2;
-        self.at[1] == 0.0 && rises < LOW && rises * rises < LOW * falls()
+        let [c, rises] = [self.at[1], self.at[3]];
+        if self.ask.restitution.is_none() || c > LOW || rises > LOW || !self.has_two_rims() {
+            return false;
+        }
+        let falls = -Contact::Rolling.derivative(&self.of.body, &self.of.state).w2;
+        if rises > 0.0 { rises * rises < LOW * falls } else { rises * rises + falls * c > 0.0 }
     }
 
     /// A pose of a rolling phase, counted from the start of the motion.

@@ -194,10 +194,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
     /// Goes through the phases up to one that is integrated, or to the end.
     pub fn advance(&mut self, go_on: &mut dyn FnMut() -> bool) -> Result<WalkStep<N>, Error> {
         while let Some(next) = self.next.take() {
-            let next = match next {
-                Next::Ends(ending) => P::goes_on(self, ending),
-                next => next,
-            };
+            let next = self.goes_on(next);
             let now = self.at[TIME];
             self.still = if now > self.began { 0 } else { self.still + 1 };
             self.short = if now > self.began + SHORT { 0 } else { self.short + 1 };
@@ -248,6 +245,18 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
             }
         }
         Ok(WalkStep::Done)
+    }
+
+    /// The phase after an ending from which the motion goes on. One ending may follow another at the same time.
+    fn goes_on(&mut self, mut next: Next) -> Next {
+        for _ in 0..STILL {
+            let Next::Ends(ending) = next else { break };
+            next = P::goes_on(self, ending);
+            if matches!(next, Next::Ends(same) if same == ending) {
+                break;
+            }
+        }
+        next
     }
 
     /// Follows the flow of a phase from the numbers `y`, for at most `most` steps; `first` is the first step
