@@ -201,12 +201,15 @@ impl Impact {
         if speed <= STOPPED * (1.0 + speed) || mu == 0.0 {
             return false;
         }
-        let way = slip.map(|u| u / speed);
         let slows = |[cos, sin]: [f64; 2]| b * cos - mu * (a_h * cos * cos + a_2 * sin * sin);
-        if way[1].abs() < STRAIGHT || b.abs() + turns.abs() < STOPPED {
+        let straight = |course: &mut Course, way: [f64; 2], speed: f64| {
             let slow = slows(way);
             let most = if slow < 0.0 { -speed / slow } else { f64::INFINITY };
-            return course.straight(a_n - mu * b * way[0], way.map(|x| -mu * x), most);
+            course.straight(a_n - mu * b * way[0], way.map(|x| -mu * x), most)
+        };
+        let way = slip.map(|u| u / speed);
+        if way[1].abs() < STRAIGHT || b.abs() + turns.abs() < STOPPED {
+            return straight(course, way, speed);
         }
         // alpha, ln sigma, P_h, P_2, p, u_n and W, with dp = sigma/(1 + sigma) dx.
         let rates = |v: &[f64; 7], to: &mut [f64; 7]| {
@@ -279,7 +282,8 @@ impl Impact {
             course.compressed = compressed;
             place = end.unwrap_or(there);
             done = end.is_some();
-            if done || place[1] < OVER {
+            // Along the lean, where the slip may last long, the direction stays.
+            if done || place[1] < OVER || place[0].sin().abs() < STRAIGHT {
                 break;
             }
             h *= rk8::growth(error);
@@ -287,7 +291,7 @@ impl Impact {
         let [_, _, p_h, p_2, p, lift, work] = place;
         course.impulse = [p_h, p_2, p];
         (course.lift, course.work) = (lift, work);
-        done
+        done || place[1] >= OVER && straight(course, [place[0].cos().signum(), 0.0], place[1].exp())
     }
 }
 

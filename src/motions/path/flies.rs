@@ -26,7 +26,7 @@ use core::f64::consts::FRAC_PI_2;
 /// Share of the state that the bounces which are summed may change.
 const TAIL: f64 = 1e-13;
 /// Both rims rattle until |cos theta| and the normal velocities of both are below this.
-const RATTLED: f64 = 1e-8;
+const RATTLED: f64 = 1e-7;
 /// Error of the rest of a rattle, in units of the square of its velocities.
 const SUMMED: f64 = 1e2;
 /// A rocking with a larger w2 is followed hop by hop.
