@@ -32,7 +32,9 @@ const SUMMED: f64 = 1e2;
 /// A rocking with a larger w2 is followed hop by hop.
 const ROCKED: f64 = 1e-5;
 /// Both rims land together if |cos theta| is below this.
-const TOGETHER: f64 = 1e-9;
+const TOGETHER: f64 = 1e-14;
+/// Impacts of both rims are over where no rim comes down faster than this share of the first velocity.
+const OVER: f64 = 1e-9;
 /// Share of its terms below which N0 is a rounding error.
 const ROUNDED: f64 = 1e-12;
 /// Largest number of impacts of both rims in turn.
@@ -246,7 +248,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         let mut other = false;
         for turn in 0.. {
             let there = at.from_other_rim(&shape);
-            if at.lift.min(there.lift) > -TOGETHER * fast.min(1.0) {
+            if at.lift.min(there.lift) > -OVER * fast.min(1.0) {
                 break;
             }
             if turn > TURNS {
@@ -270,7 +272,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         if at.from_other_rim(&shape).lift < RATTLED {
             return self.ends_rattle();
         }
-        if at.lift < TOGETHER {
+        if at.lift < OVER * fast.min(1.0) {
             return self.touches_down();
         }
         self.of.takeoff.leaves = Some(1);
