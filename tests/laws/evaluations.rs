@@ -59,7 +59,7 @@ fn a_launch_costs_some_thousand_evaluations_until_it_rolls() {
         let slip = [0.0, (body.ell() - body.i1() / body.ell()) * w1 - w3];
         for (tol, most) in TOLERANCES.into_iter().zip([3_000, 4_700, 7_200]) {
             let ask = Ask { stop_at_rolling: true, ..Ask::on(Table::Rubs(Friction::coulomb(mu))) };
-            let m = followed(&body, Start { state, slip, time: 0.0 }, 200.0, ask, tol);
+            let m = followed(&body, Start { slip, ..state.into() }, 200.0, ask, tol);
             assert!(m.evaluations <= most, "{w1} {tol:e}: {} evaluations, {most} allowed", m.evaluations);
         }
     }

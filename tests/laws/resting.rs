@@ -112,7 +112,7 @@ fn a_disk_all_but_on_its_edge_falls_as_it_claims_whatever_the_tolerance() {
     ];
     for (c, w1, lean, theta) in scenes {
         let state = State { theta: FRAC_PI_2 - lean, w1, w2: 0.0, w3: 0.0 };
-        let start = Start { state, slip: [0.0; 2], time: 0.0 };
+        let start = Start::from(state);
         for tol in [1e-4, 1e-6, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13, 1e-14] {
             let table = Table::Rubs(Friction::Viscous { c });
             let ask = Ask { method: Method::Tolerance(tol), ..Ask::on(table) };
@@ -133,7 +133,7 @@ fn a_slipping_ball_that_rolling_resistance_stops_has_one_time_of_its_stop() {
         w2: -4.571949401105849e-06,
         w3: -0.021841463555552536,
     };
-    let start = Start { state, slip: [-0.8788704590281213, 0.0], time: 0.0 };
+    let start = Start { slip: [-0.8788704590281213, 0.0], ..state.into() };
     let losses = Losses::of(Law::RollingResistance, 0.08469917537452804)
         + Losses::of(Law::Drilling, 0.031018461102858726);
     let table = Table::Rubs(Friction::coulomb(0.0010786595683881079));
