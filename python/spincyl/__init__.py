@@ -28,12 +28,12 @@ from spincyl._ending import Ending, ErrorWarning, Event
 from spincyl._laws import Region
 from spincyl._measured import measured
 from spincyl._motion import Motion
-from spincyl._phases import Phase
+from spincyl._phases import Impact, Phase
 from spincyl._roll import StepWarning, roll
 from spincyl._scale import Scale
 from spincyl._state import State
 from spincyl._swing import Swing, swing
-from spincyl._throw import flicked, launch_number, pressed, thrown
+from spincyl._throw import dropped, flicked, launch_number, pressed, thrown
 from spincyl._upward import HOMES
 
 if TYPE_CHECKING:
@@ -59,6 +59,7 @@ __all__ = [
     "Ending",
     "ErrorWarning",
     "Event",
+    "Impact",
     "Motion",
     "Phase",
     "Play",
@@ -73,6 +74,7 @@ __all__ = [
     "Viscous",
     "data",
     "drift",
+    "dropped",
     "exposure",
     "flicked",
     "launch_number",

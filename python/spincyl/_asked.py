@@ -60,7 +60,7 @@ def crossing(asked: Asked, slip: Sequence[float] | None = None) -> dict[str, Any
     if losses is not None:
         options["losses"] = losses._coefficients
     if restitution is not None:
-        options["restitution"] = 0.0
+        options["restitution"] = float(restitution)
     if stop_at:
         options["stop_at_rolling"] = True
     if spread:
@@ -148,7 +148,7 @@ def ask(
     elif method == "rk4":
         raise ValueError("method = 'rk4' needs step=, as in step=1e-3")
     mu = mu if type(mu) is float else number("mu", mu)
-    plain = word and state.slip is None and restitution is None and losses is None
+    plain = word and state.slip is None and state.height is None and restitution is None and losses is None
     if not plain:  # otherwise no combination of the arguments is invalid
         given = {"step": step, "method": method, "mu": None if mu == np.inf else mu, "beyond": beyond or None}
         given = {name: x for name, x in given.items() if x is not None}

@@ -21,6 +21,7 @@ __all__ = [
     "centre_across",
     "centre_along",
     "centre_radius",
+    "centre_up",
     "check_ball",
     "check_balls",
     "check_body",
@@ -167,6 +168,7 @@ nutation: np.ufunc
 painleve: np.ufunc
 growth_rate: np.ufunc
 centre_along: np.ufunc
+centre_up: np.ufunc
 centre_across: np.ufunc
 rests: np.ufunc
 two_rims: np.ufunc

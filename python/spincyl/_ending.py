@@ -16,6 +16,7 @@ class Ending(IntEnum):
     SLIP = 4  #: rolling needed more friction than mu N
     PAINLEVE = 6  #: no contact force, or more than one, obeys the law of friction
     STOPS = 7  #: with losses: the contact point stops; the body may still spin about the vertical
+    LANDING = 9  #: a landing on both rims has no outcome, or more than one, that obeys the law of friction
     BOUNDED = 8  #: given up: it slips and rolls by turns too often, or hardly advances; the result ends there
 
     def __str__(self) -> str:
@@ -32,6 +33,7 @@ MESSAGES = {
     Ending.PAINLEVE: ("no unique contact force (Painleve)", "jams"),
     Ending.STOPS: ("the contact point stops", "rolls no more"),
     Ending.BOUNDED: ("the motion was given up", "goes on"),
+    Ending.LANDING: ("no unique landing on both rims", "lands on both rims"),
 }
 
 

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from spincyl._contact import named
 from spincyl._input.numbers import extra
-from spincyl._phases import told
+from spincyl._phases import KINDS, told
 from spincyl._scale import unit
 
 if TYPE_CHECKING:
@@ -22,6 +22,7 @@ AXES: Components = {
     "contact_force": ("space", ["x", "y", "z"], ["force_x", "force_y", "force_z"]),
     "orientation": ("quaternion", ["x", "y", "z", "w"], [f"orientation_{axis}" for axis in "xyzw"]),
     "slip": ("direction", ["along the lean", "across"], ["slip_along", "slip_across"]),
+    "slip_other": ("direction", ["along the lean", "across"], ["slip_other_along", "slip_other_across"]),
 }
 
 
@@ -81,6 +82,7 @@ def labelled(m: "Motion") -> "xarray.Dataset":
         attrs["losses"] = repr(m.losses)
     if m._phases is not None:
         attrs["phases"] = told(m._phases, "" if m.scale is None else " s")
-        data["phase"][2].update(flag_values=[0, 1], flag_meanings="rolling slipping")
+        words = [kind.replace(" ", "_") for kind in KINDS]
+        data["phase"][2].update(flag_values=list(range(len(words))), flag_meanings=" ".join(words))
     found: xarray.Dataset = lib.Dataset(data, coords, attrs)
     return found

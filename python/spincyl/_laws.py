@@ -202,8 +202,13 @@ class Laws:
             return _core.energy_smooth(*gripping(state, why), *self._numbers)
         four = numbers(state)
         if state.slip is None:
-            return _core.energy(*four, *self._numbers)
-        return _core.energy_slip(*four, *state._slip, *self._numbers)
+            energy = _core.energy(*four, *self._numbers)
+        else:
+            energy = _core.energy_slip(*four, *state._slip, *self._numbers)
+        if state.height is None:
+            return energy
+        rise = _core.centre_up(*four, 0.0, 0.0, *self._numbers)
+        return energy + state.height + state.lift * (rise + 0.5 * state.lift)
 
     @elementwise
     def centre_velocity(self, state: State) -> tuple[Result, Result]:

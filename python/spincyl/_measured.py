@@ -190,11 +190,21 @@ def in_si(m: "Motion", body: Body, seconds: Floats, step: float | None) -> "Moti
         "event": event,
         "_asked": asked._replace(times=seconds, t0=asked.t0 * second, step=step),
         "_phases": m._phases and tuple(phase._replace(time=phase.time * second) for phase in m._phases),
+        "_impacts": m._impacts and tuple(_struck(impact, scale) for impact in m._impacts),
         "_natural": m,
     }
     same: Motion = object.__new__(type(m))
     object.__setattr__(same, "__dict__", found)
     return same
+
+
+def _struck(impact: Any, scale: Scale) -> Any:
+    """An impact in SI, as far as the mass is known."""
+    metre, second, joule, _ = scale._units
+    if not scale._is_weighed:
+        return impact._replace(time=impact.time * second)
+    push = tuple(p * (joule * second / metre) for p in impact.impulse)
+    return impact._replace(time=impact.time * second, impulse=push, lost=impact.lost * joule)
 
 
 def told(name: str, values: Any, scale: Scale | None) -> Any:

@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 from spincyl import _core
 from spincyl._asked import Asked, Want, chosen, crossing, times_of
 from spincyl._body import Body
-from spincyl._contact import AnyContact, named
+from spincyl._contact import AnyContact, Coulomb, named
 from spincyl._ending import Ending, Event
 from spincyl._input.equality import compared
 from spincyl._input.numbers import Floats, Reals, si
 from spincyl._labelled import AXES, Components, frame, labelled
 from spincyl._measured import in_si, natural_time, speaking, told
-from spincyl._phases import Phase, phases, slipping
+from spincyl._phases import Impact, Phase, impacts, phases, slipping
 from spincyl._scale import Scale
 from spincyl._state import State
 from spincyl._swing import single, single_slip
@@ -43,6 +43,7 @@ _Four: TypeAlias = tuple[float, float, float, float]
 _LACKS = "{{}} was not asked for: roll(..., want={}), or m.wanting of the same"
 _POSE, _FORCE, _BOTH = (_LACKS.format(want) for want in ('"pose"', '"force"', '("pose", "force")'))
 FRICTION = "{} is not there: the contact is {!r}; roll(..., contact=sc.Coulomb(mu)) has it"
+_ALOFT = "{} is not there: the motion ends where it leaves the table; roll(..., restitution=0.0) goes on"
 _LOSSES = "{} is not there: nothing is lost; roll(..., losses=sc.loss.DryContour(eps)) has it"
 
 
@@ -128,6 +129,7 @@ class Motion:
     _setting: float
     _extra: dict[str, Any]
     _phases: tuple[Phase, ...] | None = None
+    _impacts: tuple[Impact, ...] | None = None
     _natural: "Motion | None" = None  # for a motion in SI: the same in natural units
     _axes: ClassVar[Components] = AXES
 
@@ -153,12 +155,17 @@ class Motion:
             return self._natural.states
         slip = self._extra.get("slip")
         pair = None if slip is None else (slip[:, 0], slip[:, 1])
-        return State(self.theta, *(self.w[:, i] for i in range(3)), slip=pair)
+        aloft = {name: self._extra.get(name) for name in ("height", "lift")}
+        return State(self.theta, *(self.w[:, i] for i in range(3)), slip=pair, **aloft)
 
     @property
     def energy(self) -> Floats:
-        """(n,) kinetic and potential energy, in M g R; with `dissipated` and `work_lost` it is constant."""
-        energy: Floats = self.body.energy(self.states, self.contact)
+        """(n,) kinetic and potential energy, in M g R.
+
+        Together with `dissipated`, `lost_in_impacts` and `work_lost` it is constant.
+        """
+        free = self.contact == "smooth" and self._phases is not None
+        energy: Floats = self.body.energy(self.states, Coulomb(0.0) if free else self.contact)
         return self._told("energy", energy)
 
     @property
@@ -229,10 +236,43 @@ class Motion:
     dissipated = Number(
         FRICTION, "(n,) heat since the start, in M g R (measured: J). Needs a law of friction."
     )
-    phase = Number(FRICTION, "(n,) 1 while it slips, 0 while it rolls. Needs a law of friction.")
+    phase = Number(
+        FRICTION,
+        """(n,) code of what it does: its place in `spincyl.KINDS`. Needs a law of friction, or `restitution=`.
+
+        0 it rolls, 1 slips, 2 flies; on both rims 3 it lies and slips, 4 pivots, 5 rolls on its side.
+        """,
+    )
+    height = Number(
+        _ALOFT, "(n,) height of the lowest point of its rim, in R (measured: m). Needs `restitution=`."
+    )
+    lift = Number(
+        _ALOFT, "(n,) how fast that point rises, in sqrt(g R) (measured: m/s). Needs `restitution=`."
+    )
+    slip_other = Number(
+        _ALOFT, "(n, 2) `slip` of the other rim; NaN unless it lies on both. Needs `restitution=`."
+    )
+    normal_other = Number(_ALOFT, '(n,) `normal` of the other rim. Needs `restitution=` and want="force".')
+    friction_other = Number(
+        _ALOFT, '(n,) `friction` of the other rim. Needs `restitution=` and want="force".'
+    )
     work_lost = Number(
         _LOSSES, "(n,) what the losses have taken since the start, in M g R (measured: J). Needs `losses=`."
     )
+
+    @property
+    def impacts(self) -> tuple[Impact, ...]:
+        """Every impact of a rim on the table. Needs `restitution=`."""
+        if self._impacts is None:
+            raise AttributeError(_ALOFT.format("impacts", ""))
+        return self._impacts
+
+    @property
+    def lost_in_impacts(self) -> Floats:
+        """(n,) energy lost in impacts since the start, in M g R (measured: J). Needs `restitution=`."""
+        of = self.natural.impacts
+        times, lost = np.array([x.time for x in of]), np.array([0.0, *(x.lost for x in of)])
+        return self._told("energy", np.cumsum(lost)[np.searchsorted(times, self.natural.t)])
 
     @property
     def phases(self) -> tuple[Phase, ...]:
@@ -388,7 +428,10 @@ def rolled(body: Body, state: State, asked: Asked, numbers: tuple[_Six, _Four] |
     """Compute a motion without warnings; `numbers` are those of body and state, if known."""
     of, start = numbers or single(body, state)
     slip = None if state.slip is None else single_slip(state)
-    found = _core.roll(of, start, asked.times, crossing(asked, slip))
+    options = crossing(asked, slip)
+    if state.height is not None:
+        options["aloft"] = [float(state.height), float(state.lift)]  # type: ignore[arg-type]  # single numbers
+    found = _core.roll(of, start, asked.times, options)
     status = ENDINGS[found["status"]]
     event = None
     if "event" in found:
@@ -403,6 +446,7 @@ def rolled(body: Body, state: State, asked: Asked, numbers: tuple[_Six, _Four] |
         "event": event,
         "_asked": asked,
         "_phases": phases(found.pop("phases")) if "phases" in found else None,
+        "_impacts": impacts(found.pop("_impacts")) if asked.restitution is not None else None,
     }
     m = object.__new__(Motion)
     object.__setattr__(m, "__dict__", found)

@@ -1,4 +1,4 @@
-"""Phases of a motion with friction: slipping, then rolling, and perhaps slipping again."""
+"""Phases of a motion with friction or restitution, and its impacts: slipping, rolling, flying, lying."""
 
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Literal, NamedTuple, TypeAlias
@@ -7,22 +7,52 @@ import numpy as np
 
 from spincyl._contact import AnyContact, Coulomb, Viscous
 from spincyl._input.numbers import number
-from spincyl._state import State, gripping
+from spincyl._state import State, gripping, landed
 
-Kind: TypeAlias = Literal["rolling", "slipping"]
+Kind: TypeAlias = Literal["rolling", "slipping", "flying", "lying", "pivoting", "rolling on its side"]
 #: Kind of phase for each code in `Motion.phase`.
-KINDS: tuple[Kind, ...] = ("rolling", "slipping")
+KINDS: tuple[Kind, ...] = ("rolling", "slipping", "flying", "lying", "pivoting", "rolling on its side")
+Hit: TypeAlias = Literal["slips", "sticks", "slips on", "smooth"]
+#: What the contact point does in an impact, for each code of the core.
+HITS: tuple[Hit, ...] = ("slips", "sticks", "slips on", "smooth")
 
 
 class Phase(NamedTuple):
     """A part of a motion in which the body does one thing, told by its begin."""
 
     time: float  #: when it begins
-    kind: Kind  #: "slipping" or "rolling"
+    kind: Kind  #: "slipping", "rolling", "flying"; on both rims "lying", "pivoting", "rolling on its side"
     state: State  #: where it begins, with the slip
 
     def __repr__(self) -> str:
         return f"({self.time:.12g}, {self.kind!r})"
+
+
+class Impact(NamedTuple):
+    """An impact of a rim on the table. Of a measured body, time, impulse and energy are in SI."""
+
+    time: float
+    rim: Literal["first", "other"]  #: the rim from which the start was told, or the other one
+    kind: Hit  #: whether the contact point slips to the end, sticks, stops and slips on, or has no friction
+    impulse: tuple[float, float, float]  #: along the lean, across it, upwards, in M sqrt(g R)
+    lost: float  #: energy, in M g R
+    before: State  #: as seen from the rim that lands, with its slip, and `lift` < 0
+    after: State
+    stays: bool  #: whether it is the last of a sequence of bounces, which are over within a moment
+
+
+def impacts(found: Iterable[tuple[Any, ...]]) -> tuple[Impact, ...]:
+    """Impacts from the numbers of the core."""
+
+    def state(four: Sequence[float], u: Sequence[float]) -> State:
+        return State(*four, slip=(u[0], u[1]), height=0.0, lift=u[2])
+
+    return tuple(
+        Impact(
+            time, "other" if other else "first", HITS[hit], tuple(push), lost, *map(state, states, u), stays
+        )
+        for time, other, hit, states, u, push, lost, stays in found
+    )
 
 
 def rubs(contact: object) -> bool:
@@ -35,18 +65,20 @@ def check(state: State, contact: AnyContact, restitution: object, settings: dict
 
     `settings` are the settings of rolling that were given, by name.
     """
+    if restitution is None:
+        landed(state, "give restitution=0.0, or how much of its velocity an impact gives back")
+    elif not 0 <= number("restitution", restitution) <= 1:
+        raise ValueError(f"restitution = {restitution!r}: expected None, or 0 <= restitution <= 1")
     if not isinstance(contact, Coulomb | Viscous):
-        gripping(state, f"contact={contact!r} has no law for that; give contact=sc.Coulomb(mu)")
-        if restitution is not None:
-            raise ValueError(f"restitution = {restitution!r}: goes with contact=sc.Coulomb(mu) alone")
+        if restitution is None or state.height is None:
+            gripping(state, f"contact={contact!r} has no law for that; give contact=sc.Coulomb(mu)")
+        if restitution is None:
+            return
+        for name in filter(settings.__contains__, ("step", "method", "beyond")):
+            raise ValueError(f"{name} = {settings[name]!r} does not go with restitution=: {_WHY[name]}")
         return
     for name, value in settings.items():
         raise ValueError(f"{name} = {value!r} does not go with contact={contact!r}: {_WHY[name]}")
-    if restitution is not None and number("restitution", restitution) != 0:
-        raise ValueError(
-            f"restitution = {restitution!r}: expected None (the motion ends where the other rim lands)"
-            " or 0.0 (it lands without a bounce)"
-        )
 
 
 _WHY = {
@@ -79,13 +111,17 @@ def told(phases: Sequence[Phase], unit: str = "") -> str:
 
 def how_found(phases: Sequence[Phase], within: float) -> str:
     """The methods that computed the phases, in words."""
-    how = {"slipping": f"slip found by steps within {within:g}", "rolling": "rolling by first integrals"}
-    kinds = {phase.kind for phase in phases}
+    how = {
+        "slipping": f"slip found by steps within {within:g}",
+        "rolling": "rolling by first integrals",
+        "flying": "flight in closed form",
+    }
+    kinds = {"slipping" if phase.kind in ("lying", "pivoting") else phase.kind for phase in phases}
     return ", ".join(text for kind, text in how.items() if kind in kinds)
 
 
 def duration(phases: Sequence[Phase], end: float) -> float:
     """Total time of slipping up to the time `end`."""
     begins = np.array([phase.time for phase in phases] + [end])
-    slips = np.array([phase.kind == "slipping" for phase in phases], bool)
+    slips = np.array([phase.kind in ("slipping", "lying", "pivoting") for phase in phases], bool)
     return float(np.abs(np.diff(begins))[slips].sum())

@@ -31,6 +31,11 @@ UNITS = {
     "slip": "sqrt(g R)",
     "dissipated": "M g R",
     "work_lost": "M g R",
+    "height": "R",
+    "lift": "sqrt(g R)",
+    "slip_other": "sqrt(g R)",
+    "normal_other": "M g",
+    "friction_other": "M g",
 }
 _WEIGHED = ("J", "N")
 _LENGTHS = 1e-4, 5.0  # metres

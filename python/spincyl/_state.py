@@ -47,6 +47,9 @@ class State:
         Velocity of the body's lowest point over the table, in sqrt(g R): along e_h, the horizontal
         direction of the lean, cos(theta) e1 - sin(theta) e3, and across it, along e2. Default: none, the
         body rolls. `Body.with_centre_velocity` gives the slip of a moving centre.
+    height, lift : array_like, optional
+        Of a body in the air: how high the lowest point of its rim is over the table, in R, and how fast that
+        point rises, in sqrt(g R). One of them alone: the other is 0. `dropped` makes such states.
 
     Raises
     ------
@@ -59,6 +62,8 @@ class State:
     w2: Reals
     w3: Reals
     slip: tuple[Reals, Reals] | None = field(default=None, kw_only=True)
+    height: Reals | None = field(default=None, kw_only=True)
+    lift: Reals | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "theta", kept(radians("theta", self.theta, "0 < theta <= pi")))
@@ -66,6 +71,10 @@ class State:
             object.__setattr__(self, name, kept(reals(name, getattr(self, name))))
         if not is_scalar(*self._numbers):
             fitting(dict(zip(("theta", "w1", "w2", "w3"), self._numbers, strict=True)))
+        if self.height is not None or self.lift is not None:
+            for name in ("height", "lift"):
+                value = getattr(self, name)
+                object.__setattr__(self, name, kept(reals(name, 0.0 if value is None else value)))
         if self.slip is None:
             return
         pair = isinstance(self.slip, tuple | list) or (isinstance(self.slip, np.ndarray) and self.slip.ndim)
@@ -144,7 +153,8 @@ class State:
 
     def __repr__(self) -> str:
         four = {"theta": self.theta, "w1": self.w1, "w2": self.w2, "w3": self.w3}
-        return call("State", **four, **({} if self.slip is None else {"slip": self.slip}))
+        more = {name: getattr(self, name) for name in ("slip", "height", "lift")}
+        return call("State", **four, **{name: x for name, x in more.items() if x is not None})
 
     def _repr_html_(self) -> str:
         return str(above("card")(self))
@@ -168,9 +178,17 @@ def numbers(state: object) -> tuple[Reals, Reals, Reals, Reals]:
     return made("state", state, State)._numbers
 
 
+def landed(state: State, remedy: str) -> None:
+    """Refuse a state in the air, with a remedy."""
+    if state.height is not None:
+        raise ValueError(f"state: in the air, height = {text(state.height)}: {remedy}")
+
+
 def gripping(state: object, why: str) -> tuple[Reals, Reals, Reals, Reals]:
     """The four numbers of a state without slip, or ValueError with the remedy `why`."""
     found = numbers(state)
     if isinstance(state, State) and state._slips:
         raise ValueError(f"state: slips, slip = {text(state._slip)}: {why}")
+    if isinstance(state, State):
+        landed(state, "this is a number of a body on the table")
     return found

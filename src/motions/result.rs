@@ -178,7 +178,7 @@ pub struct Phase<S = State> {
 pub struct Strike {
     /// The time of the impact.
     pub time: f64,
-    /// Whether the body landed on another rim than the one that was down before.
+    /// Whether the rim that lands is another one than that from which the start was told.
     pub other: bool,
     /// What the contact point does in the impact.
     pub hit: Hit,

@@ -233,6 +233,11 @@ static LAWS: &[ArrayFunction] = &[
         value: Value::One(|x| of_slip(x, centre_velocity)[1]),
     },
     ArrayFunction {
+        name: "centre_up",
+        inputs: 12,
+        value: Value::One(|x| of_body(&x[6..], |b| slip::centre_rise(b, &state_of(x)))),
+    },
+    ArrayFunction {
         name: "rests",
         inputs: 10,
         value: Value::One(|x| of_state(x, |y, b| f64::from(u8::from(steady::rests(b, y))))),

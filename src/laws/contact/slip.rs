@@ -305,6 +305,11 @@ pub fn centre_velocity(body: &Body, y: &State, slip: [f64; 2]) -> [f64; 2] {
     Slipping::of(&body.shape(), 1.0, true).centre(y.theta.sin_cos(), [y.w1, y.w2, y.w3], slip)
 }
 
+/// Vertical velocity of the centre of a body whose lowest point stays on the table.
+pub fn centre_rise(body: &Body, y: &State) -> f64 {
+    body.shape().rim.lever(y.theta.sin_cos()) * y.w2
+}
+
 /// Kinetic and potential energy of a body that slips with u = (along the lean, across), in M g R.
 pub fn energy(body: &Body, y: &State, slip: [f64; 2]) -> f64 {
     Slipping::of(&body.shape(), 1.0, true).energy(y, slip)

@@ -162,12 +162,12 @@ impl<const N: usize> BodyWalk<'_, N> {
         let high = flight.doubt_of_height(t);
         self.claims(flight.doubt(t, &at) + (high / self.of.takeoff.lift.abs()).min(high.sqrt()));
         self.of.takeoff.height = 0.0;
-        let next = self.strikes(upper);
+        let next = self.strikes();
         self.continues_with(next);
     }
 
-    /// The next phase after a landing, of another rim than before if `other`.
-    fn strikes(&mut self, other: bool) -> Next {
+    /// The next phase after a landing.
+    fn strikes(&mut self) -> Next {
         let (e, from) = (self.ask.restitution.unwrap_or(0.0), self.aloft());
         if from.angle.0 < FLAT && self.of.body.rim() > 0.0 {
             return Next::Ends(Ending::Face);
@@ -187,7 +187,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         if stays && let Some(last) = self.impact(&from, 0.0) {
             struck = last;
         }
-        let after = self.struck(&from, &struck, (other, stays));
+        let after = self.struck(&from, &struck, (self.made.path.upside_down, stays));
         self.sets(&after);
         let level = from.angle.1.abs().max(after.lift).max(after.from_other_rim(&shape).lift.abs());
         if self.has_two_rims() && e > 0.0 && level < RATTLED {
@@ -258,7 +258,7 @@ impl<const N: usize> BodyWalk<'_, N> {
                 (at, other) = (there, !other);
             }
             let Some(struck) = self.impact(&at, e) else { return Next::Ends(Ending::Slip) };
-            at = self.struck(&at, &struck, (other, false));
+            at = self.struck(&at, &struck, (other != self.made.path.upside_down, false));
         }
         let there = at.from_other_rim(&shape);
         if there.lift < at.lift {
@@ -337,7 +337,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         let pose = poses(N).then(|| at.pose());
         self.made.put(at.state(), at.slip, self.at[8], Kind::Flying, pose, force);
         if let Some(last) = self.made.path.aloft.last_mut() {
-            *last = [at.height, at.lift];
+            *last = [at.height.max(0.0), at.lift];
         }
         if loses(N) {
             self.made.path.work_lost.push(self.at[N - 1]);

@@ -111,7 +111,7 @@ fn check(body: &Body, start: &Start, ask: &Ask) -> Result<f64, Error> {
             within("height", if other < -1e-15 { -height } else { height }, (0.0, 1e6), "both rims above the table")?;
         }
     }
-    if ask.table.rubs() { Ok(fine) } else { without_slip(start.slip).map(|()| fine) }
+    if ask.table.rubs() || start.aloft.is_some() { Ok(fine) } else { without_slip(start.slip).map(|()| fine) }
 }
 
 /// Refuses a slip on a table without a law of friction.

@@ -85,8 +85,10 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
         if ask.table == Table::Smooth && ask.restitution.is_some() {
             // On a smooth table the centre stands still until an impact; the body then slips without friction.
             ask.table = Friction::coulomb(0.0).into();
-            let [v_h, v_2] = centre_velocity(body, &start, [0.0; 2]);
-            slip = [0.0 - v_h, 0.0 - v_2];
+            if aloft.is_none() {
+                let [v_h, v_2] = centre_velocity(body, &start, [0.0; 2]);
+                slip = [0.0 - v_h, 0.0 - v_2];
+            }
         }
         let ask = &ask;
         let (s, c) = start.theta.sin_cos();

@@ -173,7 +173,8 @@ impl Flight {
             (self.a + self.b).sin() - 2.0 * swing * half.cos() * half.cos()
         };
         let per = self.transverse / s.max(f64::MIN_POSITIVE);
-        [if self.planar { 0.0 } else { along * per }, -(self.a.sin() * sin * per)]
+        // The sum turns -0 into 0.
+        [if self.planar { 0.0 } else { along * per } + 0.0, 0.0 - self.a.sin() * sin * per]
     }
 
     /// The body at a time since the start, as seen from the same rim.
