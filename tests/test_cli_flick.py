@@ -168,7 +168,7 @@ def test_a_tube_that_is_flicked_too_gently_stays_on_its_side_and_it_is_said(caps
         ([*PIPE, "--impulse", "40mNs", "--angle", "1"], "--impulse in newton seconds needs --mass and --radius"),
         ([*PIPE[:-1], "-0.3", "--w1", "3", "--launch-number", "1.3"], "mu = -0.3: expected 0 <= mu"),
         ([*FLICK, "--static", "0.2"], "static = 0.2: expected at least mu = 0.3"),
-        ([*FLICK, "--restitution", "0.5"], "restitution = 0.5: expected None"),
+        ([*FLICK, "--restitution", "1.5"], "restitution = 1.5: expected None"),
         ([*FLICK, "--tol", "0"], "tol = 0.0: expected 1e-14 <= tol <= 0.1"),
         ([*FLICK, "--points", "1"], "--points 1: expected at least 2"),
         ([*FLICK, "--inner", "1mm"], "give either --inner or --bore, not both"),

@@ -69,7 +69,7 @@ def rolled(start="disk", losses=DRY, t=T, **how):
         ({"tol": 0.5}, ValueError, "tol"),
         ({"mu": -1.0}, ValueError, "mu"),
         ({"mu": math.nan}, ValueError, "mu"),
-        ({"restitution": 0.0}, ValueError, "^restitution = 0.0: goes with contact=sc.Coulomb"),
+        ({"restitution": -0.1}, ValueError, "^restitution = -0.1: expected None, or 0 <= restitution <= 1"),
         ({"contact": sc.Coulomb(0.3), "mu": 0.3}, ValueError, "^mu = 0.3 does not go with contact"),
         ({"contact": sc.Coulomb(0.3), "beyond": True}, ValueError, "^beyond = True does not go with"),
         ({"contact": "sticky"}, ValueError, "^contact = 'sticky'"),

@@ -40,7 +40,9 @@ class Asked(NamedTuple):
     spread: bool = False  # whether many motions return their states at all times
 
 
-def crossing(asked: Asked, slip: Sequence[float] | None = None) -> dict[str, Any]:
+def crossing(
+    asked: Asked, slip: Sequence[float] | None = None, aloft: Sequence[float] | None = None
+) -> dict[str, Any]:
     """The options of one motion or of many as keyword arguments of the core.
 
     Defaults are left out: passing them would take longer than a short motion may.
@@ -57,6 +59,8 @@ def crossing(asked: Asked, slip: Sequence[float] | None = None) -> dict[str, Any
         options["beyond"] = True
     if slip is not None:
         options["slip"] = slip
+    if aloft is not None:
+        options["aloft"] = aloft
     if losses is not None:
         options["losses"] = losses._coefficients
     if restitution is not None:

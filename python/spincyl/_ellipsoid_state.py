@@ -1,6 +1,7 @@
 """The state of a stone: its vertical, its angular velocity and its slip, or arrays of them."""
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -63,6 +64,7 @@ class EllipsoidState:
     vertical: Reals
     w: Reals
     slip: Reals | None = None
+    height: ClassVar[None] = None  # a stone does not start in the air
 
     def __post_init__(self) -> None:
         for name, width in (("vertical", 3), ("w", 3), ("slip", 2)):

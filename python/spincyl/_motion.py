@@ -21,7 +21,7 @@ from spincyl._measured import in_si, natural_time, speaking, told
 from spincyl._phases import Impact, Phase, impacts, phases, slipping
 from spincyl._scale import Scale
 from spincyl._state import State
-from spincyl._swing import single, single_slip
+from spincyl._swing import single, single_aloft, single_slip
 from spincyl._told import message
 from spincyl._upward import above
 
@@ -238,7 +238,7 @@ class Motion:
     )
     phase = Number(
         FRICTION,
-        """(n,) code of what it does: its place in `spincyl.KINDS`. Needs a law of friction, or `restitution=`.
+        """(n,) code of what it does: its place in the list below. Needs a law of friction or `restitution=`.
 
         0 it rolls, 1 slips, 2 flies; on both rims 3 it lies and slips, 4 pivots, 5 rolls on its side.
         """,
@@ -428,10 +428,7 @@ def rolled(body: Body, state: State, asked: Asked, numbers: tuple[_Six, _Four] |
     """Compute a motion without warnings; `numbers` are those of body and state, if known."""
     of, start = numbers or single(body, state)
     slip = None if state.slip is None else single_slip(state)
-    options = crossing(asked, slip)
-    if state.height is not None:
-        options["aloft"] = [float(state.height), float(state.lift)]  # type: ignore[arg-type]  # single numbers
-    found = _core.roll(of, start, asked.times, options)
+    found = _core.roll(of, start, asked.times, crossing(asked, slip, single_aloft(state)))
     status = ENDINGS[found["status"]]
     event = None
     if "event" in found:

@@ -108,3 +108,12 @@ def single_slip(state: State) -> tuple[float, float]:
     if not is_scalar(along, across):
         raise ValueError("state: expected a single one, not an array of them")
     return float(along), float(across)
+
+
+def single_aloft(state: State) -> tuple[float, float] | None:
+    """Height and lift of a single state in the air; None on the table."""
+    if state.height is None:
+        return None
+    if not is_scalar(state.height, state.lift):
+        raise ValueError("state: expected a single one, not an array of them")
+    return float(state.height), float(state.lift)  # type: ignore[arg-type]  # both are set together

@@ -80,7 +80,12 @@ impl Limits {
             Ending::Side => self.side(y),
             Ending::LiftOff => self.plain_grip_of(y)[0],
             Ending::Slip => self.plain_grip_of(y)[1],
-            Ending::Done | Ending::Face | Ending::Painleve | Ending::Stops | Ending::Bounded | Ending::Landing => 1.0,
+            Ending::Done
+            | Ending::Face
+            | Ending::Painleve
+            | Ending::Stops
+            | Ending::Bounded
+            | Ending::Landing => 1.0,
         }
     }
 

@@ -156,7 +156,7 @@ coded! {
         /// The body lies on both rims, and one of them sticks.
         Pivoting = 4,
         /// The body lies on both rims, and rolls straight on.
-        RollingOnSide = 5,
+        RollingOnItsSide = 5,
     }
 }
 

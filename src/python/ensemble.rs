@@ -34,11 +34,12 @@ pub fn columns() -> Vec<[&'static str; 3]> {
     Summary::ALL.into_iter().map(Summary::label).chain(LABELS).collect()
 }
 
-/// The names of the summaries of motions on a table of this kind, with losses or without.
+/// The names of the summaries of motions on a table of this kind, with losses or without, and with restitution or
+/// without.
 #[pyfunction]
-pub fn summaries(table: u8, loses: bool) -> PyResult<Vec<&'static str>> {
+pub fn summaries(table: u8, loses: bool, flies: bool) -> PyResult<Vec<&'static str>> {
     let rubs = table_of(table)?.rubs();
-    let of = Summary::ALL.into_iter().filter(|summary| summary.is_of(rubs, loses));
+    let of = Summary::ALL.into_iter().filter(|summary| summary.is_of(rubs, loses, flies));
     Ok(of.map(|summary| summary.label()[0]).collect())
 }
 
@@ -63,6 +64,7 @@ pub fn ensemble<'py>(
         slips: given.some(SLIP)?,
         coefficients: given.some(TABLE)?,
         losses: given.some::<COUNT>(Law::ALL.map(Law::parameter))?,
+        aloft: given.some(["height", "lift"])?,
     };
     let table = table_of(asked.table)?;
     let job = Job {

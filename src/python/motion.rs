@@ -139,7 +139,9 @@ fn columns<S: Told>(
         rows.add("slip_other", 2, &|i, to| to.extend(&path.other_rim[i][..2]))?;
         if m.forces.is_some() {
             rows.add("normal_other", 0, &|i, to| to.push(path.other_rim[i][2]))?;
-            rows.add("friction_other", 0, &|i, to| to.push(path.other_rim[i][3].hypot(path.other_rim[i][4])))?;
+            rows.add("friction_other", 0, &|i, to| {
+                to.push(path.other_rim[i][3].hypot(path.other_rim[i][4]))
+            })?;
         }
     }
     if let Some(path) = &m.path

@@ -1,4 +1,4 @@
-"""Many flicks of a tube: which settle on one rim, which lie down again, and which lift off."""
+"""Many flicks of a tube: which settle on one rim, which lie down again, and which hop before."""
 
 from enum import IntEnum
 from typing import TYPE_CHECKING, Any
@@ -8,6 +8,7 @@ import numpy as np
 from spincyl._body import Body, one_body
 from spincyl._contact import AnyContact, Coulomb, Viscous
 from spincyl._input.numbers import Reals, extra, floats, is_scalar, made, reals
+from spincyl._phases import KINDS
 from spincyl._throw import flicked
 from spincyl.sweep._labels import Status, flags
 from spincyl.sweep._roll import roll
@@ -19,14 +20,18 @@ if TYPE_CHECKING:
 class Outcome(IntEnum):
     """What a flick comes to.
 
-    `SETTLES`: it goes on to the last time asked for, round on one rim. `LIES_DOWN`: its other rim lands, or
-    does not rise. `LIFTS_OFF`: the normal force vanishes, and it hops. `NONE` of these: `status` says what.
+    `SETTLES`: at the last time it goes round on one rim. `LIES_DOWN`: its other rim lands, or does not rise;
+    with a `restitution` it then lies on its side. `LIFTS_OFF`: the normal force vanishes, and it hops; with a
+    `restitution` the hop is followed, and the outcome says what it comes to. `NONE` of these: `status` says
+    what.
     """
 
     NONE = 0  #: none of these: `status` says what
     SETTLES = 1  #: it goes on to the last time asked for
     LIES_DOWN = 2  #: its other rim lands, or does not rise
-    LIFTS_OFF = 3  #: the normal force vanishes: it hops
+    LIFTS_OFF = 3  #: the normal force vanishes: it hops, and at the last time it is still in the air
+    HOPS_AND_SETTLES = 4  #: it hops, and then goes round on one rim
+    HOPS_AND_LIES = 5  #: it hops, and then lies on its side
 
 
 _OUTCOMES = np.zeros(len(Status), np.uint8)
@@ -35,6 +40,33 @@ _OUTCOMES[[Status.DONE, Status.SIDE, Status.LIFT_OFF]] = (
     Outcome.LIES_DOWN,
     Outcome.LIFTS_OFF,
 )
+#: Outcome of a motion that goes on, by its last phase, without an impact and with one.
+_ON_RIM, _ON_SIDE = KINDS[:2], KINDS[3:]
+_GOES_ON = np.array(
+    [
+        [
+            Outcome.SETTLES
+            if kind in _ON_RIM
+            else Outcome.LIES_DOWN
+            if kind in _ON_SIDE
+            else Outcome.LIFTS_OFF,
+            Outcome.HOPS_AND_SETTLES
+            if kind in _ON_RIM
+            else Outcome.HOPS_AND_LIES
+            if kind in _ON_SIDE
+            else Outcome.LIFTS_OFF,
+        ]
+        for kind in KINDS
+    ],
+    np.uint8,
+)
+
+
+def _outcome(status: Any, last: Any, impacts: Any) -> Any:
+    """What motions with a restitution come to."""
+    known = np.isfinite(last) & np.isin(status, (Status.DONE, Status.STOPS))
+    found = _GOES_ON[np.where(known, last, 0).astype(int), (impacts > 0).astype(int)]
+    return np.where(known, found, Outcome.NONE).astype(np.uint8)
 
 
 def flicks(
@@ -64,7 +96,8 @@ def flicks(
     contact : Coulomb or Viscous
         Of numbers, or labelled arrays of them.
     **how
-        `want=` (default "end" and "rolling_time") and the others of `roll`.
+        `want=` (default "end" and "rolling_time") and the others of `roll`. With ``restitution=`` every flick
+        is followed through its hops, and lying down, to the last time.
 
     Returns
     -------
@@ -93,13 +126,18 @@ def flicks(
     given = {"w1": w1, "hertz": hertz, "launch": launch, "spin_hertz": spin_hertz, "centre": centre}
     axes = {name: x for name, x in given.items() if x is not None}
     start = flicked(body, **{name: _axis(lib, name, x) for name, x in axes.items()})
-    found: xarray.Dataset = roll(body, start, t, contact=contact, **{"want": ("end", "rolling_time")} | how)
+    how = {"want": ("end", "rolling_time")} | how
+    on = how.get("restitution") is not None
+    if on:
+        named = [how["want"]] if isinstance(how["want"], str) else list(how["want"])
+        how["want"] = tuple(dict.fromkeys((*named, "last_phase", "impacts")))
+    found: xarray.Dataset = roll(body, start, t, contact=contact, **how)
     for name, unit in (("precession", "sqrt(g/R)"), ("hertz", "Hz"), ("launch", "1"), ("spin_hertz", "Hz")):
         if name in found.coords:
             found[name].attrs["units"] = unit
-    found["outcome"] = lib.apply_ufunc(
-        _OUTCOMES.__getitem__, found["status"], dask="parallelized", output_dtypes=[np.uint8]
-    )
+    of = [found[name] for name in (("status", "last_phase", "impacts") if on else ("status",))]
+    told = _outcome if on else _OUTCOMES.__getitem__
+    found["outcome"] = lib.apply_ufunc(told, *of, dask="parallelized", output_dtypes=[np.uint8])
     found["outcome"].attrs = {"long_name": "what it comes to", **flags(Outcome)}
     return found
 

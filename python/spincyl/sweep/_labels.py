@@ -21,6 +21,7 @@ class Status(IntEnum):
     INVALID = 5  #: no such body, state or table, or a step too large for it: NaN
     PAINLEVE = 6  #: no contact force, or more than one, obeys the law of friction
     STOPS = 7  #: with losses: the contact point stops, the body rolls no more
+    LANDING = 9  #: a landing on both rims has no outcome, or more than one, that obeys the law of friction
     BOUNDED = 8  #: given up, NaN: 600,000 steps that hardly advance, many phases, or 8 million evaluations
 
 

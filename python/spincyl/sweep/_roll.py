@@ -30,7 +30,7 @@ from spincyl._loss import Loss, made_law
 from spincyl._measured import natural_time, speaking
 from spincyl._phases import rubs
 from spincyl._roll import is_stone
-from spincyl._state import State, gripping
+from spincyl._state import State, gripping, landed
 from spincyl.sweep._labels import flags, given_up
 from spincyl.sweep._swept import Question, swept
 
@@ -111,9 +111,10 @@ def roll(
     beyond : bool
         Whether to leave out the watch for the ends that the equations of motion can pass: the other rim
         lands, lift-off, slip. Cheaper, and no longer the motion of a body after that.
-    restitution : None or 0.0
-        With friction: None ends a motion where the other rim lands; with 0.0 it lands without a bounce, and
-        the motion goes on.
+    restitution : float, optional
+        Of impacts, 0 to 1, as of `spincyl.roll`. Default: a motion ends where the body leaves the table or
+        its other rim lands. With it there are also "impacts" and "landings" (how many), "air_time",
+        "lost_in_impacts" (M g R) and "last_phase" (`Motion.phase`).
     stop_at : {"rolling"}, optional
         With friction: end where the contact point first comes to rest for good and the body rolls. What it
         does then costs nothing.
@@ -199,14 +200,17 @@ def roll(
     asked = Asked(at, step=step, contact=contact, beyond=flag("beyond", beyond), mu=number("mu", mu))
     asked = _checked(asked._replace(restitution=restitution, stop_at=stop_at), losses)
     asked = asked._replace(tol=number("tol", tol))
-    if not rubs(contact):
+    if restitution is None:
+        landed(states, "give restitution=0.0, or how much of its velocity an impact gives back")
+    if not rubs(contact) and (restitution is None or states.height is None):
         gripping(states, f"contact={contact!r} has no law for that")
     of = TABLES[contact] if isinstance(contact, str) else law(contact)
-    summaries = _core.summaries(of, losses is not None)
+    summaries = _core.summaries(of, losses is not None, restitution is not None)
     wanted = _wanted(want, several, tuple(summaries))
     asked = asked._replace(spread="states" in wanted)
     fields = _fields(bodies, states, contact, losses)
-    names = [*_STATE, *(_SLIP if rubs(contact) else ())] if {"final", "states"} & {*wanted} else []
+    slips = rubs(contact) or restitution is not None
+    names = [*_STATE, *(_SLIP if slips else ())] if {"final", "states"} & {*wanted} else []
     spread = frozenset(names if asked.spread else ())
     names += [name for name in summaries if name in wanted] + ["error", "method", "status"]
     question = Question(fields, names, spread, asked, wanted, scale, seconds)
@@ -226,17 +230,19 @@ def _checked(asked: Asked, losses: Loss | None) -> Asked:
         code(contact, rubs=True)
     if losses is not None:
         made_law(losses)
-    if not rubs(contact) and (asked.restitution is not None or asked.stop_at is not None):
-        raise ValueError("restitution, stop_at: only with contact=sc.Coulomb(...) or sc.Viscous(...)")
-    one_of("restitution", asked.restitution, (None, 0.0))
+    if not rubs(contact) and asked.stop_at is not None:
+        raise ValueError("stop_at: only with contact=sc.Coulomb(...) or sc.Viscous(...)")
+    if asked.restitution is not None:
+        within("restitution", number("restitution", asked.restitution), 0.0, 1.0, "or None")
     one_of("stop_at", asked.stop_at, (None, "rolling"))
-    if rubs(contact) or losses is not None:
+    if rubs(contact) or losses is not None or asked.restitution is not None:
         if asked.times[-1] < 0:
             raise ValueError(
                 f"t = {float(asked.times[-1])!r}: expected times from 0 on: what is lost does not come back"
             )
         if step is not None or asked.beyond or (rubs(contact) and asked.mu != np.inf):
-            raise ValueError(f"step, mu, beyond: not with contact = {contact!r}, losses = {losses!r}")
+            given = f"contact = {contact!r}, losses = {losses!r}, restitution = {asked.restitution!r}"
+            raise ValueError(f"step, mu, beyond: not with {given}")
     return asked._replace(step=None if step is None else number("step", step))
 
 
@@ -247,8 +253,11 @@ def _fields(bodies: Body, states: State, contact: AnyContact, losses: Loss | Non
     }
     fields |= zip(_STATE, states._numbers, strict=True)
     if isinstance(contact, Coulomb | Viscous):
-        fields |= zip(_SLIP, states._slip, strict=True)
         fields |= zip(("coefficient", "static"), contact._numbers, strict=True)
+    if states.slip is not None or isinstance(contact, Coulomb | Viscous):
+        fields |= zip(_SLIP, states._slip, strict=True)
+    if states.height is not None:
+        fields |= {"height": states.height, "lift": states.lift}
     if losses is not None:
         names = (name for name, _ in _core.loss_laws())
         fields |= zip(names, losses._coefficients, strict=True)

@@ -38,7 +38,7 @@ coded! {
 
 /// The velocity of the lowest point of a rim before an impact, and the inverse of its inertia.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Impact {
+pub(crate) struct RimImpact {
     /// The slip along e_h and along e2, and the normal velocity, which is negative.
     pub slip: [f64; 2],
     pub lift: f64,
@@ -71,7 +71,12 @@ pub(crate) fn lightness(shape: &Shape<f64>, angle: (f64, f64)) -> [f64; 4] {
 }
 
 /// The angular velocity after these impulses.
-pub(crate) fn turned(shape: &Shape<f64>, angle: (f64, f64), w: [f64; 3], [p_h, p_2, p_n]: [f64; 3]) -> [f64; 3] {
+pub(crate) fn turned(
+    shape: &Shape<f64>,
+    angle: (f64, f64),
+    w: [f64; 3],
+    [p_h, p_2, p_n]: [f64; 3],
+) -> [f64; 3] {
     let Shape { rim, i1, i3 } = shape;
     [
         w[0] + rim.depth(angle) * p_2 / i1,
@@ -85,15 +90,15 @@ const STOPPED: f64 = 1e-15;
 /// A slip whose sine is below this share runs along the lean, where its direction stays.
 const STRAIGHT: f64 = 1e-14;
 /// The logarithm of a slip, in units of the normal velocity, at which it has stopped.
-const OVER: f64 = -39.0;
+const STOPS_AT: f64 = -39.0;
 /// Tolerance of a step along the impact, and the largest number of steps.
-const TOL: f64 = 3e-14;
-const STEPS: usize = 5_000;
+const IMPACT_TOL: f64 = 3e-14;
+const IMPACT_STEPS: usize = 5_000;
 /// Largest number of Newton's steps to an end of compression or of the impact.
 const NEWTON: u32 = 60;
 
 /// The impact so far, with all velocities in units of the first normal velocity.
-struct Course {
+struct ImpactCourse {
     impulse: [f64; 3],
     lift: f64,
     work: f64,
@@ -104,7 +109,7 @@ struct Course {
     keeps: f64,
 }
 
-impl Course {
+impl ImpactCourse {
     /// Goes on in a direction that stays, in which the normal velocity grows at the rate `k`, for at most the normal
     /// impulse `most`. Returns whether the impact ends.
     fn straight(&mut self, k: f64, [p_h, p_2]: [f64; 2], most: f64) -> bool {
@@ -122,7 +127,8 @@ impl Course {
             // Friction may press the body down again before the work is done.
             if square >= 0.0 || most == f64::INFINITY {
                 let root = square.max(0.0).sqrt();
-                let end = if self.lift > 0.0 { 2.0 * left / (self.lift + root) } else { (root - self.lift) / k };
+                let end =
+                    if self.lift > 0.0 { 2.0 * left / (self.lift + root) } else { (root - self.lift) / k };
                 (p, done) = (end.min(most), end <= most);
             }
         }
@@ -133,13 +139,14 @@ impl Course {
     }
 }
 
-impl Impact {
+impl RimImpact {
     /// The impact under the law of this table with the restitution `e`. None where a rolling table has no answer:
     /// its friction would lift the body before the slip has stopped, or would exceed mu times the normal impulse.
     pub fn on(&self, table: &Table, e: f64) -> Option<Struck> {
         let (big, [a_h, a_2, a_n, b]) = (-self.lift, self.light);
         let keeps = (1.0 - e) * (1.0 + e);
-        let mut course = Course { impulse: [0.0; 3], lift: -1.0, work: 0.0, compressed: None, e, keeps };
+        let mut course =
+            ImpactCourse { impulse: [0.0; 3], lift: -1.0, work: 0.0, compressed: None, e, keeps };
         let (slip, mut stopped) = (self.slip.map(|u| u / big), false);
         let hit = match *table {
             Table::Rolling { .. } => {
@@ -195,14 +202,14 @@ impl Impact {
     }
 
     /// The first slip under Coulomb's friction. Returns whether the impact ends before the slip stops.
-    fn slides(&self, course: &mut Course, mu: f64, slip: [f64; 2]) -> bool {
+    fn slides(&self, course: &mut ImpactCourse, mu: f64, slip: [f64; 2]) -> bool {
         let [a_h, a_2, a_n, b] = self.light;
         let (speed, turns) = (slip[0].hypot(slip[1]), mu * (a_2 - a_h));
         if speed <= STOPPED * (1.0 + speed) || mu == 0.0 {
             return false;
         }
         let slows = |[cos, sin]: [f64; 2]| b * cos - mu * (a_h * cos * cos + a_2 * sin * sin);
-        let straight = |course: &mut Course, way: [f64; 2], speed: f64| {
+        let straight = |course: &mut ImpactCourse, way: [f64; 2], speed: f64| {
             let slow = slows(way);
             let most = if slow < 0.0 { -speed / slow } else { f64::INFINITY };
             course.straight(a_n - mu * b * way[0], way.map(|x| -mu * x), most)
@@ -215,7 +222,10 @@ impl Impact {
         let rates = |v: &[f64; 7], to: &mut [f64; 7]| {
             let (sin, cos) = v[0].sin_cos();
             let sigma = v[1].exp();
-            let (slow, pace) = (1.0 / (1.0 + sigma), if sigma > 1.0 { 1.0 / (1.0 + 1.0 / sigma) } else { sigma / (1.0 + sigma) });
+            let (slow, pace) = (
+                1.0 / (1.0 + sigma),
+                if sigma > 1.0 { 1.0 / (1.0 + 1.0 / sigma) } else { sigma / (1.0 + sigma) },
+            );
             *to = [
                 -(sin * (turns * cos + b) * slow),
                 slows([cos, sin]) * slow,
@@ -229,7 +239,7 @@ impl Impact {
         let mut place = [slip[1].atan2(slip[0]), speed.ln(), 0.0, 0.0, 0.0, -1.0, 0.0];
         let (mut stages, mut h) = ([place; rk8::STAGES], 0.1);
         let (mut done, keeps) = (false, course.keeps);
-        for _ in 0..STEPS {
+        for _ in 0..IMPACT_STEPS {
             let mut rate = place;
             rates(&place, &mut rate);
             let mut part = |h: f64| {
@@ -237,7 +247,7 @@ impl Impact {
                 (core::array::from_fn::<f64, 7, _>(|i| place[i] + made.change[i]), made)
             };
             let (there, made) = part(h);
-            let error = made.error(|_| 1.0 / TOL, 7.0);
+            let error = made.error(|_| 1.0 / IMPACT_TOL, 7.0);
             if error.is_nan() || error > 1.0 {
                 h *= rk8::growth(error).min(0.7);
                 continue;
@@ -283,7 +293,7 @@ impl Impact {
             place = end.unwrap_or(there);
             done = end.is_some();
             // Along the lean, where the slip may last long, the direction stays.
-            if done || place[1] < OVER || place[0].sin().abs() < STRAIGHT {
+            if done || place[1] < STOPS_AT || place[0].sin().abs() < STRAIGHT {
                 break;
             }
             h *= rk8::growth(error);
@@ -291,11 +301,11 @@ impl Impact {
         let [_, _, p_h, p_2, p, lift, work] = place;
         course.impulse = [p_h, p_2, p];
         (course.lift, course.work) = (lift, work);
-        done || place[1] >= OVER && straight(course, [place[0].cos().signum(), 0.0], place[1].exp())
+        done || place[1] >= STOPS_AT && straight(course, [place[0].cos().signum(), 0.0], place[1].exp())
     }
 }
 
-impl Course {
+impl ImpactCourse {
     /// The whole impact on a viscous film, whose force is c u times the normal force.
     fn film(&mut self, c: f64, [u_h, u_2]: [f64; 2], [a_h, a_2, a_n, b]: [f64; 4]) {
         let decay = |x: f64| -(-x).exp_m1();
@@ -306,12 +316,15 @@ impl Course {
             if x > 0.1 {
                 return (p - once(p)) / (c * a_h);
             }
-            p * p * (0.5 - x * (1.0 / 6.0 - x * (1.0 / 24.0 - x * (1.0 / 120.0 - x * (1.0 / 720.0 - x * (1.0 / 5040.0 - x / 40320.0))))))
+            p * p
+                * (0.5
+                    - x * (1.0 / 6.0
+                        - x * (1.0 / 24.0
+                            - x * (1.0 / 120.0 - x * (1.0 / 720.0 - x * (1.0 / 5040.0 - x / 40320.0))))))
         };
         let lift = |p: f64| -1.0 + a_n * p - c * b * u_h * once(p) - b * b / a_h * (p - once(p));
-        let work = |p: f64| {
-            -p + 0.5 * a_n * p * p - c * b * u_h * twice(p) - b * b / a_h * (0.5 * p * p - twice(p))
-        };
+        let work =
+            |p: f64| -p + 0.5 * a_n * p * p - c * b * u_h * twice(p) - b * b / a_h * (0.5 * p * p - twice(p));
         let rises = |f: &dyn Fn(f64) -> f64, from: f64| {
             let mut far = from.max(1.0);
             while f(far) < 0.0 {

@@ -298,7 +298,10 @@ impl Impact<'_> {
         let (square, reach) = (ell * ell, self.mu * ell);
         let [least, most] = [square - reach - i1, square + reach - i1];
         let rounding = SAME * (i1 + square);
-        self.dry && self.lift == 0.0 && reach < i1 + square && if self.both { most < -rounding } else { least > rounding }
+        self.dry
+            && self.lift == 0.0
+            && reach < i1 + square
+            && if self.both { most < -rounding } else { least > rounding }
     }
 
     /// The result, if no rim pulls and a rim that leaves the table moves upwards.

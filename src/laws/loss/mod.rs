@@ -205,6 +205,11 @@ impl Law {
         matches!(self.resists(), Resists::Contour)
     }
 
+    /// Whether the law acts on a body in the air, which has neither a contact nor a gap under its face.
+    pub(crate) const fn acts_in_air(self) -> bool {
+        matches!(self.resists(), Resists::All)
+    }
+
     /// Whether the couple grows with the speed of the contact along the rim.
     #[inline(always)]
     pub(crate) const fn is_soft(self) -> bool {

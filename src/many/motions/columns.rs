@@ -23,6 +23,8 @@ pub struct MotionStarts<'a> {
     pub coefficients: Option<[&'a [f64]; 2]>,
     /// The coefficients of the losses, in the order of [`Law::ALL`](crate::laws::loss::Law::ALL).
     pub losses: Option<[&'a [f64]; COUNT]>,
+    /// Height and vertical velocity of the lowest point of motions that start in the air.
+    pub aloft: Option<[&'a [f64]; 2]>,
 }
 
 /// The columns of bodies and their states, which come in pairs.
@@ -72,11 +74,11 @@ impl MotionColumns {
 impl<'a> MotionStarts<'a> {
     /// Bodies and states without slip and without losses, on the table of the job.
     pub fn new(bodies: [&'a [f64]; 5], states: [&'a [f64]; 4]) -> Self {
-        Self { bodies, states, slips: None, coefficients: None, losses: None }
+        Self { bodies, states, slips: None, coefficients: None, losses: None, aloft: None }
     }
 
     fn columns(&self) -> impl Iterator<Item = &'a [f64]> {
-        let pairs = self.slips.into_iter().chain(self.coefficients).flatten();
+        let pairs = self.slips.into_iter().chain(self.coefficients).chain(self.aloft).flatten();
         self.bodies.into_iter().chain(self.states).chain(pairs).chain(self.losses.into_iter().flatten())
     }
 
@@ -110,7 +112,8 @@ impl<'a> MotionStarts<'a> {
 
     pub(super) fn start(&self, i: usize) -> Start {
         let slip = self.slips.map_or([0.0; 2], |all| all.map(|x| at(x, i)));
-        Start { slip, ..self.state(i).into() }
+        let aloft = self.aloft.map(|all| all.map(|x| at(x, i)));
+        Start { slip, aloft, ..self.state(i).into() }
     }
 
     pub(super) fn losses(&self, i: usize) -> Losses {
@@ -157,11 +160,21 @@ coded! {
         RollingW2 = 14,
         /// The angular velocity w3 at the time `RollingTime`.
         RollingW3 = 15,
+        /// Number of impacts.
+        Impacts = 16,
+        /// Number of times at which the body comes down to stay on the table for a while.
+        Landings = 17,
+        /// Time in the air.
+        AirTime = 18,
+        /// Energy lost in impacts, in M g R.
+        LostInImpacts = 19,
+        /// Code of the [`Kind`](crate::motion::Kind) of the last phase.
+        LastPhase = 20,
     }
 }
 
 /// Number of kinds of [`Summary`].
-pub const SUMMARIES: usize = 16;
+pub const SUMMARIES: usize = 21;
 
 impl Summary {
     /// Name, unit and description in words.
@@ -187,12 +200,17 @@ impl Summary {
             Self::RollingW1 => ["rolling_w1", "sqrt(g/R)", "w1 when the last rolling begins"],
             Self::RollingW2 => ["rolling_w2", "sqrt(g/R)", "w2 when the last rolling begins"],
             Self::RollingW3 => ["rolling_w3", "sqrt(g/R)", "w3 when the last rolling begins"],
+            Self::Impacts => ["impacts", "1", "number of impacts"],
+            Self::Landings => ["landings", "1", "how often it comes down and stays"],
+            Self::AirTime => ["air_time", "sqrt(R/g)", "time in the air"],
+            Self::LostInImpacts => ["lost_in_impacts", "M g R", "energy lost in impacts"],
+            Self::LastPhase => ["last_phase", "1", "code of the last phase"],
         }
     }
 
     /// Whether motions have this number; `rubs` says whether a law of friction lets them slip, `loses` whether they
-    /// lose energy.
-    pub fn is_of(self, rubs: bool, loses: bool) -> bool {
+    /// lose energy, `flies` whether they go on in the air and on both rims.
+    pub fn is_of(self, rubs: bool, loses: bool, flies: bool) -> bool {
         match self {
             Self::End => true,
             Self::WorkLost => loses,
@@ -203,8 +221,9 @@ impl Summary {
             | Self::RollingTheta
             | Self::RollingW1
             | Self::RollingW2
-            | Self::RollingW3 => rubs,
-            _ => !rubs && !loses,
+            | Self::RollingW3 => rubs || flies,
+            Self::Impacts | Self::Landings | Self::AirTime | Self::LostInImpacts | Self::LastPhase => flies,
+            _ => !rubs && !loses && !flies,
         }
     }
 }

@@ -179,7 +179,7 @@ pub(crate) fn roll_among(
     let (count, times) = (starts.len(), job.times.len());
     assert!(starts.fit(), "columns of different lengths");
     assert!(out.fits(count, times), "an array does not fit");
-    let flows = job.table.rubs() || starts.losses.is_some();
+    let flows = job.table.rubs() || starts.losses.is_some() || job.restitution.is_some();
     job.check(flows, starts.coefficients.is_some())?;
     let size = if flows {
         let workers = threads.min(count.div_ceil(FLOWS));

@@ -54,7 +54,8 @@ pub(super) struct Walks<'a, const N: usize> {
 fn place<const N: usize>(walk: &BodyWalk<'_, N>) -> Option<(Among, [f64; NUMBERS])> {
     let (body, mut numbers) = (&walk.of.body, [0.0; NUMBERS]);
     numbers[..4].copy_from_slice(&[body.ell(), body.i1(), body.i3(), body.fillet()]);
-    if walk.of.lying.is_some() {
+    // A hop that rolls and loses nothing is short.
+    if walk.of.lying.is_some() || walk.lossy().is_some() && walk.ask.losses.is_none() {
         return None;
     }
     if let Some(lossy) = walk.lossy() {

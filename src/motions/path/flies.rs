@@ -10,18 +10,18 @@
 //! factor. The impulses of the bounces that are summed agree with the contact force to first order, so that the error of
 //! their sum is about TAIL.
 
+use super::flight::air::{AirFlight, in_air};
 use super::flight::{Aloft, Flight};
-use super::phases::BodyWalk;
-use crate::laws::contact::impact::{Hit, Impact, Struck, lightness, turned};
+use super::phases::{BodyWalk, Takeoff};
+use crate::laws::contact::impact::{Hit, RimImpact, Struck, lightness, turned};
 use crate::laws::contact::landing::{Landed, Outcome, land_at, settled};
 use crate::laws::contact::slip::Friction;
 use crate::laws::contact::{FLAT, Force, Table};
 use crate::laws::state::State;
 use crate::motions::halt::{TIME, loses, poses};
-use crate::motions::path::flight::lands::Leaves;
 use crate::motions::walk::Next;
 use crate::motions::{Ending, Kind, Strike};
-use core::f64::consts::FRAC_PI_2;
+use core::f64::consts::{FRAC_PI_2, PI};
 
 /// Share of the state that the bounces which are summed may change.
 const TAIL: f64 = 1e-13;
@@ -32,22 +32,28 @@ const SUMMED: f64 = 1e2;
 /// A rocking with a larger w2 is followed hop by hop.
 const ROCKED: f64 = 1e-5;
 /// Both rims land together if |cos theta| is below this.
-const TOGETHER: f64 = 1e-14;
+const BOTH_AT_ONCE: f64 = 1e-14;
 /// Impacts of both rims are over where no rim comes down faster than this share of the first velocity.
-const OVER: f64 = 1e-9;
+const RATTLE_OVER: f64 = 1e-9;
 /// Share of its terms below which N0 is a rounding error.
 const ROUNDED: f64 = 1e-12;
 /// Largest number of impacts of both rims in turn.
-const TURNS: u32 = 10_000;
+const MOST_IN_TURN: u32 = 10_000;
 
-/// The start of a flight.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Takeoff {
-    /// The height of the lowest point of the rim, and its vertical velocity.
-    pub height: f64,
-    pub lift: f64,
-    /// How the rim leaves the table, as a power of time; None for a start above the table.
-    pub leaves: Leaves,
+/// A flight without losses in the air, or with some.
+enum FlightCourse {
+    Free(Flight),
+    Air(Box<AirFlight>),
+}
+
+impl FlightCourse {
+    /// The first time at which theta exceeds a limit.
+    fn passes(&self, limit: f64) -> Option<f64> {
+        match self {
+            Self::Free(flight) => flight.passes(limit),
+            Self::Air(flight) => flight.passes(limit),
+        }
+    }
 }
 
 impl<const N: usize> BodyWalk<'_, N> {
@@ -104,6 +110,7 @@ impl<const N: usize> BodyWalk<'_, N> {
     }
 
     /// The phase after an ending, from which a motion with restitution goes on.
+    #[inline(never)]
     pub(super) fn continues_after(&mut self, ending: Ending) -> Next {
         let Some(e) = self.ask.restitution else { return Next::Ends(ending) };
         match ending {
@@ -125,34 +132,66 @@ impl<const N: usize> BodyWalk<'_, N> {
                 if down == 0.0 {
                     return self.settles_on_side();
                 }
-                if e == 0.0 || down * self.of.body.ell() <= RATTLED { self.lands_on_both() } else { self.rattles(e) }
+                if e == 0.0 || down * self.of.body.ell() <= RATTLED {
+                    self.lands_on_both()
+                } else {
+                    self.rattles(e)
+                }
             }
             ending => Next::Ends(ending),
         }
     }
 
     /// Follows a flight to its end, which sets the next phase.
+    #[inline(never)]
     pub(super) fn flies(&mut self) {
         let shape = self.of.slide.law.shape;
         let (from, now) = (self.aloft(), self.at[TIME]);
         let Takeoff { leaves, .. } = self.of.takeoff;
-        let flight = Flight::new(&shape, &from);
+        let mut course = match in_air(&self.ask.losses) {
+            Some(losses) => {
+                FlightCourse::Air(Box::new(AirFlight::new(&shape, &from, losses, self.of.slide.tol)))
+            }
+            None => FlightCourse::Free(Flight::new(&shape, &from)),
+        };
         let other = from.from_other_rim(&shape);
         let touches = other.height == 0.0;
         let leaves = [leaves, touches.then_some(if other.lift == 0.0 { 2 } else { 1 })];
         let left = self.since.last().map_or(0.0, |t| t - now);
-        let Ok(landing) = flight.lands(leaves, self.has_two_rims(), left) else {
+        let two = self.has_two_rims();
+        let found = match &mut course {
+            FlightCourse::Free(flight) => flight.lands(leaves, two, left),
+            FlightCourse::Air(flight) => flight.lands(leaves, two, left),
+        };
+        let Ok(landing) = found else {
             self.next = Some(Next::Ends(Ending::Bounded));
             return;
         };
+        let flight = match &course {
+            FlightCourse::Free(flight) => flight,
+            FlightCourse::Air(flight) => &flight.free,
+        };
+        let before = if loses(N) { self.at[N - 1] } else { 0.0 };
         let end = landing.map_or(left, |(t, _)| t);
+        // Another part of the body, which may land first, has no known shape.
+        let limit = self.of.body.theta_end();
+        let over = if two || limit == PI { None } else { course.passes(limit).filter(|t| *t <= end) };
+        let end = over.unwrap_or(end);
         while let Some(t) = self.until().filter(|t| *t <= now + end) {
-            let at = flight.at(t - now);
+            let at = self.flown(&course, t - now, before);
             self.claims(flight.doubt(t - now, &at));
             self.writes_in_air(&at);
         }
+        if let Some(t) = over {
+            let at = self.flown(&course, t, before);
+            self.at[TIME] = now + t;
+            self.sets(&at);
+            self.of.state.theta = limit;
+            self.next = Some(Next::Ends(Ending::Side));
+            return;
+        }
         let Some((t, upper)) = landing else { return };
-        let at = flight.at(t);
+        let at = self.flown(&course, t, before);
         self.at[TIME] = now + t;
         self.sets(&Aloft { height: if upper { at.height } else { 0.0 }, ..at });
         if upper {
@@ -166,7 +205,22 @@ impl<const N: usize> BodyWalk<'_, N> {
         self.continues_with(next);
     }
 
+    /// The body at a time of its flight. The energy that the air has taken until then is added to the energy lost `before`.
+    fn flown(&mut self, course: &FlightCourse, t: f64, before: f64) -> Aloft {
+        match course {
+            FlightCourse::Free(flight) => flight.at(t),
+            FlightCourse::Air(flight) => {
+                let (at, lost) = flight.at(t);
+                if loses(N) {
+                    self.at[N - 1] = before + lost;
+                }
+                at
+            }
+        }
+    }
+
     /// The next phase after a landing.
+    #[inline(never)]
     fn strikes(&mut self) -> Next {
         let (e, from) = (self.ask.restitution.unwrap_or(0.0), self.aloft());
         if from.angle.0 < FLAT && self.of.body.rim() > 0.0 {
@@ -178,11 +232,12 @@ impl<const N: usize> BodyWalk<'_, N> {
         }
         let shape = self.of.slide.law.shape;
         let there = from.from_other_rim(&shape);
-        if self.has_two_rims() && from.angle.1.abs() < TOGETHER && there.lift < 0.0 {
+        if self.has_two_rims() && from.angle.1.abs() < BOTH_AT_ONCE && there.lift < 0.0 {
             return if e == 0.0 { self.lands_on_both() } else { self.rattles(e) };
         }
         let Some(mut struck) = self.impact(&from, e) else { return Next::Ends(Ending::Slip) };
-        let [force, _] = self.pressed(&Aloft { w: turned(&shape, from.angle, from.w, struck.impulse), ..from });
+        let [force, _] =
+            self.pressed(&Aloft { w: turned(&shape, from.angle, from.w, struck.impulse), ..from });
         let stays = struck.lift > 0.0 && force > 0.0 && self.stays(&from, &struck, force, e);
         if stays && let Some(last) = self.impact(&from, 0.0) {
             struck = last;
@@ -203,7 +258,7 @@ impl<const N: usize> BodyWalk<'_, N> {
     /// The impact at these numbers; None where a rolling table has no answer.
     fn impact(&self, from: &Aloft, e: f64) -> Option<Struck> {
         let light = lightness(&self.of.slide.law.shape, from.angle);
-        Impact { slip: from.slip, lift: from.lift, light }.on(&self.ask.table, e)
+        RimImpact { slip: from.slip, lift: from.lift, light }.on(&self.ask.table, e)
     }
 
     /// Whether the bounces after an impact are over so soon that they are summed.
@@ -216,7 +271,8 @@ impl<const N: usize> BodyWalk<'_, N> {
             // Each bounce meets the slip that the flight before has made.
             let [along, across] = law.towards(from.angle, w, [0.0; 2], [0.0; 2]).u;
             let slip = [along - b * force, across].map(|rate| 2.0 * rate / fall);
-            ratio = Impact { slip, lift: -1.0, light }.on(&self.ask.table, e).map_or(1.0, |next| next.lift);
+            ratio =
+                RimImpact { slip, lift: -1.0, light }.on(&self.ask.table, e).map_or(1.0, |next| next.lift);
         }
         ratio < 1.0 && 2.0 * struck.lift * struck.lift < TAIL * fall * (1.0 - ratio)
     }
@@ -240,6 +296,7 @@ impl<const N: usize> BodyWalk<'_, N> {
     }
 
     /// Both rims land in turn, the faster one first, until none comes down.
+    #[inline(never)]
     fn rattles(&mut self, e: f64) -> Next {
         (self.at[0], self.at[1]) = (1.0, 0.0);
         let shape = self.of.slide.law.shape;
@@ -248,10 +305,10 @@ impl<const N: usize> BodyWalk<'_, N> {
         let mut other = false;
         for turn in 0.. {
             let there = at.from_other_rim(&shape);
-            if at.lift.min(there.lift) > -OVER * fast.min(1.0) {
+            if at.lift.min(there.lift) > -RATTLE_OVER * fast.min(1.0) {
                 break;
             }
-            if turn > TURNS {
+            if turn > MOST_IN_TURN {
                 return Next::Ends(Ending::Bounded);
             }
             if there.lift < at.lift {
@@ -272,7 +329,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         if at.from_other_rim(&shape).lift < RATTLED {
             return self.ends_rattle();
         }
-        if at.lift < OVER * fast.min(1.0) {
+        if at.lift < RATTLE_OVER * fast.min(1.0) {
             return self.touches_down();
         }
         self.of.takeoff.leaves = Some(1);
@@ -312,7 +369,9 @@ impl<const N: usize> BodyWalk<'_, N> {
         if rises == 0.0 {
             return self.settles_on_side();
         }
-        if rises < ROCKED && let Some(end) = self.rocks_out() {
+        if rises < ROCKED
+            && let Some(end) = self.rocks_out()
+        {
             self.claims((end[TIME] - self.at[TIME]).powi(2));
             self.at = end;
             return self.settles_on_side();
@@ -326,7 +385,8 @@ impl<const N: usize> BodyWalk<'_, N> {
             self.turns_over();
         }
         let State { w1, w2, w3, .. } = landed.state;
-        let after = Aloft { angle: (1.0, 0.0), w: [w1, w2, w3], slip: landed.slip, lift: 0.0, ..self.aloft() };
+        let after =
+            Aloft { angle: (1.0, 0.0), w: [w1, w2, w3], slip: landed.slip, lift: 0.0, ..self.aloft() };
         self.sets(&Aloft { height: 0.0, ..after });
         self.at[8] += landed.lost;
     }

@@ -14,8 +14,8 @@
 //! the ratio of the tolerances.
 
 pub(crate) mod face;
-pub(crate) mod flight;
 mod flies;
+pub(crate) mod flight;
 mod loses;
 pub(crate) mod lossy;
 pub(crate) mod lying;
@@ -106,9 +106,14 @@ fn check(body: &Body, start: &Start, ask: &Ask) -> Result<f64, Error> {
             let expected = "None: a motion that starts in the air needs a restitution";
             return Err(Error::OutOfRange { name: "height", value: height, expected });
         }
-        if body.ell() > 0.0 && body.theta_end() < core::f64::consts::PI {
+        if body.ell() > 0.0 && body.theta_end() == core::f64::consts::FRAC_PI_2 {
             let other = height + 2.0 * body.ell() * start.state.theta.cos();
-            within("height", if other < -1e-15 { -height } else { height }, (0.0, 1e6), "both rims above the table")?;
+            within(
+                "height",
+                if other < -1e-15 { -height } else { height },
+                (0.0, 1e6),
+                "both rims above the table",
+            )?;
         }
     }
     if ask.table.rubs() || start.aloft.is_some() { Ok(fine) } else { without_slip(start.slip).map(|()| fine) }

@@ -1,9 +1,9 @@
 //! The phases of a body of revolution: their beginnings, their flows and their ends.
 
 use super::check;
-use super::flies::Takeoff;
+use super::flight::lands::Leaves;
 use super::lossy::{LossyFlow, REST};
-use super::lying::LyingPhase;
+use super::lying::flow::LyingFlow;
 use super::slide::Slide;
 use super::slow::{BodySlips, Slippery};
 use super::tail::LastTurns;
@@ -47,7 +47,7 @@ pub(crate) struct BodyPhases {
     /// The present phase, if it loses energy without a slip.
     pub(super) lossy: Option<LossyPhase>,
     /// The present phase, if the body lies on both rims.
-    pub(crate) lying: Option<LyingPhase>,
+    pub(crate) lying: Option<Box<LyingPhase>>,
     /// The start of the next flight, or the height and the vertical velocity of a body in the air.
     pub(super) takeoff: Takeoff,
     /// Whether the body only tilts, so that rounding must not make the body turn.
@@ -66,6 +66,26 @@ pub(super) struct LossyPhase {
     pub(super) since: f64,
     pub(super) still: u32,
     pub(super) count: usize,
+}
+
+/// A phase on both rims.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct LyingPhase {
+    pub flow: LyingFlow,
+    /// The number of changes of what dry losses hold, in succession at the same time, and the time of the last one.
+    pub(super) still: u32,
+    pub(super) since: f64,
+    pub(super) count: usize,
+}
+
+/// The start of a flight.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Takeoff {
+    /// The height of the lowest point of the rim, and its vertical velocity.
+    pub height: f64,
+    pub lift: f64,
+    /// How the rim leaves the table, as a power of time; None for a start above the table.
+    pub leaves: Leaves,
 }
 
 impl BodyPhases {
@@ -239,8 +259,9 @@ impl<const N: usize> Phases<N> for BodyPhases {
     }
 
     fn write(walk: &mut BodyWalk<'_, N>, y: &[f64; N]) {
-        if let Some(phase) = walk.of.lying {
-            return walk.writes_lying(&phase.flow, y);
+        if let Some(phase) = &walk.of.lying {
+            let flow = phase.flow;
+            return walk.writes_lying(&flow, y);
         }
         walk.made.slid(&walk.ask, &walk.of.slide, y);
     }
@@ -349,7 +370,7 @@ impl<const N: usize> Phases<N> for BodyPhases {
 
     fn slow(walk: &mut BodyWalk<'_, N>, way: [f64; 2]) -> BodySlips {
         let tol = walk.of.slide.tol;
-        if let Some(phase) = walk.of.lying {
+        if let Some(phase) = &walk.of.lying {
             return BodySlips::of(&Slippery::Two(phase.flow.law, phase.flow.ways), tol, N);
         }
         walk.of.slide.sets_ways(&walk.of.state, [0.0; 2], way);
@@ -357,7 +378,7 @@ impl<const N: usize> Phases<N> for BodyPhases {
     }
 
     fn clear_until(walk: &BodyWalk<'_, N>, series: &SlowSeries<N>) -> f64 {
-        if let Some(phase) = walk.of.lying {
+        if let Some(phase) = &walk.of.lying {
             return clear_until(series.until, |_, moment| {
                 let place = FlowPlace { y: series.at(moment), carry: [0.0; N], rate: [0.0; N] };
                 phase.flow.margins(&place).map(|margin| margin.value)
@@ -379,7 +400,7 @@ impl<const N: usize> Phases<N> for BodyPhases {
     }
 
     fn nudged(walk: &BodyWalk<'_, N>, way: [f64; 2], growth: f64) -> [f64; N] {
-        match walk.of.lying {
+        match &walk.of.lying {
             Some(phase) => phase.flow.nudged(&walk.at, way, growth),
             None => walk.of.slide.nudged(&walk.at, way, growth),
         }

@@ -14,7 +14,7 @@ use crate::motions::halt::{TIME, poses};
 use core::f64::consts::{FRAC_PI_2, TAU};
 
 /// The longest time that is summed, over the time in which the body turns by a radian.
-const SHORT: f64 = 1e-6;
+const SOON_OVER: f64 = 1e-6;
 
 impl<const N: usize> BodyWalk<'_, N> {
     /// The numbers at the end of a rocking that has just begun another hop at theta = pi/2; None if it is not over soon.
@@ -27,6 +27,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         found
     }
 
+    #[inline(never)]
     fn cycle(&mut self, begin: &[f64; N]) -> Option<[f64; N]> {
         for _ in 0..2 {
             let y = State { theta: FRAC_PI_2, w2: 0.0, ..self.of.state };
@@ -45,13 +46,17 @@ impl<const N: usize> BodyWalk<'_, N> {
                 return None;
             }
             let lasts = 2.0 * rises / -rate[1];
-            for (i, rate) in [(2, rate[0]), (4, rate[2]), (5, drift[0]), (6, drift[1]), (TIME, 1.0), (8, warms)] {
+            for (i, rate) in
+                [(2, rate[0]), (4, rate[2]), (5, drift[0]), (6, drift[1]), (TIME, 1.0), (8, warms)]
+            {
                 self.at[i] += lasts * rate;
             }
             if poses(N) {
                 let (sin, cos) = self.at[9].sin_cos();
                 let (out, on) = (slip[0], slip[1] + y.w3);
-                for (i, rate) in [(9, y.w1), (10, y.w3), (11, out * cos - on * sin), (12, out * sin + on * cos)] {
+                for (i, rate) in
+                    [(9, y.w1), (10, y.w3), (11, out * cos - on * sin), (12, out * sin + on * cos)]
+                {
                     self.at[i] += lasts * rate;
                 }
             }
@@ -72,6 +77,6 @@ impl<const N: usize> BodyWalk<'_, N> {
         (end[0], end[1], end[3]) = (1.0, 0.0, 0.0);
         let fastest = [2, 4, 5, 6].into_iter().fold(1.0, |most: f64, i| most.max(begin[i].abs()));
         let left = (end[TIME] - begin[TIME]) * fastest;
-        (share > 0.0 && left < SHORT).then_some(end)
+        (share > 0.0 && left < SOON_OVER).then_some(end)
     }
 }

@@ -20,7 +20,7 @@ use nalgebra::Point2;
 const LEAST: f64 = 1e-8;
 
 /// A hop that rises by less than this is integrated, and slower than this.
-const LOW: f64 = 0.1;
+const LOW_HOP: f64 = 0.1;
 
 impl<const N: usize> BodyWalk<'_, N> {
     /// Follows a rolling phase by the first integrals to its end, or begins its flow if the
@@ -98,11 +98,11 @@ impl<const N: usize> BodyWalk<'_, N> {
     /// theta is known to 1e-16, and the hop is low.
     fn hops_low(&self) -> bool {
         let [c, rises] = [self.at[1], self.at[3]];
-        if self.ask.restitution.is_none() || c > LOW || rises > LOW || !self.has_two_rims() {
+        if self.ask.restitution.is_none() || c > LOW_HOP || rises > LOW_HOP || !self.has_two_rims() {
             return false;
         }
         let falls = -Contact::Rolling.derivative(&self.of.body, &self.of.state).w2;
-        if rises > 0.0 { rises * rises < LOW * falls } else { rises * rises + falls * c > 0.0 }
+        if rises > 0.0 { rises * rises < LOW_HOP * falls } else { rises * rises + falls * c > 0.0 }
     }
 
     /// A pose of a rolling phase, counted from the start of the motion.

@@ -17,36 +17,36 @@ use super::Flight;
 use crate::laws::body::Shape;
 
 /// Number of terms of the series at the start.
-const TERMS: usize = 30;
+const RIM_TERMS: usize = 30;
 /// A cell shorter than this, in units of the time since the start, in which the height is below `TOUCH` counts as a touch.
-const SHORT: f64 = 1e-9;
-const TOUCH: f64 = 1e-15;
+const SHORT_CELL: f64 = 1e-9;
+pub(super) const TOUCH: f64 = 1e-15;
 /// Largest number of evaluations of the height.
-const PATIENCE: u32 = 1_000_000;
+const HEIGHTS: u32 = 1_000_000;
 
 /// How a rim begins a flight: high above the table, or on it and leaving as t^k.
 pub(crate) type Leaves = Option<usize>;
 
 /// A function of time with its derivative, whose second derivative is at most `bend`.
-struct Falling<F: FnMut(f64) -> [f64; 2]> {
-    of: F,
-    bend: f64,
-    touch: f64,
+pub(super) struct Falling<F: FnMut(f64) -> [f64; 2]> {
+    pub of: F,
+    pub bend: f64,
+    pub touch: f64,
 }
 
 impl<F: FnMut(f64) -> [f64; 2]> Falling<F> {
     /// The first zero in (from, to], where the function is positive after `from`. An error after too many evaluations.
-    fn first_zero(&mut self, from: f64, to: f64) -> Result<Option<f64>, TooMany> {
+    pub fn first_zero(&mut self, from: f64, to: f64) -> Result<Option<f64>, TooMany> {
         let (mut t, [mut here, mut rate]) = (from, (self.of)(from));
         let (mut ends, mut count) = (vec![to], 0);
         while let Some(&end) = ends.last() {
             count += 1;
-            if count > PATIENCE {
+            if count > HEIGHTS {
                 return Err(TooMany);
             }
             let [there, fall] = (self.of)(end);
             let wide = end - t;
-            let tiny = wide < SHORT * end;
+            let tiny = wide < SHORT_CELL * end;
             if there > 0.0 {
                 let tilt = (here - there) / (self.bend * wide);
                 let low = if tilt.abs() >= 0.5 * wide {
@@ -141,31 +141,43 @@ impl Flight {
         let touch = TOUCH * (1.0 + reach + self.height);
         let mut from = 0.0;
         if let Some(order) = leaves {
-            let (near, series) = self.series(side, order, end);
-            if series[0] <= 0.0 {
-                return Ok(Some(0.0));
-            }
-            let power = |x: f64| {
-                let fold = |f: &dyn Fn(usize) -> f64| (0..series.len()).rev().fold(0.0, |sum, k| sum * x + f(k));
-                let rate = (1..series.len()).rev().fold(0.0, |sum, k| sum * x + k as f64 * series[k]);
-                [fold(&|k| series[k]), rate]
-            };
-            let bend: f64 = (2..series.len()).map(|k| (k * (k - 1)) as f64 * series[k].abs()).sum();
-            let mut near_start = Falling { of: power, bend: bend.max(1e-9 * series[0]), touch: 0.0 };
-            if let Some(x) = near_start.first_zero(0.0, 1.0)? {
-                return Ok(Some(x * near));
+            let (near, found) = self.leaves(side, order, end)?;
+            if found.is_some() {
+                return Ok(found);
             }
             from = near;
         }
         let mut falling = Falling { of: |t: f64| self.rim(side, t), bend, touch };
         // While the centre is too high no rim lands.
-        let parts = if rises > 0.0 { [(from, rises.min(end)), (comes.max(from), end)] } else { [(from, from), (comes.max(from), end)] };
+        let parts = if rises > 0.0 {
+            [(from, rises.min(end)), (comes.max(from), end)]
+        } else {
+            [(from, from), (comes.max(from), end)]
+        };
         for (from, to) in parts {
-            if to > from && let Some(t) = falling.first_zero(from, to)? {
+            if to > from
+                && let Some(t) = falling.first_zero(from, to)?
+            {
                 return Ok(Some(t));
             }
         }
         Ok(None)
+    }
+
+    /// The time up to which the series of a rim that touches at the start is used, and the landing up to then.
+    pub(super) fn leaves(&self, side: f64, order: usize, end: f64) -> Result<(f64, Option<f64>), TooMany> {
+        let (near, series) = self.series(side, order, end);
+        if series[0] <= 0.0 {
+            return Ok((near, Some(0.0)));
+        }
+        let power = |x: f64| {
+            let value = series.iter().rev().fold(0.0, |sum, c| sum * x + c);
+            let rate = (1..series.len()).rev().fold(0.0, |sum, k| sum * x + k as f64 * series[k]);
+            [value, rate]
+        };
+        let bend: f64 = (2..series.len()).map(|k| (k * (k - 1)) as f64 * series[k].abs()).sum();
+        let mut falling = Falling { of: power, bend: bend.max(1e-9 * series[0]), touch: 0.0 };
+        Ok((near, falling.first_zero(0.0, 1.0)?.map(|x| x * near)))
     }
 
     /// The series of h/t^k of a rim that touches at the start, in units of the time up to which it is used, and that time.
@@ -179,20 +191,21 @@ impl Flight {
         };
         let near = near.min(end);
         let (p, q) = (self.wide * self.begin.cos(), self.wide * self.begin.sin());
-        let (mut cosines, mut sines) = ([0.0; TERMS], [0.0; TERMS]);
+        let (mut cosines, mut sines) = ([0.0; RIM_TERMS], [0.0; RIM_TERMS]);
         let mut scale = 1.0;
-        for k in 0..TERMS {
+        for k in 0..RIM_TERMS {
             cosines[k] = [p, -q, -p, q][k % 4] * scale;
             scale *= self.rate * near / (k + 1) as f64;
         }
         (cosines[0], sines[0]) = (c, s);
         // The coefficients of s from s^2 = 1 - c^2.
-        for k in 1..TERMS {
+        for k in 1..RIM_TERMS {
             let square: f64 = (0..=k).map(|i| cosines[i] * cosines[k - i]).sum();
             let known: f64 = (1..k).map(|i| sines[i] * sines[k - i]).sum();
             sines[k] = -(square + known) / (2.0 * s);
         }
-        let mut all: Vec<f64> = (0..TERMS).map(|k| -(side * rim.ell * cosines[k] + rim.a * sines[k])).collect();
+        let mut all: Vec<f64> =
+            (0..RIM_TERMS).map(|k| -(side * rim.ell * cosines[k] + rim.a * sines[k])).collect();
         // The first coefficient is the normal velocity, which is known without a difference.
         all[1] = near * if side > 0.0 { self.from.lift } else { self.from.from_other_rim(&self.shape).lift };
         all[2] -= 0.5 * near * near;

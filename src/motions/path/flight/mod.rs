@@ -13,6 +13,7 @@
 //!
 //! Error: a few roundings times 1 + Lam t, and of w1, w2, phi and psi over sin(theta).
 
+pub(crate) mod air;
 pub(crate) mod lands;
 
 use crate::laws::body::Shape;
@@ -177,18 +178,32 @@ impl Flight {
         [if self.planar { 0.0 } else { along * per } + 0.0, 0.0 - self.a.sin() * sin * per]
     }
 
+    /// The first time at which theta exceeds a limit.
+    pub fn passes(&self, limit: f64) -> Option<f64> {
+        let share = (limit.cos() - self.a.cos() * self.b.cos()) / self.wide;
+        if self.from.angle.0.atan2(self.from.angle.1) > limit {
+            return Some(0.0);
+        }
+        (share.abs() < 1.0).then(|| (share.acos() - self.begin).rem_euclid(TAU) / self.rate)
+    }
+
     /// The body at a time since the start, as seen from the same rim.
     pub fn at(&self, t: f64) -> Aloft {
         if t == 0.0 {
             return self.from;
         }
-        let (rim, from) = (self.shape.rim, &self.from);
         let angle = self.angle(t);
         let [w1, w2] = self.tilting(t, angle);
-        let w3 = from.w[2];
         let [x, y] = self.analogies(t);
         let [x, y] = [x - self.napier[0], y - self.napier[1]];
-        let (phi, psi) = (from.pose[0] - (x - y), from.pose[1] + self.spin * t - (x + y));
+        self.placed(t, angle, [w1, w2, self.from.w[2]], [y - x, self.spin * t - (x + y)])
+    }
+
+    /// The body at a time since the start, where its orientation and its rotation are known; `turned` are the angles by
+    /// which phi and psi have grown.
+    fn placed(&self, t: f64, angle: (f64, f64), [w1, w2, w3]: [f64; 3], turned: [f64; 2]) -> Aloft {
+        let (rim, from) = (self.shape.rim, &self.from);
+        let (phi, psi) = (from.pose[0] + turned[0], from.pose[1] + turned[1]);
         let [forth, aside, up] = self.velocity;
         let (sin, cos) = (phi - from.pose[0]).sin_cos();
         let (v_h, v_2) = (forth * cos + aside * sin, aside * cos - forth * sin);

@@ -35,7 +35,7 @@ impl Stance {
         match self {
             Self::Slips => Kind::Lying,
             Self::Pivots { .. } => Kind::Pivoting,
-            Self::Rolls => Kind::RollingOnSide,
+            Self::Rolls => Kind::RollingOnItsSide,
         }
     }
 }
@@ -197,8 +197,7 @@ impl Flow<MARGINS> for LyingFlow {
     }
 
     fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; MARGINS] {
-        let y: [Dual<f64>; 7] =
-            core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
+        let y: [Dual<f64>; 7] = core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
         self.margins_of(&self.sloped, flat(&y))
     }
 

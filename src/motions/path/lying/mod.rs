@@ -12,12 +12,12 @@
 
 pub(crate) mod flow;
 
-use super::phases::BodyWalk;
+use super::phases::{BodyWalk, LyingPhase};
 use crate::error::Error;
 use crate::laws::contact::landing::mirrored;
 use crate::laws::contact::lying::Lying;
 use crate::laws::contact::slip::Friction;
-use crate::laws::contact::standstill::{Standstill, towards};
+use crate::laws::contact::standstill::{Standstill, standstill, towards};
 use crate::laws::contact::{Force, Table};
 use crate::laws::loss::GRACE;
 use crate::laws::state::State;
@@ -25,27 +25,17 @@ use crate::methods::flow::{Flow, Steps};
 use crate::methods::search::crossing;
 use crate::motions::halt::{Halt, TIME, loses, poses};
 use crate::motions::path::write;
-use crate::motions::walk::{Next, Pause, Phases, STILL, WalkStep, most_phases};
+use crate::motions::walk::{Next, Pause, Phases, STILL, WalkStep, after_rest, ending, most_phases};
 use crate::motions::{Ending, Kind};
 use core::f64::consts::{FRAC_PI_2, PI};
 use flow::{LyingFlow, Stance};
-
-/// A phase on both rims.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct LyingPhase {
-    pub flow: LyingFlow,
-    /// The number of changes of what dry losses hold, in succession at the same time, and the time of the last one.
-    still: u32,
-    since: f64,
-    count: usize,
-}
 
 /// A slip slower than this, in units of the largest speed, is none where a phase begins.
 const STILL_SLIP: f64 = 1e-12;
 /// Number of directions at which the growth of a slip is evaluated.
 const DIRECTIONS: usize = 240;
 /// A growth rate of the speed below this counts as zero.
-const GROWS: f64 = 1e-11;
+const SLIPS_FASTER: f64 = 1e-11;
 
 impl<const N: usize> BodyWalk<'_, N> {
     /// The laws of the body on both rims; None on a rolling table, on which it cannot turn.
@@ -66,6 +56,7 @@ impl<const N: usize> BodyWalk<'_, N> {
     }
 
     /// The phase of a body at theta = pi/2 with w2 = 0: on both rims, or on one of them that rises.
+    #[inline(never)]
     pub(super) fn settles_on_side(&mut self) -> Next {
         (self.at[0], self.at[1], self.at[3]) = (1.0, 0.0, 0.0);
         self.of.state = State { theta: FRAC_PI_2, w2: 0.0, ..self.of.state };
@@ -73,7 +64,8 @@ impl<const N: usize> BodyWalk<'_, N> {
         let ell = self.of.body.ell();
         let [w1, w3, u_h, u_2] = [self.at[2], self.at[4], self.at[5], self.at[6]];
         let other = u_2 - 2.0 * ell * w1;
-        let size = STILL_SLIP * [w1 * ell, w3, u_h, u_2].into_iter().fold(1.0, |most: f64, x| most.max(x.abs()));
+        let size =
+            STILL_SLIP * [w1 * ell, w3, u_h, u_2].into_iter().fold(1.0, |most: f64, x| most.max(x.abs()));
         let still = [u_2, other].map(|across| flow.law.dry && u_h.hypot(across) <= size);
         match still {
             [true, true] => {
@@ -84,7 +76,11 @@ impl<const N: usize> BodyWalk<'_, N> {
             [false, false] => {
                 let [here, there] = self.normals(&mut flow);
                 let mu = flow.law.strength;
-                let room = if flow.law.dry { ell + ell + mu * (u_h / u_h.hypot(other) - u_h / u_h.hypot(u_2)) } else { 1.0 };
+                let room = if flow.law.dry {
+                    ell + ell + mu * (u_h / u_h.hypot(other) - u_h / u_h.hypot(u_2))
+                } else {
+                    1.0
+                };
                 match (here >= 0.0, there >= 0.0) {
                     (true, true) if room > 0.0 => self.begins_stance(flow, Stance::Slips),
                     (true, true) => Next::Ends(Ending::Painleve),
@@ -138,7 +134,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         if stance == Stance::Rolls && self.at[4] == 0.0 && law.held[1] {
             return Next::Ends(Ending::Stops);
         }
-        self.of.lying = Some(LyingPhase { flow, still: 0, since: self.at[TIME], count: 0 });
+        self.of.lying = Some(Box::new(LyingPhase { flow, still: 0, since: self.at[TIME], count: 0 }));
         Next::Own(stance.kind())
     }
 
@@ -150,10 +146,11 @@ impl<const N: usize> BodyWalk<'_, N> {
         (self.at[0], self.at[1], self.at[3]) = (1.0, 0.0, 0.0);
         self.of.state.w2 = 0.0;
         let slips = self.at[5] != 0.0 || self.at[6] != 0.0 || !self.of.slide.law.dry;
-        if slips { Next::Slips } else { crate::motions::walk::after_rest(Phases::rests(self)) }
+        if slips { Next::Slips } else { after_rest(Phases::rests(self)) }
     }
 
     /// The phase of a body of which one rim is at rest while the other one slips: the other one rests if `other`.
+    #[inline(never)]
     fn rests_on_one(&mut self, mut flow: LyingFlow, other: bool) -> Next {
         let ways = flow.ways;
         flow.stance = Stance::Pivots { other };
@@ -173,14 +170,14 @@ impl<const N: usize> BodyWalk<'_, N> {
         };
         let (state, _) = seen(other);
         let friction = self.friction();
-        let found = crate::laws::contact::standstill::standstill(&self.of.body, &state, &friction, &self.ask.losses);
+        let found = standstill(&self.of.body, &state, &friction, &self.ask.losses);
         let alone = matches!(found, Standstill::Sticks | Standstill::Slips { .. });
         if alone && self.lifts(&state, found) {
             if other {
                 self.turns_over();
             }
             self.at[3] = 0.0;
-            return crate::motions::walk::after_rest(found);
+            return after_rest(found);
         }
         let (state, slip) = seen(!other);
         let law = &self.of.slide.law;
@@ -196,7 +193,9 @@ impl<const N: usize> BodyWalk<'_, N> {
         let law = &self.of.slide.law;
         let w = [state.w1, 0.0, state.w3];
         match found {
-            Standstill::Slips { alpha, .. } => law.towards((1.0, 0.0), w, [0.0; 2], towards(alpha)).w[1] > 0.0,
+            Standstill::Slips { alpha, .. } => {
+                law.towards((1.0, 0.0), w, [0.0; 2], towards(alpha)).w[1] > 0.0
+            }
             _ => {
                 let ell = self.of.body.ell();
                 let (i3, w1, w3) = (self.of.body.i3(), state.w1, state.w3);
@@ -207,6 +206,7 @@ impl<const N: usize> BodyWalk<'_, N> {
 
     /// A slip of the rim at rest, which the state is told from hereafter, while the other one slips, too. `against` is the
     /// direction of a slip that begins continuously.
+    #[inline(never)]
     fn slips_off_two(&mut self, mut flow: LyingFlow, other: bool, against: Option<f64>) -> Next {
         if other {
             self.turns_over();
@@ -236,18 +236,21 @@ impl<const N: usize> BodyWalk<'_, N> {
                 let (a, b) = (turns(low).0, turns(high).0);
                 (a.signum() != b.signum()).then(|| crossing(|alpha| turns(alpha).0, low, high, a, b))
             });
-            let grows = all.map(|alpha| (alpha, turns(alpha))).filter(|(_, (_, growth, sound))| *sound && *growth > GROWS);
+            let grows = all
+                .map(|alpha| (alpha, turns(alpha)))
+                .filter(|(_, (_, growth, sound))| *sound && *growth > SLIPS_FASTER);
             grows.map(|(alpha, (_, growth, _))| (alpha, growth)).max_by(|a, b| a.1.total_cmp(&b.1))
         });
         let Some((alpha, growth)) = found else { return Next::Ends(Ending::Painleve) };
-        self.of.lying = Some(LyingPhase { flow, still: 0, since: self.at[TIME], count: 0 });
+        self.of.lying = Some(Box::new(LyingPhase { flow, still: 0, since: self.at[TIME], count: 0 }));
         Next::SlipsOff { alpha, growth }
     }
 
     /// Follows a phase on both rims, or begins its flow.
+    #[inline(never)]
     pub(super) fn lies(&mut self) -> Option<WalkStep<N>> {
-        let phase = self.of.lying?;
-        if phase.flow.stance == Stance::Rolls && self.ask.losses.is_none() {
+        let flow = self.of.lying.as_ref()?.flow;
+        if flow.stance == Stance::Rolls && self.ask.losses.is_none() {
             let (begin, began) = (self.at, self.at[TIME]);
             while let Some(t) = self.until() {
                 let mut y = begin;
@@ -257,7 +260,7 @@ impl<const N: usize> BodyWalk<'_, N> {
                     let way = begin[4] * (t - began);
                     (y[10], y[11], y[12]) = (begin[10] + way, begin[11] - way * sin, begin[12] + way * cos);
                 }
-                self.writes_lying(&phase.flow, &y);
+                self.writes_lying(&flow, &y);
             }
             self.of.lying = None;
             return None;
@@ -266,13 +269,14 @@ impl<const N: usize> BodyWalk<'_, N> {
     }
 
     /// Follows the flow of a phase on both rims.
+    #[inline(never)]
     pub(super) fn lies_on(
         &mut self,
         y: [f64; N],
         steps: Steps,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Pause<N>, Error> {
-        let Some(LyingPhase { flow, .. }) = self.of.lying else { return Ok(Pause::No) };
+        let Some(flow) = self.of.lying.as_ref().map(|phase| phase.flow) else { return Ok(Pause::No) };
         let first = self.made.motion.states.len();
         let mut points = Vec::new();
         let mut write = |y: &[f64; N]| points.push(*y);
@@ -292,12 +296,14 @@ impl<const N: usize> BodyWalk<'_, N> {
 
     /// Ends a phase on both rims at the numbers `y`, and chooses the next one. Returns the numbers from which the same
     /// phase continues, if it does.
+    #[inline(never)]
     pub(super) fn stops_lying(&mut self, y: [f64; N], halt: Halt) -> Option<[f64; N]> {
         let mut phase = self.of.lying.take()?;
         self.at = y;
         (self.at[0], self.at[1], self.at[3]) = (1.0, 0.0, 0.0);
         self.sets_state();
-        self.made.path.slipping += if phase.flow.stance == Stance::Slips { y[TIME] - self.began } else { 0.0 };
+        self.made.path.slipping +=
+            if phase.flow.stance == Stance::Slips { y[TIME] - self.began } else { 0.0 };
         let next = match halt {
             Halt::Time | Halt::Pause => return None,
             Halt::Rises => self.rises_on(true),
@@ -347,7 +353,7 @@ impl<const N: usize> BodyWalk<'_, N> {
                 self.settles_on_side()
             }
             Halt::Standstill | Halt::OtherStandstill => self.settles_on_side(),
-            halt => Next::Ends(crate::motions::walk::ending(halt)),
+            halt => Next::Ends(ending(halt)),
         };
         self.continues_with(next);
         None
