@@ -44,6 +44,8 @@ pub(crate) struct RimImpact {
     pub lift: f64,
     /// a_h, a_2, a_n and b.
     pub light: [f64; 4],
+    /// Tolerance of a step along an impact whose slip turns, at least 3e-14.
+    pub tol: f64,
 }
 
 /// The impulses P_h, P_2 and P_n, and the velocity of the lowest point after the impact.
@@ -85,14 +87,11 @@ pub(crate) fn turned(
     ]
 }
 
-/// A slip slower than this share of the speed counts as none.
+/// A slip slower than this share of the speed, or of the normal velocity, counts as none.
 const STOPPED: f64 = 1e-15;
 /// A slip whose sine is below this share runs along the lean, where its direction stays.
 const STRAIGHT: f64 = 1e-14;
-/// The logarithm of a slip, in units of the normal velocity, at which it has stopped.
-const STOPS_AT: f64 = -39.0;
-/// Tolerance of a step along the impact, and the largest number of steps.
-const IMPACT_TOL: f64 = 3e-14;
+/// Largest number of steps along an impact.
 const IMPACT_STEPS: usize = 5_000;
 /// Largest number of Newton's steps to an end of compression or of the impact.
 const NEWTON: u32 = 60;
@@ -218,25 +217,22 @@ impl RimImpact {
         if way[1].abs() < STRAIGHT || b.abs() + turns.abs() < STOPPED {
             return straight(course, way, speed);
         }
-        // alpha, ln sigma, P_h, P_2, p, u_n and W, with dp = sigma/(1 + sigma) dx.
-        let rates = |v: &[f64; 7], to: &mut [f64; 7]| {
-            let (sin, cos) = v[0].sin_cos();
-            let sigma = v[1].exp();
-            let (slow, pace) = (
-                1.0 / (1.0 + sigma),
-                if sigma > 1.0 { 1.0 / (1.0 + 1.0 / sigma) } else { sigma / (1.0 + sigma) },
-            );
-            *to = [
-                -(sin * (turns * cos + b) * slow),
-                slows([cos, sin]) * slow,
-                -(mu * cos * pace),
-                -(mu * sin * pace),
-                pace,
-                (a_n - mu * b * cos) * pace,
-                v[5] * pace,
+        // u_h, u_2, P_h, P_2, p, u_n and W, with dp = sigma/(1 + sigma) dx, in which nothing is singular.
+        let rates = |&[u_h, u_2, _, _, _, lift, _]: &[f64; 7], to: &mut [f64; 7]| {
+            let sigma = (u_h * u_h + u_2 * u_2).sqrt();
+            let (per, pull) = (1.0 / (1.0 + sigma), mu * u_h);
+            let change = [
+                b * sigma - a_h * pull,
+                -(mu * a_2 * u_2),
+                -pull,
+                -(mu * u_2),
+                sigma,
+                a_n * sigma - b * pull,
+                lift * sigma,
             ];
+            *to = change.map(|x| per * x);
         };
-        let mut place = [slip[1].atan2(slip[0]), speed.ln(), 0.0, 0.0, 0.0, -1.0, 0.0];
+        let mut place = [slip[0], slip[1], 0.0, 0.0, 0.0, -1.0, 0.0];
         let (mut stages, mut h) = ([place; rk8::STAGES], 0.1);
         let (mut done, keeps) = (false, course.keeps);
         for _ in 0..IMPACT_STEPS {
@@ -247,7 +243,11 @@ impl RimImpact {
                 (core::array::from_fn::<f64, 7, _>(|i| place[i] + made.change[i]), made)
             };
             let (there, made) = part(h);
-            let error = made.error(|_| 1.0 / IMPACT_TOL, 7.0);
+            // The error of a slip is relative to a fast one, and so small beside a slow one that its direction stays.
+            let sigma = place[0].hypot(place[1]);
+            let per_slip =
+                if sigma > 1.0 { 1.0 / (self.tol * sigma) } else { (1.0 / self.tol).max(1e3 / sigma) };
+            let error = made.error(|i| if i < 2 { per_slip } else { 1.0 / self.tol }, 7.0);
             if error.is_nan() || error > 1.0 {
                 h *= rk8::growth(error).min(0.7);
                 continue;
@@ -262,8 +262,9 @@ impl RimImpact {
             let mut from = 0.0;
             while end.is_none() && margin(&there, compressed) <= 0.0 {
                 let now = compressed;
-                let (mut low, mut high, mut x) = (from, h, 0.5 * (from + h));
-                let mut at = place;
+                let (mut low, mut high, mut at) = (from, h, place);
+                let (begin, left) = (margin(&part(from).0, now).max(0.0), margin(&there, now));
+                let mut x = from + (h - from) * (begin / (begin - left)).clamp(0.01, 0.99);
                 for _ in 0..NEWTON {
                     let mut rate = at;
                     at = part(x).0;
@@ -292,16 +293,18 @@ impl RimImpact {
             course.compressed = compressed;
             place = end.unwrap_or(there);
             done = end.is_some();
+            let sigma = place[0].hypot(place[1]);
             // Along the lean, where the slip may last long, the direction stays.
-            if done || place[1] < STOPS_AT || place[0].sin().abs() < STRAIGHT {
+            if done || sigma < STOPPED || place[1].abs() < STRAIGHT * sigma {
                 break;
             }
             h *= rk8::growth(error);
         }
-        let [_, _, p_h, p_2, p, lift, work] = place;
+        let [u_h, u_2, p_h, p_2, p, lift, work] = place;
         course.impulse = [p_h, p_2, p];
         (course.lift, course.work) = (lift, work);
-        done || place[1] >= STOPS_AT && straight(course, [place[0].cos().signum(), 0.0], place[1].exp())
+        let sigma = u_h.hypot(u_2);
+        done || sigma >= STOPPED && straight(course, [u_h.signum(), 0.0], sigma)
     }
 }
 

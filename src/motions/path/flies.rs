@@ -20,11 +20,15 @@ use crate::laws::contact::{FLAT, Force, Table};
 use crate::laws::state::State;
 use crate::motions::halt::{TIME, loses, poses};
 use crate::motions::walk::Next;
-use crate::motions::{Ending, Kind, Strike};
+use crate::motions::{Ending, Kind, Method, Strike};
 use core::f64::consts::{FRAC_PI_2, PI};
 
-/// Share of the state that the bounces which are summed may change.
+/// Share of the state that the bounces which are summed may change, at least and at most.
 const TAIL: f64 = 1e-13;
+const LONGEST_TAIL: f64 = 1e-10;
+/// The least tolerance of a step along an impact, and this tolerance as a share of that of the motion.
+const IMPACT_TOL: f64 = 3e-14;
+const IMPACT_SHARE: f64 = 0.1;
 /// Both rims rattle until |cos theta| and the normal velocities of both are below this.
 const RATTLED: f64 = 1e-7;
 /// Error of the rest of a rattle, in units of the square of its velocities.
@@ -258,7 +262,12 @@ impl<const N: usize> BodyWalk<'_, N> {
     /// The impact at these numbers; None where a rolling table has no answer.
     fn impact(&self, from: &Aloft, e: f64) -> Option<Struck> {
         let light = lightness(&self.of.slide.law.shape, from.angle);
-        RimImpact { slip: from.slip, lift: from.lift, light }.on(&self.ask.table, e)
+        RimImpact { slip: from.slip, lift: from.lift, light, tol: self.impact_tol() }.on(&self.ask.table, e)
+    }
+
+    /// Tolerance of a step along an impact.
+    fn impact_tol(&self) -> f64 {
+        (IMPACT_SHARE * self.of.slide.tol).max(IMPACT_TOL)
     }
 
     /// Whether the bounces after an impact are over so soon that they are summed.
@@ -266,15 +275,24 @@ impl<const N: usize> BodyWalk<'_, N> {
         let law = &self.of.slide.law;
         let light @ [.., a_n, b] = lightness(&law.shape, from.angle);
         let (fall, w) = (a_n * force, turned(&law.shape, from.angle, from.w, struck.impulse));
+        // The tolerance of a sweep is that of both of its runs, which so end their bounces together.
+        let tail = match self.ask.method {
+            Method::Tolerance(tol) => (IMPACT_SHARE * tol).clamp(TAIL, LONGEST_TAIL),
+            _ => TAIL,
+        };
+        if 2.0 * struck.lift * struck.lift >= tail * fall {
+            return false;
+        }
         let mut ratio = e;
         if struck.hit == Hit::Sticks {
             // Each bounce meets the slip that the flight before has made.
             let [along, across] = law.towards(from.angle, w, [0.0; 2], [0.0; 2]).u;
             let slip = [along - b * force, across].map(|rate| 2.0 * rate / fall);
-            ratio =
-                RimImpact { slip, lift: -1.0, light }.on(&self.ask.table, e).map_or(1.0, |next| next.lift);
+            ratio = RimImpact { slip, lift: -1.0, light, tol: self.impact_tol() }
+                .on(&self.ask.table, e)
+                .map_or(1.0, |next| next.lift);
         }
-        ratio < 1.0 && 2.0 * struck.lift * struck.lift < TAIL * fall * (1.0 - ratio)
+        ratio < 1.0 && 2.0 * struck.lift * struck.lift < tail * fall * (1.0 - ratio)
     }
 
     /// The numbers after an impact, which is recorded.
