@@ -18,8 +18,10 @@
 use super::slip::Friction;
 use super::table::Table;
 use crate::laws::body::Shape;
+use crate::methods::flow::only_zero;
 use crate::methods::rk8;
 use crate::methods::search::crossing;
+use crate::numbers::Dual;
 use crate::numbers::codes::coded;
 
 coded! {
@@ -93,8 +95,6 @@ const STOPPED: f64 = 1e-15;
 const STRAIGHT: f64 = 1e-14;
 /// Largest number of steps along an impact.
 const IMPACT_STEPS: usize = 5_000;
-/// Largest number of Newton's steps to an end of compression or of the impact.
-const NEWTON: u32 = 60;
 
 /// The impact so far, with all velocities in units of the first normal velocity.
 struct ImpactCourse {
@@ -262,26 +262,18 @@ impl RimImpact {
             let mut from = 0.0;
             while end.is_none() && margin(&there, compressed) <= 0.0 {
                 let now = compressed;
-                let (mut low, mut high, mut at) = (from, h, place);
-                let (begin, left) = (margin(&part(from).0, now).max(0.0), margin(&there, now));
-                let mut x = from + (h - from) * (begin / (begin - left)).clamp(0.01, 0.99);
-                for _ in 0..NEWTON {
-                    let mut rate = at;
-                    at = part(x).0;
+                let mut on = |x: f64| {
+                    let (at, mut rate) = (part(from + x * (h - from)).0, place);
                     rates(&at, &mut rate);
-                    let value = margin(&at, now);
-                    if value > 0.0 {
-                        low = x;
-                    } else {
-                        high = x;
-                    }
-                    let next = x + value / if now.is_none() { rate[5] } else { rate[6] };
-                    let next = if low < next && next < high { next } else { 0.5 * (low + high) };
-                    if (next - x).abs() <= f64::EPSILON * h {
-                        break;
-                    }
-                    x = next;
-                }
+                    let slope = if now.is_none() { -rate[5] } else { -rate[6] };
+                    Dual { value: margin(&at, now), slope: slope * (h - from) }
+                };
+                let (first, last) = (on(0.0), on(1.0));
+                let known = [first.value.max(f64::MIN_POSITIVE), first.slope, last.value, last.slope];
+                let x = only_zero(&mut on, known)
+                    .unwrap_or_else(|| crossing(|x| on(x).value, 0.0, 1.0, known[0], last.value));
+                let x = from + x * (h - from);
+                let at = part(x).0;
                 match now {
                     None => (compressed, from) = (Some(at[6]), x),
                     Some(_) => end = Some(at),

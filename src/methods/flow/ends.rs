@@ -245,7 +245,10 @@ fn lowest(a: Dual<f64>, b: Dual<f64>, h: f64) -> f64 {
 /// the cubic with the values and slopes of the margin at both ends. That cubic is almost exact, and an
 /// iteration that moves by less than `NEAR` leaves an error of the square of that. None if the iteration
 /// leaves [0, 1] or does not converge.
-pub(super) fn only_zero(on: impl Fn(f64) -> Dual<f64>, [begin, rise, end, last]: [f64; 4]) -> Option<f64> {
+pub(crate) fn only_zero(
+    mut on: impl FnMut(f64) -> Dual<f64>,
+    [begin, rise, end, last]: [f64; 4],
+) -> Option<f64> {
     const NEAR: f64 = 1e-8;
     let (square, cube) = (3.0 * (end - begin) - 2.0 * rise - last, 2.0 * (begin - end) + rise + last);
     let cubic = |x: f64| begin + x * (rise + x * (square + x * cube));

@@ -14,6 +14,8 @@ pub(crate) mod lanes;
 #[cfg(feature = "many")]
 pub(crate) mod schedule;
 
+pub(crate) use ends::only_zero;
+
 use super::rk8::{self, growth, plus};
 use crate::error::Error;
 use crate::numbers::{Dual, IN_REGISTERS, here, in_registers};

@@ -99,10 +99,9 @@ impl Flight {
     /// Height and vertical velocity of the lowest point of a rim. The height is that of the start and its change, which
     /// keeps the digits of a small one.
     fn rim(&self, side: f64, t: f64) -> [f64; 2] {
-        let ((s, c), (s0, c0), rim) = (self.angle(t), self.from.angle, self.shape.rim);
-        let cosine_rate = -(self.wide * self.rate * (self.begin + self.rate * t).sin());
+        let ([cosine, cosine_rate], (s0, c0), rim) = (self.cosine(t), self.from.angle, self.shape.rim);
+        let (s, c) = self.angle_of(t, cosine);
         let sine_rate = if s > 0.0 { -(c * cosine_rate / s) } else { 0.0 };
-        let cosine = self.cosine_change(t);
         let sine = -(cosine * (c + c0) / (s + s0));
         let first = if side > 0.0 { self.from.height } else { self.from.height + 2.0 * rim.ell * c0 };
         let [.., up] = self.velocity;
@@ -190,7 +189,7 @@ impl Flight {
             1.0 / (1.0 + self.rate)
         };
         let near = near.min(end);
-        let (p, q) = (self.wide * self.begin.cos(), self.wide * self.begin.sin());
+        let [p, q] = self.swing;
         let (mut cosines, mut sines) = ([0.0; RIM_TERMS], [0.0; RIM_TERMS]);
         let mut scale = 1.0;
         for k in 0..RIM_TERMS {

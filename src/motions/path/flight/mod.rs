@@ -87,6 +87,8 @@ pub(crate) struct Flight {
     b: f64,
     begin: f64,
     wide: f64,
+    /// sin a sin b times cosine and sine of C0.
+    swing: [f64; 2],
     /// X and Y at the start.
     napier: [f64; 2],
     /// Whether the body only tumbles in a vertical plane, so that rounding must not make it turn.
@@ -121,6 +123,7 @@ impl Flight {
             b,
             begin,
             wide: a.sin() * b.sin(),
+            swing: [begin.cos(), begin.sin()].map(|x| a.sin() * b.sin() * x),
             napier: [0.0; 2],
             planar: w1 == 0.0 && w3 == 0.0,
         };
@@ -142,16 +145,21 @@ impl Flight {
         [along(less.cos(), sum.cos()), along(less.sin(), sum.sin())]
     }
 
-    /// The change of cos theta since the start.
-    fn cosine_change(&self, t: f64) -> f64 {
-        let half = (0.5 * self.rate * t).sin();
-        let [p, q] = [self.begin.cos(), self.begin.sin()].map(|x| self.wide * x);
-        -(2.0 * p * half * half) - q * (self.rate * t).sin()
+    /// The change of cos theta since the start, and its rate.
+    fn cosine(&self, t: f64) -> [f64; 2] {
+        let (sin, cos) = (0.5 * self.rate * t).sin_cos();
+        let ([p, q], twice) = (self.swing, 2.0 * sin);
+        [-(twice * (p * sin + q * cos)), -(self.rate * (q + twice * (p * cos - q * sin)))]
     }
 
     /// Sine and cosine of theta at a time.
     fn angle(&self, t: f64) -> (f64, f64) {
-        let c = self.from.angle.1 + self.cosine_change(t);
+        self.angle_of(t, self.cosine(t)[0])
+    }
+
+    /// Sine and cosine of theta at a time, where the change of the cosine is known.
+    fn angle_of(&self, t: f64, change: f64) -> (f64, f64) {
+        let c = self.from.angle.1 + change;
         if c.abs() < FAR {
             return (((1.0 - c) * (1.0 + c)).sqrt(), c);
         }
