@@ -60,14 +60,16 @@ pub struct Pose {
     pub phi: Angle,
     /// Spin angle since the start.
     pub psi: Angle,
-    /// Contact point on the table, in R.
+    /// Contact point on the table, in R; the point below the lowest one of a rim in the air.
     pub contact_point: Point2<f64>,
+    /// Height of the lowest point of the rim over the table, in R; 0 on the table.
+    pub height: f64,
 }
 
 impl Pose {
     /// The pose in which every motion starts.
     pub fn start() -> Self {
-        Self { phi: Angle::default(), psi: Angle::default(), contact_point: Point2::origin() }
+        Self { phi: Angle::default(), psi: Angle::default(), contact_point: Point2::origin(), height: 0.0 }
     }
 
     /// The rotation from the body's own axes, of which e3 is the third, to the axes of the laboratory.
@@ -84,7 +86,11 @@ impl Pose {
         let (sin, cos) = self.phi.rest.sin_cos();
         let rim = body.shape().rim;
         let out = -rim.lever((s, c));
-        Point3::new(self.contact_point.x + out * cos, self.contact_point.y + out * sin, rim.height((s, c)))
+        Point3::new(
+            self.contact_point.x + out * cos,
+            self.contact_point.y + out * sin,
+            rim.height((s, c)) + self.height,
+        )
     }
 
     /// The contact point on a smooth table, where the centre stays above one point of the table.

@@ -13,7 +13,8 @@ pub(crate) fn pose_distance(a: &Pose, b: &Pose) -> f64 {
     let angle = |a: crate::laws::pose::Angle, b: crate::laws::pose::Angle| {
         ((a.turns - b.turns) * core::f64::consts::TAU + (a.rest - b.rest)).abs()
     };
-    angle(a.phi, b.phi).max(angle(a.psi, b.psi)).max((a.contact_point - b.contact_point).norm())
+    let moved = (a.contact_point - b.contact_point).norm().max((a.height - b.height).abs());
+    angle(a.phi, b.phi).max(angle(a.psi, b.psi)).max(moved)
 }
 
 /// Relative error of a number of a state from a few roundings.

@@ -24,4 +24,4 @@ mod within;
 
 pub use ask::{Ask, Method, Start};
 pub use moving::Moving;
-pub use result::{Ending, Event, Kind, Motion, Path, Phase, Strike};
+pub use result::{Ending, Event, Hit, Kind, Motion, Path, Phase, Strike};

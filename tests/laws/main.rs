@@ -13,6 +13,7 @@ mod ensemble;
 mod equations;
 mod evaluations;
 mod exact;
+mod flight;
 mod hard_cases;
 mod integrators;
 mod leaving;

@@ -136,7 +136,7 @@ impl Desk {
 
     /// Writes equally spaced rows: t, theta, phi and psi without whole turns, and the contact point.
     pub fn poses(&mut self, [from, to, n]: [f64; 3]) -> Answer {
-        for Row { t, y, pose: Pose { phi, psi, contact_point }, .. } in self.rows(n, from, to)? {
+        for Row { t, y, pose: Pose { phi, psi, contact_point, .. }, .. } in self.rows(n, from, to)? {
             self.out.extend([t, y.theta, phi.rest, psi.rest, contact_point.x, contact_point.y]);
         }
         Ok(())

@@ -128,5 +128,5 @@ fn moved(from: &Pose, by: &Pose) -> Pose {
     let (mut at, to) = (from.contact_point, by.contact_point);
     at.x += to.x * cos - to.y * sin;
     at.y += to.x * sin + to.y * cos;
-    Pose { phi: added(from.phi, by.phi), psi: added(from.psi, by.psi), contact_point: at }
+    Pose { phi: added(from.phi, by.phi), psi: added(from.psi, by.psi), contact_point: at, height: by.height }
 }

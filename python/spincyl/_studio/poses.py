@@ -7,6 +7,9 @@ of one period suffice.
 
 A stone has no axis of symmetry for such angles: its knots hold the four components of a quaternion, which
 is normalised after interpolation.
+
+A body that leaves the table has the height of its centre as well, and two knots at each kink, an instant
+apart, with the slopes before and after it. Its angles are told from the first rim throughout.
 """
 
 from contextlib import suppress
@@ -21,6 +24,7 @@ from spincyl._input.numbers import Floats
 from spincyl._phases import rubs
 from spincyl._slip import lever
 from spincyl._state import State
+from spincyl._studio.aloft import Aloft, aloft, goes_up, parts
 from spincyl._studio.surface import rotations
 from spincyl._swing import swing
 
@@ -72,12 +76,17 @@ def seen(m: "Motion", t: Floats, *names: str) -> list[Floats]:
 def pace(m: "Motion") -> float:
     """Duration of a nutation: the exact period, or with friction the shortest period of any phase.
 
-    With losses it is the mean over the motion, since nutations become shorter as a disk falls. For a stone it
-    is roughly the mean duration of its rockings, from the number of evaluations.
+    With losses it is the mean over the motion, since nutations become shorter as a disk falls, and so it is of a
+    body that leaves the table. For a stone it is roughly the mean duration of its rockings, from the number of
+    evaluations.
     """
     if isinstance(m.body, Ellipsoid):
         many = m.nfev / _EVALUATIONS * (m._setting / 1e-14) ** 0.1
         return float(abs(_end(m) - m._asked.t0) / max(many, 1e-3))
+    if goes_up(m):
+        first, last = span(m)
+        many = sum((end - begin) * often for begin, end, often in parts(m, first, last))
+        return (last - first) / many if many > 0 else np.inf
     if m.losses is not None:
         return _mean_pace(m)
     if not isinstance(m.contact, Coulomb | Viscous):
@@ -151,7 +160,8 @@ def knots(m: "Motion", tolerance: float = 2e-3, until: float | None = None) -> F
     -------
     ndarray, shape (n, 11)
         t; theta, phi, psi, x and y of the centre; the slopes of these five. Ascending times. For a stone
-        (n, 13): x, y, z of its quaternion in place of the angles, and w after the centre.
+        (n, 13): x, y, z of its quaternion in place of the angles, and w after the centre. For a body that
+        leaves the table (n, 13): z of the centre after x and y.
 
     Raises
     ------
@@ -166,12 +176,14 @@ def knots(m: "Motion", tolerance: float = 2e-3, until: float | None = None) -> F
     if m.losses is not None:
         share = 1 - (1 - share) ** 3  # a body that comes to rest is fastest at the end
     t = first + (last - first) * share
-    open_ = np.ones(len(t) - 1, bool)
+    up = aloft(m, first, last) if goes_up(m) else None
+    t = t if up is None else _between(m, up, first, last)
+    open_ = ~_kinks(t, up)
     smallest = 1e-8 * (last - first)
     while True:
-        found = _poses(m, t)
+        found = _poses(m, t, up)
         left, right = found[:-1][open_], found[1:][open_]
-        missed = (_missed(m, left, right) > tolerance) & (right[:, 0] - left[:, 0] > smallest)
+        missed = (_missed(m, left, right, up) > tolerance) & (right[:, 0] - left[:, 0] > smallest)
         if not missed.any():
             break
         if len(t) + missed.sum() > _MOST:
@@ -184,22 +196,42 @@ def knots(m: "Motion", tolerance: float = 2e-3, until: float | None = None) -> F
     # merge pairs of intervals where one cubic suffices
     while len(found) > 2:
         dropped = np.arange(1, len(found) - 1, 2)
+        kinks = _kinks(found[:, 0], up)
+        dropped = dropped[~(kinks[dropped - 1] | kinks[dropped])]
         left, right = found[dropped - 1], found[dropped + 1]
         kept = found[dropped]
         ends = _apart(m, _cubic(left, right, kept[:, 0]), kept[:, 1 : _wide(found)])
-        fits = np.maximum(ends, _missed(m, left, right)) < tolerance / 2
+        fits = np.maximum(ends, _missed(m, left, right, up)) < tolerance / 2
         if not fits.any():
             break
         found = np.delete(found, dropped[fits], axis=0)
     return found
 
 
-def _missed(m: "Motion", left: Floats, right: Floats) -> Floats:
+def _between(m: "Motion", up: Aloft, first: float, last: float) -> Floats:
+    """The first times of knots of a motion with kinks: both sides of each, begins of phases, times between."""
+    times = [[first, last], up.edges.ravel(), up.begins]
+    for begin, end, often in parts(m, first, last):
+        count = 4 + int(3 * (end - begin) * often)
+        times.append(begin + (end - begin) * np.arange(1, count) / count)
+    t = np.unique(np.concatenate(times))
+    inside = (up.edges[:, :1] < t) & (t < up.edges[:, 1:])
+    close = np.append(False, np.diff(t) < 1e-7 * (last - first)) & ~np.isin(t, up.edges)
+    found: Floats = t[~(inside.any(axis=0) | close)]
+    return found
+
+
+def _kinks(t: Floats, up: Aloft | None) -> np.ndarray:
+    """Whether the interval between these times and the next is a kink."""
+    return np.zeros(len(t) - 1, bool) if up is None else np.isin(t[:-1], up.edges[:, 0])
+
+
+def _missed(m: "Motion", left: Floats, right: Floats, up: Aloft | None) -> Floats:
     """Largest error of the cubics between these knots, at points that no symmetry of a motion favours."""
     worst = np.zeros(len(left))
     for share in (0.19, 0.46, 0.77):
         t = left[:, 0] + share * (right[:, 0] - left[:, 0])
-        worst = np.maximum(worst, _apart(m, _cubic(left, right, t), _places(m, t)))
+        worst = np.maximum(worst, _apart(m, _cubic(left, right, t), _places(m, t, up)))
     return worst
 
 
@@ -226,22 +258,27 @@ def _stood(stone: Ellipsoid, numbers: Floats) -> tuple[Floats, Floats, Floats]:
     return q, place, place + arm[:, :2]
 
 
-def _places(m: "Motion", t: Floats) -> Floats:
+def _places(m: "Motion", t: Floats, up: Aloft | None) -> Floats:
     """The numbers of poses along a last axis, in the order of `knots`."""
     if isinstance(m.body, Ellipsoid):
         turn, centre = seen(m, t, "orientation", "centre")
         return np.concatenate([turn[..., :3], centre[..., :2], turn[..., 3:]], -1)
     theta, phi, psi, centre = seen(m, t, "theta", "phi", "psi", "centre")
+    if up is not None:
+        return np.concatenate([up.from_first(t, theta, phi, psi), centre], -1)
     found: Floats = np.stack([theta, phi, psi, centre[..., 0], centre[..., 1]], -1)
     return found
 
 
-def _poses(m: "Motion", t: Floats) -> Floats:
+def _poses(m: "Motion", t: Floats, up: Aloft | None) -> Floats:
     """Rows of `knots` at ascending times; slopes are differences over a thousandth of the interval."""
-    gaps = np.diff(t)
+    kinks = _kinks(t, up)
+    gaps = np.where(kinks, np.inf, np.diff(t))
     h = 1e-3 * np.minimum(np.append(gaps, gaps[-1]), np.append(gaps[0], gaps))
     around = np.clip(np.stack([t - h, t, t + h], -1), t[0], t[-1])
-    y = _places(m, around)
+    # beside a kink only on its own side
+    around[1:, 0][kinks], around[:-1, 2][kinks] = t[1:][kinks], t[:-1][kinks]
+    y = _places(m, around, up)
     slopes = (y[:, 2] - y[:, 0]) / (around[:, 2] - around[:, 0])[:, np.newaxis]
     return np.column_stack([t, y[:, 1], slopes])
 

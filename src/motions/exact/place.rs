@@ -44,7 +44,7 @@ impl Swing {
         if self.is_steady() {
             let angle = |rate: f64| Angle::of(Sum::product(rate, t));
             let (phi, psi) = (angle(self.start.precession()), angle(self.start.spin()));
-            return Some(Pose { phi, psi, contact_point: self.position(t)? });
+            return Some(Pose { phi, psi, contact_point: self.position(t)?, height: 0.0 });
         }
         if self.landing(t).is_some_and(|(limit, _)| t.abs() > limit) {
             return None;
@@ -83,7 +83,7 @@ impl Swing {
             }
             _ => Pose::below_centre(&self.body, &self.start, &self.state(t), phi.rest),
         };
-        Some(Pose { phi, psi, contact_point: contact })
+        Some(Pose { phi, psi, contact_point: contact, height: 0.0 })
     }
 
     /// The contact point's displacement over one period from the lower turning point, where phi = 0.

@@ -34,7 +34,7 @@ use super::ask::{check_flow, check_times_after};
 use super::exact;
 use super::followed::{Followed, judged};
 use super::{Ask, Motion, Start};
-pub use super::{Kind, Path, Phase};
+pub use super::{Hit, Kind, Path, Phase, Strike};
 use crate::error::{Error, within};
 use crate::laws::body::Body;
 use crate::methods::SHORT_CODE;

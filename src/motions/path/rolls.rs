@@ -118,6 +118,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         Pose {
             phi: turned(phi, pose.phi),
             psi: turned(psi, pose.psi),
+            height: 0.0,
             contact_point: Point2::new(x + at.x * cos - at.y * sin, y + at.x * sin + at.y * cos),
         }
     }

@@ -23,11 +23,16 @@ pub(super) fn state<const N: usize>(y: &[f64; N]) -> State {
 /// The pose from the numbers of a flow.
 pub(super) fn pose<const N: usize>(y: &[f64; N]) -> Pose {
     let turn = if y[0] < 0.0 { PI } else { 0.0 };
+    posed([y[9] + turn, y[10] - turn, y[11], y[12]], 0.0)
+}
+
+/// The pose with these angles, the contact point at this place, and the lowest point at this height.
+pub(super) fn posed([phi, psi, x, y]: [f64; 4], height: f64) -> Pose {
     let angle = |angle: f64| {
         let turns = (angle / TAU).round();
         Angle { turns, rest: angle - turns * TAU }.settled()
     };
-    Pose { phi: angle(y[9] + turn), psi: angle(y[10] - turn), contact_point: Point2::new(y[11], y[12]) }
+    Pose { phi: angle(phi), psi: angle(psi), contact_point: Point2::new(x, y), height }
 }
 
 /// The errors of theta and of w from steps of this tolerance: relative to theta, and relative to the

@@ -275,7 +275,7 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
                 Contact::Rolling => Point2::new(y[6], y[7]),
                 Contact::Smooth => Pose::below_centre(self.course.body, self.course.start, &now, phi.rest),
             };
-            poses.push(Pose { phi, psi, contact_point: contact });
+            poses.push(Pose { phi, psi, contact_point: contact, height: 0.0 });
         }
     }
 }

@@ -204,7 +204,7 @@ impl<const K: usize> Turns<K> {
         };
         let moved = (self.path(at) - self.path(&self.start)) * Complex::from_polar(1.0, -start[0]);
         let contact_point = Point2::new(moved.re + 0.0, moved.im + 0.0);
-        Pose { phi: angle(0, self.p[0]), psi: angle(1, self.q[0]), contact_point }
+        Pose { phi: angle(0, self.p[0]), psi: angle(1, self.q[0]), contact_point, height: 0.0 }
     }
 
     /// Estimated error of the pose at a place reached at time `t` with the error `late`: angles in radians, contact

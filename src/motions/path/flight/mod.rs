@@ -17,10 +17,10 @@ pub(crate) mod air;
 pub(crate) mod lands;
 
 use crate::laws::body::Shape;
-use crate::laws::pose::{Angle, Pose};
+use crate::laws::pose::Pose;
 use crate::laws::state::State;
+use crate::motions::path::write::posed;
 use core::f64::consts::{PI, TAU};
-use nalgebra::Point2;
 
 /// A body in the air, or in an impact, as seen from one of its rims.
 #[derive(Debug, Clone, Copy)]
@@ -44,12 +44,7 @@ impl Aloft {
     }
 
     pub fn pose(&self) -> Pose {
-        let [phi, psi, x, y] = self.pose;
-        let angle = |angle: f64| {
-            let turns = (angle / TAU).round();
-            Angle { turns, rest: angle - turns * TAU }.settled()
-        };
-        Pose { phi: angle(phi), psi: angle(psi), contact_point: Point2::new(x, y) }
+        posed(self.pose, self.height.max(0.0))
     }
 
     /// The same motion as seen from the other rim of a body with two equal rims.
@@ -81,6 +76,8 @@ pub(crate) struct Flight {
     /// Lam, sig and W.
     rate: f64,
     spin: f64,
+    /// -1 if the angles are those of the mirror image, else 1.
+    image: f64,
     transverse: f64,
     /// The angles a, b and C0, and sin a sin b.
     a: f64,
@@ -98,6 +95,9 @@ pub(crate) struct Flight {
 impl Flight {
     pub fn new(shape: &Shape<f64>, from: &Aloft) -> Self {
         let (Shape { rim, i1, i3 }, (s, c), [w1, w2, w3]) = (*shape, from.angle, from.w);
+        // The mirror image of a motion is computed by the same numbers.
+        let image = if w3 < 0.0 || w3 == 0.0 && w1 < 0.0 { -1.0 } else { 1.0 };
+        let (w1, w3) = (image * w1, image * w3);
         let (height, lever) = (rim.height(from.angle), rim.lever(from.angle));
         let transverse = w1.hypot(w2);
         let (axial, across) = (i3 * w3, i1 * transverse);
@@ -108,7 +108,7 @@ impl Flight {
         let begin = (-s * w2 * size).atan2(c * i1 * transverse * transverse - axial * w1 * s);
         let velocity = [
             from.slip[0] + height * w2,
-            from.slip[1] - rim.depth(from.angle) * w1 + rim.radius(from.angle) * w3,
+            from.slip[1] - image * (rim.depth(from.angle) * w1 - rim.radius(from.angle) * w3),
             from.lift + lever * w2,
         ];
         let mut flight = Self {
@@ -118,6 +118,7 @@ impl Flight {
             height: from.height + height,
             rate: size / i1,
             spin: w3 * (1.0 - i3 / i1),
+            image,
             transverse,
             a,
             b,
@@ -160,6 +161,9 @@ impl Flight {
     /// Sine and cosine of theta at a time, where the change of the cosine is known.
     fn angle_of(&self, t: f64, change: f64) -> (f64, f64) {
         let c = self.from.angle.1 + change;
+        if self.rate == 0.0 {
+            return self.from.angle;
+        }
         if c.abs() < FAR {
             return (((1.0 - c) * (1.0 + c)).sqrt(), c);
         }
@@ -183,7 +187,7 @@ impl Flight {
         };
         let per = self.transverse / s.max(f64::MIN_POSITIVE);
         // The sum turns -0 into 0.
-        [if self.planar { 0.0 } else { along * per } + 0.0, 0.0 - self.a.sin() * sin * per]
+        [if self.planar { 0.0 } else { self.image * along * per } + 0.0, 0.0 - self.a.sin() * sin * per]
     }
 
     /// The first time at which theta exceeds a limit.
@@ -204,7 +208,8 @@ impl Flight {
         let [w1, w2] = self.tilting(t, angle);
         let [x, y] = self.analogies(t);
         let [x, y] = [x - self.napier[0], y - self.napier[1]];
-        self.placed(t, angle, [w1, w2, self.from.w[2]], [y - x, self.spin * t - (x + y)])
+        let turned = [y - x, self.spin * t - (x + y)].map(|angle| self.image * angle);
+        self.placed(t, angle, [w1, w2, self.from.w[2]], turned)
     }
 
     /// The body at a time since the start, where its orientation and its rotation are known; `turned` are the angles by
