@@ -198,6 +198,8 @@ def knots(m: "Motion", tolerance: float = 2e-3, until: float | None = None) -> F
         dropped = np.arange(1, len(found) - 1, 2)
         kinks = _kinks(found[:, 0], up)
         dropped = dropped[~(kinks[dropped - 1] | kinks[dropped])]
+        if not dropped.size:
+            break
         left, right = found[dropped - 1], found[dropped + 1]
         kept = found[dropped]
         ends = _apart(m, _cubic(left, right, kept[:, 0]), kept[:, 1 : _wide(found)])

@@ -218,7 +218,7 @@ impl Flight {
         let (rim, from) = (self.shape.rim, &self.from);
         let (phi, psi) = (from.pose[0] + turned[0], from.pose[1] + turned[1]);
         let [forth, aside, up] = self.velocity;
-        let (sin, cos) = (phi - from.pose[0]).sin_cos();
+        let (sin, cos) = turned[0].sin_cos();
         let (v_h, v_2) = (forth * cos + aside * sin, aside * cos - forth * sin);
         let (sin0, cos0) = from.pose[0].sin_cos();
         let (begin, lever) = (rim.lever(from.angle), rim.lever(angle));
