@@ -266,7 +266,7 @@ fn the_mirror_image_of_a_motion_is_its_motion_to_the_last_bit() {
             let spun = a.psi.radians() + b.psi.radians();
             assert!(spun.abs() < 1e-12, "{spun:e}");
             let [x, y] = [a.contact_point.x - b.contact_point.x, a.contact_point.y + b.contact_point.y];
-            assert!(x.abs() < 1e-13 && y.abs() < 1e-13, "{x:e} {y:e}");
+            assert!(x.abs() < 1e-12 && y.abs() < 1e-12, "{x:e} {y:e}");
         }
     }
 }

@@ -19,6 +19,7 @@ mod integrators;
 mod leaving;
 mod losing_slips;
 mod losses;
+mod lying;
 mod moving;
 mod paper;
 mod poses;

@@ -20,7 +20,7 @@ from gmpy2 import mpfr
 from phases import first_event, step_size
 from series import Tape, root
 from torus import Z
-from vectors import add, cross, dot, scaled, solver
+from vectors import add, cross, dot, scaled
 
 # of series in an impact: relative to the normal velocity
 FINE, ORDER, STOPPED = mpfr("1e-42"), 36, mpfr("1e-44")
@@ -259,7 +259,7 @@ class Vectors(slip_forms.Vectors):
         """The impulse of a film, which is linear, or of a smooth table: a series in the normal impulse."""
         unit = abs(u[2])
         tape = Tape()
-        speed, worked, pushed = [tape.state() for _ in range(3)], tape.state(), [tape.state() for _ in range(2)]
+        *speed, worked, _, _ = (tape.state() for _ in range(6))
         # velocities are told in units of the normal one, and so is the impulse
         force = [-(self.mu * unit * speed[0]), -(self.mu * unit * speed[1]), tape.constant(1)]
         rates = [sum((columns[j][i] * force[j] for j in (1, 2)), columns[0][i] * force[0]) for i in range(3)]
@@ -276,7 +276,7 @@ class Vectors(slip_forms.Vectors):
             at, p = [node.at(h) for node in tape.states], p + h
             if name == "pressed":
                 pressed = worked.at(h)
-            if name == "ends" or pressed is not None and e == 0:
+            if name == "ends" or (pressed is not None and e == 0):
                 return scaled(unit, [at[4], at[5], p])
         raise ArithmeticError("an impact without end")
 
@@ -465,16 +465,18 @@ class Closed(slip_forms.Reduced):
         swing, climb = u[0] - rest, a_n - b * b / a_h
 
         def at(p):
-            gone = 1 - gmpy2.exp(-c * a_h * p)
+            gone = -gmpy2.expm1(-c * a_h * p)
             lift = u[2] + climb * p - b / a_h * swing * gone
             work = u[2] * p + climb * p * p / 2 - b / a_h * swing * (p - gone / (c * a_h))
             return lift, work, gone
 
         def solved(f, p, slope):
+            close = 0
             for _ in range(200):
                 step = f(p) / slope(p)
                 p -= step
-                if abs(step) <= abs(p) * mpfr("1e-48"):
+                close += abs(step) <= abs(p) * mpfr("1e-20")
+                if close == 3:
                     return p
             raise ArithmeticError("no end of an impact")
 
@@ -484,7 +486,7 @@ class Closed(slip_forms.Reduced):
             level = (1 - e * e) * at(p)[1]
             p = solved(lambda p: at(p)[1] - level, p * (1 + e), lambda p: at(p)[0])
         gone = at(p)[2]
-        return [(u[0] + b * p - rest - swing * (1 - gone)) / -a_h, -u[1] / a_2 * (1 - gmpy2.exp(-c * a_2 * p)), p]
+        return [(u[0] + b * p - rest - swing * (1 - gone)) / -a_h, u[1] / a_2 * gmpy2.expm1(-c * a_2 * p), p]
 
     def aloft(self, y, lift):
         return Air(y, lift, mpfr(0))

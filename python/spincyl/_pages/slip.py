@@ -7,7 +7,9 @@ import numpy as np
 from spincyl._ellipsoid_motion import EllipsoidMotion
 from spincyl._input.numbers import Floats
 from spincyl._motion import Motion
+from spincyl._pages.aloft import beside, flying
 from spincyl._phases import KINDS
+from spincyl._studio.aloft import aloft, goes_up
 from spincyl._studio.poses import pace, span
 
 _IN_A_NUTATION, _FEWEST, _MOST = 48, 480, 6000
@@ -17,11 +19,13 @@ def rubbing(m: Motion) -> dict[str, Any]:
     """Phases as (time, code), and `forces` at equally spaced times, as 16-bit integers between bounds."""
     first, last = span(m)
     count = _IN_A_NUTATION * (last - first) / pace(m)
-    found = forces(m, np.linspace(first, last, int(np.clip(count, _FEWEST, _MOST))))
+    times = np.linspace(first, last, int(np.clip(count, _FEWEST, _MOST)))
+    found = forces(m, times)
     low, high = found.min(axis=0), found.max(axis=0)
     whole = np.round((found - low) / np.where(high > low, high - low, 1.0) * 0xFFFF)
     phases = [[phase.time, KINDS.index(phase.kind)] for phase in m.phases]
-    return {"phases": phases, "lows": low.tolist(), "highs": high.tolist(), "forces": (whole, "<u2")}
+    told = {"phases": phases, "lows": low.tolist(), "highs": high.tolist(), "forces": (whole, "<u2")}
+    return told | flying(m) | beside(m, times) if goes_up(m) else told
 
 
 def forces(m: Motion, t: Floats) -> Floats:
@@ -35,6 +39,11 @@ def forces(m: Motion, t: Floats) -> Floats:
         # the axes of a state's slip are rotated by this angle about the vertical
         z, w = there.orientation[:, 2:].T
         slip = (there.slip @ [1, 1j]) * np.exp(2j * np.arctan2(z, w))
+    elif goes_up(m):
+        # the page has the lean as told from the first rim
+        lean = aloft(m, *span(m)).from_first(there.t, there.theta, there.phi, there.psi)[:, 1]
+        turn = np.exp(1j * (there.phi - lean))
+        slip, push = (there.slip @ [1, 1j]) * turn, push * np.exp(-1j * lean)
     else:
         slip, push = there.slip @ [1, 1j], push * np.exp(-1j * there.phi)
     found: Floats = np.column_stack([slip.real, slip.imag, push.real, push.imag, there.normal])

@@ -21,13 +21,15 @@ from spincyl._pages.slip import rubbing
 from spincyl._pages.stone import numbers, stone, turned
 from spincyl._phases import rubs
 from spincyl._scale import Scale, scale_of
+from spincyl._studio.aloft import goes_up
 from spincyl._studio.glb import glb
 from spincyl._studio.poses import knots, packed, repeats, seen, span
 from spincyl._studio.shape import Letter, marks, profiles, reach
 
 #: The style sheets and scripts of the page, in their order. "rounded" is used if a body has a fillet or is a
-#: stone, "stone" and "spin" if there is a stone, "forces" and "slip" if a contact has a law of friction.
-_STYLES = ("page.css", "page.slip.css")
+#: stone, "stone" and "spin" if there is a stone, "forces" and "slip" if a contact has a law of friction, and
+#: these and "aloft" if a body leaves the table or lies on both rims.
+_STYLES = ("page.css", "page.slip.css", "page.aloft.css")
 _SCRIPTS = tuple(
     f"page.{x}.js"
     for x in (
@@ -38,6 +40,7 @@ _SCRIPTS = tuple(
         "stone",
         "forces",
         "slip",
+        "aloft",
         "spin",
         "context",
         "gl",
@@ -80,6 +83,7 @@ class View:
         rounded = any(stone(m) or m.body.fillet > 0 for m in self.motions)
         there = {"rounded": rounded, "forces": self._slips, "slip": self._slips}
         there |= dict.fromkeys(("stone", "spin"), any(map(stone, self.motions)))
+        there["aloft"] = any(map(goes_up, self.motions))
         useless = [word for word in there if not there[word]]
         styles, scripts = (
             [x for x in names if not any(f".{word}." in x for word in useless)]
@@ -231,13 +235,16 @@ class View:
 
     @property
     def _slips(self) -> bool:
-        return any(rubs(m.contact) for m in self.motions)
+        return any(map(_slips, self.motions))
 
     def _speeds(self) -> dict[str, Any]:
-        """The unit in which the page gives the speed of slip."""
+        """The units in which the page gives the speed of slip, and the height of a flight."""
+        high = any(map(goes_up, self.motions))
         if self.scale is None:
-            return {"speed": 1.0, "speeds": f"√(g {self._length})"}
-        return {"speed": self.scale.metres_per_second(1.0), "speeds": "m/s"}
+            lengths = {"metre": 1.0, "lengths": self._length} if high else {}
+            return {"speed": 1.0, "speeds": f"√(g {self._length})"} | lengths
+        lengths = {"metre": self.scale.radius, "lengths": "m"} if high else {}
+        return {"speed": self.scale.metres_per_second(1.0), "speeds": "m/s"} | lengths
 
     def _rates(self) -> dict[str, Any]:
         """The unit in which the page gives the spin of a stone."""
@@ -301,6 +308,9 @@ def view(
     With "#t=1.5" after its name the page opens paused at that time. A body whose motion has ended is grey,
     and its clock says why and when. It has poses at few times and draws a cubic between them, which meets the
     motion within 0.003 rad, and R for bodies of usual length. ω and L are computed from the drawn pose.
+
+    Of a body that flies or lies on both rims (`roll` with a `restitution`) the clock tells how high its lowest
+    point is; in the air there is neither path nor force.
 
     Of a stone the clock also tells the spin, and when it turns back: when it has passed zero and comes to a
     tenth of its first value in the other direction. One whose edge lands is drawn as a hull with a needle on
@@ -366,14 +376,19 @@ def _shown(m: Motion) -> tuple[dict[str, Any], float]:
         data |= {"ell": m.body.ell, "i1": m.body.i1, "i3": m.body.i3}
         if m.body.fillet > 0:
             data |= {"fillet": m.body.fillet, "far": reach(m.body)}
-    packets = (packed(found) | (rubbing(m) if rubs(m.contact) else {})).items()
+    packets = (packed(found) | (rubbing(m) if _slips(m) else {})).items()
     data |= {name: base64(*x) if isinstance(x, tuple) else x for name, x in packets}
     fastest = float(np.abs(found[:, 6:9]).max())
-    if isinstance(m, EllipsoidMotion) or m.body.fillet == 1:
-        # at the pole of a ball, phi' and psi' are large and nearly cancel: use the angular velocity instead
+    if isinstance(m, EllipsoidMotion) or m.body.fillet == 1 or goes_up(m):
+        # at the pole of a ball, and in the air, phi' and psi' are large and nearly cancel: use the angular velocity instead
         (w,) = seen(m, found[:, 0], "w")
         fastest = float(np.linalg.norm(w, axis=1).max())
     return data, fastest / (2 * np.pi)
+
+
+def _slips(m: Motion) -> bool:
+    """Whether the page tells of slip and contact forces."""
+    return rubs(m.contact) or goes_up(m)
 
 
 def _edges(m: Motion) -> dict[str, Any]:

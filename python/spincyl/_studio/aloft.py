@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 _KINK, _NEAR = 1e-9, 1e-6
 #: Of phases shorter than this share the rates are not asked for.
 _BRIEF = 1e-3
+#: A body tumbles in a vertical plane if all other rates are below this share; impacts leave roundings.
+_PLANAR = 1e-12
 #: Kinds of phases on one rim, and on both.
 _ON_RIM, _ON_BOTH = ("rolling", "slipping"), ("lying", "pivoting", "rolling on its side")
 #: Codes of phases in which a point of contact slips.
@@ -44,25 +46,32 @@ class Aloft(NamedTuple):
 
     edges: Floats  #: (k, 2) where each kink begins and ends, ascending
     begins: Floats  #: times of phases at which no kink is
-    times: Floats  #: times at which another rim takes over
-    turns: np.ndarray  #: how often one has taken over until each of these; before them, the first number
+    times: Floats  #: times from which on the angles are told in another way
+    #: (k + 1, 5) how, until each of these: how often another rim has taken over; half turns by which phi, and
+    #: psi as told from the first rim, have jumped; whole turns and sign with which theta is counted
+    told: np.ndarray
 
-    def taken(self, t: Floats) -> Any:
-        """How often another rim has taken over until these times; odd numbers tell of the other rim."""
-        return self.turns[np.searchsorted(self.times, t, "right")]
+    def on_other(self, t: Floats) -> Any:
+        """Whether the angles at these times are told from the other rim."""
+        return self.told[np.searchsorted(self.times, t, "right"), 0] % 2 == 1
 
     def from_first(self, t: Floats, theta: Floats, phi: Floats, psi: Floats) -> Floats:
-        """The three angles as told from the first rim, along a last axis."""
-        taken = self.taken(t)
-        other = taken % 2 == 1
+        """The three angles as told from the first rim, and continuous, along a last axis.
+
+        A body that only tumbles in a vertical plane passes through the poles: there theta goes on beyond them.
+        """
+        told = self.told[np.searchsorted(self.times, t, "right")]
+        rims, across, about, turns, sign = np.moveaxis(told, -1, 0)
+        other = rims % 2 == 1
+        lean, spin = np.where(other, np.pi - theta, theta), np.where(other, -psi, psi)
         found: Floats = np.stack(
-            [np.where(other, np.pi - theta, theta), phi - np.pi * taken, np.where(other, -psi, psi)], -1
+            [2 * np.pi * turns + sign * lean, phi - np.pi * across, spin - np.pi * about], -1
         )
         return found
 
 
 def aloft(m: "Motion", first: float, last: float) -> Aloft:
-    """Kinks of a motion between its first and its last time, and how often another rim takes over."""
+    """Kinks of a motion between its first and its last time, and how its angles are told."""
     kinks = {x.time for x in m.natural.impacts}
     kinds = ["", *(phase.kind for phase in m.phases)]
     kinks |= {
@@ -70,49 +79,81 @@ def aloft(m: "Motion", first: float, last: float) -> Aloft:
         for before, phase in zip(kinds, m.phases, strict=False)
         if not {before, phase.kind} <= {*_ON_RIM}
     }
-    inside = [t for t in sorted(kinks) if first < t < last]
-    changes, taken = _changes(m, np.array(inside), first, last)
-    near, half = _NEAR * (last - first), _KINK / 2 * (last - first)
-    edges: list[list[float]] = []
-    for t in inside:
-        if edges and t - edges[-1][1] < near:
-            edges[-1][1] = t + half
-        else:
-            edges.append([t - half, t + half])
-    # a kink at an end of the motion needs no knots of its own
-    edges = [edge for edge in edges if first + near < edge[0] and edge[1] < last - near]
     begins = [phase.time for phase in m.phases if first < phase.time < last and phase.time not in kinks]
-    return Aloft(np.array(edges).reshape(-1, 2), np.array(begins), changes, taken)
+    inside = np.array(sorted(t for t in kinks if first < t < last))
+    near, half = _NEAR * (last - first), _KINK / 2 * (last - first)
+    # a kink at an end of the motion needs no knots of its own
+    edges = np.array([[a - half, b + half] for a, b in _groups(inside, near)]).reshape(-1, 2)
+    edges = edges[(first + near < edges[:, 0]) & (edges[:, 1] < last - near)]
+    return Aloft(edges, np.array(begins), *_changes(m, inside, _poles(m, first, last), first, last))
 
 
-def _changes(m: "Motion", t: Floats, first: float, last: float) -> tuple[Floats, np.ndarray]:
-    """The times among these at which another rim takes over, and how often one has done so until each."""
-    apart = np.diff(np.concatenate([[first], t, [last]]))
-    off = np.minimum(np.minimum(apart[:-1], apart[1:]) / 4, _KINK / 2 * (last - first))
-    looks = np.unique(np.concatenate([[first + (off[0] if t.size else 0.0)], t - off, t + off]))
-    there = m.wanting("pose", t=looks)
+def _groups(t: Floats, near: float) -> list[tuple[float, float]]:
+    """First and last of those among ascending times that are near each other."""
+    ends = np.flatnonzero(np.diff(t) > near)
+    return list(zip(t[[0, *(ends + 1)]], t[[*ends, -1]], strict=True)) if t.size else []
+
+
+def _poles(m: "Motion", first: float, last: float) -> Floats:
+    """The times at which a body that tumbles in a vertical plane passes a pole, where phi and psi jump."""
+    found: list[float] = []
+    for begin, end, often, phase in parts(m, first, last):
+        w1, w2, w3 = phase.state.w1, phase.state.w2, phase.state.w3
+        if phase.kind != "flying" or not abs(w1) + abs(w3) < _PLANAR * abs(w2) or not often:
+            continue
+        t = np.linspace(begin, end, 16 + int(16 * (end - begin) * often))[1:-1]
+        phi = m.wanting("pose", t=t).phi
+        jumps = np.flatnonzero(np.abs(np.diff(phi)) > 1)
+        low, high, before = t[jumps], t[jumps + 1], phi[jumps]
+        for _ in range(60 if jumps.size else 0):
+            middle = (low + high) / 2
+            later = np.abs(m.wanting("pose", t=middle).phi - before) > 1
+            low, high = np.where(later, low, middle), np.where(later, middle, high)
+        found.extend(high.tolist())
+    return np.array(found)
+
+
+def _changes(
+    m: "Motion", t: Floats, poles: Floats, first: float, last: float
+) -> tuple[Floats, np.ndarray]:
+    """The times among these from which on the angles are told in another way, and in which, as in `Aloft`."""
+    groups = np.array(_groups(np.union1d(t, poles), 1e-12 * (last - first))).reshape(-1, 2)
+    # both sides of each group, closer to it than to the next one
+    gaps = np.concatenate([groups[:1, 0] - first, groups[1:, 0] - groups[:-1, 1], last - groups[-1:, 1]])
+    off = np.minimum(np.minimum(gaps[:-1], gaps[1:]) / 4, _KINK / 2 * (last - first))[:, np.newaxis]
+    sides = groups + off * [-1, 1] if len(groups) else groups
+    start = first + (float(off[0, 0]) / 4 if len(groups) else 0.0)
+    there = m.wanting("pose", t=np.unique(np.append(sides, start)))
     # steps to other times may end the motion a little earlier
-    t = t[t + off <= there.t[-1]] if there.t.size else t[:0]
-    off = off[: t.size]
-    before, after = (there.phi[np.searchsorted(there.t, x)] for x in (t - off, t + off))
-    by = np.round((after - before) / np.pi).astype(int)
+    sides = sides[sides[:, 1] <= there.t[-1]]
+    place = np.searchsorted(there.t, sides)
+    by_phi, by_psi = (np.round(np.diff(x[place])[:, 0] / np.pi).astype(int) for x in (there.phi, there.psi))
     # at first: from which end of the axis the angles are told
     theta, phi = there.theta[:1], there.phi[:1]
-    told = np.stack([-np.sin(theta) * np.cos(phi), -np.sin(theta) * np.sin(phi), np.cos(theta)], -1)
-    at_first = int((rotations(there.orientation[:1])[:, :, 2] * told).sum() < 0) if theta.size else 0
-    turned = np.cumsum([at_first, *by[by != 0]])
-    return t[by != 0], turned
+    axis = np.stack([-np.sin(theta) * np.cos(phi), -np.sin(theta) * np.sin(phi), np.cos(theta)], -1)
+    at_first = int((rotations(there.orientation[:1])[:, :, 2] * axis).sum() < 0)
+    told = [(at_first, at_first, 0, 0, 1)]
+    for (before, after), across, about, k in zip(sides, by_phi, by_psi, place[:, 0], strict=True):
+        rims, halves, spins, turns, sign = told[-1]
+        if ((before < poles) & (poles < after)).any():
+            other = rims % 2 == 1
+            below = (there.theta[k] > np.pi / 2) != other  # the pole at pi, as told from the first rim
+            spins += -about if other else about
+            told.append((rims, halves + across, spins, turns + sign * below, -sign))
+        else:
+            told.append((rims + across, halves + across, spins, turns, sign))
+    return sides.mean(axis=1), np.array(told)
 
 
-def parts(m: "Motion", first: float, last: float) -> list[tuple[float, float, float]]:
-    """Begin, end and nutations per unit of time of each phase in these times."""
+def parts(m: "Motion", first: float, last: float) -> list[tuple[float, float, float, Phase]]:
+    """Begin, end and nutations per unit of time of each phase in these times, and the phase."""
     times = [*(phase.time for phase in m.phases), last]
     found = []
     for phase, end in zip(m.phases, times[1:], strict=True):
         begin, end = max(phase.time, first), min(end, last)
         if begin < end:
             brief = end - begin < _BRIEF * (last - first)
-            found.append((begin, end, 0.0 if brief else _often(m.body, phase)))
+            found.append((begin, end, 0.0 if brief else _often(m.body, phase), phase))
     return found
 
 

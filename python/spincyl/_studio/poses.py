@@ -32,6 +32,8 @@ if TYPE_CHECKING:
     from spincyl._motion import Motion
 
 _MOST, _LONGEST, _LOOKS = 200_000, 3000, 65
+# largest difference between a slope and its prediction that leaves 2e-4 to the others: see `packed`
+_STEEPEST = 8.0
 # per rocking of a stone, with steps within 1e-14; fewer with a larger tolerance, as its -1/10 power
 _EVALUATIONS = 900
 # columns of a stone's quaternion, and of its place, which are those of a body's
@@ -85,7 +87,7 @@ def pace(m: "Motion") -> float:
         return float(abs(_end(m) - m._asked.t0) / max(many, 1e-3))
     if goes_up(m):
         first, last = span(m)
-        many = sum((end - begin) * often for begin, end, often in parts(m, first, last))
+        many = sum((end - begin) * often for begin, end, often, _ in parts(m, first, last))
         return (last - first) / many if many > 0 else np.inf
     if m.losses is not None:
         return _mean_pace(m)
@@ -207,13 +209,31 @@ def knots(m: "Motion", tolerance: float = 2e-3, until: float | None = None) -> F
         if not fits.any():
             break
         found = np.delete(found, dropped[fits], axis=0)
+    return found if up is None else _graded(m, found, up)
+
+
+def _graded(m: "Motion", found: Floats, up: Aloft) -> Floats:
+    """Knots so that no long interval is next to a very short one with a turn in it, as close to a pole.
+
+    There the slopes would be far from what `packed` predicts, and all others would lose their digits.
+    """
+    for _ in range(50):
+        far = np.abs(_slopes(found)[1]).max(axis=1) > _STEEPEST
+        if not far.any():
+            break
+        t = found[:, 0]
+        gaps = np.diff(t)
+        before, after = np.append(0.0, gaps), np.append(gaps, 0.0)
+        split = np.flatnonzero(far) - (before > after)[far]
+        split = np.unique(split[~_kinks(t, up)[split]])
+        found = _poses(m, np.insert(t, split + 1, t[split] + gaps[split] / 2), up)
     return found
 
 
 def _between(m: "Motion", up: Aloft, first: float, last: float) -> Floats:
     """The first times of knots of a motion with kinks: both sides of each, begins of phases, times between."""
     times = [[first, last], up.edges.ravel(), up.begins]
-    for begin, end, often in parts(m, first, last):
+    for begin, end, often, _ in parts(m, first, last):
         count = 4 + int(3 * (end - begin) * often)
         times.append(begin + (end - begin) * np.arange(1, count) / count)
     t = np.unique(np.concatenate(times))
@@ -306,6 +326,19 @@ def packed(found: Floats) -> dict[str, Any]:
     The prediction is the slope of the parabola through a knot and its neighbours. The difference is
     multiplied by the longer of the adjacent intervals, in which its error has the largest effect.
     """
+    (low, high, whole), off = _slopes(found)
+    most = np.maximum(np.abs(off).max(axis=0), 1e-12)
+    return {
+        "low": low.tolist(),
+        "high": high.tolist(),
+        "knots": (whole, "<u4"),
+        "most": most.tolist(),
+        "slopes": (np.round(off / most * 32767), "<i2"),
+    }
+
+
+def _slopes(found: Floats) -> tuple[tuple[Floats, Floats, Floats], Floats]:
+    """Bounds and integers of the values of knots, and the scaled differences of their slopes."""
     wide = _wide(found)
     low, high = found[:, :wide].min(axis=0), found[:, :wide].max(axis=0)
     # the values that the page will read, to which the slopes have to fit
@@ -319,11 +352,4 @@ def packed(found: Floats) -> dict[str, Any]:
         :, np.newaxis
     ]
     off = (found[:, wide:] - guess) * np.maximum(before, after)[:, np.newaxis]
-    most = np.maximum(np.abs(off).max(axis=0), 1e-12)
-    return {
-        "low": low.tolist(),
-        "high": high.tolist(),
-        "knots": (whole, "<u4"),
-        "most": most.tolist(),
-        "slopes": (np.round(off / most * 32767), "<i2"),
-    }
+    return (low, high, whole), off

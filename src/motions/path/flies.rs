@@ -66,6 +66,12 @@ impl<const N: usize> BodyWalk<'_, N> {
         body.ell() > 0.0 && body.theta_end() == FRAC_PI_2
     }
 
+    /// Whether both rims touch, of which both or one may carry the body.
+    pub(super) fn is_level(&self) -> bool {
+        let State { theta, w2, .. } = self.of.state;
+        self.ask.restitution.is_some() && self.has_two_rims() && theta == FRAC_PI_2 && w2 == 0.0
+    }
+
     /// The present numbers, with those of a flight.
     pub(super) fn aloft(&self) -> Aloft {
         let [s, c, w1, w2, w3, u, v] = core::array::from_fn(|i| self.at[i]);

@@ -285,12 +285,15 @@ impl<const N: usize> Phases<N> for BodyPhases {
     }
 
     fn ends_slip(walk: &mut BodyWalk<'_, N>) -> Option<Halt> {
+        if walk.is_level() {
+            return Some(Halt::Side);
+        }
         walk.of.slide.at_start(&walk.of.state, [walk.at[5], walk.at[6]])
     }
 
     fn lies(walk: &mut BodyWalk<'_, N>, found: Standstill) -> Option<Ending> {
         let (end, theta) = (walk.of.body.theta_end(), walk.of.state.theta);
-        let lies = end < PI && (theta > end || theta == end && !walk.rises(found));
+        let lies = end < PI && (theta > end || theta == end && (walk.is_level() || !walk.rises(found)));
         lies.then_some(Ending::Side)
     }
 

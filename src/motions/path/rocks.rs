@@ -7,10 +7,10 @@
 //! The block of Housner, Bull. Seismol. Soc. Am. 53, 403 (1963). Error: the square of the time that is summed.
 
 use super::phases::BodyWalk;
-use crate::laws::contact::Contact;
 use crate::laws::contact::landing::{Outcome, land_at};
+use crate::laws::contact::{Contact, lossy};
 use crate::laws::state::State;
-use crate::motions::halt::{TIME, poses};
+use crate::motions::halt::{TIME, loses, poses};
 use core::f64::consts::{FRAC_PI_2, TAU};
 
 /// The longest time that is summed, over the time in which the body turns by a radian.
@@ -35,12 +35,17 @@ impl<const N: usize> BodyWalk<'_, N> {
             let law = &self.of.slide.law;
             let sticks = law.dry && slip[0].hypot(slip[1]) <= self.of.slide.over();
             let w = [y.w1, 0.0, y.w3];
-            let (rate, drift, warms) = if sticks {
-                let dy = Contact::Rolling.derivative_at(&self.of.body, &y, (1.0, 0.0));
-                ([dy.w1, dy.w2, dy.w3], [0.0; 2], 0.0)
+            let (rate, drift, warms, taken) = if sticks {
+                let (dy, taken) = lossy::derivative(Contact::Rolling, &self.of.body, &y, &self.ask.losses);
+                ([dy.w1, dy.w2, dy.w3], [0.0; 2], 0.0, taken)
             } else {
                 let at = law.at((1.0, 0.0), w, slip).0;
-                (at.w, at.u, -(at.force[1] * slip[1] + at.force[2] * slip[0]))
+                (
+                    at.w,
+                    at.u,
+                    -(at.force[1] * slip[1] + at.force[2] * slip[0]),
+                    law.power((1.0, 0.0), w, at.force[0]),
+                )
             };
             if rate[1] >= 0.0 {
                 return None;
@@ -50,6 +55,9 @@ impl<const N: usize> BodyWalk<'_, N> {
                 [(2, rate[0]), (4, rate[2]), (5, drift[0]), (6, drift[1]), (TIME, 1.0), (8, warms)]
             {
                 self.at[i] += lasts * rate;
+            }
+            if loses(N) {
+                self.at[N - 1] += lasts * taken;
             }
             if poses(N) {
                 let (sin, cos) = self.at[9].sin_cos();

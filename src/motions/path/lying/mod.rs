@@ -32,6 +32,8 @@ use flow::{LyingFlow, Stance};
 
 /// A slip slower than this, in units of the largest speed, is none where a phase begins.
 const STILL_SLIP: f64 = 1e-12;
+/// The slip with which both rims begin to slip together.
+const NUDGED: f64 = 1e-12;
 /// Number of directions at which the growth of a slip is evaluated.
 const DIRECTIONS: usize = 240;
 /// A growth rate of the speed below this counts as zero.
@@ -128,8 +130,13 @@ impl<const N: usize> BodyWalk<'_, N> {
         (flow.stance, flow.turn) = (stance, self.at[2].signum());
         self.sets_ways(&mut flow);
         let law = &flow.law;
-        if stance == Stance::Rolls && flow.lain(&self.at).w[1].abs() > flow.fixed * (1.0 + GRACE) {
-            return Next::Ends(Ending::Slip);
+        if stance == Stance::Rolls {
+            let slows = flow.lain(&self.at).w[1];
+            if slows.abs() > flow.fixed * (1.0 + GRACE) {
+                // Both rims slip across, since friction cannot slow the body as much as the losses do.
+                self.at[6] = -slows.signum() * NUDGED;
+                return self.begins_stance(flow, Stance::Slips);
+            }
         }
         if stance == Stance::Rolls && self.at[4] == 0.0 && law.held[1] {
             return Next::Ends(Ending::Stops);
@@ -311,7 +318,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             Halt::Slips => {
                 let other = phase.flow.stance == Stance::Pivots { other: true };
                 if phase.flow.stance == Stance::Rolls {
-                    Next::Ends(Ending::Slip)
+                    self.begins_stance(phase.flow, Stance::Rolls)
                 } else {
                     let [_, across, along] = phase.flow.lain(&self.at).force[usize::from(other)];
                     let way = if other { 1.0 } else { -1.0 };

@@ -1,0 +1,70 @@
+"""Data about a body that leaves the table or lies on both rims: phases by rim and in words, and forces."""
+
+from typing import Any
+
+import numpy as np
+
+from spincyl._input.numbers import Floats
+from spincyl._motion import Motion
+from spincyl._phases import KINDS
+from spincyl._studio.aloft import FLIES, aloft
+from spincyl._studio.poses import span
+from spincyl._studio.shape import landing
+
+#: Phases shorter than this share of the time shown belong to the bounces before and after them, in words.
+_BRIEF = 2e-3
+
+
+def flying(m: Motion) -> dict[str, Any]:
+    """Phases as (time, code, whether the other rim is down), and in words as (time, code, impacts)."""
+    first, last = span(m)
+    begins = np.array([phase.time for phase in m.phases])
+    ends = np.append(begins[1:], last)
+    codes = [KINDS.index(phase.kind) for phase in m.phases]
+    rims = aloft(m, first, last).on_other((begins + np.maximum(begins, ends)) / 2)
+    phases = [list(x) for x in zip(begins.tolist(), codes, rims.astype(int).tolist(), strict=True)]
+    two = float(m.body.ell) > 0 and landing(m.body) == np.pi / 2  # a rim at either end
+    return {"aloft": True, "two": two, "phases": phases, "told": _told(m, begins, ends, codes)}
+
+
+def _told(m: Motion, begins: Floats, ends: Floats, codes: list[int]) -> list[list[float]]:
+    """Phases in which many bounces, and brief phases between them, are one flight with impacts."""
+    first, last = span(m)
+    brief = ends - begins < _BRIEF * (last - first)
+    found: list[list[float]] = []
+    k = 0
+    while k < len(codes):
+        until = k
+        while until < len(codes) and (codes[until] == FLIES or brief[until]):
+            until += 1
+        if FLIES not in codes[k:until]:
+            until = k + 1
+        flies = FLIES in codes[k:until]
+        end = ends[until - 1]
+        many = sum(bool(begins[k] < x.time <= end) for x in m.impacts) if flies else 0
+        found.append([float(begins[k]), FLIES if flies else codes[k], many])
+        k = until
+    return found
+
+
+def beside(m: Motion, t: Floats) -> dict[str, Any]:
+    """Force on the other rim of a body that lies on both, as 16-bit integers between bounds: F_h, F_2, N.
+
+    Friction is against the slip. Where that rim does not slip while the body rolls on its side, it has the
+    direction of the first rim's; while the body pivots about it, its direction is not known and it is left out.
+    """
+    there = m.wanting("pose", "force", t=t)
+    on_both = there.phase > FLIES
+    if not on_both.any():
+        return {}
+    up = aloft(m, *span(m))
+    told = np.where(up.on_other(there.t), -1.0, 1.0)  # from which rim the lean is told
+    slip, own = there.slip_other @ [1, 1j], there.contact_force[:, :2] @ [1, 1j] * np.exp(-1j * there.phi)
+    way = np.where(np.abs(slip) > 1e-9, -slip, np.where(there.phase == len(KINDS) - 1, own, 0.0))
+    size = np.maximum(np.abs(way), 1e-300)
+    push = told * np.where(on_both, there.friction_other * way / size, 0.0)
+    found = np.zeros((t.size, 3))  # one that ends a little earlier has no force there
+    found[: there.t.size] = np.column_stack([push.real, push.imag, np.where(on_both, there.normal_other, 0.0)])
+    low, high = found.min(axis=0), found.max(axis=0)
+    whole = np.round((found - low) / np.where(high > low, high - low, 1.0) * 0xFFFF)
+    return {"least": low.tolist(), "largest": high.tolist(), "others": (whole, "<u2")}

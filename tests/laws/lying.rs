@@ -1,0 +1,331 @@
+//! A body on both rims: what slides, spins down, pivots, rises again, rocks and rolls straight, with known answers.
+
+use crate::common::{drawn, wander};
+use spincyl::contact::slip::Friction;
+use spincyl::loss::{Law, Losses};
+use spincyl::motion::path::Kind;
+use spincyl::motion::{Ask, Ending, Motion, Start, roll_with};
+use spincyl::{Body, Error, State};
+use std::f64::consts::FRAC_PI_2;
+
+/// A body on its side, whose centre moves with the velocity v along the axis and across it.
+fn lying(body: &Body, w1: f64, w3: f64, [along, across]: [f64; 2]) -> Start {
+    let state = State { theta: FRAC_PI_2, w1, w2: 0.0, w3 };
+    Start { slip: [along, across + body.ell() * w1 - w3], ..state.into() }
+}
+
+fn ask(friction: Friction, losses: Losses) -> Ask {
+    Ask { restitution: Some(0.0), losses, pose: true, force: true, ..Ask::on(friction) }
+}
+
+fn moved(body: &Body, start: Start, mu: f64, times: &[f64]) -> Motion {
+    losing(body, start, Friction::coulomb(mu), Losses::NONE, times)
+}
+
+fn losing(body: &Body, start: Start, friction: Friction, losses: Losses, times: &[f64]) -> Motion {
+    roll_with(body, start, times, &ask(friction, losses), || true).unwrap().unwrap()
+}
+
+fn kinds(m: &Motion) -> Vec<Kind> {
+    m.path.as_ref().unwrap().phases.iter().map(|phase| phase.kind).collect()
+}
+
+/// The time at which the last phase begins.
+fn settles(m: &Motion) -> f64 {
+    m.path.as_ref().unwrap().phases.last().unwrap().time
+}
+
+#[test]
+fn a_cylinder_thrown_sideways_rolls_after_the_time_of_a_bowling_ball_and_keeps_two_thirds() {
+    for (ell, mu, v) in [(1.0, 0.3, 2.0), (0.5, 0.1, -1.0), (3.0, 1.0, 4.0)] {
+        let body = Body::solid(ell).unwrap();
+        let start = lying(&body, 0.0, 0.0, [0.0, v]);
+        let until = v.abs() / (mu * (1.0 + 1.0 / body.i3()));
+        let m = moved(&body, start, mu, &[0.5 * until, 2.0 * until]);
+        assert_eq!(kinds(&m), [Kind::Lying, Kind::RollingOnItsSide]);
+        assert!((settles(&m) - until).abs() < 1e-12);
+        assert!((m.states[1].w3 - v / (1.0 + body.i3())).abs() < 1e-13);
+        let heat = m.path.as_ref().unwrap().heat;
+        assert!((heat - body.i3() * v * v / (2.0 * (1.0 + body.i3()))).abs() < 1e-12 * v * v);
+        // Each rim bears half the weight, and rolling straight needs no friction.
+        let force = m.forces.as_ref().unwrap();
+        assert!((force[0].normal - 0.5).abs() < 1e-15 && (force[0].along.abs() - 0.5 * mu).abs() < 1e-14);
+        assert!(force[1].normal == 0.5 && force[1].friction() == 0.0);
+        let [first, second] = [0, 1].map(|i| m.poses.as_ref().unwrap()[i].contact_point);
+        let way = |t: f64| if t <= until { v * t - v.signum() * mu * t * t / 2.0 } else { f64::NAN };
+        assert!((first.y - way(0.5 * until)).abs() < 1e-12);
+        let rest = way(until) + until * v / (1.0 + body.i3());
+        assert!((second.y - rest).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn a_cylinder_thrown_along_its_axis_stops_as_a_block_does_unless_it_tips_over_its_leading_rim() {
+    let body = Body::solid(0.8).unwrap();
+    for v in [1.5, -2.0] {
+        let m = moved(&body, lying(&body, 0.0, 0.0, [v, 0.0]), 0.4, &[1.0, 20.0]);
+        assert!((settles(&m) - v.abs() / 0.4).abs() < 1e-12);
+        let force = m.forces.as_ref().unwrap()[0];
+        // The leading rim bears more: N = (1 + mu/ell)/2 there.
+        assert!((force.normal - 0.5 * (1.0 + v.signum() * 0.4 / 0.8)).abs() < 1e-14, "{}", force.normal);
+    }
+    let tips = moved(&body, lying(&body, 0.0, 0.0, [1.5, 0.0]), 0.9, &[0.1]);
+    assert_eq!(kinds(&tips), [Kind::Slipping]);
+    assert!(tips.states[0].theta < FRAC_PI_2);
+}
+
+#[test]
+fn a_cylinder_that_spins_on_its_side_stops_after_i1_w1_over_mu_ell() {
+    let body = Body::solid(1.5).unwrap();
+    let drill = Losses::of(Law::Drilling, 0.05);
+    for (w1, losses, couple) in [(2.0, Losses::NONE, 0.0), (-1.0, Losses::NONE, 0.0), (2.0, drill, 0.05)] {
+        let mu = 0.2;
+        let until = body.i1() * f64::abs(w1) / (mu * body.ell() + couple);
+        let friction = Friction::coulomb(mu);
+        let m = losing(&body, lying(&body, w1, 0.0, [0.0; 2]), friction, losses, &[0.5 * until, 1.5 * until]);
+        let end = m.event.map_or(settles(&m), |event| event.time);
+        assert!((end - until).abs() < 1e-11, "{end} {until}");
+        assert!((m.states[0].w1 - 0.5 * w1).abs() < 1e-13);
+        let turned = m.poses.as_ref().unwrap()[0].phi.radians();
+        assert!((turned - 0.375 * w1 * until).abs() < 1e-12, "{turned}");
+    }
+}
+
+#[test]
+fn what_lies_on_ice_keeps_its_velocities_and_both_rims_share_the_weight_with_the_launch_number() {
+    let body = Body::solid(1.2).unwrap();
+    let (w1, w3) = (0.8, 0.9);
+    let m = moved(&body, lying(&body, w1, w3, [0.3, -0.2]), 0.0, &[1.0, 7.0]);
+    assert_eq!(kinds(&m), [Kind::Lying]);
+    for (y, force) in m.states.iter().zip(m.forces.as_ref().unwrap()) {
+        assert!((y.w1 - w1).abs() < 1e-14 && (y.w3 - w3).abs() < 1e-14);
+        let share = body.i3() * w1 * w3 / body.ell();
+        assert!((force.normal - 0.5 * (1.0 + share)).abs() < 1e-14);
+    }
+    // Above a launch number of 1 an end rises.
+    let rises = moved(&body, lying(&body, 2.0, 1.3 * body.ell() / (body.i3() * 2.0), [0.0; 2]), 0.0, &[0.1]);
+    assert_eq!(kinds(&rises), [Kind::Slipping]);
+}
+
+/// A body that lies, with velocities at random.
+fn any_lying(r: &mut impl FnMut() -> f64) -> (Body, Start, f64) {
+    let body = Body::tube(0.4 + 3.0 * r(), r()).unwrap();
+    let mut speed = || 3.0 * r() - 1.5;
+    let (w1, w3, u, v) = (speed(), speed(), speed(), speed());
+    let state = State { theta: FRAC_PI_2, w1, w2: 0.0, w3 };
+    (body, Start { slip: [u, v], ..state.into() }, 0.05 + 0.5 * r())
+}
+
+/// Kinetic and potential energy, from the velocity of the centre.
+fn energy(body: &Body, y: &State, [u, v]: [f64; 2]) -> f64 {
+    let (s, c) = y.theta.sin_cos();
+    let (ell, a, rho) = (body.ell(), body.rim(), body.fillet());
+    let (height, lever) = (ell * c + a * s + rho, ell * s - a * c);
+    let forth = u + height * y.w2;
+    let aside = v - (ell + rho * c) * y.w1 + (a + rho * s) * y.w3;
+    let moving = forth * forth + aside * aside + lever * lever * y.w2 * y.w2;
+    0.5 * (moving + body.i1() * (y.w1 * y.w1 + y.w2 * y.w2) + body.i3() * y.w3 * y.w3) + height
+}
+
+#[test]
+fn energy_heat_and_losses_are_constant_while_both_rims_press_and_their_friction_is_within_its_cone() {
+    let mut r = wander(521);
+    let mut met = [0; 6];
+    for k in 0..drawn(240) {
+        let (body, start, mu) = any_lying(&mut r);
+        let losses = match k % 4 {
+            0 => Losses::NONE,
+            1 => Losses::of(Law::RollingResistance, 0.02) + Losses::of(Law::Drilling, 0.03),
+            2 => Losses::of(Law::AirLinear, 0.05) + Losses::of(Law::DryContour, 0.01),
+            _ => Losses::of(Law::ViscousContour, 0.1) + Losses::of(Law::BoundaryLayer, 0.05),
+        };
+        let times: Vec<f64> = (1..80).map(|k| 0.2 * f64::from(k)).collect();
+        let m = losing(&body, start, Friction::coulomb(mu), losses, &times);
+        let path = m.path.as_ref().unwrap();
+        let whole = |i: usize| {
+            let lost = path.work_lost.get(i).copied().unwrap_or(0.0);
+            let struck: f64 =
+                path.impacts.iter().filter(|hit| hit.time < m.times[i]).map(|hit| hit.lost).sum();
+            let [height, lift] = path.aloft[i];
+            let rise = height + lift * (lift / 2.0 + lever(&body, &m.states[i]) * m.states[i].w2);
+            energy(&body, &m.states[i], path.slip[i]) + rise + path.dissipated[i] + lost + struck
+        };
+        let first = energy(&body, &start.state, start.slip);
+        for (i, kind) in path.kinds.iter().enumerate() {
+            met[*kind as usize] += 1;
+            assert!(
+                (whole(i) - first).abs() < 3e-12 * (1.0 + first),
+                "{body:?} {start:?} {mu} {losses:?}: {:e}",
+                whole(i) - first
+            );
+            if !matches!(kind, Kind::Lying | Kind::Pivoting | Kind::RollingOnItsSide) {
+                assert!(path.other_rim[i].iter().all(|x| x.is_nan()));
+                continue;
+            }
+            let here = m.forces.as_ref().unwrap()[i];
+            let [_, _, other, across, along] = path.other_rim[i];
+            assert!((here.normal + other - 1.0).abs() < 1e-13 && here.normal >= -1e-12 && other >= -1e-12);
+            assert!(here.friction() <= mu * here.normal + 1e-10 && across.hypot(along) <= mu * other + 1e-10);
+            assert!(m.states[i].theta == FRAC_PI_2 && m.states[i].w2 == 0.0);
+        }
+    }
+    assert!(met.iter().all(|count| *count > 0), "{met:?}");
+}
+
+fn lever(body: &Body, y: &State) -> f64 {
+    body.ell() * y.theta.sin() - body.rim() * y.theta.cos()
+}
+
+#[test]
+fn friction_without_a_couple_keeps_the_sum_of_spin_and_velocity_and_the_fillet_does_not_matter_while_it_lies()
+{
+    let mut r = wander(522);
+    for _ in 0..drawn(90) {
+        let (body, start, mu) = any_lying(&mut r);
+        let round = Body::rounded(body.ell(), body.i1(), body.i3(), 0.3).unwrap();
+        let times: Vec<f64> = (1..40).map(|k| 0.1 * f64::from(k)).collect();
+        let (sharp, other) = (moved(&body, start, mu, &times), moved(&round, start, mu, &times));
+        let (a, b) = (sharp.path.as_ref().unwrap(), other.path.as_ref().unwrap());
+        let lies = |kind: &Kind| *kind != Kind::Slipping && *kind != Kind::Rolling && *kind != Kind::Flying;
+        let count = a.kinds.iter().zip(&b.kinds).take_while(|(a, b)| lies(a) && lies(b)).count();
+        for i in 0..count {
+            let (x, y) = (sharp.states[i], other.states[i]);
+            assert!((x.w1 - y.w1).abs() < 1e-12 && (x.w3 - y.w3).abs() < 1e-12, "{body:?} {start:?}");
+        }
+    }
+}
+
+#[test]
+fn the_mirror_image_of_a_lying_body_moves_as_its_mirror_image() {
+    let mut r = wander(523);
+    for _ in 0..drawn(90) {
+        let (body, start, mu) = any_lying(&mut r);
+        let y = start.state;
+        let image = Start {
+            state: State { w1: -y.w1, w3: -y.w3, ..y },
+            slip: [start.slip[0], -start.slip[1]],
+            ..start
+        };
+        let (one, two) = (moved(&body, start, mu, &[1.0, 4.0]), moved(&body, image, mu, &[1.0, 4.0]));
+        for (a, b) in one.states.iter().zip(&two.states) {
+            let far = one.error + two.error + 1e-13;
+            assert!(
+                (a.w1 + b.w1).abs() < far && (a.w3 + b.w3).abs() < far && (a.theta - b.theta).abs() < far
+            );
+        }
+        // Told from the other rim it is the same motion.
+        let (there, slip) = spincyl::contact::landing::mirrored(&body, &y, start.slip);
+        let seen = moved(&body, Start { slip, ..there.into() }, mu, &[1.0, 4.0]);
+        for (a, b) in one.states.iter().zip(&seen.states) {
+            let far = 10.0 * (one.error + seen.error) + 1e-12;
+            assert!(
+                (a.w1 - b.w1).abs() < far && (a.w3.abs() - b.w3.abs()).abs() < far,
+                "{body:?} {start:?} {mu}"
+            );
+        }
+    }
+}
+
+#[test]
+fn weak_flicks_of_the_papers_tube_slide_pivot_rise_and_roll_straight_at_known_times() {
+    let tube = Body::tube(6.0, 0.8).unwrap();
+    let flicked = |x: f64, w1: f64| {
+        let w3 = x * 6.0 / (tube.i3() * w1);
+        lying(&tube, w1, w3, [0.0, -tube.i1() / 6.0 * w1])
+    };
+    let of = |x: f64, w1: f64, until: f64| moved(&tube, flicked(x, w1), 0.3, &[until]);
+    let times =
+        |m: &Motion| -> Vec<f64> { m.path.as_ref().unwrap().phases.iter().map(|phase| phase.time).collect() };
+    let near = |a: f64, b: f64| (a - b).abs() < 6e-4 * (1.0 + b / 10.0);
+    let slides = of(0.5, 1.5, 30.0);
+    assert_eq!(kinds(&slides), [Kind::Lying, Kind::RollingOnItsSide]);
+    assert!(near(settles(&slides), 16.70) && (slides.states[0].w3.abs() - 2.092).abs() < 5e-4);
+    let pivots = of(0.9, 1.5, 50.0);
+    let told = times(&pivots);
+    let about = [0.0, 13.193, 15.992, 19.828, 33.104];
+    assert_eq!(
+        kinds(&pivots)[..5],
+        [Kind::Lying, Kind::Lying, Kind::Pivoting, Kind::Lying, Kind::RollingOnItsSide]
+    );
+    assert!(told.iter().zip(about).all(|(a, b)| near(*a, b)), "{told:?}");
+    let rises = of(0.9, 3.0, 40.0);
+    assert_eq!(kinds(&rises)[..2], [Kind::Lying, Kind::Slipping]);
+    assert!(near(times(&rises)[1], 1.139) && kinds(&rises).contains(&Kind::Rolling));
+    assert!(near(settles(&of(0.5, 3.0, 60.0)), 42.0));
+    let again = of(1.2, 1.5, 30.0);
+    let lies = again.path.as_ref().unwrap().phases.iter().find(|phase| phase.kind == Kind::Lying).unwrap();
+    assert!(near(lies.time, 14.848), "{}", lies.time);
+    // A larger static friction lets the pivot go later, an infinite one never.
+    let held = |fixed: f64| {
+        let law = Friction::Coulomb { mu: 0.3, fixed };
+        losing(&tube, flicked(0.9, 1.5), law, Losses::NONE, &[60.0])
+    };
+    assert!(near(times(&held(0.35))[3], 20.4615));
+    assert_eq!(kinds(&held(f64::INFINITY)), [Kind::Lying, Kind::Pivoting, Kind::RollingOnItsSide]);
+}
+
+#[test]
+fn a_short_cylinder_rocks_from_rim_to_rim_for_the_time_of_housners_block() {
+    let body = Body::solid(0.3).unwrap();
+    let start = State { theta: 1.4, w1: 0.0, w2: 0.0, w3: 0.0 };
+    let m = moved(&body, start.into(), 3.0, &[1.0, 30.0]);
+    let path = m.path.as_ref().unwrap();
+    assert!((path.phases[1].time - 1.755_135_128_0).abs() < 1e-10);
+    let rest = path.phases.last().unwrap();
+    assert_eq!(rest.kind, Kind::RollingOnItsSide);
+    assert!((rest.time - 17.224_877_760_867_154).abs() < 1e-11, "{:e}", rest.time - 17.224_877_760_867_154);
+    assert!(m.error < 1e-10);
+    // Energy of the fall, less that of lying, is lost in the landings.
+    let lost = energy(&body, &start, [0.0; 2]) - 1.0;
+    assert!((path.heat - lost).abs() < 1e-12);
+    // On ice the body lies down if ell^2 >= I1, and rocks if it is shorter.
+    for (ell, lies) in [(0.55, false), (0.62, true)] {
+        let ice = Body::solid(ell).unwrap();
+        let falls = State { theta: 1.2, w1: 0.0, w2: -0.1, w3: 0.0 };
+        let m = moved(&ice, Start { slip: [0.3, 0.0], ..falls.into() }, 0.0, &[9.0]);
+        let path = m.path.as_ref().unwrap();
+        assert_eq!(path.phases.len() == 2, lies, "{ell} {:?}", path.phases);
+    }
+}
+
+#[test]
+fn rolling_straight_with_losses_stops_after_the_time_of_its_dry_couple_or_fades_in_air() {
+    let body = Body::solid(1.0).unwrap();
+    let grip = Friction::coulomb(0.5);
+    let start = lying(&body, 0.0, 1.5, [0.0, 1.5]);
+    let dry = Losses::of(Law::RollingResistance, 0.02) + Losses::of(Law::DryContour, 0.03);
+    let until = (1.0 + body.i3()) * 1.5 / 0.05;
+    let m = losing(&body, start, grip, dry, &[0.5 * until, 2.0 * until]);
+    let event = m.event.unwrap();
+    assert_eq!(event.ending, Ending::Stops);
+    assert!((event.time - until).abs() < 1e-10 && (m.states[0].w3 - 0.75).abs() < 1e-12);
+    let air = losing(&body, start, grip, Losses::of(Law::AirLinear, 0.1), &[10.0]);
+    assert!((air.states[0].w3 - 1.5 * (-0.1 * 10.0 / (1.0 + body.i3())).exp()).abs() < 1e-12);
+    let square = losing(&body, start, grip, Losses::of(Law::AirQuadratic, 0.1), &[10.0]);
+    let inverse = 1.0 / 1.5 + 0.1 * 10.0 / (1.0 + body.i3());
+    assert!((square.states[0].w3 - 1.0 / inverse).abs() < 1e-12);
+    // Friction that cannot give the couple's force lets the rims slip: more than mu (1 + I3).
+    let steep = Losses::of(Law::RollingResistance, 0.9);
+    let slips = roll_with(&body, start, &[1.0], &ask(grip, steep), || true).unwrap().unwrap();
+    assert_eq!(slips.path.unwrap().phases[0].kind, Kind::Lying);
+    // v' = -mu and I3 w3' = mu - delta then, and u_2 grows.
+    let (y, mu) = (slips.states[0], 0.5);
+    assert!((y.w3 - (1.5 + (mu - 0.9) / body.i3())).abs() < 1e-11, "{}", y.w3);
+}
+
+#[test]
+fn what_two_rims_do_not_determine_is_refused_by_its_name() {
+    // Below ell = mu/2 three distributions of the normal forces may be consistent, where the rims slip in different
+    // directions and I3 w1 w3 lies within a band.
+    let body = Body::solid(0.2).unwrap();
+    let of = |w3: f64| {
+        let state = State { theta: FRAC_PI_2, w1: 5.0, w2: 0.0, w3 };
+        let start = Start { slip: [0.5, 0.0], ..state.into() };
+        roll_with(&body, start, &[0.01], &ask(Friction::coulomb(1.0), Losses::NONE), || true)
+    };
+    for (w3, refused) in [(-0.25, true), (-0.2, true), (-0.5, false), (0.3, false)] {
+        let ending = of(w3).map(|m| m.unwrap().ending());
+        let found = matches!(ending, Ok(Ending::Painleve) | Err(Error::Painleve { .. }));
+        assert_eq!(found, refused, "{w3}: {ending:?}");
+    }
+}
