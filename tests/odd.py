@@ -217,6 +217,9 @@ def nouns():
         "pressed": (
             sc.pressed, {"body": body, "impulse": 5.0, "angle": 0.8, "finger": 0.6, "table": 0.0, "scale": None},
         ),
+        "dropped": (
+            sc.dropped, {"body": TUBE, "height": 0.05, "theta": 1.2, "w1": 1.0, "w2": 0.5, "w3": 2.0, "velocity": (0.1, 0.0, 0.2), "scale": None},
+        ),
         "flicked": (
             sc.flicked, {"body": TUBE, "hertz": 17.0, "w1": None, "launch": 1.3, "spin_hertz": None, "centre": None, "scale": None},
         ),

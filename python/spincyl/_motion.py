@@ -160,10 +160,7 @@ class Motion:
 
     @property
     def energy(self) -> Floats:
-        """(n,) kinetic and potential energy, in M g R.
-
-        Together with `dissipated`, `lost_in_impacts` and `work_lost` it is constant.
-        """
+        """(n,), M g R; constant with `dissipated`, `lost_in_impacts` and `work_lost` added."""
         free = self.contact == "smooth" and self._phases is not None
         energy: Floats = self.body.energy(self.states, Coulomb(0.0) if free else self.contact)
         return self._told("energy", energy)

@@ -91,7 +91,11 @@ class Struck:
             watched.slip, watched.size = stop, size
             h = step_size(watched, ORDER, FINE)
             h = min(h, 8 * (abs(lift.c[0]) + abs(work.c[0]) + mpfr("1e-6")) / abs(lift.c[1]))
-            events = [("pressed", Below(lift))] if pressed is None else [("ends", Below(work, (1 - e * e) * pressed))]
+            events = (
+                [("pressed", Below(lift))]
+                if pressed is None
+                else [("ends", Below(work, (1 - e * e) * pressed))]
+            )
             place, name = first_event(events, h)
             h = h if name is None else place
             start = [node.at(h) for node in tape.states]
@@ -214,7 +218,9 @@ class Vectors(slip_forms.Vectors):
             rising, worked, *pushed = (tape.state() for _ in range(5))
             length = tape.sqrt(slip[0] * slip[0] + slip[1] * slip[1])
             force = [-(self.mu * slip[0]), -(self.mu * slip[1]), length]
-            rates = [sum((columns[j][i] * force[j] for j in (1, 2)), columns[0][i] * force[0]) for i in range(3)]
+            rates = [
+                sum((columns[j][i] * force[j] for j in (1, 2)), columns[0][i] * force[0]) for i in range(3)
+            ]
             tape.rates = [*rates, rising * length, *force]
             done, end, pressed = Struck().slide(
                 tape, slip, e, length, rising, worked, pushed, [*u, mpfr(0), *[mpfr(0)] * 3]
@@ -287,7 +293,11 @@ class Vectors(slip_forms.Vectors):
     def read(self, y, lean=None):
         state, pose, contact, (u, h, e2), vanishing = self.in_space(y[4:], lean)
         up = [u[2], vanishing[1]] if isinstance(y, Air) else [mpfr(0), mpfr(0)]
-        slip = [dot(u, h), dot(u, e2)] if isinstance(y, Air) else [y[0] * h[0] + y[1] * h[1], y[1] * h[0] - y[0] * h[1]]
+        slip = (
+            [dot(u, h), dot(u, e2)]
+            if isinstance(y, Air)
+            else [y[0] * h[0] + y[1] * h[1], y[1] * h[0] - y[0] * h[1]]
+        )
         return [*state, *slip, *up, y[2], self.lost, *pose, *contact]
 
     def strayed(self, y, lean=None):
@@ -342,7 +352,14 @@ class Closed(slip_forms.Reduced):
         """Sine and cosine; radius, depth, lever and height of the contact."""
         s, c = gmpy2.sin(theta), gmpy2.cos(theta)
         lever = self.ell * s - self.rim * c
-        return s, c, self.rim + self.fillet * s, self.ell + self.fillet * c, lever, self.ell * c + self.rim * s + self.fillet
+        return (
+            s,
+            c,
+            self.rim + self.fillet * s,
+            self.ell + self.fillet * c,
+            lever,
+            self.ell * c + self.rim * s + self.fillet,
+        )
 
     def light(self, theta):
         """a_h, a_2, a_n, b."""
@@ -427,10 +444,23 @@ class Closed(slip_forms.Reduced):
             more = mu * (a_2 - a_h)
             force = [-(mu * (length * c)), -(mu * (length * s)), length + 0]
             growth = b * c - mu * (a_h * (c * c) + a_2 * (s * s))
-            tape.rates = [-(s * (more * c + b)), length * growth, length * (a_n - (mu * b) * c), rising * length, *force]
+            tape.rates = [
+                -(s * (more * c + b)),
+                length * growth,
+                length * (a_n - (mu * b) * c),
+                rising * length,
+                *force,
+            ]
             begin = gmpy2.atan2(u_2, u_h)
             done, end, pressed = Struck().slide(
-                tape, [length], e, length, rising, worked, pushed, [begin, size, lift, mpfr(0), *[mpfr(0)] * 3]
+                tape,
+                [length],
+                e,
+                length,
+                rising,
+                worked,
+                pushed,
+                [begin, size, lift, mpfr(0), *[mpfr(0)] * 3],
             )
             self.checked(light, begin, size, end)
             given, lift, work = end[4:], end[2], end[3]
@@ -532,7 +562,9 @@ class Flight:
             return turn if (top > 0) == (bottom > 0) else -turn
 
         plus, minus = (self.a + self.b) / 2, (self.a - self.b) / 2
-        return wound(gmpy2.cos(minus), gmpy2.cos(plus)), wound(gmpy2.sin(minus), gmpy2.sin(plus)) if minus else mpfr(0)
+        return wound(gmpy2.cos(minus), gmpy2.cos(plus)), wound(
+            gmpy2.sin(minus), gmpy2.sin(plus)
+        ) if minus else mpfr(0)
 
     def lean(self, t):
         """Cosine and sine of theta, and the rate of the cosine."""
@@ -579,7 +611,9 @@ class Flight:
             t = end * mpfr("1e-9")
             if order == 1:
                 t = min(t, self.height(mpfr(0), side)[1] * mpfr("1e-3"))
-            while order > 1 and t < end / 50 and all(self.height(t * k / 8, side)[0] > 0 for k in range(1, 17)):
+            while (
+                order > 1 and t < end / 50 and all(self.height(t * k / 8, side)[0] > 0 for k in range(1, 17))
+            ):
                 t *= 2
         (low, _), todo = self.height(t, side), [end]
         assert low > 0, "a flight that does not rise"

@@ -2,7 +2,7 @@
 
     python tests/reference/flights.py [name ...]     those whose names begin so; or all
 
-It needs gmpy2, and SOME minutes for all of them on one core.
+It needs gmpy2, and two minutes for all of them on one core.
 
 Every motion is made from two formulations, `vectors` and `closed` of flight_forms.py, whose contact is that of
 slip_forms.py. They share the laws, the series of series.py and the order of the phases, below and in phases.py.
@@ -45,7 +45,23 @@ from torus import rounded, tube
 
 HERE = pathlib.Path(__file__).parent
 DIGITS = 50
-NAMES = ("t", "theta", "w1", "w2", "w3", "u_h", "u_2", "u_n", "height", "heat", "lost", "phi", "psi", "x", "y")
+NAMES = (
+    "t",
+    "theta",
+    "w1",
+    "w2",
+    "w3",
+    "u_h",
+    "u_2",
+    "u_n",
+    "height",
+    "heat",
+    "lost",
+    "phi",
+    "psi",
+    "x",
+    "y",
+)
 TOLD = ("t", "rim", "kind", "along", "across", "up", "lost")
 SLOWEST = {"Vectors": mpfr("1e-16"), "Closed": mpfr("1e-18")}
 BRIEF = mpfr("1e-7")  # slower impacts are not told
@@ -184,7 +200,19 @@ class Scene:
     """
 
     def __init__(
-        self, name, body, mu, e, start, end, height=None, lift=0.0, law="coulomb", static=None, samples=5, rows=2
+        self,
+        name,
+        body,
+        mu,
+        e,
+        start,
+        end,
+        height=None,
+        lift=0.0,
+        law="coulomb",
+        static=None,
+        samples=5,
+        rows=2,
     ):
         self.name, self.law, self.restitution = name, law, float(e)
         self.body = [float(x) for x in body]
@@ -208,8 +236,12 @@ def scenes():
     ball = (0.3, 0.5, 0.4, 1.0)
     launched = moved(paper, (HALF_PI, 3.0, 0.0, 3.0 * 6.0 / (paper[2] * 3.0)), 0.0, -paper[1] / 6 * 3.0)
 
-    yield Scene("cylinder dropped", solid, 0.3, 0.5, (0.6, 0.5, -0.3, 0.8, 0.4, -0.3), 4.25, height=0.5, lift=0.2)
-    yield Scene("cylinder dropped on its other rim", solid, 0.3, 0.5, (2.2, 0.4, 0.5, -0.6, 0.2, 0.4), 3, height=1.5)
+    yield Scene(
+        "cylinder dropped", solid, 0.3, 0.5, (0.6, 0.5, -0.3, 0.8, 0.4, -0.3), 4.25, height=0.5, lift=0.2
+    )
+    yield Scene(
+        "cylinder dropped on its other rim", solid, 0.3, 0.5, (2.2, 0.4, 0.5, -0.6, 0.2, 0.4), 3, height=1.5
+    )
     yield Scene("tube hops in slip", paper, 0.3, 0.0, launched, 12)
     yield Scene("tube hops and bounces", paper, 0.3, 0.5, launched, 6)
     yield Scene("disk bounces for ever", disk, 0.25, 1, (0.9, 1.0, 0.3, -0.5, 0.5, 1), 5, height=0.3, rows=4)
@@ -217,22 +249,34 @@ def scenes():
     rim = rounded(0.6, 0.2)
     yield Scene("rounded rim dropped", rim, 0.4, 0.3, (0.7, 0.8, 0.2, 0.3, -0.5, 0.6), 4, height=0.8)
     yield Scene("ball off its centre", ball, 0.2, 0.5, (1.2, 1, 0.1, 2, 0.3, 1), 6, height=0.5)
-    yield Scene("hollow cylinder, static friction", hollow, 0.2, 0.5, (0.8, 0.3, 0.6, 0.2, 0.1, 0), 4, 0.3, static=0.5)
-    yield Scene("can on a smooth table", can, 0, 0.8, (0.5, 1.2, 0.3, 0.4, 0.3, -0.6), 4, height=0.2, lift=0.5)
-    yield Scene("can on a viscous film", can, 0.5, 0.3, (0.5, 1.2, 0.3, 0.4, 0.3, -0.6), 4, 0.2, law="viscous")
+    yield Scene(
+        "hollow cylinder, static friction", hollow, 0.2, 0.5, (0.8, 0.3, 0.6, 0.2, 0.1, 0), 4, 0.3, static=0.5
+    )
+    yield Scene(
+        "can on a smooth table", can, 0, 0.8, (0.5, 1.2, 0.3, 0.4, 0.3, -0.6), 4, height=0.2, lift=0.5
+    )
+    yield Scene(
+        "can on a viscous film", can, 0.5, 0.3, (0.5, 1.2, 0.3, 0.4, 0.3, -0.6), 4, 0.2, law="viscous"
+    )
     grips = (0.56, 0.1, 0.6, 0.4, 0.06, 0.09)
     yield Scene("can grips a rolling table", tube(0.5, 0.5), 0, 0.5, grips, 4, 0.3, law="rolling")
     turned = (0.65, -0.4, 0.1, -0.5, -0.07, 0.01)
     yield Scene("cylinder grips and rolls at once", solid, 0, 0, turned, 3, 0.3, law="rolling")
     yield Scene("tube slips on after a stop", paper, 0.3, 0.5, (1.39, 0, -0.6, 0.6, -0.06, 0.38), 1, 0.1)
     other = (1.39, 0.4, -0.8, 0.1, 0.61, -0.15)
-    yield Scene("cylinder slips on after a stop", long, 0.2, 0.5, other, 1, 0.1)
-    yield Scene("cylinder grazes", solid, 0.3, 0.5, (0.8, 0.4, 2.5, 0.3, 0.3, 0.2), 4, height=0.5945, lift=1.0)
+    yield Scene("cylinder whose slip nearly stops", long, 0.2, 0.5, other, 1, 0.1)
+    thick = (1.39, 0, -0.2, 0.2, 0.16, -0.18)
+    yield Scene("hollow tube slips on after a stop", tube(4.0, 0.5), 0.3, 0.5, thick, 1, 0.1, rows=3)
+    yield Scene(
+        "cylinder grazes", solid, 0.3, 0.5, (0.8, 0.4, 2.5, 0.3, 0.3, 0.2), 4, height=0.5945, lift=1.0
+    )
     flat = (0.1, 0.02, 0.1, 0.2, 0.1, 0.2)
     yield Scene("coin lands near its face", tube(0.1, 0.0), 0.3, 0.3, flat, 1.2, height=0.5)
     thrown = (1.03, 0.8, -2.7, 0.1, -0.38, -0.64)
     yield Scene("cylinder without restitution", solid, 0.3, 0, thrown, 2.6, height=0.3)
-    yield Scene("hollow cylinder, no restitution", hollow, 0.4, 0, (0.8, 0.3, 0.6, 0.2, 0.1, 0), 3, 0.3, static=0.6)
+    yield Scene(
+        "hollow cylinder, no restitution", hollow, 0.4, 0, (0.8, 0.3, 0.6, 0.2, 0.1, 0), 3, 0.3, static=0.6
+    )
 
 
 # The table.
@@ -253,7 +297,12 @@ def made(scene):
     assert len(one.impacts) == len(other.impacts)
     for a, b in zip(one.impacts, other.impacts, strict=True):
         assert a[1:3] == b[1:3], (a, b)
-        agreement = max([agreement, *(abs(x - y) / max(1, abs(y)) for x, y in zip(a, b, strict=True) if not isinstance(x, str))])
+        agreement = max(
+            [
+                agreement,
+                *(abs(x - y) / max(1, abs(y)) for x, y in zip(a, b, strict=True) if not isinstance(x, str)),
+            ]
+        )
     kinds = [f"{kind} {float(t):.4f}" for t, _, kind, *_ in other.impacts[:6]]
     print(f"    {', '.join(kinds)}; with the impacts {float(agreement):.1e}")
     return {

@@ -42,7 +42,11 @@ def _told(m: Motion, begins: Floats, ends: Floats, codes: list[int]) -> list[lis
         flies = FLIES in codes[k:until]
         end = ends[until - 1]
         many = sum(bool(begins[k] < x.time <= end) for x in m.impacts) if flies else 0
-        found.append([float(begins[k]), FLIES if flies else codes[k], many])
+        told = FLIES if flies else codes[k]
+        if found and found[-1][1] == told:
+            found[-1][2] += many
+        else:
+            found.append([float(begins[k]), told, many])
         k = until
     return found
 
@@ -64,7 +68,9 @@ def beside(m: Motion, t: Floats) -> dict[str, Any]:
     size = np.maximum(np.abs(way), 1e-300)
     push = told * np.where(on_both, there.friction_other * way / size, 0.0)
     found = np.zeros((t.size, 3))  # one that ends a little earlier has no force there
-    found[: there.t.size] = np.column_stack([push.real, push.imag, np.where(on_both, there.normal_other, 0.0)])
+    found[: there.t.size] = np.column_stack(
+        [push.real, push.imag, np.where(on_both, there.normal_other, 0.0)]
+    )
     low, high = found.min(axis=0), found.max(axis=0)
     whole = np.round((found - low) / np.where(high > low, high - low, 1.0) * 0xFFFF)
     return {"least": low.tolist(), "largest": high.tolist(), "others": (whole, "<u2")}

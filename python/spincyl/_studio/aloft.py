@@ -113,9 +113,7 @@ def _poles(m: "Motion", first: float, last: float) -> Floats:
     return np.array(found)
 
 
-def _changes(
-    m: "Motion", t: Floats, poles: Floats, first: float, last: float
-) -> tuple[Floats, np.ndarray]:
+def _changes(m: "Motion", t: Floats, poles: Floats, first: float, last: float) -> tuple[Floats, np.ndarray]:
     """The times among these from which on the angles are told in another way, and in which, as in `Aloft`."""
     groups = np.array(_groups(np.union1d(t, poles), 1e-12 * (last - first))).reshape(-1, 2)
     # both sides of each group, closer to it than to the next one
@@ -171,8 +169,8 @@ def _often(body: "Body", phase: Phase) -> float:
     return 0.0
 
 
-def tops(body: "Body", theta: Floats, z: Floats, far: float) -> Floats:
-    """Height of the highest place of a body, as of a cylinder with the largest distance `far` from its centre."""
-    half = np.sqrt(max(0.0, far * far - 1))
+def tops(theta: Floats, z: Floats, far: float) -> Floats:
+    """Height of the highest place of a cylinder whose largest distance from its centre is `far`."""
+    half = max(0.0, far * far - 1) ** 0.5
     found: Floats = z + half * np.abs(np.cos(theta)) + np.sin(theta)
     return found

@@ -15,8 +15,9 @@ from spincyl._ellipsoid import Ellipsoid
 from spincyl._input.numbers import Floats, extra
 from spincyl._motion import Motion
 from spincyl._phases import rubs
+from spincyl._studio.aloft import FLIES, SLIPS, aloft, goes_up, tops
 from spincyl._studio.poses import seen, span
-from spincyl._studio.shadow import LAMPS, LAYER, Caster, caster, outline, shadows
+from spincyl._studio.shadow import LAMPS, MANY, Caster, caster, lamps, layer, outline, shadows
 from spincyl._studio.shape import Letter, Part, lathe, marks, profiles, rotations, size
 from spincyl._studio.shape import reach as farthest
 
@@ -132,6 +133,7 @@ class _Shown(NamedTuple):
     path: Floats  #: (k, 3) of the contact point
     along: Floats  #: (k,) times of these
     slips: np.ndarray  #: (k,) whether the contact slips there
+    gaps: np.ndarray  #: (k,) whether there is no path: in the air, and where another rim takes over
     pieces: list[_Piece]
     caster: Caster
     middle: Floats
@@ -148,9 +150,16 @@ def _shown(m: Motion, times: Floats, upper: Letter) -> _Shown:
     along = np.linspace(first, last, _PATH)
     contact, way = seen(m, along, "contact_point", "centre")
     slips = seen(m, along, "phase")[0] == 1 if rubs(m.contact) else np.zeros(along.size, bool)
+    gaps, up = np.zeros(along.size, bool), goes_up(m)
+    if up:
+        (phase,), other = seen(m, along, "phase"), aloft(m, first, last).on_other(along)
+        slips = np.isin(phase, SLIPS)
+        gaps = (phase == FLIES) | np.append(False, other[1:] != other[:-1])
     low, high = way[:, :2].min(axis=0), way[:, :2].max(axis=0)
     body = max(size(m.body), farthest(m.body))
     reach, top = math.hypot(*(high - low)) / 2 + body, 2 * float(way[:, 2].max())
+    if up:
+        top = float(tops(seen(m, along, "theta")[0], way[:, 2], body).max())
     return _Shown(
         centre=centre,
         rotation=rotations(orientation),
@@ -159,6 +168,7 @@ def _shown(m: Motion, times: Floats, upper: Letter) -> _Shown:
         path=np.column_stack([contact, np.zeros(along.size)]),
         along=along,
         slips=slips,
+        gaps=gaps,
         pieces=_pieces(m, upper),
         caster=caster([lathe(profile) for profile in profiles(m.body)]),
         middle=np.array([*((low + high) / 2), 0.45 * top]),
@@ -199,7 +209,8 @@ class _Stage:
         self.canvas = agg.FigureCanvasAgg(self.figure)
         alone = max(size(m.body) for m in what.motions)
         reach = max(p.reach for p in panels)
-        self.follows = reach > 2.5 * alone and any(rubs(m.contact) for m in what.motions)
+        self.follows = reach > 2.5 * alone and any(rubs(m.contact) or goes_up(m) for m in what.motions)
+        self.lamp = lamps(MANY if any(map(goes_up, what.motions)) else LAMPS)
         half = max(p.half for p in panels)
         if self.follows:
             reach, half = alone, max(_held(alone, p.middle[2] / 0.45) for p in panels)
@@ -282,8 +293,8 @@ class _Stage:
         how: dict[str, Any] = {"solid_joinstyle": "round", "lw": 1.4, "animated": True}
         colours = (self.colour[name] for name in ("trace", "friction"))
         rolled, slipped = (ax.plot([], [], color=colour, **how)[0] for colour in colours)
-        nothing: dict[str, Any] = {"color": "black", "alpha": LAYER, "lw": 0, "animated": True}
-        shades = [PathPatch(Outline(np.zeros((1, 2))), **nothing) for _ in range(LAMPS)]
+        nothing: dict[str, Any] = {"color": "black", "alpha": layer(len(self.lamp)), "lw": 0}
+        shades = [PathPatch(Outline(np.zeros((1, 2))), animated=True, **nothing) for _ in self.lamp]
         for shade in shades:
             ax.add_patch(shade)
         surface = _surface(ax)
@@ -316,12 +327,12 @@ class _Stage:
             camera = camera._replace(at=np.array([*panel.centre[k, :2], panel.middle[2]]))
             self._rule(ax, camera)
         count = int(np.searchsorted(panel.along, t, "right"))
-        way = camera(panel.path[:count])
+        way = np.where(panel.gaps[:count, np.newaxis], np.nan, camera(panel.path[:count]))
         slips = panel.slips[:count, np.newaxis]
         moving = self.moving[index]
         moving.rolled.set_data(*np.where(slips, np.nan, way).T)
         moving.slipped.set_data(*np.where(slips, way, np.nan).T)
-        thrown = shadows(panel.caster, panel.rotation[k], panel.centre[k])
+        thrown = shadows(panel.caster, panel.rotation[k], panel.centre[k], self.lamp)
         for shade, lines in zip(moving.shades, thrown, strict=True):
             shade.set_path(outline([camera(line) for line in lines]))
         note = self._note(index, t)

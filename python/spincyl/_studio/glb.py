@@ -15,6 +15,7 @@ from spincyl._ellipsoid_motion import EllipsoidMotion
 from spincyl._input.numbers import Floats
 from spincyl._motion import Motion
 from spincyl._scale import Scale
+from spincyl._studio.aloft import goes_up
 from spincyl._studio.poses import knots, repeats, seen
 from spincyl._studio.shape import Letter, parts
 from spincyl._studio.shape import reach as farthest
@@ -128,6 +129,8 @@ def _frames(m: Motion) -> tuple[Floats, Floats, Floats]:
     if not isinstance(m, EllipsoidMotion):
         rates = np.maximum(rates, np.abs(w[:, 0] / np.sin(theta)))
     count = np.ceil(4 * np.maximum(rates[1:], rates[:-1]) * np.diff(coarse)).astype(int) + 1
+    if goes_up(m):  # straight lines between frames are within 0.002 R of the parabola of a fall
+        count = np.maximum(count, np.ceil(8 * np.diff(coarse)).astype(int))
     if count.sum() > _MOST:
         raise ValueError(f"{count.sum()} frames are too many: roll over a shorter time")
     pieces = [np.linspace(a, b, n, endpoint=False) for (a, b), n in zip(pairwise(coarse), count, strict=True)]

@@ -12,17 +12,23 @@ import numpy as np
 from spincyl._input.numbers import Floats
 from spincyl._studio.shape import Part
 
-#: Horizontal displacement of the shadow for each point of the lamp, per unit height.
-_LAMPS = np.array(
-    [
-        (0.36 + far * math.cos(2.4 * k), 0.4 + far * math.sin(2.4 * k))
-        for k, far in enumerate(0.15 * np.sqrt((np.arange(12) + 0.5) / 12))
-    ]
-)
-#: Darkness of the full shadow, the number of points of the lamp, and the darkness of each one's shadow.
+#: Darkness of the full shadow; points of the lamp, and those for a body that is high above the table, where the
+#: shadows of few would be seen apart.
 DARK = 0.24
-LAMPS = len(_LAMPS)
-LAYER = 1 - (1 - DARK) ** (1 / LAMPS)
+LAMPS, MANY = 12, 32
+
+
+def lamps(count: int) -> Floats:
+    """Horizontal displacement of the shadow for each point of the lamp, per unit height."""
+    far = 0.15 * np.sqrt((np.arange(count) + 0.5) / count)
+    return np.array(
+        [(0.36 + x * math.cos(2.4 * k), 0.4 + x * math.sin(2.4 * k)) for k, x in enumerate(far)]
+    )
+
+
+def layer(count: int) -> float:
+    """Darkness of the shadow from each point of the lamp."""
+    return 1 - (1 - DARK) ** (1 / count)
 
 
 class Caster(NamedTuple):
@@ -45,17 +51,17 @@ def caster(parts: list[Part]) -> Caster:
     return Caster(np.concatenate([part.vertices for part in parts]), triangles, mates.reshape(-1, 3))
 
 
-def shadows(of: Caster, rotation: Floats, centre: Floats) -> list[list[Floats]]:
+def shadows(of: Caster, rotation: Floats, centre: Floats, lamp: Floats) -> list[list[Floats]]:
     """The closed outlines (n, 3) on the table of the shadow from each point of the lamp."""
     places = of.vertices @ rotation.T + centre
     corners = places[of.triangles]
     flat = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     edges = np.stack([of.triangles, np.roll(of.triangles, -1, axis=1)], axis=2)
     found = []
-    for lamp in _LAMPS:
-        sees = np.append(flat @ np.array([*-lamp, 1.0]) > 0, False)
+    for far in lamp:
+        sees = np.append(flat @ np.array([*-far, 1.0]) > 0, False)
         rims = _closed(edges[sees[:-1, np.newaxis] & ~sees[of.mates]])
-        fallen = np.column_stack([places[:, :2] + places[:, 2:] * lamp, np.zeros(len(places))])
+        fallen = np.column_stack([places[:, :2] + places[:, 2:] * far, np.zeros(len(places))])
         found.append([fallen[rim] for rim in rims])
     return found
 

@@ -7,6 +7,9 @@ contact about the vertical, for a listener who stands beside the table: one beat
 resonances are roughly those of a steel disk; their pitch has no meaning. Towards the end of a whirr psi'
 grows without bound: a contact faster than the ringing makes it no louder, and beats faster than the samples
 resolve are replaced by their mean.
+
+A body in the air is silent. An impact strikes the same resonances, as loud as its impulse is large, and is heard
+from everywhere.
 """
 
 import math
@@ -21,10 +24,12 @@ from spincyl._ellipsoid_motion import EllipsoidMotion
 from spincyl._input.files import replaced
 from spincyl._input.numbers import Floats, number, path_of, si, whole
 from spincyl._scale import Scale, scale_of
+from spincyl._studio.aloft import FLIES, goes_up
 from spincyl._studio.poses import seen, span
 
 if TYPE_CHECKING:
     from spincyl._motion import Motion
+    from spincyl._phases import Impact
 
 #: Hertz, decay time in seconds, strength.
 _RESONANCES = ((1150.0, 0.030, 1.0), (2710.0, 0.020, 0.6), (4890.0, 0.012, 0.35))
@@ -32,6 +37,9 @@ _SHARPNESS = 2.0
 _STILL = 1e-9  # in sqrt(g R): a contact that moves more slowly along the body is at rest up to rounding
 _LOOKS = 2000  # samples of the pose per second
 _AFTER, _LONGEST = 0.25, 180.0  # seconds
+#: Loudness of an impact with the impulse M sqrt(g R), that of a fall from R/2 without a bounce, against the noise
+#: of a contact with the speed sqrt(g R) during a second.
+_STRIKE = 0.4
 
 
 def sound(
@@ -73,8 +81,9 @@ def sound(
 def _heard(m: "Motion", first: float, unit: float, lasting: float, rate: int) -> Floats:
     """The pressure at each sample, between -1 and 1, with some ringing after the end."""
     looks = np.linspace(0.0, lasting, max(64, math.ceil(_LOOKS * lasting)))
-    phi, speed = _contact(m, first + looks / unit)
-    if not speed.max() > _STILL:
+    strikes = [x for x in m.impacts if x.time <= first + lasting / unit] if goes_up(m) else []
+    phi, speed = _contact(m, first + looks / unit, bool(strikes))
+    if not (speed.max() > _STILL or strikes):
         raise ValueError("there is nothing to hear: the point of contact does not move along the body")
     speed = np.minimum(speed, 2 * math.pi * _RESONANCES[0][0] * unit)
     t = np.arange(math.ceil((lasting + _AFTER) * rate)) / rate
@@ -82,20 +91,36 @@ def _heard(m: "Motion", first: float, unit: float, lasting: float, rate: int) ->
     scrape *= np.sqrt(np.interp(t, looks, speed)) * (t <= lasting)
     ring: Floats = _through(scrape, rate)
     ring *= _beat(np.interp(t, looks, phi))
+    if strikes:
+        ring += _through(_struck(strikes, first, unit, t.size, rate), rate)
     most = float(np.abs(ring).max())
     return ring * (0.9 / most) if most > 0 else ring
 
 
-def _contact(m: "Motion", times: Floats) -> tuple[Floats, Floats]:
-    """The azimuth of the contact, and its speed along the body, at times."""
+def _struck(strikes: "list[Impact]", first: float, unit: float, count: int, rate: int) -> Floats:
+    """The blows of impacts on the resonances, each in the sample that is nearest to its time."""
+    found = np.zeros(count)
+    at = np.array([round((x.time - first) * unit * rate) for x in strikes])
+    size = np.linalg.norm([x.impulse for x in strikes], axis=1)
+    heard = (at >= 0) & (at < count)
+    np.add.at(found, at[heard], _STRIKE * math.sqrt(rate) * size[heard])
+    return found
+
+
+def _contact(m: "Motion", times: Floats, strikes: bool = False) -> tuple[Floats, Floats]:
+    """The azimuth of the contact, and its speed along the body, at times; without a contact it has none."""
     phi, theta, w = seen(m, times, "phi", "theta", "w")
     s, c, fillet = np.sin(theta), np.cos(theta), m.body.fillet
     # finite at a ball's poles; after a face has landed there is no speed: the last one is repeated
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         round_the_rim = (1 - fillet) * (w[:, 2] - w[:, 0] * c / s) if fillet < 1 else 0.0
         speed = np.hypot(round_the_rim + fillet * (s * w[:, 2] - c * w[:, 0]), fillet * w[:, 1])
+    if goes_up(m):
+        speed = np.where(seen(m, times, "phase")[0] == FLIES, 0.0, speed)
     known = np.flatnonzero(np.isfinite(speed) & np.isfinite(phi) & (s > 0 if fillet < 1 else True))
     if known.size == 0:
+        if strikes:
+            return np.zeros(times.size), np.zeros(times.size)
         raise ValueError("there is nothing to hear: the body lies on its face")
     nearest = known[np.clip(np.searchsorted(known, np.arange(speed.size), "right") - 1, 0, None)]
     return phi[nearest], speed[nearest]

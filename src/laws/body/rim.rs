@@ -59,6 +59,12 @@ impl<T: Real> Rim<T> {
         self.ell * c + self.a * s
     }
 
+    /// Height of the lowest point of the upper rim, of two equal ones, over that of the lower rim.
+    #[inline(always)]
+    pub fn between(&self, (_, c): (T, T)) -> T {
+        (self.ell + self.ell) * c
+    }
+
     /// The derivative g' with one rounding less than [`slope`](Self::slope), in lanes and in single numbers alike.
     #[inline(always)]
     pub fn fused_slope(&self, (s, c): (T, T)) -> T {

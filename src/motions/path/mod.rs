@@ -107,7 +107,7 @@ fn check(body: &Body, start: &Start, ask: &Ask) -> Result<f64, Error> {
             return Err(Error::OutOfRange { name: "height", value: height, expected });
         }
         if body.ell() > 0.0 && body.theta_end() == core::f64::consts::FRAC_PI_2 {
-            let other = height + 2.0 * body.ell() * start.state.theta.cos();
+            let other = height + body.shape().rim.between(start.state.theta.sin_cos());
             within(
                 "height",
                 if other < -1e-15 { -height } else { height },

@@ -48,10 +48,14 @@ Object.assign(fastest, { normal2: 0, friction2: 0 });
 const ofOneRim = arrowOf;
 arrowOf = (p, v) => !v.endsWith("2") ? ofOneRim(p, v) : p.contact2 ? ofOneRim({ ...p, normal: p.normal2, friction: p.friction2, contact: p.contact2 }, v.slice(0, -1)) : null;
 
-// the view has room for the highest place
-const onTheTable = trace;
+// the view has room for the highest place; high above the table the shadows of few points of the lamp would be seen apart
+const onTheTable = trace, MORE = 24;
 trace = (m, times, poses) => {
   onTheTable(m, times, poses);
+  for (let k = 0; k < MORE; k++) {
+    const far = 0.15 * Math.sqrt((k + 0.5) / MORE), way = 2.4 * k;
+    LAMPS[k] = Object.assign([...LAMPS[0]], { 8: 0.36 + far * Math.cos(way), 9: 0.4 + far * Math.sin(way) });
+  }
   if (!m.aloft) return;
   const top = Math.max(...poses.map(p => p.top));
   m.middle[2] = 0.45 * top;

@@ -86,7 +86,7 @@ impl AirFlight {
         let (sin, cos) = (axis[0].hypot(axis[1]), axis[2]);
         let sine = if sin > 0.0 { -(cos * cosine / sin) } else { 0.0 };
         let [.., up] = self.free.velocity;
-        let rise = |side: f64| up - y[AIR_TIME] - side * rim.ell * cosine - rim.a * sine;
+        let rise = |side: f64| up - y[AIR_TIME] - rim.slope((sine, side * cosine));
         [
             -0.5 * (b * x + c * z + d * w),
             0.5 * (a * x + c * w - d * z),

@@ -103,11 +103,11 @@ impl Flight {
         let (s, c) = self.angle_of(t, cosine);
         let sine_rate = if s > 0.0 { -(c * cosine_rate / s) } else { 0.0 };
         let sine = -(cosine * (c + c0) / (s + s0));
-        let first = if side > 0.0 { self.from.height } else { self.from.height + 2.0 * rim.ell * c0 };
+        let first = self.from.height + if side > 0.0 { 0.0 } else { rim.between(self.from.angle) };
         let [.., up] = self.velocity;
         [
-            first + t * (up - 0.5 * t) - (side * rim.ell * cosine + rim.a * sine),
-            up - t - side * rim.ell * cosine_rate - rim.a * sine_rate,
+            first + t * (up - 0.5 * t) - rim.slope((sine, side * cosine)),
+            up - t - rim.slope((sine_rate, side * cosine_rate)),
         ]
     }
 
@@ -203,8 +203,7 @@ impl Flight {
             let known: f64 = (1..k).map(|i| sines[i] * sines[k - i]).sum();
             sines[k] = -(square + known) / (2.0 * s);
         }
-        let mut all: Vec<f64> =
-            (0..RIM_TERMS).map(|k| -(side * rim.ell * cosines[k] + rim.a * sines[k])).collect();
+        let mut all: Vec<f64> = (0..RIM_TERMS).map(|k| -rim.slope((sines[k], side * cosines[k]))).collect();
         // The first coefficient is the normal velocity, which is known without a difference.
         all[1] = near * if side > 0.0 { self.from.lift } else { self.from.from_other_rim(&self.shape).lift };
         all[2] -= 0.5 * near * near;

@@ -50,13 +50,13 @@ impl Aloft {
     /// The same motion as seen from the other rim of a body with two equal rims.
     pub fn from_other_rim(&self, shape: &Shape<f64>) -> Self {
         let ((s, c), [w1, w2, w3], [phi, psi, x, y]) = (self.angle, self.w, self.pose);
-        let apart = 2.0 * shape.rim.ell;
+        let (apart, above) = (2.0 * shape.rim.ell, shape.rim.between(self.angle));
         Self {
             angle: (s, 0.0 - c),
             w: [w1, 0.0 - w2, 0.0 - w3],
-            slip: [-(apart * c * w2) - self.slip[0], apart * w1 - self.slip[1]],
+            slip: [-(above * w2) - self.slip[0], apart * w1 - self.slip[1]],
             lift: self.lift + apart * s * w2,
-            height: self.height + apart * c,
+            height: self.height + above,
             pose: [phi + PI, 0.0 - psi, x - apart * s * phi.cos(), y - apart * s * phi.sin()],
         }
     }
