@@ -117,10 +117,12 @@ def roll(
     beyond : bool
         Whether to go on beyond an event, where the model is no longer that of the body. The event is
         reported all the same. Beyond a landing of the face there is nothing.
-    restitution : None or 0.0
-        With friction: None ends the motion where the other rim lands; with 0.0 it lands without a bounce, and
-        the motion goes on. If it then stands on that rim, this counts as the lower one: theta is told from
-        there, and phi turns by pi.
+    restitution : float, optional
+        Of impacts, 0 to 1: the share of the work of compression that comes back is its square (Stronge).
+        Default: the motion ends where the body leaves the table or its other rim lands. With a restitution it
+        goes on there: it flies, bounces, lies on both rims, rises again. Needed by a start in the air
+        (`dropped`). Where the other rim carries the body, theta is told from that rim, and phi turns by pi.
+        With "rolling" a body that lands on both rims ends there (`Ending.SIDE`) unless it only rocks.
     losses : Loss, optional
         What takes energy: a law of `spincyl.loss`, or several, added with `+`. The motion is then found by
         steps, forward in time, and may end where the contact point stops (`Ending.STOPS`).
@@ -128,7 +130,8 @@ def roll(
     Returns
     -------
     Motion
-        At the times up to the first event: the face or the other rim lands, lift-off, slip. If `t` is one
+        At the times up to the first event: the face or the other rim lands, lift-off, slip (with a
+        restitution: the face lands, or what comes next is not determined). If `t` is one
         time and the motion ends before, there is none: `status`, `event` and `message` tell why. Of a
         measured body it is in SI.
 
@@ -176,6 +179,13 @@ def roll(
     >>> hoop, thrown = sc.Body.tube(0.0, bore=1.0), sc.State(np.pi / 2, 0.0, 0.0, -3.0, slip=(0.0, 5.0))
     >>> sc.roll(hoop, thrown, 20.0, contact=sc.Coulomb(0.25)).phases
     ((0, 'slipping'), (10, 'rolling'))
+
+    A ball that falls bounces until the sum of its bounces is over:
+
+    >>> ball = sc.Body.ball(0.0, i1=0.4, i3=0.4)
+    >>> m = sc.roll(ball, sc.dropped(ball, 0.5, 1.0), 10.0, contact=sc.Coulomb(0.3), restitution=0.5)
+    >>> len(m.impacts), m.phases[-1].kind, round(m.phases[-1].time, 5)
+    (24, 'rolling', 3.0)
     """
     if is_stone(body):
         from spincyl import _ellipsoid_motion as stones

@@ -7,9 +7,8 @@ import numpy as np
 from spincyl._input.numbers import Floats
 from spincyl._motion import Motion
 from spincyl._phases import KINDS
-from spincyl._studio.aloft import FLIES, aloft
+from spincyl._studio.aloft import FLIES, aloft, two_rims
 from spincyl._studio.poses import span
-from spincyl._studio.shape import landing
 
 #: Phases shorter than this share of the time shown belong to the bounces before and after them, in words.
 _BRIEF = 2e-3
@@ -23,8 +22,7 @@ def flying(m: Motion) -> dict[str, Any]:
     codes = [KINDS.index(phase.kind) for phase in m.phases]
     rims = aloft(m, first, last).on_other((begins + np.maximum(begins, ends)) / 2)
     phases = [list(x) for x in zip(begins.tolist(), codes, rims.astype(int).tolist(), strict=True)]
-    two = float(m.body.ell) > 0 and landing(m.body) == np.pi / 2  # a rim at either end
-    return {"aloft": True, "two": two, "phases": phases, "told": _told(m, begins, ends, codes)}
+    return {"aloft": True, "two": two_rims(m.body), "phases": phases, "told": _told(m, begins, ends, codes)}
 
 
 def _told(m: Motion, begins: Floats, ends: Floats, codes: list[int]) -> list[list[float]]:

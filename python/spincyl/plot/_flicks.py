@@ -1,4 +1,4 @@
-"""A map of flicks: which settle and how long that takes, which lie down, and which lift off."""
+"""A map of flicks: which settle and how long that takes, which lie down, which lift off, and which hop before."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -21,6 +21,8 @@ _AXES = {
     "launch": r"launch number  $I_3 \omega_1 \omega_3/\ell$",
     "centre": "velocity of the centre, at first",
 }
+#: Those that hop before are hatched, which shows without colours too, and over those that settle.
+_HOPS, _INK = "////", "0.3"
 #: Upper end of the colours, in medians: few tubes slip much longer than most without slipping to the end.
 _MEDIANS = 2.0
 
@@ -29,7 +31,8 @@ _MEDIANS = 2.0
 def flicks(found: "xarray.Dataset", ax: "Axes | None" = None) -> "Axes":
     """Draw how flicks of a tube end: the colour of those that settle is the time after which they roll.
 
-    What slips up to the last time, or up to shortly before it in every nod, has a colour of its own.
+    What slips up to the last time, or up to shortly before it in every nod, has a colour of its own. With a
+    `restitution` those that hop before are hatched.
 
     Parameters
     ----------
@@ -72,15 +75,17 @@ def flicks(found: "xarray.Dataset", ax: "Axes | None" = None) -> "Axes":
         )
     colormap: Any = extra("matplotlib.colors", "plot").ListedColormap
     patch: Any = extra("matplotlib.patches", "plot").Patch
+    followed = "impacts" in found  # those that hop are followed in the air
     found = found[["outcome", "rolling_time"]].sortby(list(axes)).transpose(*reversed(axes))
     across, up = (found[name].values for name in axes)
     outcome = found["outcome"].values
     ax = new_axes(ax)
-    settles, times = outcome == Outcome.SETTLES, found["rolling_time"].values
+    hops_on, hops_down = (outcome == x for x in (Outcome.HOPS_AND_SETTLES, Outcome.HOPS_AND_LIES))
+    settles, times = hops_on | (outcome == Outcome.SETTLES), found["rolling_time"].values
     rolls = settles & (times <= (1 - _SHORTLY) * found.attrs.get("t", np.inf))
     others = {
-        "lies down": (FORBIDDEN, outcome == Outcome.LIES_DOWN),
-        "lifts off": (UNSTABLE, outcome == Outcome.LIFTS_OFF),
+        "lies down": (FORBIDDEN, hops_down | (outcome == Outcome.LIES_DOWN)),
+        "in the air at the end" if followed else "lifts off": (UNSTABLE, outcome == Outcome.LIFTS_OFF),
         "slips up to the end": (SMOOTH, settles & ~rolls),
         "none of these": ("0.35", outcome == Outcome.NONE),
     }
@@ -100,6 +105,11 @@ def flicks(found: "xarray.Dataset", ax: "Axes | None" = None) -> "Axes":
         bar.set_label(f"settles, and rolls after ({unit})", labelpad=8)
     ax.set(**{f"{x}label": _AXES.get(str(name), str(name)) for x, name in zip("xy", axes, strict=True)})
     ax.set_title(found.attrs.get("contact", ""))
+    hops = hops_on | hops_down
+    if hops.any():
+        mask = np.ma.masked_where(~hops, hops.astype(float))
+        ax.pcolor(across, up, mask, cmap=colormap(["none"]), hatch=_HOPS, ec=_INK, lw=0, rasterized=True)
+        shown.append(patch(facecolor="none", edgecolor=_INK, hatch=_HOPS, label="hops before"))
     if shown:
         ax.legend(handles=shown, loc="upper right", framealpha=0.9)
     return ax

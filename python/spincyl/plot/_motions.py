@@ -12,12 +12,14 @@ from spincyl._loss import titled
 from spincyl._motion import Motion
 from spincyl._phases import rubs
 from spincyl._scale import unit as unit_of
+from spincyl._studio.aloft import FLIES, SLIPS, aloft, goes_up
 from spincyl._studio.exposure import exposure as photograph
 from spincyl._studio.exposure import frame
 from spincyl._studio.poses import pace, span
 from spincyl._studio.shape import steepest
 from spincyl._told import ends
-from spincyl.plot._style import BLACK, BLUE, ORANGE, RED, new_axes, own_ticks, sized
+from spincyl.plot import _aloft
+from spincyl.plot._style import BLACK, BLUE, ORANGE, RED, SKY, new_axes, own_ticks, sized
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -31,7 +33,8 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
     """Draw a motion: inclination and tilting, the contact path on the table, the contact force.
 
     A motion that ended is grey from there to the last time asked for. With a law of friction the path is red
-    where the body slips, and the time tinted. Units are natural; of a measured body seconds, metres and
+    where the body slips, and the time tinted. With a `restitution` the height of its lowest point stands beside
+    the inclination, impacts are marked, and flights and times on both rims are tinted as well. Units are natural; of a measured body seconds, metres and
     newtons, or weights if its mass is not known. Of a stone the spin about the vertical stands beside the
     inclination, and the largest semi-axis for R.
 
@@ -59,6 +62,7 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
     """
     made("m", m, Motion)
     asked, scale, (m, close) = m, m.scale, _close(m.natural)
+    up = goes_up(m)
     t, (x, y), centre, normal, friction = (
         _in(scale, name, values)
         for name, values in (
@@ -76,7 +80,8 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
     tilt, path, force = axes
     thick: dict[str, Any] = {"lw": 1.8} if close else {"ls": "", "marker": ".", "ms": 1}
     thin = thick | {"lw": 1.4} if close else thick
-    tilt.plot(t, np.degrees(m.theta), color=BLUE, **thick)
+    jumps = _aloft.breaks(m) if up else np.zeros(m.t.size, bool)
+    tilt.plot(*_aloft.parted(jumps, t, np.degrees(m.theta)), color=BLUE, **thick)
     tilt.set_ylabel(r"inclination  $\theta$ (degrees)")
     how = {"rolling": "rolling", "smooth": "smooth table"}.get(named(m.contact)) or _law(m)
     if m.losses is not None:
@@ -87,21 +92,29 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
     else:
         fillet = rf", $\rho = {m.body.fillet:.4g}$" if m.body.fillet else ""
         tilt.set_title(rf"{how}, $\ell = {m.body.ell:.4g}${fillet}")
+    if up:
+        units = float(_in(scale, "t", 1.0)), float(_in(scale, "centre", 1.0)), _said("centre", scale)
+        _aloft.height(tilt, m, t, units, thin)
+        tilt.yaxis.label.set_color(BLUE)
     # at least one radian high, so that a constant theta does not show rounding
     low, high = tilt.get_ylim()
     if high - low < 1e-3:
         tilt.set_ylim(low - 0.5, high + 0.5)
 
-    if rubs(m.contact):
-        slips = m.phase == 1
-        for mask, colour, label in ((slips, RED, "contact slips"), (~slips, BLUE, "contact rolls")):
+    if rubs(m.contact) or up:
+        slips = np.isin(m.phase, SLIPS)
+        rolls = ~slips & (m.phase != FLIES)
+        for mask, colour, label in ((slips, RED, "contact slips"), (rolls, BLUE, "contact rolls")):
             if mask.any():
                 # include the next point, so that there is no gap between two colours
-                mask = mask | np.append(False, mask[:-1])
+                mask = (mask | np.append(False, mask[:-1])) & ~jumps
                 path.plot(*np.where(mask, [x, y], np.nan), color=colour, label=label, **thin)
     else:
         path.plot(x, y, color=BLUE, label="contact point", **thin)
     path.plot(centre[:, 0], centre[:, 1], color=ORANGE, label="centre, from above", **thin)
+    if up and m.impacts:
+        where = _in(scale, "contact_point", _aloft.strikes(m))
+        path.plot(*where, "x", color=BLACK, ms=6, label="impact")
     path.plot(x[0], y[0], "o", color=BLACK, ms=6)
     path.plot(x[-1], y[-1], "s", color=BLACK, ms=6)
     path.plot(*centre[-1, :2], "P", color=ORANGE, ms=7)
@@ -121,7 +134,12 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
     dashed = thick | {"ls": "--"} if close else thick
     name = "friction" if rubs(m.contact) else "friction demand"
     force.plot(t, friction, color=ORANGE, label=name, **dashed)
-    if rubs(m.contact):
+    if up and (on_both := m.phase > FLIES).any():
+        other = np.where(on_both, _in(scale, "normal", m.normal_other), np.nan)
+        force.plot(t, other, color=SKY, label="$N$, other rim", **thin)
+    if up:
+        _aloft.shades((tilt, force), m, float(_in(scale, "t", 1.0)))
+    elif rubs(m.contact):
         _shade_the_slip((tilt, force), m, float(_in(scale, "t", 1.0)))
     force.axhline(float(_in(scale, "normal", 1.0)), color="#888888", lw=0.8, ls=":")
     if float(np.max(m.normal)) > 20:
@@ -165,11 +183,17 @@ def _close(m: "Motion") -> "tuple[Motion, bool]":
     m = m.wanting("pose", "force")
     period = pace(m)
     share = np.linspace(0, 1, int(min(1001 + 40 * abs(last - first) / period, _MOST)))
+    up = aloft(m, first, last) if goes_up(m) else None
+    if up is not None:  # both sides of each kink
+        share = np.union1d(share, (up.edges - first) / (last - first))
     if isinstance(m, EllipsoidMotion):  # is integrated anew for any times
         return m.at(first + share * (last - first)), True
     while share.size < _MOST:
         there = m.at(first + share * (last - first))
-        long = np.maximum(np.abs(np.diff(there.theta)) / 0.02, np.abs(np.diff(there.phi)) / 0.1) > 1
+        theta, phi = there.theta, there.phi
+        if up is not None:
+            theta, phi, _ = up.from_first(there.t, theta, phi, there.psi).T
+        long = np.maximum(np.abs(np.diff(theta)) / 0.02, np.abs(np.diff(phi)) / 0.1) > 1
         long &= np.diff(share)[: long.size] > 1e-12
         if not long.any():
             return there, True

@@ -1,0 +1,85 @@
+"""What a drawn motion has besides if it flies, bounces or lies on both rims."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from spincyl._input.numbers import Floats, extra
+from spincyl._phases import Phase
+from spincyl._studio.aloft import aloft, lowest
+from spincyl._studio.poses import span
+from spincyl.plot._style import BLACK, ORANGE, RED, SKY
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from spincyl._motion import Motion
+
+#: Colour, opacity and words for the times of each kind of phase.
+_SHADES = {
+    "slipping": (RED, 0.10, "slips"),
+    "flying": (SKY, 0.28, "in the air"),
+    "lying": ("#888888", 0.28, "lies on both rims"),
+}
+
+
+def _shade(phase: Phase) -> str:
+    """The kind of phase in whose colour a phase is shaded; empty for none."""
+    return {"rolling": "", "slipping": "slipping", "flying": "flying"}.get(phase.kind, "lying")
+
+
+def breaks(m: "Motion") -> np.ndarray:
+    """(n,) whether another rim has taken over since the time before: there a curve told from a rim jumps."""
+    other = aloft(m.natural, *span(m.natural)).on_other(m.natural.t)
+    found: np.ndarray = np.append(False, other[1:] != other[:-1])
+    return found
+
+
+def parted(where: np.ndarray, *curves: Floats) -> list[Floats]:
+    """Curves with a gap before each of these places."""
+    at = np.flatnonzero(where)
+    return [np.insert(np.asarray(curve, float), at, np.nan) for curve in curves]
+
+
+def shades(axes: "Sequence[Axes]", m: "Motion", second: float) -> None:
+    """Tint the times of slips, flights and rests on both rims; `second` is the unit of time of the axes."""
+    ends = [phase.time for phase in m.phases[1:]] + [float(m.t[-1])]
+    spans: list[tuple[str, float, float]] = []
+    for phase, end in zip(m.phases, ends, strict=True):
+        name, begin = _shade(phase), max(phase.time, float(m.t[0]))
+        if spans and spans[-1][0] == name:
+            spans[-1] = (name, spans[-1][1], end)
+        elif begin < end:
+            spans.append((name, begin, end))
+    for name, begin, end in spans:
+        for ax in axes if name else ():
+            colour, opacity, _ = _SHADES[name]
+            ax.axvspan(begin * second, end * second, color=colour, alpha=opacity, lw=0, zorder=0)
+
+
+def height(ax: "Axes", m: "Motion", t: Floats, units: tuple[float, float, str], style: dict[str, Any]) -> None:
+    """Draw the height of the lowest place beside the inclination, the impacts as marks, and say what is tinted.
+
+    `units` are those of time and length, and the name of the latter.
+    """
+    second, metre, said = units
+    right = ax.twinx()
+    high = lowest(m) * metre
+    right.plot(t, high, color=ORANGE, **style)
+    times = second * np.array([x.time for x in m.impacts])
+    (marks,) = right.plot(times, 0 * times, "v", color=BLACK, ms=6, clip_on=False, label="impact", zorder=4)
+    right.set_ylim(0, 1.1 * float(high.max()) or 1.0)
+    right.set_ylabel(f"height of its lowest point ({said})", color=ORANGE)
+    patch: Any = extra("matplotlib.patches", "plot").Patch
+    there = dict.fromkeys(filter(None, map(_shade, m.phases)))
+    shown = [patch(facecolor=_SHADES[x][0], alpha=_SHADES[x][1], label=_SHADES[x][2]) for x in there]
+    shown += [marks] if times.size else []
+    ax.legend(handles=shown, loc="upper center", bbox_to_anchor=(0.5, -0.17), ncols=2)
+
+
+def strikes(m: "Motion") -> Floats:
+    """(2, k) where on the table the impacts of a motion are."""
+    there = m.wanting("pose", t=np.unique([x.time for x in m.impacts]))
+    found: Floats = there.contact_point.T
+    return found
