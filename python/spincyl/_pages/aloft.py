@@ -52,8 +52,9 @@ def _told(m: Motion, begins: Floats, ends: Floats, codes: list[int]) -> list[lis
 def beside(m: Motion, t: Floats) -> dict[str, Any]:
     """Force on the other rim of a body that lies on both, as 16-bit integers between bounds: F_h, F_2, N.
 
-    Friction is against the slip. Where that rim does not slip while the body rolls on its side, it has the
-    direction of the first rim's; while the body pivots about it, its direction is not known and it is left out.
+    Friction is against the slip. Where that rim does not slip while the body rolls on its side, friction has
+    the direction that it has on the first rim; while the body pivots about it, none is told, since its
+    direction is not known.
     """
     there = m.wanting("pose", "force", t=t)
     on_both = there.phase > FLIES

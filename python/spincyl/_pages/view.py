@@ -309,8 +309,8 @@ def view(
     and its clock says why and when. It has poses at few times and draws a cubic between them, which meets the
     motion within 0.003 rad, and R for bodies of usual length. ω and L are computed from the drawn pose.
 
-    Of a body that flies or lies on both rims (`roll` with a `restitution`) the clock tells how high its lowest
-    point is; in the air there is neither path nor force.
+    Of a body that flies (`roll` with a `restitution`) the clock tells how high its lowest point is; in the
+    air there is neither path nor force.
 
     Of a stone the clock also tells the spin, and when it turns back: when it has passed zero and comes to a
     tenth of its first value in the other direction. One whose edge lands is drawn as a hull with a needle on
@@ -380,7 +380,7 @@ def _shown(m: Motion) -> tuple[dict[str, Any], float]:
     data |= {name: base64(*x) if isinstance(x, tuple) else x for name, x in packets}
     fastest = float(np.abs(found[:, 6:9]).max())
     if isinstance(m, EllipsoidMotion) or m.body.fillet == 1 or goes_up(m):
-        # at the pole of a ball, and in the air, phi' and psi' are large and nearly cancel: use the angular velocity instead
+        # near a pole phi' and psi' are large and nearly cancel: use the angular velocity instead
         (w,) = seen(m, found[:, 0], "w")
         fastest = float(np.linalg.norm(w, axis=1).max())
     return data, fastest / (2 * np.pi)

@@ -58,7 +58,7 @@ class Aloft(NamedTuple):
     def from_first(self, t: Floats, theta: Floats, phi: Floats, psi: Floats) -> Floats:
         """The three angles as told from the first rim, and continuous, along a last axis.
 
-        A body that only tumbles in a vertical plane passes through the poles: there theta goes on beyond them.
+        A body that only tumbles in a vertical plane passes through the poles: theta goes on beyond them.
         """
         told = self.told[np.searchsorted(self.times, t, "right")]
         rims, across, about, turns, sign = np.moveaxis(told, -1, 0)
@@ -85,7 +85,20 @@ def aloft(m: "Motion", first: float, last: float) -> Aloft:
     # a kink at an end of the motion needs no knots of its own
     edges = np.array([[a - half, b + half] for a, b in _groups(inside, near)]).reshape(-1, 2)
     edges = edges[(first + near < edges[:, 0]) & (edges[:, 1] < last - near)]
-    return Aloft(edges, np.array(begins), *_changes(m, inside, _poles(m, first, last), first, last))
+    found = Aloft(edges, np.array(begins), *_changes(m, inside, _poles(m, first, last), first, last))
+    return _without_turns(m, found) if len(edges) else found
+
+
+def _without_turns(m: "Motion", up: Aloft) -> Aloft:
+    """Take whole turns of phi and psi out of kinks in which impacts are too close to be told apart."""
+    there = m.wanting("pose", t=up.edges.ravel())
+    many = there.t.size // 2
+    angles = up.from_first(there.t, there.theta, there.phi, there.psi)[: 2 * many].reshape(many, 2, 3)
+    whole = np.round((angles[:, 1] - angles[:, 0]) / (2 * np.pi)).astype(int)[:, 1:]
+    told = up.told.copy()
+    for (begin, _), turns in zip(up.edges, whole, strict=False):
+        told[1:][up.times > begin, 1:3] += 2 * turns
+    return up._replace(told=told)
 
 
 def _groups(t: Floats, near: float) -> list[tuple[float, float]]:
@@ -175,7 +188,7 @@ def two_rims(body: "Body") -> bool:
 
 
 def lowest(m: "Motion") -> Floats:
-    """(n,) height of the lowest place of the body over the table, which in the air may be on the other rim."""
+    """(n,) height of the lowest place of the body, which in the air may be on the other rim."""
     m = m.natural
     other = m.height + 2 * m.body.ell * np.cos(m.theta)
     found: Floats = np.maximum(np.minimum(m.height, other), 0.0) if two_rims(m.body) else m.height

@@ -78,9 +78,9 @@ def seen(m: "Motion", t: Floats, *names: str) -> list[Floats]:
 def pace(m: "Motion") -> float:
     """Duration of a nutation: the exact period, or with friction the shortest period of any phase.
 
-    With losses it is the mean over the motion, since nutations become shorter as a disk falls, and so it is of a
-    body that leaves the table. For a stone it is roughly the mean duration of its rockings, from the number of
-    evaluations.
+    With losses it is the mean over the motion, since nutations become shorter as a disk falls, and so it is
+    for a body that leaves the table. For a stone it is roughly the mean duration of its rockings, from the
+    number of evaluations.
     """
     if isinstance(m.body, Ellipsoid):
         many = m.nfev / _EVALUATIONS * (m._setting / 1e-14) ** 0.1
@@ -231,12 +231,12 @@ def _graded(m: "Motion", found: Floats, up: Aloft) -> Floats:
 
 
 def _between(m: "Motion", up: Aloft, first: float, last: float) -> Floats:
-    """The first times of knots of a motion with kinks: both sides of each, begins of phases, times between."""
-    times = [[first, last], up.edges.ravel(), up.begins]
+    """First times for knots of a motion with kinks: both sides of each, begins of phases, some between."""
+    times = [np.array([first, last]), up.edges.ravel(), up.begins]
     for begin, end, often, _ in parts(m, first, last):
         count = 4 + int(3 * (end - begin) * often)
         times.append(begin + (end - begin) * np.arange(1, count) / count)
-    t = np.unique(np.concatenate(times))
+    t: Floats = np.unique(np.concatenate(times))
     inside = (up.edges[:, :1] < t) & (t < up.edges[:, 1:])
     close = np.append(False, np.diff(t) < 1e-7 * (last - first)) & ~np.isin(t, up.edges)
     found: Floats = t[~(inside.any(axis=0) | close)]

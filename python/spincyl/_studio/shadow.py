@@ -12,8 +12,8 @@ import numpy as np
 from spincyl._input.numbers import Floats
 from spincyl._studio.shape import Part
 
-#: Darkness of the full shadow; points of the lamp, and those for a body that is high above the table, where the
-#: shadows of few would be seen apart.
+#: Darkness of the full shadow; points of the lamp, and more for a body high above the table, where shadows of
+#: few would be seen apart.
 DARK = 0.24
 LAMPS, MANY = 12, 32
 
@@ -21,14 +21,12 @@ LAMPS, MANY = 12, 32
 def lamps(count: int) -> Floats:
     """Horizontal displacement of the shadow for each point of the lamp, per unit height."""
     far = 0.15 * np.sqrt((np.arange(count) + 0.5) / count)
-    return np.array(
-        [(0.36 + x * math.cos(2.4 * k), 0.4 + x * math.sin(2.4 * k)) for k, x in enumerate(far)]
-    )
+    return np.array([(0.36 + x * math.cos(2.4 * k), 0.4 + x * math.sin(2.4 * k)) for k, x in enumerate(far)])
 
 
 def layer(count: int) -> float:
     """Darkness of the shadow from each point of the lamp."""
-    return 1 - (1 - DARK) ** (1 / count)
+    return float(1 - (1 - DARK) ** (1 / count))
 
 
 class Caster(NamedTuple):

@@ -8,8 +8,8 @@ resonances are roughly those of a steel disk; their pitch has no meaning. Toward
 grows without bound: a contact faster than the ringing makes it no louder, and beats faster than the samples
 resolve are replaced by their mean.
 
-A body in the air is silent. An impact strikes the same resonances, as loud as its impulse is large, and is heard
-from everywhere.
+A body in the air is silent. An impact strikes the same resonances, as loud as its impulse is large, and is
+as loud from all sides.
 """
 
 import math
@@ -37,8 +37,8 @@ _SHARPNESS = 2.0
 _STILL = 1e-9  # in sqrt(g R): a contact that moves more slowly along the body is at rest up to rounding
 _LOOKS = 2000  # samples of the pose per second
 _AFTER, _LONGEST = 0.25, 180.0  # seconds
-#: Loudness of an impact with the impulse M sqrt(g R), that of a fall from R/2 without a bounce, against the noise
-#: of a contact with the speed sqrt(g R) during a second.
+#: Loudness of an impact with the impulse M sqrt(g R), as of a fall from R/2 without a bounce: a share of the
+#: noise of a contact that moves with sqrt(g R) for a second.
 _STRIKE = 0.4
 
 

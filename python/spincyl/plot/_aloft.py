@@ -58,8 +58,10 @@ def shades(axes: "Sequence[Axes]", m: "Motion", second: float) -> None:
             ax.axvspan(begin * second, end * second, color=colour, alpha=opacity, lw=0, zorder=0)
 
 
-def height(ax: "Axes", m: "Motion", t: Floats, units: tuple[float, float, str], style: dict[str, Any]) -> None:
-    """Draw the height of the lowest place beside the inclination, the impacts as marks, and say what is tinted.
+def height(
+    ax: "Axes", m: "Motion", t: Floats, units: tuple[float, float, str], style: dict[str, Any]
+) -> None:
+    """Draw the height of the lowest place, with the impacts as marks, and say what is tinted.
 
     `units` are those of time and length, and the name of the latter.
     """

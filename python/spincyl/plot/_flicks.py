@@ -1,4 +1,4 @@
-"""A map of flicks: which settle and how long that takes, which lie down, which lift off, and which hop before."""
+"""A map of flicks: which settle and how long that takes, which lie down, and which lift off or hop before."""
 
 from typing import TYPE_CHECKING, Any
 

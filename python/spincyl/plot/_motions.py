@@ -19,7 +19,7 @@ from spincyl._studio.poses import pace, span
 from spincyl._studio.shape import steepest
 from spincyl._told import ends
 from spincyl.plot import _aloft
-from spincyl.plot._style import BLACK, BLUE, ORANGE, RED, SKY, new_axes, own_ticks, sized
+from spincyl.plot._style import BLACK, BLUE, ORANGE, RED, new_axes, own_ticks, sized
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -33,10 +33,10 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
     """Draw a motion: inclination and tilting, the contact path on the table, the contact force.
 
     A motion that ended is grey from there to the last time asked for. With a law of friction the path is red
-    where the body slips, and the time tinted. With a `restitution` the height of its lowest point stands beside
-    the inclination, impacts are marked, and flights and times on both rims are tinted as well. Units are natural; of a measured body seconds, metres and
-    newtons, or weights if its mass is not known. Of a stone the spin about the vertical stands beside the
-    inclination, and the largest semi-axis for R.
+    where the body slips, and the time tinted. With a `restitution` the height of its lowest point stands
+    beside the inclination, impacts are marked, and flights and rests on both rims are tinted as well. Units
+    are natural; of a measured body seconds, metres and newtons, or weights if its mass is not known. Of a
+    stone the spin about the vertical stands beside the inclination, and the largest semi-axis for R.
 
     Parameters
     ----------
@@ -136,7 +136,8 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
     force.plot(t, friction, color=ORANGE, label=name, **dashed)
     if up and (on_both := m.phase > FLIES).any():
         other = np.where(on_both, _in(scale, "normal", m.normal_other), np.nan)
-        force.plot(t, other, color=SKY, label="$N$, other rim", **thin)
+        dotted = thick | {"ls": ":"} if close else thick
+        force.plot(t, other, color=BLACK, label="$N$, other rim", **dotted)
     if up:
         _aloft.shades((tilt, force), m, float(_in(scale, "t", 1.0)))
     elif rubs(m.contact):

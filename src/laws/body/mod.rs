@@ -279,6 +279,11 @@ impl Body {
         search::crossing(left, 0.0, FRAC_PI_2, pull.hi, -ell)
     }
 
+    /// Whether only the rims can land, of which there are two equal ones, or one.
+    pub(crate) fn lands_on_rims(&self) -> bool {
+        self.theta_end == beyond(self.ell, self.fillet)
+    }
+
     pub(crate) fn excess_sum(&self) -> Sum<f64> {
         self.excess
     }

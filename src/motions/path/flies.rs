@@ -11,7 +11,7 @@
 //! their sum is about TAIL.
 
 use super::flight::air::{AirFlight, in_air};
-use super::flight::{Aloft, Flight};
+use super::flight::{Aloft, Flies, Flight};
 use super::phases::{BodyWalk, Takeoff};
 use crate::laws::contact::impact::{Hit, RimImpact, Struck, lightness, turned};
 use crate::laws::contact::landing::{Landed, Outcome, land_at, settled};
@@ -21,7 +21,7 @@ use crate::laws::state::State;
 use crate::motions::halt::{TIME, loses, poses};
 use crate::motions::walk::Next;
 use crate::motions::{Ending, Kind, Method, Strike};
-use core::f64::consts::{FRAC_PI_2, PI};
+use core::f64::consts::FRAC_PI_2;
 
 /// Share of the state that the bounces which are summed may change, at least and at most.
 const TAIL: f64 = 1e-13;
@@ -44,26 +44,9 @@ const ROUNDED: f64 = 1e-12;
 /// Largest number of impacts of both rims in turn.
 const MOST_IN_TURN: u32 = 10_000;
 
-/// A flight without losses in the air, or with some.
-enum FlightCourse {
-    Free(Flight),
-    Air(Box<AirFlight>),
-}
-
-impl FlightCourse {
-    /// The first time at which theta exceeds a limit.
-    fn passes(&self, limit: f64) -> Option<f64> {
-        match self {
-            Self::Free(flight) => flight.passes(limit),
-            Self::Air(flight) => flight.passes(limit),
-        }
-    }
-}
-
 impl<const N: usize> BodyWalk<'_, N> {
     pub(super) fn has_two_rims(&self) -> bool {
-        let body = &self.of.body;
-        body.ell() > 0.0 && body.theta_end() == FRAC_PI_2
+        self.of.body.ell() > 0.0 && self.of.body.theta_end() == FRAC_PI_2
     }
 
     /// Whether both rims touch, of which both or one may carry the body.
@@ -124,7 +107,8 @@ impl<const N: usize> BodyWalk<'_, N> {
     pub(super) fn continues_after(&mut self, ending: Ending) -> Next {
         let Some(e) = self.ask.restitution else { return Next::Ends(ending) };
         match ending {
-            Ending::LiftOff => {
+            // Another part of a body, which may land first, has no known shape.
+            Ending::LiftOff if self.of.body.lands_on_rims() => {
                 let [free, size] = self.pressed(&self.aloft());
                 let rolls = matches!(self.ask.table, Table::Rolling { .. });
                 if rolls && free > ROUNDED * size {
@@ -158,75 +142,47 @@ impl<const N: usize> BodyWalk<'_, N> {
         let shape = self.of.slide.law.shape;
         let (from, now) = (self.aloft(), self.at[TIME]);
         let Takeoff { leaves, .. } = self.of.takeoff;
-        let mut course = match in_air(&self.ask.losses) {
-            Some(losses) => {
-                FlightCourse::Air(Box::new(AirFlight::new(&shape, &from, losses, self.of.slide.tol)))
-            }
-            None => FlightCourse::Free(Flight::new(&shape, &from)),
+        let mut course: Box<dyn Flies> = match in_air(&self.ask.losses) {
+            Some(losses) => Box::new(AirFlight::new(&shape, &from, losses, self.of.slide.tol)),
+            None => Box::new(Flight::new(&shape, &from)),
         };
         let other = from.from_other_rim(&shape);
         let touches = other.height == 0.0;
         let leaves = [leaves, touches.then_some(if other.lift == 0.0 { 2 } else { 1 })];
         let left = self.since.last().map_or(0.0, |t| t - now);
-        let two = self.has_two_rims();
-        let found = match &mut course {
-            FlightCourse::Free(flight) => flight.lands(leaves, two, left),
-            FlightCourse::Air(flight) => flight.lands(leaves, two, left),
-        };
-        let Ok(landing) = found else {
+        let Ok(landing) = course.lands(leaves, self.has_two_rims(), left) else {
             self.next = Some(Next::Ends(Ending::Bounded));
             return;
         };
-        let flight = match &course {
-            FlightCourse::Free(flight) => flight,
-            FlightCourse::Air(flight) => &flight.free,
-        };
         let before = if loses(N) { self.at[N - 1] } else { 0.0 };
         let end = landing.map_or(left, |(t, _)| t);
-        // Another part of the body, which may land first, has no known shape.
-        let limit = self.of.body.theta_end();
-        let over = if two || limit == PI { None } else { course.passes(limit).filter(|t| *t <= end) };
-        let end = over.unwrap_or(end);
         while let Some(t) = self.until().filter(|t| *t <= now + end) {
-            let at = self.flown(&course, t - now, before);
-            self.claims(flight.doubt(t - now, &at));
+            let at = self.flown(&*course, t - now, before);
             self.writes_in_air(&at);
         }
-        if let Some(t) = over {
-            let at = self.flown(&course, t, before);
-            self.at[TIME] = now + t;
-            self.sets(&at);
-            self.of.state.theta = limit;
-            self.next = Some(Next::Ends(Ending::Side));
-            return;
-        }
         let Some((t, upper)) = landing else { return };
-        let at = self.flown(&course, t, before);
+        let at = self.flown(&*course, t, before);
         self.at[TIME] = now + t;
         self.sets(&Aloft { height: if upper { at.height } else { 0.0 }, ..at });
         if upper {
             self.turns_over();
         }
         // The time of a landing is as uncertain as the height, over the normal velocity.
-        let high = flight.doubt_of_height(t);
-        self.claims(flight.doubt(t, &at) + (high / self.of.takeoff.lift.abs()).min(high.sqrt()));
+        let high = course.free().doubt_of_height(t);
+        self.claims((high / self.of.takeoff.lift.abs()).min(high.sqrt()));
         self.of.takeoff.height = 0.0;
         let next = self.strikes();
         self.continues_with(next);
     }
 
     /// The body at a time of its flight. The energy that the air has taken until then is added to the energy lost `before`.
-    fn flown(&mut self, course: &FlightCourse, t: f64, before: f64) -> Aloft {
-        match course {
-            FlightCourse::Free(flight) => flight.at(t),
-            FlightCourse::Air(flight) => {
-                let (at, lost) = flight.at(t);
-                if loses(N) {
-                    self.at[N - 1] = before + lost;
-                }
-                at
-            }
+    fn flown(&mut self, course: &dyn Flies, t: f64, before: f64) -> Aloft {
+        let (at, lost) = course.at(t);
+        if loses(N) {
+            self.at[N - 1] = before + lost;
         }
+        self.claims(course.free().doubt(t, &at));
+        at
     }
 
     /// The next phase after a landing.

@@ -106,6 +106,11 @@ fn check(body: &Body, start: &Start, ask: &Ask) -> Result<f64, Error> {
             let expected = "None: a motion that starts in the air needs a restitution";
             return Err(Error::OutOfRange { name: "height", value: height, expected });
         }
+        if !body.lands_on_rims() {
+            let expected =
+                "none: a part of the body other than its rims has no known shape, and may land first";
+            return Err(Error::OutOfRange { name: "theta_end", value: body.theta_end(), expected });
+        }
         if body.ell() > 0.0 && body.theta_end() == core::f64::consts::FRAC_PI_2 {
             let other = height + body.shape().rim.between(start.state.theta.sin_cos());
             within(

@@ -10,11 +10,10 @@
 //! the body down. Error: the tolerance of the steps.
 
 use super::lands::{Falling, Leaves, TooMany};
-use super::{Aloft, Flight};
+use super::{Aloft, Flies, Flight};
 use crate::laws::body::Shape;
 use crate::laws::loss::{Couples, Kinematics, Law, Losses};
 use crate::methods::rk8;
-use crate::methods::search::crossing;
 use core::f64::consts::TAU;
 
 const NUMBERS: usize = 11;
@@ -35,7 +34,7 @@ pub(crate) struct AirFlight {
     shape: Shape<f64>,
     from: Aloft,
     /// The flight without the air, which has the parabola of the centre.
-    pub free: Flight,
+    free: Flight,
     losses: Couples<f64>,
     steps: Vec<AirStep>,
     tol: f64,
@@ -112,13 +111,22 @@ impl AirFlight {
         (core::array::from_fn(|i| step.y[i] + made.change[i]), made.error(per, NUMBERS as f64))
     }
 
-    /// The first landing up to the time `until`, as of a flight without losses, with the steps up to there.
-    pub fn lands(
-        &mut self,
-        leaves: [Leaves; 2],
-        two: bool,
-        until: f64,
-    ) -> Result<Option<(f64, bool)>, TooMany> {
+    /// phi and psi since the start, from the numbers, within half a turn of those before.
+    fn angles(&self, y: &AirNumbers, [phi, psi]: [f64; 2]) -> [f64; 2] {
+        let [first, _, axis] = axes([y[0], y[1], y[2], y[3]]);
+        let turned = (-axis[1]).atan2(-axis[0]);
+        let phi = turned + TAU * ((phi - turned) / TAU).round();
+        let (sin, cos) = phi.sin_cos();
+        // e2 is horizontal, and e1 = e2 x e3.
+        let across = first[1] * cos - first[0] * sin;
+        let along = first[0] * axis[2] * cos + first[1] * axis[2] * sin + first[2] * axis[0].hypot(axis[1]);
+        let spun = across.atan2(along);
+        [phi, spun + TAU * ((psi - spun) / TAU).round()]
+    }
+}
+
+impl Flies for AirFlight {
+    fn lands(&mut self, leaves: [Leaves; 2], two: bool, until: f64) -> Result<Option<(f64, bool)>, TooMany> {
         let (rim, i1, [w1, w2, w3]) = (self.shape.rim, self.shape.i1, self.from.w);
         let reach = rim.ell.abs() + rim.a;
         let [m1, m2, m3] = self.couple(self.from.w);
@@ -174,32 +182,7 @@ impl AirFlight {
         Err(TooMany)
     }
 
-    /// The first time up to the landing at which theta exceeds a limit.
-    pub fn passes(&self, limit: f64) -> Option<f64> {
-        let beyond = |t: f64| limit - self.at(t).0.state().theta;
-        let last = self.steps.last().map_or(0.0, |step| step.y[AIR_TIME]);
-        let ends = self.steps.iter().map(|step| step.y[AIR_TIME]);
-        let after = ends.chain([last]).find(|t| beyond(*t) < 0.0)?;
-        let before =
-            self.steps.iter().map(|step| step.y[AIR_TIME]).filter(|t| *t < after).last().unwrap_or(0.0);
-        Some(crossing(beyond, before, after, beyond(before), beyond(after)))
-    }
-
-    /// phi and psi since the start, from the numbers, within half a turn of those before.
-    fn angles(&self, y: &AirNumbers, [phi, psi]: [f64; 2]) -> [f64; 2] {
-        let [first, _, axis] = axes([y[0], y[1], y[2], y[3]]);
-        let turned = (-axis[1]).atan2(-axis[0]);
-        let phi = turned + TAU * ((phi - turned) / TAU).round();
-        let (sin, cos) = phi.sin_cos();
-        // e2 is horizontal, and e1 = e2 x e3.
-        let across = first[1] * cos - first[0] * sin;
-        let along = first[0] * axis[2] * cos + first[1] * axis[2] * sin + first[2] * axis[0].hypot(axis[1]);
-        let spun = across.atan2(along);
-        [phi, spun + TAU * ((psi - spun) / TAU).round()]
-    }
-
-    /// The body at a time since the start, and the energy lost until then.
-    pub fn at(&self, t: f64) -> (Aloft, f64) {
+    fn at(&self, t: f64) -> (Aloft, f64) {
         let k = self.steps.partition_point(|step| step.y[AIR_TIME] <= t).max(1) - 1;
         let step = &self.steps[k];
         let y = if t > step.y[AIR_TIME] { self.part(step, t - step.y[AIR_TIME]).0 } else { step.y };
@@ -209,5 +192,9 @@ impl AirFlight {
         let w = [y[4] * cos - y[5] * sin, y[4] * sin + y[5] * cos, y[6]];
         let at = self.free.placed(t, (axis[0].hypot(axis[1]), axis[2]), w, [phi, psi]);
         (at, y[9])
+    }
+
+    fn free(&self) -> &Flight {
+        &self.free
     }
 }

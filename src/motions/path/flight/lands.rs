@@ -13,7 +13,7 @@
 //!
 //! Error: that of h divided by the normal velocity; a rim that only grazes touches where h is a rounding error.
 
-use super::Flight;
+use super::{Aloft, Flies, Flight};
 use crate::laws::body::Shape;
 
 /// Number of terms of the series at the start.
@@ -111,19 +111,6 @@ impl Flight {
         ]
     }
 
-    /// The first time after the start at which a rim lands, and whether it is the other rim of a body that has two;
-    /// None if none lands up to the time `until`. `leaves` says how both rims begin.
-    pub fn lands(&self, leaves: [Leaves; 2], two: bool, until: f64) -> Result<Option<(f64, bool)>, TooMany> {
-        let mut first = None;
-        for (i, side) in [1.0, -1.0].into_iter().enumerate().take(if two { 2 } else { 1 }) {
-            let until = first.map_or(until, |(t, _)| t);
-            if let Some(t) = self.lands_on(side, leaves[i], until)? {
-                first = Some((t, i == 1));
-            }
-        }
-        Ok(first)
-    }
-
     fn lands_on(&self, side: f64, leaves: Leaves, until: f64) -> Result<Option<f64>, TooMany> {
         let Shape { rim, .. } = self.shape;
         let [.., up] = self.velocity;
@@ -208,5 +195,26 @@ impl Flight {
         all[1] = near * if side > 0.0 { self.from.lift } else { self.from.from_other_rim(&self.shape).lift };
         all[2] -= 0.5 * near * near;
         (near, all.split_off(order))
+    }
+}
+
+impl Flies for Flight {
+    fn lands(&mut self, leaves: [Leaves; 2], two: bool, until: f64) -> Result<Option<(f64, bool)>, TooMany> {
+        let mut first = None;
+        for (i, side) in [1.0, -1.0].into_iter().enumerate().take(if two { 2 } else { 1 }) {
+            let until = first.map_or(until, |(t, _)| t);
+            if let Some(t) = self.lands_on(side, leaves[i], until)? {
+                first = Some((t, i == 1));
+            }
+        }
+        Ok(first)
+    }
+
+    fn at(&self, t: f64) -> (Aloft, f64) {
+        (self.flown(t), 0.0)
+    }
+
+    fn free(&self) -> &Flight {
+        self
     }
 }

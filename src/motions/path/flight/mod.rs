@@ -20,7 +20,8 @@ use crate::laws::body::Shape;
 use crate::laws::pose::Pose;
 use crate::laws::state::State;
 use crate::motions::path::write::posed;
-use core::f64::consts::{PI, TAU};
+use core::f64::consts::PI;
+use lands::{Leaves, TooMany};
 
 /// A body in the air, or in an impact, as seen from one of its rims.
 #[derive(Debug, Clone, Copy)]
@@ -60,6 +61,17 @@ impl Aloft {
             pose: [phi + PI, 0.0 - psi, x - apart * s * phi.cos(), y - apart * s * phi.sin()],
         }
     }
+}
+
+/// A flight, with losses in the air or without.
+pub(crate) trait Flies {
+    /// The first time after the start at which a rim lands, and whether it is the other rim of a body that has two;
+    /// None if none lands up to the time `until`. `leaves` says how both rims begin.
+    fn lands(&mut self, leaves: [Leaves; 2], two: bool, until: f64) -> Result<Option<(f64, bool)>, TooMany>;
+    /// The body at a time since the start, as seen from the same rim, and the energy that the air has taken.
+    fn at(&self, t: f64) -> (Aloft, f64);
+    /// The flight without losses.
+    fn free(&self) -> &Flight;
 }
 
 /// Beyond this size of cos theta its small complement is computed.
@@ -190,17 +202,8 @@ impl Flight {
         [if self.planar { 0.0 } else { self.image * along * per } + 0.0, 0.0 - self.a.sin() * sin * per]
     }
 
-    /// The first time at which theta exceeds a limit.
-    pub fn passes(&self, limit: f64) -> Option<f64> {
-        let share = (limit.cos() - self.a.cos() * self.b.cos()) / self.wide;
-        if self.from.angle.0.atan2(self.from.angle.1) > limit {
-            return Some(0.0);
-        }
-        (share.abs() < 1.0).then(|| (share.acos() - self.begin).rem_euclid(TAU) / self.rate)
-    }
-
     /// The body at a time since the start, as seen from the same rim.
-    pub fn at(&self, t: f64) -> Aloft {
+    fn flown(&self, t: f64) -> Aloft {
         if t == 0.0 {
             return self.from;
         }
