@@ -1,0 +1,178 @@
+"""Motions that hop and lie, in Python: one and many, measured bodies, what they hold, and what is refused."""
+
+import numpy as np
+import pytest
+
+import spincyl as sc
+
+TUBE = sc.Body.tube(6.0, bore=0.8)
+COIN = sc.Body.solid(0.08)
+GRIP = sc.Coulomb(0.3)
+
+
+def starts(count, seed):
+    """Bodies and states at random: on the table with a slip, and in the air."""
+    rng = np.random.default_rng(seed)
+    ell = rng.uniform(0.05, 3.0, count)
+    body = sc.Body.solid(ell)
+    theta, aloft = rng.uniform(0.2, 1.4, count), rng.random(count) < 0.5
+    w, slip = rng.normal(size=(3, count)), rng.normal(size=(2, count))
+    height = np.where(aloft, rng.uniform(0.0, 1.0, count), 0.0)
+    lift = np.where(aloft, rng.normal(size=count), 0.0)
+    return body, sc.State(theta, *w, slip=(slip[0], slip[1]), height=height, lift=lift)
+
+
+@pytest.mark.parametrize("contact", [GRIP, sc.Viscous(0.5), "smooth"])
+@pytest.mark.parametrize("e", [0.0, 0.6])
+def test_many_motions_are_those_that_are_followed_one_by_one(contact, e):
+    body, state = starts(60, 5)
+    want = ("final", "end", "impacts", "landings", "air_time", "lost_in_impacts", "last_phase", "dissipated")
+    found = sc.sweep.roll(body, state, 6.0, contact=contact, restitution=e, tol=1e-11, want=want)
+    for i in range(60):
+        one = sc.Body.solid(float(body.ell[i]))
+        four = [float(x[i]) for x in (state.theta, state.w1, state.w2, state.w3)]
+        slip = tuple(float(x[i]) for x in state.slip)
+        start = sc.State(*four, slip=slip, height=float(state.height[i]), lift=float(state.lift[i]))
+        m = sc.roll(one, start, [0.0, 6.0], contact=contact, restitution=e, tol=1e-11)
+        row = found.isel(motion=i)
+        assert int(row.status) == m.status
+        if not m.success:
+            continue
+        doubt = 4 * (m.error + float(row.error)) + 1e-10
+        last = [float(row[name]) for name in ("theta", "w1", "w2", "w3")]
+        assert np.abs(last - m.y[:, -1]).max() < doubt
+        if doubt < 1e-5:
+            assert len(m.impacts) == int(row.impacts)
+            assert float(row.lost_in_impacts) == pytest.approx(m.lost_in_impacts[-1], abs=10 * doubt)
+            assert sc.roll.__module__ and m.phase[-1] == int(row.last_phase)
+        times = np.array([p.time for p in m.phases] + [6.0])
+        flies = np.array([p.kind == "flying" for p in m.phases])
+        assert float(row.air_time) == pytest.approx(np.diff(times)[flies].sum(), abs=100 * doubt)
+
+
+def test_energy_and_all_that_is_taken_are_constant_in_natural_units_and_in_si():
+    tube = sc.measured(outer_diameter="15.875mm", inner_diameter="12.7mm", length="95.25mm", mass="20g")
+    t = np.linspace(0, 2, 201)
+    m = sc.roll(tube, sc.flicked(tube, hertz=20, launch=2.5), t, contact=GRIP, restitution=0.5)
+    for of in (m, m.natural):
+        whole = of.energy + of.dissipated + of.lost_in_impacts
+        assert np.ptp(whole) < 1e-12 * whole[0]
+    assert m.impacts[0].lost == pytest.approx(m.natural.impacts[0].lost * m.scale.joules(1.0), rel=1e-12)
+    push, own = m.impacts[0].impulse, m.natural.impacts[0].impulse
+    newton_seconds = m.scale.joules(1.0) / m.scale.metres_per_second(1.0)
+    assert push == pytest.approx([p * newton_seconds for p in own], rel=1e-12)
+    assert m.height.max() == pytest.approx(m.natural.height.max() * m.scale.radius, rel=1e-12)
+
+
+def test_a_ball_that_is_dropped_comes_to_rest_after_the_sum_of_its_bounces():
+    ball, e, height = sc.Body.ball(0.0, 0.4, 0.4), 0.5, 0.8
+    m = sc.roll(ball, sc.dropped(ball, height, 1.0), [0.0, 10.0], contact=GRIP, restitution=e)
+    over = np.sqrt(2 * height) * (1 + 2 * e / (1 - e))
+    assert m.phases[-1].kind == "rolling" and m.phases[-1].time == pytest.approx(over, abs=1e-6)
+    assert m.impacts[-1].stays and not any(x.stays for x in m.impacts[:-1])
+    assert m.lost_in_impacts[-1] == pytest.approx(height, rel=1e-12)
+
+
+def test_a_body_is_dropped_with_the_velocity_of_its_centre():
+    can = sc.Body.solid(1.5)
+    state = sc.dropped(can, 0.7, 1.1, w1=0.3, w2=-0.4, w3=2.0, velocity=(0.5, -0.2, 1.0))
+    assert can.centre_velocity(state) == pytest.approx((0.5, -0.2), abs=1e-15)
+    m = sc.roll(can, state, np.linspace(0, 1.5, 16), contact=GRIP, restitution=0.3, want="pose")
+    rises = m.centre[:, 2] - m.centre[0, 2]
+    assert rises == pytest.approx(m.t - m.t**2 / 2, abs=1e-14)
+    size = sc.Scale(radius=0.03)
+    same = (
+        sc.dropped(can, 0.7 * 0.03, 1.1, w3=size.radians_per_second(2.0), scale=size)
+        if hasattr(size, "radians_per_second")
+        else sc.dropped(can, 0.021, 1.1, w3=2.0 / size.seconds(1.0), scale=size)
+    )
+    assert same.height == pytest.approx(0.7, rel=1e-14) and same.w3 == pytest.approx(2.0, rel=1e-14)
+
+
+def test_a_coin_that_is_dropped_without_spin_on_its_edge_stands_there_bounces_and_rolls():
+    m = sc.roll(COIN, sc.thrown(COIN, 1.0, -1.0), 50.0, contact=GRIP, restitution=0.0)
+    assert [p.kind for p in m.phases] == ["rolling on its side"]
+    assert m.w[-1, 2] == pytest.approx(1.0, abs=1e-14)
+
+
+def test_forces_are_zero_in_the_air_and_those_of_both_rims_hold_the_weight():
+    t = np.linspace(0, 40, 401)
+    m = sc.roll(TUBE, sc.flicked(TUBE, w1=3.0, launch=0.9), t, contact=GRIP, restitution=0.0, want="force")
+    lies = np.isin(m.phase, (3, 4, 5))
+    assert lies.any() and not lies.all()
+    assert m.normal[lies] + m.normal_other[lies] == pytest.approx(1.0, abs=1e-13)
+    assert np.isnan(m.normal_other[~lies]).all() and np.isnan(m.slip_other[~lies]).all()
+    hops = sc.roll(TUBE, sc.flicked(TUBE, w1=3.0, launch=3.0), t, contact=GRIP, restitution=0.5, want="force")
+    flies = hops.phase == 2
+    assert flies.any() and (hops.normal[flies] == 0).all() and (hops.friction[flies] == 0).all()
+    assert (hops.height[flies] > 0).mean() > 0.9 and (hops.height[~flies] == 0).all()
+
+
+def test_the_outcome_of_a_flick_that_goes_on_is_what_the_motion_says():
+    rates, launches = [6.0, 12.0, 25.0], [0.6, 1.2, 2.0, 3.5]
+    tube = sc.measured(outer_diameter="15.875mm", inner_diameter="12.7mm", length="95.25mm")
+    found = sc.sweep.flicks(tube, 8.0, hertz=rates, launch=launches, contact=GRIP, restitution=0.0)
+    for i, hertz in enumerate(rates):
+        for k, launch in enumerate(launches):
+            m = sc.roll(
+                tube, sc.flicked(tube, hertz=hertz, launch=launch), 8.0, contact=GRIP, restitution=0.0
+            )
+            rim, hopped = m.phases[-1].kind in ("rolling", "slipping"), bool(m.impacts)
+            told = sc.sweep.Outcome(int(found["outcome"][i, k]))
+            settles = "HOPS_AND_SETTLES" if hopped else "SETTLES"
+            assert told.name == (settles if rim else "HOPS_AND_LIES" if hopped else "LIES_DOWN"), (
+                hertz,
+                launch,
+            )
+
+
+@pytest.mark.parametrize(
+    ("how", "why"),
+    [
+        ({"restitution": None}, "^state: in the air, height = 0.5: give restitution"),
+        ({"restitution": -0.1}, "^restitution = -0.1: expected None, or 0 <= restitution <= 1"),
+        ({"restitution": np.nan}, "^restitution = nan: expected None, or"),
+        (
+            {"restitution": 0.5, "contact": "rolling", "step": 1e-3},
+            "^step = 0.001 does not go with restitution=",
+        ),
+        ({"restitution": 0.5, "t": [0.0, -1.0]}, "^t = -1.0: expected times after the start"),
+        (
+            {"restitution": 0.5, "state": sc.State(2.5, 0, 0, 0, height=0.5)},
+            "^height = -0.5: expected both rims",
+        ),
+        (
+            {"restitution": 0.5, "state": sc.State(1.0, 0, 0, 0, height=-0.5)},
+            "^height = -0.5: expected 0 to 1e6 R",
+        ),
+        (
+            {"restitution": 0.5, "body": sc.Body(1.0, 0.5, 0.5, theta_end=1.2)},
+            "^theta_end = 1.2: expected none",
+        ),
+    ],
+)
+def test_a_start_in_the_air_that_makes_no_sense_is_refused_by_name(how, why):
+    call = {
+        "body": sc.Body.solid(1.0),
+        "state": sc.State(1.0, 0, 0, 0, height=0.5),
+        "t": 1.0,
+        "contact": GRIP,
+    }
+    with pytest.raises(ValueError, match=why):
+        sc.roll(**(call | how))
+
+
+def test_numbers_of_a_body_on_the_table_refuse_a_state_in_the_air():
+    state = sc.dropped(COIN, 1.0, 1.2)
+    with pytest.raises(
+        ValueError, match="^state: in the air, height = 1.0: this is a number of a body on the table"
+    ):
+        COIN.acceleration(state)
+    assert COIN.energy(state) == pytest.approx(COIN.energy(sc.State(1.2, 0, 0, 0)) + 1.0, abs=1e-15)
+    m = sc.roll(COIN, COIN.steady(1.3), 1.0)
+    with pytest.raises(
+        AttributeError, match="^height is not there: the motion ends where it leaves the table"
+    ):
+        _ = m.height
+    with pytest.raises(AttributeError, match="^impacts is not there"):
+        _ = m.impacts
