@@ -12,9 +12,9 @@ from spincyl._state import State, gripping, landed
 Kind: TypeAlias = Literal["rolling", "slipping", "flying", "lying", "pivoting", "rolling on its side"]
 #: Kind of phase for each code in `Motion.phase`.
 KINDS: tuple[Kind, ...] = ("rolling", "slipping", "flying", "lying", "pivoting", "rolling on its side")
-Hit: TypeAlias = Literal["slips", "sticks", "slips on", "smooth"]
+Hit: TypeAlias = Literal["slips", "sticks", "slips on", "smooth", "both rims"]
 #: What the contact point does in an impact, for each code of the core.
-HITS: tuple[Hit, ...] = ("slips", "sticks", "slips on", "smooth")
+HITS: tuple[Hit, ...] = ("slips", "sticks", "slips on", "smooth", "both rims")
 
 
 class Phase(NamedTuple):
@@ -33,8 +33,10 @@ class Impact(NamedTuple):
 
     time: float
     rim: Literal["first", "other"]  #: the rim from which the start was told, or the other one
-    kind: Hit  #: whether the contact point slips to the end, sticks, stops and slips on, or has no friction
-    impulse: tuple[float, float, float]  #: along the lean, across it, upwards, in M sqrt(g R)
+    #: whether the contact point slips to the end, sticks, stops and slips on, or has no friction; or "both rims",
+    #: where the other rim lands without a bounce
+    kind: Hit
+    impulse: tuple[float, float, float]  #: along the lean, across it, upwards, in M sqrt(g R); of both rims together
     lost: float  #: energy, in M g R
     before: State  #: as seen from the rim that lands, with its slip, and `lift` < 0
     after: State

@@ -186,7 +186,7 @@ pub struct Strike {
     pub states: [State; 2],
     /// The velocity of the lowest point of that rim before and after: along the lean, across it, and upwards.
     pub velocities: [[f64; 3]; 2],
-    /// The impulses along the lean, across it, and upwards, in M sqrt(g R).
+    /// The impulses along the lean, across it, and upwards, in M sqrt(g R); of both rims together if both are pushed. of both rims together if both are pushed.
     pub impulse: [f64; 3],
     /// The energy lost, in M g R.
     pub lost: f64,

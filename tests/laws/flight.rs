@@ -154,7 +154,7 @@ fn a_coin_dropped_without_spin_takes_the_impulse_of_its_inertia_and_grips_where_
 #[test]
 fn an_impact_is_that_of_newton_and_euler_and_never_gains_energy() {
     let mut r = wander(511);
-    let mut hits = [0; 4];
+    let mut hits = [0; 5];
     for _ in 0..drawn(1200) {
         let (body, start, mu, e) = any_drop(&mut r);
         let m = hops(&body, &start, coulomb(mu), e, &[6.0]);
@@ -172,7 +172,11 @@ fn an_impact_is_that_of_newton_and_euler_and_never_gains_energy() {
             let push = Vector3::new(p_h, p_2, p_n);
             let arm = Vector3::new(lever, 0.0, -height);
             let off = turns(&after) - turns(&before) - arm.cross(&push);
-            assert!(off.norm() < 2e-13 * scale * (1.0 + body.ell()), "{body:?} {off}");
+            // The impulse of two rims does not act at one point.
+            assert!(
+                hit.hit == Hit::BothRims || off.norm() < 2e-13 * scale * (1.0 + body.ell()),
+                "{body:?} {off}"
+            );
             let v = |k: usize| Vector3::from(centre(&body, &hit.states[k], hit.velocities[k]));
             assert!((v(1) - v(0) - push).norm() < 2e-13 * scale * (1.0 + body.ell()));
             // Friction within its cone; the energy lost is that of the velocities.

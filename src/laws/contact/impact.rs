@@ -35,6 +35,8 @@ coded! {
         SlipsOn = 2,
         /// Without friction.
         Smooth = 3,
+        /// The other rim lands without a bounce, and the impulse is that of both rims together.
+        BothRims = 4,
     }
 }
 

@@ -261,12 +261,22 @@ impl<const N: usize> BodyWalk<'_, N> {
     fn struck(&mut self, from: &Aloft, struck: &Struck, (other, stays): (bool, bool)) -> Aloft {
         let w = turned(&self.of.slide.law.shape, from.angle, from.w, struck.impulse);
         let after = Aloft { w, slip: struck.slip, lift: struck.lift, ..*from };
-        let &Struck { impulse, hit, lost, .. } = struck;
-        let time = self.t0 + self.at[TIME];
-        let velocities = [from, &after].map(|at| [at.slip[0], at.slip[1], at.lift]);
-        let states = [from.state(), after.state()];
-        self.made.path.impacts.push(Strike { time, other, hit, states, velocities, impulse, lost, stays });
+        self.records([from, &after], other, struck.hit, (struck.impulse, struck.lost), stays);
         after
+    }
+
+    /// Adds an impact to the results, from the numbers before and after it as seen from the rim that lands.
+    fn records(
+        &mut self,
+        both: [&Aloft; 2],
+        other: bool,
+        hit: Hit,
+        (impulse, lost): ([f64; 3], f64),
+        stays: bool,
+    ) {
+        let velocities = both.map(|at| [at.slip[0], at.slip[1], at.lift]);
+        let (time, states) = (self.t0 + self.at[TIME], both.map(Aloft::state));
+        self.made.path.impacts.push(Strike { time, other, hit, states, velocities, impulse, lost, stays });
     }
 
     /// The contact that begins where the normal velocity is zero.
@@ -344,7 +354,18 @@ impl<const N: usize> BodyWalk<'_, N> {
         let Ok(landed) = land_at(&self.of.body, &before, ([self.at[5], self.at[6]], lift), &friction) else {
             return Next::Ends(Ending::Landing);
         };
+        let (shape, other) = (self.of.slide.law.shape, !self.made.path.upside_down);
+        let from = Aloft { angle: (1.0, 0.0), ..self.aloft() }.from_other_rim(&shape);
         self.lands_as(&landed);
+        let here = self.aloft();
+        let there = if other == self.made.path.upside_down { here } else { here.from_other_rim(&shape) };
+        // The impulses of both rims together are what the centre of mass has gained.
+        let [old, new] = [&from, &there].map(|at| {
+            let ([w1, w2, w3], [along, across]) = (at.w, at.slip);
+            [along + w2, across - shape.rim.ell * w1 + w3, at.lift + shape.rim.ell * w2]
+        });
+        let impulse = core::array::from_fn(|i| new[i] - old[i]);
+        self.records([&from, &there], other, Hit::BothRims, (impulse, landed.lost), true);
         let rises = self.at[3];
         if rises == 0.0 {
             return self.settles_on_side();
@@ -368,7 +389,6 @@ impl<const N: usize> BodyWalk<'_, N> {
         let after =
             Aloft { angle: (1.0, 0.0), w: [w1, w2, w3], slip: landed.slip, lift: 0.0, ..self.aloft() };
         self.sets(&Aloft { height: 0.0, ..after });
-        self.at[8] += landed.lost;
     }
 
     /// Writes a point of a flight to the outputs.

@@ -76,6 +76,7 @@ impl<const N: usize> BodyWalk<'_, N> {
                 return None;
             }
             self.lands_as(&landed);
+            self.at[8] += landed.lost;
         }
         let share = 1.0 - self.at[3] / begin[3];
         if poses(N) {

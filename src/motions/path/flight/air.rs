@@ -9,7 +9,7 @@
 //! [`lands`](super::lands), step by step, with K = (|l| + a) (|L|^2/I1^2 + |m|/I1) - 1 at the start, since the air slows
 //! the body down. Error: the tolerance of the steps.
 
-use super::lands::{Falling, Leaves, TooMany};
+use super::lands::{Falling, Leaves, TOUCH, TooMany};
 use super::{Aloft, Flies, Flight};
 use crate::laws::body::Shape;
 use crate::laws::loss::{Couples, Kinematics, Law, Losses};
@@ -164,7 +164,7 @@ impl Flies for AirFlight {
                     let y = self.part(&step, x).0;
                     [y[7 + i], self.rates(&y)[7 + i]]
                 };
-                let mut falling = Falling { of, bend, touch: super::lands::TOUCH };
+                let mut falling = Falling { of, bend, touch: TOUCH };
                 if let Some(x) = falling.first_zero(low.max(0.0), high)? {
                     first = Some((x, i == 1));
                 }
