@@ -16,7 +16,7 @@ from spincyl._pages.view import _edges
 from spincyl._studio.film import reel
 from spincyl._studio.frames import _shown as prepared
 from spincyl._studio.frames import _Stage, frames
-from spincyl._studio.shadow import _LAMPS, caster, shadows
+from spincyl._studio.shadow import LAMPS, caster, lamps, shadows
 from spincyl._studio.shape import lathe, marks, parts, profiles, rotations
 
 SCALE = sc.Scale(radius=7.9375e-3)
@@ -186,7 +186,8 @@ def test_the_shadows_of_a_cylinder_are_as_large_as_its_faces_and_its_side_seen_f
     of = caster([lathe(profile) for profile in profiles(sc.Body.solid(ell))])
     c, s = np.cos(theta), np.sin(theta)
     rotation = np.array([[1, 0, 0], [0, c, -s], [0, s, c]])
-    for lamp, lines in zip(_LAMPS, shadows(of, rotation, np.array([0.3, -1.0, 3.0])), strict=True):
+    points = lamps(LAMPS)
+    for lamp, lines in zip(points, shadows(of, rotation, np.array([0.3, -1.0, 3.0]), points), strict=True):
         light = np.array([*lamp, -1.0])
         along = light @ rotation[:, 2]
         across = np.sqrt(light @ light - along**2)

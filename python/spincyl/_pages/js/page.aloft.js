@@ -30,9 +30,10 @@ pose = (m, t) => {
   const [[theta, , , x, y, z]] = interpolate(m, t), [, kind, other] = m.now(t), ell = m.depth ?? m.ell, round = m.fillet || 0;
   const c = Math.cos(theta), s = Math.abs(Math.sin(theta)), [cp, sp] = [Math.cos(p.phi), Math.sin(p.phi)], side = Math.sin(theta) < 0 ? -1 : 1;
   const below = rim => { const off = side * (rim * ell * s - (1 - round) * c); return [x + off * cp, y + off * sp, 0]; };
-  const up = m.two ? Math.abs(c) : other ? -c : c;
-  p.centre[2] = p.matrix[14] = z;
-  Object.assign(p, { kind, theta: Math.acos(other ? -c : c), contact: below(other ? -1 : 1), top: z + m.ell * Math.abs(c) + s, height: Math.max(0, z - round - ell * up - (1 - round) * s) });
+  // a body on the table stands on it, and one in the air is not below it
+  const low = round + ell * (m.two ? Math.abs(c) : other ? -c : c) + (1 - round) * s, height = kind === FLIES ? Math.max(0, z - low) : 0;
+  p.centre[2] = p.matrix[14] = low + height;
+  Object.assign(p, { kind, height, theta: Math.acos(other ? -c : c), contact: below(other ? -1 : 1), top: low + height + m.ell * Math.abs(c) + s });
   if (kind === FLIES) p.normal = p.friction = none;
   if (kind > FLIES && m.beside) {
     const [f, g, n] = m.beside(t);
