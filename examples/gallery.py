@@ -19,6 +19,8 @@ from matplotlib.figure import Figure
 SCENES = (
     "near_steady_tube",
     "flicked_tube",
+    "hopping_tube",
+    "dropped_coin",
     "eulers_disk_stops",
     "rocking_can",
     "hurricane_balls",

@@ -185,7 +185,7 @@ def roll(
     >>> ball = sc.Body.ball(0.0, i1=0.4, i3=0.4)
     >>> m = sc.roll(ball, sc.dropped(ball, 0.5, 1.0), 10.0, contact=sc.Coulomb(0.3), restitution=0.5)
     >>> len(m.impacts), m.phases[-1].kind, round(m.phases[-1].time, 5)
-    (24, 'rolling', 3.0)
+    (23, 'rolling', 3.0)
     """
     if is_stone(body):
         from spincyl import _ellipsoid_motion as stones

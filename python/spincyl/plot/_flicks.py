@@ -75,7 +75,7 @@ def flicks(found: "xarray.Dataset", ax: "Axes | None" = None) -> "Axes":
         )
     colormap: Any = extra("matplotlib.colors", "plot").ListedColormap
     patch: Any = extra("matplotlib.patches", "plot").Patch
-    followed = "impacts" in found  # those that hop are followed in the air
+    followed = "air_time" in found  # those that hop are followed in the air
     found = found[["outcome", "rolling_time"]].sortby(list(axes)).transpose(*reversed(axes))
     across, up = (found[name].values for name in axes)
     outcome = found["outcome"].values

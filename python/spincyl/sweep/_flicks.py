@@ -62,10 +62,10 @@ _GOES_ON = np.array(
 )
 
 
-def _outcome(status: Any, last: Any, impacts: Any) -> Any:
+def _outcome(status: Any, last: Any, air_time: Any) -> Any:
     """What motions with a restitution come to."""
     known = np.isfinite(last) & np.isin(status, (Status.DONE, Status.STOPS))
-    found = _GOES_ON[np.where(known, last, 0).astype(int), (impacts > 0).astype(int)]
+    found = _GOES_ON[np.where(known, last, 0).astype(int), (air_time > 0).astype(int)]
     return np.where(known, found, Outcome.NONE).astype(np.uint8)
 
 
@@ -130,12 +130,12 @@ def flicks(
     on = how.get("restitution") is not None
     if on:
         named = [how["want"]] if isinstance(how["want"], str) else list(how["want"])
-        how["want"] = tuple(dict.fromkeys((*named, "last_phase", "impacts")))
+        how["want"] = tuple(dict.fromkeys((*named, "last_phase", "air_time")))
     found: xarray.Dataset = roll(body, start, t, contact=contact, **how)
     for name, unit in (("precession", "sqrt(g/R)"), ("hertz", "Hz"), ("launch", "1"), ("spin_hertz", "Hz")):
         if name in found.coords:
             found[name].attrs["units"] = unit
-    of = [found[name] for name in (("status", "last_phase", "impacts") if on else ("status",))]
+    of = [found[name] for name in (("status", "last_phase", "air_time") if on else ("status",))]
     told = _outcome if on else _OUTCOMES.__getitem__
     found["outcome"] = lib.apply_ufunc(told, *of, dask="parallelized", output_dtypes=[np.uint8])
     found["outcome"].attrs = {"long_name": "what it comes to", **flags(Outcome)}

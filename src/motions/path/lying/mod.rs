@@ -58,8 +58,13 @@ impl<const N: usize> BodyWalk<'_, N> {
     }
 
     /// The phase of a body at theta = pi/2 with w2 = 0: on both rims, or on one of them that rises.
+    ///
+    /// The state on both rims is told from the first one, whatever came before.
     #[inline(never)]
     pub(super) fn settles_on_side(&mut self) -> Next {
+        if self.made.path.upside_down {
+            self.turns_over();
+        }
         (self.at[0], self.at[1], self.at[3]) = (1.0, 0.0, 0.0);
         self.of.state = State { theta: FRAC_PI_2, w2: 0.0, ..self.of.state };
         let Some(mut flow) = self.flat() else { return Next::Ends(Ending::Side) };
