@@ -5,7 +5,7 @@
 //! thresholds follow         of each line of the input its result: ending, time, phases, claimed error, last numbers
 //! ```
 //! The scenes are drawn once and followed by many versions of the library, so that all of them get the same numbers.
-//! Twenty kinds take turns. Most of them are planted beside a decision: slips that hardly move, friction that is just
+//! Twenty kinds take turns, and after 2,000 scenes five kinds of bodies that hop, fall or lie on their sides. Most of them are planted beside a decision: slips that hardly move, friction that is just
 //! enough, faces that are all but down, losses that all but hold.
 
 use spincyl::contact::{Friction, Table, TableKind, slip};
@@ -16,6 +16,9 @@ use spincyl::{Body, Contact, Ellipsoid, Error, State, contact, steady};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::io::{BufRead, Write};
 
+/// Kinds of scenes in which the body stays on the table, up to the number `ON_THE_TABLE`, and of those after them.
+const ON_THE_TABLE: u64 = 2000;
+const ALOFT: [&str; 5] = ["hops", "dropped", "bounces level", "lies", "rolls on its side"];
 const KINDS: [&str; 20] = [
     "slips",
     "rest",
@@ -83,8 +86,10 @@ struct Scene {
     body: Vec<f64>,
     table: [f64; 3],
     losses: [f64; 8],
-    /// Whether the other rim lands without a bounce, and the motion goes on.
-    lands: bool,
+    /// NaN for None, which ends a motion where the body leaves the table or its other rim lands.
+    restitution: f64,
+    /// Height and velocity of the lowest point of a body in the air; NaN on the table.
+    aloft: [f64; 2],
     /// theta and w of a body, the vertical and w of a stone; and the slip.
     start: Vec<f64>,
     slip: [f64; 2],
@@ -97,7 +102,8 @@ impl Scene {
             body: vec![body.ell(), body.i1(), body.i3(), body.fillet(), body.theta_end()],
             table: numbers_of(table),
             losses: [0.0; 8],
-            lands: false,
+            restitution: f64::NAN,
+            aloft: [f64::NAN; 2],
             start: vec![y.theta, y.w1, y.w2, y.w3],
             slip: [0.0; 2],
             end,
@@ -109,7 +115,8 @@ impl Scene {
         all.extend(&self.body);
         all.extend(self.table);
         all.extend(self.losses);
-        all.push(f64::from(u8::from(self.lands)));
+        all.push(self.restitution);
+        all.extend(self.aloft);
         all.extend(&self.start);
         all.extend(self.slip);
         all.push(self.end);
@@ -121,13 +128,14 @@ impl Scene {
         let mut take = |count: usize| -> Vec<f64> { rest.by_ref().take(count).collect() };
         let body = take(all[0] as usize);
         let start = if body.len() == 5 { 4 } else { 6 };
-        let (table, losses, lands) = (take(3), take(8), take(1)[0] == 1.0);
+        let (table, losses, restitution, aloft) = (take(3), take(8), take(1)[0], take(2));
         let [start, slip, end] = [take(start), take(2), take(1)];
         Self {
             body,
             table: table.try_into().unwrap(),
             losses: losses.try_into().unwrap(),
-            lands,
+            restitution,
+            aloft: aloft.try_into().unwrap(),
             start,
             slip: slip.try_into().unwrap(),
             end: end[0],
@@ -138,7 +146,7 @@ impl Scene {
         let [kind, a, b] = self.table;
         let kinds = [TableKind::Rolling, TableKind::Smooth, TableKind::Coulomb, TableKind::Viscous];
         let losses = Losses { coefficients: self.losses };
-        let restitution = self.lands.then_some(0.0);
+        let restitution = Some(self.restitution).filter(|e| !e.is_nan());
         Ask { losses, restitution, ..Ask::on(kinds[kind as usize].with([a, b])) }
     }
 
@@ -149,7 +157,8 @@ impl Scene {
             let [ell, i1, i3, fillet, theta_end] = self.body[..] else { unreachable!() };
             let body = Body::rounded(ell, i1, i3, fillet)?.with_theta_end(theta_end)?;
             let [theta, w1, w2, w3] = self.start[..] else { unreachable!() };
-            let start = Start { slip, ..State { theta, w1, w2, w3 }.into() };
+            let aloft = Some(self.aloft).filter(|[height, _]| !height.is_nan());
+            let start = Start { slip, aloft, ..State { theta, w1, w2, w3 }.into() };
             let found = roll_with(&body, start, &times, &self.ask(), || true)?.unwrap();
             Ok(told(&found, |y| vec![y.theta, y.w1, y.w2, y.w3]))
         } else {
@@ -342,19 +351,62 @@ fn stone_scene(draw: &mut Draw, slips: bool) -> Scene {
         body: stone.numbers().to_vec(),
         table: numbers_of(table),
         losses: [0.0; 8],
-        lands: false,
+        restitution: f64::NAN,
+        aloft: [f64::NAN; 2],
         start: [n, w].concat(),
         slip,
         end: 8.0,
     }
 }
 
+/// The kind of the scene of a number.
+fn kind(number: u64) -> &'static str {
+    let of = |all: &[&'static str]| all[(number % all.len() as u64) as usize];
+    if number < ON_THE_TABLE { of(&KINDS) } else { of(&ALOFT) }
+}
+
+/// The scene of a body that may leave the table or lie on its side.
+fn aloft_scene(draw: &mut Draw, kind: &str) -> Scene {
+    let of = match draw.next() % 3 {
+        0 => Body::tube(draw.within(0.02, 6.0), draw.within(0.0, 1.0)),
+        1 => Body::tube(draw.within(0.02, 2.0), 0.0),
+        _ => Body::rounded(draw.within(0.1, 2.0), draw.within(0.3, 1.5), draw.within(0.2, 0.6), 0.0),
+    }
+    .unwrap();
+    let table = if draw.happens(0.2) { Friction::Viscous { c: draw.power(-1.0, 1.0) } } else { dry(draw) };
+    let fast = draw.power(-0.5, 0.7);
+    let [w1, w2, w3] = [fast * draw.normal(), fast * draw.normal(), fast * draw.normal()];
+    let leans = draw.within(0.05, FRAC_PI_2 - 0.02);
+    let nearly = FRAC_PI_2 - if draw.happens(0.3) { 0.0 } else { draw.power(-13.0, -3.0) };
+    let size = if draw.happens(0.3) { 0.0 } else { draw.power(-14.0, 0.3) };
+    let restitution = draw.of(&[0.0, 0.0, 0.3, 0.7]);
+    let height = if draw.happens(0.2) { 0.0 } else { draw.power(-8.0, 0.5) };
+    let lift = if draw.happens(0.3) { draw.power(-8.0, 0.0) } else { 0.0 };
+    let (y, aloft) = match kind {
+        "hops" => (State { theta: leans, w1: 2.0 * w1, w2, w3 }, [f64::NAN; 2]),
+        "dropped" => (State { theta: leans, w1, w2, w3 }, [height, lift]),
+        "bounces level" => (State { theta: nearly, w1, w2: 1e-3 * w2, w3 }, [height, lift]),
+        "lies" => (State { theta: FRAC_PI_2, w1, w2: 0.0, w3 }, [f64::NAN; 2]),
+        // A roller that sticks on one rim, or rolls straight.
+        _ => {
+            let w1 = draw.of(&[0.0, 1e-13, 1e-9, w1]);
+            (State { theta: FRAC_PI_2, w1, w2: 0.0, w3 }, [f64::NAN; 2])
+        }
+    };
+    let losses = if draw.happens(0.4) { losses(draw, &[0, 1, 2, 3, 4, 5, 6, 7], 2) } else { [0.0; 8] };
+    let slip = if kind == "rolls on its side" { [0.0; 2] } else { turned(draw, size) };
+    Scene { losses, restitution, aloft, slip, ..Scene::of(&of, table.into(), y, 6.0) }
+}
+
 /// The scene of a number, of the kind of that number.
 fn scene(number: u64) -> Scene {
     let mut draws = Draw(number);
     let draw = &mut draws;
+    if number >= ON_THE_TABLE {
+        return aloft_scene(draw, kind(number));
+    }
     let (rolling, three) = (Table::default(), 3.0);
-    match KINDS[(number % KINDS.len() as u64) as usize] {
+    match kind(number) {
         "slips" => {
             let size = draw.power(-1.5, 0.5);
             let of = body(draw, true);
@@ -540,7 +592,7 @@ fn scene(number: u64) -> Scene {
             let all = Scene::of(&of, dry(draw).into(), State { theta: FRAC_PI_2 - below, w1, w2, w3 }, three);
             let size = draw.power(-8.0, 0.3);
             let slip = if draw.happens(0.3) { [0.0; 2] } else { turned(draw, size) };
-            Scene { slip, lands: true, ..all }
+            Scene { slip, restitution: 0.0, ..all }
         }
         "stone" => stone_scene(draw, false),
         _ => stone_scene(draw, true),
@@ -553,7 +605,7 @@ fn main() {
     if words[1] == "draw" {
         for number in 0..words[2].parse().unwrap() {
             let numbers: Vec<String> = scene(number).numbers().iter().map(|x| format!("{x:e}")).collect();
-            let kind = KINDS[(number % KINDS.len() as u64) as usize].replace(' ', "-");
+            let kind = kind(number).replace(' ', "-");
             writeln!(out, "{kind} {}", numbers.join(" ")).unwrap();
         }
         return;

@@ -41,7 +41,7 @@ from typing import NamedTuple
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "thresholds.md"
 PROGRAM = ROOT / "benches" / "thresholds.rs"
-SCENES = 2000
+SCENES = 2500
 FACTORS = {"halved": 0.5, "doubled": 2.0}
 FAR = (1e-3, 1e3)
 #: seconds after which a factor of 1000 is given up: a limit of the work, say

@@ -33,10 +33,11 @@ class Impact(NamedTuple):
 
     time: float
     rim: Literal["first", "other"]  #: the rim from which the start was told, or the other one
-    #: whether the contact point slips to the end, sticks, stops and slips on, or has no friction; or "both rims",
-    #: where the other rim lands without a bounce
+    #: whether the contact point slips to the end, sticks, stops and slips on, or has no friction; or
+    #: "both rims": the other rim lands without a bounce
     kind: Hit
-    impulse: tuple[float, float, float]  #: along the lean, across it, upwards, in M sqrt(g R); of both rims together
+    #: along the lean, across it, upwards, in M sqrt(g R); of both rims together
+    impulse: tuple[float, float, float]
     lost: float  #: energy, in M g R
     before: State  #: as seen from the rim that lands, with its slip, and `lift` < 0
     after: State

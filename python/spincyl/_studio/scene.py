@@ -45,8 +45,8 @@ class Scene:
         The scene for MuJoCo, with its start as the keyframe "start".
     """
 
-    def __init__(self, motion: Motion, scale: Scale, mu: float) -> None:
-        self.motion, self.scale, self.mu = motion, scale, mu
+    def __init__(self, motion: Motion, scale: Scale, mu: float, restitution: float | None = None) -> None:
+        self.motion, self.scale, self.mu, self.restitution = motion, scale, mu, restitution
 
     @property
     def data(self) -> dict[str, Any]:
@@ -56,8 +56,11 @@ class Scene:
         weight = scale.mass * scale.gravity
         moment = scale.mass * metre**2
         position, velocity, w, turned = self._start()
-        smooth = m.contact == "smooth"
-        needed = 0.0 if smooth else friction_needed(body, m.start, float(m.t[-1]))
+        if m.contact == "rolling":
+            needed = friction_needed(body, m.start, float(m.t[-1]))
+        else:
+            needed = self.mu if self._flies else 0.0
+        bounces, struck = self._bounces()
         bore = None if np.isnan(body.bore) else body.bore * metre
         return {
             "format": "spincyl scene 1",
@@ -73,7 +76,7 @@ class Scene:
                 "axes": "principal, the third is that of symmetry; origin at the centre of mass",
             },
             "gravity": [0.0, 0.0, -scale.gravity],
-            "table": {"point": [0.0, 0.0, 0.0], "normal": [0.0, 0.0, 1.0], "friction": self.mu},
+            "table": {"point": [0.0, 0.0, 0.0], "normal": [0.0, 0.0, 1.0], "friction": self.mu, **bounces},
             "start": {
                 "position": (position * metre).tolist(),
                 "orientation": turned.tolist(),
@@ -93,7 +96,8 @@ class Scene:
                 "theta_is": "angle from the vertical to the axis of symmetry",
                 "energy_is": "kinetic and potential, from the table up",
                 "contact_force_is": "what the table exerts on the body, at the contact point",
-                "contact": m.contact,
+                **struck,
+                "contact": m.contact if isinstance(m.contact, str) else "friction",
                 "friction_coefficient_needed": needed,
                 "found": m.message,
                 "found_is": "how, with errors in natural units",
@@ -109,6 +113,33 @@ class Scene:
                 "error_is": "the largest of all times; angles are those of the orientation",
             },
         }
+
+    @property
+    def _flies(self) -> bool:
+        """Whether the motion goes on where the body leaves the table."""
+        return self.restitution is not None
+
+    def _bounces(self) -> tuple[dict[str, Any], dict[str, Any]]:
+        """What the data of a motion with impacts has besides: of the table, and expected."""
+        if not self._flies:
+            return {}, {}
+        scale, m = self.scale, self.motion
+        metre, second = scale.metres(1.0), scale.seconds(1.0)
+        blows = [
+            {
+                "time": blow.time * second,
+                "normal_impulse": blow.impulse[2] * scale.mass * metre / second,
+                "energy_lost": scale.joules(blow.lost),
+            }
+            for blow in m.impacts
+        ]
+        phases = [{"time": phase.time * second, "kind": phase.kind} for phase in m.phases]
+        heights = {"height": (m.height * metre).tolist(), "height_is": "of the lowest point"}
+        law = "energy given back by the normal force in an impact, over that taken: its square (Stronge)"
+        return (
+            {"restitution": self.restitution, "restitution_is": law},
+            {"impacts": blows, "phases": phases, **heights},
+        )
 
     @property
     def mjcf(self) -> str:
@@ -177,7 +208,8 @@ class Scene:
         fillet below the table. The shape is exact, without facets.
         """
         body, metre, second = self.motion.body, float(self.scale.metres(1.0)), self.scale.seconds(1.0)
-        stiff = f'solref="{-1e6 / second**2:.6g} {-1e3 / second:.6g}" solimp="0.9999 0.9999 0.001 0.5 2"'
+        damping = 1e3 / second * (1.0 if self.restitution is None else 2.0 * _damped(self.restitution))
+        stiff = f'solref="{-1e6 / second**2:.6g} {-damping:.6g}" solimp="0.9999 0.9999 0.001 0.5 2"'
         touch = f'friction="{self.mu!r} 0 0" condim="3" {stiff}'
         size = f'size="{20 * metre!r} {20 * metre!r} {metre!r}"'
         table, margin, round_ = f'    <geom name="table" type="plane" {size} {touch}/>', "", ""
@@ -243,10 +275,12 @@ class Scene:
         turned = m.orientation[0]
         # at the start, psi = 0: e1, e2, e3 are the body's axes
         w = m.w[0]
-        arm = m.centre[0] - np.append(m.contact_point[0], 0.0)
-        velocity = np.cross(rotations(turned) @ w, arm)  # the contact point is at rest
+        arm = m.centre[0] - np.append(m.contact_point[0], m.height[0] if self._flies else 0.0)
+        velocity = np.cross(rotations(turned) @ w, arm)
         if m.contact == "smooth":
             velocity[:2] = 0.0
+        elif self._flies:  # the contact point is not at rest, and phi = 0
+            velocity += [*m.slip[0], m.lift[0]]
         return m.centre[0], velocity, w, turned
 
     def __repr__(self) -> str:
@@ -263,6 +297,7 @@ def scene(
     points: int = 101,
     mu: float = 1.0,
     contact: Contact = "rolling",
+    restitution: float | None = None,
 ) -> Scene:
     """A validation scene for contact engines: the start, and what must come of it.
 
@@ -280,6 +315,8 @@ def scene(
     mu : float
         Coefficient of friction of the scene; of a smooth one 0, whatever is given.
     contact : {"rolling", "smooth"}
+    restitution : float, optional
+        0 to 1: the table has dry friction `mu`, and the body may slip, fly, strike and lie, as in `roll`.
 
     Returns
     -------
@@ -289,8 +326,8 @@ def scene(
     Raises
     ------
     ValueError
-        If the motion ends within the time, saying how: an engine then shows something else than rolling. For
-        a state that slips, and a law of friction: there is no scene of a body that slips, nor of a stone.
+        If the motion ends within the time, saying how: an engine then shows something else. Without
+        `restitution`, for a state that slips, and for a law of friction. There is no scene of a stone.
 
     Notes
     -----
@@ -311,7 +348,8 @@ def scene(
         why = f"expected 'rolling' or 'smooth': {of}; mu= is what rolling may need"
         raise ValueError(f"contact = {contact!r}: {why}")
     rolling = rolls(contact)
-    gripping(state, f"{of}; sc.roll(..., contact=sc.Coulomb(mu)) has the motion of one that slips")
+    if restitution is None:
+        gripping(state, f"{of}; of a body that slips it needs restitution=, of an impact")
     scale, body = scale_of(scale, body) or Scale(1.0), body.natural
     scale.newtons(1.0)  # refuses an unknown mass
     seconds, mu = number("seconds", si("seconds", seconds, "second")), number("mu", mu)
@@ -326,16 +364,20 @@ def scene(
             f"seconds = {seconds!r}: at most {1e9 * float(scale.seconds(1.0)):.3g} with this scale"
         )
     t = np.linspace(0.0, until, points)
+    if restitution is None:
+        how: dict[str, Any] = {"contact": contact, "mu": mu if rolling else np.inf}
+    else:
+        how = {"contact": Coulomb(mu), "restitution": restitution}
     with speaking(scale):
-        m = roll(body, state, t, want=("pose", "force"), contact=contact, mu=mu if rolling else np.inf)
+        m = roll(body, state, t, want=("pose", "force"), **how)
     if m.event is not None:
         why = m.message.split(";")[0]
         more = ""
-        if m.status == Ending.SLIP:
+        if m.status == Ending.SLIP and restitution is None:
             mu = enough(body, state, until, friction_needed(body, state, until))
             more = "; no mu would do" if math.isinf(mu) else f"; mu = {mu:g} would do"
         raise ValueError(f"{why} ({scale.seconds(m.event.time):.6g} s), before {seconds:g} s are over{more}")
-    return Scene(m, scale, mu if rolling else 0.0)
+    return Scene(m, scale, mu if rolling else 0.0, restitution)
 
 
 def friction_needed(body: Body, state: State, until: float) -> float:
@@ -357,6 +399,12 @@ def enough(body: Body, state: State, until: float, mu: float) -> float:
             return rounded if end == Ending.DONE else math.inf
         mu *= 2
     return math.inf
+
+
+def _damped(restitution: float) -> float:
+    """Damping of a linear spring, over its critical one, with which a body bounces so."""
+    decrement = -math.log(max(restitution, 1e-3))
+    return decrement / math.hypot(math.pi, decrement) if restitution > 0 else 1.0
 
 
 def _outside(body: Body) -> Floats:
