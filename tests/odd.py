@@ -276,14 +276,15 @@ def motions():
         "play": (
             sc.play,
             {
-                "body": body, "theta": 1.3, "state": None, "kick": 0.0, "contact": "rolling", "losses": None, "t": None,
-                "slow": 20.0, "friction": True, "title": "x",
+                "body": body, "theta": 1.3, "state": None, "kick": 0.0, "contact": "rolling", "restitution": 0.5, "losses": None,
+                "t": None, "slow": 20.0, "friction": True, "title": "x",
             },
         ),
         **{
             f"Play.{name}": (partial(setting, name), {name: good})
             for name, good in (
-                ("body", body), ("theta", 1.3), ("kick", 0.1), ("state", state), ("contact", "rolling"), ("losses", None),
+                ("body", body), ("theta", 1.3), ("kick", 0.1), ("state", state), ("contact", "rolling"),
+                ("restitution", 0.5), ("losses", None),
             )
         },
     }  # fmt: skip

@@ -9,11 +9,14 @@ from importlib.resources import files
 import numpy as np
 import pytest
 from page_scenes import PIPE, live_page
+from pages import near, picture
+from playing import ask, settled, state
 
 import spincyl as sc
 from spincyl._pages.joined import script, style
 from spincyl._pages.play import _LEAN, _SCRIPTS, CORES
-from spincyl._pages.words import body_of, losses_of, scenes, state_of, table_of
+from spincyl._pages.words import body_of, losses_of, restitution_of, scenes, state_of, table_of
+from spincyl._studio.shape import IVORY
 from spincyl.cli import main
 
 
@@ -43,7 +46,7 @@ def test_the_page_holds_its_script_and_the_core_that_is_asked_for_in_little_more
     # seven bits per byte, and a loader
     small = [zlib.compress(what, 9) for what in (core, (look + shown + text).encode())]
     assert len(page.encode()) < 8 / 7 * sum(map(len, small)) + 10_000
-    assert len(page.encode()) < (255_000 if friction else 150_000)
+    assert len(page.encode()) < (295_000 if friction else 150_000)
     assert "\r" not in page and "\0" not in page, "a browser would change these"
     assert "http" not in page.replace("http-equiv", "").replace("http://www.w3.org/2000/svg", "")
 
@@ -53,6 +56,7 @@ def test_a_page_without_friction_is_smaller_offers_none_and_refuses_it():
     assert len(lean.html) < 0.75 * len(whole.html)
     assert "flicked" not in unpacked(lean)[1] and "hula hoop" in unpacked(whole)[1]
     for how in (
+        {"restitution": 0.5},
         {"contact": sc.Coulomb(0.3)},
         {"contact": sc.Viscous(0.3)},
         {"losses": sc.loss.Drilling(1e-3)},
@@ -94,6 +98,21 @@ def test_what_is_told_comes_back_as_what_it_was():
     for law in sc.loss.DryContour(1e-3), sc.loss.AirQuadratic(1e-5), sc.loss.BoundaryLayer(1e-6):
         assert sc.play(PIPE, losses=law).losses == law
     assert sc.play().losses is None
+    for bounce in (0.0, 0.5, 1.0, None):
+        assert sc.play(PIPE, contact=sc.Coulomb(0.3), restitution=bounce).restitution == bounce
+
+
+def test_a_restitution_is_a_word_of_the_page_and_none_where_there_is_none():
+    assert "restitution" not in sc.play(PIPE, contact=sc.Coulomb(0.3)).address
+    flick = sc.flicked(PIPE, w1=3.0, launch=3.0)
+    page = sc.play(PIPE, state=flick, contact=sc.Coulomb(0.3), restitution=0.5, t=5.0)
+    assert "contact=coulomb&mu=0.3&restitution=0.5" in page.address
+    assert page.motion.height.max() > 0.1 and page.motion.impacts
+    page.restitution = None
+    assert "restitution" not in page.html.split('id="packed"')[0] and page.motion.status == sc.Ending.LIFT_OFF
+    page.restitution, page.contact = 0.3, "rolling"
+    page.state = PIPE.steady(1.4)
+    assert page.restitution == 0.3 and page.motion.status == 0, "bounces are those of a table with friction"
 
 
 SIZED = sc.measured(outer_diameter=0.05, inner_diameter=0.04, length=0.15, mass=0.1)
@@ -150,6 +169,7 @@ def test_what_is_set_afterwards_is_shown():
         ({"theta": 4.0}, "theta = 4.0: expected 0.001 to 3.14159"),
         ({"kick": 5.0}, "kick = 5.0: expected -3 to 3"),
         ({"body": PIPE, "t": 1e5}, "t = 100000.0: expected 1 to 2000"),
+        ({"restitution": 1.5}, "restitution = 1.5: expected 0 to 1"),
         ({"slow": 0.1}, "slow = 0.1: expected 1 to 1000"),
         ({"body": sc.Body.solid(np.array([1.0, 2.0]))}, "a single body, not a family"),
         ({"contact": sc.Coulomb(0.3, static=0.5)}, "the page knows one coefficient"),
@@ -198,7 +218,8 @@ def test_every_scene_is_one_of_the_library():
             continue
         body, start = body_of(told), state_of(told)
         until = min(5.0, told.get("until", 60))
-        m = sc.roll(body, start, np.linspace(0, until, 11), contact=table_of(told), losses=losses_of(told))
+        how = {"contact": table_of(told), "losses": losses_of(told), "restitution": restitution_of(told)}
+        m = sc.roll(body, start, np.linspace(0, until, 11), **how)
         assert m.t.size, name
 
 
@@ -227,3 +248,108 @@ def test_the_command_writes_the_page_that_is_asked_for(tmp_path, capsys):
     assert main(["play", "-o", str(tmp_path / "play.png")]) == 2
     assert "expected a name that ends in .html" in capsys.readouterr().err
     assert not (tmp_path / "play.png").exists()
+
+
+HIGH, KIND = 16, 14  # places in a row
+
+
+def at_rest_at(page, t):
+    """Moves the page to a time by a press on its tracks."""
+    x = page.evaluate(
+        """t => {
+      const { width, left } = document.getElementById("chart").getBoundingClientRect(), rows = window.spincyl.tracked();
+      const em = parseFloat(getComputedStyle(document.getElementById("chart")).fontSize);
+      return left + 3.6 * em + (width - 4.2 * em) * t / rows.at(-1)[0];
+    }""",
+        t,
+    )
+    box = page.locator("#chart").bounding_box()
+    page.mouse.click(x, box["y"] + box["height"] / 2)
+    settled(page)
+
+
+def test_a_flick_too_hard_hops_and_the_body_is_seen_as_high_as_the_library_says(opened):
+    page = opened("#ell=2.5&theta=1.3")
+    page.locator("#flick").click(modifiers=["Shift"])
+    settled(page)
+    told, head = state(page), ask(page, "head()")
+    assert told["restitution"] == 0.5 and told["contact"] == "coulomb" and head["impacts"] > 3
+    assert page.locator("#what").inner_text() == "Set free, it hops"
+    page.wait_for_function("() => location.hash.includes('restitution=0.5')")
+    w1, w2, w3, *slip = told["w"]
+    start = sc.State(told["theta"], w1, w2, w3, slip=tuple(slip))
+    rows = np.array(ask(page, "tracked()"), float)
+    early = rows[rows[:, 0] < 8.0]
+    assert (early[:, KIND] == 2).any()
+    m = sc.roll(
+        sc.Body.solid(2.5),
+        start,
+        early[:, 0],
+        contact=sc.Coulomb(0.3),
+        restitution=0.5,
+        want=("pose", "force"),
+    )
+    assert np.abs(early[:, HIGH] - m.height).max() < 1e-6 and m.height.max() > 0.5
+    top = float(early[np.argmax(early[:, HIGH]), 0])
+    at_rest_at(page, top)
+    now = ask(page, "at()")
+    there = sc.roll(
+        sc.Body.solid(2.5), start, np.array([0.0, now]), contact=sc.Coulomb(0.3), restitution=0.5, want="pose"
+    )
+    seen = ask(page, f"pose({now!r})")
+    assert seen["centre"] == pytest.approx(there.centre[1].tolist(), abs=1e-6)
+    x, y, z, w = there.orientation[1]
+    assert seen["matrix"][8:11] == pytest.approx(
+        [2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)], abs=1e-6
+    )
+    assert "flying" in page.locator(".clock").inner_text() and seen["normal"][2] == 0.0
+    assert near(picture(page, "#canvas"), IVORY, 0.05) > 0.01, "the body is in view"
+    assert page.complaints == []
+
+
+def test_where_the_other_rim_is_down_the_body_is_drawn_as_it_is_turned(opened):
+    page = opened("#ell=2.5&theta=0.9&w=0.5,0.3,0.2,0.3,-0.1&contact=coulomb&mu=0.2&restitution=0.5&until=20")
+    rows = np.array(ask(page, "tracked()"), float)
+    start = sc.State(0.9, 0.5, 0.3, 0.2, slip=(0.3, -0.1))
+    m = sc.roll(
+        sc.Body.solid(2.5),
+        start,
+        rows[:, 0],
+        contact=sc.Coulomb(0.2),
+        restitution=0.5,
+        want=("pose", "force"),
+    )
+    assert 0 < rows[:, 17].mean() < 1
+    for k in (np.flatnonzero(rows[:, 17] == rim)[5] for rim in (0, 1)):
+        pose, (x, y, z, w) = ask(page, f"pose({float(rows[k, 0])!r})"), m.orientation[k]
+        assert pose["centre"] == pytest.approx(m.centre[k].tolist(), abs=1e-6)
+        first, third = pose["matrix"][:3], pose["matrix"][8:11]
+        assert first == pytest.approx(
+            [1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)], abs=1e-6
+        )
+        assert third == pytest.approx(
+            [2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)], abs=1e-6
+        )
+
+
+def test_a_weak_flick_lies_on_its_side_and_rolls_straight_unless_it_is_told_to_end_there(opened):
+    page = opened("#ell=1&theta=1.3")
+    page.locator("#flick").click()
+    settled(page)
+    assert page.locator("#what").inner_text() == "It lies on its side"
+    assert "rolls straight on" in page.locator("#because").inner_text()
+    rows = np.array(ask(page, "tracked()"), float)
+    assert (rows[:, HIGH] == 0).all() and rows[0, KIND] == 3 and rows[-1, KIND] == 5
+    at_rest_at(page, 50.0)
+    assert "rolls on its side" in page.locator(".clock").inner_text()
+    knob = page.locator("#knob-restitution")
+    assert knob.is_visible()
+    knob.evaluate("e => { e.value = -0.05; e.dispatchEvent(new Event('input')); }")
+    settled(page)
+    assert state(page)["restitution"] is None or math.isnan(state(page)["restitution"])
+    assert ask(page, "head()")["ending"] == 2
+    page.select_option("#knob-contact", "rolling")
+    settled(page)
+    assert not knob.is_visible()
+    page.wait_for_function("() => !location.hash.includes('restitution')")
+    assert page.complaints == []

@@ -46,8 +46,8 @@ def ask(request):
 
 def test_the_lean_core_gives_the_same_answers_but_knows_no_friction():
     state, map_asked = (1.3, *STEADY[1:]), ("map", (60, 50, 0.3, 3.0, 0.0, HALF, 0.5, 0.0))
-    asked = [map_asked, ("tube", (2.5, 0.0, 0.0)), ("start", (*state, 0.0, 0.0, 0.0, ENDLESS, 20.0, 9)),
-             ("follow", (9, 0.0, 20.0)), ("start", (*state, 0.0, 0.0, 2.0, 0.3, 20.0, 9))]  # fmt: skip
+    asked = [map_asked, ("tube", (2.5, 0.0, 0.0)), ("start", (*state, 0.0, 0.0, 0.0, ENDLESS, 20.0, 9, NONE)),
+             ("follow", (9, 0.0, 20.0)), ("start", (*state, 0.0, 0.0, 2.0, 0.3, 20.0, 9, NONE))]  # fmt: skip
     lean, full = (
         core.ask((COMMITTED / name).read_bytes(), asked) for name in ("core.wasm.gz", "core.friction.wasm.gz")
     )
@@ -97,20 +97,23 @@ def test_steady_states_are_those_of_the_package(ask, which):
     np.testing.assert_allclose(circle.out[5:8], [turning.w1, turning.w2, turning.w3], rtol=1e-13)
 
 
-def compared(ask, given, start, table, mu, native, losses=(0, 0.0)):
+WIDE = 18  # numbers in a row
+
+
+def compared(ask, given, start, table, mu, native, losses=(0, 0.0), bounce=NONE):
     """Compare both motions at the same times, within both claimed errors."""
     t = native.t
     end = 20.0
     answers = ask(
         given,
         ("losses", losses),
-        ("start", (*start, table, mu, end, 301)),
+        ("start", (*start, table, mu, end, 301, bounce)),
         ("follow", (301, 0.0, end)),
         ("follow", (7, 0.123, 0.9 * end)),
         ("poses", (0.0, end, 301)),
     )
     assert [x.code for x in answers] == [0] * 6
-    told, rows, few, poses = answers[2].out, answers[3].out.reshape(-1, 16), answers[4].out, answers[5].out
+    told, rows, few, poses = answers[2].out, answers[3].out.reshape(-1, WIDE), answers[4].out, answers[5].out
     assert told[1] == native.status
     np.testing.assert_array_equal(rows[:, 0], t)
     off = np.abs(np.column_stack([rows[:, 1] - native.theta, rows[:, 2:5] - native.w])).max()
@@ -122,7 +125,7 @@ def compared(ask, given, start, table, mu, native, losses=(0, 0.0)):
     np.testing.assert_array_equal(poses[:, 0], t)
     turned = (poses[:, 2:4] - rows[:, 5:7] + np.pi) % (2 * np.pi) - np.pi
     assert np.abs(turned).max() < 1e-12
-    return told, rows, few.reshape(-1, 16)
+    return told, rows, few.reshape(-1, WIDE)
 
 
 TIMES = 20.0 * (np.arange(301) / 300.0)
@@ -171,6 +174,63 @@ def test_motions_that_slip_or_lose_energy_agree_within_the_error_that_they_state
     # energy plus losses is constant
     whole = rows[:, 13] + rows[:, 15]
     assert np.ptp(whole) < 1e-8 * np.abs(whole).max()
+
+
+TUBE = sc.Body.tube(6.0, bore=0.8)
+FALLS = sc.State(0.6, 0.5, 0.3, 0.2, slip=(0.3, -0.1))
+ALOFT = {
+    "hops": ("pipe", sc.flicked(TUBE, w1=3.0, launch=3.0), sc.Coulomb(0.3), 2, 0.3, {1, 2}),
+    "lies": ("pipe", sc.flicked(TUBE, w1=3.0, launch=0.9), sc.Coulomb(0.3), 2, 0.3, {3}),
+    "lies and rises": ("pipe", sc.flicked(TUBE, w1=3.0, launch=1.02), sc.Coulomb(0.3), 2, 0.3, {1}),
+    "falls on its other rim": ("cylinder", FALLS, sc.Coulomb(0.2), 2, 0.2, {0, 1, 2}),
+    "falls on a wet table": ("cylinder", FALLS, sc.Viscous(0.4), 3, 0.4, {1, 2}),
+    "rounded": ("rounded", FALLS, sc.Coulomb(0.2), 2, 0.2, {1, 2}),
+    "rolls on its side": ("cylinder", sc.State(HALF, 0.4, 0.0, 1.0, slip=(0.0, 0.3)), sc.Coulomb(0.3), 2, 0.3, {3, 5}),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("which", ALOFT)
+def test_flights_impacts_and_lying_agree_within_the_error_that_they_state(ask, which):
+    name, state, contact, code, mu, kinds = ALOFT[which]
+    given, body = BODIES[name]
+    how = {"contact": contact, "restitution": 0.5, "want": WANT}
+    native = sc.roll(body, state, TIMES, **how)
+    start = (state.theta, state.w1, state.w2, state.w3, *state.slip)
+    told, rows, few = compared(ask, given, start, code, mu, native, bounce=0.5)
+    assert {*rows[:, 14]} >= kinds
+    np.testing.assert_array_equal(rows[:, 14], native.phase)
+    assert np.abs(rows[:, 16] - native.height).max() <= told[8] + native.error
+    # the rim that is down is the one about which the body's axes are turned
+    axes = (
+        native.orientation[:, 1] * native.orientation[:, 3]
+        + native.orientation[:, 0] * native.orientation[:, 2]
+    )
+    across = -np.sin(native.theta) * np.cos(native.phi) * np.where(rows[:, 17], -1, 1)
+    assert np.abs(2 * axes - across).max() < 1e-6
+    # bounces that hardly change anything are summed a little earlier on the page
+    assert (told[16] > 0) == (len(native.impacts) > 0) and told[16] <= len(native.impacts)
+    np.testing.assert_allclose(told[17], native.lost_in_impacts[-1], rtol=1e-5, atol=1e-9)
+    # a time between two rows is computed from a row before it, be it in the air or on both rims
+    there = sc.roll(body, state, few[:, 0], t0=0.0, **how)
+    assert (
+        np.abs(few[:, [1, 16]] - np.column_stack([there.theta, there.height])).max()
+        <= 2 * told[8] + there.error
+    )
+    turned = (few[:, 5:7] - np.column_stack([there.phi, there.psi]) + np.pi) % (2 * np.pi) - np.pi
+    off = np.column_stack([turned, few[:, 7:9] - there.contact_point])
+    assert np.abs(off).max() <= 2 * told[9] + there.pose_error
+    np.testing.assert_array_equal(few[:, 14], there.phase)
+    whole = rows[:, 13] + rows[:, 15]
+    assert np.ptp(whole) < 1e-8 * np.abs(whole).max()
+
+
+def test_without_a_restitution_a_motion_ends_where_it_leaves_the_table_or_lands(ask):
+    start = (FALLS.theta, FALLS.w1, FALLS.w2, FALLS.w3, *FALLS.slip, 2.0, 0.2, 20.0, 301)
+    _, ends, rolls = ask(BODIES["cylinder"][0], ("start", (*start, NONE)), ("start", (*start, 0.0)))
+    native = sc.roll(BODIES["cylinder"][1], FALLS, TIMES, contact=sc.Coulomb(0.2))
+    assert ends.out[1] == native.status == sc.Ending.SIDE and rolls.out[1] == 0
+    assert 0 <= ends.out[2] - native.t[-1] < TIMES[1]
+    assert ends.out[16] == 0 < rolls.out[16]
 
 
 ROW, HEADER = 17, 18  # numbers in a row of a stone, and before the first row
@@ -224,10 +284,10 @@ def test_a_flicked_tube_leaves_the_hand_as_the_package_says_and_rises(ask):
     )
     assert thrown.out[6] > 1.0
     *_, start, rows = ask(
-        given, losses, ("start", (*thrown.out[:6], 2.0, 0.2, 5.0, 50)), ("follow", (50, 0.0, 5.0))
+        given, losses, ("start", (*thrown.out[:6], 2.0, 0.2, 5.0, 50, NONE)), ("follow", (50, 0.0, 5.0))
     )
     assert start.code == rows.code == 0
-    assert rows.out.reshape(-1, 16)[:, 1].min() < HALF - 0.05
+    assert rows.out.reshape(-1, WIDE)[:, 1].min() < HALF - 0.05
 
 
 def test_the_lines_of_the_map_are_those_of_the_package(ask):
@@ -250,8 +310,9 @@ REFUSED = {
     "too fast": (1, [("rattleback", (1.0, 0.2, 0.2, 0.0, 1e7, 0.0, 1.0, 9))]),
     "too long": (10, [("rattleback", (1.0, 0.2, 0.2, 0.0, 1.0, 0.0, 1e6, 2))]),
     "no motion": (9, [("tube", (2.5, 0.0, 0.0)), ("follow", (3, 0.0, 1.0))]),
+    "bounces": (1, [("tube", (2.5, 0.0, 0.0)), ("start", (*STEADY, 0.0, 0.0, 2.0, 0.3, 9.0, 9, 1.5))]),
     "too much": (10, [("tube", (2.5, 0.0, 0.0)), ("losses", (4, 1e-9)),
-                      ("start", (*STEADY, 0.0, 0.0, 0.0, ENDLESS, 1e7, 2))]),
+                      ("start", (*STEADY, 0.0, 0.0, 0.0, ENDLESS, 1e7, 2, NONE))]),
 }  # fmt: skip
 
 
@@ -268,7 +329,7 @@ def test_a_refusal_is_a_code_with_a_meaning(ask, why):
 
 CALLS = {
     "tube": 3, "body": 5, "critical": 2, "map": 8, "curves": 5, "at_rest": 1, "by_rate": 1, "circular": 2,
-    "losses": 2, "start": 10, "follow": 3, "poses": 3, "phases": 0, "flick": 4, "thrown": 2, "rattleback": 8,
+    "losses": 2, "start": 11, "follow": 3, "poses": 3, "phases": 0, "flick": 4, "thrown": 2, "rattleback": 8,
 }  # fmt: skip
 
 

@@ -6,6 +6,7 @@ use crate::{Answer, Desk, Refusal, count};
 use spincyl::contact::{Force, TableKind, force};
 use spincyl::exact::Swing;
 use spincyl::loss::{Law, Losses};
+use spincyl::motion::path::Kind;
 use spincyl::motion::{self, Event};
 use spincyl::pose::Pose;
 use spincyl::{Body, Contact, State};
@@ -23,9 +24,14 @@ pub(crate) struct Row {
     pub pose: Pose,
     pub force: Force,
     pub slip: [f64; 2],
-    pub slips: bool,
+    pub kind: Kind,
     pub energy: f64,
     pub lost: f64,
+    /// The vertical velocity of the lowest point of the rim.
+    #[cfg_attr(not(feature = "friction"), allow(dead_code))]
+    pub lift: f64,
+    /// Whether the row is told from the rim that was the upper one at the start.
+    pub turned: bool,
 }
 
 /// The current motion.
@@ -48,6 +54,7 @@ pub(crate) struct Wish {
     pub start: (State, [f64; 2]),
     pub t: f64,
     pub n: usize,
+    pub restitution: Option<f64>,
 }
 
 /// Equally spaced times, with both ends among them.
@@ -74,8 +81,9 @@ impl Desk {
     }
 
     /// Begins a motion from theta, w, slip, the table (0 rolling, 1 smooth, 2 Coulomb, 3 viscous) with its mu
-    /// or c, the last time, and the number of rows of a motion that is integrated.
-    pub fn start(&mut self, [theta, w1, w2, w3, u_h, u_2, table, mu, t, n]: [f64; 10]) -> Answer {
+    /// or c, the last time, the number of rows of a motion that is integrated, and the coefficient of restitution, with
+    /// NaN for a motion that ends where the body leaves the table.
+    pub fn start(&mut self, [theta, w1, w2, w3, u_h, u_2, table, mu, t, n, e]: [f64; 11]) -> Answer {
         self.motion = None;
         let (body, n) = (self.set_body()?, count("n", n, MOST)?);
         if !(t > 0.0 && t <= 1e12) {
@@ -92,8 +100,9 @@ impl Desk {
         // Dry friction with an infinite coefficient means rolling.
         let kind = TableKind::from_code(table as u8).unwrap_or_default();
         let kind = if mu.is_finite() || kind != TableKind::Coulomb { kind } else { TableKind::Rolling };
-        let wish = Wish { body, start: (State { theta, w1, w2, w3 }, [u_h, u_2]), t, n };
-        if kind.rubs() || !self.losses.is_none() {
+        let restitution = (!e.is_nan()).then_some(e);
+        let wish = Wish { body, start: (State { theta, w1, w2, w3 }, [u_h, u_2]), t, n, restitution };
+        if kind.rubs() || !self.losses.is_none() || restitution.is_some() {
             #[cfg(feature = "friction")]
             return self.walk(&wish, kind.with([mu; 2]));
             #[cfg(not(feature = "friction"))]
@@ -117,19 +126,20 @@ impl Desk {
         let [low, high] = swing.turning_points();
         let [phi, psi] = swing.angles_per_period().unwrap_or([f64::NAN; 2]);
         self.out.extend([0.0, code, time, swing.period(), low, high, phi, psi, error, pose_error]);
-        self.out.extend([0.0, 1.0, 0.0, 0.0, 0.0, until]);
+        self.out.extend([0.0, 1.0, 0.0, 0.0, 0.0, until, 0.0, 0.0]);
         self.motion = Some(Kept::Exact { swing: Box::new(swing), body, contact, until });
         Ok(())
     }
 
     /// Writes rows at equally spaced times: t, theta, w, phi and psi with whole turns, the contact point, N, |F|/N,
-    /// slip, energy, whether the body slips, and the lost energy.
+    /// slip, energy, the kind of the phase, the lost energy, the height of the rim's lowest point, and whether this rim was
+    /// the upper one at the start.
     pub fn follow(&mut self, [n, from, to]: [f64; 3]) -> Answer {
-        for Row { t, y, pose, force, slip, slips, energy, lost } in self.rows(n, from, to)? {
+        for Row { t, y, pose, force, slip, kind, energy, lost, turned, .. } in self.rows(n, from, to)? {
             self.out.extend([t, y.theta, y.w1, y.w2, y.w3, pose.phi.radians(), pose.psi.radians()]);
             self.out.extend([pose.contact_point.x, pose.contact_point.y]);
             self.out.extend([force.normal, force.friction_coefficient(), slip[0], slip[1], energy]);
-            self.out.extend([f64::from(u8::from(slips)), lost]);
+            self.out.extend([f64::from(kind as u8), lost, pose.height, f64::from(u8::from(turned))]);
         }
         Ok(())
     }
@@ -157,7 +167,8 @@ impl Desk {
                 let row = |t: f64| {
                     let (y, pose) = (swing.state(t), swing.pose(t)?);
                     let (force, energy) = (force(*contact, body, &y), contact.energy(body, &y));
-                    Some(Row { t, y, pose, force, slip: [0.0; 2], slips: false, energy, lost: 0.0 })
+                    let (slip, kind) = ([0.0; 2], Kind::Rolling);
+                    Some(Row { t, y, pose, force, slip, kind, energy, lost: 0.0, lift: 0.0, turned: false })
                 };
                 Ok(times(from, to, n).take_while(|t| t <= until).map_while(row).collect())
             }

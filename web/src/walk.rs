@@ -1,7 +1,8 @@
 //! A motion that slips or loses energy, which the integrator follows to a last time.
 //!
 //! The motion is integrated once, and its rows are kept; any other time is reached from the last row before it. The
-//! pose of a motion that starts with a row is turned and moved to the pose of this row.
+//! pose of a motion that starts with a row is turned and moved to the pose of this row. With a restitution the motion
+//! goes on in the air and on both rims, and its rows are told from the rim that the library tells them from.
 
 use crate::motion::{Kept, Row, Wish, times, told};
 use crate::{Answer, Desk, Refusal};
@@ -9,7 +10,7 @@ use spincyl::contact::{Force, Table, slip};
 use spincyl::motion::path::{self, Kind};
 use spincyl::motion::{Ask, Method, Motion, Start};
 use spincyl::pose::{Angle, Pose};
-use spincyl::{Body, Contact, State};
+use spincyl::{Body, Contact};
 use std::f64::consts::{PI, TAU};
 
 /// The tolerance of a step of the integrator, which is enough for a page.
@@ -24,7 +25,7 @@ const FLAT: f64 = 1e-6;
 pub(crate) struct Walked {
     body: Body,
     ask: Ask,
-    start: (State, [f64; 2]),
+    start: Start,
     rows: Vec<Row>,
     phases: Vec<(f64, Kind)>,
     /// The last time, or the time at which the motion ends.
@@ -36,15 +37,19 @@ impl Desk {
     pub(crate) fn walk(&mut self, wish: &Wish, table: Table) -> Answer {
         let mut ask = Ask::on(table);
         (ask.losses, ask.method, ask.pose, ask.force) = (self.losses, Method::Tolerance(TOL), true, true);
-        let &Wish { body, start, t, n } = wish;
-        let motion = follow(&body, start, &times(0.0, t, n.max(2)).collect::<Vec<_>>(), &ask)?;
+        ask.restitution = wish.restitution;
+        let &Wish { body, start: (y, slip), t, n, .. } = wish;
+        let start = Start { slip, ..y.into() };
+        let motion = follow(&body, &start, &times(0.0, t, n.max(2)).collect::<Vec<_>>(), &ask)?;
         let Some(path) = &motion.path else { return Err(Refusal::Work) };
         let (code, time) = told(motion.event);
         let until = t.min(time);
         let none = f64::NAN;
-        let count = path.phases.len() as f64;
+        let (count, hits) = (path.phases.len() as f64, path.impacts.len() as f64);
+        let knocked = path.impacts.iter().map(|hit| hit.lost).sum();
         self.out.extend([1.0, code, time, none, none, none, none, none, motion.error, motion.pose_error]);
         self.out.extend([motion.evaluations as f64, count, path.slipping, path.heat, path.lost, until]);
+        self.out.extend([hits, knocked]);
         let phases = path.phases.iter().map(|phase| (phase.time, phase.kind)).collect();
         let mut walked = Walked { body, ask, start, rows: Vec::new(), phases, until };
         walked.rows = walked.read(&motion, None);
@@ -72,15 +77,21 @@ impl Walked {
         if let Some(rows) = wanted.iter().map(known).collect() {
             return Ok(rows);
         }
-        let sound = |row: &&Row| row.t <= from && row.y.theta.min(PI - row.y.theta) > FLAT;
+        // Nor is one started where the body has just left the table, which two numbers do not tell.
+        let sound = |row: &&Row| {
+            let leaves = row.kind == Kind::Flying && row.pose.height == 0.0;
+            row.t <= from && row.y.theta.min(PI - row.y.theta) > FLAT && !leaves
+        };
         if let Some(near) = self.rows.iter().rev().find(sound) {
             let since: Vec<f64> = wanted.iter().map(|t| t - near.t).collect();
+            let aloft = (near.kind == Kind::Flying).then_some([near.pose.height, near.lift]);
+            let start = Start { slip: near.slip, aloft, ..near.y.into() };
             // A motion can pass through a row from which no motion can be started.
-            if let Ok(motion) = follow(&self.body, (near.y, near.slip), &since, &self.ask) {
+            if let Ok(motion) = follow(&self.body, &start, &since, &self.ask) {
                 return Ok(self.read(&motion, Some(near)));
             }
         }
-        let motion = follow(&self.body, self.start, &wanted, &self.ask)?;
+        let motion = follow(&self.body, &self.start, &wanted, &self.ask)?;
         Ok(self.read(&motion, None))
     }
 
@@ -89,44 +100,68 @@ impl Walked {
         let poses = motion.poses.iter().flatten();
         let forces = motion.forces.iter().flatten();
         let Some(path) = &motion.path else { return Vec::new() };
+        // The other rim is down where the body's axes are not those of the pose.
+        let over = |((axes, pose), y): ((_, &Pose), _)| pose.orientation(y).angle_to(&axes) > 1.0;
+        let turned: Vec<bool> =
+            motion.orientations().zip(poses.clone()).zip(&motion.states).map(over).collect();
         let row = |(i, (pose, force)): (usize, (&Pose, &Force))| {
-            let lost = path.dissipated[i] + path.work_lost.get(i).unwrap_or(&0.0);
             let (t, y, slip) = (motion.times[i], motion.states[i], path.slip[i]);
+            let knocks = path.impacts.iter().take_while(|hit| hit.time <= t).map(|hit| hit.lost);
+            let lost = path.dissipated[i] + path.work_lost.get(i).unwrap_or(&0.0) + knocks.sum::<f64>();
+            let [height, lift] = path.aloft.get(i).copied().unwrap_or_default();
             let energy = match self.ask.table {
+                _ if self.ask.restitution.is_some() => {
+                    let rise = slip::centre_rise(&self.body, &y);
+                    slip::energy(&self.body, &y, slip) + height + lift * (0.5 * lift + rise)
+                }
                 Table::Rubs(_) => slip::energy(&self.body, &y, slip),
                 Table::Smooth => Contact::Smooth.energy(&self.body, &y),
                 Table::Rolling { .. } => Contact::Rolling.energy(&self.body, &y),
             };
-            let slips = path.kinds[i] == Kind::Slipping;
-            let row = Row { t, y, pose: *pose, force: *force, slip, slips, energy, lost };
+            let turned = turned[i];
+            let row = Row {
+                t,
+                y,
+                pose: *pose,
+                force: *force,
+                slip,
+                kind: path.kinds[i],
+                energy,
+                lost,
+                lift,
+                turned,
+            };
             from.map_or(row, |from| {
-                let pose = moved(&from.pose, pose);
-                Row { t: from.t + t, pose, lost: from.lost + lost, ..row }
+                let pose = moved(&from.pose, pose, turned);
+                Row { t: from.t + t, pose, lost: from.lost + lost, turned: from.turned != turned, ..row }
             })
         };
         poses.zip(forces).enumerate().map(row).collect()
     }
 }
 
-fn follow(body: &Body, (y, slip): (State, [f64; 2]), times: &[f64], ask: &Ask) -> Result<Motion, Refusal> {
+fn follow(body: &Body, start: &Start, times: &[f64], ask: &Ask) -> Result<Motion, Refusal> {
     let mut looks = 0;
     let mut go_on = || {
         looks += 1;
         looks <= LOOKS
     };
-    path::follow(body, &Start { slip, ..y.into() }, times, ask, &mut go_on)?.ok_or(Refusal::Work)
+    path::follow(body, start, times, ask, &mut go_on)?.ok_or(Refusal::Work)
 }
 
-/// The pose that follows the pose `from` by the change `by`.
-fn moved(from: &Pose, by: &Pose) -> Pose {
+/// The pose that follows the pose `from` by the change `by`; about the axis of a body that has `turned` over since then the
+/// first pose counts backwards.
+fn moved(from: &Pose, by: &Pose, turned: bool) -> Pose {
     let added = |a: Angle, b: Angle| {
         let (sum, whole) = (a.rest + b.rest, a.turns + b.turns);
         let turns = (sum / TAU).round();
         Angle { turns: whole + turns, rest: sum - turns * TAU }
     };
+    let Angle { turns, rest } = from.psi;
+    let psi = if turned { Angle { turns: -turns, rest: -rest } } else { from.psi };
     let (sin, cos) = from.phi.rest.sin_cos();
     let (mut at, to) = (from.contact_point, by.contact_point);
     at.x += to.x * cos - to.y * sin;
     at.y += to.x * sin + to.y * cos;
-    Pose { phi: added(from.phi, by.phi), psi: added(from.psi, by.psi), contact_point: at, height: by.height }
+    Pose { phi: added(from.phi, by.phi), psi: added(psi, by.psi), contact_point: at, height: by.height }
 }

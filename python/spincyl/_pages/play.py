@@ -27,11 +27,13 @@ from spincyl._pages.words import (
     body_of,
     losses_of,
     paper_tube,
+    restitution_of,
     scenes,
     state_of,
     table_of,
     words_of_body,
     words_of_loss,
+    words_of_restitution,
     words_of_state,
     words_of_table,
 )
@@ -146,6 +148,17 @@ class Play:
         self._set(words_of_table(contact))
 
     @property
+    def restitution(self) -> float | None:
+        """The restitution of impacts on a table with friction, or None; another may be set."""
+        found: float | None = self._told.get("restitution")
+        return found
+
+    @restitution.setter
+    def restitution(self, restitution: float | None) -> None:
+        _bouncing(self.friction, restitution)
+        self._set(words_of_restitution(restitution), gone=("restitution",))
+
+    @property
     def losses(self) -> Loss | None:
         """The law of loss, or None; another may be set."""
         return losses_of(self._told)
@@ -165,7 +178,9 @@ class Play:
             return _rattling(self._told)
         body = self.body
         t = np.linspace(0.0, float(self._told["until"]) * body._second, 2001)
-        return roll(body, self.state, t, want=("pose", "force"), contact=self.contact, losses=self.losses)
+        how: dict[str, Any] = {"contact": self.contact, "losses": self.losses}
+        bounce = restitution_of(self._told)
+        return roll(body, self.state, t, want=("pose", "force"), restitution=bounce, **how)
 
     def _of_revolution(self) -> None:
         """Raise ValueError if the page shows a stone."""
@@ -247,6 +262,7 @@ def play(
     state: State | None = None,
     kick: float = 0.0,
     contact: AnyContact = "rolling",
+    restitution: float | None = None,
     losses: Loss | None = None,
     t: float | None = None,
     slow: float = 20.0,
@@ -269,6 +285,9 @@ def play(
         theta' given to it, in sqrt(g/R), -3 to 3.
     contact : {"rolling", "smooth"}, Coulomb or Viscous
         Of Coulomb's law the page knows one coefficient: static = mu.
+    restitution : float, optional
+        Of impacts, 0 to 1: on a table with friction a body that leaves it comes down again, and may lie on
+        its side. Default: the motion ends there.
     losses : Loss, optional
         One law of `spincyl.loss`.
     t : float
@@ -325,8 +344,9 @@ def play(
         unit = body._second
         told |= {"until": within("t", si("t", t, "second"), unit, 2000 * unit) / unit}
     told |= {"slow": within("slow", slow, 1, 1000)}
-    told |= words_of_table(contact) | words_of_loss(losses)
+    told |= words_of_table(contact) | words_of_restitution(restitution) | words_of_loss(losses)
     _needed(friction, contact, losses, body)
+    _bouncing(friction, restitution)
     return Play(told, line("title", title), friction)
 
 
@@ -350,6 +370,12 @@ def _needed(friction: bool, contact: AnyContact, losses: Loss | None, body: Body
         fitting(contact, body.scale)
     if not friction and (losses is not None or not isinstance(contact, str)):
         raise ValueError("friction = False: this table and losses need friction=True")
+
+
+def _bouncing(friction: bool, restitution: float | None) -> None:
+    """Refuse a restitution on a page without friction."""
+    if not friction and restitution is not None:
+        raise ValueError("friction = False: bounces need friction=True")
 
 
 def _json(what: Any) -> str:

@@ -11,7 +11,7 @@ from spincyl import loss
 from spincyl._body import Body
 from spincyl._contact import AnyContact, Coulomb, Viscous, code
 from spincyl._ellipsoid import Ellipsoid
-from spincyl._input.numbers import is_scalar, made
+from spincyl._input.numbers import is_scalar, made, within
 from spincyl._loss import Law, Loss, sized
 from spincyl._measured import measured
 from spincyl._scale import Scale
@@ -69,6 +69,11 @@ def words_of_table(contact: AnyContact) -> dict[str, Any]:
     return {"contact": contact}
 
 
+def words_of_restitution(restitution: float | None) -> dict[str, Any]:
+    """Words for a coefficient of restitution; none where the motion ends at lift-off."""
+    return {} if restitution is None else {"restitution": within("restitution", restitution, 0, 1)}
+
+
 def words_of_loss(losses: Loss | None) -> dict[str, Any]:
     """Words for a law of loss: its name on the command line, and its coefficient."""
     if losses is None:
@@ -123,6 +128,12 @@ def table_of(words: Mapping[str, Any]) -> AnyContact:
     return plain
 
 
+def restitution_of(words: Mapping[str, Any]) -> float | None:
+    """The restitution that the words describe, on a table that the page lets a body bounce on."""
+    found: float | None = words.get("restitution")
+    return found if words.get("contact") in ("coulomb", "viscous") else None
+
+
 def losses_of(words: Mapping[str, Any]) -> Loss | None:
     """The law of loss that the words describe."""
     name = words.get("law", "none")
@@ -159,6 +170,12 @@ def _all() -> Iterator[tuple[str, dict[str, Any]]]:
     yield "the paper's tube: six letters", steady(tube, 89.5, slow=20)
     flicked = pressed(tube.natural, 7.0, np.radians(80), finger=0.3)
     yield "the tube, flicked", free(tube, flicked, Coulomb(0.3), until=150, slow=10)
+    hard = free(
+        tube, pressed(tube.natural, 14.0, np.radians(80), finger=0.3), Coulomb(0.3), until=60, slow=20
+    )
+    yield "the tube, flicked too hard: it hops", hard | words_of_restitution(0.5)
+    weak = free(tube, pressed(tube.natural, 5.0, np.radians(80), finger=0.3), Coulomb(0.3), until=60, slow=20)
+    yield "the tube, flicked too gently: it lies", weak | words_of_restitution(0.5)
     yield "a cylinder that nods", steady(Body.solid(2.5), np.degrees(1.3), kick=0.15)
     yield "a cylinder in the forbidden band", steady(Body.solid(2.5), 40.0, slow=10)
     yield "a disk on edge, on rubber", steady(Body.solid(0.375), 80.0, kick=-0.01)

@@ -12,8 +12,8 @@ pose = (m, t) => {
   const p = onSharpRim(m, t);
   if (!m.fillet) return p;
   const a = 1 - m.fillet, [s, c] = [Math.sin(p.theta), Math.cos(p.theta)], off = m.depth * s - a * c;
-  p.centre[2] = p.matrix[14] = m.fillet + m.depth * c + a * s;
-  p.contact = [p.centre[0] + off * Math.cos(p.phi), p.centre[1] + off * Math.sin(p.phi), 0];
+  p.centre[2] = p.matrix[14] = m.fillet + m.depth * c + a * s + (p.high || 0);
+  if (!p.lies) p.contact = [p.centre[0] + off * Math.cos(p.phi), p.centre[1] + off * Math.sin(p.phi), 0];
   return p;
 };
 

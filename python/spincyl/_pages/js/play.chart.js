@@ -4,7 +4,7 @@ const charted = $("chart");
 let kept = null, span = [0, 1];
 const TRACKS = [
   { name: "θ", unit: "°", of: row => row[OF_ROW.theta] / deg, colour: "theta", dash: [], least: 0.5 },
-  { name: "N", unit: "", of: row => row[OF_ROW.normal], colour: "normal", dash: [7, 4], zero: true, least: 0.5, line: 1 },
+  { name: "N", unit: "", of: row => row[OF_ROW.kind] > FLIES ? 1 : row[OF_ROW.normal], colour: "normal", dash: [7, 4], zero: true, least: 0.5, line: 1 },
   { name: "μ", unit: "", of: row => row[OF_ROW.demand], colour: "friction", dash: [2, 3], zero: true, least: 0.05 },
 ];
 const MEANING = { "θ": "inclination", N: "normal force per weight", "μ": "friction it takes, F/N" };
@@ -43,12 +43,13 @@ function drawChart() {
     g.fillStyle = colour("well");
     g.fillRect(span[0], top, span[1] - span[0], bottom - top);
     g.save();
-    g.globalAlpha = 0.16; // while the body slips
-    g.fillStyle = colour("friction");
-    for (let k = 0, from = -1; k < all.length; k++) {
-      const slips = !s.stone && all[k][OF_ROW.slips] > 0;
-      if (slips && from < 0) from = k;
-      if (from >= 0 && (!slips || k + 1 === all.length)) { g.fillRect(at(all[from][0]), top, at(all[k][0]) - at(all[from][0]), bottom - top); from = -1; }
+    g.globalAlpha = 0.16; // while the body slips, and otherwise while it flies
+    for (let k = 0, from = 0, was = ""; k < all.length; k++) {
+      const kind = s.stone ? 0 : all[k][OF_ROW.kind], shade = kind === FLIES ? "normal" : rubbed(kind) ? "friction" : "";
+      if (shade === was && k + 1 < all.length) continue;
+      if (was) { g.fillStyle = colour(was); g.fillRect(at(all[from][0]), top, at(all[k][0]) - at(all[from][0]), bottom - top); }
+      from = k;
+      was = shade;
     }
     g.globalAlpha = 1;
     g.beginPath();

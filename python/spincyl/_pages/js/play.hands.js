@@ -14,12 +14,13 @@ const KNOBS = [
   { name: "contact", text: "table", choices: { rolling: "rubber: it rolls", smooth: "ice: no friction", coulomb: "dry friction μ", viscous: "wet: friction c u" } },
   { name: "mu", text: "friction μ", low: 0, high: () => 1, ...same, told: x => decimal(x) },
   { name: "c", text: "friction c", low: 0, high: () => 1, ...same, told: x => decimal(x) },
+  { name: "restitution", text: "bounce e", low: -0.05, high: () => 1, to: x => x < 0 ? NaN : x, from: x => x >= 0 ? x : -0.05, told: x => x >= 0 ? decimal(x) : "it ends there" },
   { name: "law", text: "losses", choices: LAWS },
   { name: "loss", text: "their coefficient", low: -7, high: () => -0.5, ...power, told: x => x.toExponential(1) },
 ];
 if (!rubs) {
   for (const law of ["coulomb", "viscous"]) delete KNOBS.find(knob => knob.name === "contact").choices[law];
-  KNOBS.splice(KNOBS.findIndex(knob => knob.name === "mu"), 4); // also removes c and the losses, which follow
+  KNOBS.splice(KNOBS.findIndex(knob => knob.name === "mu"), 5); // also removes c, the bounce and the losses, which follow
   $("flick").hidden = true;
 }
 const form = $("knobs");
@@ -60,6 +61,8 @@ function knobs() {
     const off = knob.name === "mu" ? s.contact !== "coulomb" : knob.name === "c" ? s.contact !== "viscous" : knob.name === "loss" ? s.law === "none" : ["ell", "bore", "fillet"].includes(knob.name) && !isTube() || knob.name === "rate" && (s.w || !(here.rate > 0));
     // shows only the coefficient of the present law of friction
     if (["mu", "c"].includes(knob.name)) knob.label.hidden = (s.contact === "viscous") !== (knob.name === "c");
+    // bounces are those of rims on a table with friction
+    if (knob.name === "restitution") knob.label.hidden = !rubbing() || body.most !== (body.ell > 0 && body.fillet < 1 ? Math.PI / 2 : Math.PI);
     knob.label.classList.toggle("off", off);
     knob.input.disabled = off && knob.name !== "rate";
     if (knob.choices) { knob.input.value = value; continue; }
@@ -148,13 +151,15 @@ $("preset").add(new Option("choose …", ""));
 for (const { name } of presets) $("preset").add(new Option(name, name));
 function scene(state, name = "") { change({ ...BLANK, ...state }, { restart: true, name }); play_(!still.matches); show(); }
 $("preset").onchange = () => { const found = presets.find(p => p.name === $("preset").value); if (found) scene(found.state, found.name); };
-function flick() {
-  const { code, out } = isTube() && s.ell > 0 ? ask("flick", 1.2 * Math.max(1, s.ell), 80 * deg, 0.3, 0) : { code: 9 };
+// one too hard hops; one too weak lies on its side
+function flick(hard = 1) {
+  const { code, out } = isTube() && s.ell > 0 ? ask("flick", 1.2 * hard * Math.max(1, s.ell), 80 * deg, 0.3, 0) : { code: 9 };
   if (code) { $("because").textContent = "What is to be flicked must have two ends: " + refusal(code); return; }
   const [theta, ...w] = out;
-  scene({ ell: s.ell, bore: s.bore, fillet: s.fillet, radius: s.radius, mass: s.mass, gravity: s.gravity, slow: s.slow, theta, w: w.slice(0, 5), contact: s.contact === "viscous" ? s.contact : "coulomb", mu: s.mu, c: s.c, law: s.law, loss: s.loss });
+  scene({ ell: s.ell, bore: s.bore, fillet: s.fillet, radius: s.radius, mass: s.mass, gravity: s.gravity, slow: s.slow, theta, w: w.slice(0, 5), contact: s.contact === "viscous" ? s.contact : "coulomb", mu: s.mu, c: s.c, restitution: s.restitution >= 0 ? s.restitution : 0.5, law: s.law, loss: s.loss });
 }
-$("flick").onclick = flick;
+const HARD = 2;
+$("flick").onclick = e => flick(e.shiftKey ? HARD : 1);
 
 // ---- the screen and the keys
 const full = () => document.fullscreenElement ? document.exitFullscreen() : document.documentElement.requestFullscreen().catch(() => { $("full").hidden = true; });
@@ -171,7 +176,7 @@ addEventListener("keydown", e => {
     __proto__: null,
     " ": () => play(!playing), 0: () => go(0), ",": () => { play(false); go(now - 0.25 / s.slow); }, ".": () => { play(false); go(now + 0.25 / s.slow); },
     r: () => change({ contact: "rolling" }), i: () => change({ contact: "smooth" }), c: () => rubs && change({ contact: "coulomb" }), v: () => rubs && change({ contact: "viscous" }),
-    k: () => rubs && flick(), s: hear, p: photograph, f: () => document.fullscreenEnabled && full(),
+    k: () => rubs && flick(e.shiftKey ? HARD : 1), s: hear, p: photograph, f: () => document.fullscreenEnabled && full(),
   };
   if (on === map || on === canvas) Object.assign(keys, { ArrowUp: () => tilt(on === map ? fine : -fine), ArrowDown: () => tilt(on === map ? -fine : fine), g: () => ghosts.length && change({ theta: ghosts.find(x => x > s.theta) ?? ghosts[0] }) });
   if (on === map) Object.assign(keys, { ArrowLeft: () => change({ ell: s.ell - 0.02 * fine }), ArrowRight: () => change({ ell: s.ell + 0.02 * fine }) });

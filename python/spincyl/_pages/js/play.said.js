@@ -3,7 +3,7 @@
 const decimal = (x, d = 2) => Number.isFinite(x) ? x.toFixed(d) : "–", degrees = (x, d = 1) => decimal(x / deg, d) + "°";
 // the reduced rate, and the rate in hertz if the size is known
 const rated = rate => decimal(rate, 3) + (sized() ? ` (${decimal(hertzOf(rate))} Hz)` : "");
-const ENDINGS = ["", "its face lands on the table", body => body.fillet === 1 ? "the other end lands" : "the other rim lands: it lies on its side", "it lifts off", "rolling needs more friction than there is", "", "no single force obeys the law of friction", "its contact point stops", "the computation gives up: something changes ever faster"];
+const ENDINGS = ["", "its face lands on the table", body => body.fillet === 1 ? "the other end lands" : "the other rim lands: it lies on its side", "it lifts off", "rolling needs more friction than there is", "", "no single force obeys the law of friction", "its contact point stops", "the computation gives up: something changes ever faster", "both rims land, and no impulse, or more than one, obeys the law of friction"];
 // whether the later motion depends on a disturbance below the digits of the start
 const unsure = () => known() && !(head.error < 1e-3);
 const ending = () => { const e = ENDINGS[head.ending]; return typeof e === "function" ? e(body) : e; };
@@ -15,6 +15,12 @@ function band() {
   if (two) return `between θ₀ = ${degrees(theta0)} and θ∞ = ${degrees(limit)}`;
   return Number.isFinite(line) ? `${s.theta < line ? "below" : "above"} ${line === theta0 ? "θ₀" : "θ∞"} = ${degrees(line)}` : "here";
 }
+// what a free body does that leaves the table or lies on both rims; nothing of any other
+function aloft() {
+  const last = tracked.rows.at(-1)?.[OF_ROW.kind], lies = last > FLIES, straight = last > FLIES + 2 ? ", and rolls straight on" : "";
+  if (known() && head.impacts) return ["Set free, it hops", `it leaves the table and comes down again${lies ? `; at last it lies on its side${straight}` : ""}. Each impact takes energy.`];
+  return lies && ["It lies on its side", `nothing lifts it off its two rims${straight && ": friction stops their slip, and it rolls straight on"}.`];
+}
 // the outcome of a slip, as far as it was computed
 function slowed() {
   if (s.contact === "viscous") return "friction fades with the slip, so that it slips less and less and never rolls.";
@@ -24,6 +30,7 @@ function slowed() {
 function verdict() {
   const ice = s.contact === "smooth", wet = s.contact === "viscous", over = known() && head.ending > 0 && !lossy() && !unsure(), turning = Number.isFinite(s.precession) && !s.w;
   if (s.w && !s.w.some(Boolean)) return ["Let go at rest", "it does not turn at all, and no steady state is like that."];
+  if (s.w && aloft()) return aloft();
   if (s.w) return s.w[3] || s.w[4] ? ["Set free, slipping", slowed()] : ["Set free", "it starts with a turning of its own, not in a steady state."];
   if (isTube() && s.ell > 0 && s.theta > Math.PI / 2 - 1e-9) return ["On its side", "lying on both rims every tube has the rate 1."];
   if (s.theta > steep() - 1e-9 && known() && !lasting()) return ["On both ends", "it lies on the table."];
@@ -45,7 +52,7 @@ function details() {
   if (!known()) return told;
   const d = head.high - head.low < 0.02 ? 3 : 1;
   let least = Infinity, need = 0;
-  for (const row of tracked.rows) { least = Math.min(least, row[OF_ROW.normal]); need = Math.max(need, row[OF_ROW.demand]); }
+  for (const row of tracked.rows) { if (row[OF_ROW.kind] < FLIES) least = Math.min(least, row[OF_ROW.normal]); need = Math.max(need, row[OF_ROW.demand]); }
   if (!here.code && !s.w) {
     if (Number.isFinite(here.rate)) told.push(`rate ${rated(here.rate)}`);
     else if (sized()) told.push(`goes round ${decimal(hertz(here.precession))} times a second`);
@@ -54,8 +61,9 @@ function details() {
   if (Number.isFinite(head.period) && head.high - head.low > 1e-4 && !(head.ending && head.ends < head.period)) told.push(`nods between ${degrees(head.low, d)} and ${degrees(head.high, d)}, once in ${timed(head.period)}`);
   if (s.contact === "rolling" && need > 5e-3 && need < 1e3) told.push(`needs friction μ ≥ ${decimal(need)}`);
   if (head.slipTime > 0) told.push(`slips for ${timed(head.slipTime)} in all`);
+  if (head.impacts) told.push(`${head.impacts} impact${head.impacts > 1 ? "s" : ""} take${head.impacts > 1 ? "" : "s"} ${decimal(head.knocked, 3)} M g R`);
   if (head.lost > 1e-12) told.push(`loses ${decimal(head.lost, 3)} M g R${Number.isFinite(s.mass) ? `, ${(head.lost * s.mass * s.gravity * s.radius).toPrecision(3)} J` : ""}`);
-  if (least < 0.995) told.push(`the table carries at least ${decimal(least)} of its weight`);
+  if (least < 0.995 && !head.impacts) told.push(`the table carries at least ${decimal(least)} of its weight`);
   if (head.error > 0 && head.error < 1) told.push(`error below ${head.error.toExponential(0)}`);
   told.push(sized() ? `R = ${decimal(1e3 * s.radius, 1)} mm` : "slow motion as of R = 1 cm, for its size is not known");
   return told;

@@ -16,11 +16,11 @@ function hear() {
   $("hear").ariaPressed = true;
   show();
 }
-// louder with the speed of the contact along the body, and when the contact passes the listener
+// louder with the speed of the contact along the body, and when the contact passes the listener; none in the air
 function heard(p, row) {
   if (!audio) return;
   const slides = Math.abs(row[4] - row[2] / Math.tan(row[1])) * (1 - body.fillet + body.fillet * Math.sin(row[1]));
-  const loud = playing && !live.over ? Math.sqrt(Math.min(9, slides)) / 3 * Math.exp(2 * (Math.cos(p.phi + 1.1) - 1)) : 0;
+  const loud = playing && !live.over && row[OF_ROW.kind] !== FLIES ? Math.sqrt(Math.min(9, slides)) / 3 * Math.exp(2 * (Math.cos(p.phi + 1.1) - 1)) : 0;
   audio.loud.gain.setTargetAtTime(loud, audio.currentTime, 0.012);
 }
 $("hear").onclick = hear;

@@ -7,9 +7,14 @@ live.before = live.after = { at: NaN, event: false };
 let now = 0, playing = false;
 
 function placed(row) {
-  const [, theta, w1, w2, w3, phi, psi, x, y] = row, out = (1 - body.fillet) * Math.cos(theta) - body.ell * Math.sin(theta);
-  const p = posed(live, theta, phi, psi, x + out * Math.cos(phi), y + out * Math.sin(phi), [w1, w2, w3]);
-  return Object.assign(p, { normal: [0, 0, row[OF_ROW.normal] || 0], friction: [0, 0, 0], usual: 1 });
+  const [, theta, w1, w2, w3, phi, psi, x, y] = row, [s, c, rim] = [Math.sin(theta), Math.cos(theta), 1 - body.fillet], out = rim * c - body.ell * s;
+  const p = posed(live, theta, phi, psi, x + out * Math.cos(phi), y + out * Math.sin(phi), [w1, w2, w3]), lies = row[OF_ROW.kind] > FLIES, high = row[OF_ROW.height];
+  p.centre[2] = p.matrix[14] = body.fillet + body.ell * c + rim * s + high;
+  // told from the rim that was the upper one: the body is turned about its first axis
+  if (row[OF_ROW.turned]) for (const i of [4, 5, 6, 8, 9, 10]) p.matrix[i] *= -1;
+  // of a body on both rims the sum of the forces is shown, in the middle
+  const contact = lies ? [p.centre[0], p.centre[1], 0] : [x, y, 0];
+  return Object.assign(p, { high, lies, contact, normal: [0, 0, lies ? 1 : row[OF_ROW.normal] || 0], friction: [0, 0, 0], usual: 1 });
 }
 let latest = null;
 const placeAt = t => rowAt(Math.min(Math.max(t, 0), head?.lasts ?? t)) || latest;
@@ -17,8 +22,9 @@ const placeAt = t => rowAt(Math.min(Math.max(t, 0), head?.lasts ?? t)) || latest
 function pose(m, t) {
   const row = placeAt(t), p = placed(row), h = 2e-3;
   if (s.contact !== "smooth" && head.lasts > 2 * h) {
-    const middle = Math.min(Math.max(h, t), head.lasts - h), [a, b, c] = [-h, 0, h].map(d => placed(placeAt(middle + d)).centre);
-    p.friction = [0, 1].map(k => (a[k] - 2 * b[k] + c[k]) / h ** 2).concat(0);
+    const middle = Math.min(Math.max(h, t), head.lasts - h), near = [-h, 0, h].map(d => placeAt(middle + d)), [a, b, c] = near.map(row => placed(row).centre);
+    // there is none in the air, and what an impact does is no force
+    if (near.every(row => row[OF_ROW.kind] !== FLIES)) p.friction = [0, 1].map(k => (a[k] - 2 * b[k] + c[k]) / h ** 2).concat(0);
   }
   return p;
 }
@@ -51,28 +57,50 @@ function windowed() {
   const nods = Number.isFinite(head.period) ? 4 * head.period : 0;
   return Math.min(head.lasts, Math.max(2, Math.min(60, Math.max(turns, nods))));
 }
+// above the table the view has room for the highest place of the body, and the lamp more points, whose shadows would be
+// seen apart
+function raised(poses) {
+  if (!poses.some(p => p.high)) return;
+  const top = Math.max(...poses.map(p => p.centre[2] + body.ell * Math.abs(Math.cos(p.theta)) + Math.sin(p.theta))), many = 24;
+  live.middle[2] = 0.45 * top;
+  live.half = held(live.reach, top);
+  for (let k = 0; k < many; k++) {
+    const far = 0.15 * Math.sqrt((k + 0.5) / many);
+    LAMPS[k] = Object.assign([...LAMPS[0]], { 8: 0.36 + far * Math.cos(2.4 * k), 9: 0.4 + far * Math.sin(2.4 * k) });
+  }
+}
 const STATES = 300;
 // rows for the tracks: an integrated motion is shown completely, since its rows are stored
 let tracked = { rows: [], first: 0, last: 1 };
 // the only row of a body at rest at the start; its centre is placed as in a motion
 function standing() {
   const { w1, w2, w3 } = start, out = body.ell * Math.sin(s.theta) - (1 - body.fillet) * Math.cos(s.theta);
-  return [0, s.theta, w1, w2, w3, 0, 0, out, 0, NaN, NaN, 0, 0, 0, 0, 0];
+  return [0, s.theta, w1, w2, w3, 0, 0, out, 0, NaN, NaN, 0, 0, 0, 0, 0, 0, 0];
 }
 // loads rows from a time on, the path through them, and the extent that the camera must show
 function look(first, many = STATES) {
   live.first = lasting() ? first : 0;
   live.last = lasting() ? Math.min(head.lasts, first + live.span) : 0;
-  rows = lasting() ? rowsOf("follow", 16, many, first, live.last) : body.code ? [] : [standing()];
-  tracked = lasting() && head.integrated ? { rows: rowsOf("follow", 16, ROWS, 0, head.lasts < s.until ? s.until : head.lasts), first: 0, last: head.lasts } : { rows, first: live.first, last: live.last };
+  rows = lasting() ? rowsOf("follow", WIDE, many, first, live.last) : body.code ? [] : [standing()];
+  tracked = lasting() && head.integrated ? { rows: rowsOf("follow", WIDE, ROWS, 0, head.lasts < s.until ? s.until : head.lasts), first: 0, last: head.lasts } : { rows, first: live.first, last: live.last };
   if (!rows.length) return;
   latest = rows[0];
   for (const v of ["omega", "momentum"]) fastest[v] = 1e-9;
   const poses = rows.map(row => placed(row));
-  if (live.fillet) poses.forEach((p, i) => { p.contact = [rows[i][7], rows[i][8], 0]; p.centre[2] = live.fillet + live.depth * Math.cos(p.theta) + (1 - live.fillet) * Math.sin(p.theta); });
   live.wide = 0.012 * Math.hypot(1, live.ell);
-  live.runs = () => rows.reduce((runs, row, i) => { const colour = row[14] ? "friction" : "trace"; if (runs.at(-1)?.[1] !== colour) runs.push([i, colour]); return runs; }, []);
+  // what one rim draws does not go on from what the other has drawn, and in the air none draws
+  live.runs = () => {
+    const runs = [];
+    rows.forEach((row, i) => {
+      const [kind, rim] = [row[OF_ROW.kind], 2 * row[OF_ROW.turned] + (row[OF_ROW.kind] > FLIES)], colour = rubbed(kind) ? "friction" : "trace", last = runs.at(-1);
+      if (last && last[1] === colour && last[3] === rim && last[4] === (kind === FLIES)) return;
+      if (last) last[2] = i - (last[3] !== rim || last[4] || kind === FLIES);
+      runs.push([i, colour, rows.length, rim, kind === FLIES]);
+    });
+    return { forEach: f => runs.forEach(([from, colour, to, , flies]) => flies || f([from, colour], 0, [0, [to]])) };
+  };
   trace(live, rows.map(row => row[0]), poses);
+  raised(poses);
   const alone = Math.hypot(1, live.ell);
   live.far = live.reach > 2.2 * alone; // the camera follows a body that moves far
   reach = live.far ? 1.6 * alone : live.reach;

@@ -92,7 +92,7 @@ look = (first, many) => {
 };
 onBody = e => !rattles() && plainly.onBody(e);
 heard = (p, row) => { if (row) plainly.heard(p, row); else if (audio) audio.loud.gain.value = 0; };
-flick = () => { if (!s.stone) plainly.flick(); };
+flick = hard => { if (!s.stone) plainly.flick(hard); };
 const turning = x => (Number(Math.abs(x).toFixed(1)) === 0 ? "" : x < 0 ? "−" : "+") + Math.abs(x).toFixed(1);
 clocked = row => {
   if (row) return plainly.clocked(row);
