@@ -6,17 +6,18 @@ import numpy as np
 import spincyl as sc
 
 # two euros
-coin = sc.Body.from_metres(outer_diameter=0.02575, length=0.0022)
+body = sc.Body.from_metres(outer_diameter=0.02575, length=0.0022)
 scale = sc.Scale(radius=0.02575 / 2, mass=0.0085)
 table, losses = sc.Coulomb(0.3), sc.loss.DryContour(0.02)
 # from 5 cm, and it turns 13 times a second
-start = sc.dropped(coin, 0.05, np.radians(80.0), w1=80.0, scale=scale)
+start = sc.dropped(body, 0.05, np.radians(80.0), w1=80.0, scale=scale)
+t = np.linspace(0.0, 120.0, 2401)
 
 
 def rest(restitution: float) -> sc.Motion:
     """The motion up to its end."""
     return sc.roll(
-        coin, start, 1000.0, contact=table, restitution=restitution, losses=losses
+        body, start, t, contact=table, restitution=restitution, losses=losses
     )
 
 
@@ -26,15 +27,15 @@ def picture() -> None:
     assert motion.event is not None
     end = motion.event.time
     # more times while it bounces
-    t = np.union1d(np.linspace(0.0, 12.0, 3001), np.linspace(0.0, end, 3001))
-    now = motion.at(t)
+    many = np.union1d(np.linspace(0.0, 12.0, 3001), np.linspace(0.0, end, 3001))
+    now = motion.at(many)
     _, (above, below) = plt.subplots(2, 1, figsize=(9.6, 5.4))
-    above.plot(scale.seconds(t), 1000 * scale.metres(now.height))
+    above.plot(scale.seconds(many), 1000 * scale.metres(now.height))
     above.set(ylabel="lowest point (mm)", xlim=(0, scale.seconds(12.0)))
     above.set_title("it bounces for a third of a second")
     # whichever rim is lower
     lean = np.minimum(now.theta, np.pi - now.theta)
-    below.plot(scale.seconds(t), np.degrees(lean), color="#D55E00")
+    below.plot(scale.seconds(many), np.degrees(lean), color="#D55E00")
     below.set(xlabel="time (s)", ylabel="inclination (degrees)")
     below.set(xlim=(0, scale.seconds(end)), ylim=(0, 92))
     below.set_title("and whirrs for three")

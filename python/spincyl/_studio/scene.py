@@ -349,7 +349,7 @@ def scene(
         raise ValueError(f"contact = {contact!r}: {why}")
     rolling = rolls(contact)
     if restitution is None:
-        gripping(state, f"{of}; of a body that slips it needs restitution=, of an impact")
+        gripping(state, f"{of}; restitution= makes one of a body that slips, hops and lies")
     scale, body = scale_of(scale, body) or Scale(1.0), body.natural
     scale.newtons(1.0)  # refuses an unknown mass
     seconds, mu = number("seconds", si("seconds", seconds, "second")), number("mu", mu)
@@ -403,7 +403,8 @@ def enough(body: Body, state: State, until: float, mu: float) -> float:
 
 def _damped(restitution: float) -> float:
     """Damping of a linear spring, over its critical one, with which a body bounces so."""
-    decrement = -math.log(max(restitution, 1e-3))
+    # an engine takes no damping of zero for one of springs
+    decrement = -math.log(min(max(restitution, 1e-3), 1 - 1e-9))
     return decrement / math.hypot(math.pi, decrement) if restitution > 0 else 1.0
 
 
