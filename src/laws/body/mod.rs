@@ -281,7 +281,8 @@ impl Body {
 
     /// Whether only the rims can land, of which there are two equal ones, or one.
     pub(crate) fn lands_on_rims(&self) -> bool {
-        self.theta_end == beyond(self.ell, self.fillet)
+        // Two equal balls are a body with the fillet 1 that ends at a right angle.
+        self.theta_end == beyond(self.ell, self.fillet) || self.ell > 0.0 && self.theta_end == FRAC_PI_2
     }
 
     pub(crate) fn excess_sum(&self) -> Sum<f64> {

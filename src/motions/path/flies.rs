@@ -26,6 +26,8 @@ use core::f64::consts::FRAC_PI_2;
 /// Share of the state that the bounces which are summed may change, at least and at most.
 const TAIL: f64 = 1e-13;
 const LONGEST_TAIL: f64 = 1e-10;
+/// The same of a body with losses, as a share: they act on a contact, and not on a body that bounces.
+const LOSSY_TAIL: f64 = 1e-8;
 /// The least tolerance of a step along an impact, and this tolerance as a share of that of the motion.
 const IMPACT_TOL: f64 = 3e-14;
 const IMPACT_SHARE: f64 = 0.1;
@@ -33,6 +35,8 @@ const IMPACT_SHARE: f64 = 0.1;
 const RATTLED: f64 = 1e-7;
 /// Error of the rest of a rattle, in units of the square of its velocities.
 const SUMMED: f64 = 1e2;
+/// Time of the rest of a rattle, in units of its velocities.
+const LASTS: f64 = 10.0;
 /// A rocking with a larger w2 is followed hop by hop.
 const ROCKED: f64 = 1e-5;
 /// Both rims land together if |cos theta| is below this.
@@ -204,7 +208,10 @@ impl<const N: usize> BodyWalk<'_, N> {
         let Some(mut struck) = self.impact(&from, e) else { return Next::Ends(Ending::Slip) };
         let [force, _] =
             self.pressed(&Aloft { w: turned(&shape, from.angle, from.w, struck.impulse), ..from });
-        let stays = struck.lift > 0.0 && force > 0.0 && self.stays(&from, &struck, force, e);
+        let left =
+            if struck.lift > 0.0 && force > 0.0 { self.bounces_for(&from, &struck, force, e) } else { None };
+        self.claims(left.unwrap_or(0.0) * force * self.couples(&from));
+        let stays = left.is_some();
         if stays && let Some(last) = self.impact(&from, 0.0) {
             struck = last;
         }
@@ -232,8 +239,14 @@ impl<const N: usize> BodyWalk<'_, N> {
         (IMPACT_SHARE * self.of.slide.tol).max(IMPACT_TOL)
     }
 
-    /// Whether the bounces after an impact are over so soon that they are summed.
-    fn stays(&self, from: &Aloft, struck: &Struck, force: f64, e: f64) -> bool {
+    /// A bound of what the losses change in a unit of time, for each unit of the normal force.
+    fn couples(&self, at: &Aloft) -> f64 {
+        let (body, sum) = (&self.of.body, self.ask.losses.coefficients.iter().sum::<f64>());
+        sum * at.w.into_iter().fold(1.0, |most: f64, w| most.max(w.abs())) / body.i1().min(body.i3())
+    }
+
+    /// The time of all bounces after an impact, if they are over so soon that they are summed.
+    fn bounces_for(&self, from: &Aloft, struck: &Struck, force: f64, e: f64) -> Option<f64> {
         let law = &self.of.slide.law;
         let light @ [.., a_n, b] = lightness(&law.shape, from.angle);
         let (fall, w) = (a_n * force, turned(&law.shape, from.angle, from.w, struck.impulse));
@@ -242,8 +255,9 @@ impl<const N: usize> BodyWalk<'_, N> {
             Method::Tolerance(tol) => (IMPACT_SHARE * tol).clamp(TAIL, LONGEST_TAIL),
             _ => TAIL,
         };
+        let tail = if loses(N) { LOSSY_TAIL * tail } else { tail };
         if 2.0 * struck.lift * struck.lift >= tail * fall {
-            return false;
+            return None;
         }
         let mut ratio = e;
         if struck.hit == Hit::Sticks {
@@ -254,7 +268,8 @@ impl<const N: usize> BodyWalk<'_, N> {
                 .on(&self.ask.table, e)
                 .map_or(1.0, |next| next.lift);
         }
-        ratio < 1.0 && 2.0 * struck.lift * struck.lift < tail * fall * (1.0 - ratio)
+        let left = 2.0 * struck.lift / (fall * (1.0 - ratio));
+        (ratio < 1.0 && left * struck.lift < tail).then_some(left)
     }
 
     /// The numbers after an impact, which is recorded.
@@ -332,6 +347,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         let from = self.aloft();
         let left = from.angle.1.abs().max(from.w[1].abs()).max(from.lift.abs());
         self.claims(if from.slip == [0.0; 2] { left } else { left * left * SUMMED });
+        self.claims(left * LASTS * self.couples(&from));
         let state = State { theta: FRAC_PI_2, ..self.of.state };
         let (y, slip, lost) = settled(&self.of.body, &state, (from.slip, from.lift), &friction);
         // The centre, too, comes down to the height of the rims.

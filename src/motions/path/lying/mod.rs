@@ -74,6 +74,11 @@ impl<const N: usize> BodyWalk<'_, N> {
         let size =
             STILL_SLIP * [w1 * ell, w3, u_h, u_2].into_iter().fold(1.0, |most: f64, x| most.max(x.abs()));
         let still = [u_2, other].map(|across| flow.law.dry && u_h.hypot(across) <= size);
+        for (sticks, across) in still.into_iter().zip([u_2, other]) {
+            if sticks {
+                self.claims(u_h.hypot(across));
+            }
+        }
         match still {
             [true, true] => {
                 (self.at[2], self.at[5], self.at[6]) = (0.0, 0.0, 0.0);
