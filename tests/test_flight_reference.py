@@ -1,9 +1,9 @@
 """Flight and impact: the references of tests/reference/flights.py keep their laws, and the library agrees.
 
-The first half does not use the library: the table, on which two formulations agree to 25 digits or more, obeys the
-balance of energy, heat and what impacts lose; the centre flies on a parabola and the angular momentum stays; an impact
-keeps the angular momentum about the contact and obeys friction and restitution. The second half compares `sc.roll` with
-it.
+The first half does not use the library: the table, on which two formulations agree to 25 digits or more,
+obeys the balance of energy, heat and what impacts lose; the centre flies on a parabola and the angular
+momentum stays; an impact keeps the angular momentum about the contact and obeys friction and restitution.
+The second half compares `sc.roll` with it.
 """
 
 import json
@@ -60,7 +60,7 @@ def start_of(case):
 
 
 class Placed:
-    """A row in space: the centre and its velocity, the angular momentum about it, and the arm to the contact."""
+    """A row in space: the centre, its velocity, the angular momentum about it, the arm to the contact."""
 
     def __init__(self, case, row):
         ell, i1, i3, fillet = map(mpf, case.body)

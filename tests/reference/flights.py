@@ -4,30 +4,33 @@
 
 It needs gmpy2, and two minutes for all of them on one core.
 
-Every motion is made from two formulations, `vectors` and `closed` of flight_forms.py, whose contact is that of
-slip_forms.py. They share the laws, the series of series.py and the order of the phases, below and in phases.py.
+Every motion is made from two formulations, `vectors` and `closed` of flight_forms.py, whose contact is that
+of slip_forms.py. They share the laws, the series of series.py and the order of the phases, below and in
+phases.py.
 
-A row is a checkpoint: what is there, the time, the state (theta, w1, w2, w3), the velocity of the lowest point along the
-lean, across and upwards, its height, the heat of the slip, the energy lost in impacts, (phi, psi, x, y), which start at 0,
-with the place on the table below the lowest point. All is told from the rim that is or was last down. What is there:
+A row is a checkpoint: what is there, the time, the state (theta, w1, w2, w3), the velocity of the lowest
+point along the lean, across and upwards, its height, the heat of the slip, the energy lost in impacts,
+(phi, psi, x, y), which start at 0; x and y are of the place below that point. All is told from the
+rim that is or was last down. What is there:
 
-    sample    nothing                              slides      the contact begins in slip
-    lift-off  the contact has no normal force      rolls       slip ends in rolling, or the contact begins so
-    lands     a rim is down: before the impact     slips       |F| = mu N in rolling
-    impact    the same, after it                   passes      slip goes through 0 and on, in another direction
-    rests     the end of infinitely many bounces   end         the last time
-    side      the axis is horizontal in contact
+    sample    nothing                            slides   the contact begins in slip
+    lift-off  the contact has no normal force    rolls    slip ends in rolling, or the contact begins so
+    lands     a rim is down: before the impact   slips    |F| = mu N in rolling
+    impact    the same, after it                 passes   slip goes through 0 and on, in another direction
+    rests     infinitely many bounces are over   side     the axis is horizontal in contact: the end
+    end       the last time
 
-`impacts` has the time of every impact down to bounces of 1e-7, with its rim, what the contact does there (slips, sticks,
-slips on, smooth), the impulses along the lean, across and upwards, and the energy lost. Only the first few have rows, and
-only these have their impulses. The rim is `first` if it is that from which the start is told.
+`impacts` has the time of every impact down to bounces of 1e-7, with its rim, what the contact does there
+(slips, sticks, slips on, smooth), the impulses along the lean, across and upwards, and the energy lost.
+Only the first few have rows, and only these have their impulses. The rim is `first` if it is that from
+which the start is told.
 
-Infinitely many bounces: they are followed until they are as slow as 1e-16 in one formulation and 1e-18 in the other; the
-next impact has no restitution. What then remains is of second order, but for the time: `rests` is after the geometric sum
-of the times that are left.
+Infinitely many bounces: they are followed until they are as slow as 1e-16 in one formulation and 1e-18 in
+the other; the next impact has no restitution. What then remains is of second order, but for the time:
+`rests` is after the geometric sum of the times that are left.
 
-Inputs are exact doubles; results are decimal, to 25 digits. `agreement` is the largest difference of both formulations in
-all numbers of a motion, over 1 or the number if that is more.
+Inputs are exact doubles; results are decimal, to 25 digits. `agreement` is the largest difference of both
+formulations in all numbers of a motion, over 1 or the number if that is more.
 """
 
 import math
@@ -35,7 +38,8 @@ import pathlib
 import time
 
 import gmpy2
-from flight_forms import Closed, Vectors
+from flight_closed import Closed
+from flight_vectors import Vectors
 from gmpy2 import mpfr
 from phases import Record, departure, first_event, onset, sampled, slipping, step_size
 from series import precise
@@ -195,8 +199,8 @@ def follow(model, loud=False):
 class Scene:
     """A body (ell, i1, i3, fillet), a law of contact, a restitution, a start and times.
 
-    The start is theta, w1, w2, w3, u_h, u_2, and in the air the height and the velocity upwards. `rows` is how many impacts
-    of each sequence have rows.
+    The start is theta, w1, w2, w3, u_h, u_2, and in the air the height and the velocity upwards. `rows` is
+    how many impacts of each sequence have rows.
     """
 
     def __init__(
