@@ -21,7 +21,7 @@ use crate::laws::state::State;
 use crate::motions::halt::{TIME, loses, poses};
 use crate::motions::walk::Next;
 use crate::motions::{Ending, Kind, Method, Strike};
-use core::f64::consts::FRAC_PI_2;
+use core::f64::consts::{FRAC_PI_2, TAU};
 
 /// Share of the state that the bounces which are summed may change, at least and at most.
 const TAIL: f64 = 1e-13;
@@ -80,9 +80,19 @@ impl<const N: usize> BodyWalk<'_, N> {
 
     /// Passes to the view from the other rim.
     pub(super) fn turns_over(&mut self) {
-        let other = self.aloft().from_other_rim(&self.of.slide.law.shape);
+        let from = self.aloft();
+        let pose = self.pose_on_other_rim(from.pose);
         self.made.path.upside_down = !self.made.path.upside_down;
-        self.sets(&other);
+        self.sets(&Aloft { pose, ..from.from_other_rim(&self.of.slide.law.shape) });
+    }
+
+    /// The pose as told from the other rim; told twice it is the same again.
+    pub(super) fn pose_on_other_rim(&self, pose: [f64; 4]) -> [f64; 4] {
+        let mut other = Aloft { pose, ..self.aloft() }.from_other_rim(&self.of.slide.law.shape).pose;
+        if self.made.path.upside_down {
+            other[0] -= TAU;
+        }
+        other
     }
 
     /// The flight of a body that starts in the air, or its landing if it starts on the table and comes down.
@@ -159,7 +169,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             return;
         };
         let before = if loses(N) { self.at[N - 1] } else { 0.0 };
-        let end = landing.map_or(left, |(t, _)| t);
+        let end = landing.map_or(f64::INFINITY, |(t, _)| t);
         while let Some(t) = self.until().filter(|t| *t <= now + end) {
             let at = self.flown(&*course, t - now, before);
             self.writes_in_air(&at);
@@ -327,10 +337,9 @@ impl<const N: usize> BodyWalk<'_, N> {
             (at, other) = (there, !other);
         }
         if other {
-            self.made.path.upside_down = !self.made.path.upside_down;
+            self.turns_over();
         }
-        at.height = 0.0;
-        self.sets(&at);
+        self.sets(&Aloft { height: 0.0, pose: self.aloft().pose, ..at });
         if at.from_other_rim(&shape).lift < RATTLED {
             return self.ends_rattle();
         }

@@ -233,10 +233,10 @@ impl<const N: usize> Phases<N> for BodyPhases {
         self.slide.over()
     }
     fn state(walk: &BodyWalk<'_, N>) -> State {
-        walk.of.state
+        walk.told().0
     }
     fn slip(walk: &BodyWalk<'_, N>) -> [f64; 2] {
-        [walk.at[5], walk.at[6]]
+        walk.told().1
     }
 
     fn perturbs(walk: &mut BodyWalk<'_, N>) {
@@ -267,7 +267,7 @@ impl<const N: usize> Phases<N> for BodyPhases {
     }
 
     fn write_here(walk: &mut BodyWalk<'_, N>) {
-        let (body, y, slip, at) = (&walk.of.body, &walk.of.state, Self::slip(walk), &walk.at);
+        let (body, y, slip, at) = (&walk.of.body, &walk.of.state, [walk.at[5], walk.at[6]], &walk.at);
         let (rubs, losses) = (walk.ask.table.rubs(), &walk.ask.losses);
         let slips = rubs && (slip != [0.0; 2] || !walk.of.slide.law.dry);
         let kind = if slips { Kind::Slipping } else { walk.kind() };

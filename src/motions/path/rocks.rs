@@ -11,7 +11,7 @@ use crate::laws::contact::landing::{Outcome, land_at};
 use crate::laws::contact::{Contact, lossy};
 use crate::laws::state::State;
 use crate::motions::halt::{TIME, loses, poses};
-use core::f64::consts::{FRAC_PI_2, TAU};
+use core::f64::consts::FRAC_PI_2;
 
 /// The longest time that is summed, over the time in which the body turns by a radian.
 const SOON_OVER: f64 = 1e-6;
@@ -79,9 +79,6 @@ impl<const N: usize> BodyWalk<'_, N> {
             self.at[8] += landed.lost;
         }
         let share = 1.0 - self.at[3] / begin[3];
-        if poses(N) {
-            self.at[9] -= TAU;
-        }
         let mut end: [f64; N] = core::array::from_fn(|i| begin[i] + (self.at[i] - begin[i]) / share);
         (end[0], end[1], end[3]) = (1.0, 0.0, 0.0);
         let fastest = [2, 4, 5, 6].into_iter().fold(1.0, |most: f64, i| most.max(begin[i].abs()));

@@ -376,18 +376,38 @@ impl<const N: usize> BodyWalk<'_, N> {
         None
     }
 
-    /// Writes a point on both rims to the outputs.
+    /// The state and the slip: of a body on both rims as told from the first one.
+    pub(super) fn told(&self) -> (State, [f64; 2]) {
+        let (y, slip) = (self.of.state, [self.at[5], self.at[6]]);
+        let over = self.of.lying.is_some() && self.made.path.upside_down;
+        if over { mirrored(&self.of.body, &y, slip) } else { (y, slip) }
+    }
+
+    /// Writes a body on both rims to the outputs, as told from the first rim.
     pub(super) fn writes_lying(&mut self, flow: &LyingFlow, y: &[f64; N]) {
-        let (pose, at) = (poses(N).then(|| write::pose(y)), flow.lain(y));
+        let over = self.made.path.upside_down;
+        let mut slips = [[y[5], y[6]], flow.law.other_slip([y[2], y[4], y[5], y[6]])];
+        let (mut forces, mut w3, mut seen) = (flow.lain(y).force, y[4], *y);
+        if over {
+            let back = |x: f64| 0.0 - x;
+            slips = [slips[1].map(back), slips[0].map(back)];
+            let turned = |[n, along, across]: [f64; 3]| [n, back(along), back(across)];
+            (forces, w3) = ([turned(forces[1]), turned(forces[0])], back(w3));
+            if poses(N) {
+                seen[9..13].copy_from_slice(&self.pose_on_other_rim(core::array::from_fn(|i| y[9 + i])));
+            }
+        }
         let force = |[normal, along, across]: [f64; 3]| Force { normal, along, across };
         let doubt = flow.tol * (1.0 + y[2].abs().max(y[4].abs()));
-        let asked = self.ask.force.then(|| (force(at.force[0]), doubt));
-        let state = State { theta: FRAC_PI_2, w1: y[2], w2: 0.0, w3: y[4] };
-        self.made.put(state, [y[5], y[6]], y[8], flow.stance.kind(), pose, asked);
+        let asked = self.ask.force.then(|| (force(forces[0]), doubt));
+        let pose = poses(N).then(|| write::pose(&seen));
+        let state = State { theta: FRAC_PI_2, w1: y[2], w2: 0.0, w3 };
+        self.made.path.upside_down = false;
+        self.made.put(state, slips[0], y[8], flow.stance.kind(), pose, asked);
+        self.made.path.upside_down = over;
         if let Some(last) = self.made.path.other_rim.last_mut() {
-            let [u, v] = flow.law.other_slip([y[2], y[4], y[5], y[6]]);
-            let [n, across, along] = at.force[1];
-            *last = [u, v, n, across, along];
+            let ([u, v], [normal, along, across]) = (slips[1], forces[1]);
+            *last = [u, v, normal, along, across];
         }
         if loses(N) {
             self.made.path.work_lost.push(y[N - 1]);
