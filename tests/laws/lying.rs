@@ -331,3 +331,40 @@ fn what_two_rims_do_not_determine_is_refused_by_its_name() {
         assert_eq!(found, refused, "{w3}: {ending:?}");
     }
 }
+
+#[test]
+fn on_both_rims_the_lean_turns_no_faster_than_the_body_whichever_rim_sticks() {
+    // Slips of one rim pass through zero in the first three; the last one rocks to its other rim before.
+    let scenes = [
+        ([0.45, 0.38, 0.625], [FRAC_PI_2, 0.154, 0.0, -0.401], [-1.142, -0.872], [0.5, 0.75], Law::Drilling),
+        (
+            [2.5, 7.0 / 3.0, 0.5],
+            [FRAC_PI_2, -0.373, 0.0, 0.699],
+            [-0.113, -2.183],
+            [0.2; 2],
+            Law::RollingResistance,
+        ),
+        ([0.6, 0.4325, 0.625], [FRAC_PI_2, 0.289, 0.0, 0.194], [-1.095, 0.8], [0.5; 2], Law::Drilling),
+        ([0.6, 0.37, 0.5], [1.281, -0.523, -0.269, 0.226], [0.0; 2], [0.2, 0.3], Law::Drilling),
+    ];
+    let times: Vec<f64> = (1..=400).map(|i| 0.01 * f64::from(i)).collect();
+    for ([ell, i1, i3], [theta, w1, w2, w3], slip, [mu, fixed], law) in scenes {
+        let body = Body::new(ell, i1, i3).unwrap();
+        let start = Start { slip, ..State { theta, w1, w2, w3 }.into() };
+        let ask = Ask { pose: true, ..ask(Friction::Coulomb { mu, fixed }, Losses::of(law, 0.03)) };
+        let m = roll_with(&body, start, &times, &ask, || true).unwrap().unwrap();
+        let (poses, path) = (m.poses.as_ref().unwrap(), m.path.as_ref().unwrap());
+        let lies = |i: usize| path.kinds[i] as u8 >= Kind::Lying as u8;
+        let mut seen = 0;
+        for i in 1..m.times.len() {
+            if lies(i - 1) && lies(i) {
+                seen += 1;
+                let fast = m.states[i - 1].w1.abs().max(m.states[i].w1.abs());
+                let turned = poses[i].phi.radians() - poses[i - 1].phi.radians();
+                assert!(turned.abs() < 1.2 * fast * 0.01 + 1e-9, "{body:?} {} {turned}", m.times[i]);
+                assert!((m.states[i].w3 - m.states[i - 1].w3).abs() < 0.1);
+            }
+        }
+        assert!(seen > 100, "{body:?} {seen}");
+    }
+}
