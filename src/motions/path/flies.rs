@@ -265,7 +265,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             Method::Tolerance(tol) => (IMPACT_SHARE * tol).clamp(TAIL, LONGEST_TAIL),
             _ => TAIL,
         };
-        let tail = if loses(N) { LOSSY_TAIL * tail } else { tail };
+        let tail = if self.ask.losses.is_none() { tail } else { LOSSY_TAIL * tail };
         if 2.0 * struck.lift * struck.lift >= tail * fall {
             return None;
         }

@@ -304,7 +304,10 @@ impl<const N: usize> BodyWalk<'_, N> {
             self.writes_lying(&flow, point);
         }
         self.has_spent(flown.spent);
-        self.claims_time_error(flown.halt, flown.steep, &flown.y);
+        // Where a dry loss stops w1 or w3, the acceleration changes at a time that is as uncertain as that of an end.
+        let stops = matches!(flown.halt, Halt::Drilling | Halt::Contour);
+        let halt = if stops { Halt::Turned } else { flown.halt };
+        self.claims_time_error(halt, flown.steep, &flown.y);
         if flown.halt == Halt::Pause {
             return Ok(Pause::Here(flown.y, Some(flown.step)));
         }
