@@ -208,7 +208,8 @@ class Laws:
         if state.height is None:
             return energy
         rise = _core.centre_up(*four, 0.0, 0.0, *self._numbers)
-        return energy + state.height + state.lift * (rise + 0.5 * state.lift)
+        lift: Any = state.lift
+        return energy + state.height + lift * (rise + 0.5 * lift)
 
     @elementwise
     def centre_velocity(self, state: State) -> tuple[Result, Result]:

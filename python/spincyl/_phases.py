@@ -50,12 +50,13 @@ def impacts(found: Iterable[tuple[Any, ...]]) -> tuple[Impact, ...]:
     def state(four: Sequence[float], u: Sequence[float]) -> State:
         return State(*four, slip=(u[0], u[1]), height=0.0, lift=u[2])
 
-    return tuple(
-        Impact(
-            time, "other" if other else "first", HITS[hit], tuple(push), lost, *map(state, states, u), stays
-        )
-        for time, other, hit, states, u, push, lost, stays in found
-    )
+    def impact(numbers: tuple[Any, ...]) -> Impact:
+        time, other, hit, states, u, (along, across, up), lost, stays = numbers
+        before, after = map(state, states, u)
+        rim: Literal["first", "other"] = "other" if other else "first"
+        return Impact(time, rim, HITS[hit], (along, across, up), lost, before, after, stays)
+
+    return tuple(map(impact, found))
 
 
 def rubs(contact: object) -> bool:

@@ -290,7 +290,7 @@ fn dictionary<'py, S: Moving>(
             .impacts
             .iter()
             .map(|at| {
-                let states = at.states.map(|state| <[f64; 4]>::from(state));
+                let states = at.states.map(<[f64; 4]>::from);
                 (at.time, at.other, at.hit as u8, states, at.velocities, at.impulse, at.lost, at.stays)
             })
             .collect();

@@ -83,12 +83,12 @@ impl<const N: usize> BodyWalk<'_, N> {
         let from = self.aloft();
         let pose = self.pose_on_other_rim(from.pose);
         self.made.path.upside_down = !self.made.path.upside_down;
-        self.sets(&Aloft { pose, ..from.from_other_rim(&self.of.slide.law.shape) });
+        self.sets(&Aloft { pose, ..from.on_other_rim(&self.of.slide.law.shape) });
     }
 
     /// The pose as told from the other rim; told twice it is the same again.
     pub(super) fn pose_on_other_rim(&self, pose: [f64; 4]) -> [f64; 4] {
-        let mut other = Aloft { pose, ..self.aloft() }.from_other_rim(&self.of.slide.law.shape).pose;
+        let mut other = Aloft { pose, ..self.aloft() }.on_other_rim(&self.of.slide.law.shape).pose;
         if self.made.path.upside_down {
             other[0] -= TAU;
         }
@@ -160,7 +160,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             Some(losses) => Box::new(AirFlight::new(&shape, &from, losses, self.of.slide.tol)),
             None => Box::new(Flight::new(&shape, &from)),
         };
-        let other = from.from_other_rim(&shape);
+        let other = from.on_other_rim(&shape);
         let touches = other.height == 0.0;
         let leaves = [leaves, touches.then_some(if other.lift == 0.0 { 2 } else { 1 })];
         let left = self.since.last().map_or(0.0, |t| t - now);
@@ -211,7 +211,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             return self.touches_down();
         }
         let shape = self.of.slide.law.shape;
-        let there = from.from_other_rim(&shape);
+        let there = from.on_other_rim(&shape);
         if self.has_two_rims() && from.angle.1.abs() < BOTH_AT_ONCE && there.lift < 0.0 {
             return if e == 0.0 { self.lands_on_both() } else { self.rattles(e) };
         }
@@ -227,7 +227,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         }
         let after = self.struck(&from, &struck, (self.made.path.upside_down, stays));
         self.sets(&after);
-        let level = from.angle.1.abs().max(after.lift).max(after.from_other_rim(&shape).lift.abs());
+        let level = from.angle.1.abs().max(after.lift).max(after.on_other_rim(&shape).lift.abs());
         if self.has_two_rims() && e > 0.0 && level < RATTLED {
             return self.ends_rattle();
         }
@@ -316,10 +316,10 @@ impl<const N: usize> BodyWalk<'_, N> {
         (self.at[0], self.at[1]) = (1.0, 0.0);
         let shape = self.of.slide.law.shape;
         let mut at = Aloft { angle: (1.0, 0.0), ..self.aloft() };
-        let fast = at.lift.min(at.from_other_rim(&shape).lift).abs();
+        let fast = at.lift.min(at.on_other_rim(&shape).lift).abs();
         let mut other = false;
         for turn in 0.. {
-            let there = at.from_other_rim(&shape);
+            let there = at.on_other_rim(&shape);
             if at.lift.min(there.lift) > -RATTLE_OVER * fast.min(1.0) {
                 break;
             }
@@ -332,7 +332,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             let Some(struck) = self.impact(&at, e) else { return Next::Ends(Ending::Slip) };
             at = self.struck(&at, &struck, (other != self.made.path.upside_down, false));
         }
-        let there = at.from_other_rim(&shape);
+        let there = at.on_other_rim(&shape);
         if there.lift < at.lift {
             (at, other) = (there, !other);
         }
@@ -340,7 +340,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             self.turns_over();
         }
         self.sets(&Aloft { height: 0.0, pose: self.aloft().pose, ..at });
-        if at.from_other_rim(&shape).lift < RATTLED {
+        if at.on_other_rim(&shape).lift < RATTLED {
             return self.ends_rattle();
         }
         if at.lift < RATTLE_OVER * fast.min(1.0) {
@@ -380,10 +380,10 @@ impl<const N: usize> BodyWalk<'_, N> {
             return Next::Ends(Ending::Landing);
         };
         let (shape, other) = (self.of.slide.law.shape, !self.made.path.upside_down);
-        let from = Aloft { angle: (1.0, 0.0), ..self.aloft() }.from_other_rim(&shape);
+        let from = Aloft { angle: (1.0, 0.0), ..self.aloft() }.on_other_rim(&shape);
         self.lands_as(&landed);
         let here = self.aloft();
-        let there = if other == self.made.path.upside_down { here } else { here.from_other_rim(&shape) };
+        let there = if other == self.made.path.upside_down { here } else { here.on_other_rim(&shape) };
         // The impulses of both rims together are what the centre of mass has gained.
         let [old, new] = [&from, &there].map(|at| {
             let ([w1, w2, w3], [along, across]) = (at.w, at.slip);

@@ -63,7 +63,7 @@ impl AirFlight {
         let free = Flight::new(shape, from);
         // The axes of the body are those of the tilt at the start, which lean toward x.
         let half = 0.5 * from.angle.0.atan2(from.angle.1);
-        let other = from.from_other_rim(shape).height;
+        let other = from.on_other_rim(shape).height;
         let [w1, w2, w3] = from.w;
         let y = [half.cos(), 0.0, -half.sin(), 0.0, w1, w2, w3, from.height, other, 0.0, 0.0];
         let steps = vec![AirStep { y, angles: [0.0; 2] }];

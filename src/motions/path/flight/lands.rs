@@ -192,7 +192,7 @@ impl Flight {
         }
         let mut all: Vec<f64> = (0..RIM_TERMS).map(|k| -rim.slope((sines[k], side * cosines[k]))).collect();
         // The first coefficient is the normal velocity, which is known without a difference.
-        all[1] = near * if side > 0.0 { self.from.lift } else { self.from.from_other_rim(&self.shape).lift };
+        all[1] = near * if side > 0.0 { self.from.lift } else { self.from.on_other_rim(&self.shape).lift };
         all[2] -= 0.5 * near * near;
         (near, all.split_off(order))
     }

@@ -49,7 +49,7 @@ impl Aloft {
     }
 
     /// The same motion as seen from the other rim of a body with two equal rims.
-    pub fn from_other_rim(&self, shape: &Shape<f64>) -> Self {
+    pub fn on_other_rim(&self, shape: &Shape<f64>) -> Self {
         let ((s, c), [w1, w2, w3], [phi, psi, x, y]) = (self.angle, self.w, self.pose);
         let (apart, above) = (2.0 * shape.rim.ell, shape.rim.between(self.angle));
         Self {
