@@ -84,7 +84,7 @@ def options(sub: ArgumentParser) -> None:
         "--restitution",
         type=float,
         metavar="BOUNCE",
-        help="0: it goes on where the other rim lands, without a bounce (default: it ends)",
+        help="0 to 1: it goes on where it leaves the table, and on its side (default: it ends there)",
     )
     option(how, "--loss")
 

@@ -154,6 +154,9 @@ def motion_numbers(m: Motion, scale: Scale | None) -> Numbers:
         found["slipping"] = duration(m.phases, _end(m))
         if m.t.size:
             found |= {"dissipated": end.dissipated[-1]}
+        if m.natural._impacts is not None:
+            lost = [impact.lost for impact in m.natural.impacts]
+            found |= {"impacts": len(lost), "lost_in_impacts": sum(lost)}
     elif m.losses is None:
         found["swing"] = swing(m.body, m.start, m.contact)._asdict()
     if m.losses is not None:
@@ -162,7 +165,7 @@ def motion_numbers(m: Motion, scale: Scale | None) -> Numbers:
             found["work_lost"] = end.work_lost[-1]
     if m.t.size:
         found |= {"normal_min": m.normal.min(), "normal_max": m.normal.max()}
-        found["friction_coefficient_max"] = m.friction_coefficient.max()
+        found["friction_coefficient_max"] = _most_friction(m)
     return found if scale is None else found | {"time_unit_seconds": scale.seconds(1.0)}
 
 
@@ -178,6 +181,9 @@ def motion_rows(m: Motion, scale: Scale | None, *, weighed: bool = False) -> Ite
         yield from _phase_rows(m, scale)
         if m.t.size:
             yield "heat of slipping", *_energy(m, float(end.dissipated[-1]), scale if weighed else None)
+        if m.natural._impacts:
+            lost = [impact.lost for impact in m.natural.impacts]
+            yield f"lost in {len(lost)} impacts", *_energy(m, sum(lost), scale if weighed else None)
     elif m.losses is None:
         yield from _swing_rows(m, m.contact, scale)
     if m.losses is not None:
@@ -187,7 +193,7 @@ def motion_rows(m: Motion, scale: Scale | None, *, weighed: bool = False) -> Ite
     if m.t.size:
         yield "normal force", f"{m.normal.min():.6g} to {m.normal.max():.6g} M g", ""
         words = "needed" if isinstance(m.contact, str) else "used at most"
-        yield "friction coefficient", f"{m.friction_coefficient.max():.6g} {words}", ""
+        yield "friction coefficient", f"{_most_friction(m):.6g} {words}", ""
     if m.event is not None:
         yield m.event.ending.name.lower().replace("_", "-"), f"t = {m.event.time:.12g}", seconds(m.event.time)
     yield "how", m.message, ""
@@ -258,6 +264,12 @@ def _phase_numbers(body: Body, phase: Phase, scale: Scale | None) -> Numbers:
 
 
 _MOST_PHASES = 6
+
+
+def _most_friction(m: Motion) -> float:
+    """The largest coefficient of friction on the table; in the air there is none."""
+    needs = m.friction_coefficient
+    return float((needs if m.natural._impacts is None else needs[m.normal > 0]).max(initial=0.0))
 
 
 def _phase_rows(m: Motion, scale: Scale | None) -> Iterator[Row]:
