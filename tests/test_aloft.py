@@ -1,5 +1,7 @@
 """Motions that hop and lie, in Python: one and many, measured bodies, what they hold, and what is refused."""
 
+import itertools
+
 import numpy as np
 import pytest
 
@@ -44,7 +46,7 @@ def test_many_motions_are_those_that_are_followed_one_by_one(contact, e):
         if doubt < 1e-5:
             assert len(m.impacts) == int(row.impacts)
             assert float(row.lost_in_impacts) == pytest.approx(m.lost_in_impacts[-1], abs=10 * doubt)
-            assert sc.roll.__module__ and m.phase[-1] == int(row.last_phase)
+            assert m.phase[-1] == int(row.last_phase)
         times = np.array([p.time for p in m.phases] + [6.0])
         flies = np.array([p.kind == "flying" for p in m.phases])
         assert float(row.air_time) == pytest.approx(np.diff(times)[flies].sum(), abs=100 * doubt)
@@ -177,3 +179,46 @@ def test_numbers_of_a_body_on_the_table_refuse_a_state_in_the_air():
         _ = m.height
     with pytest.raises(AttributeError, match="^impacts is not there"):
         _ = m.impacts
+
+
+ODD = {
+    "can": sc.Body.solid(1.0),
+    "disk": sc.Body.solid(0.0),
+    "rounded": sc.Body.solid(1.0, fillet=0.3),
+    "balls": sc.Body.balls(),
+}
+
+
+# with restitution 1 a hop of 1e-300 is followed by others without end
+@pytest.mark.filterwarnings("ignore:given up")
+@pytest.mark.parametrize("name", ODD)
+@pytest.mark.parametrize("contact", [GRIP, sc.Viscous(0.3)], ids=repr)
+def test_from_the_oddest_starts_nothing_is_lost_but_what_is_told(name, contact):
+    places = (
+        {},
+        *({"height": h, "lift": v} for h, v in ((0.0, 0.0), (1e-300, 0.0), (0.0, 1e-300), (1.0, -1.0))),
+    )
+    rates = ((0.0, 0.0, 0.0), (1e-300, 0.0, 0.0), (0.0, -0.1, 0.0), (1.0, 0.0, 0.5))
+    seen = 0
+    for restitution, place, theta, w in itertools.product(
+        (0.0, 0.5, 1.0), places, (np.pi / 2, 1.2, 0.1), rates
+    ):
+        start = sc.State(theta, *w, slip=(1e-300, 0.0), **place)
+        try:
+            m = sc.roll(ODD[name], start, [0.0, 0.5, 2.0], contact=contact, restitution=restitution)
+        except ValueError:
+            continue
+        seen += 1
+        assert m.event is not None or m.t.tolist() == [0.0, 0.5, 2.0]
+        if m.t.size:
+            assert np.isfinite(m.y).all() and m.w[0] == pytest.approx(w, abs=1e-12)
+            whole = m.energy + m.dissipated + m.lost_in_impacts
+            assert np.ptp(whole) <= 1e-11 + m.error, (start, restitution, m)
+    assert seen > 100
+
+
+def test_a_flight_gives_its_last_output_however_the_times_round():
+    body, contact = sc.Body(0.6, 0.53, 0.82), sc.Viscous(0.3)
+    start = sc.State(2.005, 0.976, -0.465, 1.803, slip=(0.267, 1.433), height=0.8138257234955739, lift=0.001)
+    for t in (1.813825723495574, *np.random.default_rng(51).uniform(0.9, 1.9, 300)):
+        assert sc.roll(body, start, [0.0, 0.5, t], contact=contact, restitution=0.95).t[-1] == t

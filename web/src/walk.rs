@@ -106,7 +106,7 @@ impl Walked {
             motion.orientations().zip(poses.clone()).zip(&motion.states).map(over).collect();
         let row = |(i, (pose, force)): (usize, (&Pose, &Force))| {
             let (t, y, slip) = (motion.times[i], motion.states[i], path.slip[i]);
-            let knocks = path.impacts.iter().take_while(|hit| hit.time <= t).map(|hit| hit.lost);
+            let knocks = path.impacts.iter().take_while(|hit| hit.time < t).map(|hit| hit.lost);
             let lost = path.dissipated[i] + path.work_lost.get(i).unwrap_or(&0.0) + knocks.sum::<f64>();
             let [height, lift] = path.aloft.get(i).copied().unwrap_or_default();
             let energy = match self.ask.table {

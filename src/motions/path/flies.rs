@@ -12,14 +12,14 @@
 
 use super::flight::air::{AirFlight, in_air};
 use super::flight::{Aloft, Flies, Flight};
-use super::phases::{BodyWalk, Takeoff};
+use super::phases::{BodyPhases, BodyWalk, Takeoff};
 use crate::laws::contact::impact::{Hit, RimImpact, Struck, lightness, turned};
 use crate::laws::contact::landing::{Landed, Outcome, land_at, settled};
 use crate::laws::contact::slip::Friction;
 use crate::laws::contact::{FLAT, Force, Table};
 use crate::laws::state::State;
 use crate::motions::halt::{TIME, loses, poses};
-use crate::motions::walk::Next;
+use crate::motions::walk::{Next, Phases};
 use crate::motions::{Ending, Kind, Method, Strike};
 use core::f64::consts::{FRAC_PI_2, TAU};
 
@@ -139,6 +139,10 @@ impl<const N: usize> BodyWalk<'_, N> {
                 let down = -self.at[3];
                 if down == 0.0 {
                     return self.settles_on_side();
+                }
+                // An output at the time of the start shows the body before it lands, as those at other landings do.
+                while self.until().is_some_and(|t| t <= self.at[TIME]) {
+                    BodyPhases::write_here(self);
                 }
                 if e == 0.0 || down * self.of.body.ell() <= RATTLED {
                     self.lands_on_both()
