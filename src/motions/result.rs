@@ -220,8 +220,8 @@ pub struct Path<S = State> {
     pub aloft: Vec<[f64; 2]>,
     /// The impacts.
     pub impacts: Vec<Strike>,
-    /// Slip and force (N, along, across) of the other rim at each time, NaN unless the body lies on both; empty if the
-    /// motion ends where the body comes to lie.
+    /// Slip and force (N, across the lean, along it) of the other rim at each time, NaN unless the body lies on both;
+    /// empty if the motion ends where the body comes to lie.
     pub other_rim: Vec<[f64; 5]>,
     /// The slip at the event that ended the motion.
     pub last_slip: [f64; 2],

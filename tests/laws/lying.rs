@@ -351,7 +351,8 @@ fn on_both_rims_the_lean_turns_no_faster_than_the_body_whichever_rim_sticks() {
     for ([ell, i1, i3], [theta, w1, w2, w3], slip, [mu, fixed], law) in scenes {
         let body = Body::new(ell, i1, i3).unwrap();
         let start = Start { slip, ..State { theta, w1, w2, w3 }.into() };
-        let ask = Ask { pose: true, ..ask(Friction::Coulomb { mu, fixed }, Losses::of(law, 0.03)) };
+        let ask =
+            Ask { pose: true, force: true, ..ask(Friction::Coulomb { mu, fixed }, Losses::of(law, 0.03)) };
         let m = roll_with(&body, start, &times, &ask, || true).unwrap().unwrap();
         let (poses, path) = (m.poses.as_ref().unwrap(), m.path.as_ref().unwrap());
         let lies = |i: usize| path.kinds[i] as u8 >= Kind::Lying as u8;
@@ -359,6 +360,12 @@ fn on_both_rims_the_lean_turns_no_faster_than_the_body_whichever_rim_sticks() {
         for i in 1..m.times.len() {
             if lies(i - 1) && lies(i) {
                 seen += 1;
+                // Friction at neither rim gives energy, whichever of them the motion is followed from.
+                let (push, [u, v]) = (m.forces.as_ref().unwrap()[i], path.slip[i]);
+                let [u_up, v_up, _, across, along] = path.other_rim[i];
+                // A force has its name from the direction of rolling, which is across the lean.
+                assert!(push.across * u + push.along * v < 1e-12, "{body:?} {}", m.times[i]);
+                assert!(along * u_up + across * v_up < 1e-12, "{body:?} {}", m.times[i]);
                 let fast = m.states[i - 1].w1.abs().max(m.states[i].w1.abs());
                 let turned = poses[i].phi.radians() - poses[i - 1].phi.radians();
                 assert!(turned.abs() < 1.2 * fast * 0.01 + 1e-9, "{body:?} {} {turned}", m.times[i]);

@@ -11,8 +11,8 @@
 //! their sum is about TAIL.
 
 use super::flight::air::{AirFlight, in_air};
-use super::flight::{Aloft, Flies, Flight};
-use super::phases::{BodyPhases, BodyWalk, Takeoff};
+use super::flight::{Aloft, Flies, Flight, Takeoff};
+use super::phases::{BodyPhases, BodyWalk};
 use crate::laws::contact::impact::{Hit, RimImpact, Struck, lightness, turned};
 use crate::laws::contact::landing::{Landed, Outcome, land_at, settled};
 use crate::laws::contact::slip::Friction;

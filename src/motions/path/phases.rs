@@ -1,9 +1,9 @@
 //! The phases of a body of revolution: their beginnings, their flows and their ends.
 
 use super::check;
-use super::flight::lands::Leaves;
+use super::flight::Takeoff;
 use super::lossy::{LossyFlow, REST};
-use super::lying::flow::LyingFlow;
+use super::lying::flow::LyingPhase;
 use super::slide::Slide;
 use super::slow::{BodySlips, Slippery};
 use super::tail::LastTurns;
@@ -66,26 +66,6 @@ pub(super) struct LossyPhase {
     pub(super) since: f64,
     pub(super) still: u32,
     pub(super) count: usize,
-}
-
-/// A phase on both rims.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct LyingPhase {
-    pub flow: LyingFlow,
-    /// The number of changes of what dry losses hold, in succession at the same time, and the time of the last one.
-    pub(super) still: u32,
-    pub(super) since: f64,
-    pub(super) count: usize,
-}
-
-/// The start of a flight.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Takeoff {
-    /// The height of the lowest point of the rim, and its vertical velocity.
-    pub height: f64,
-    pub lift: f64,
-    /// How the rim leaves the table, as a power of time; None for a start above the table.
-    pub leaves: Leaves,
 }
 
 impl BodyPhases {

@@ -63,6 +63,16 @@ impl Aloft {
     }
 }
 
+/// The start of a flight.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Takeoff {
+    /// The height of the lowest point of the rim, and its vertical velocity.
+    pub height: f64,
+    pub lift: f64,
+    /// How the rim leaves the table, as a power of time; None for a start above the table.
+    pub leaves: Leaves,
+}
+
 /// A flight, with losses in the air or without.
 pub(crate) trait Flies {
     /// The first time after the start at which a rim lands, and whether it is the other rim of a body that has two;

@@ -43,6 +43,16 @@ impl Stance {
 const LYING_ENDS: [Halt; MARGINS] =
     [Halt::Rises, Halt::Changes, Halt::Slips, Halt::Turned, Halt::Drilling, Halt::Contour];
 
+/// A phase on both rims.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct LyingPhase {
+    pub flow: LyingFlow,
+    /// The number of changes of what dry losses hold, in succession at the same time, and the time of the last one.
+    pub still: u32,
+    pub since: f64,
+    pub count: usize,
+}
+
 /// A body on both rims, and the motions that dry losses hold.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LyingFlow {

@@ -12,7 +12,7 @@
 
 pub(crate) mod flow;
 
-use super::phases::{BodyWalk, LyingPhase};
+use super::phases::BodyWalk;
 use crate::error::Error;
 use crate::laws::contact::landing::mirrored;
 use crate::laws::contact::lying::Lying;
@@ -28,7 +28,7 @@ use crate::motions::path::write;
 use crate::motions::walk::{Next, Pause, Phases, STILL, WalkStep, after_rest, ending, most_phases};
 use crate::motions::{Ending, Kind};
 use core::f64::consts::{FRAC_PI_2, PI};
-use flow::{LyingFlow, Stance};
+use flow::{LyingFlow, LyingPhase, Stance};
 
 /// A slip slower than this, in units of the largest speed, is none where a phase begins.
 const STILL_SLIP: f64 = 1e-12;
@@ -394,7 +394,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         if over {
             let back = |x: f64| 0.0 - x;
             slips = [slips[1].map(back), slips[0].map(back)];
-            let turned = |[n, along, across]: [f64; 3]| [n, back(along), back(across)];
+            let turned = |[n, across, along]: [f64; 3]| [n, back(across), back(along)];
             (forces, w3) = ([turned(forces[1]), turned(forces[0])], back(w3));
             if poses(N) {
                 seen[9..13].copy_from_slice(&self.pose_on_other_rim(core::array::from_fn(|i| y[9 + i])));
@@ -409,8 +409,8 @@ impl<const N: usize> BodyWalk<'_, N> {
         self.made.put(state, slips[0], y[8], flow.stance.kind(), pose, asked);
         self.made.path.upside_down = over;
         if let Some(last) = self.made.path.other_rim.last_mut() {
-            let ([u, v], [normal, along, across]) = (slips[1], forces[1]);
-            *last = [u, v, normal, along, across];
+            let ([u, v], [normal, across, along]) = (slips[1], forces[1]);
+            *last = [u, v, normal, across, along];
         }
         if loses(N) {
             self.made.path.work_lost.push(y[N - 1]);
