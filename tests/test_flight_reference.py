@@ -7,7 +7,6 @@ The second half compares `sc.roll` with it.
 """
 
 import json
-import math
 import pathlib
 import sys
 import types
@@ -16,6 +15,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from mpmath import mp, mpf
+from reference_rows import off, sampled, whole
 
 import spincyl as sc
 
@@ -216,22 +216,6 @@ def rolled(case):
     times = [float(row.t) for row in sampled(case)]
     how = {"contact": contact, "restitution": case.restitution, "want": "pose"}
     return sc.roll(sc.Body(ell, i1, i3, fillet=fillet), start, times, t0=0.0, **how)
-
-
-def sampled(case):
-    return [row for row in case.rows if row.kind in ("sample", "end")]
-
-
-def whole(poses, rows):
-    """The poses with the turns of the reference, which adds half a turn at each change of the rim, there and back."""
-    turns = np.round([(float(row.phi) - phi) / math.tau for row, phi in zip(rows, poses[:, 0], strict=True)])
-    return poses + math.tau * np.column_stack([turns, *3 * [0 * turns]])
-
-
-def off(found, rows, names):
-    """The errors, over the size of the number if that is above 1."""
-    true = np.array([[float(getattr(row, name)) for name in names] for row in rows])
-    return np.abs(np.asarray(found) - true) / np.maximum(1, np.abs(true))
 
 
 @each_motion
