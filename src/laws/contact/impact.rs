@@ -235,7 +235,7 @@ impl RimImpact {
             *to = change.map(|x| per * x);
         };
         let mut place = [slip[0], slip[1], 0.0, 0.0, 0.0, -1.0, 0.0];
-        let (mut stages, mut h) = ([place; rk8::STAGES], 0.1);
+        let (mut stages, mut h) = ([place; rk8::STAGES], 0.3);
         let (mut done, keeps) = (false, course.keeps);
         for _ in 0..IMPACT_STEPS {
             let mut rate = place;
@@ -259,25 +259,33 @@ impl RimImpact {
                 None => -v[5],
                 Some(work) => keeps * work - v[6],
             };
-            let mut end = None;
-            let mut compressed = course.compressed;
-            let mut from = 0.0;
+            let slope = |rate: &[f64; 7], compressed: Option<f64>| {
+                if compressed.is_none() { -rate[5] } else { -rate[6] }
+            };
+            let (mut end, mut compressed) = (None, course.compressed);
+            let (mut from, mut first, mut last) = (0.0, (place, rate), rate);
+            if margin(&there, compressed) <= 0.0 {
+                rates(&there, &mut last);
+            }
             while end.is_none() && margin(&there, compressed) <= 0.0 {
-                let now = compressed;
+                let (now, wide) = (compressed, h - from);
+                // Where the search has looked last, and the state and its rates there.
+                let (mut looked, mut at, mut fast) = (1.0, there, last);
                 let mut on = |x: f64| {
-                    let (at, mut rate) = (part(from + x * (h - from)).0, place);
-                    rates(&at, &mut rate);
-                    let slope = if now.is_none() { -rate[5] } else { -rate[6] };
-                    Dual { value: margin(&at, now), slope: slope * (h - from) }
+                    (looked, at) = (x, part(from + x * wide).0);
+                    rates(&at, &mut fast);
+                    Dual { value: margin(&at, now), slope: wide * slope(&fast, now) }
                 };
-                let (first, last) = (on(0.0), on(1.0));
-                let known = [first.value.max(f64::MIN_POSITIVE), first.slope, last.value, last.slope];
+                let (begin, stop) = (margin(&first.0, now).max(f64::MIN_POSITIVE), margin(&there, now));
+                let known = [begin, wide * slope(&first.1, now), stop, wide * slope(&last, now)];
                 let x = only_zero(&mut on, known)
-                    .unwrap_or_else(|| crossing(|x| on(x).value, 0.0, 1.0, known[0], last.value));
-                let x = from + x * (h - from);
-                let at = part(x).0;
+                    .unwrap_or_else(|| crossing(|x| on(x).value, 0.0, 1.0, begin, stop));
+                // The last move of the search is so short that it is straight.
+                let at = core::array::from_fn(|i| at[i] + wide * (x - looked) * fast[i]);
+                rates(&at, &mut fast);
+                (from, first) = (from + x * wide, (at, fast));
                 match now {
-                    None => (compressed, from) = (Some(at[6]), x),
+                    None => compressed = Some(at[6]),
                     Some(_) => end = Some(at),
                 }
                 if keeps == 1.0 {

@@ -18,6 +18,11 @@ use crate::laws::body::Shape;
 
 /// Number of terms of the series at the start.
 const RIM_TERMS: usize = 30;
+/// Within `near` the terms of the series fall by this factor; a landing before this share of it is sought with fewer terms,
+/// of which the last one is below exp(-DIGITS).
+const NARROWS: f64 = 3.0;
+const SOON: f64 = 0.5;
+const DIGITS: f64 = 36.0;
 /// A cell shorter than this, in units of the time since the start, in which the height is below `TOUCH` counts as a touch.
 const SHORT_CELL: f64 = 1e-9;
 pub(super) const TOUCH: f64 = 1e-15;
@@ -152,9 +157,37 @@ impl Flight {
 
     /// The time up to which the series of a rim that touches at the start is used, and the landing up to then.
     pub(super) fn leaves(&self, side: f64, order: usize, end: f64) -> Result<(f64, Option<f64>), TooMany> {
-        let (near, series) = self.series(side, order, end);
+        let (s, sine) = (self.from.angle.0, self.b.sin());
+        let near = if sine * self.rate > 0.0 && self.shape.rim.a > 0.0 {
+            (0.4 * s / sine).ln_1p() / (3.0 * self.rate)
+        } else {
+            1.0 / (1.0 + self.rate)
+        };
+        let near = near.min(end);
+        // A bounce that is over long before needs few terms, up to twice the time that the first two say.
+        let first = self.series(side, near, order + 2);
+        let early = -(2.0 * first[order] / first[order + 1]);
+        if early > 0.0 && early < SOON {
+            let terms = order + 2 + (DIGITS / (NARROWS / early).ln()) as usize;
+            let found = self.lands_near(side, order, early * near, terms)?;
+            if found.is_some() {
+                return Ok((near, found));
+            }
+        }
+        Ok((near, self.lands_near(side, order, near, RIM_TERMS)?))
+    }
+
+    /// The landing up to the time `near`, by a series of h/t^k.
+    fn lands_near(
+        &self,
+        side: f64,
+        order: usize,
+        near: f64,
+        terms: usize,
+    ) -> Result<Option<f64>, TooMany> {
+        let series = &self.series(side, near, terms)[order..terms];
         if series[0] <= 0.0 {
-            return Ok((near, Some(0.0)));
+            return Ok(Some(0.0));
         }
         let power = |x: f64| {
             let value = series.iter().rev().fold(0.0, |sum, c| sum * x + c);
@@ -163,38 +196,30 @@ impl Flight {
         };
         let bend: f64 = (2..series.len()).map(|k| (k * (k - 1)) as f64 * series[k].abs()).sum();
         let mut falling = Falling { of: power, bend: bend.max(1e-9 * series[0]), touch: 0.0 };
-        Ok((near, falling.first_zero(0.0, 1.0)?.map(|x| x * near)))
+        Ok(falling.first_zero(0.0, 1.0)?.map(|x| x * near))
     }
 
-    /// The series of h/t^k of a rim that touches at the start, in units of the time up to which it is used, and that time.
-    fn series(&self, side: f64, order: usize, end: f64) -> (f64, Vec<f64>) {
-        let (Shape { rim, .. }, (s, c)) = (self.shape, self.from.angle);
-        let sine = self.b.sin();
-        let near = if sine * self.rate > 0.0 && rim.a > 0.0 {
-            (0.4 * s / sine).ln_1p() / (3.0 * self.rate)
-        } else {
-            1.0 / (1.0 + self.rate)
-        };
-        let near = near.min(end);
-        let [p, q] = self.swing;
+    /// The series of the height of a rim that touches at the start, in units of the time `near`.
+    fn series(&self, side: f64, near: f64, terms: usize) -> [f64; RIM_TERMS] {
+        let (Shape { rim, .. }, (s, c), [p, q]) = (self.shape, self.from.angle, self.swing);
         let (mut cosines, mut sines) = ([0.0; RIM_TERMS], [0.0; RIM_TERMS]);
         let mut scale = 1.0;
-        for k in 0..RIM_TERMS {
+        for k in 0..terms {
             cosines[k] = [p, -q, -p, q][k % 4] * scale;
             scale *= self.rate * near / (k + 1) as f64;
         }
         (cosines[0], sines[0]) = (c, s);
         // The coefficients of s from s^2 = 1 - c^2.
-        for k in 1..RIM_TERMS {
+        for k in 1..terms {
             let square: f64 = (0..=k).map(|i| cosines[i] * cosines[k - i]).sum();
             let known: f64 = (1..k).map(|i| sines[i] * sines[k - i]).sum();
             sines[k] = -(square + known) / (2.0 * s);
         }
-        let mut all: Vec<f64> = (0..RIM_TERMS).map(|k| -rim.slope((sines[k], side * cosines[k]))).collect();
+        let mut all = core::array::from_fn(|k| -rim.slope((sines[k], side * cosines[k])));
         // The first coefficient is the normal velocity, which is known without a difference.
         all[1] = near * if side > 0.0 { self.from.lift } else { self.from.on_other_rim(&self.shape).lift };
         all[2] -= 0.5 * near * near;
-        (near, all.split_off(order))
+        all
     }
 }
 
