@@ -10,7 +10,9 @@
 //! Restitution is energetic (Stronge, Proc. R. Soc. A 431, 169 (1990)), so that no impact gains energy. It equals the
 //! ratio of the normal velocities where the direction of the slip stays. Friction along the impact is Coulomb's
 //! (Routh 1860; Keller, J. Appl. Mech. 53, 1 (1986)): where a slip stops, it sticks if |b| <= mu_s a_h, otherwise it
-//! slips on along e_h. For every mu and every body the impact has one outcome. The motion is straight, and the
+//! slips on along e_h. For every mu and every body the impact has one outcome. A slip whose friction presses the rim
+//! into the table faster than the impulse slows it, so that no contact force exists (Painleve), jams: an impact that
+//! begins with u_n = 0 stops it (Genot and Brogliato, Eur. J. Mech. A 18, 653 (1999)). The motion is straight, and the
 //! formulas are closed, except for a first slip whose direction turns; a viscous film is linear.
 //!
 //! Error: 1e-13 of the largest velocity; a test of `laws` compares with integration in the laboratory's axes.
@@ -43,7 +45,7 @@ coded! {
 /// The velocity of the lowest point of a rim before an impact, and the inverse of its inertia.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct RimImpact {
-    /// The slip along e_h and along e2, and the normal velocity, which is negative.
+    /// The slip along e_h and along e2, and the normal velocity, which is negative, or zero where a slip jams.
     pub slip: [f64; 2],
     pub lift: f64,
     /// a_h, a_2, a_n and b.
@@ -98,7 +100,7 @@ const STRAIGHT: f64 = 1e-14;
 /// Largest number of steps along an impact.
 const IMPACT_STEPS: usize = 5_000;
 
-/// The impact so far, with all velocities in units of the first normal velocity.
+/// The impact so far, with all velocities in units of the first normal velocity, or of the slip where that is zero.
 struct ImpactCourse {
     impulse: [f64; 3],
     lift: f64,
@@ -144,10 +146,11 @@ impl RimImpact {
     /// The impact under the law of this table with the restitution `e`. None where a rolling table has no answer:
     /// its friction would lift the body before the slip has stopped, or would exceed mu times the normal impulse.
     pub fn on(&self, table: &Table, e: f64) -> Option<Struck> {
-        let (big, [a_h, a_2, a_n, b]) = (-self.lift, self.light);
+        let [a_h, a_2, a_n, b] = self.light;
+        let big = if self.lift < 0.0 { -self.lift } else { self.slip[0].hypot(self.slip[1]) };
         let keeps = (1.0 - e) * (1.0 + e);
-        let mut course =
-            ImpactCourse { impulse: [0.0; 3], lift: -1.0, work: 0.0, compressed: None, e, keeps };
+        let lift = self.lift / big;
+        let mut course = ImpactCourse { impulse: [0.0; 3], lift, work: 0.0, compressed: None, e, keeps };
         let (slip, mut stopped) = (self.slip.map(|u| u / big), false);
         let hit = match *table {
             Table::Rolling { .. } => {
@@ -234,7 +237,7 @@ impl RimImpact {
             ];
             *to = change.map(|x| per * x);
         };
-        let mut place = [slip[0], slip[1], 0.0, 0.0, 0.0, -1.0, 0.0];
+        let mut place = [slip[0], slip[1], 0.0, 0.0, 0.0, course.lift, 0.0];
         let (mut stages, mut h) = ([place; rk8::STAGES], 0.3);
         let (mut done, keeps) = (false, course.keeps);
         for _ in 0..IMPACT_STEPS {

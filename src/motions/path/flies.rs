@@ -39,6 +39,8 @@ const SUMMED: f64 = 1e2;
 const LASTS: f64 = 10.0;
 /// A rocking with a larger w2 is followed hop by hop.
 const ROCKED: f64 = 1e-5;
+/// A smaller w2 after a landing is a rounding error.
+const ROCKED_OUT: f64 = 1e-15;
 /// Both rims land together if |cos theta| is below this.
 const BOTH_AT_ONCE: f64 = 1e-14;
 /// Impacts of both rims are over where no rim comes down faster than this share of the first velocity.
@@ -150,8 +152,35 @@ impl<const N: usize> BodyWalk<'_, N> {
                     self.rattles(e)
                 }
             }
+            Ending::Painleve if self.of.lying.is_none() && self.of.body.lands_on_rims() => {
+                self.jams(e).unwrap_or(Next::Ends(ending))
+            }
             ending => Next::Ends(ending),
         }
+    }
+
+    /// The phase after the impact by which a slip that presses the rim into the table stops. None where the rim could
+    /// leave the table as well.
+    fn jams(&mut self, e: f64) -> Option<Next> {
+        self.of.takeoff = Takeoff::default();
+        let from = self.aloft();
+        let [free, size] = self.pressed(&from);
+        if from.slip == [0.0; 2] || free < ROUNDED * size {
+            return None;
+        }
+        let struck = self.impact(&from, e).filter(|struck| struck.hit != Hit::Slips)?;
+        let after = self.struck(&from, &struck, (self.made.path.upside_down, false));
+        self.sets(&after);
+        Some(self.leaves_impact(&after))
+    }
+
+    /// The phase after an impact.
+    fn leaves_impact(&mut self, after: &Aloft) -> Next {
+        if after.lift > 0.0 {
+            self.of.takeoff.leaves = Some(1);
+            return Next::Own(Kind::Flying);
+        }
+        self.touches_down()
     }
 
     /// Follows a flight to its end, which sets the next phase.
@@ -235,11 +264,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         if self.has_two_rims() && e > 0.0 && level < RATTLED {
             return self.ends_rattle();
         }
-        if after.lift > 0.0 {
-            self.of.takeoff.leaves = Some(1);
-            return Next::Own(Kind::Flying);
-        }
-        self.touches_down()
+        self.leaves_impact(&after)
     }
 
     /// The impact at these numbers; None where a rolling table has no answer.
@@ -396,7 +421,8 @@ impl<const N: usize> BodyWalk<'_, N> {
         let impulse = core::array::from_fn(|i| new[i] - old[i]);
         self.records([&from, &there], other, Hit::BothRims, (impulse, landed.lost), true);
         let rises = self.at[3];
-        if rises == 0.0 {
+        if rises < ROCKED_OUT {
+            self.claims(rises * LASTS);
             return self.settles_on_side();
         }
         if rises < ROCKED

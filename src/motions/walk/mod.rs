@@ -33,6 +33,8 @@ pub(crate) use slips::{SlowLaw, SlowSeries};
 const FEWEST_PHASES: usize = 5_000;
 const MOST_PHASES: usize = 10_000;
 const PHASES_PER_TIME: f64 = 20.0;
+/// Largest number of impacts, after each of which a flight costs little.
+const MOST_IMPACTS: usize = 30_000;
 /// Largest number of phases in succession without an advance of time; a motion with more is given up.
 pub(crate) const STILL: u32 = 6;
 /// A body that loses energy is given up after more than `CHATTER` phases in succession that are shorter than
@@ -203,7 +205,9 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
             }
             let count = self.made.path.phases.len();
             let chatters = self.still > STILL || !self.ask.losses.is_none() && self.short > CHATTER;
-            let too_many = chatters || count > most_phases(&self.since);
+            let hops = self.made.path.impacts.len();
+            let too_many =
+                chatters || hops > MOST_IMPACTS || count.saturating_sub(hops) > most_phases(&self.since);
             let next = match next {
                 Next::Ends(_) => next,
                 _ if too_many => P::gives_up(self, count)?,
@@ -284,7 +288,10 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         let [u, v] = [self.at[P::SLIP], self.at[P::SLIP + 1]];
         if u.hypot(v) > self.of.over() || !self.of.is_dry() {
             return match P::ends_slip(self) {
-                Some(Halt::Jam) => Err(P::no_unique_force(self)),
+                Some(Halt::Jam) => match P::goes_on(self, Ending::Painleve) {
+                    Next::Ends(Ending::Painleve) => Err(P::no_unique_force(self)),
+                    next => Ok(next),
+                },
                 Some(halt) => Ok(Next::Ends(ending(halt))),
                 None => Ok(Next::Slips),
             };

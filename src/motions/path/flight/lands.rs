@@ -178,13 +178,7 @@ impl Flight {
     }
 
     /// The landing up to the time `near`, by a series of h/t^k.
-    fn lands_near(
-        &self,
-        side: f64,
-        order: usize,
-        near: f64,
-        terms: usize,
-    ) -> Result<Option<f64>, TooMany> {
+    fn lands_near(&self, side: f64, order: usize, near: f64, terms: usize) -> Result<Option<f64>, TooMany> {
         let series = &self.series(side, near, terms)[order..terms];
         if series[0] <= 0.0 {
             return Ok(Some(0.0));
