@@ -15,6 +15,7 @@ mod evaluations;
 mod exact;
 mod flight;
 mod hard_cases;
+mod impacts;
 mod integrators;
 mod leaving;
 mod losing_slips;

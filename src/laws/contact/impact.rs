@@ -144,7 +144,8 @@ impl ImpactCourse {
 
 impl RimImpact {
     /// The impact under the law of this table with the restitution `e`. None where a rolling table has no answer:
-    /// its friction would lift the body before the slip has stopped, or would exceed mu times the normal impulse.
+    /// its friction would lift the body before the slip has stopped, or would exceed mu times the normal impulse; and
+    /// after too many steps.
     pub fn on(&self, table: &Table, e: f64) -> Option<Struck> {
         let [a_h, a_2, a_n, b] = self.light;
         let big = if self.lift < 0.0 { -self.lift } else { self.slip[0].hypot(self.slip[1]) };
@@ -168,7 +169,7 @@ impl RimImpact {
                 Hit::Slips
             }
             Table::Rubs(friction @ Friction::Coulomb { mu, fixed }) if mu > 0.0 || friction.sticks() => {
-                stopped = !self.slides(&mut course, mu, slip);
+                stopped = !self.slides(&mut course, mu, slip)?;
                 if !stopped {
                     Hit::Slips
                 } else if b.abs() <= fixed * a_h {
@@ -205,12 +206,13 @@ impl RimImpact {
         Some(Struck { impulse: [p_h, p_2, p_n], slip, lift, hit, lost: lost.max(0.0) })
     }
 
-    /// The first slip under Coulomb's friction. Returns whether the impact ends before the slip stops.
-    fn slides(&self, course: &mut ImpactCourse, mu: f64, slip: [f64; 2]) -> bool {
+    /// The first slip under Coulomb's friction. Returns whether the impact ends before the slip stops, or
+    /// None after too many steps.
+    fn slides(&self, course: &mut ImpactCourse, mu: f64, slip: [f64; 2]) -> Option<bool> {
         let [a_h, a_2, a_n, b] = self.light;
         let (speed, turns) = (slip[0].hypot(slip[1]), mu * (a_2 - a_h));
         if speed <= STOPPED * (1.0 + speed) || mu == 0.0 {
-            return false;
+            return Some(false);
         }
         let slows = |[cos, sin]: [f64; 2]| b * cos - mu * (a_h * cos * cos + a_2 * sin * sin);
         let straight = |course: &mut ImpactCourse, way: [f64; 2], speed: f64| {
@@ -220,7 +222,7 @@ impl RimImpact {
         };
         let way = slip.map(|u| u / speed);
         if way[1].abs() < STRAIGHT || b.abs() + turns.abs() < STOPPED {
-            return straight(course, way, speed);
+            return Some(straight(course, way, speed));
         }
         // u_h, u_2, P_h, P_2, p, u_n and W, with dp = sigma/(1 + sigma) dx, in which nothing is singular.
         let rates = |&[u_h, u_2, _, _, _, lift, _]: &[f64; 7], to: &mut [f64; 7]| {
@@ -239,8 +241,12 @@ impl RimImpact {
         };
         let mut place = [slip[0], slip[1], 0.0, 0.0, 0.0, course.lift, 0.0];
         let (mut stages, mut h) = ([place; rk8::STAGES], 0.3);
-        let (mut done, keeps) = (false, course.keeps);
-        for _ in 0..IMPACT_STEPS {
+        let (mut steps, keeps) = (0, course.keeps);
+        let done = loop {
+            steps += 1;
+            if steps > IMPACT_STEPS {
+                return None;
+            }
             let mut rate = place;
             rates(&place, &mut rate);
             let mut part = |h: f64| {
@@ -252,7 +258,9 @@ impl RimImpact {
             let sigma = place[0].hypot(place[1]);
             let per_slip =
                 if sigma > 1.0 { 1.0 / (self.tol * sigma) } else { (1.0 / self.tol).max(1e3 / sigma) };
-            let error = made.error(|i| if i < 2 { per_slip } else { 1.0 / self.tol }, 7.0);
+            // A jam makes impulses that are large beside the fall.
+            let per = |i: usize| if i < 2 { per_slip } else { 1.0 / (self.tol * place[i].abs().max(1.0)) };
+            let error = made.error(per, 7.0);
             if error.is_nan() || error > 1.0 {
                 h *= rk8::growth(error).min(0.7);
                 continue;
@@ -297,19 +305,19 @@ impl RimImpact {
             }
             course.compressed = compressed;
             place = end.unwrap_or(there);
-            done = end.is_some();
+            let done = end.is_some();
             let sigma = place[0].hypot(place[1]);
             // Along the lean, where the slip may last long, the direction stays.
             if done || sigma < STOPPED || place[1].abs() < STRAIGHT * sigma {
-                break;
+                break done;
             }
             h *= rk8::growth(error);
-        }
+        };
         let [u_h, u_2, p_h, p_2, p, lift, work] = place;
         course.impulse = [p_h, p_2, p];
         (course.lift, course.work) = (lift, work);
         let sigma = u_h.hypot(u_2);
-        done || sigma >= STOPPED && straight(course, [u_h.signum(), 0.0], sigma)
+        Some(done || sigma >= STOPPED && straight(course, [u_h.signum(), 0.0], sigma))
     }
 }
 

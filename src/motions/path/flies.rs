@@ -47,6 +47,8 @@ const BOTH_AT_ONCE: f64 = 1e-14;
 const RATTLE_OVER: f64 = 1e-9;
 /// Share of its terms below which N0 is a rounding error.
 const ROUNDED: f64 = 1e-12;
+/// A jam needs a larger impulse than this share of the slip.
+const JAMMED: f64 = 1e-9;
 /// Largest number of impacts of both rims in turn.
 const MOST_IN_TURN: u32 = 10_000;
 
@@ -168,7 +170,8 @@ impl<const N: usize> BodyWalk<'_, N> {
         if from.slip == [0.0; 2] || free < ROUNDED * size {
             return None;
         }
-        let struck = self.impact(&from, e).filter(|struck| struck.hit != Hit::Slips)?;
+        let speed = from.slip[0].hypot(from.slip[1]);
+        let struck = self.impact(&from, e).filter(|struck| struck.impulse[2] > JAMMED * speed)?;
         let after = self.struck(&from, &struck, (self.made.path.upside_down, false));
         self.sets(&after);
         Some(self.leaves_impact(&after))
