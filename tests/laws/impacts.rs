@@ -180,6 +180,50 @@ fn without_friction_coupling_or_restitution_the_laws_of_newton_and_of_energy_are
 }
 
 #[test]
+fn a_slip_follows_rouths_equations_along_an_impact_also_where_friction_hardly_slows_it() {
+    let mut r = wander(520);
+    let mut slow = 0;
+    for k in 0..drawn(60) {
+        let (body, start, mu, e) = any_drop(&mut r);
+        let (state, [u, v]) = (start.state, start.slip);
+        let [radius, depth, height, lever] = rim(&body, state.theta);
+        let (i1, i3) = (body.i1(), body.i3());
+        let (a_h, a_n, b) = (1.0 + height * height / i1, 1.0 + lever * lever / i1, height * lever / i1);
+        let a_2 = 1.0 + depth * depth / i1 + radius * radius / i3;
+        // Every other slip has this size beside the fall, and a friction that all but balances the lever.
+        let size = if k % 2 == 0 { 1.0 } else { 1e-2 };
+        let mu = if k % 2 == 0 { mu } else { b.abs() / a_h * (1.0 + 10f64.powf(-1.0 - 3.0 * r())) };
+        let drop = dropped(state, [size * u, size * v], 0.0, -1.0);
+        let hit = impacts(&hops(&body, &drop, coulomb(mu), e, &[1e-9]))[0];
+        if hit.hit != Hit::Slips || hit.impulse[2] > 5.0 {
+            continue;
+        }
+        slow += k % 2;
+        // Runge and Kutta's method in steps of the normal impulse.
+        let rate = |[u, v, _]: [f64; 3]| {
+            let speed = u.hypot(v);
+            [b - mu * a_h * u / speed, -mu * a_2 * v / speed, a_n - mu * b * u / speed]
+        };
+        let n = 20_000;
+        let h = hit.impulse[2] / f64::from(n);
+        let mut y = [size * u, size * v, -1.0];
+        for _ in 0..n {
+            let on = |k: [f64; 3], h: f64| core::array::from_fn(|i| y[i] + h * k[i]);
+            let k1 = rate(y);
+            let k2 = rate(on(k1, 0.5 * h));
+            let k3 = rate(on(k2, 0.5 * h));
+            let k4 = rate(on(k3, h));
+            y = core::array::from_fn(|i| y[i] + h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]));
+        }
+        for i in 0..3 {
+            let off = (y[i] - hit.velocities[1][i]).abs();
+            assert!(off < 1e-10, "{body:?} {drop:?} {mu} {e}: {off:e} in number {i}");
+        }
+    }
+    assert!(slow > 2, "{slow}");
+}
+
+#[test]
 fn a_slip_that_jams_is_stopped_by_an_impact_without_a_fall() {
     // Painleve, C. R. Acad. Sci. 121, 112 (1895); the impact is that of Genot and Brogliato (1999).
     let body = Body::new(0.8, 0.082, 0.1).unwrap();

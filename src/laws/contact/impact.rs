@@ -95,8 +95,11 @@ pub(crate) fn turned(
 
 /// A slip slower than this share of the speed, or of the normal velocity, counts as none.
 const STOPPED: f64 = 1e-15;
-/// A slip whose sine is below this share runs along the lean, where its direction stays.
-const STRAIGHT: f64 = 1e-14;
+/// A slip whose sine is below this runs along the lean, but for the square of it; and where the sine grows as the slip
+/// dies out.
+const STRAIGHT: [f64; 2] = [1e-8, 1e-14];
+/// The error of a slip across the lean is this share of it, or smaller, so that it dies out where the slip lasts long.
+const DIES: f64 = 1e-6;
 /// Largest number of steps along an impact.
 const IMPACT_STEPS: usize = 5_000;
 
@@ -220,9 +223,9 @@ impl RimImpact {
             let most = if slow < 0.0 { -speed / slow } else { f64::INFINITY };
             course.straight(a_n - mu * b * way[0], way.map(|x| -mu * x), most)
         };
-        let way = slip.map(|u| u / speed);
-        if way[1].abs() < STRAIGHT || b.abs() + turns.abs() < STOPPED {
-            return Some(straight(course, way, speed));
+        // Along the lean, or where the contact is alike in all directions, the direction of the slip stays.
+        if slip[1] == 0.0 || b.abs() + turns.abs() < STOPPED {
+            return Some(straight(course, slip.map(|u| u / speed), speed));
         }
         // u_h, u_2, P_h, P_2, p, u_n and W, with dp = sigma/(1 + sigma) dx, in which nothing is singular.
         let rates = |&[u_h, u_2, _, _, _, lift, _]: &[f64; 7], to: &mut [f64; 7]| {
@@ -243,6 +246,12 @@ impl RimImpact {
         let (mut stages, mut h) = ([place; rk8::STAGES], 0.3);
         let (mut steps, keeps) = (0, course.keeps);
         let done = loop {
+            let sigma = place[0].hypot(place[1]);
+            let grows = turns < -b * place[0].signum();
+            // A slip along the lean may last long.
+            if sigma < STOPPED || place[1].abs() < STRAIGHT[usize::from(grows)] * sigma {
+                break false;
+            }
             steps += 1;
             if steps > IMPACT_STEPS {
                 return None;
@@ -255,11 +264,14 @@ impl RimImpact {
             };
             let (there, made) = part(h);
             // The error of a slip is relative to a fast one, and so small beside a slow one that its direction stays.
-            let sigma = place[0].hypot(place[1]);
             let per_slip =
                 if sigma > 1.0 { 1.0 / (self.tol * sigma) } else { (1.0 / self.tol).max(1e3 / sigma) };
             // A jam makes impulses that are large beside the fall.
-            let per = |i: usize| if i < 2 { per_slip } else { 1.0 / (self.tol * place[i].abs().max(1.0)) };
+            let per = |i: usize| match i {
+                0 => per_slip,
+                1 => per_slip.max(1.0 / (DIES * place[1].abs())),
+                _ => 1.0 / (self.tol * place[i].abs().max(1.0)),
+            };
             let error = made.error(per, 7.0);
             if error.is_nan() || error > 1.0 {
                 h *= rk8::growth(error).min(0.7);
@@ -305,11 +317,8 @@ impl RimImpact {
             }
             course.compressed = compressed;
             place = end.unwrap_or(there);
-            let done = end.is_some();
-            let sigma = place[0].hypot(place[1]);
-            // Along the lean, where the slip may last long, the direction stays.
-            if done || sigma < STOPPED || place[1].abs() < STRAIGHT * sigma {
-                break done;
+            if end.is_some() {
+                break true;
             }
             h *= rk8::growth(error);
         };
@@ -317,7 +326,16 @@ impl RimImpact {
         course.impulse = [p_h, p_2, p];
         (course.lift, course.work) = (lift, work);
         let sigma = u_h.hypot(u_2);
-        Some(done || sigma >= STOPPED && straight(course, [u_h.signum(), 0.0], sigma))
+        if done || sigma < STOPPED {
+            return Some(done);
+        }
+        let way = [u_h.signum(), 0.0];
+        let ended = straight(course, way, sigma);
+        // What is left across the lean falls as a power of the slip.
+        let (slow, long) = (-slows(way), (course.impulse[2] - p) / sigma);
+        let log = if slow * long == 0.0 { -long } else { (-slow * long).max(-1.0).ln_1p() / slow };
+        course.impulse[1] += u_2 * (mu * a_2 * log).exp_m1() / a_2;
+        Some(ended)
     }
 }
 
