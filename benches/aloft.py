@@ -3,6 +3,7 @@
     python benches/aloft.py                          500 starts, each with three coefficients: a minute
     python benches/aloft.py --count 20000            half an hour
     python benches/aloft.py --scene 17 0.3           what becomes of one of them, and of it at a wider tolerance
+    python benches/aloft.py --hops                   what a hop costs: a flight, its landing and the impact
 
 Tubes, cylinders, coins, disks, hoops, balls, rounded cylinders and bodies of any moments, standing on a rim or in the
 air, slipping or not, under Coulomb(0.05 to 1), followed to t = 50. Every motion is followed twice, the second time with
@@ -117,12 +118,36 @@ def scene(number, restitution):
             print(f"  at t = {motion.t[-1]}: {last}, claim {motion.error:.1e}")
 
 
+def hops():
+    """Print what hops cost whose slip turns in the impact, and others, in seconds of the processor."""
+    tube, ball = sc.Body.tube(6.0, bore=0.8), sc.Body.ball(0.0, 0.4, 0.4)
+    print("| hops | each | impacts | claim |\n| --- | --- | --- | --- |")
+    for name, body, table in (
+        ("a ball, friction", ball, sc.Coulomb(0.3)),
+        ("the tube, no friction", tube, sc.Coulomb(0.0)),
+        ("the tube, friction", tube, sc.Coulomb(0.3)),
+    ):
+        least = np.inf
+        state = sc.State(1.2, 0.5, 0.3, 2.0, slip=(0.4, -0.7), height=1.0)
+        for _ in range(20):
+            since = time.process_time()
+            for _ in range(20):
+                m = sc.roll(body, state, 100.0, contact=table, restitution=0.98)
+            least = min(least, (time.process_time() - since) / 20)
+        count = len(m.impacts)
+        print(f"| {name} | {1e6 * least / count:.1f} us | {count} | {m.error:.0e} |")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--count", type=int, default=500)
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--scene", nargs=2, type=float, metavar=("NUMBER", "RESTITUTION"))
+    parser.add_argument("--hops", action="store_true")
     given = parser.parse_args()
+    if given.hops:
+        hops()
+        return
     if given.scene:
         scene(int(given.scene[0]), given.scene[1])
         return

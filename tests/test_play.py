@@ -237,13 +237,18 @@ def test_the_command_writes_the_page_that_is_asked_for(tmp_path, capsys):
     assert main(["play", *words, "--loss", "drilling=1e-3", "-o", str(path)]) == 0
     asked = sc.play(PIPE, math.radians(85), contact=sc.Coulomb(0.2), losses=sc.loss.Drilling(1e-3))
     assert path.read_text("utf-8") == asked.html
+    assert main(["play", *words, "--restitution", "0.5", "-o", str(path)]) == 0
+    asked = sc.play(PIPE, math.radians(85), contact=sc.Coulomb(0.2), restitution=0.5)
+    assert path.read_text("utf-8") == asked.html
     assert main(["play", "--contact", "viscous", "--viscosity", "0.2", "-o", str(path)]) == 0
     assert path.read_text("utf-8") == sc.play(contact=sc.Viscous(0.2)._known()).html
     sizes = ["--outer", "50mm", "--inner", "40mm", "--length", "150mm", "--mass", "100g"]
     assert main(["play", *sizes, "--theta", "1.4", "-o", str(path)]) == 0
     assert path.read_text("utf-8") == sc.play(SIZED, 1.4).html
     wet = ["--contact", "viscous"]
-    for wrong in (["--mu", "0.3"], ["--contact", "coulomb"], ["--theta", "300deg"], wet, [*wet, "--mu", "1"]):
+    bounces = (["--restitution", "0.5"], [*words, "--restitution", "2"])
+    odd = (["--mu", "0.3"], ["--contact", "coulomb"], ["--theta", "300deg"], wet, [*wet, "--mu", "1"])
+    for wrong in (*odd, *bounces):
         assert main(["play", *wrong, "-o", str(path)]) == 2
     assert main(["play", "-o", str(tmp_path / "play.png")]) == 2
     assert "expected a name that ends in .html" in capsys.readouterr().err

@@ -80,9 +80,13 @@ fn together<S>(runs: [&[Phase<S>]; 2], end: f64, whirrs: bool) -> (Vec<[&Phase<S
             at = at.map(|i| i + 1);
             continue;
         }
-        // The earlier phase has no partner, and if both phases are of the same kind, neither has the one
-        // after it. A slip that only continues in another direction belongs to the slip before it.
-        let k = usize::from(b.time < a.time || b.time == a.time && long[1] < long[0]);
+        // Of two kinds the phase that ends first has no partner. Of the same kind it is the earlier phase, and the one
+        // after it has none either. A slip that only continues in another direction belongs to the slip before it.
+        let k = usize::from(if a.kind == b.kind {
+            b.time < a.time || b.time == a.time && long[1] < long[0]
+        } else {
+            b.time + long[1] < a.time + long[0]
+        });
         let goes_on = at[k] > 0 && runs[k][at[k] - 1].kind == runs[k][at[k]].kind;
         alone = alone.max(if goes_on { 0.0 } else { long[k] });
         at[k] += if a.kind == b.kind && !goes_on { 2 } else { 1 };

@@ -27,6 +27,7 @@ spincyl play -o play.html
 spincyl play --ell 6 --bore 0.8 --theta 89.5deg -o tube.html
 spincyl play --ell 0.375 --theta 80deg --kick -0.01 --contact smooth -o ice.html
 spincyl play --ell 0.17 --theta 0.3 --loss dry-contour=5e-3 --t 400 -o whirr.html
+spincyl play --ell 0.5 --theta 1.2 --contact coulomb --mu 0.3 --restitution 0.5 -o hops.html
 spincyl play --balls --theta 78deg --open -o balls.html"""
 
 
@@ -41,6 +42,8 @@ def options(sub: ArgumentParser) -> None:
     how.add_argument("--contact", choices=tables, default="rolling", help="the table (default: rolling)")
     how.add_argument("--mu", type=float, help="of coulomb: the coefficient of friction")
     how.add_argument("--viscosity", type=float, metavar="C", help="of viscous: friction C N times the slip")
+    bounce = "0 to 1: it goes on where it leaves a table with friction (default: it ends there)"
+    how.add_argument("--restitution", type=float, metavar="BOUNCE", help=bounce)
     option(how, "--loss")
     how.add_argument("--t", type=float, default=60.0, help="how long friction and losses are followed")
     how.add_argument(
@@ -66,6 +69,8 @@ def run(args: Namespace) -> None:
         args.t *= float(size.seconds(1.0))
     if body is None:
         args.t *= paper_tube()._second
+    if args.restitution is not None and args.contact not in ("coulomb", "viscous"):
+        raise ValueError("--restitution goes with --contact coulomb or viscous")
     path = writable(args.output)
     made = play(
         body,
@@ -73,6 +78,7 @@ def run(args: Namespace) -> None:
         kick=args.kick,
         contact=_table(args),
         losses=losses_of(args, scale),
+        restitution=args.restitution,
         t=args.t,
         slow=args.slow,
         friction=not args.lean,

@@ -50,8 +50,9 @@ pub(crate) struct RimImpact {
     pub lift: f64,
     /// a_h, a_2, a_n and b.
     pub light: [f64; 4],
-    /// Tolerance of a step along an impact whose slip turns, at least 3e-14.
+    /// Tolerance of a step along an impact whose slip turns, at least 3e-14, and how much longer the first one is.
     pub tol: f64,
+    pub longer: f64,
 }
 
 /// The impulses P_h, P_2 and P_n, and the velocity of the lowest point after the impact.
@@ -100,6 +101,8 @@ const STOPPED: f64 = 1e-15;
 const STRAIGHT: [f64; 2] = [1e-8, 1e-14];
 /// The error of a slip across the lean is this share of it, or smaller, so that it dies out where the slip lasts long.
 const DIES: f64 = 1e-6;
+/// The first step along an impact.
+const FIRST: f64 = 0.3;
 /// Largest number of steps along an impact.
 const IMPACT_STEPS: usize = 5_000;
 
@@ -243,7 +246,7 @@ impl RimImpact {
             *to = change.map(|x| per * x);
         };
         let mut place = [slip[0], slip[1], 0.0, 0.0, 0.0, course.lift, 0.0];
-        let (mut stages, mut h) = ([place; rk8::STAGES], 0.3);
+        let (mut stages, mut h) = ([place; rk8::STAGES], FIRST * self.longer);
         let (mut steps, keeps) = (0, course.keeps);
         let done = loop {
             let sigma = place[0].hypot(place[1]);

@@ -20,17 +20,20 @@ use crate::laws::contact::{FLAT, Force, Table};
 use crate::laws::state::State;
 use crate::motions::halt::{TIME, loses, poses};
 use crate::motions::walk::{Next, Phases};
-use crate::motions::{Ending, Kind, Method, Strike};
+use crate::motions::{Ending, Kind, Method, Moving, Strike};
 use core::f64::consts::{FRAC_PI_2, TAU};
 
-/// Share of the state that the bounces which are summed may change, at least and at most.
+/// Share of the state that the bounces which are summed may change: this part of the tolerance of a sweep, but at least
+/// and at most these.
+const TAIL_SHARE: f64 = 0.1;
 const TAIL: f64 = 1e-13;
 const LONGEST_TAIL: f64 = 1e-10;
 /// The same of a body with losses, as a share: they act on a contact, and not on a body that bounces.
 const LOSSY_TAIL: f64 = 1e-8;
-/// The least tolerance of a step along an impact, and this tolerance as a share of that of the motion.
+/// The tolerance of a step along an impact.
 const IMPACT_TOL: f64 = 3e-14;
-const IMPACT_SHARE: f64 = 0.1;
+/// The first step of a rougher run along an impact is so much longer.
+const LONGER: f64 = 1.4;
 /// Both rims rattle until |cos theta| and the normal velocities of both are below this.
 const RATTLED: f64 = 1e-7;
 /// Error of the rest of a rattle, in units of the square of its velocities.
@@ -172,6 +175,10 @@ impl<const N: usize> BodyWalk<'_, N> {
         }
         let speed = from.slip[0].hypot(from.slip[1]);
         let struck = self.impact(&from, e).filter(|struck| struck.impulse[2] > JAMMED * speed)?;
+        // An output at this time shows the slip, for which there is no force.
+        while self.until().is_some_and(|t| t <= self.at[TIME]) {
+            self.writes_with(&from, Kind::Slipping, f64::NAN);
+        }
         let after = self.struck(&from, &struck, (self.made.path.upside_down, false));
         self.sets(&after);
         Some(self.leaves_impact(&after))
@@ -208,7 +215,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         let end = landing.map_or(f64::INFINITY, |(t, _)| t);
         while let Some(t) = self.until().filter(|t| *t <= now + end) {
             let at = self.flown(&*course, t - now, before);
-            self.writes_in_air(&at);
+            self.writes_with(&at, Kind::Flying, 0.0);
         }
         let Some((t, upper)) = landing else { return };
         let at = self.flown(&*course, t, before);
@@ -248,7 +255,10 @@ impl<const N: usize> BodyWalk<'_, N> {
         }
         let shape = self.of.slide.law.shape;
         let there = from.on_other_rim(&shape);
-        if self.has_two_rims() && from.angle.1.abs() < BOTH_AT_ONCE && there.lift < 0.0 {
+        let both = self.has_two_rims() && from.angle.1.abs() < BOTH_AT_ONCE;
+        // After two flights of no length the rims land in turn at the same time.
+        if both && (there.lift < 0.0 || e > 0.0 && self.still > 2) {
+            self.claims(from.angle.1.abs());
             return if e == 0.0 { self.lands_on_both() } else { self.rattles(e) };
         }
         let Some(mut struck) = self.impact(&from, e) else { return Next::Ends(Ending::Slip) };
@@ -273,12 +283,17 @@ impl<const N: usize> BodyWalk<'_, N> {
     /// The impact at these numbers; None where a rolling table has no answer.
     fn impact(&self, from: &Aloft, e: f64) -> Option<Struck> {
         let light = lightness(&self.of.slide.law.shape, from.angle);
-        RimImpact { slip: from.slip, lift: from.lift, light, tol: self.impact_tol() }.on(&self.ask.table, e)
+        self.rim_impact(from.slip, from.lift, light).on(&self.ask.table, e)
     }
 
-    /// Tolerance of a step along an impact.
-    fn impact_tol(&self) -> f64 {
-        (IMPACT_SHARE * self.of.slide.tol).max(IMPACT_TOL)
+    /// The impact of a rim. A rougher run begins it with a longer step, lest both runs take the same steps.
+    fn rim_impact(&self, slip: [f64; 2], lift: f64, light: [f64; 4]) -> RimImpact {
+        let (longer, rougher) = if self.perturbation > 0.0 {
+            (LONGER, self.perturbation * State::SAFETY / f64::EPSILON)
+        } else {
+            (1.0, 1.0)
+        };
+        RimImpact { slip, lift, light, tol: IMPACT_TOL * rougher, longer }
     }
 
     /// A bound of what the losses change in a unit of time, for each unit of the normal force.
@@ -294,7 +309,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         let (fall, w) = (a_n * force, turned(&law.shape, from.angle, from.w, struck.impulse));
         // The tolerance of a sweep is that of both of its runs, which so end their bounces together.
         let tail = match self.ask.method {
-            Method::Tolerance(tol) => (IMPACT_SHARE * tol).clamp(TAIL, LONGEST_TAIL),
+            Method::Tolerance(tol) => (TAIL_SHARE * tol).clamp(TAIL, LONGEST_TAIL),
             _ => TAIL,
         };
         let tail = if self.ask.losses.is_none() { tail } else { LOSSY_TAIL * tail };
@@ -306,9 +321,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             // Each bounce meets the slip that the flight before has made.
             let [along, across] = law.towards(from.angle, w, [0.0; 2], [0.0; 2]).u;
             let slip = [along - b * force, across].map(|rate| 2.0 * rate / fall);
-            ratio = RimImpact { slip, lift: -1.0, light, tol: self.impact_tol() }
-                .on(&self.ask.table, e)
-                .map_or(1.0, |next| next.lift);
+            ratio = self.rim_impact(slip, -1.0, light).on(&self.ask.table, e).map_or(1.0, |next| next.lift);
         }
         let left = 2.0 * struck.lift / (fall * (1.0 - ratio));
         (ratio < 1.0 && left * struck.lift < tail).then_some(left)
@@ -449,11 +462,11 @@ impl<const N: usize> BodyWalk<'_, N> {
         self.sets(&Aloft { height: 0.0, ..after });
     }
 
-    /// Writes a point of a flight to the outputs.
-    fn writes_in_air(&mut self, at: &Aloft) {
-        let force = self.ask.force.then_some((Force { normal: 0.0, along: 0.0, across: 0.0 }, 0.0));
+    /// Writes a point to the outputs whose forces all have the value `force`.
+    fn writes_with(&mut self, at: &Aloft, kind: Kind, force: f64) {
+        let force = self.ask.force.then_some((Force { normal: force, along: force, across: force }, 0.0));
         let pose = poses(N).then(|| at.pose());
-        self.made.put(at.state(), at.slip, self.at[8], Kind::Flying, pose, force);
+        self.made.put(at.state(), at.slip, self.at[8], kind, pose, force);
         if let Some(last) = self.made.path.aloft.last_mut() {
             *last = [at.height.max(0.0), at.lift];
         }
