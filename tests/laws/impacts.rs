@@ -215,8 +215,8 @@ fn a_slip_follows_rouths_equations_along_an_impact_also_where_friction_hardly_sl
             let k4 = rate(on(k3, h));
             y = core::array::from_fn(|i| y[i] + h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]));
         }
-        for i in 0..3 {
-            let off = (y[i] - hit.velocities[1][i]).abs();
+        for (i, (y, velocity)) in y.into_iter().zip(hit.velocities[1]).enumerate() {
+            let off = (y - velocity).abs();
             assert!(off < 1e-10, "{body:?} {drop:?} {mu} {e}: {off:e} in number {i}");
         }
     }

@@ -96,9 +96,10 @@ pub(crate) fn turned(
 
 /// A slip slower than this share of the speed, or of the normal velocity, counts as none.
 const STOPPED: f64 = 1e-15;
-/// A slip whose sine is below this runs along the lean, but for the square of it; and where the sine grows as the slip
-/// dies out.
-const STRAIGHT: [f64; 2] = [1e-8, 1e-14];
+/// A slip whose sine is below this runs along the lean, but for the square of it; and below this, where the sine grows as
+/// the slip dies out.
+const STRAIGHT: f64 = 1e-8;
+const STRAIGHT_ON: f64 = 1e-14;
 /// The error of a slip across the lean is this share of it, or smaller, so that it dies out where the slip lasts long.
 const DIES: f64 = 1e-6;
 /// The first step along an impact.
@@ -252,7 +253,7 @@ impl RimImpact {
             let sigma = place[0].hypot(place[1]);
             let grows = turns < -b * place[0].signum();
             // A slip along the lean may last long.
-            if sigma < STOPPED || place[1].abs() < STRAIGHT[usize::from(grows)] * sigma {
+            if sigma < STOPPED || place[1].abs() < (if grows { STRAIGHT_ON } else { STRAIGHT }) * sigma {
                 break false;
             }
             steps += 1;

@@ -162,7 +162,7 @@ pub(crate) fn land_at(
 }
 
 /// The state and the slip after the last of a rattle on both rims, whose rim comes down or rises at `lift`: all that is
-/// left of w2 and of the vertical velocity, and the energy lost: both are taken by impulses of either sign, each with the friction of its slip.
+/// left of w2 and of the vertical velocity is taken by impulses of either sign, each with the friction of its slip.
 ///
 /// Error: the square of those velocities, or the velocities themselves at a rim that sticks.
 pub(crate) fn settled(
@@ -170,7 +170,7 @@ pub(crate) fn settled(
     y: &State,
     (slip, lift): ([f64; 2], f64),
     friction: &Friction,
-) -> (State, [f64; 2], f64) {
+) -> (State, [f64; 2]) {
     let (ell, mu) = (body.ell(), friction.strength());
     let dry = matches!(friction, Friction::Coulomb { .. });
     let drag = |[u, v]: [f64; 2]| {
@@ -182,8 +182,7 @@ pub(crate) fn settled(
     let there = (turn + down * (ell - low[0])) / (2.0 * ell + up[0] - low[0]);
     let q = [low.map(|d| -(down - there) * d), up.map(|d| -there * d)];
     let (after, slips) = Impact { body, y: *y, slip, lift, mu, dry, both: true }.after(&q, 0.0);
-    let (after, last) = (State { w2: 0.0, ..after }, if slip == [0.0; 2] { slip } else { slips[0] });
-    (after, last, energy(body, y, slip, lift) - energy(body, &after, last, 0.0))
+    (State { w2: 0.0, ..after }, if slip == [0.0; 2] { slip } else { slips[0] })
 }
 
 /// The state and the slip of a body on its side as seen from its other rim, which then is the lower one.

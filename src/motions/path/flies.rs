@@ -12,11 +12,12 @@
 
 use super::flight::air::{AirFlight, in_air};
 use super::flight::{Aloft, Flies, Flight, Takeoff};
-use super::phases::{BodyPhases, BodyWalk};
+use super::phases::{BodyPhases, BodyWalk, LONGER};
 use crate::laws::contact::impact::{Hit, RimImpact, Struck, lightness, turned};
 use crate::laws::contact::landing::{Landed, Outcome, land_at, settled};
 use crate::laws::contact::slip::Friction;
 use crate::laws::contact::{FLAT, Force, Table};
+use crate::laws::newton;
 use crate::laws::state::State;
 use crate::motions::halt::{TIME, loses, poses};
 use crate::motions::walk::{Next, Phases};
@@ -32,8 +33,6 @@ const LONGEST_TAIL: f64 = 1e-10;
 const LOSSY_TAIL: f64 = 1e-8;
 /// The tolerance of a step along an impact.
 const IMPACT_TOL: f64 = 3e-14;
-/// The first step of a rougher run along an impact is so much longer.
-const LONGER: f64 = 1.4;
 /// Both rims rattle until |cos theta| and the normal velocities of both are below this.
 const RATTLED: f64 = 1e-7;
 /// Error of the rest of a rattle, in units of the square of its velocities.
@@ -51,7 +50,7 @@ const RATTLE_OVER: f64 = 1e-9;
 /// Share of its terms below which N0 is a rounding error.
 const ROUNDED: f64 = 1e-12;
 /// A jam needs a larger impulse than this share of the slip.
-const JAMMED: f64 = 1e-9;
+const JAM_TAKES: f64 = 1e-9;
 /// Largest number of impacts of both rims in turn.
 const MOST_IN_TURN: u32 = 10_000;
 
@@ -174,7 +173,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             return None;
         }
         let speed = from.slip[0].hypot(from.slip[1]);
-        let struck = self.impact(&from, e).filter(|struck| struck.impulse[2] > JAMMED * speed)?;
+        let struck = self.impact(&from, e).filter(|struck| struck.impulse[2] > JAM_TAKES * speed)?;
         // An output at this time shows the slip, for which there is no force.
         while self.until().is_some_and(|t| t <= self.at[TIME]) {
             self.writes_with(&from, Kind::Slipping, f64::NAN);
@@ -402,11 +401,15 @@ impl<const N: usize> BodyWalk<'_, N> {
         let left = from.angle.1.abs().max(from.w[1].abs()).max(from.lift.abs());
         self.claims(if from.slip == [0.0; 2] { left } else { left * left * SUMMED });
         self.claims(left * LASTS * self.couples(&from));
+        let (law, flat) = (self.of.slide.law, (1.0, 0.0));
         let state = State { theta: FRAC_PI_2, ..self.of.state };
-        let (y, slip, lost) = settled(&self.of.body, &state, (from.slip, from.lift), &friction);
-        // The centre, too, comes down to the height of the rims.
-        let rim = &self.of.slide.law.shape.rim;
-        self.at[8] += lost + from.height + rim.height(from.angle) - rim.height((1.0, 0.0));
+        let (v, still) = (law.centre(from.angle, from.w, from.slip), law.centre(flat, from.w, [0.0; 2]));
+        // Where the rims slip, the centre keeps its velocity while the axis comes to lie level.
+        let slip = if from.slip == [0.0; 2] { from.slip } else { [v[0] - still[0], v[1] - still[1]] };
+        let (y, slip) = settled(&self.of.body, &state, (slip, from.lift), &friction);
+        let lift = from.lift + law.shape.rim.lever(from.angle) * from.w[1];
+        let before = newton::energy(&law.shape, from.angle, from.w, [v[0], v[1], lift]) + from.height;
+        self.at[8] += before - law.energy(&y, slip);
         let after = Aloft { angle: (1.0, 0.0), w: [y.w1, 0.0, y.w3], slip, lift: 0.0, height: 0.0, ..from };
         self.sets(&after);
         self.settles_on_side()

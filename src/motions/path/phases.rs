@@ -30,7 +30,7 @@ pub(crate) type BodyWalk<'a, const N: usize> = Walk<'a, BodyPhases, N>;
 const ALL_BUT_FLAT: f64 = 1e-6;
 /// The first step of a rougher run is this many times as long as that of the finer run, so that
 /// their steps differ.
-const LONGER: f64 = 3.0;
+pub(super) const LONGER: f64 = 3.0;
 
 /// Size of cos theta below which a rougher run perturbs this number and not theta.
 const LEVEL: f64 = 1e-3;
