@@ -21,7 +21,7 @@ const RIM_TERMS: usize = 30;
 /// Within `near` the terms of the series fall by this factor; a landing before this share of it is sought with fewer terms,
 /// of which the last one is below exp(-DIGITS).
 const NARROWS: f64 = 3.0;
-const SOON: f64 = 0.5;
+const EARLY: f64 = 0.5;
 const DIGITS: f64 = 36.0;
 /// A cell shorter than this, in units of the time since the start, in which the height is below `TOUCH` counts as a touch.
 const SHORT_CELL: f64 = 1e-9;
@@ -167,7 +167,7 @@ impl Flight {
         // A bounce that is over long before needs few terms, up to twice the time that the first two say.
         let first = self.series(side, near, order + 2);
         let early = -(2.0 * first[order] / first[order + 1]);
-        if early > 0.0 && early < SOON {
+        if early > 0.0 && early < EARLY {
             let terms = order + 2 + (DIGITS / (NARROWS / early).ln()) as usize;
             let found = self.lands_near(side, order, early * near, terms)?;
             if found.is_some() {
