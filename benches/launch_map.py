@@ -27,13 +27,14 @@ def main():
     print(f"| restitution | until | threads | s | impacts | claim | {names} |")
     print("| --- |" + " --- |" * (5 + len(sc.sweep.Outcome) - 1))
     for e in (None, 0.0, 0.5):
+        more = {} if e is None else {"want": ("end", "impacts")}
         for until, how in (("rolling", {"stop_at": "rolling"}), ("t = 200", {})):
             for threads in (None, 1):
                 least = np.inf
                 for _ in range(1 if e is not None and threads else 2):
                     began = time.perf_counter()
                     law = {"contact": sc.Coulomb(0.3), "restitution": e, "threads": threads}
-                    found = sc.sweep.flicks(TUBE, 200.0, **axes, **law, **how)
+                    found = sc.sweep.flicks(TUBE, 200.0, **axes, **law, **how, **more)
                     least = min(least, time.perf_counter() - began)
                 shares = [f"{(found.outcome.values == x).mean():.1%}" for x in sc.sweep.Outcome if x]
                 hits = "" if e is None else f"{found.impacts.values.mean():.1f}"
