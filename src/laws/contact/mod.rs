@@ -15,6 +15,7 @@ pub(crate) mod impact;
 pub mod landing;
 pub mod lossy;
 pub(crate) mod lying;
+pub mod patch;
 pub(crate) mod reduced;
 pub mod rolling;
 pub mod slip;

@@ -168,7 +168,7 @@ coded! {
         AirTime = 18,
         /// Energy lost in impacts, in M g R.
         LostInImpacts = 19,
-        /// Code of the [`Kind`](crate::motion::Kind) of the last phase.
+        /// Code of the [`Kind`](crate::motion::path::Kind) of the last phase.
         LastPhase = 20,
     }
 }
