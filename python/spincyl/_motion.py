@@ -359,7 +359,7 @@ class Motion:
         scale: Scale | None = None,
         rate: int = 44_100,
     ) -> Path:
-        """Write what one hears of it as a WAV file: impacts, and a ring that beats at each turn of the contact.
+        """Write what one hears as a WAV file: impacts, and a ring that beats at each turn of the contact.
 
         Parameters
         ----------

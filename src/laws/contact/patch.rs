@@ -70,7 +70,7 @@ pub fn of(k: f64) -> [f64; 2] {
 
 /// The k at which f(k) is this share of mu N, 0 or more and at most 1, where it is infinite: by the cubic inside, and by
 /// a search outside.
-pub(crate) fn slip_for(share: f64) -> f64 {
+pub fn slip_for(share: f64) -> f64 {
     if share <= 9.0 * PI / 32.0 {
         let third = (2.0 * 3f64.sqrt() * share / PI).min(1.0).asin() / 3.0;
         return 4.0 / 3f64.sqrt() * third.sin();
