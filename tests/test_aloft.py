@@ -243,3 +243,19 @@ def test_a_slip_that_jams_is_told_with_its_state_and_without_a_force():
     assert m.impacts[0].time == 0 and m.impacts[0].kind == "sticks"
     whole = m.energy + m.dissipated + m.lost_in_impacts
     assert np.ptp(whole) < 1e-13 and m.phases[0].kind == "flying"
+
+
+def test_the_height_is_that_of_the_lowest_point_whichever_rim_it_is_on():
+    tube = sc.measured(outer_diameter="15.875mm", inner_diameter="12.7mm", length="95.25mm", mass="20g")
+    radius = tube.scale.radius
+    t = np.linspace(0, 0.5, 101)
+    for theta in (np.radians(60), np.radians(120)):
+        state = sc.dropped(tube, 0.1, theta)
+        m = sc.roll(tube, state, t, contact=GRIP, restitution=0.5, want=("pose", "force"))
+        reach = radius * (6 * np.abs(np.cos(m.theta)) + np.sin(m.theta))
+        assert m.height[0] == pytest.approx(0.1, rel=1e-14)
+        assert np.abs(m.height - (m.centre[:, 2] - reach)).max() < 1e-12
+        assert np.isnan(m.friction_coefficient[m.phase == 2]).all()
+    for height in (-0.1, np.nan, np.inf, [0.1, -1.0]):
+        with pytest.raises(ValueError, match="height = .*expected 0 <= height, finite"):
+            sc.dropped(tube, height, 1.0)

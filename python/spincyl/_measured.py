@@ -57,7 +57,7 @@ def measured(
     -------
     Body
         With its `scale`. `roll`, `swing`, `drift` and sweeps take it, and tell seconds, metres, joules,
-        newtons and rad/s; `thrown` and `pressed` take SI. What is asked of the body itself, and
+        newtons and rad/s; `thrown`, `pressed` and `dropped` take SI. What is asked of the body itself, and
         every `State`, stays in natural units, unless the name has a unit: `critical_hertz`, `hertz(theta)`,
         `inclinations(hertz=7.3)`. `natural` is the same body without its scale.
 

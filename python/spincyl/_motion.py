@@ -18,7 +18,7 @@ from spincyl._input.equality import compared
 from spincyl._input.numbers import Floats, Reals, si
 from spincyl._labelled import AXES, Components, frame, labelled
 from spincyl._measured import in_si, natural_time, speaking, told
-from spincyl._phases import Impact, Phase, impacts, phases, slipping
+from spincyl._phases import Impact, Phase, impacts, lowest, phases, slipping
 from spincyl._scale import Scale
 from spincyl._state import State
 from spincyl._swing import single, single_aloft, single_slip
@@ -166,6 +166,12 @@ class Motion:
         return self._told("energy", energy)
 
     @property
+    def height(self) -> Floats:
+        """(n,) height of the lowest point of the body, in R (measured: m). Needs `restitution=`."""
+        rim = _of(self.natural, "height", _ALOFT)
+        return self._told("height", lowest(self.body, self.theta, rim))
+
+    @property
     def success(self) -> bool:
         """Whether the last time was reached."""
         return self.status == Ending.DONE
@@ -212,14 +218,11 @@ class Motion:
     )
     friction_coefficient = Number(
         _FORCE,
-        '(n,) the coefficient of friction that is needed; infinite where N <= 0. Needs want="force".',
+        '(n,) coefficient of friction needed; infinite where N <= 0, NaN in the air. Needs want="force".',
     )
     contact_force = Number(
         _BOTH,
-        """(n, 3) force of the table on the body along the axes of the laboratory, in M g (measured: N).
-
-        Needs want=("pose", "force").
-        """,
+        '(n, 3) force of the table along the laboratory axes, M g or N. Needs want=("pose", "force").',
     )
     slip = Number(
         FRICTION,
@@ -240,11 +243,8 @@ class Motion:
         0 it rolls, 1 slips, 2 flies; on both rims 3 it lies and slips, 4 pivots, 5 rolls on its side.
         """,
     )
-    height = Number(
-        _ALOFT, "(n,) height of the lowest point of its rim, in R (measured: m). Needs `restitution=`."
-    )
     lift = Number(
-        _ALOFT, "(n,) how fast that point rises, in sqrt(g R) (measured: m/s). Needs `restitution=`."
+        _ALOFT, "(n,) how fast the lowest point of its rim rises, sqrt(g R) or m/s. Needs `restitution=`."
     )
     slip_other = Number(
         _ALOFT, "(n, 2) `slip` of the other rim; NaN unless it lies on both. Needs `restitution=`."
@@ -259,7 +259,7 @@ class Motion:
 
     @property
     def impacts(self) -> tuple[Impact, ...]:
-        """Every impact of a rim on the table. Needs `restitution=`."""
+        """Every impact of a rim on the table; bounces that are summed are one. Needs `restitution=`."""
         if self._impacts is None:
             raise AttributeError(_ALOFT.format("impacts", ""))
         return self._impacts

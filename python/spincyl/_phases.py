@@ -1,13 +1,17 @@
 """Phases of a motion with friction or restitution, and its impacts: slipping, rolling, flying, lying."""
 
 from collections.abc import Callable, Iterable, Sequence
-from typing import Any, Literal, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
 
+from spincyl import _core
 from spincyl._contact import AnyContact, Coulomb, Viscous
-from spincyl._input.numbers import number
+from spincyl._input.numbers import Floats, number
 from spincyl._state import State, gripping, landed
+
+if TYPE_CHECKING:
+    from spincyl._body import Body
 
 Kind: TypeAlias = Literal["rolling", "slipping", "flying", "lying", "pivoting", "rolling on its side"]
 #: Kind of phase for each code in `Motion.phase`.
@@ -129,3 +133,14 @@ def duration(phases: Sequence[Phase], end: float) -> float:
     begins = np.array([phase.time for phase in phases] + [end])
     slips = np.array([phase.kind in ("slipping", "lying", "pivoting") for phase in phases], bool)
     return float(np.abs(np.diff(begins))[slips].sum())
+
+
+def two_rims(body: "Body") -> bool:
+    """Whether the body has a rim at either end."""
+    return bool(_core.two_rims(*body._numbers) == 1)
+
+
+def lowest(body: "Body", theta: Floats, rim: Floats) -> Floats:
+    """(n,) height of the lowest place of a body, from that of its rim: in the air the other may be lower."""
+    other = rim + 2 * body.ell * np.cos(theta)
+    return np.maximum(np.minimum(rim, other), 0.0) if two_rims(body) else rim

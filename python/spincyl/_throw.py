@@ -100,7 +100,7 @@ def dropped(
     body : Body
         One, or a family.
     height : array_like
-        Of the lowest point of its rim over the table, in R; of a measured body, or with `scale`, in metres.
+        Of its lowest point over the table, in R; of a measured body, or with `scale`, in metres. 0 or more.
     theta : array_like
         Inclination in radians.
     w1, w2, w3 : array_like, optional
@@ -132,7 +132,8 @@ def dropped(
     if not isinstance(velocity, tuple | list) or len(velocity) != 3:
         raise TypeError(f"velocity: expected three, along the lean, across, upwards, not {velocity!r}")
     metre, second = (1.0, 1.0) if scale is None else scale._units[:2]
-    height = reals("height", height if scale is None else si("height", height, "metre")) / metre
+    height = reals("height", height if scale is None else si("height", height, "metre"))
+    refuse("height", height, lambda x: ~((x >= 0) & (x < np.inf)), "expected 0 <= height, finite")
     given = (("w1", w1), ("w2", w2), ("w3", w3))
     w = (reals(name, x if scale is None else radians_per_second(name, x)) * second for name, x in given)
     moves = (reals("velocity", x if scale is None else si("velocity", x, "metre/second")) for x in velocity)
@@ -140,7 +141,9 @@ def dropped(
     state = State(theta, *w)
     rise = upwards - _core.centre_up(*numbers(state), 0.0, 0.0, *body._numbers)
     found = body.with_centre_velocity(state, along, across)
-    return replace(found, height=height + 0.0 * rise, lift=rise + 0.0 * height)
+    # a body that leans over has its other rim below that of which theta tells
+    over = _core.two_rims(*body._numbers) * np.minimum(2 * body.ell * np.cos(state.theta), 0.0)
+    return replace(found, height=height / metre - over + 0.0 * rise, lift=rise + 0.0 * height)
 
 
 @elementwise

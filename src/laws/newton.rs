@@ -45,9 +45,15 @@ impl Force {
         Vector3::new(c * self.across - s * self.along, s * self.across + c * self.along, self.normal)
     }
 
-    /// The coefficient of friction that rolling needs; infinite where the normal force is not positive.
+    /// The coefficient of friction that rolling needs; infinite where the normal force is not positive, and NaN in the
+    /// air, where there is no force.
     pub fn friction_coefficient(&self) -> f64 {
-        if self.normal > 0.0 { self.friction() / self.normal } else { f64::INFINITY }
+        let friction = self.friction();
+        if self.normal > 0.0 || friction == 0.0 && self.normal == 0.0 {
+            friction / self.normal
+        } else {
+            f64::INFINITY
+        }
     }
 }
 

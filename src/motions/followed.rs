@@ -81,7 +81,7 @@ fn together<S>(runs: [&[Phase<S>]; 2], end: f64, whirrs: bool) -> (Vec<[&Phase<S
             continue;
         }
         // Of two kinds the phase that ends first has no partner. Of the same kind it is the earlier phase, and the one
-        // after it has none either. A slip that only continues in another direction belongs to the slip before it.
+        // after it, unless it is the last, has none either. A slip that only continues in another direction belongs to the slip before it.
         let k = usize::from(if a.kind == b.kind {
             b.time < a.time || b.time == a.time && long[1] < long[0]
         } else {
@@ -89,7 +89,8 @@ fn together<S>(runs: [&[Phase<S>]; 2], end: f64, whirrs: bool) -> (Vec<[&Phase<S
         });
         let goes_on = at[k] > 0 && runs[k][at[k] - 1].kind == runs[k][at[k]].kind;
         alone = alone.max(if goes_on { 0.0 } else { long[k] });
-        at[k] += if a.kind == b.kind && !goes_on { 2 } else { 1 };
+        let more = a.kind == b.kind && !goes_on && at[k] + 2 < runs[k].len();
+        at[k] += if more { 2 } else { 1 };
     }
     for k in if whirrs { 0..0 } else { 0..2 } {
         alone = runs[k].get(at[k]).map_or(alone, |phase| alone.max(end - phase.time));

@@ -6,8 +6,8 @@ import numpy as np
 
 from spincyl._input.numbers import Floats
 from spincyl._motion import Motion
-from spincyl._phases import KINDS
-from spincyl._studio.aloft import FLIES, aloft, two_rims
+from spincyl._phases import KINDS, two_rims
+from spincyl._studio.aloft import FLIES, aloft
 from spincyl._studio.poses import span
 
 #: Phases shorter than this share of the time shown belong to the bounces before and after them, in words.

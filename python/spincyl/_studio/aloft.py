@@ -15,7 +15,7 @@ from spincyl._contact import Contact
 from spincyl._input.numbers import Floats
 from spincyl._phases import Phase
 from spincyl._state import State
-from spincyl._studio.shape import landing, rotations
+from spincyl._studio.shape import rotations
 from spincyl._swing import swing
 
 if TYPE_CHECKING:
@@ -180,19 +180,6 @@ def _often(body: "Body", phase: Phase) -> float:
     with suppress(ValueError):  # where the first integrals lose their digits
         return 1 / swing(body, state, contact).period
     return 0.0
-
-
-def two_rims(body: "Body") -> bool:
-    """Whether the body has a rim at either end."""
-    return float(body.ell) > 0 and landing(body) == np.pi / 2
-
-
-def lowest(m: "Motion") -> Floats:
-    """(n,) height of the lowest place of the body, which in the air may be on the other rim."""
-    m = m.natural
-    other = m.height + 2 * m.body.ell * np.cos(m.theta)
-    found: Floats = np.maximum(np.minimum(m.height, other), 0.0) if two_rims(m.body) else m.height
-    return found
 
 
 def tops(theta: Floats, z: Floats, far: float) -> Floats:

@@ -275,7 +275,9 @@ class Scene:
         turned = m.orientation[0]
         # at the start, psi = 0: e1, e2, e3 are the body's axes
         w = m.w[0]
-        arm = m.centre[0] - np.append(m.contact_point[0], m.height[0] if self._flies else 0.0)
+        arm = m.centre[0] - np.append(
+            m.contact_point[0], m.natural._extra["height"][0] if self._flies else 0.0
+        )
         velocity = np.cross(rotations(turned) @ w, arm)
         if m.contact == "smooth":
             velocity[:2] = 0.0

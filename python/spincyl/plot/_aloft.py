@@ -7,7 +7,7 @@ import numpy as np
 
 from spincyl._input.numbers import Floats, extra
 from spincyl._phases import Phase
-from spincyl._studio.aloft import aloft, lowest
+from spincyl._studio.aloft import aloft
 from spincyl._studio.poses import span
 from spincyl.plot._style import BLACK, ORANGE, RED, SKY
 
@@ -67,7 +67,7 @@ def height(
     """
     second, metre, said = units
     right = ax.twinx()
-    high = lowest(m) * metre
+    high = m.natural.height * metre
     right.plot(t, high, color=ORANGE, **style)
     times = second * np.array([x.time for x in m.impacts])
     (marks,) = right.plot(times, 0 * times, "v", color=BLACK, ms=6, clip_on=False, label="impact", zorder=4)

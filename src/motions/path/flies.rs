@@ -75,12 +75,15 @@ impl<const N: usize> BodyWalk<'_, N> {
 
     /// Moves the walk to these numbers.
     pub(super) fn sets(&mut self, to: &Aloft) {
-        let ((s, c), [w1, w2, w3], [u, v]) = (to.angle, to.w, to.slip);
+        let ((s, c), [mut w1, w2, mut w3], [u, mut v]) = (to.angle, to.w, to.slip);
+        if self.of.planar {
+            (w1, w3, v) = (0.0, 0.0, 0.0);
+        }
         self.at[..7].copy_from_slice(&[s, c, w1, w2, w3, u, v]);
         if poses(N) {
             self.at[9..13].copy_from_slice(&to.pose);
         }
-        self.of.state = State { theta: if c == 0.0 { FRAC_PI_2 } else { to.state().theta }, ..to.state() };
+        self.of.state = State { theta: if c == 0.0 { FRAC_PI_2 } else { to.state().theta }, w1, w2, w3 };
         (self.of.takeoff.height, self.of.takeoff.lift) = (to.height, to.lift);
     }
 

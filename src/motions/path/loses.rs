@@ -68,6 +68,8 @@ impl<const N: usize> BodyWalk<'_, N> {
         let Some(mut phase) = self.of.lossy.take() else { return Ok(None) };
         let (body, ask) = (self.of.body, self.ask);
         let goes_on = ask.beyond && !matches!(ask.table, Table::Rubs(_));
+        // With a restitution a body whose contact point has stopped rocks on, and comes to lie on its side.
+        let rocks_on = found == Halt::Contour && (goes_on || ask.restitution.is_some());
         if phase.flow.holds_drilling() && !matches!(found, Halt::Time | Halt::Pause) {
             self.removes_drilling();
         }
@@ -94,7 +96,7 @@ impl<const N: usize> BodyWalk<'_, N> {
                 if stops && goes_on && found == Halt::Contour {
                     self.records_event(Ending::Stops);
                 }
-                if !stops || goes_on && found == Halt::Contour {
+                if !stops || rocks_on {
                     let y = flow.enter(&self.at);
                     self.of.lossy = Some(phase);
                     return Ok(Some(y));
