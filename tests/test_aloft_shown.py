@@ -12,7 +12,7 @@ from pages import between, clock, go, picture
 
 import spincyl as sc
 from spincyl._pages.view import _edges
-from spincyl._studio.aloft import aloft, goes_up, lowest
+from spincyl._studio.aloft import aloft, goes_up
 from spincyl._studio.film import reel
 from spincyl._studio.frames import _shown as prepared
 from spincyl._studio.frames import _Stage
@@ -134,7 +134,7 @@ def test_a_page_draws_flights_where_they_are_and_no_force_in_the_air(shown):
         contact = np.array([pose["contact"] for pose in found])
         assert np.abs(contact[:, :2] - there.contact_point).max() < 0.01 and not contact[:, 2].any(), name
         assert np.abs(np.array([pose["theta"] for pose in found]) - there.theta).max() < 3e-3, "the same rim"
-        assert np.abs(np.array([pose["height"] for pose in found]) - lowest(there)).max() < 0.01, name
+        assert np.abs(np.array([pose["height"] for pose in found]) - there.natural.height).max() < 0.01, name
         w = np.linalg.norm([pose["omega"] for pose in found], axis=1)
         assert np.abs(w - np.linalg.norm(there.w, axis=1)).max() < 0.1, name
         flies, lies = there.phase == 2, there.phase == 5
@@ -192,7 +192,7 @@ def test_in_a_film_the_lowest_place_of_a_body_is_as_high_as_it_is(name):
     panel = prepared(m, times, "O")
     places = np.concatenate([part.vertices for part in map(lathe, profiles(m.body))])
     bottom = [(places @ r.T + c)[:, 2].min() for r, c in zip(panel.rotation, panel.centre, strict=True)]
-    assert np.allclose(bottom, lowest(m.wanting("pose", t=times)), atol=2e-3)
+    assert np.allclose(bottom, m.wanting("pose", t=times).natural.height, atol=2e-3)
     flies = seen(m, panel.along, "phase")[0] == 2
     assert panel.gaps[flies].all() and panel.gaps[~flies].mean() < 0.05, "no path in the air"
     highest = max((places @ r.T + c)[:, 2].max() for r, c in zip(panel.rotation, panel.centre, strict=True))
@@ -292,7 +292,7 @@ def test_a_figure_has_the_height_the_impacts_and_the_times_in_the_air_and_on_bot
     (right,) = (ax for ax in tilt.figure.axes if ax not in (tilt, path, force))
     assert right.get_ylabel() == "height of its lowest point ($R$)"
     t, high = right.lines[0].get_data()
-    assert np.allclose(high[::20], lowest(m.at(t[::20])), atol=1e-9) and high.min() == 0
+    assert np.allclose(high[::20], m.at(t[::20]).natural.height, atol=1e-9) and high.min() == 0
     assert np.allclose(right.lines[1].get_xdata(), [x.time for x in m.impacts])
     words = [text.get_text() for text in tilt.get_legend().get_texts()]
     assert words == ["in the air", "slips", "lies on both rims", "impact"]
