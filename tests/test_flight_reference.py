@@ -222,7 +222,7 @@ def rolled(case):
 def test_states_and_poses_are_those_of_the_reference(case):
     m, rows = rolled(case), sampled(case)
     assert m.t.tolist() == [float(row.t) for row in rows]
-    states = np.column_stack([m.theta, m.w, m.slip, m.lift, m.height])
+    states = np.column_stack([m.theta, m.w, m.slip, m.lift, m.states.height])
     assert off(states, rows, (*STATE, "u_n", "height")).max() <= max(1e-11, m.error)
     poses = np.column_stack([m.phi, m.psi, m.contact_point])
     assert off(whole(poses, rows), rows, POSE).max() <= max(1e-11, m.pose_error)

@@ -59,6 +59,7 @@ __all__ = [
     "loss_couple",
     "loss_laws",
     "loss_power",
+    "lower_rim",
     "motion_options",
     "nutation",
     "painleve",
@@ -171,6 +172,7 @@ centre_along: np.ufunc
 centre_up: np.ufunc
 centre_across: np.ufunc
 rests: np.ufunc
+lower_rim: np.ufunc
 two_rims: np.ufunc
 capsule_end: np.ufunc
 stone_tilted: np.ufunc

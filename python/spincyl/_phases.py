@@ -142,5 +142,5 @@ def two_rims(body: "Body") -> bool:
 
 def lowest(body: "Body", theta: Floats, rim: Floats) -> Floats:
     """(n,) height of the lowest place of a body, from that of its rim: in the air the other may be lower."""
-    other = rim + 2 * body.ell * np.cos(theta)
-    return np.maximum(np.minimum(rim, other), 0.0) if two_rims(body) else rim
+    found: Floats = np.maximum(rim + _core.lower_rim(theta, *body._numbers), 0.0)
+    return found

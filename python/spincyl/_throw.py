@@ -142,7 +142,7 @@ def dropped(
     rise = upwards - _core.centre_up(*numbers(state), 0.0, 0.0, *body._numbers)
     found = body.with_centre_velocity(state, along, across)
     # a body that leans over has its other rim below that of which theta tells
-    over = _core.two_rims(*body._numbers) * np.minimum(2 * body.ell * np.cos(state.theta), 0.0)
+    over = _core.lower_rim(state.theta, *body._numbers)
     return replace(found, height=height / metre - over + 0.0 * rise, lift=rise + 0.0 * height)
 
 

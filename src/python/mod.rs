@@ -248,6 +248,16 @@ static LAWS: &[ArrayFunction] = &[
         value: Value::One(|x| of_body(x, |b| f64::from(u8::from(two_rims(b).is_ok())))),
     },
     ArrayFunction {
+        name: "lower_rim",
+        inputs: 7,
+        value: Value::One(|x| {
+            of_body(&x[1..], |b| match two_rims(b) {
+                Ok(_) => b.shape().rim.between(x[0].sin_cos()).min(0.0),
+                Err(_) => 0.0,
+            })
+        }),
+    },
+    ArrayFunction {
         name: "capsule_end",
         inputs: 2,
         value: Value::One(|x| or_nan(Body::rounded_tube(x[0], 0.0, x[1]).map(|b| capsule_end(&b)))),

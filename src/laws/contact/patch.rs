@@ -15,7 +15,7 @@
 //! k itself is never formed, since it may be 0/0: f/S takes its place. Outside, f and g/q are analytic in s = sqrt(1 -
 //! q^2), and their Chebyshev series on [0, 1] fall as 5.83^-n.
 //!
-//! Error: 2e-15 of f and g for any k; a test compares them with 20 digits.
+//! Error: 2e-15 of f and g for any k; a test of `patch` compares them with 20 digits.
 
 use crate::methods::search::crossing;
 use crate::numbers::Real;
