@@ -27,7 +27,7 @@ class _Law:
     """Base of the laws of friction: coefficients are numbers or arrays, compared by value."""
 
     @property
-    def _numbers(self) -> tuple[Reals, Reals]:
+    def _numbers(self) -> tuple[Reals, Reals, Reals]:
         raise NotImplementedError
 
 
@@ -43,11 +43,16 @@ class Coulomb(_Law):
     static : array_like, optional
         Coefficient up to which a body that rolls is held, at least `mu`; infinite if it is never to slip once
         it rolls. Default: `mu`.
+    patch : array_like, optional
+        Radius of a round patch of contact, in R, below 1: slip and drilling share one friction, with the pressure
+        of Hertz. Nothing sticks as long as the body drills. That of a measured body has a unit: `from_si`.
+        Default: 0, a point.
 
     Raises
     ------
     ValueError
-        For a coefficient that is negative, NaN or, of `mu`, infinite, and for a `static` below `mu`.
+        For a coefficient that is negative, NaN or, of `mu`, infinite, for a `static` below `mu`, and for a `patch`
+        that is not in [0, 1).
     TypeError
         Naming the coefficient that is no real number.
 
@@ -60,6 +65,17 @@ class Coulomb(_Law):
 
     mu: Reals
     static: Reals = None
+    patch: Reals = 0.0
+    #: False for a patch in natural units; True, or the scale, if it was given in SI.
+    _sized: ClassVar[Scale | bool] = False
+
+    @classmethod
+    def from_si(cls, mu: Reals, static: Reals = None, *, patch: Reals, scale: "Scale | Body") -> Self:
+        """With a `patch` in metres, or as in "0.3mm", for a body of this scale."""
+        of = scale_of(scale)
+        made = cls(mu, static, reals("patch", si("patch", patch, "metre")) / of._units[0])
+        object.__setattr__(made, "_sized", of)
+        return made
 
     def __post_init__(self) -> None:
         mu = _coefficient("mu", self.mu)
@@ -67,16 +83,21 @@ class Coulomb(_Law):
         static = mu if self.static is None else _coefficient("static", self.static)
         if static is not mu and not is_lazy(mu):
             refuse("static", static, lambda x: x < np.asarray(mu), f"expected at least mu = {mu!r}")
+        patch = _coefficient("patch", self.patch)
+        refuse("patch", patch, lambda x: ~(x < 1), "expected 0 <= patch < 1, in R")
         object.__setattr__(self, "mu", mu)
         object.__setattr__(self, "static", static)
+        object.__setattr__(self, "patch", patch)
 
     @property
-    def _numbers(self) -> tuple[Reals, Reals]:
-        return self.mu, self.static
+    def _numbers(self) -> tuple[Reals, Reals, Reals]:
+        return self.mu, self.static, self.patch
 
     def __repr__(self) -> str:
         same = self.static is self.mu or (not is_lazy(self.static) and np.array_equal(self.static, self.mu))
-        return call("Coulomb", self.mu, **({} if same else {"static": self.static}))
+        more = {} if same else {"static": self.static}
+        point = is_scalar(self.patch) and self.patch == 0
+        return call("Coulomb", self.mu, **more | ({} if point else {"patch": self.patch}))
 
 
 @compared
@@ -129,8 +150,8 @@ class Viscous(_Law):
         object.__setattr__(self, "c", c)
 
     @property
-    def _numbers(self) -> tuple[Reals, Reals]:
-        return self.c, 0.0
+    def _numbers(self) -> tuple[Reals, Reals, Reals]:
+        return self.c, 0.0, 0.0
 
     def __repr__(self) -> str:
         return call("Viscous", self.c)
@@ -164,14 +185,14 @@ def rolls(contact: object) -> bool:
     return code(contact) == TABLES["rolling"]
 
 
-def table(contact: AnyContact, mu: float) -> tuple[int, tuple[float, float]]:
+def table(contact: AnyContact, mu: float) -> tuple[int, tuple[float, float, float]]:
     """Code and coefficients of a table for the core; ValueError if the coefficients are arrays."""
     if isinstance(contact, str):
-        return TABLES[contact], (mu, 0.0)
+        return TABLES[contact], (mu, 0.0, 0.0)
     if not is_scalar(*contact._numbers):
         raise ValueError(f"contact = {contact!r}: expected single numbers, not arrays of them")
-    first, second = contact._numbers
-    return law(contact), (float(first), float(second))
+    first, second, patch = map(float, contact._numbers)
+    return law(contact), (first, second, patch)
 
 
 def kind(contact: AnyContact) -> AnyContact:
@@ -184,8 +205,16 @@ def fitting(contact: AnyContact, scale: Scale | None) -> None:
     if scale is not None and isinstance(contact, Viscous) and not contact._sized:
         why = "a coefficient of a measured body has its unit, sc.Viscous.from_si(..., scale=body)"
         raise ValueError(f"contact = {contact!r}: {why}; body.natural takes this one")
-    if isinstance(contact, Viscous):
-        other(f"contact = {contact!r}", contact._sized, scale)
+    if scale is not None and has_patch(contact) and not contact._sized:  # type: ignore[union-attr]
+        why = 'the patch of a measured body has its unit, sc.Coulomb.from_si(mu, patch="0.3mm", scale=body)'
+        raise ValueError(f"contact = {contact!r}: {why}; body.natural takes this one")
+    if isinstance(contact, Viscous) or has_patch(contact):
+        other(f"contact = {contact!r}", contact._sized, scale)  # type: ignore[union-attr]
+
+
+def has_patch(contact: object) -> bool:
+    """Whether a table has a patch of contact, or some of several do."""
+    return isinstance(contact, Coulomb) and (is_lazy(contact.patch) or bool(np.any(contact.patch)))
 
 
 def law(contact: Friction) -> int:

@@ -12,8 +12,8 @@ use pyo3::types::PyDict;
 
 const MOTION_BODY: [&str; 5] = ["ell", "i1", "i3", "fillet", "theta_end"];
 const SLIP: [&str; 2] = ["slip_along", "slip_across"];
-/// The names of the coefficients of a table: mu or c, and the static one.
-const TABLE: [&str; 2] = ["coefficient", "static"];
+/// The names of the coefficients of a table: mu or c, the static one, and the radius of the patch.
+const TABLE: [&str; 3] = ["coefficient", "static", "patch"];
 
 /// Name, unit and description of the columns that are not summaries.
 const LABELS: [[&str; 3]; 9] = [

@@ -56,7 +56,7 @@ options! {
         slip: [f64; 2] = [0.0; 2],
         table: u8 = TableKind::Rolling as u8,
         /// Mu, or those of a law of friction.
-        coefficients: [f64; 2] = [f64::INFINITY, 0.0],
+        coefficients: [f64; 3] = [f64::INFINITY, 0.0, 0.0],
         losses: Option<[f64; COUNT]> = None,
         step: Option<f64> = None,
         tol: Option<f64> = None,

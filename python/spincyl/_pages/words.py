@@ -9,7 +9,7 @@ import numpy as np
 
 from spincyl import loss
 from spincyl._body import Body
-from spincyl._contact import AnyContact, Coulomb, Viscous, code
+from spincyl._contact import AnyContact, Coulomb, Viscous, code, has_patch
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._input.numbers import is_scalar, made, within
 from spincyl._loss import Law, Loss, sized
@@ -60,6 +60,8 @@ def words_of_table(contact: AnyContact) -> dict[str, Any]:
     if isinstance(contact, Coulomb | Viscous) and not is_scalar(*contact._numbers):
         raise ValueError(f"contact = {contact!r}: the page knows single numbers, not arrays of them")
     if isinstance(contact, Coulomb):
+        if has_patch(contact):
+            raise ValueError(f"contact = {contact!r}: the page knows a point of contact, patch = 0")
         if contact.static != contact.mu:
             raise ValueError(f"contact = {contact!r}: the page knows one coefficient, static = mu")
         return {"contact": "coulomb", "mu": float(contact.mu)}

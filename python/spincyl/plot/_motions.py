@@ -221,7 +221,7 @@ def _law(m: "Motion") -> str:
     """A law of friction, for a title."""
     if isinstance(m.contact, Viscous):
         return rf"viscous, $c = {m.contact.c:.4g}$"
-    mu, static = m.contact._numbers if isinstance(m.contact, Coulomb) else (0.0, 0.0)
+    mu, static, _ = m.contact._numbers if isinstance(m.contact, Coulomb) else (0.0, 0.0, 0.0)
     return rf"$\mu = {mu:.4g}$" + ("" if static == mu else rf", $\mu_s = {static:.4g}$")
 
 

@@ -253,7 +253,7 @@ def _fields(bodies: Body, states: State, contact: AnyContact, losses: Loss | Non
     }
     fields |= zip(_STATE, states._numbers, strict=True)
     if isinstance(contact, Coulomb | Viscous):
-        fields |= zip(("coefficient", "static"), contact._numbers, strict=True)
+        fields |= zip(("coefficient", "static", "patch"), contact._numbers, strict=True)
     if states.slip is not None or isinstance(contact, Coulomb | Viscous):
         fields |= zip(_SLIP, states._slip, strict=True)
     if states.height is not None:

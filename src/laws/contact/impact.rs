@@ -175,7 +175,7 @@ impl RimImpact {
                 course.film(c * big, slip, self.light);
                 Hit::Slips
             }
-            Table::Rubs(friction @ Friction::Coulomb { mu, fixed }) if mu > 0.0 || friction.sticks() => {
+            Table::Rubs(friction @ Friction::Coulomb { mu, fixed, .. }) if mu > 0.0 || friction.sticks() => {
                 stopped = !self.slides(&mut course, mu, slip)?;
                 if !stopped {
                     Hit::Slips

@@ -22,6 +22,7 @@
 //! dimensions.
 
 use super::JAMMED;
+use super::patch::shares;
 use crate::error::{Error, within};
 use crate::laws::body::{Body, Shape};
 use crate::laws::loss::{Couples, Law, Losses};
@@ -38,6 +39,9 @@ pub enum Friction {
         mu: f64,
         /// Coefficient of static friction, at least `mu`; it may be infinite.
         fixed: f64,
+        /// Radius of the patch of contact, below 1: it shares the friction between slip and drilling
+        /// ([`patch`](super::patch)). 0 for a point.
+        patch: f64,
     },
     /// A viscous film: the force is c N u against the slip, and the contact point never sticks.
     Viscous {
@@ -49,16 +53,17 @@ pub enum Friction {
 impl Friction {
     /// Coulomb's law with one coefficient for sliding and rest.
     pub fn coulomb(mu: f64) -> Self {
-        Self::Coulomb { mu, fixed: mu }
+        Self::Coulomb { mu, fixed: mu, patch: 0.0 }
     }
 
     /// Refuses coefficients outside their range; the error names the coefficient.
     pub fn check(&self) -> Result<(), Error> {
         let finite = (0.0, f64::MAX);
         match *self {
-            Self::Coulomb { mu, fixed } => {
+            Self::Coulomb { mu, fixed, patch } => {
                 within("mu", mu, finite, "0 <= mu, finite")?;
                 within("static", fixed, (mu, f64::INFINITY), "mu <= static")?;
+                within("patch", patch, (0.0, 1.0 - f64::EPSILON), "0 <= patch < 1, in R")?;
             }
             Self::Viscous { c } => {
                 within("c", c, finite, "0 <= c, finite")?;
@@ -72,6 +77,14 @@ impl Friction {
         match *self {
             Self::Coulomb { mu, .. } => mu,
             Self::Viscous { c } => c,
+        }
+    }
+
+    /// The radius of the patch of contact; 0 for a point.
+    pub(crate) fn patch(&self) -> f64 {
+        match *self {
+            Self::Coulomb { mu, patch, .. } if mu > 0.0 => patch,
+            _ => 0.0,
         }
     }
 
@@ -95,6 +108,8 @@ pub(crate) struct Slipping<T> {
     pub dry: bool,
     /// The losses beside friction; None if the body has none.
     pub losses: Option<Couples<T>>,
+    /// The radius of the patch of contact; None for a point.
+    pub patch: Option<T>,
 }
 
 /// The accelerations and the contact force in one state.
@@ -122,7 +137,12 @@ impl<T: Real> Slipping<T> {
         let reach = shape.rim.ell.abs() + shape.rim.rho;
         // Friction changes the slip by about this speed in a quarter of the unit of time.
         let soft = strength * (one + reach * reach * per_i1 + per_i3) * strength.splat(0.25);
-        Self { shape: *shape, per_i1, per_i3, strength, soft, dry, losses: None }
+        Self { shape: *shape, per_i1, per_i3, strength, soft, dry, losses: None, patch: None }
+    }
+
+    /// The same body on a patch of this radius.
+    pub fn with_patch(self, patch: Option<T>) -> Self {
+        Self { patch, ..self }
     }
 
     /// The same body with losses.
@@ -162,6 +182,19 @@ impl<T: Real> Slipping<T> {
         u: [T; 2],
         (pull, size, sum): ([T; 2], T, T),
     ) -> (SlipResponse<T>, T) {
+        self.with_twist((s, c), w, u, (pull, size, sum), None)
+    }
+
+    /// The response to this friction force, and to a couple `twist` N about the vertical.
+    #[inline(always)]
+    fn with_twist(
+        &self,
+        (s, c): (T, T),
+        w: [T; 3],
+        u: [T; 2],
+        (pull, size, sum): ([T; 2], T, T),
+        twist: Option<T>,
+    ) -> (SlipResponse<T>, T) {
         let Shape { rim, i1, i3 } = &self.shape;
         let ([w1, w2, w3], angle) = (w, (s, c));
         let (lever, slope, height) = (rim.lever(angle), rim.slope(angle), rim.height(angle));
@@ -190,6 +223,11 @@ impl<T: Real> Slipping<T> {
         if let Some(couple) = &couple {
             let [m1, m2, m3] = couple.under(force[0]);
             (t1, t2, t3) = (t1 + m1, t2 + m2, t3 + m3);
+        }
+        if let Some(twist) = twist {
+            // The normal force does not depend on a couple about the vertical.
+            let twist = twist * force[0];
+            (t1, t3) = (s.mac(twist, t1), c.mac(twist, t3));
         }
         let mut dw = [t1 * self.per_i1, t2 * self.per_i1, t3 * self.per_i3];
         let mut held = [w1.splat(0.0), w1.splat(1.0)];
@@ -236,11 +274,42 @@ impl<T: Real> Slipping<T> {
         self.with(angle, w, u, (u, size, sum))
     }
 
+    /// The speed of the slip, and under a patch also of its rim by the drilling.
+    #[inline(always)]
+    pub fn rubbing(&self, (s, c): (T, T), [w1, _, w3]: [T; 3], u: [T; 2]) -> T {
+        let slip = u[0].mac(u[0], u[1] * u[1]).sqrt();
+        self.patch.map_or(slip, |patch| slip + patch * (s * w1 + c * w3).abs())
+    }
+
+    /// The response in a state, dt/dsigma there, and the heat of the couple of the patch in a unit of time.
+    #[inline(always)]
+    pub fn on_patch(&self, (s, c): (T, T), w: [T; 3], u: [T; 2], patch: T) -> (SlipResponse<T>, T, T) {
+        let drilling = s * w[0] + c * w[2];
+        let (slip, turn) = (u[0].mac(u[0], u[1] * u[1]).sqrt(), patch * drilling.abs());
+        let [share, couple] = shares(slip, turn);
+        // The couple is odd in the drilling, and -mu N eps g where the body drills.
+        let zero = s.splat(0.0);
+        let against = self.strength * patch * couple;
+        let twist = drilling.select_lt(zero, against, zero.select_lt(drilling, -against, zero));
+        let size = slip + turn;
+        let pull = u.map(|u| u * share * size);
+        let (at, pace) = self.with_twist((s, c), w, u, (pull, size, size + self.soft), Some(twist));
+        (at, pace, self.strength * at.force[0] * turn * couple)
+    }
+
     /// Writes the derivatives of sine, cosine, w, u, time and, as the ninth number, heat with respect to sigma.
     #[inline(always)]
     pub fn rates<const N: usize>(&self, y: &[T; N], all: &mut [T; N]) -> SlipResponse<T> {
         let (s, c, w, u) = (y[0], y[1], [y[2], y[3], y[4]], [y[5], y[6]]);
         let (at, pace) = self.at((s, c), w, u);
+        self.writes(y, all, (&at, pace));
+        at
+    }
+
+    /// Writes the derivatives of these numbers from the response.
+    #[inline(always)]
+    pub fn writes<const N: usize>(&self, y: &[T; N], all: &mut [T; N], (at, pace): (&SlipResponse<T>, T)) {
+        let (s, c, w, u) = (y[0], y[1], [y[2], y[3], y[4]], [y[5], y[6]]);
         let ([_, along, across], [d1, d2, d3], [a, b]) = (at.force, at.w, at.u);
         let rates = [-(c * w[1]), s * w[1], d1, d2, d3, a, b];
         for (to, rate) in all.iter_mut().zip(rates) {
@@ -250,7 +319,6 @@ impl<T: Real> Slipping<T> {
         if N > 8 {
             all[8] = -(pace * (along * u[1] + across * u[0]));
         }
-        at
     }
 }
 
@@ -258,7 +326,19 @@ impl Slipping<f64> {
     /// The equations of slipping of a body on a table with this friction.
     pub fn on(body: &Body, friction: &Friction) -> Self {
         let dry = matches!(*friction, Friction::Coulomb { mu, .. } if mu > 0.0 || friction.sticks());
-        Self::of(&body.shape(), friction.strength(), dry)
+        let patch = friction.patch();
+        Self::of(&body.shape(), friction.strength(), dry).with_patch((patch > 0.0).then_some(patch))
+    }
+
+    /// The response in a state, dt/dsigma there, and the heat of a couple of a patch in a unit of time.
+    pub fn answers(&self, angle: (f64, f64), w: [f64; 3], u: [f64; 2]) -> (SlipResponse<f64>, f64, f64) {
+        match self.patch {
+            Some(patch) => self.on_patch(angle, w, u, patch),
+            None => {
+                let (at, pace) = self.at(angle, w, u);
+                (at, pace, 0.0)
+            }
+        }
     }
 
     /// The equations of slipping of a body on a table with this friction and these losses.
@@ -282,7 +362,7 @@ impl Slipping<f64> {
 
     /// The contact force N, F2 and Fh in a state.
     pub fn force(&self, y: &State, u: [f64; 2]) -> Force {
-        let [normal, along, across] = self.at(y.theta.sin_cos(), [y.w1, y.w2, y.w3], u).0.force;
+        let [normal, along, across] = self.answers(y.theta.sin_cos(), [y.w1, y.w2, y.w3], u).0.force;
         Force { normal, along, across }
     }
 
@@ -326,7 +406,7 @@ pub fn derivative(
     losses: &Losses,
 ) -> (State, [f64; 2], Force) {
     let slipping = Slipping::on_losing(body, friction, losses);
-    let (at, _) = slipping.at(y.theta.sin_cos(), [y.w1, y.w2, y.w3], slip);
+    let (at, ..) = slipping.answers(y.theta.sin_cos(), [y.w1, y.w2, y.w3], slip);
     let ([w1, w2, w3], [normal, along, across]) = (at.w, at.force);
     (State { theta: -y.w2, w1, w2, w3 }, at.u, Force { normal, along, across })
 }

@@ -125,13 +125,13 @@ impl<F: Fn(f64) -> Option<f64>> HeldContact<F> {
 
 /// The behaviour of a contact point whose slip is zero.
 pub(crate) fn standstill(body: &Body, y: &State, friction: &Friction, losses: &Losses) -> Standstill {
-    let Friction::Coulomb { mu, fixed } = *friction else { return Standstill::Sticks };
+    let Friction::Coulomb { mu, fixed, .. } = *friction else { return Standstill::Sticks };
     rest(body, y, (friction, [mu, fixed]), losses).decides()
 }
 
 /// The direction in which a contact point slips off when static friction has just ceased to hold it.
 pub(crate) fn let_go(body: &Body, y: &State, friction: &Friction, losses: &Losses) -> Standstill {
-    let Friction::Coulomb { mu, fixed } = *friction else { return Standstill::Sticks };
+    let Friction::Coulomb { mu, fixed, .. } = *friction else { return Standstill::Sticks };
     rest(body, y, (friction, [mu, fixed]), losses).lets_go()
 }
 

@@ -69,20 +69,20 @@ impl Table {
     pub(crate) fn friction(&self) -> Friction {
         match *self {
             Self::Rubs(friction) => friction,
-            Self::Rolling { mu } => Friction::Coulomb { mu: 0.0, fixed: mu },
+            Self::Rolling { mu } => Friction::Coulomb { mu: 0.0, fixed: mu, patch: 0.0 },
             Self::Smooth => Friction::coulomb(0.0),
         }
     }
 
     /// The same law with other coefficients, as [`TableKind::with`] takes them.
-    pub(crate) fn with_coefficients(&self, own: [f64; 2]) -> Self {
+    pub(crate) fn with_coefficients(&self, [a, b]: [f64; 2]) -> Self {
         let kind = match self {
             Self::Rolling { .. } => TableKind::Rolling,
             Self::Smooth => TableKind::Smooth,
             Self::Rubs(Friction::Coulomb { .. }) => TableKind::Coulomb,
             Self::Rubs(Friction::Viscous { .. }) => TableKind::Viscous,
         };
-        kind.with(own)
+        kind.with([a, b, self.friction().patch()])
     }
 
     /// Refuses coefficients outside their range; the error names the coefficient.
@@ -132,11 +132,11 @@ impl TableKind {
     }
 
     /// The table of this kind with these coefficients; coefficients that the kind does not have are ignored.
-    pub fn with(self, [a, b]: [f64; 2]) -> Table {
+    pub fn with(self, [a, b, patch]: [f64; 3]) -> Table {
         match self {
             Self::Rolling => Table::Rolling { mu: a },
             Self::Smooth => Table::Smooth,
-            Self::Coulomb => Friction::Coulomb { mu: a, fixed: b }.into(),
+            Self::Coulomb => Friction::Coulomb { mu: a, fixed: b, patch }.into(),
             Self::Viscous => Friction::Viscous { c: a }.into(),
         }
     }

@@ -313,6 +313,11 @@ impl<T: Real> Couples<T> {
         self.present[law as usize]
     }
 
+    /// Sets the coefficient of a law that is present.
+    pub fn sets(&mut self, law: Law, coefficient: T) {
+        self.coefficients[law as usize] = coefficient;
+    }
+
     /// The coefficient of this law.
     #[inline(always)]
     pub fn coefficient(&self, law: Law) -> T {

@@ -19,8 +19,8 @@ pub struct MotionStarts<'a> {
     pub states: [&'a [f64]; 4],
     /// The slip along the lean and across it; `None` means that nothing slips.
     pub slips: Option<[&'a [f64]; 2]>,
-    /// The two coefficients of the table of each motion; `None` means those of the job.
-    pub coefficients: Option<[&'a [f64]; 2]>,
+    /// The coefficients of the table of each motion, and the radius of its patch; `None` means those of the job.
+    pub coefficients: Option<[&'a [f64]; 3]>,
     /// The coefficients of the losses, in the order of [`Law::ALL`](crate::laws::loss::Law::ALL).
     pub losses: Option<[&'a [f64]; COUNT]>,
     /// Height and vertical velocity of the lowest point of motions that start in the air.
@@ -78,8 +78,9 @@ impl<'a> MotionStarts<'a> {
     }
 
     fn columns(&self) -> impl Iterator<Item = &'a [f64]> {
-        let pairs = self.slips.into_iter().chain(self.coefficients).chain(self.aloft).flatten();
-        self.bodies.into_iter().chain(self.states).chain(pairs).chain(self.losses.into_iter().flatten())
+        let pairs = self.slips.into_iter().chain(self.aloft).flatten();
+        let laws = self.coefficients.into_iter().flatten().chain(self.losses.into_iter().flatten());
+        self.bodies.into_iter().chain(self.states).chain(pairs).chain(laws)
     }
 
     /// The number of starts.
@@ -120,7 +121,11 @@ impl<'a> MotionStarts<'a> {
         self.losses.map_or(Losses::NONE, |all| Losses { coefficients: all.map(|x| at(x, i)) })
     }
 
-    pub(super) fn coefficients(&self, i: usize) -> Option<[f64; 2]> {
+    pub(super) fn has_patch(&self) -> bool {
+        self.coefficients.is_some_and(|[.., patch]| patch.iter().any(|radius| *radius > 0.0))
+    }
+
+    pub(super) fn coefficients(&self, i: usize) -> Option<[f64; 3]> {
         self.coefficients.map(|all| all.map(|x| at(x, i)))
     }
 }

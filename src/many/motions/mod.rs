@@ -86,9 +86,9 @@ impl<'a> Job<'a> {
     }
 
     /// The options of one motion, with its own coefficients of the table if it has any.
-    fn ask(&self, coefficients: Option<[f64; 2]>, losses: Losses) -> Ask {
+    fn ask(&self, coefficients: Option<[f64; 3]>, losses: Losses) -> Ask {
         Ask {
-            table: self.table.with(coefficients.unwrap_or([self.mu; 2])),
+            table: self.table.with(coefficients.unwrap_or([self.mu, self.mu, 0.0])),
             losses,
             method: self.step.map_or(Method::Exact, Method::Step),
             beyond: self.beyond,
@@ -195,7 +195,8 @@ pub(crate) fn roll_among(
     let mut go_on = |share| failed.get().is_none() && go_on(share);
     let all = share_aside(blocks, (threads, roomy), &mut go_on, |RowBlock { first, count, out }, still| {
         let (work, mut out) = (MotionBlock { starts, job, first }, out.out);
-        let done = match (flows, starts.losses.is_some()) {
+        let loses = starts.losses.is_some() || starts.has_patch();
+        let done = match (flows, loses) {
             (true, true) => work.flow::<10>(level, count, &mut out, still),
             (true, false) => work.flow::<9>(level, count, &mut out, still),
             _ => conserved(&work, level, (count, &mut out), still),

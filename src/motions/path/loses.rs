@@ -16,7 +16,8 @@ impl<const N: usize> BodyWalk<'_, N> {
     /// numbers of the flow, None if the phase is over at once.
     pub(super) fn begins_to_lose(&mut self, mu: f64) -> Result<Option<[f64; N]>, Error> {
         let on = (&self.of.body, self.contact());
-        let mut flow = LossyFlow::new(on, mu, &self.ask.losses, self.of.slide.tol, &self.of.state);
+        let (losses, y, friction) = (self.of.rolling_losses, self.of.state, self.friction());
+        let mut flow = LossyFlow::new(on, mu, &losses, self.of.slide.tol, &y).on_patch(&friction, &y);
         let halt = flow.at_start(&self.of.state);
         // The friction that would hold a moving contact point is not that of a body at rest.
         let may_rest = halt.is_none_or(|halt| halt == Halt::Slips && self.of.is_still());
@@ -121,6 +122,10 @@ impl<const N: usize> BodyWalk<'_, N> {
             Halt::Side => {
                 self.of.state.theta = body.theta_end();
                 Next::Ends(Ending::Side)
+            }
+            Halt::Slips if let Some(slip) = flow.creeps(&self.of.state) => {
+                (self.at[5], self.at[6]) = (slip[0], slip[1]);
+                Next::Slips
             }
             Halt::Slips if matches!(ask.table, Table::Rubs(_)) && flow.jumps(&self.of.state) => {
                 let (state, by) = flow.on_its_way(&self.of.state);

@@ -37,6 +37,7 @@ use super::{Ask, Motion, Start};
 pub use super::{Hit, Kind, Path, Phase, Strike};
 use crate::error::{Error, within};
 use crate::laws::body::Body;
+use crate::laws::loss::Law;
 use crate::methods::SHORT_CODE;
 pub(crate) use phases::BodyWalk;
 
@@ -70,7 +71,8 @@ pub(super) fn walked(
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Option<Followed>, Error> {
     // `SHORT_CODE` compiles one kind of walk only, with the pose and the lost energy.
-    match (SHORT_CODE || ask.pose, !SHORT_CODE && ask.losses.is_none()) {
+    let loses = !ask.losses.is_none() || ask.table.friction().patch() > 0.0;
+    match (SHORT_CODE || ask.pose, !SHORT_CODE && !loses) {
         (true, true) => walk::<13>(body, start, ask, (tol, integrates), times)?.run(go_on),
         (true, false) => walk::<14>(body, start, ask, (tol, integrates), times)?.run(go_on),
         (false, true) => walk::<9>(body, start, ask, (tol, integrates), times)?.run(go_on),
@@ -95,6 +97,7 @@ fn check(body: &Body, start: &Start, ask: &Ask) -> Result<f64, Error> {
     exact::check(body, &start.state)?;
     ask.table.check()?;
     ask.losses.check_for(body)?;
+    check_patch(ask)?;
     let fine = check_flow(ask)?;
     for (name, u) in ["slip along the lean", "slip across"].into_iter().zip(start.slip) {
         within(name, u, (-1e6, 1e6), "at most 1e6 sqrt(g R) for a motion")?;
@@ -122,6 +125,20 @@ fn check(body: &Body, start: &Start, ask: &Ask) -> Result<f64, Error> {
         }
     }
     if ask.table.rubs() || start.aloft.is_some() { Ok(fine) } else { without_slip(start.slip).map(|()| fine) }
+}
+
+/// Refuses what a patch of contact does not go with.
+fn check_patch(ask: &Ask) -> Result<(), Error> {
+    let patch = ask.table.friction().patch();
+    if patch > 0.0 && ask.losses.coefficients[Law::Drilling as usize] > 0.0 {
+        let expected = "0 together with drilling friction, which is the same couple";
+        return Err(Error::OutOfRange { name: "patch", value: patch, expected });
+    }
+    if patch > 0.0 && ask.restitution.is_some() {
+        let expected = "0 together with a restitution";
+        return Err(Error::OutOfRange { name: "patch", value: patch, expected });
+    }
+    Ok(())
 }
 
 /// Refuses a slip on a table without a law of friction.

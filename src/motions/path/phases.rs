@@ -12,7 +12,8 @@ use crate::error::Error;
 use crate::laws::body::Body;
 use crate::laws::contact::slip::{Friction, centre_velocity, painleve};
 use crate::laws::contact::standstill::{Standstill, let_go, standstill, towards};
-use crate::laws::contact::{Contact, Table, force, lossy};
+use crate::laws::contact::{Contact, Table, force, lossy, patch};
+use crate::laws::loss::{Law, Losses};
 use crate::laws::state::State;
 use crate::methods::flow::{Flow, FlowPlace, Steps};
 use crate::motions::halt::{Halt, loses, poses};
@@ -44,6 +45,8 @@ pub(crate) struct BodyPhases {
     pub(super) start: State,
     /// Whether a phase without a slip is integrated: the first integrals give it where nothing is lost.
     pub(super) integrates: bool,
+    /// The losses of a body that does not slip, with the drilling friction of a patch of contact.
+    pub(super) rolling_losses: Losses,
     /// The present phase, if it loses energy without a slip.
     pub(super) lossy: Option<LossyPhase>,
     /// The present phase, if the body lies on both rims.
@@ -94,12 +97,18 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
         let (s, c) = start.theta.sin_cos();
         let mut at = [0.0; N];
         at[..7].copy_from_slice(&[s, c, start.w1, start.w2, start.w3, slip[0], slip[1]]);
+        let (mut rolling_losses, friction) = (ask.losses, ask.table.friction());
+        if friction.patch() > 0.0 {
+            rolling_losses.coefficients[Law::Drilling as usize] =
+                friction.strength() * friction.patch() * patch::of(0.0)[1];
+        }
         let of = BodyPhases {
             body: *body,
             slide: Slide::new(body, &ask.table.friction(), &ask.losses, tol),
             state: start,
             start,
-            integrates: ask.table == Table::Smooth || !ask.losses.is_none(),
+            integrates: ask.table == Table::Smooth || !rolling_losses.is_none(),
+            rolling_losses,
             lossy: None,
             lying: None,
             takeoff: Takeoff::default(),
@@ -249,7 +258,9 @@ impl<const N: usize> Phases<N> for BodyPhases {
     fn write_here(walk: &mut BodyWalk<'_, N>) {
         let (body, y, slip, at) = (&walk.of.body, &walk.of.state, [walk.at[5], walk.at[6]], &walk.at);
         let (rubs, losses) = (walk.ask.table.rubs(), &walk.ask.losses);
-        let slips = rubs && (slip != [0.0; 2] || !walk.of.slide.law.dry);
+        let drills =
+            walk.of.slide.law.patch.is_some() && <Self as Phases<N>>::rubbing(walk) > walk.of.slide.over();
+        let slips = rubs && (slip != [0.0; 2] || !walk.of.slide.law.dry || drills);
         let kind = if slips { Kind::Slipping } else { walk.kind() };
         let press = |y: &State| match slips {
             true => walk.of.slide.law.force(y, slip),
@@ -286,10 +297,11 @@ impl<const N: usize> Phases<N> for BodyPhases {
         let (of, losses) = (&walk.of, &walk.ask.losses);
         // A body that rolling resistance keeps at rest sticks: the law of a slip would let the resistance push it.
         let held = || {
-            let on = (&of.body, walk.contact());
-            LossyFlow::new(on, f64::INFINITY, losses, of.slide.tol, &of.state).rests(&of.state)
+            let (on, friction) = ((&of.body, walk.contact()), walk.friction());
+            let flow = LossyFlow::new(on, f64::INFINITY, &of.rolling_losses, of.slide.tol, &of.state);
+            flow.on_patch(&friction, &of.state).rests(&of.state)
         };
-        if of.is_still() && !losses.is_none() && held() {
+        if of.is_still() && !of.rolling_losses.is_none() && held() {
             return Standstill::Sticks;
         }
         standstill(&of.body, &of.state, &walk.friction(), losses)
@@ -349,6 +361,14 @@ impl<const N: usize> Phases<N> for BodyPhases {
     }
     fn slips_on(walk: &mut BodyWalk<'_, N>) -> [f64; N] {
         walk.of.slide.enter(&walk.at)
+    }
+
+    fn rubbing(walk: &BodyWalk<'_, N>) -> f64 {
+        let y = &walk.at;
+        walk.of.slide.law.rubbing((y[0], y[1]), [y[2], y[3], y[4]], [y[5], y[6]])
+    }
+    fn begins_slowly(walk: &BodyWalk<'_, N>) -> bool {
+        walk.of.slide.law.patch.is_none()
     }
 
     fn slow(walk: &mut BodyWalk<'_, N>, way: [f64; 2]) -> BodySlips {

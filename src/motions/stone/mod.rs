@@ -46,6 +46,10 @@ pub(crate) fn check(
     if let Some(value) = ask.losses.coefficients.into_iter().find(|x| *x != 0.0) {
         return Err(Error::OutOfRange { name: "losses", value, expected: "none: a stone has no losses" });
     }
+    if ask.table.friction().patch() > 0.0 {
+        let (value, expected) = (ask.table.friction().patch(), "0: a stone touches at a point");
+        return Err(Error::OutOfRange { name: "patch", value, expected });
+    }
     if let Some(value) = ask.restitution {
         return Err(Error::OutOfRange {
             name: "restitution",

@@ -105,7 +105,7 @@ impl<'a, 'n> StoneWalk<'a, 'n> {
         // The rate of the slip per force along the axes of the laboratory.
         let per = lab.map(|axis| law.yields(&at, axis));
         let [mu, fixed] = match self.friction() {
-            Friction::Coulomb { mu, fixed } => [mu, fixed],
+            Friction::Coulomb { mu, fixed, .. } => [mu, fixed],
             Friction::Viscous { .. } => [0.0; 2],
         };
         let element = |i: usize, j: usize| dot(lab[i], per[j]);

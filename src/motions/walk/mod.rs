@@ -285,8 +285,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         if !self.ask.table.rubs() {
             return Ok(P::begins_without_slip(self));
         }
-        let [u, v] = [self.at[P::SLIP], self.at[P::SLIP + 1]];
-        if u.hypot(v) > self.of.over() || !self.of.is_dry() {
+        if P::rubbing(self) > self.of.over() || !self.of.is_dry() {
             return match P::ends_slip(self) {
                 Some(Halt::Jam) => match P::goes_on(self, Ending::Painleve) {
                     Next::Ends(Ending::Painleve) => Err(P::no_unique_force(self)),

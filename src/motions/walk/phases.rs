@@ -72,6 +72,14 @@ pub(crate) trait Phases<const N: usize>: Sized {
     fn slips(walk: &mut Walk<'_, Self, N>) -> [f64; N];
     fn slips_on(walk: &mut Walk<'_, Self, N>) -> [f64; N];
     /// The series of slow slips, with which a slip from rest along `way` begins.
+    /// How fast the contact point slips, or the rim of its patch by drilling.
+    fn rubbing(walk: &Walk<'_, Self, N>) -> f64 {
+        walk.at[Self::SLIP].hypot(walk.at[Self::SLIP + 1])
+    }
+    /// Whether a slip from rest has a power series.
+    fn begins_slowly(_: &Walk<'_, Self, N>) -> bool {
+        true
+    }
     fn slow(walk: &mut Walk<'_, Self, N>, way: [f64; 2]) -> Self::Slow;
     /// The time since the start of a series up to which no margin fails, at most the duration of the series.
     fn clear_until(walk: &Walk<'_, Self, N>, series: &SlowSeries<N>) -> f64;

@@ -51,6 +51,11 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
     /// which an integrator takes over; None if the slip ends before that.
     pub(super) fn slips_off(&mut self, (alpha, growth): (f64, f64)) -> Option<[f64; N]> {
         let way = towards(alpha);
+        if !P::begins_slowly(self) {
+            self.begins_phase(P::slip_kind(self));
+            self.made.path.way = way;
+            return Some(P::nudged(self, way, growth));
+        }
         let mut slow = P::slow(self, way);
         let Some(mut series) = slow.follow(&self.at, Series::of(alpha), growth, 0.0) else {
             self.next = Some(Next::Ends(Ending::Painleve));

@@ -20,7 +20,8 @@ mod steps;
 
 use crate::laws::body::Body;
 use crate::laws::contact::lossy::{Acted, Held, Lossy};
-use crate::laws::contact::{Contact, Force};
+use crate::laws::contact::slip::Friction;
+use crate::laws::contact::{Contact, Force, patch};
 use crate::laws::loss::{COUNT, GRACE, Law, Losses, SLACK, Ways, holds};
 use crate::laws::state::State;
 use crate::methods::search::crossing;
@@ -50,6 +51,12 @@ enum Hold {
 const JUMP: f64 = 1e-6;
 /// Speed given to a motion that has just reversed and slips at once, so that its new direction is definite.
 const NUDGE: f64 = 1e-13;
+/// Largest number of evaluations for the length of drilling friction on a patch.
+const FITS: usize = 20;
+/// A contact point that is let go begins to creep with at most this share of the friction of a slip.
+const MOST_CREEP: f64 = 0.999;
+/// A patch that drills faster than this, in sqrt(g/R), creeps.
+pub(crate) const DRILLS: f64 = 1e-9;
 /// A body with a smaller joint speed of rolling and rocking is at rest for the law of rolling resistance.
 pub(crate) const REST: f64 = 1e-13;
 
@@ -89,6 +96,9 @@ pub(crate) struct LossyFlow {
     pub tol: f64,
     /// Whether events other than a landing of the face end the flow.
     watch: bool,
+    /// The coefficient of sliding friction and the radius of a patch, whose couple is that of drilling friction with a
+    /// length that depends on the force.
+    patch: Option<[f64; 2]>,
 }
 
 impl LossyFlow {
@@ -118,9 +128,42 @@ impl LossyFlow {
             ball,
             tol,
             watch,
+            patch: None,
         };
         lossy.sets_holds(y);
         lossy
+    }
+
+    /// The same flow on a patch of contact, whose drilling friction is among the losses.
+    pub fn on_patch(mut self, friction: &Friction, y: &State) -> Self {
+        if friction.patch() > 0.0 {
+            self.patch = Some([friction.strength(), friction.patch()]);
+            self.sets_holds(y);
+        }
+        self
+    }
+
+    /// The law with the length of drilling friction that goes with the force on a patch: a fixed point, since the force
+    /// depends little on that length.
+    fn fitted(
+        &self,
+        mut law: Lossy<f64>,
+        angle: (f64, f64),
+        precession: f64,
+        (w, held): ([f64; 3], Held<f64>),
+    ) -> Lossy<f64> {
+        let Some([mu, patch]) = self.patch else { return law };
+        for _ in 0..FITS {
+            let [normal, along, across] = law.at(angle, precession, w, held).force;
+            let share = along.hypot(across) / (mu * normal.max(f64::MIN_POSITIVE));
+            let length = mu * patch * patch::of(patch::slip_for(share.min(1.0)))[1];
+            let change = length - law.losses.coefficient(Law::Drilling);
+            law.losses.sets(Law::Drilling, length);
+            if change.abs() <= f64::EPSILON * mu * patch {
+                break;
+            }
+        }
+        law
     }
 
     pub fn holds_drilling(&self) -> bool {
@@ -175,7 +218,17 @@ impl LossyFlow {
     }
 
     fn response(&self, angle: (f64, f64), precession: f64, w: [f64; 3], held: Held<f64>) -> Acted<f64> {
-        self.law.at(angle, precession, w, held)
+        self.fitted(self.law, angle, precession, (w, held)).at(angle, precession, w, held)
+    }
+
+    /// The slip of a contact point on a patch that creeps under the contact force of this state.
+    pub fn creeps(&self, y: &State) -> Option<[f64; 2]> {
+        let [mu, patch] = self.patch?;
+        let Force { normal, along, across } = self.force(y);
+        let (s, c) = y.theta.sin_cos();
+        let (friction, turn) = (along.hypot(across), patch * (s * y.w1 + c * y.w3).abs());
+        let slip = turn * patch::slip_for((friction / (mu * normal)).min(MOST_CREEP)) / friction;
+        (turn > 0.0 && friction > 0.0).then(|| [-(slip * across), -(slip * along)])
     }
 
     /// Lets dry friction hold the contact point if its limit suffices, or always if `surely`; else the

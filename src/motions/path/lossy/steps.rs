@@ -1,10 +1,10 @@
 //! The flow of a body that loses energy: its rates, its margins, and the settling of its contact.
 
 use super::free::{error, fastest_of, from_side, pace_of, three_radians};
-use super::{Hold, LossyFlow, REST};
+use super::{DRILLS, Hold, LossyFlow, REST};
 use crate::laws::body::landing_angle;
 use crate::laws::contact::lossy::{Acted, Held, Lossy};
-use crate::laws::contact::{Contact, grip};
+use crate::laws::contact::{Contact, grip, patch};
 use crate::laws::loss::{GRACE, Law, rolling_growth};
 use crate::methods::flow::{FASTEST, Flow, FlowPlace};
 use crate::methods::rk8;
@@ -36,7 +36,8 @@ impl LossyFlow {
         let radius = self.law.rates.reduced().shape.rim.radius(angle);
         let way = if self.hold == Hold::Settled { self.settled_way } else { self.ways.contour };
         let act = |precession: f64, w: [f64; 3], rate: f64| {
-            let acted = self.bare.at(angle, precession, w, Held::Contour(rate));
+            let held = Held::Contour(rate);
+            let acted = self.fitted(self.bare, angle, precession, (w, held)).at(angle, precession, w, held);
             Turned { acted, push: acted.held[0], normal: acted.force[0] }
         };
         let Balance { precession, w, turned: Turned { acted, push, .. }, spin } =
@@ -94,7 +95,11 @@ impl LossyFlow {
         let side = from_side([high, far, there].map(number), (s, c));
         let [normal, along, across] = acted.force;
         let square = along * along + across * across;
-        let grip = if self.mu.is_finite() { grip(number(self.mu), normal, square) } else { one };
+        let mut grip = if self.mu.is_finite() { grip(number(self.mu), normal, square) } else { one };
+        if self.patch.is_some() {
+            let drilling = s * w[0] + c * w[2];
+            grip = grip.min(number(2.0 * DRILLS) - drilling.abs());
+        }
         let [push, limit] = acted.held;
         let within = limit * limit * number(1.0 + 2.0 * GRACE) - push * push;
         let slack = self.slack.map(|slack| number(slack) * (one + precession.abs()));
@@ -154,6 +159,14 @@ impl Flow<MARGINS> for LossyFlow {
         if loses(N) {
             all[N - 1] = acted.power;
         }
+        if let Some([mu, patch]) = self.patch {
+            // The couple of the patch is friction, which makes heat.
+            let [normal, along, across] = acted.force;
+            let share = (along.hypot(across) / (mu * normal)).min(1.0);
+            let heat =
+                mu * normal * patch * patch::of(patch::slip_for(share))[1] * (s * w[0] + c * w[2]).abs();
+            (all[8], all[N - 1]) = (heat, all[N - 1] - heat);
+        }
         if poses(N) {
             let moves = matches!(self.hold, Hold::No | Hold::Settled);
             let spin = if moves { w[2] - c * precession } else { 0.0 };
@@ -173,11 +186,21 @@ impl Flow<MARGINS> for LossyFlow {
 
     fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; MARGINS] {
         let y = core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
-        self.margins_of(&self.sloped, y)
+        let mut law = self.sloped;
+        if self.patch.is_some() {
+            let (precession, w) = self.turning(y.map(|x| x.value));
+            let angle = (place.y[0], place.y[1]);
+            let length = self.fitted(self.law, angle, precession, (w, self.held(0.0))).losses;
+            law.losses.sets(Law::Drilling, Dual { value: length.coefficient(Law::Drilling), slope: 0.0 });
+        }
+        self.margins_of(&law, y)
     }
 
     fn margin<const N: usize>(&self, y: &[f64; N], i: usize) -> f64 {
-        self.margins_of(&self.law, core::array::from_fn(|k| y[k]))[i]
+        let y = core::array::from_fn(|k| y[k]);
+        let (precession, w) = self.turning(y);
+        let law = self.fitted(self.law, (y[0], y[1]), precession, (w, self.held(0.0)));
+        self.margins_of(&law, y)[i]
     }
 
     fn end(&self, i: usize) -> Halt {

@@ -336,7 +336,7 @@ impl<const N: usize> BodyWalk<'_, N> {
                     let [_, across, along] = phase.flow.lain(&self.at).force[usize::from(other)];
                     let way = if other { 1.0 } else { -1.0 };
                     let against = f64::atan2(way * across, way * along);
-                    let equal = matches!(self.friction(), Friction::Coulomb { mu, fixed } if mu == fixed);
+                    let equal = matches!(self.friction(), Friction::Coulomb { mu, fixed, .. } if mu == fixed);
                     self.slips_off_two(phase.flow, other, equal.then_some(against))
                 }
             }

@@ -22,6 +22,7 @@ use crate::methods::flow::{FASTEST, Flow, FlowPlace};
 use crate::methods::rk8;
 use crate::motions::halt::{Halt, MARGINS, TIME, loses, poses};
 use crate::motions::path::face::FLAT;
+use crate::motions::path::lossy::DRILLS;
 use crate::motions::walk::{MOMENT, slip_over};
 use crate::numbers::{Dual, Real};
 use core::f64::consts::PI;
@@ -58,7 +59,8 @@ impl Slide {
         let law = Slipping::on_losing(body, friction, losses);
         let dual = |value: f64| Dual { value, slope: 0.0 };
         let sloped = Slipping::of(&law.shape.map(dual), dual(law.strength), law.dry);
-        let sloped = sloped.with_losses(law.losses.map(|losses| losses.map(dual)));
+        let sloped =
+            sloped.with_losses(law.losses.map(|losses| losses.map(dual))).with_patch(law.patch.map(dual));
         let (theta_end, ball) = (body.theta_end(), body.is_ball());
         let bare = law.with_losses(law.losses.map(Couples::off_the_contour));
         let flat = if losses.turn_endlessly() { FLATTER } else { FLAT };
@@ -67,7 +69,7 @@ impl Slide {
 
     /// The speed below which a slip counts as zero.
     pub fn over(&self) -> f64 {
-        slip_over(self.law.dry, self.law.strength)
+        self.law.patch.map_or(slip_over(self.law.dry, self.law.strength), |patch| patch * DRILLS)
     }
 
     /// The energy of the body with these numbers.
@@ -80,7 +82,7 @@ impl Slide {
     /// once in a step.
     #[inline(never)]
     pub(super) fn acts(&self, angle: (f64, f64), w: [f64; 3], u: [f64; 2]) -> SlipResponse<f64> {
-        self.law.at(angle, w, u).0
+        self.law.answers(angle, w, u).0
     }
 
     /// The halt by the first margin that fails at the start of a slip; None if all margins are positive.
@@ -103,8 +105,19 @@ impl Slide {
     /// The error of a step in units of `tol`, where 1 is allowed; speeds count relative to the largest speed.
     #[inline(always)]
     pub fn error<T: Real, const N: usize>(tol: T, y: &[T; N], made: &rk8::Step<T, N>, dry: bool) -> T {
+        Self::error_beside(tol, y, made, dry, y[5].mac(y[5], y[6] * y[6]).sqrt())
+    }
+
+    /// The error of a step, where that of a dry slip is relative to the speed `slip`.
+    #[inline(always)]
+    fn error_beside<T: Real, const N: usize>(
+        tol: T,
+        y: &[T; N],
+        made: &rk8::Step<T, N>,
+        dry: bool,
+        slip: T,
+    ) -> T {
         let one = tol.splat(1.0);
-        let slip = y[5].mac(y[5], y[6] * y[6]).sqrt();
         let fastest = Self::fastest(y);
         let (per_tol, per_speed) = (one / tol, one / (tol * fastest));
         // The error of a dry slip is relative to its speed, so that a vanishing slip keeps its direction.
@@ -174,7 +187,15 @@ impl Flow<MARGINS> for Slide {
         let ([precession, spin], power) = if self.settled {
             self.settled_rates(y, all)
         } else {
-            let (at, precession) = (self.law.rates(y, all), w1 / s);
+            let precession = w1 / s;
+            let at = if self.law.patch.is_some() {
+                let (at, pace, heat) = self.law.answers((s, c), [w1, w2, w3], [u_h, u_2]);
+                self.law.writes(y, all, (&at, pace));
+                all[8] += pace * heat;
+                at
+            } else {
+                self.law.rates(y, all)
+            };
             let power = if loses(N) { self.law.power((s, c), [w1, w2, w3], at.force[0]) } else { 0.0 };
             ([precession, w3 - c * precession], power)
         };
@@ -197,7 +218,11 @@ impl Flow<MARGINS> for Slide {
         if self.settled {
             (w1, w3) = (s * w1, c * w1);
         }
-        let (at, _) = self.sloped.at((s, c), [w1, w2, w3], [u_h, u_2]);
+        let (angle, w, u) = ((s, c), [w1, w2, w3], [u_h, u_2]);
+        let at = match self.sloped.patch {
+            Some(patch) => self.sloped.on_patch(angle, w, u, patch).0,
+            None => self.sloped.at(angle, w, u).0,
+        };
         let one = s.splat(1.0);
         let (high, far) = landing_angle(self.theta_end);
         let side = if self.theta_end < PI { s.splat(high) * c - s.splat(far) * s } else { one };
@@ -261,10 +286,19 @@ impl Flow<MARGINS> for Slide {
         {
             return Some((Halt::Rests, rest));
         }
-        if loses(N) && self.settles(place) {
+        if loses(N) && self.law.patch.is_none() && self.settles(place) {
             return Some((Halt::Settles, place.y));
         }
         let [u_h, u_2] = [place.y[5], place.y[6]];
+        if self.law.patch.is_some() {
+            let [s, c, w1, w2, w3] = core::array::from_fn(|i| place.y[i]);
+            if self.law.rubbing((s, c), [w1, w2, w3], [u_h, u_2]) > self.over() {
+                return None;
+            }
+            let mut y = place.y;
+            (y[5], y[6]) = (0.0, 0.0);
+            return Some((Halt::Standstill, y));
+        }
         let speed = u_h.hypot(u_2);
         // `slowing` is the rate in sigma at which the speed of the slip falls.
         let slowing = -(u_h * place.rate[5] + u_2 * place.rate[6]) / speed;
@@ -292,6 +326,10 @@ impl Flow<MARGINS> for Slide {
 
     #[inline(always)]
     fn error<const N: usize>(&self, y: &[f64; N], made: &rk8::Step<f64, N>) -> f64 {
+        if self.law.patch.is_some() {
+            let rubs = self.law.rubbing((y[0], y[1]), [y[2], y[3], y[4]], [y[5], y[6]]);
+            return Self::error_beside(self.tol, y, made, true, rubs);
+        }
         Self::error(self.tol, y, made, self.law.dry)
     }
 
@@ -328,7 +366,8 @@ impl Flow<MARGINS> for Slide {
     /// The halt where the steps become short because the force grows without bound.
     fn stuck<const N: usize>(&self, place: &FlowPlace<N>, margins: &[Dual<f64>; MARGINS]) -> Option<Halt> {
         // With dry friction this margin is proportional to the speed of the slip.
-        let size = if self.law.dry { place.y[5].hypot(place.y[6]) } else { 1.0 };
+        let [s, c, w1, w2, w3, u_h, u_2] = core::array::from_fn(|i| place.y[i]);
+        let size = if self.law.dry { self.law.rubbing((s, c), [w1, w2, w3], [u_h, u_2]) } else { 1.0 };
         (margins[3].value < 0.1 * self.law.shape.i1 * size).then_some(Halt::Jam)
     }
 
