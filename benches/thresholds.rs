@@ -192,7 +192,7 @@ fn numbers_of(table: Table) -> [f64; 3] {
     match table {
         Table::Rolling { mu } => [0.0, mu, 0.0],
         Table::Smooth => [1.0, 0.0, 0.0],
-        Table::Rubs(Friction::Coulomb { mu, fixed }) => [2.0, mu, fixed],
+        Table::Rubs(Friction::Coulomb { mu, fixed, .. }) => [2.0, mu, fixed],
         Table::Rubs(Friction::Viscous { c }) => [3.0, c, 0.0],
     }
 }
@@ -284,7 +284,7 @@ fn turned(draw: &mut Draw, size: f64) -> [f64; 2] {
 fn dry(draw: &mut Draw) -> Friction {
     let mu = draw.power(-1.3, 0.3);
     let fixed = if draw.happens(0.3) { mu * draw.within(1.02, 1.5) } else { mu };
-    Friction::Coulomb { mu, fixed }
+    Friction::Coulomb { mu, fixed, patch: 0.0 }
 }
 
 /// Up to `most` laws of the numbers `laws`.
@@ -339,7 +339,9 @@ fn stone_scene(draw: &mut Draw, slips: bool) -> Scene {
             if draw.happens(0.1) { Friction::Viscous { c: draw.power(-2.0, 1.0) } } else { dry(draw) };
         let much = if draw.happens(0.2) { draw.within(1.0, 8.0) } else { 1.0 };
         let friction = match friction {
-            Friction::Coulomb { mu, fixed } => Friction::Coulomb { mu: much * mu, fixed: much * fixed },
+            Friction::Coulomb { mu, fixed, patch } => {
+                Friction::Coulomb { mu: much * mu, fixed: much * fixed, patch }
+            }
             other => other,
         };
         (friction.into(), turned(draw, slip))
@@ -447,7 +449,7 @@ fn scene(number: u64) -> Scene {
             if needs > 1e-3 && needs < 3.0 {
                 let fixed = needs * beside_one(draw);
                 let mu = if draw.happens(0.5) { fixed } else { fixed * draw.within(0.5, 1.0) };
-                break Scene::of(&of, Friction::Coulomb { mu, fixed }.into(), y, three);
+                break Scene::of(&of, Friction::Coulomb { mu, fixed, patch: 0.0 }.into(), y, three);
             }
         },
         // The largest friction of a nutation, at the start, is all but what the table gives.

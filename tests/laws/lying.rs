@@ -257,7 +257,7 @@ fn weak_flicks_of_the_papers_tube_slide_pivot_rise_and_roll_straight_at_known_ti
     assert!(near(lies.time, 14.848), "{}", lies.time);
     // A larger static friction lets the pivot go later, an infinite one never.
     let held = |fixed: f64| {
-        let law = Friction::Coulomb { mu: 0.3, fixed };
+        let law = Friction::Coulomb { mu: 0.3, fixed, patch: 0.0 };
         losing(&tube, flicked(0.9, 1.5), law, Losses::NONE, &[60.0])
     };
     assert!(near(times(&held(0.35))[3], 20.4615));
@@ -351,8 +351,11 @@ fn on_both_rims_the_lean_turns_no_faster_than_the_body_whichever_rim_sticks() {
     for ([ell, i1, i3], [theta, w1, w2, w3], slip, [mu, fixed], law) in scenes {
         let body = Body::new(ell, i1, i3).unwrap();
         let start = Start { slip, ..State { theta, w1, w2, w3 }.into() };
-        let ask =
-            Ask { pose: true, force: true, ..ask(Friction::Coulomb { mu, fixed }, Losses::of(law, 0.03)) };
+        let ask = Ask {
+            pose: true,
+            force: true,
+            ..ask(Friction::Coulomb { mu, fixed, patch: 0.0 }, Losses::of(law, 0.03))
+        };
         let m = roll_with(&body, start, &times, &ask, || true).unwrap().unwrap();
         let (poses, path) = (m.poses.as_ref().unwrap(), m.path.as_ref().unwrap());
         let lies = |i: usize| path.kinds[i] as u8 >= Kind::Lying as u8;

@@ -145,7 +145,7 @@ fn a_ball_keeps_jelletts_constant_and_a_rough_table_rolls() {
     // static friction without limit is rolling
     let body = Body::solid(1.5).unwrap();
     let start = State { theta: 1.1, w1: 0.6, w2: 0.0, w3: 0.9 };
-    let rough = Ask::on(Friction::Coulomb { mu: 0.5, fixed: f64::INFINITY });
+    let rough = Ask::on(Friction::Coulomb { mu: 0.5, fixed: f64::INFINITY, patch: 0.0 });
     let path = roll_with(&body, start, &times[..4], &rough, || true).unwrap().unwrap();
     let rolled = roll_with(&body, start, &times[..4], &Default::default(), || true).unwrap().unwrap();
     assert_eq!(path.states, rolled.states);
@@ -160,7 +160,7 @@ proptest! {
         body in bodies(), (y, _) in states(), mu in 0.0..0.3f64,
     ) {
         prop_assume!(contact::force(Contact::Rolling, &body, &y).normal > 1e-9);
-        let ask = Ask::on(Friction::Coulomb { mu, fixed: f64::INFINITY });
+        let ask = Ask::on(Friction::Coulomb { mu, fixed: f64::INFINITY, patch: 0.0 });
         let motion = match roll_with(&body, y, &[0.0, 1e-6], &ask, || true) {
             Err(Error::Painleve { .. }) => return Ok(()),
             motion => motion.unwrap().unwrap(),
@@ -175,7 +175,7 @@ fn static_friction_alone_holds_a_contact_at_rest() {
     let body = Body::tube(6.0, 0.8).unwrap();
     let start = spincyl::steady::state(&body, 1.4).unwrap().kicked(0.05);
     let roll = |ask: &Ask| roll_with(&body, start, &[0.0, 5.0], ask, || true).unwrap().unwrap();
-    let held = roll(&Ask::on(Friction::Coulomb { mu: 0.0, fixed: 1.0 }));
+    let held = roll(&Ask::on(Friction::Coulomb { mu: 0.0, fixed: 1.0, patch: 0.0 }));
     let rolls = roll(&Ask::default());
     assert_eq!(path_of(&held).phases.iter().map(|phase| phase.kind).collect::<Vec<_>>(), [Kind::Rolling]);
     assert_eq!(held.states, rolls.states);
@@ -194,7 +194,7 @@ fn what_makes_no_sense_is_refused_by_name() {
         Err(Error::OutOfRange { name, .. }) => name,
         other => panic!("{other:?}"),
     };
-    let coulomb = |mu, fixed| Friction::Coulomb { mu, fixed };
+    let coulomb = |mu, fixed| Friction::Coulomb { mu, fixed, patch: 0.0 };
     assert_eq!(name(coulomb(-0.1, 0.3), [1.0, 0.0], &[1.0]), "mu");
     assert_eq!(name(coulomb(f64::NAN, 0.3), [1.0, 0.0], &[1.0]), "mu");
     assert_eq!(name(coulomb(f64::INFINITY, f64::INFINITY), [1.0, 0.0], &[1.0]), "mu");
@@ -268,7 +268,7 @@ fn together(of: &[Vec<f64>; 4], times: &[f64], threads: usize) -> (Vec<Vec<f64>>
     let (i1, i3) = ([tube.i1()], [tube.i3()]);
     let starts = MotionStarts {
         slips: Some([&[0.0], slip]),
-        coefficients: Some([mu, mu]),
+        coefficients: Some([mu, mu, &[0.0]]),
         ..MotionStarts::new([&[6.0], &i1, &i3, &[0.0], &[f64::NAN]], [&[FRAC_PI_2], w1, &[0.0], w3])
     };
     let mut last = vec![vec![7.0; count]; 6];

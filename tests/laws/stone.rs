@@ -65,7 +65,7 @@ pub(crate) const TIMES: [f64; 5] = [0.0, 1.0, 2.5, 4.0, 5.0];
 
 /// With friction of any size a stone that stays on the table rolls.
 fn rolls_with_friction_without_limit(stone: &Ellipsoid, start: StoneState) -> Result<(), TestCaseError> {
-    let rubs = Ask::on(Friction::Coulomb { mu: 0.1, fixed: f64::INFINITY });
+    let rubs = Ask::on(Friction::Coulomb { mu: 0.1, fixed: f64::INFINITY, patch: 0.0 });
     let b = rolled(stone, start, &TIMES, &Ask::default());
     // A contact that would have to pull does not hold: whether the stone slips instead is another question.
     if b.event.is_some_and(|event| event.time <= 0.0) {

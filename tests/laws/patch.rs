@@ -1,0 +1,210 @@
+//! Friction of a round patch: balls that drill, slip and creep, the limits of small patches, and laws of every motion.
+
+use crate::common::{drawn, wander};
+use spincyl::contact::slip::{Friction, derivative};
+use spincyl::contact::{Table, patch};
+use spincyl::loss::Losses;
+use spincyl::motion::path::Kind;
+use spincyl::motion::{Ask, Ending, Motion, Start, roll_with};
+use spincyl::{Body, State};
+use std::f64::consts::PI;
+
+fn on(mu: f64, patch: f64) -> Friction {
+    Friction::Coulomb { mu, fixed: mu, patch }
+}
+
+fn rolled(body: &Body, start: Start, friction: Friction, times: &[f64]) -> Motion {
+    roll_with(body, start, times, &Ask { force: true, ..Ask::on(friction) }, || true).unwrap().unwrap()
+}
+
+fn drilling(y: &State) -> f64 {
+    y.theta.sin() * y.w1 + y.theta.cos() * y.w3
+}
+
+/// Energy and heat at the outputs of a motion.
+fn sums(body: &Body, m: &Motion) -> Vec<f64> {
+    let path = m.path.as_ref().unwrap();
+    let each = m.states.iter().zip(&path.slip).zip(&path.dissipated);
+    each.map(|((y, slip), heat)| spincyl::contact::slip::energy(body, y, *slip) + heat).collect()
+}
+
+/// A body, a state that slips, and a patch, at random.
+fn any(r: &mut impl FnMut() -> f64) -> (Body, Start, f64, f64) {
+    let body = match (3.0 * r()) as u8 {
+        0 => Body::ball(0.4 * r() - 0.2, 0.4, 0.42),
+        1 => Body::solid(0.02 + 0.5 * r()),
+        _ => Body::rounded_tube(0.4 + r(), 0.0, 0.05 + 0.3 * r()),
+    };
+    let mut speed = || 3.0 * r() - 1.5;
+    let state = State { theta: 0.0, w1: speed(), w2: 0.3 * speed(), w3: speed() };
+    let slip = [0.3 * speed(), 0.3 * speed()];
+    let state = State { theta: 0.4 + 0.8 * r(), ..state };
+    (body.unwrap(), Start { slip, ..state.into() }, 0.1 + 0.5 * r(), 10f64.powf(-1.0 - 1.5 * r()))
+}
+
+#[test]
+fn a_ball_that_only_drills_slows_down_by_three_sixteenths_of_pi() {
+    let ball = Body::ball(0.0, 0.4, 0.4).unwrap();
+    let (mu, eps, fast) = (0.2, 0.05, 2.0);
+    let theta = 1.0f64;
+    let state = State { theta, w1: fast * theta.sin(), w2: 0.0, w3: fast * theta.cos() };
+    let stops = 16.0 * 0.4 * fast / (3.0 * PI * mu * eps);
+    let times = [0.3 * stops, 0.9 * stops, 1.5 * stops];
+    let m = rolled(&ball, state.into(), on(mu, eps), &times);
+    for (t, y) in times.iter().zip(&m.states) {
+        let left = (fast - 3.0 * PI / 16.0 * mu * eps * t / 0.4).max(0.0);
+        assert!((drilling(y) - left).abs() < 1e-12, "{} for {left} at {t}", drilling(y));
+        assert!((y.theta - theta).abs() < 1e-12);
+    }
+    // Where the drilling ends it rolls, and rests.
+    let end = m.path.as_ref().unwrap().phases.last().unwrap();
+    assert!(end.kind == Kind::Rolling && (end.time - stops).abs() < 1e-6 * stops, "{}", end.time);
+}
+
+#[test]
+fn a_homogeneous_ball_slips_straight_on_whatever_its_side_spin() {
+    let mut r = wander(521);
+    let ball = Body::ball(0.0, 0.4, 0.4).unwrap();
+    for _ in 0..drawn(20) {
+        let (mu, eps) = (0.1 + 0.3 * r(), 0.01 + 0.1 * r());
+        let (u, spin, lean) = (0.5 + r(), 4.0 * r() - 2.0, 0.5 + r());
+        // Seen from an axis that leans and is not turned, e_h stays e_h.
+        let state = State { theta: lean, w1: spin * lean.sin(), w2: 0.0, w3: spin * lean.cos() };
+        let mut ask = Ask { pose: true, ..Ask::on(on(mu, eps)) };
+        ask.force = true;
+        let start = Start { slip: [u, 0.0], ..state.into() };
+        let times: Vec<f64> = (1..20).map(|k| 0.05 * f64::from(k) * u / mu).collect();
+        let m = roll_with(&ball, start, &times, &ask, || true).unwrap().unwrap();
+        for (pose, slip) in m.poses.as_ref().unwrap().iter().zip(&m.path.as_ref().unwrap().slip) {
+            let (sin, cos) = pose.phi.radians().sin_cos();
+            let across = slip[0] * sin + slip[1] * cos;
+            assert!(across.abs() < 1e-11, "{across:e}");
+        }
+    }
+}
+
+#[test]
+fn energy_and_heat_have_a_constant_sum_and_friction_acts_against_the_slip() {
+    let mut r = wander(522);
+    let mut slipping = 0;
+    for _ in 0..drawn(60) {
+        let (body, start, mu, eps) = any(&mut r);
+        let times: Vec<f64> = (1..30).map(|k| 0.2 * f64::from(k)).collect();
+        let m = rolled(&body, start, on(mu, eps), &times);
+        let sums = sums(&body, &m);
+        let spread = sums.iter().fold(0.0, |most: f64, e| most.max((e - sums[0]).abs()));
+        assert!(spread < 1e-11 + m.error, "{body:?} {start:?} {mu} {eps}: {spread:e}, claims {:e}", m.error);
+        let path = m.path.as_ref().unwrap();
+        for (i, (y, [u, v])) in m.states.iter().zip(&path.slip).enumerate() {
+            let speed = u.hypot(*v);
+            if speed < 1e-6 || path.kinds[i] != Kind::Slipping {
+                continue;
+            }
+            slipping += 1;
+            let f = m.forces.as_ref().unwrap()[i];
+            assert!((f.along * u - f.across * v).abs() < 1e-10 * speed && f.along * v + f.across * u < 0.0);
+            let [share, _] = patch::of(speed / (eps * drilling(y).abs()));
+            assert!((f.friction() - mu * f.normal * share).abs() < 1e-9 * f.normal.abs());
+        }
+    }
+    assert!(slipping > 100, "{slipping}");
+}
+
+#[test]
+fn jelletts_number_of_a_ball_falls_by_the_couple_alone() {
+    let mut r = wander(523);
+    for _ in 0..drawn(200) {
+        let (ell, i1, i3) = (0.4 * r() - 0.2, 0.4, 0.42);
+        let body = Body::ball(ell, i1, i3).unwrap();
+        let mut speed = || 4.0 * r() - 2.0;
+        let y = State { theta: 0.0, w1: speed(), w2: speed(), w3: speed() };
+        let (slip, y) = ([speed(), speed()], State { theta: 0.2 + 2.5 * r(), ..y });
+        let (mu, eps) = (0.3, 0.05);
+        let (d, _, f) = derivative(&body, &y, slip, &on(mu, eps), &Losses::NONE);
+        let (s, c) = y.theta.sin_cos();
+        let turned = i1 * (d.w1 * s + y.w1 * c * d.theta) + i3 * (d.w3 * (ell + c) - y.w3 * s * d.theta);
+        let spin = drilling(&y);
+        let [_, couple] = patch::of(slip[0].hypot(slip[1]) / (eps * spin.abs()));
+        let expected = -mu * f.normal * eps * couple * spin.signum() * (1.0 + ell * c);
+        assert!((turned - expected).abs() < 1e-13 * (1.0 + f.normal.abs()), "{turned} {expected}");
+    }
+}
+
+#[test]
+fn the_mirror_image_of_a_motion_is_its_motion() {
+    let mut r = wander(524);
+    for _ in 0..drawn(20) {
+        let (body, start, mu, eps) = any(&mut r);
+        let State { theta, w1, w2, w3 } = start.state;
+        let image =
+            Start { slip: [start.slip[0], -start.slip[1]], ..State { theta, w1: -w1, w2, w3: -w3 }.into() };
+        let [a, b] = [start, image].map(|start| rolled(&body, start, on(mu, eps), &[1.0, 3.0]));
+        for (y, z) in a.states.iter().zip(&b.states) {
+            assert_eq!([y.theta, y.w1, y.w2, y.w3], [z.theta, -z.w1, z.w2, -z.w3]);
+        }
+    }
+}
+
+#[test]
+fn a_patch_that_shrinks_tends_to_a_point_with_the_square_where_it_slips_and_to_rolling_in_proportion() {
+    let body = Body::ball(-0.2, 0.4, 0.42).unwrap();
+    let state = State { theta: 0.3, w1: 0.5, w2: 0.1, w3: 4.0 };
+    let start = Start { slip: [1.2, -0.4], ..state.into() };
+    let at = |eps: f64, t: f64| *rolled(&body, start, on(0.3, eps), &[t]).states.last().unwrap();
+    let apart = |a: State, b: State| {
+        (a.theta - b.theta).abs().max((a.w1 - b.w1).abs()).max((a.w2 - b.w2).abs()).max((a.w3 - b.w3).abs())
+    };
+    // While it slips fast.
+    let [big, small] = [0.02, 0.002].map(|eps| apart(at(eps, 0.8), at(0.0, 0.8)));
+    assert!((90.0..110.0).contains(&(big / small)), "{big:e} {small:e}");
+    // Where a point rolls.
+    let long = 8.0;
+    let point = rolled(&body, start, on(0.3, 0.0), &[long]);
+    assert!(point.path.as_ref().unwrap().kinds[0] == Kind::Rolling);
+    let [big, small] = [0.004, 0.0004].map(|eps| apart(at(eps, long), at(0.0, long)));
+    assert!((8.0..13.0).contains(&(big / small)), "{big:e} {small:e}");
+}
+
+#[test]
+fn a_tippe_top_turns_over_on_a_dry_table_with_a_patch_and_on_a_point_it_never_does() {
+    let top = Body::ball(-0.2, 0.4, 0.42).unwrap();
+    let state = State { theta: 0.1, w1: 0.0, w2: 0.0, w3: 7.0 };
+    // Its centre is at rest.
+    let start = Start { slip: [0.0, -7.0 * 0.1f64.sin()], ..state.into() };
+    let times: Vec<f64> = (1..1200).map(|k| 0.05 * f64::from(k)).collect();
+    // Seconds to 3 rad for patches of 0.1, 0.3 and 1 mm of a ball of 15 mm, by an independent model.
+    let second = 1.0 / 0.0391;
+    for (millimetres, seconds) in [(0.1, 1.96), (0.3, 1.51), (1.0, 1.65)] {
+        let m = rolled(&top, start, on(0.3, millimetres / 15.0), &times);
+        let i = m.states.iter().position(|y| y.theta > 3.0).unwrap();
+        assert!((times[i] / second - seconds).abs() < 0.01, "{} for {seconds}", times[i] / second);
+    }
+    let point = rolled(&top, start, on(0.3, 0.0), &times);
+    assert!(point.states.iter().all(|y| y.theta < 0.1 + 1e-9));
+}
+
+#[test]
+fn a_drilling_that_turns_round_passes_zero_and_one_that_friction_holds_stays() {
+    // The couple turns its sign with the drilling; the motion is the same to the error of what is left out.
+    let disk = Body::new(0.05, 0.25 + 0.05 * 0.05 / 3.0, 0.5).unwrap();
+    let state = State { theta: 1.14, w1: 0.74, w2: -0.164, w3: -0.891 };
+    let m = rolled(&disk, state.into(), on(0.6, 0.02), &[0.9, 1.1]);
+    let [before, after] = [m.states[0], m.states[1]].map(|y| drilling(&y));
+    assert!(before * after < 0.0 && m.ending() == Ending::Done);
+    let sums = sums(&disk, &m);
+    assert!((sums[1] - sums[0]).abs() < 1e-11, "{:e}", sums[1] - sums[0]);
+}
+
+#[test]
+fn a_patch_goes_with_neither_drilling_friction_nor_a_restitution() {
+    let ball = Body::ball(0.0, 0.4, 0.4).unwrap();
+    let state = State { theta: 1.0, w1: 0.0, w2: 0.0, w3: 1.0 };
+    let of = |ask: Ask| roll_with(&ball, Start::from(state), &[1.0], &ask, || true).unwrap_err().to_string();
+    let ask = Ask::on(Table::from(on(0.3, 0.02)));
+    assert!(of(Ask { restitution: Some(0.5), ..ask }).contains("expected 0 together with a restitution"));
+    let drills = Losses::of(spincyl::loss::Law::Drilling, 1e-3);
+    assert!(of(Ask { losses: drills, ..ask }).contains("the same couple"));
+    for wrong in [-0.1, 1.0, f64::NAN] {
+        assert!(of(Ask::on(on(0.3, wrong))).starts_with("patch = "));
+    }
+}
