@@ -13,7 +13,8 @@ from spincyl._ellipsoid_state import EllipsoidState
 from spincyl._ending import Event
 from spincyl._input.numbers import Floats, Reals, components, made, si
 from spincyl._measured import in_si, natural_time, speaking
-from spincyl._motion import ENDINGS, FRICTION, Motion, Number
+from spincyl._motion import ENDINGS, Motion
+from spincyl._outputs import FRICTION, Number
 from spincyl._phases import phases, rubs
 
 if TYPE_CHECKING:

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from spincyl import _core
 from spincyl._asked import Asked, Want, chosen, crossing, times_of
@@ -18,6 +17,7 @@ from spincyl._input.equality import compared
 from spincyl._input.numbers import Floats, Reals, si
 from spincyl._labelled import AXES, Components, frame, labelled
 from spincyl._measured import in_si, natural_time, speaking, told
+from spincyl._outputs import ALOFT, BOTH, FORCE, FRICTION, LOSSES, PATCH, POSE, Number, output
 from spincyl._phases import Impact, Phase, impacts, lowest, phases, slipping
 from spincyl._scale import Scale
 from spincyl._state import State
@@ -37,35 +37,6 @@ if TYPE_CHECKING:
 
 _Six: TypeAlias = tuple[float, float, float, float, float, float]
 _Four: TypeAlias = tuple[float, float, float, float]
-
-
-# messages about missing outputs: how to get them, by output and contact
-_LACKS = "{{}} was not asked for: roll(..., want={}), or m.wanting of the same"
-_POSE, _FORCE, _BOTH = (_LACKS.format(want) for want in ('"pose"', '"force"', '("pose", "force")'))
-FRICTION = "{} is not there: the contact is {!r}; roll(..., contact=sc.Coulomb(mu)) has it"
-_ALOFT = "{} is not there: the motion ends where it leaves the table; roll(..., restitution=0.0) goes on"
-_LOSSES = "{} is not there: nothing is lost; roll(..., losses=sc.loss.DryContour(eps)) has it"
-
-
-class Number(property):
-    """An output at each time, in the units of the motion; AttributeError if it was not computed."""
-
-    def __init__(self, lacking: str, said: str) -> None:
-        super().__init__(lambda m: _of(m, self._name, lacking))
-        self.__doc__ = said
-
-    def __set_name__(self, _: type, name: str) -> None:
-        self._name = name
-
-    if TYPE_CHECKING:
-
-        def __get__(self, m: Any, kind: type | None = None) -> NDArray[Any]: ...  # type: ignore[override]
-
-
-def _of(m: "Motion", name: str, lacking: str) -> Floats:
-    if name not in m._extra:
-        raise AttributeError(lacking.format(name, named(m.contact)))
-    return m._told(name, m._extra[name])
 
 
 @compared
@@ -168,7 +139,7 @@ class Motion:
     @property
     def height(self) -> Floats:
         """(n,) height of the lowest point of the body, in R (measured: m). Needs `restitution=`."""
-        rim = _of(self.natural, "height", _ALOFT)
+        rim = output(self.natural, "height", ALOFT)
         return self._told("height", lowest(self.body, self.theta, rim))
 
     @property
@@ -197,31 +168,31 @@ class Motion:
 
         The rest keeps its digits however many turns there were.
         """
-        return _of(self, "phi", _POSE), _of(self, "psi", _POSE)
+        return output(self, "phi", POSE), output(self, "psi", POSE)
 
     contact_point = Number(
-        _POSE,
+        POSE,
         '(n, 2) place of the contact on the table in R (measured: m), from the origin on. Needs want="pose".',
     )
-    centre = Number(_POSE, '(n, 3) place of the centre of mass, in R (measured: m). Needs want="pose".')
+    centre = Number(POSE, '(n, 3) place of the centre of mass, in R (measured: m). Needs want="pose".')
     orientation = Number(
-        _POSE,
+        POSE,
         """(n, 4) rotation from the body's axes (e3 the third) to the laboratory's. Needs want="pose".
 
         Unit quaternions (x, y, z, w), as `scipy.spatial.transform.Rotation.from_quat` takes them.
         """,
     )
-    normal = Number(_FORCE, '(n,) normal force N in M g (measured: N). Needs want="force".')
+    normal = Number(FORCE, '(n,) normal force N in M g (measured: N). Needs want="force".')
     friction = Number(
-        _FORCE,
+        FORCE,
         '(n,) friction demand: size of the horizontal force in M g (measured: N). Needs want="force".',
     )
     friction_coefficient = Number(
-        _FORCE,
+        FORCE,
         '(n,) coefficient of friction needed; infinite where N <= 0, NaN in the air. Needs want="force".',
     )
     contact_force = Number(
-        _BOTH,
+        BOTH,
         '(n, 3) force of the table along the laboratory axes, M g or N. Needs want=("pose", "force").',
     )
     slip = Number(
@@ -243,25 +214,34 @@ class Motion:
         0 it rolls, 1 slips, 2 flies; on both rims 3 it lies and slips, 4 pivots, 5 rolls on its side.
         """,
     )
+    drilling = Number(PATCH, "(n,) spin about the vertical, sqrt(g/R) or rad/s. Needs a patch of contact.")
+    creep = Number(
+        PATCH, "(n,) slip over the radius of the patch times `drilling`; 0 where it rolls. Needs a patch."
+    )
+    couple = Number(
+        PATCH,
+        """(n,) couple of the patch about the vertical, M g R or J. Needs a patch and want="force".
+
+        NaN where it rolls: friction then holds the drilling.
+        """,
+    )
     lift = Number(
-        _ALOFT, "(n,) how fast the lowest point of its rim rises, sqrt(g R) or m/s. Needs `restitution=`."
+        ALOFT, "(n,) how fast the lowest point of its rim rises, sqrt(g R) or m/s. Needs `restitution=`."
     )
     slip_other = Number(
-        _ALOFT, "(n, 2) `slip` of the other rim; NaN unless it lies on both. Needs `restitution=`."
+        ALOFT, "(n, 2) `slip` of the other rim; NaN unless it lies on both. Needs `restitution=`."
     )
-    normal_other = Number(_ALOFT, '(n,) `normal` of the other rim. Needs `restitution=` and want="force".')
-    friction_other = Number(
-        _ALOFT, '(n,) `friction` of the other rim. Needs `restitution=` and want="force".'
-    )
+    normal_other = Number(ALOFT, '(n,) `normal` of the other rim. Needs `restitution=` and want="force".')
+    friction_other = Number(ALOFT, '(n,) `friction` of the other rim. Needs `restitution=` and want="force".')
     work_lost = Number(
-        _LOSSES, "(n,) what the losses have taken since the start, in M g R (measured: J). Needs `losses=`."
+        LOSSES, "(n,) what the losses have taken since the start, in M g R (measured: J). Needs `losses=`."
     )
 
     @property
     def impacts(self) -> tuple[Impact, ...]:
         """Every impact of a rim on the table; bounces that are summed are one. Needs `restitution=`."""
         if self._impacts is None:
-            raise AttributeError(_ALOFT.format("impacts", ""))
+            raise AttributeError(ALOFT.format("impacts", ""))
         return self._impacts
 
     @property
@@ -393,7 +373,7 @@ class Motion:
         return found
 
     def _angle(self, name: str) -> Floats:
-        turns, rest = _of(self, name, _POSE).T
+        turns, rest = output(self, name, POSE).T
         angle: Floats = 2 * np.pi * turns + rest
         return angle
 

@@ -33,6 +33,8 @@ UNITS = {
     "work_lost": "M g R",
     "height": "R",
     "lift": "sqrt(g R)",
+    "drilling": "sqrt(g/R)",
+    "couple": "M g R",
     "slip_other": "sqrt(g R)",
     "normal_other": "M g",
     "friction_other": "M g",

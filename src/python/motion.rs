@@ -5,11 +5,12 @@ use super::options::{MotionAsked, contact_of};
 use super::stone::{STONE, stone_of};
 use super::watch::Watch;
 use crate::error::room;
+use crate::laws::contact::patch;
 use crate::laws::stone::{Ellipsoid, StoneState};
 use crate::motions::exact::Swing;
 use crate::motions::motion;
 use crate::motions::stone;
-use crate::motions::{Ask, Method, Motion, Moving, Start};
+use crate::motions::{Ask, Kind, Method, Motion, Moving, Start};
 use crate::{Body, Error, State};
 use numpy::ndarray::ArrayView2;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
@@ -61,13 +62,13 @@ impl ToldRows<'_> {
 trait Told: Moving + Sized {
     type Body;
     /// Adds the arrays of the states, poses and forces.
-    fn tell(m: &Motion<Self>, body: &Self::Body, rows: &mut ToldRows<'_>) -> Result<(), Error>;
+    fn tell(m: &Motion<Self>, body: &Self::Body, ask: &Ask, rows: &mut ToldRows<'_>) -> Result<(), Error>;
 }
 
 impl Told for State {
     type Body = Body;
 
-    fn tell(m: &Motion, body: &Body, rows: &mut ToldRows<'_>) -> Result<(), Error> {
+    fn tell(m: &Motion, body: &Body, ask: &Ask, rows: &mut ToldRows<'_>) -> Result<(), Error> {
         rows.add("theta", 0, &|i, to| to.push(m.states[i].theta))?;
         rows.add("w", 3, &|i, to| to.extend([m.states[i].w1, m.states[i].w2, m.states[i].w3]))?;
         if let Some(poses) = &m.poses {
@@ -90,14 +91,40 @@ impl Told for State {
                 rows.add("contact_force", 3, &|i, to| to.extend(force(i)))?;
             }
         }
+        let friction = ask.table.friction();
+        if let Some(path) = &m.path
+            && friction.patch() > 0.0
+        {
+            let drilling = |i: usize| drilling(&m.states[i]);
+            let creep = |i: usize| {
+                let speed = path.slip[i][0].hypot(path.slip[i][1]);
+                if speed > 0.0 { speed / (friction.patch() * drilling(i).abs()) } else { 0.0 }
+            };
+            rows.add("drilling", 0, &|i, to| to.push(drilling(i)))?;
+            rows.add("creep", 0, &|i, to| to.push(creep(i)))?;
+            if let Some(forces) = &m.forces {
+                let most = |i: usize| friction.strength() * friction.patch() * forces[i].normal;
+                let couple = |i: usize| match path.kinds[i] {
+                    Kind::Slipping => -(drilling(i).signum() * most(i) * patch::of(creep(i))[1]),
+                    _ => f64::NAN,
+                };
+                rows.add("couple", 0, &|i, to| to.push(couple(i)))?;
+            }
+        }
         Ok(())
     }
+}
+
+/// The drilling w_z of a state.
+fn drilling(y: &State) -> f64 {
+    let (s, c) = y.theta.sin_cos();
+    s * y.w1 + c * y.w3
 }
 
 impl Told for StoneState {
     type Body = Ellipsoid;
 
-    fn tell(m: &Motion<Self>, _: &Ellipsoid, rows: &mut ToldRows<'_>) -> Result<(), Error> {
+    fn tell(m: &Motion<Self>, _: &Ellipsoid, _: &Ask, rows: &mut ToldRows<'_>) -> Result<(), Error> {
         rows.add("theta", 0, &|i, to| to.push(m.states[i].theta()))?;
         rows.add("w", 3, &|i, to| to.extend(m.states[i].w))?;
         rows.add("vertical", 3, &|i, to| to.extend(m.states[i].vertical))?;
@@ -130,7 +157,7 @@ fn columns<S: Told>(
 ) -> Result<Option<Vec<NamedArray>>, Error> {
     let mut rows = ToldRows { count: m.times.len(), columns: Vec::new(), goes_on: true, go_on };
     rows.add("t", 0, &|i, to| to.push(m.times[i]))?;
-    S::tell(m, body, &mut rows)?;
+    S::tell(m, body, ask, &mut rows)?;
     if let Some(path) = &m.path
         && !path.aloft.is_empty()
     {
