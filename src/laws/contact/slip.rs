@@ -330,10 +330,23 @@ impl Slipping<f64> {
         Self::of(&body.shape(), friction.strength(), dry).with_patch((patch > 0.0).then_some(patch))
     }
 
+    /// One compiled copy of [`Slipping::on_patch`].
+    #[inline(never)]
+    fn on_a_patch(
+        &self,
+        angle: (f64, f64),
+        w: [f64; 3],
+        u: [f64; 2],
+        patch: f64,
+    ) -> (SlipResponse<f64>, f64, f64) {
+        self.on_patch(angle, w, u, patch)
+    }
+
     /// The response in a state, dt/dsigma there, and the heat of a couple of a patch in a unit of time.
+    #[inline(always)]
     pub fn answers(&self, angle: (f64, f64), w: [f64; 3], u: [f64; 2]) -> (SlipResponse<f64>, f64, f64) {
         match self.patch {
-            Some(patch) => self.on_patch(angle, w, u, patch),
+            Some(patch) => self.on_a_patch(angle, w, u, patch),
             None => {
                 let (at, pace) = self.at(angle, w, u);
                 (at, pace, 0.0)

@@ -145,6 +145,7 @@ impl LossyFlow {
 
     /// The law with the length of drilling friction that goes with the force on a patch: a fixed point, since the force
     /// depends little on that length.
+    #[inline(never)]
     fn fitted(
         &self,
         mut law: Lossy<f64>,
@@ -218,7 +219,23 @@ impl LossyFlow {
     }
 
     fn response(&self, angle: (f64, f64), precession: f64, w: [f64; 3], held: Held<f64>) -> Acted<f64> {
-        self.fitted(self.law, angle, precession, (w, held)).at(angle, precession, w, held)
+        let fitted;
+        let law = match self.patch {
+            None => &self.law,
+            Some(_) => {
+                fitted = self.fitted(self.law, angle, precession, (w, held));
+                &fitted
+            }
+        };
+        law.at(angle, precession, w, held)
+    }
+
+    /// The power of the couple of the patch, which is friction and makes heat.
+    #[inline(never)]
+    fn heat(&self, drilling: f64, [normal, along, across]: [f64; 3]) -> f64 {
+        let Some([mu, patch]) = self.patch else { return 0.0 };
+        let share = (along.hypot(across) / (mu * normal)).min(1.0);
+        mu * normal * patch * patch::of(patch::slip_for(share))[1] * drilling.abs()
     }
 
     /// The slip of a contact point on a patch that creeps under the contact force of this state.

@@ -4,7 +4,7 @@ use super::free::{error, fastest_of, from_side, pace_of, three_radians};
 use super::{DRILLS, Hold, LossyFlow, REST};
 use crate::laws::body::landing_angle;
 use crate::laws::contact::lossy::{Acted, Held, Lossy};
-use crate::laws::contact::{Contact, grip, patch};
+use crate::laws::contact::{Contact, grip};
 use crate::laws::loss::{GRACE, Law, rolling_growth};
 use crate::methods::flow::{FASTEST, Flow, FlowPlace};
 use crate::methods::rk8;
@@ -37,7 +37,15 @@ impl LossyFlow {
         let way = if self.hold == Hold::Settled { self.settled_way } else { self.ways.contour };
         let act = |precession: f64, w: [f64; 3], rate: f64| {
             let held = Held::Contour(rate);
-            let acted = self.fitted(self.bare, angle, precession, (w, held)).at(angle, precession, w, held);
+            let fitted;
+            let law = match self.patch {
+                None => &self.bare,
+                Some(_) => {
+                    fitted = self.fitted(self.bare, angle, precession, (w, held));
+                    &fitted
+                }
+            };
+            let acted = law.at(angle, precession, w, held);
             Turned { acted, push: acted.held[0], normal: acted.force[0] }
         };
         let Balance { precession, w, turned: Turned { acted, push, .. }, spin } =
@@ -159,12 +167,8 @@ impl Flow<MARGINS> for LossyFlow {
         if loses(N) {
             all[N - 1] = acted.power;
         }
-        if let Some([mu, patch]) = self.patch {
-            // The couple of the patch is friction, which makes heat.
-            let [normal, along, across] = acted.force;
-            let share = (along.hypot(across) / (mu * normal)).min(1.0);
-            let heat =
-                mu * normal * patch * patch::of(patch::slip_for(share))[1] * (s * w[0] + c * w[2]).abs();
+        if self.patch.is_some() {
+            let heat = self.heat(s * w[0] + c * w[2], acted.force);
             (all[8], all[N - 1]) = (heat, all[N - 1] - heat);
         }
         if poses(N) {
@@ -186,18 +190,21 @@ impl Flow<MARGINS> for LossyFlow {
 
     fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; MARGINS] {
         let y = core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
-        let mut law = self.sloped;
-        if self.patch.is_some() {
-            let (precession, w) = self.turning(y.map(|x| x.value));
-            let angle = (place.y[0], place.y[1]);
-            let length = self.fitted(self.law, angle, precession, (w, self.held(0.0))).losses;
-            law.losses.sets(Law::Drilling, Dual { value: length.coefficient(Law::Drilling), slope: 0.0 });
+        if self.patch.is_none() {
+            return self.margins_of(&self.sloped, y);
         }
+        let mut law = self.sloped;
+        let (precession, w) = self.turning(y.map(|x| x.value));
+        let length = self.fitted(self.law, (place.y[0], place.y[1]), precession, (w, self.held(0.0))).losses;
+        law.losses.sets(Law::Drilling, Dual { value: length.coefficient(Law::Drilling), slope: 0.0 });
         self.margins_of(&law, y)
     }
 
     fn margin<const N: usize>(&self, y: &[f64; N], i: usize) -> f64 {
         let y = core::array::from_fn(|k| y[k]);
+        if self.patch.is_none() {
+            return self.margins_of(&self.law, y)[i];
+        }
         let (precession, w) = self.turning(y);
         let law = self.fitted(self.law, (y[0], y[1]), precession, (w, self.held(0.0)));
         self.margins_of(&law, y)[i]

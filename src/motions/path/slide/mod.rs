@@ -85,6 +85,41 @@ impl Slide {
         self.law.answers(angle, w, u).0
     }
 
+    /// Writes the rates of the numbers on a patch of contact, the couple of which makes heat, too.
+    #[inline(never)]
+    fn patched<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) -> SlipResponse<f64> {
+        let (at, pace, heat) = self.law.answers((y[0], y[1]), [y[2], y[3], y[4]], [y[5], y[6]]);
+        self.law.writes(y, all, (&at, pace));
+        all[8] += pace * heat;
+        at
+    }
+
+    /// The speed of the slip, and under a patch also of its rim by the drilling.
+    #[inline(never)]
+    fn rubs<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        self.law.rubbing((y[0], y[1]), [y[2], y[3], y[4]], [y[5], y[6]])
+    }
+
+    /// The halt of a patch that neither slips nor drills any more.
+    #[inline(never)]
+    fn hardly_rubs<const N: usize>(&self, y: &[f64; N]) -> Option<(Halt, [f64; N])> {
+        let mut rests = *y;
+        (rests[5], rests[6]) = (0.0, 0.0);
+        (self.rubs(y) <= self.over()).then_some((Halt::Standstill, rests))
+    }
+
+    /// The response for margins with their slopes, of which there is one copy for a patch.
+    #[inline(never)]
+    fn sloped_on(
+        &self,
+        (s, c): (Dual<f64>, Dual<f64>),
+        w: [Dual<f64>; 3],
+        u: [Dual<f64>; 2],
+        patch: Dual<f64>,
+    ) -> SlipResponse<Dual<f64>> {
+        self.sloped.on_patch((s, c), w, u, patch).0
+    }
+
     /// The halt by the first margin that fails at the start of a slip; None if all margins are positive.
     pub fn at_start(&self, y: &State, u: [f64; 2]) -> Option<Halt> {
         let (s, c) = y.theta.sin_cos();
@@ -188,14 +223,7 @@ impl Flow<MARGINS> for Slide {
             self.settled_rates(y, all)
         } else {
             let precession = w1 / s;
-            let at = if self.law.patch.is_some() {
-                let (at, pace, heat) = self.law.answers((s, c), [w1, w2, w3], [u_h, u_2]);
-                self.law.writes(y, all, (&at, pace));
-                all[8] += pace * heat;
-                at
-            } else {
-                self.law.rates(y, all)
-            };
+            let at = if self.law.patch.is_some() { self.patched(y, all) } else { self.law.rates(y, all) };
             let power = if loses(N) { self.law.power((s, c), [w1, w2, w3], at.force[0]) } else { 0.0 };
             ([precession, w3 - c * precession], power)
         };
@@ -220,7 +248,7 @@ impl Flow<MARGINS> for Slide {
         }
         let (angle, w, u) = ((s, c), [w1, w2, w3], [u_h, u_2]);
         let at = match self.sloped.patch {
-            Some(patch) => self.sloped.on_patch(angle, w, u, patch).0,
+            Some(patch) => self.sloped_on(angle, w, u, patch),
             None => self.sloped.at(angle, w, u).0,
         };
         let one = s.splat(1.0);
@@ -291,13 +319,7 @@ impl Flow<MARGINS> for Slide {
         }
         let [u_h, u_2] = [place.y[5], place.y[6]];
         if self.law.patch.is_some() {
-            let [s, c, w1, w2, w3] = core::array::from_fn(|i| place.y[i]);
-            if self.law.rubbing((s, c), [w1, w2, w3], [u_h, u_2]) > self.over() {
-                return None;
-            }
-            let mut y = place.y;
-            (y[5], y[6]) = (0.0, 0.0);
-            return Some((Halt::Standstill, y));
+            return self.hardly_rubs(&place.y);
         }
         let speed = u_h.hypot(u_2);
         // `slowing` is the rate in sigma at which the speed of the slip falls.
@@ -326,11 +348,8 @@ impl Flow<MARGINS> for Slide {
 
     #[inline(always)]
     fn error<const N: usize>(&self, y: &[f64; N], made: &rk8::Step<f64, N>) -> f64 {
-        if self.law.patch.is_some() {
-            let rubs = self.law.rubbing((y[0], y[1]), [y[2], y[3], y[4]], [y[5], y[6]]);
-            return Self::error_beside(self.tol, y, made, true, rubs);
-        }
-        Self::error(self.tol, y, made, self.law.dry)
+        let slip = if self.law.patch.is_some() { self.rubs(y) } else { y[5].mac(y[5], y[6] * y[6]).sqrt() };
+        Self::error_beside(self.tol, y, made, self.law.dry, slip)
     }
 
     fn fastest<const N: usize>(&self, y: &[f64; N]) -> f64 {
@@ -366,8 +385,7 @@ impl Flow<MARGINS> for Slide {
     /// The halt where the steps become short because the force grows without bound.
     fn stuck<const N: usize>(&self, place: &FlowPlace<N>, margins: &[Dual<f64>; MARGINS]) -> Option<Halt> {
         // With dry friction this margin is proportional to the speed of the slip.
-        let [s, c, w1, w2, w3, u_h, u_2] = core::array::from_fn(|i| place.y[i]);
-        let size = if self.law.dry { self.law.rubbing((s, c), [w1, w2, w3], [u_h, u_2]) } else { 1.0 };
+        let size = if self.law.dry { self.rubs(&place.y) } else { 1.0 };
         (margins[3].value < 0.1 * self.law.shape.i1 * size).then_some(Halt::Jam)
     }
 
