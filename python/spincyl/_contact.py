@@ -44,9 +44,9 @@ class Coulomb(_Law):
         Coefficient up to which a body that rolls is held, at least `mu`; infinite if it is never to slip once
         it rolls. Default: `mu`.
     patch : array_like, optional
-        Radius of a round patch of contact, in R, below 1: slip and drilling share one friction (Contensou), under
-        the pressure of Hertz. Nothing sticks as long as the body drills. That of a measured body has a unit:
-        `from_si`. Default: 0, a point.
+        Radius of a round patch of contact, in R, below 1: slip and drilling share one friction (Contensou),
+        under the pressure of Hertz. Nothing sticks as long as the body drills. That of a measured body has a
+        unit: `from_si`. Default: 0, a point.
 
     Raises
     ------
