@@ -104,7 +104,7 @@ impl Desk {
         let wish = Wish { body, start: (State { theta, w1, w2, w3 }, [u_h, u_2]), t, n, restitution };
         if kind.rubs() || !self.losses.is_none() || restitution.is_some() {
             #[cfg(feature = "friction")]
-            return self.walk(&wish, kind.with([mu; 2]));
+            return self.walk(&wish, kind.with([mu, mu, 0.0]));
             #[cfg(not(feature = "friction"))]
             return Err(Refusal::Lean);
         }
