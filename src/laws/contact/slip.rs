@@ -28,6 +28,7 @@ use crate::laws::body::{Body, Shape};
 use crate::laws::loss::{Couples, Law, Losses};
 use crate::laws::newton::{self, Force};
 use crate::laws::state::State;
+use crate::methods::SHORT_CODE;
 use crate::numbers::Real;
 
 /// The law of friction at a contact point that slips or sticks.
@@ -109,7 +110,7 @@ pub(crate) struct Slipping<T> {
     /// The losses beside friction; None if the body has none.
     pub losses: Option<Couples<T>>,
     /// The radius of the patch of contact; None for a point.
-    pub patch: Option<T>,
+    radius: Option<T>,
 }
 
 /// The accelerations and the contact force in one state.
@@ -137,12 +138,18 @@ impl<T: Real> Slipping<T> {
         let reach = shape.rim.ell.abs() + shape.rim.rho;
         // Friction changes the slip by about this speed in a quarter of the unit of time.
         let soft = strength * (one + reach * reach * per_i1 + per_i3) * strength.splat(0.25);
-        Self { shape: *shape, per_i1, per_i3, strength, soft, dry, losses: None, patch: None }
+        Self { shape: *shape, per_i1, per_i3, strength, soft, dry, losses: None, radius: None }
     }
 
     /// The same body on a patch of this radius.
-    pub fn with_patch(self, patch: Option<T>) -> Self {
-        Self { patch, ..self }
+    pub fn with_patch(self, radius: Option<T>) -> Self {
+        Self { radius, ..self }
+    }
+
+    /// The radius of the patch of contact; None for a point, which is all that a page knows.
+    #[inline(always)]
+    pub fn patch(&self) -> Option<T> {
+        if SHORT_CODE { None } else { self.radius }
     }
 
     /// The same body with losses.
@@ -278,7 +285,7 @@ impl<T: Real> Slipping<T> {
     #[inline(always)]
     pub fn rubbing(&self, (s, c): (T, T), [w1, _, w3]: [T; 3], u: [T; 2]) -> T {
         let slip = u[0].mac(u[0], u[1] * u[1]).sqrt();
-        self.patch.map_or(slip, |patch| slip + patch * (s * w1 + c * w3).abs())
+        self.patch().map_or(slip, |patch| slip + patch * (s * w1 + c * w3).abs())
     }
 
     /// The response in a state, dt/dsigma there, and the heat of the couple of the patch in a unit of time.
@@ -345,7 +352,7 @@ impl Slipping<f64> {
     /// The response in a state, dt/dsigma there, and the heat of a couple of a patch in a unit of time.
     #[inline(always)]
     pub fn answers(&self, angle: (f64, f64), w: [f64; 3], u: [f64; 2]) -> (SlipResponse<f64>, f64, f64) {
-        match self.patch {
+        match self.patch() {
             Some(patch) => self.on_a_patch(angle, w, u, patch),
             None => {
                 let (at, pace) = self.at(angle, w, u);

@@ -67,7 +67,7 @@ fn place<const N: usize>(walk: &BodyWalk<'_, N>) -> Option<(Among, [f64; NUMBERS
     let (sine, cosine) = landing_angle(body.theta_end());
     let there = f64::from(u8::from(body.theta_end() < PI));
     numbers[4..9].copy_from_slice(&[slide.law.strength, slide.over(), sine, cosine, there]);
-    (slide.law.losses.is_none() && slide.law.patch.is_none())
+    (slide.law.losses.is_none() && slide.law.patch().is_none())
         .then_some((Among::Slips { dry: slide.law.dry }, numbers))
 }
 

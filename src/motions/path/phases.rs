@@ -259,7 +259,7 @@ impl<const N: usize> Phases<N> for BodyPhases {
         let (body, y, slip, at) = (&walk.of.body, &walk.of.state, [walk.at[5], walk.at[6]], &walk.at);
         let (rubs, losses) = (walk.ask.table.rubs(), &walk.ask.losses);
         let drills =
-            walk.of.slide.law.patch.is_some() && <Self as Phases<N>>::rubbing(walk) > walk.of.slide.over();
+            walk.of.slide.law.patch().is_some() && <Self as Phases<N>>::rubbing(walk) > walk.of.slide.over();
         let slips = rubs && (slip != [0.0; 2] || !walk.of.slide.law.dry || drills);
         let kind = if slips { Kind::Slipping } else { walk.kind() };
         let press = |y: &State| match slips {
@@ -368,7 +368,7 @@ impl<const N: usize> Phases<N> for BodyPhases {
         walk.of.slide.law.rubbing((y[0], y[1]), [y[2], y[3], y[4]], [y[5], y[6]])
     }
     fn begins_slowly(walk: &BodyWalk<'_, N>) -> bool {
-        walk.of.slide.law.patch.is_none()
+        walk.of.slide.law.patch().is_none()
     }
 
     fn slow(walk: &mut BodyWalk<'_, N>, way: [f64; 2]) -> BodySlips {

@@ -24,6 +24,7 @@ use crate::laws::contact::slip::Friction;
 use crate::laws::contact::{Contact, Force, patch};
 use crate::laws::loss::{COUNT, GRACE, Law, Losses, SLACK, Ways, holds};
 use crate::laws::state::State;
+use crate::methods::SHORT_CODE;
 use crate::methods::search::crossing;
 use crate::motions::halt::Halt;
 use crate::motions::path::face::{FLAT, turning_share};
@@ -98,7 +99,7 @@ pub(crate) struct LossyFlow {
     watch: bool,
     /// The coefficient of sliding friction and the radius of a patch, whose couple is that of drilling friction with a
     /// length that depends on the force.
-    patch: Option<[f64; 2]>,
+    radius: Option<[f64; 2]>,
 }
 
 impl LossyFlow {
@@ -128,7 +129,7 @@ impl LossyFlow {
             ball,
             tol,
             watch,
-            patch: None,
+            radius: None,
         };
         lossy.sets_holds(y);
         lossy
@@ -137,10 +138,16 @@ impl LossyFlow {
     /// The same flow on a patch of contact, whose drilling friction is among the losses.
     pub fn on_patch(mut self, friction: &Friction, y: &State) -> Self {
         if friction.patch() > 0.0 {
-            self.patch = Some([friction.strength(), friction.patch()]);
+            self.radius = Some([friction.strength(), friction.patch()]);
             self.sets_holds(y);
         }
         self
+    }
+
+    /// The coefficient of sliding friction and the radius of a patch; a page knows points only.
+    #[inline(always)]
+    fn patch(&self) -> Option<[f64; 2]> {
+        if SHORT_CODE { None } else { self.radius }
     }
 
     /// The law with the length of drilling friction that goes with the force on a patch: a fixed point, since the force
@@ -153,7 +160,7 @@ impl LossyFlow {
         precession: f64,
         (w, held): ([f64; 3], Held<f64>),
     ) -> Lossy<f64> {
-        let Some([mu, patch]) = self.patch else { return law };
+        let Some([mu, patch]) = self.patch() else { return law };
         for _ in 0..FITS {
             let [normal, along, across] = law.at(angle, precession, w, held).force;
             let share = along.hypot(across) / (mu * normal.max(f64::MIN_POSITIVE));
@@ -220,7 +227,7 @@ impl LossyFlow {
 
     fn response(&self, angle: (f64, f64), precession: f64, w: [f64; 3], held: Held<f64>) -> Acted<f64> {
         let fitted;
-        let law = match self.patch {
+        let law = match self.patch() {
             None => &self.law,
             Some(_) => {
                 fitted = self.fitted(self.law, angle, precession, (w, held));
@@ -233,14 +240,14 @@ impl LossyFlow {
     /// The power of the couple of the patch, which is friction and makes heat.
     #[inline(never)]
     fn heat(&self, drilling: f64, [normal, along, across]: [f64; 3]) -> f64 {
-        let Some([mu, patch]) = self.patch else { return 0.0 };
+        let Some([mu, patch]) = self.patch() else { return 0.0 };
         let share = (along.hypot(across) / (mu * normal)).min(1.0);
         mu * normal * patch * patch::of(patch::slip_for(share))[1] * drilling.abs()
     }
 
     /// The slip of a contact point on a patch that creeps under the contact force of this state.
     pub fn creeps(&self, y: &State) -> Option<[f64; 2]> {
-        let [mu, patch] = self.patch?;
+        let [mu, patch] = self.patch()?;
         let Force { normal, along, across } = self.force(y);
         let (s, c) = y.theta.sin_cos();
         let (friction, turn) = (along.hypot(across), patch * (s * y.w1 + c * y.w3).abs());

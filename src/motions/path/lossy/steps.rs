@@ -38,7 +38,7 @@ impl LossyFlow {
         let act = |precession: f64, w: [f64; 3], rate: f64| {
             let held = Held::Contour(rate);
             let fitted;
-            let law = match self.patch {
+            let law = match self.patch() {
                 None => &self.bare,
                 Some(_) => {
                     fitted = self.fitted(self.bare, angle, precession, (w, held));
@@ -104,7 +104,7 @@ impl LossyFlow {
         let [normal, along, across] = acted.force;
         let square = along * along + across * across;
         let mut grip = if self.mu.is_finite() { grip(number(self.mu), normal, square) } else { one };
-        if self.patch.is_some() {
+        if self.patch().is_some() {
             let drilling = s * w[0] + c * w[2];
             grip = grip.min(number(2.0 * DRILLS) - drilling.abs());
         }
@@ -167,7 +167,7 @@ impl Flow<MARGINS> for LossyFlow {
         if loses(N) {
             all[N - 1] = acted.power;
         }
-        if self.patch.is_some() {
+        if self.patch().is_some() {
             let heat = self.heat(s * w[0] + c * w[2], acted.force);
             (all[8], all[N - 1]) = (heat, all[N - 1] - heat);
         }
@@ -190,7 +190,7 @@ impl Flow<MARGINS> for LossyFlow {
 
     fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; MARGINS] {
         let y = core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
-        if self.patch.is_none() {
+        if self.patch().is_none() {
             return self.margins_of(&self.sloped, y);
         }
         let mut law = self.sloped;
@@ -202,7 +202,7 @@ impl Flow<MARGINS> for LossyFlow {
 
     fn margin<const N: usize>(&self, y: &[f64; N], i: usize) -> f64 {
         let y = core::array::from_fn(|k| y[k]);
-        if self.patch.is_none() {
+        if self.patch().is_none() {
             return self.margins_of(&self.law, y)[i];
         }
         let (precession, w) = self.turning(y);

@@ -60,7 +60,7 @@ impl Slide {
         let dual = |value: f64| Dual { value, slope: 0.0 };
         let sloped = Slipping::of(&law.shape.map(dual), dual(law.strength), law.dry);
         let sloped =
-            sloped.with_losses(law.losses.map(|losses| losses.map(dual))).with_patch(law.patch.map(dual));
+            sloped.with_losses(law.losses.map(|losses| losses.map(dual))).with_patch(law.patch().map(dual));
         let (theta_end, ball) = (body.theta_end(), body.is_ball());
         let bare = law.with_losses(law.losses.map(Couples::off_the_contour));
         let flat = if losses.turn_endlessly() { FLATTER } else { FLAT };
@@ -69,7 +69,7 @@ impl Slide {
 
     /// The speed below which a slip counts as zero.
     pub fn over(&self) -> f64 {
-        self.law.patch.map_or(slip_over(self.law.dry, self.law.strength), |patch| patch * DRILLS)
+        self.law.patch().map_or(slip_over(self.law.dry, self.law.strength), |patch| patch * DRILLS)
     }
 
     /// The energy of the body with these numbers.
@@ -223,7 +223,7 @@ impl Flow<MARGINS> for Slide {
             self.settled_rates(y, all)
         } else {
             let precession = w1 / s;
-            let at = if self.law.patch.is_some() { self.patched(y, all) } else { self.law.rates(y, all) };
+            let at = if self.law.patch().is_some() { self.patched(y, all) } else { self.law.rates(y, all) };
             let power = if loses(N) { self.law.power((s, c), [w1, w2, w3], at.force[0]) } else { 0.0 };
             ([precession, w3 - c * precession], power)
         };
@@ -247,7 +247,7 @@ impl Flow<MARGINS> for Slide {
             (w1, w3) = (s * w1, c * w1);
         }
         let (angle, w, u) = ((s, c), [w1, w2, w3], [u_h, u_2]);
-        let at = match self.sloped.patch {
+        let at = match self.sloped.patch() {
             Some(patch) => self.sloped_on(angle, w, u, patch),
             None => self.sloped.at(angle, w, u).0,
         };
@@ -314,11 +314,11 @@ impl Flow<MARGINS> for Slide {
         {
             return Some((Halt::Rests, rest));
         }
-        if loses(N) && self.law.patch.is_none() && self.settles(place) {
+        if loses(N) && self.law.patch().is_none() && self.settles(place) {
             return Some((Halt::Settles, place.y));
         }
         let [u_h, u_2] = [place.y[5], place.y[6]];
-        if self.law.patch.is_some() {
+        if self.law.patch().is_some() {
             return self.hardly_rubs(&place.y);
         }
         let speed = u_h.hypot(u_2);
@@ -348,7 +348,7 @@ impl Flow<MARGINS> for Slide {
 
     #[inline(always)]
     fn error<const N: usize>(&self, y: &[f64; N], made: &rk8::Step<f64, N>) -> f64 {
-        let slip = if self.law.patch.is_some() { self.rubs(y) } else { y[5].mac(y[5], y[6] * y[6]).sqrt() };
+        let slip = if self.law.patch().is_some() { self.rubs(y) } else { y[5].mac(y[5], y[6] * y[6]).sqrt() };
         Self::error_beside(self.tol, y, made, self.law.dry, slip)
     }
 
