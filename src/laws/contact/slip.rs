@@ -84,7 +84,7 @@ impl Friction {
     /// The radius of the patch of contact; 0 for a point.
     pub(crate) fn patch(&self) -> f64 {
         match *self {
-            Self::Coulomb { mu, patch, .. } if mu > 0.0 => patch,
+            Self::Coulomb { mu, patch, .. } if mu > 0.0 && !SHORT_CODE => patch,
             _ => 0.0,
         }
     }
