@@ -1,0 +1,60 @@
+"""Friction of a round patch in Python: one and many, measured bodies, what it tells, and what is refused."""
+
+import numpy as np
+import pytest
+
+import spincyl as sc
+
+TOP = sc.Body.ball(-0.2, 0.4, 0.42)
+PATCH = sc.Coulomb(0.3, patch=0.02)
+
+
+def spun(w3):
+    """The top, spun with its centre at rest."""
+    return sc.State(0.1, 0.0, 0.0, w3, slip=(0.0, -w3 * np.sin(0.1)))
+
+
+def test_many_tops_are_those_that_are_followed_one_by_one_with_patches_of_their_own():
+    w3, patch = np.linspace(3, 8, 7), np.geomspace(0.005, 0.1, 7)
+    law = sc.Coulomb(0.3, patch=patch)
+    found = sc.sweep.roll(TOP, spun(w3), 30.0, contact=law, tol=1e-10, want=("final",))
+    for i in range(7):
+        m = sc.roll(TOP, spun(w3[i]), 30.0, contact=sc.Coulomb(0.3, patch=patch[i]), tol=1e-10)
+        assert m.success and abs(m.theta[-1] - float(found.theta[i])) < 1e-9 + m.error
+
+
+def test_a_motion_tells_its_drilling_creep_and_couple_and_the_couple_makes_heat():
+    t = np.linspace(0, 20, 401)
+    m = sc.roll(TOP, spun(7.0), t, contact=PATCH, want="force")
+    whole = m.energy + m.dissipated
+    assert np.ptp(whole) < 1e-12
+    drilling = np.sin(m.theta) * m.w[:, 0] + np.cos(m.theta) * m.w[:, 2]
+    assert np.allclose(m.drilling, drilling, atol=1e-14)
+    assert np.allclose(m.creep, np.hypot(*m.slip.T) / (0.02 * np.abs(drilling)), rtol=1e-12)
+    assert (m.couple * m.drilling < 0).all() and (np.abs(m.couple) < 0.3 * 0.02 * 0.6 * m.normal).all()
+    with pytest.raises(AttributeError, match="patch=eps"):
+        _ = sc.roll(TOP, spun(7.0), t, contact=sc.Coulomb(0.3)).creep
+
+
+def test_the_patch_of_a_measured_body_has_a_unit():
+    coin = sc.measured(outer_diameter="25.75mm", length="2.2mm")
+    law = sc.Coulomb.from_si(0.3, patch="0.2mm", scale=coin)
+    assert law.patch == pytest.approx(0.2 / 12.875, rel=1e-14) and law.static == 0.3
+    m = sc.roll(coin, coin.steady(1.2), [0.0, 0.2], contact=law, losses=None)
+    assert m.success
+    with pytest.raises(ValueError, match="has its unit"):
+        sc.roll(coin, coin.steady(1.2), [0.0, 0.2], contact=PATCH)
+
+
+@pytest.mark.parametrize("patch", [-0.1, 1.0, np.nan, np.inf])
+def test_a_patch_is_smaller_than_the_rim(patch):
+    with pytest.raises(ValueError, match="^patch = "):
+        sc.Coulomb(0.3, patch=patch)
+
+
+def test_what_a_patch_does_not_go_with_is_refused_by_name():
+    for how in ({"restitution": 0.5}, {"losses": sc.loss.Drilling(1e-3)}):
+        with pytest.raises(ValueError, match="patch = 0.02: expected 0 together with"):
+            sc.roll(TOP, spun(3.0), 1.0, contact=PATCH, **how)
+    with pytest.raises(ValueError, match="the page knows a point"):
+        sc.play(contact=PATCH)
