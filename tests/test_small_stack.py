@@ -35,6 +35,7 @@ jobs = [
     lambda: sc.roll(body, state, t, want=("pose", "force")),
     lambda: sc.roll(body, slips, t, contact=sc.Coulomb(0.3), want=("pose", "force")),
     lambda: sc.roll(disk, slips, t, contact=sc.Coulomb(0.3), losses=losses, want=("pose", "force")),
+    lambda: sc.roll(disk, slips, t, contact=sc.Coulomb(0.3, patch=0.02), want=("pose", "force")),
     lambda: sc.roll(body, slips, t, contact=sc.Viscous(0.3)),
     lambda: sc.roll(stone, stone.spinning(-0.6, pitch=0.02), t, contact=sc.Coulomb(0.3)),
     lambda: body.inclinations(2.0),

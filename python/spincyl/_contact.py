@@ -214,7 +214,10 @@ def fitting(contact: AnyContact, scale: Scale | None) -> None:
 
 def has_patch(contact: object) -> bool:
     """Whether a table has a patch of contact, or some of several do."""
-    return isinstance(contact, Coulomb) and (is_lazy(contact.patch) or bool(np.any(contact.patch)))
+    if not isinstance(contact, Coulomb):
+        return False
+    patch = contact.patch
+    return is_lazy(patch) or (patch != 0 if isinstance(patch, float) else bool(np.any(patch)))
 
 
 def law(contact: Friction) -> int:

@@ -189,19 +189,6 @@ impl<T: Real> Slipping<T> {
         u: [T; 2],
         (pull, size, sum): ([T; 2], T, T),
     ) -> (SlipResponse<T>, T) {
-        self.with_twist((s, c), w, u, (pull, size, sum), None)
-    }
-
-    /// The response to this friction force, and to a couple `twist` N about the vertical.
-    #[inline(always)]
-    fn with_twist(
-        &self,
-        (s, c): (T, T),
-        w: [T; 3],
-        u: [T; 2],
-        (pull, size, sum): ([T; 2], T, T),
-        twist: Option<T>,
-    ) -> (SlipResponse<T>, T) {
         let Shape { rim, i1, i3 } = &self.shape;
         let ([w1, w2, w3], angle) = (w, (s, c));
         let (lever, slope, height) = (rim.lever(angle), rim.slope(angle), rim.height(angle));
@@ -230,11 +217,6 @@ impl<T: Real> Slipping<T> {
         if let Some(couple) = &couple {
             let [m1, m2, m3] = couple.under(force[0]);
             (t1, t2, t3) = (t1 + m1, t2 + m2, t3 + m3);
-        }
-        if let Some(twist) = twist {
-            // The normal force does not depend on a couple about the vertical.
-            let twist = twist * force[0];
-            (t1, t3) = (s.mac(twist, t1), c.mac(twist, t3));
         }
         let mut dw = [t1 * self.per_i1, t2 * self.per_i1, t3 * self.per_i3];
         let mut held = [w1.splat(0.0), w1.splat(1.0)];
@@ -281,13 +263,6 @@ impl<T: Real> Slipping<T> {
         self.with(angle, w, u, (u, size, sum))
     }
 
-    /// The speed of the slip, and under a patch also of its rim by the drilling.
-    #[inline(always)]
-    pub fn rubbing(&self, (s, c): (T, T), [w1, _, w3]: [T; 3], u: [T; 2]) -> T {
-        let slip = u[0].mac(u[0], u[1] * u[1]).sqrt();
-        self.patch().map_or(slip, |patch| slip + patch * (s * w1 + c * w3).abs())
-    }
-
     /// The response in a state, dt/dsigma there, and the heat of the couple of the patch in a unit of time.
     #[inline(always)]
     pub fn on_patch(&self, (s, c): (T, T), w: [T; 3], u: [T; 2], patch: T) -> (SlipResponse<T>, T, T) {
@@ -300,7 +275,12 @@ impl<T: Real> Slipping<T> {
         let twist = drilling.select_lt(zero, against, zero.select_lt(drilling, -against, zero));
         let size = slip + turn;
         let pull = u.map(|u| u * share * size);
-        let (at, pace) = self.with_twist((s, c), w, u, (pull, size, size + self.soft), Some(twist));
+        let (mut at, pace) = self.with((s, c), w, u, (pull, size, size + self.soft));
+        // Neither the contact force nor the slip across the axis depends on a couple about the vertical.
+        let (twist, rim) = (twist * at.force[0], &self.shape.rim);
+        let (turn1, turn3) = (twist * s * self.per_i1, twist * c * self.per_i3);
+        (at.w[0], at.w[2]) = (at.w[0] + turn1, at.w[2] + turn3);
+        at.u[1] = at.u[1] + (rim.depth((s, c)) * turn1 - rim.radius((s, c)) * turn3);
         (at, pace, self.strength * at.force[0] * turn * couple)
     }
 

@@ -2,7 +2,7 @@
 
 use super::check;
 use super::flight::Takeoff;
-use super::lossy::{LossyFlow, REST};
+use super::lossy::{LossyFlow, REST, with_patch};
 use super::lying::flow::LyingPhase;
 use super::slide::Slide;
 use super::slow::{BodySlips, Slippery};
@@ -12,8 +12,8 @@ use crate::error::Error;
 use crate::laws::body::Body;
 use crate::laws::contact::slip::{Friction, centre_velocity, painleve};
 use crate::laws::contact::standstill::{Standstill, let_go, standstill, towards};
-use crate::laws::contact::{Contact, Table, force, lossy, patch};
-use crate::laws::loss::{Law, Losses};
+use crate::laws::contact::{Contact, Table, force, lossy};
+use crate::laws::loss::Losses;
 use crate::laws::state::State;
 use crate::methods::flow::{Flow, FlowPlace, Steps};
 use crate::motions::halt::{Halt, loses, poses};
@@ -97,11 +97,7 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
         let (s, c) = start.theta.sin_cos();
         let mut at = [0.0; N];
         at[..7].copy_from_slice(&[s, c, start.w1, start.w2, start.w3, slip[0], slip[1]]);
-        let (mut rolling_losses, friction) = (ask.losses, ask.table.friction());
-        if friction.patch() > 0.0 {
-            rolling_losses.coefficients[Law::Drilling as usize] =
-                friction.strength() * friction.patch() * patch::of(0.0)[1];
-        }
+        let rolling_losses = with_patch(&ask.losses, &ask.table.friction());
         let of = BodyPhases {
             body: *body,
             slide: Slide::new(body, &ask.table.friction(), &ask.losses, tol),
@@ -174,23 +170,6 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
         self.of.state = state(&self.at);
     }
 
-    /// The time at which a slipping whirr ends, and its error, if they are known and no output is
-    /// requested before.
-    pub(super) fn whirr_ends(&mut self, at: &[f64; N]) -> Option<[f64; 2]> {
-        let until = self.until().unwrap_or(f64::INFINITY);
-        let tail = self.of.tail.as_mut()?;
-        tail.adds_point(at[7], at[0], at[2]);
-        tail.known(at[0], until)
-    }
-
-    /// Ends the walk where the face lands, at a time with an error.
-    pub(super) fn lies_flat(&mut self, [time, doubt]: [f64; 2]) {
-        (self.at[0], self.at[7]) = (0.0, time);
-        self.of.state = state(&self.at);
-        self.claims(doubt);
-        self.records_event(Ending::Face);
-    }
-
     /// Whether a body at theta_end, whose contact point rests, rises under the contact force.
     fn rises(&self, found: Standstill) -> bool {
         let y = &self.of.state;
@@ -258,9 +237,7 @@ impl<const N: usize> Phases<N> for BodyPhases {
     fn write_here(walk: &mut BodyWalk<'_, N>) {
         let (body, y, slip, at) = (&walk.of.body, &walk.of.state, [walk.at[5], walk.at[6]], &walk.at);
         let (rubs, losses) = (walk.ask.table.rubs(), &walk.ask.losses);
-        let drills =
-            walk.of.slide.law.patch().is_some() && <Self as Phases<N>>::rubbing(walk) > walk.of.slide.over();
-        let slips = rubs && (slip != [0.0; 2] || !walk.of.slide.law.dry || drills);
+        let slips = rubs && (slip != [0.0; 2] || !walk.of.slide.law.dry || walk.of.slide.creeps(at));
         let kind = if slips { Kind::Slipping } else { walk.kind() };
         let press = |y: &State| match slips {
             true => walk.of.slide.law.force(y, slip),
@@ -364,8 +341,7 @@ impl<const N: usize> Phases<N> for BodyPhases {
     }
 
     fn rubbing(walk: &BodyWalk<'_, N>) -> f64 {
-        let y = &walk.at;
-        walk.of.slide.law.rubbing((y[0], y[1]), [y[2], y[3], y[4]], [y[5], y[6]])
+        walk.of.slide.rubs(&walk.at)
     }
     fn begins_slowly(walk: &BodyWalk<'_, N>) -> bool {
         walk.of.slide.law.patch().is_none()

@@ -93,4 +93,21 @@ impl<const N: usize> BodyWalk<'_, N> {
             halt => self.next = Some(Next::Ends(ending(halt))),
         }
     }
+
+    /// The time at which a slipping whirr ends, and its error, if they are known and no output is
+    /// requested before.
+    pub(super) fn whirr_ends(&mut self, at: &[f64; N]) -> Option<[f64; 2]> {
+        let until = self.until().unwrap_or(f64::INFINITY);
+        let tail = self.of.tail.as_mut()?;
+        tail.adds_point(at[7], at[0], at[2]);
+        tail.known(at[0], until)
+    }
+
+    /// Ends the walk where the face lands, at a time with an error.
+    pub(super) fn lies_flat(&mut self, [time, doubt]: [f64; 2]) {
+        (self.at[0], self.at[7]) = (0.0, time);
+        self.of.state = state(&self.at);
+        self.claims(doubt);
+        self.records_event(Ending::Face);
+    }
 }

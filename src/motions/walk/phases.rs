@@ -71,7 +71,6 @@ pub(crate) trait Phases<const N: usize>: Sized {
     /// Begins a slip, or continues one. Returns the numbers at which its flow starts.
     fn slips(walk: &mut Walk<'_, Self, N>) -> [f64; N];
     fn slips_on(walk: &mut Walk<'_, Self, N>) -> [f64; N];
-    /// The series of slow slips, with which a slip from rest along `way` begins.
     /// How fast the contact point slips, or the rim of its patch by drilling.
     fn rubbing(walk: &Walk<'_, Self, N>) -> f64 {
         walk.at[Self::SLIP].hypot(walk.at[Self::SLIP + 1])
@@ -80,6 +79,7 @@ pub(crate) trait Phases<const N: usize>: Sized {
     fn begins_slowly(_: &Walk<'_, Self, N>) -> bool {
         true
     }
+    /// The series of slow slips, with which a slip from rest along `way` begins.
     fn slow(walk: &mut Walk<'_, Self, N>, way: [f64; 2]) -> Self::Slow;
     /// The time since the start of a series up to which no margin fails, at most the duration of the series.
     fn clear_until(walk: &Walk<'_, Self, N>, series: &SlowSeries<N>) -> f64;

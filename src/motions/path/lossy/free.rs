@@ -202,11 +202,7 @@ impl<T: Real> LossyUnheld<T> {
 impl LossyFlow {
     /// Whether lanes can follow this flow: no motion is held, all events end it, and the body is not a ball.
     pub fn is_free(&self) -> bool {
-        self.hold == Hold::No
-            && !self.ways.holds_drilling
-            && self.watch
-            && !self.ball
-            && self.patch().is_none()
+        self.hold == Hold::No && !self.ways.holds_drilling && self.watch && !self.ball && !self.is_patch()
     }
 
     /// The numbers that lanes need: theta_end, mu, the coefficients of the losses, and the signs

@@ -16,15 +16,14 @@
 
 mod doubts;
 mod free;
+mod patched;
 mod steps;
 
 use crate::laws::body::Body;
 use crate::laws::contact::lossy::{Acted, Held, Lossy};
-use crate::laws::contact::slip::Friction;
-use crate::laws::contact::{Contact, Force, patch};
+use crate::laws::contact::{Contact, Force};
 use crate::laws::loss::{COUNT, GRACE, Law, Losses, SLACK, Ways, holds};
 use crate::laws::state::State;
-use crate::methods::SHORT_CODE;
 use crate::methods::search::crossing;
 use crate::motions::halt::Halt;
 use crate::motions::path::face::{FLAT, turning_share};
@@ -32,6 +31,7 @@ use crate::numbers::{Dual, Real};
 use core::f64::consts::PI;
 use free::pace_of;
 pub(crate) use free::{LossyUnheld, from_side};
+pub(crate) use patched::{DRILLS, with_patch};
 pub(crate) use steps::at_rest;
 
 /// The reason why the contact point does not move along the rim.
@@ -52,12 +52,6 @@ enum Hold {
 const JUMP: f64 = 1e-6;
 /// Speed given to a motion that has just reversed and slips at once, so that its new direction is definite.
 const NUDGE: f64 = 1e-13;
-/// Largest number of evaluations for the length of drilling friction on a patch.
-const FITS: usize = 20;
-/// A contact point that is let go begins to creep with at most this share of the friction of a slip.
-const MOST_CREEP: f64 = 0.999;
-/// A patch that drills faster than this, in sqrt(g/R), creeps.
-pub(crate) const DRILLS: f64 = 1e-9;
 /// A body with a smaller joint speed of rolling and rocking is at rest for the law of rolling resistance.
 pub(crate) const REST: f64 = 1e-13;
 
@@ -97,9 +91,9 @@ pub(crate) struct LossyFlow {
     pub tol: f64,
     /// Whether events other than a landing of the face end the flow.
     watch: bool,
-    /// The coefficient of sliding friction and the radius of a patch, whose couple is that of drilling friction with a
-    /// length that depends on the force.
-    radius: Option<[f64; 2]>,
+    /// The coefficient of sliding friction on a patch, whose couple is that of drilling friction with a length that
+    /// depends on the force; 0 without a patch.
+    slides: f64,
 }
 
 impl LossyFlow {
@@ -129,49 +123,10 @@ impl LossyFlow {
             ball,
             tol,
             watch,
-            radius: None,
+            slides: 0.0,
         };
         lossy.sets_holds(y);
         lossy
-    }
-
-    /// The same flow on a patch of contact, whose drilling friction is among the losses.
-    pub fn on_patch(mut self, friction: &Friction, y: &State) -> Self {
-        if friction.patch() > 0.0 {
-            self.radius = Some([friction.strength(), friction.patch()]);
-            self.sets_holds(y);
-        }
-        self
-    }
-
-    /// The coefficient of sliding friction and the radius of a patch; a page knows points only.
-    #[inline(always)]
-    fn patch(&self) -> Option<[f64; 2]> {
-        if SHORT_CODE { None } else { self.radius }
-    }
-
-    /// The law with the length of drilling friction that goes with the force on a patch: a fixed point, since the force
-    /// depends little on that length.
-    #[inline(never)]
-    fn fitted(
-        &self,
-        mut law: Lossy<f64>,
-        angle: (f64, f64),
-        precession: f64,
-        (w, held): ([f64; 3], Held<f64>),
-    ) -> Lossy<f64> {
-        let Some([mu, patch]) = self.patch() else { return law };
-        for _ in 0..FITS {
-            let [normal, along, across] = law.at(angle, precession, w, held).force;
-            let share = along.hypot(across) / (mu * normal.max(f64::MIN_POSITIVE));
-            let length = mu * patch * patch::of(patch::slip_for(share.min(1.0)))[1];
-            let change = length - law.losses.coefficient(Law::Drilling);
-            law.losses.sets(Law::Drilling, length);
-            if change.abs() <= f64::EPSILON * mu * patch {
-                break;
-            }
-        }
-        law
     }
 
     pub fn holds_drilling(&self) -> bool {
@@ -226,33 +181,10 @@ impl LossyFlow {
     }
 
     fn response(&self, angle: (f64, f64), precession: f64, w: [f64; 3], held: Held<f64>) -> Acted<f64> {
-        let fitted;
-        let law = match self.patch() {
-            None => &self.law,
-            Some(_) => {
-                fitted = self.fitted(self.law, angle, precession, (w, held));
-                &fitted
-            }
-        };
-        law.at(angle, precession, w, held)
-    }
-
-    /// The power of the couple of the patch, which is friction and makes heat.
-    #[inline(never)]
-    fn heat(&self, drilling: f64, [normal, along, across]: [f64; 3]) -> f64 {
-        let Some([mu, patch]) = self.patch() else { return 0.0 };
-        let share = (along.hypot(across) / (mu * normal)).min(1.0);
-        mu * normal * patch * patch::of(patch::slip_for(share))[1] * drilling.abs()
-    }
-
-    /// The slip of a contact point on a patch that creeps under the contact force of this state.
-    pub fn creeps(&self, y: &State) -> Option<[f64; 2]> {
-        let [mu, patch] = self.patch()?;
-        let Force { normal, along, across } = self.force(y);
-        let (s, c) = y.theta.sin_cos();
-        let (friction, turn) = (along.hypot(across), patch * (s * y.w1 + c * y.w3).abs());
-        let slip = turn * patch::slip_for((friction / (mu * normal)).min(MOST_CREEP)) / friction;
-        (turn > 0.0 && friction > 0.0).then(|| [-(slip * across), -(slip * along)])
+        if self.is_patch() {
+            return self.acts_on_patch(&self.law, angle, precession, (w, held)).0;
+        }
+        self.law.at(angle, precession, w, held)
     }
 
     /// Lets dry friction hold the contact point if its limit suffices, or always if `surely`; else the

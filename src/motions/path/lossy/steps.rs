@@ -1,7 +1,7 @@
 //! The flow of a body that loses energy: its rates, its margins, and the settling of its contact.
 
 use super::free::{error, fastest_of, from_side, pace_of, three_radians};
-use super::{DRILLS, Hold, LossyFlow, REST};
+use super::{Hold, LossyFlow, REST};
 use crate::laws::body::landing_angle;
 use crate::laws::contact::lossy::{Acted, Held, Lossy};
 use crate::laws::contact::{Contact, grip};
@@ -37,15 +37,11 @@ impl LossyFlow {
         let way = if self.hold == Hold::Settled { self.settled_way } else { self.ways.contour };
         let act = |precession: f64, w: [f64; 3], rate: f64| {
             let held = Held::Contour(rate);
-            let fitted;
-            let law = match self.patch() {
-                None => &self.bare,
-                Some(_) => {
-                    fitted = self.fitted(self.bare, angle, precession, (w, held));
-                    &fitted
-                }
+            let acted = if self.is_patch() {
+                self.acts_on_patch(&self.bare, angle, precession, (w, held)).0
+            } else {
+                self.bare.at(angle, precession, w, held)
             };
-            let acted = law.at(angle, precession, w, held);
             Turned { acted, push: acted.held[0], normal: acted.force[0] }
         };
         let Balance { precession, w, turned: Turned { acted, push, .. }, spin } =
@@ -86,7 +82,7 @@ impl LossyFlow {
         Some(at_rest(place, -speed / (growth * place.rate[TIME]), drills))
     }
 
-    fn margins_of<T: Real>(&self, law: &Lossy<T>, y: [T; 5]) -> [T; MARGINS] {
+    pub(super) fn margins_of<T: Real>(&self, law: &Lossy<T>, y: [T; 5]) -> [T; MARGINS] {
         let [s, c, _, w2, _] = y;
         let (precession, w) = self.turning(y);
         let one = s.splat(1.0);
@@ -103,11 +99,7 @@ impl LossyFlow {
         let side = from_side([high, far, there].map(number), (s, c));
         let [normal, along, across] = acted.force;
         let square = along * along + across * across;
-        let mut grip = if self.mu.is_finite() { grip(number(self.mu), normal, square) } else { one };
-        if self.patch().is_some() {
-            let drilling = s * w[0] + c * w[2];
-            grip = grip.min(number(2.0 * DRILLS) - drilling.abs());
-        }
+        let grip = if self.mu.is_finite() { grip(number(self.mu), normal, square) } else { one };
         let [push, limit] = acted.held;
         let within = limit * limit * number(1.0 + 2.0 * GRACE) - push * push;
         let slack = self.slack.map(|slack| number(slack) * (one + precession.abs()));
@@ -134,21 +126,10 @@ impl LossyFlow {
             [face, one, one, one, contour, drilling]
         }
     }
-}
 
-impl Flow<MARGINS> for LossyFlow {
-    type Halt = Halt;
-    const TIME: usize = TIME;
-    const OVER: Halt = Halt::Time;
-    const PAUSE: Halt = Halt::Pause;
-    const ENDLESS: Option<Halt> = Some(Halt::Endless);
-
-    fn theta<const N: usize>(&self, y: &[f64; N]) -> f64 {
-        y[0].atan2(y[1])
-    }
-
+    /// Writes the rates of the numbers. Returns w and the contact force.
     #[inline(always)]
-    fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {
+    pub(super) fn rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) -> ([f64; 3], [f64; 3]) {
         let [s, c, w2] = [y[0], y[1], y[3]];
         let (precession, w, acted) = if self.hold == Hold::Settled {
             let (precession, w, acted, _) = self.settled((s, c), y[2], w2);
@@ -167,10 +148,6 @@ impl Flow<MARGINS> for LossyFlow {
         if loses(N) {
             all[N - 1] = acted.power;
         }
-        if self.patch().is_some() {
-            let heat = self.heat(s * w[0] + c * w[2], acted.force);
-            (all[8], all[N - 1]) = (heat, all[N - 1] - heat);
-        }
         if poses(N) {
             let moves = matches!(self.hold, Hold::No | Hold::Settled);
             let spin = if moves { w[2] - c * precession } else { 0.0 };
@@ -186,28 +163,43 @@ impl Flow<MARGINS> for LossyFlow {
             let pace = self.law.pace((s, c), pace_of((s, c), precession, w));
             all.iter_mut().for_each(|x| *x *= pace);
         }
+        (w, acted.force)
+    }
+}
+
+impl Flow<MARGINS> for LossyFlow {
+    type Halt = Halt;
+    const TIME: usize = TIME;
+    const OVER: Halt = Halt::Time;
+    const PAUSE: Halt = Halt::Pause;
+    const ENDLESS: Option<Halt> = Some(Halt::Endless);
+
+    fn theta<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        y[0].atan2(y[1])
+    }
+
+    #[inline(always)]
+    fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {
+        if self.is_patch() {
+            return self.rates_on_patch(y, all);
+        }
+        self.rates(y, all);
     }
 
     fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; MARGINS] {
         let y = core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
-        if self.patch().is_none() {
-            return self.margins_of(&self.sloped, y);
+        if self.is_patch() {
+            return self.margins_on_patch(y);
         }
-        let mut law = self.sloped;
-        let (precession, w) = self.turning(y.map(|x| x.value));
-        let length = self.fitted(self.law, (place.y[0], place.y[1]), precession, (w, self.held(0.0))).losses;
-        law.losses.sets(Law::Drilling, Dual { value: length.coefficient(Law::Drilling), slope: 0.0 });
-        self.margins_of(&law, y)
+        self.margins_of(&self.sloped, y)
     }
 
     fn margin<const N: usize>(&self, y: &[f64; N], i: usize) -> f64 {
         let y = core::array::from_fn(|k| y[k]);
-        if self.patch().is_none() {
-            return self.margins_of(&self.law, y)[i];
+        if self.is_patch() {
+            return self.margin_on_patch(y, i);
         }
-        let (precession, w) = self.turning(y);
-        let law = self.fitted(self.law, (y[0], y[1]), precession, (w, self.held(0.0)));
-        self.margins_of(&law, y)[i]
+        self.margins_of(&self.law, y)[i]
     }
 
     fn end(&self, i: usize) -> Halt {

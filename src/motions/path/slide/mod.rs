@@ -94,10 +94,16 @@ impl Slide {
         at
     }
 
-    /// The speed of the slip, and under a patch also of its rim by the drilling.
+    /// The speed of the slip, and under a patch also that of its rim by the drilling.
     #[inline(never)]
-    fn rubs<const N: usize>(&self, y: &[f64; N]) -> f64 {
-        self.law.rubbing((y[0], y[1]), [y[2], y[3], y[4]], [y[5], y[6]])
+    pub(super) fn rubs<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        let slip = y[5].hypot(y[6]);
+        self.law.patch().map_or(slip, |patch| slip + patch * (y[0] * y[2] + y[1] * y[4]).abs())
+    }
+
+    /// Whether a patch of contact drills, so that its contact point creeps.
+    pub(super) fn creeps<const N: usize>(&self, y: &[f64; N]) -> bool {
+        self.law.patch().is_some() && self.rubs(y) > self.over()
     }
 
     /// The halt of a patch that neither slips nor drills any more.
@@ -247,9 +253,11 @@ impl Flow<MARGINS> for Slide {
             (w1, w3) = (s * w1, c * w1);
         }
         let (angle, w, u) = ((s, c), [w1, w2, w3], [u_h, u_2]);
-        let at = match self.sloped.patch() {
-            Some(patch) => self.sloped_on(angle, w, u, patch),
-            None => self.sloped.at(angle, w, u).0,
+        // Only these three are needed, and of a contact point no others are computed.
+        let needed = |at: SlipResponse<_>| (at.free, at.room, at.held);
+        let (free, room, held) = match self.sloped.patch() {
+            Some(patch) => needed(self.sloped_on(angle, w, u, patch)),
+            None => needed(self.sloped.at(angle, w, u).0),
         };
         let one = s.splat(1.0);
         let (high, far) = landing_angle(self.theta_end);
@@ -257,7 +265,7 @@ impl Flow<MARGINS> for Slide {
         let [contour, drilling] = match self.sloped.losses.as_ref().filter(|_| loses(N)) {
             Some(losses) => {
                 let seen = losses.seen(&self.sloped.shape.rim, (s, c), w1 / s, [w1, w2, w3]);
-                ways(losses, &seen, at.held)
+                ways(losses, &seen, held)
             }
             None => [one; 2],
         };
@@ -270,7 +278,7 @@ impl Flow<MARGINS> for Slide {
         } else {
             [contour, drilling]
         };
-        [if self.ball { one } else { face }, side, at.free, at.room, contour, drilling]
+        [if self.ball { one } else { face }, side, free, room, contour, drilling]
     }
 
     fn margin<const N: usize>(&self, y: &[f64; N], i: usize) -> f64 {

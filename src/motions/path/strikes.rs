@@ -1,0 +1,301 @@
+//! The impacts of a body, one by one and in sequences, and what follows them.
+//!
+//! ```text
+//! bounces             last 2 u_n/(G (1 - q)) in all,  G = a_n N0,  q the ratio of the next bounce to this one
+//! contact             where 2 u_n^2 < TAIL G (1 - q): the last impact is taken with e = 0
+//! both rims           land in turn, the faster one first, until none comes down
+//! ```
+//! The impulses of the bounces that are summed agree with the contact force to first order, so that the error of
+//! their sum is about TAIL.
+
+use super::flight::{Aloft, Takeoff};
+use super::phases::{BodyWalk, LONGER};
+use crate::laws::contact::impact::{Hit, RimImpact, Struck, lightness, turned};
+use crate::laws::contact::landing::{Landed, Outcome, land_at, settled};
+use crate::laws::contact::slip::Friction;
+use crate::laws::contact::{FLAT, Table};
+use crate::laws::newton;
+use crate::laws::state::State;
+use crate::motions::halt::TIME;
+use crate::motions::walk::Next;
+use crate::motions::{Ending, Kind, Method, Moving, Strike};
+use core::f64::consts::FRAC_PI_2;
+
+/// Share of the state that the bounces which are summed may change: this part of the tolerance of a sweep, but at least
+/// and at most these.
+const TAIL_SHARE: f64 = 0.1;
+const TAIL: f64 = 1e-13;
+const LONGEST_TAIL: f64 = 1e-10;
+/// The same of a body with losses, as a share: they act on a contact, and not on a body that bounces.
+const LOSSY_TAIL: f64 = 1e-8;
+/// The tolerance of a step along an impact.
+const IMPACT_TOL: f64 = 3e-14;
+/// Both rims rattle until |cos theta| and the normal velocities of both are below this.
+pub(super) const RATTLED: f64 = 1e-7;
+/// Error of the rest of a rattle, in units of the square of its velocities.
+const SUMMED: f64 = 1e2;
+/// Time of the rest of a rattle, in units of its velocities.
+const LASTS: f64 = 10.0;
+/// A rocking with a larger w2 is followed hop by hop.
+const ROCKED: f64 = 1e-5;
+/// A smaller w2 after a landing is a rounding error.
+const ROCKED_OUT: f64 = 1e-15;
+/// Both rims land together if |cos theta| is below this.
+const BOTH_AT_ONCE: f64 = 1e-14;
+/// Impacts of both rims are over where no rim comes down faster than this share of the first velocity.
+const RATTLE_OVER: f64 = 1e-9;
+/// Share of its terms below which N0 is a rounding error.
+pub(super) const ROUNDED: f64 = 1e-12;
+/// A jam needs a larger impulse than this share of the slip.
+const JAM_TAKES: f64 = 1e-9;
+/// Largest number of impacts of both rims in turn.
+const MOST_IN_TURN: u32 = 10_000;
+
+impl<const N: usize> BodyWalk<'_, N> {
+    /// The phase after the impact by which a slip that presses the rim into the table stops. None where the rim could
+    /// leave the table as well.
+    pub(super) fn jams(&mut self, e: f64) -> Option<Next> {
+        self.of.takeoff = Takeoff::default();
+        let from = self.aloft();
+        let [free, size] = self.pressed(&from);
+        if from.slip == [0.0; 2] || free < ROUNDED * size {
+            return None;
+        }
+        let speed = from.slip[0].hypot(from.slip[1]);
+        let struck = self.impact(&from, e).filter(|struck| struck.impulse[2] > JAM_TAKES * speed)?;
+        // An output at this time shows the slip, for which there is no force.
+        while self.until().is_some_and(|t| t <= self.at[TIME]) {
+            self.writes_with(&from, Kind::Slipping, f64::NAN);
+        }
+        let after = self.struck(&from, &struck, (self.made.path.upside_down, false));
+        self.sets(&after);
+        Some(self.leaves_impact(&after))
+    }
+
+    /// The phase after an impact.
+    fn leaves_impact(&mut self, after: &Aloft) -> Next {
+        if after.lift > 0.0 {
+            self.of.takeoff.leaves = Some(1);
+            return Next::Own(Kind::Flying);
+        }
+        self.touches_down()
+    }
+
+    /// The next phase after a landing.
+    #[inline(never)]
+    pub(super) fn strikes(&mut self) -> Next {
+        let (e, from) = (self.ask.restitution.unwrap_or(0.0), self.aloft());
+        if from.angle.0 < FLAT && self.of.body.rim() > 0.0 {
+            return Next::Ends(Ending::Face);
+        }
+        if from.lift >= 0.0 {
+            self.of.takeoff = Takeoff::default();
+            return self.touches_down();
+        }
+        let shape = self.of.slide.law.shape;
+        let there = from.on_other_rim(&shape);
+        let both = self.has_two_rims() && from.angle.1.abs() < BOTH_AT_ONCE;
+        // After two flights of no length the rims land in turn at the same time.
+        if both && (there.lift < 0.0 || e > 0.0 && self.still > 2) {
+            self.claims(from.angle.1.abs());
+            return if e == 0.0 { self.lands_on_both() } else { self.rattles(e) };
+        }
+        let Some(mut struck) = self.impact(&from, e) else { return Next::Ends(Ending::Slip) };
+        let [force, _] =
+            self.pressed(&Aloft { w: turned(&shape, from.angle, from.w, struck.impulse), ..from });
+        let left =
+            if struck.lift > 0.0 && force > 0.0 { self.bounces_for(&from, &struck, force, e) } else { None };
+        self.claims(left.unwrap_or(0.0) * force * self.couples(&from));
+        let stays = left.is_some();
+        if stays && let Some(last) = self.impact(&from, 0.0) {
+            struck = last;
+        }
+        let after = self.struck(&from, &struck, (self.made.path.upside_down, stays));
+        self.sets(&after);
+        let level = from.angle.1.abs().max(after.lift).max(after.on_other_rim(&shape).lift.abs());
+        if self.has_two_rims() && e > 0.0 && level < RATTLED {
+            return self.ends_rattle();
+        }
+        self.leaves_impact(&after)
+    }
+
+    /// The impact at these numbers; None where a rolling table has no answer.
+    fn impact(&self, from: &Aloft, e: f64) -> Option<Struck> {
+        let light = lightness(&self.of.slide.law.shape, from.angle);
+        self.rim_impact(from.slip, from.lift, light).on(&self.ask.table, e)
+    }
+
+    /// The impact of a rim. A rougher run begins it with a longer step, lest both runs take the same steps.
+    fn rim_impact(&self, slip: [f64; 2], lift: f64, light: [f64; 4]) -> RimImpact {
+        let (longer, rougher) = if self.perturbation > 0.0 {
+            (LONGER, self.perturbation * State::SAFETY / f64::EPSILON)
+        } else {
+            (1.0, 1.0)
+        };
+        RimImpact { slip, lift, light, tol: IMPACT_TOL * rougher, longer }
+    }
+
+    /// A bound of what the losses change in a unit of time, for each unit of the normal force.
+    fn couples(&self, at: &Aloft) -> f64 {
+        let (body, sum) = (&self.of.body, self.ask.losses.coefficients.iter().sum::<f64>());
+        sum * at.w.into_iter().fold(1.0, |most: f64, w| most.max(w.abs())) / body.i1().min(body.i3())
+    }
+
+    /// The time of all bounces after an impact, if they are over so soon that they are summed.
+    fn bounces_for(&self, from: &Aloft, struck: &Struck, force: f64, e: f64) -> Option<f64> {
+        let law = &self.of.slide.law;
+        let light @ [.., a_n, b] = lightness(&law.shape, from.angle);
+        let (fall, w) = (a_n * force, turned(&law.shape, from.angle, from.w, struck.impulse));
+        // The tolerance of a sweep is that of both of its runs, which so end their bounces together.
+        let tail = match self.ask.method {
+            Method::Tolerance(tol) => (TAIL_SHARE * tol).clamp(TAIL, LONGEST_TAIL),
+            _ => TAIL,
+        };
+        let tail = if self.ask.losses.is_none() { tail } else { LOSSY_TAIL * tail };
+        if 2.0 * struck.lift * struck.lift >= tail * fall {
+            return None;
+        }
+        let mut ratio = e;
+        if struck.hit == Hit::Sticks {
+            // Each bounce meets the slip that the flight before has made.
+            let [along, across] = law.towards(from.angle, w, [0.0; 2], [0.0; 2]).u;
+            let slip = [along - b * force, across].map(|rate| 2.0 * rate / fall);
+            ratio = self.rim_impact(slip, -1.0, light).on(&self.ask.table, e).map_or(1.0, |next| next.lift);
+        }
+        let left = 2.0 * struck.lift / (fall * (1.0 - ratio));
+        (ratio < 1.0 && left * struck.lift < tail).then_some(left)
+    }
+
+    /// The numbers after an impact, which is recorded.
+    fn struck(&mut self, from: &Aloft, struck: &Struck, (other, stays): (bool, bool)) -> Aloft {
+        let w = turned(&self.of.slide.law.shape, from.angle, from.w, struck.impulse);
+        let after = Aloft { w, slip: struck.slip, lift: struck.lift, ..*from };
+        self.records([from, &after], other, struck.hit, (struck.impulse, struck.lost), stays);
+        after
+    }
+
+    /// Adds an impact to the results, from the numbers before and after it as seen from the rim that lands.
+    fn records(
+        &mut self,
+        both: [&Aloft; 2],
+        other: bool,
+        hit: Hit,
+        (impulse, lost): ([f64; 3], f64),
+        stays: bool,
+    ) {
+        let velocities = both.map(|at| [at.slip[0], at.slip[1], at.lift]);
+        let (time, states) = (self.t0 + self.at[TIME], both.map(Aloft::state));
+        self.made.path.impacts.push(Strike { time, other, hit, states, velocities, impulse, lost, stays });
+    }
+
+    /// Both rims land in turn, the faster one first, until none comes down.
+    #[inline(never)]
+    pub(super) fn rattles(&mut self, e: f64) -> Next {
+        (self.at[0], self.at[1]) = (1.0, 0.0);
+        let shape = self.of.slide.law.shape;
+        let mut at = Aloft { angle: (1.0, 0.0), ..self.aloft() };
+        let fast = at.lift.min(at.on_other_rim(&shape).lift).abs();
+        let mut other = false;
+        for turn in 0.. {
+            let there = at.on_other_rim(&shape);
+            if at.lift.min(there.lift) > -RATTLE_OVER * fast.min(1.0) {
+                break;
+            }
+            if turn > MOST_IN_TURN {
+                return Next::Ends(Ending::Bounded);
+            }
+            if there.lift < at.lift {
+                (at, other) = (there, !other);
+            }
+            let Some(struck) = self.impact(&at, e) else { return Next::Ends(Ending::Slip) };
+            at = self.struck(&at, &struck, (other != self.made.path.upside_down, false));
+        }
+        let there = at.on_other_rim(&shape);
+        if there.lift < at.lift {
+            (at, other) = (there, !other);
+        }
+        if other {
+            self.turns_over();
+        }
+        self.sets(&Aloft { height: 0.0, pose: self.aloft().pose, ..at });
+        if at.on_other_rim(&shape).lift < RATTLED {
+            return self.ends_rattle();
+        }
+        if at.lift < RATTLE_OVER * fast.min(1.0) {
+            return self.touches_down();
+        }
+        self.of.takeoff.leaves = Some(1);
+        Next::Own(Kind::Flying)
+    }
+
+    /// The phase on both rims after a rattle, whose last impacts are summed.
+    fn ends_rattle(&mut self) -> Next {
+        let Table::Rubs(friction) = self.ask.table else { return self.lands_on_both() };
+        let from = self.aloft();
+        let left = from.angle.1.abs().max(from.w[1].abs()).max(from.lift.abs());
+        self.claims(if from.slip == [0.0; 2] { left } else { left * left * SUMMED });
+        self.claims(left * LASTS * self.couples(&from));
+        let (law, flat) = (self.of.slide.law, (1.0, 0.0));
+        let state = State { theta: FRAC_PI_2, ..self.of.state };
+        let (v, still) = (law.centre(from.angle, from.w, from.slip), law.centre(flat, from.w, [0.0; 2]));
+        // Where the rims slip, the centre keeps its velocity while the axis comes to lie level.
+        let slip = if from.slip == [0.0; 2] { from.slip } else { [v[0] - still[0], v[1] - still[1]] };
+        let (y, slip) = settled(&self.of.body, &state, (slip, from.lift), &friction);
+        let lift = from.lift + law.shape.rim.lever(from.angle) * from.w[1];
+        let before = newton::energy(&law.shape, from.angle, from.w, [v[0], v[1], lift]) + from.height;
+        self.at[8] += before - law.energy(&y, slip);
+        let after = Aloft { angle: (1.0, 0.0), w: [y.w1, 0.0, y.w3], slip, lift: 0.0, height: 0.0, ..from };
+        self.sets(&after);
+        self.settles_on_side()
+    }
+
+    /// The next phase after a landing on both rims without a bounce.
+    pub(super) fn lands_on_both(&mut self) -> Next {
+        let friction = match self.ask.table {
+            Table::Rubs(friction) => friction,
+            _ if self.at[2] == 0.0 && self.at[4] == 0.0 => Friction::coulomb(1e100),
+            _ => return Next::Ends(Ending::Side),
+        };
+        let before = State { theta: FRAC_PI_2, ..self.of.state };
+        let lift = self.of.takeoff.lift.min(0.0);
+        let Ok(landed) = land_at(&self.of.body, &before, ([self.at[5], self.at[6]], lift), &friction) else {
+            return Next::Ends(Ending::Landing);
+        };
+        let (shape, other) = (self.of.slide.law.shape, !self.made.path.upside_down);
+        let from = Aloft { angle: (1.0, 0.0), ..self.aloft() }.on_other_rim(&shape);
+        self.lands_as(&landed);
+        let here = self.aloft();
+        let there = if other == self.made.path.upside_down { here } else { here.on_other_rim(&shape) };
+        // The impulses of both rims together are what the centre of mass has gained.
+        let [old, new] = [&from, &there].map(|at| {
+            let ([w1, w2, w3], [along, across]) = (at.w, at.slip);
+            [along + w2, across - shape.rim.ell * w1 + w3, at.lift + shape.rim.ell * w2]
+        });
+        let impulse = core::array::from_fn(|i| new[i] - old[i]);
+        self.records([&from, &there], other, Hit::BothRims, (impulse, landed.lost), true);
+        let rises = self.at[3];
+        if rises < ROCKED_OUT {
+            self.claims(rises * LASTS);
+            return self.settles_on_side();
+        }
+        if rises < ROCKED
+            && let Some(end) = self.rocks_out()
+        {
+            self.claims((end[TIME] - self.at[TIME]).powi(2));
+            self.at = end;
+            return self.settles_on_side();
+        }
+        self.touches_down()
+    }
+
+    /// Moves the walk to the numbers after a landing on both rims.
+    pub(super) fn lands_as(&mut self, landed: &Landed) {
+        if landed.outcome == Outcome::Changes {
+            self.turns_over();
+        }
+        let State { w1, w2, w3, .. } = landed.state;
+        let after =
+            Aloft { angle: (1.0, 0.0), w: [w1, w2, w3], slip: landed.slip, lift: 0.0, ..self.aloft() };
+        self.sets(&Aloft { height: 0.0, ..after });
+    }
+}
