@@ -7,6 +7,7 @@ pub(crate) mod antiderivative;
 pub(crate) mod beat;
 pub(crate) mod flow;
 pub(crate) mod gauss;
+pub(crate) mod radau;
 pub mod rk4;
 pub(crate) mod rk8;
 pub(crate) mod roots;

@@ -12,6 +12,7 @@
 //! is positive but small is reported to the flow ([`Flow::grazed`]). Error: that of the steps.
 
 use super::{Flow, FlowPlace};
+use crate::methods::radau;
 use crate::methods::rk8::{self, Stages};
 use crate::methods::search::{crossing, least};
 use crate::numbers::Dual;
@@ -86,6 +87,23 @@ fn is_near(a: Dual<f64>, b: Dual<f64>, h: f64) -> bool {
     left.is_nan() || left <= 0.0
 }
 
+/// The points of a step at three of its stages, with their times as shares of the step.
+#[inline(always)]
+fn looks<F: Flow<M>, const M: usize, const N: usize>(
+    flow: &F,
+    (from, h): (&FlowPlace<N>, f64),
+    stages: &Stages<f64, N>,
+) -> [(f64, FlowPlace<N>); 3] {
+    let at = |y: [f64; N], rate: [f64; N]| FlowPlace { y, carry: [0.0; N], rate };
+    if F::MAY_BE_STIFF && flow.is_stiff(from) {
+        return [1, 2, 3].map(|i| {
+            let y = core::array::from_fn(|n| from.y[n] + stages[i][n]);
+            (radau::AT[i], at(y, stages[radau::NODES + i]))
+        });
+    }
+    rk8::LOOKS.map(|(stage, share)| (share, at(rk8::place(stage, &from.y, h, stages), stages[stage])))
+}
+
 /// How the margins behave within a step, by the cubics through both ends and three of its stages. A margin
 /// counts as positive only if it would be even with a dip twice as deep as that of the cubics.
 #[cfg_attr(short_code, inline(never))]
@@ -96,15 +114,13 @@ fn outlook<F: Flow<M>, const M: usize, const N: usize>(
     (before, after): Sides<'_, M>,
 ) -> Outlook {
     let (mut left, mut share, mut fallen, mut place) = (*before, 0.0, [false; M], from.y);
-    for (stage, at) in rk8::LOOKS.into_iter().chain([(0, 1.0)]) {
+    let looks = looks(flow, (from, h), stages).map(|(at, place)| (at, Some(place)));
+    for (at, look) in looks.into_iter().chain([(1.0, None)]) {
         let last = place;
-        let here = if stage == 0 {
-            *after
-        } else {
-            let y = rk8::place(stage, &from.y, h, stages);
-            place = y;
-            flow.margins_at(&FlowPlace { y, carry: [0.0; N], rate: stages[stage] })
-        };
+        let here = look.map_or(*after, |look| {
+            place = look.y;
+            flow.margins_at(&look)
+        });
         for i in 0..M {
             let (a, b) = (left[i], here[i]);
             if !fallen[i] && lowest(a, b, 2.0 * (at - share) * h) > 0.0 {

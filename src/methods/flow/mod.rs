@@ -16,6 +16,7 @@ pub(crate) mod schedule;
 
 pub(crate) use ends::only_zero;
 
+use super::radau;
 use super::rk8::{self, growth, plus};
 use crate::error::Error;
 use crate::numbers::{Dual, IN_REGISTERS, here, in_registers};
@@ -169,6 +170,21 @@ pub(crate) trait Flow<const M: usize>: Copy {
     }
     /// Whether [`Flow::passed`] is called.
     const LOOKS_ON: bool = false;
+    /// Whether [`Flow::is_stiff`] is called before each step.
+    const MAY_BE_STIFF: bool = false;
+    /// Whether some numbers follow the others so fast from this point on that a step of [`radau`] costs less than the
+    /// short steps that would be stable otherwise.
+    fn is_stiff<const N: usize>(&self, _: &FlowPlace<N>) -> bool {
+        false
+    }
+    /// A step of [`radau`] and its stages.
+    fn implicit_step<const N: usize>(
+        &self,
+        _: &FlowPlace<N>,
+        _: f64,
+    ) -> (rk8::Step<f64, N>, radau::Stages<N>) {
+        unreachable!("only a stiff flow takes implicit steps")
+    }
     /// Called for each step that is taken, with the step, the length in sigma of the part that is taken, and
     /// the point at its end. The part ends where the flow ends; if that is at the last requested time, the
     /// length is that of the whole step.
@@ -213,6 +229,12 @@ pub(crate) trait Flow<const M: usize>: Copy {
         h: f64,
         stages: &mut rk8::Stages<f64, N>,
     ) -> rk8::Step<f64, N> {
+        if Self::MAY_BE_STIFF && self.is_stiff(from) {
+            let (made, at) = self.implicit_step(from, h);
+            stages[..radau::NODES].copy_from_slice(&at.moved);
+            stages[radau::NODES..2 * radau::NODES].copy_from_slice(&at.rates);
+            return made;
+        }
         let rates = here(
             #[inline(always)]
             |y: &[f64; N], rate: &mut [f64; N]| self.write_rates_here(y, rate),

@@ -11,6 +11,7 @@
 //!
 //! Error: 1e-11 in states and 1e-12 in times; a test of `test_slip_reference` has 25 motions of 25 digits.
 
+mod creeps;
 mod lossy;
 
 use super::settled::EFFORT;
@@ -19,13 +20,14 @@ use crate::laws::contact::slip::{Friction, SlipResponse, Slipping};
 use crate::laws::loss::{Couples, Losses};
 use crate::laws::state::State;
 use crate::methods::flow::{FASTEST, Flow, FlowPlace};
-use crate::methods::rk8;
+use crate::methods::{SHORT_CODE, radau, rk8};
 use crate::motions::halt::{Halt, MARGINS, TIME, loses, poses};
 use crate::motions::path::face::FLAT;
 use crate::motions::path::lossy::DRILLS;
 use crate::motions::walk::{MOMENT, slip_over};
 use crate::numbers::{Dual, Real};
 use core::f64::consts::PI;
+use creeps::IMPLICIT_TURNS;
 use lossy::ways;
 
 /// The halts of the margins, in the order of the margins.
@@ -83,47 +85,6 @@ impl Slide {
     #[inline(never)]
     pub(super) fn acts(&self, angle: (f64, f64), w: [f64; 3], u: [f64; 2]) -> SlipResponse<f64> {
         self.law.answers(angle, w, u).0
-    }
-
-    /// Writes the rates of the numbers on a patch of contact, the couple of which makes heat, too.
-    #[inline(never)]
-    fn patched<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) -> SlipResponse<f64> {
-        let (at, pace, heat) = self.law.answers((y[0], y[1]), [y[2], y[3], y[4]], [y[5], y[6]]);
-        self.law.writes(y, all, (&at, pace));
-        all[8] += pace * heat;
-        at
-    }
-
-    /// The speed of the slip, and under a patch also that of its rim by the drilling.
-    #[inline(never)]
-    pub(super) fn rubs<const N: usize>(&self, y: &[f64; N]) -> f64 {
-        let slip = y[5].hypot(y[6]);
-        self.law.patch().map_or(slip, |patch| slip + patch * (y[0] * y[2] + y[1] * y[4]).abs())
-    }
-
-    /// Whether a patch of contact drills, so that its contact point creeps.
-    pub(super) fn creeps<const N: usize>(&self, y: &[f64; N]) -> bool {
-        self.law.patch().is_some() && self.rubs(y) > self.over()
-    }
-
-    /// The halt of a patch that neither slips nor drills any more.
-    #[inline(never)]
-    fn hardly_rubs<const N: usize>(&self, y: &[f64; N]) -> Option<(Halt, [f64; N])> {
-        let mut rests = *y;
-        (rests[5], rests[6]) = (0.0, 0.0);
-        (self.rubs(y) <= self.over()).then_some((Halt::Standstill, rests))
-    }
-
-    /// The response for margins with their slopes, of which there is one copy for a patch.
-    #[inline(never)]
-    fn sloped_on(
-        &self,
-        (s, c): (Dual<f64>, Dual<f64>),
-        w: [Dual<f64>; 3],
-        u: [Dual<f64>; 2],
-        patch: Dual<f64>,
-    ) -> SlipResponse<Dual<f64>> {
-        self.sloped.on_patch((s, c), w, u, patch).0
     }
 
     /// The halt by the first margin that fails at the start of a slip; None if all margins are positive.
@@ -213,6 +174,21 @@ impl Flow<MARGINS> for Slide {
     const OVER: Halt = Halt::Time;
     const PAUSE: Halt = Halt::Pause;
     const ENDLESS: Option<Halt> = Some(Halt::Endless);
+    const MAY_BE_STIFF: bool = !SHORT_CODE;
+
+    #[inline(always)]
+    fn is_stiff<const N: usize>(&self, place: &FlowPlace<N>) -> bool {
+        self.law.patch().is_some() && self.creeps_fast(place)
+    }
+
+    #[inline(never)]
+    fn implicit_step<const N: usize>(
+        &self,
+        from: &FlowPlace<N>,
+        h: f64,
+    ) -> (rk8::Step<f64, N>, radau::Stages<N>) {
+        self.creeps_on(from, h)
+    }
 
     fn is_extrapolated(halt: Halt) -> bool {
         halt == Halt::Standstill
@@ -256,7 +232,7 @@ impl Flow<MARGINS> for Slide {
         // Only these three are needed, and of a contact point no others are computed.
         let needed = |at: SlipResponse<_>| (at.free, at.room, at.held);
         let (free, room, held) = match self.sloped.patch() {
-            Some(patch) => needed(self.sloped_on(angle, w, u, patch)),
+            Some(patch) => needed(self.sloped_on(angle, w, u, patch).0),
             None => needed(self.sloped.at(angle, w, u).0),
         };
         let one = s.splat(1.0);
@@ -381,6 +357,9 @@ impl Flow<MARGINS> for Slide {
     fn longest<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
         // `calm` limits the time, and a step in sigma takes less time where the slip is slow.
         let mut most = self.calm(&place.y);
+        if self.is_stiff(place) {
+            most *= IMPLICIT_TURNS;
+        }
         if loses(N) && !self.settled {
             most = most.min(self.damped(&place.y));
         }

@@ -1,0 +1,220 @@
+//! Radau's method IIA of ninth order, for numbers some of which follow others thousands of times faster than the
+//! solution changes.
+//!
+//! ```text
+//! Z_i = h sum a_ij f(y + Z_j),   y(t + h) = y + Z_5                          five stages, at the nodes c_i
+//! (1 - (h/g_k) J) dW_k = (T^-1 (h A f - Z))_k,   dZ = T dW                   Newton's iteration, A^-1 = T diag(g) T^-1
+//! error = 3e-6 x^2 |(d5, x d4)|,   x^2 = 0.8 |d5|/|d3|                          d_n: divided differences of y of order n
+//! ```
+//! The method is stable for any h (Hairer and Wanner, Solving Ordinary Differential Equations II (1996), IV.5 and IV.8). Only
+//! the first M of the N numbers react to each other; the others are integrals. J is exact at the start of the step. Of an
+//! oscillation d5 and d3 vanish together and d4 does not, so that the error does not depend on its phase.
+//!
+//! Error: that of a pendulum goes as h^9; the tests at the end run it, a stiff equation, and the estimate of the error.
+
+use super::rk8::Step;
+use nalgebra::{Complex, Const, DimMin, SMatrix, SVector, ToTypenum};
+
+/// The number of stages.
+pub(crate) const NODES: usize = 5;
+#[rustfmt::skip]
+pub(crate) const AT: [f64; NODES] = [0.057104196114517682, 0.27684301363812383, 0.58359043236891682, 0.86024013565621945, 1.0];
+#[rustfmt::skip]
+const A: [[f64; NODES]; NODES] = [
+    [0.072998864317903324, -0.026735331107945572, 0.018676929763984354, -0.01287910609330644, 5.0428392338820152e-3],
+    [0.15377523147918247, 0.14621486784749351, -0.03644456890512809, 0.021233063119304719, -7.9355799027287775e-3],
+    [0.14006304568480987, 0.29896712949128348, 0.16758507013524896, -0.033969101686617747, 0.010944288744192252],
+    [0.14489430810953476, 0.27650006876015923, 0.32579792291042103, 0.12875675325490976, -0.015708917378805328],
+    [0.14371356079122594, 0.28135601514946206, 0.31182652297574125, 0.22310390108357074, 0.04],
+];
+/// The eigenvalues of 1/A, of which one is real and the others are pairs, and their right and left vectors, real and
+/// imaginary parts. They decide how fast Newton's iteration converges, not to what.
+#[rustfmt::skip]
+const SINGLE: (f64, [f64; NODES], [f64; NODES]) = (
+    6.2867047517292766,
+    [0.013576867344947943, 1.6179004017190875e-3, 0.079157853347447208, 0.41225608268046145, 1.0],
+    [27.697693775684088, 12.783337911304406, 3.2084893867134299, -0.95149041224891622, 0.7415504960259896],
+);
+type Pair = ([f64; 2], [[f64; 2]; NODES], [[f64; 2]; NODES]);
+#[rustfmt::skip]
+const PAIRS: [Pair; 2] = [
+    (
+        [5.7009532986717894, 3.2102656003085499],
+        [
+            [-0.011478515255229515, 0.01401985889287541], [-7.6688307491801629e-3, -0.024708578426518527],
+            [0.019398463998828951, -0.081800353703751171], [0.40760117128019907, -0.19968242788680253], [1.0, 0.0],
+        ],
+        [
+            [-16.5209401067595, -4.305721989937646], [-8.6884767395317835, 4.8499957047644041],
+            [-0.086064531627002781, 0.95736431984843714], [-0.049584888991271321, 1.20934600304247],
+            [0.26561405791915333, -0.52373174396766871],
+        ],
+    ),
+    (
+        [3.6556943254635723, 6.5437368993600773],
+        [
+            [-0.010242047817908827, -0.047673877290295724], [0.050172864517371058, 0.094331819181611437],
+            [-0.23053953404341795, -0.1027030453801259], [0.37789390224886125, -0.46674413033249436], [1.0, 0.0],
+        ],
+        [
+            [2.6720932189174558, 1.8740299037199024], [2.2968077838795805, -1.9924828681719423],
+            [-1.5181801617297121, -0.5222078208040094], [0.52533009511572943, 0.59204928406897424],
+            [-0.13638930593214814, -0.22495888507839018],
+        ],
+    ),
+];
+/// The divided differences of y: of fifth order at the start and the nodes, of fourth at the nodes, of third at the last four.
+#[rustfmt::skip]
+const FIFTH: [f64; NODES] = [199.88739542347736, -127.022853068795, 92.10283313613322, -64.167375490815583, 25.2];
+#[rustfmt::skip]
+const FOURTH: [f64; NODES] = [11.414409029082395, -35.165389444477812, 53.750332212318185, -55.199351796922768, 25.2];
+#[rustfmt::skip]
+const THIRD: [f64; NODES] = [0.0, -7.7272010942866557, 28.298810103886992, -44.332583267514491, 23.760974257914154];
+/// Largest number of Newton's iterations.
+const ITERATIONS: usize = 14;
+/// The factor of the error: about right for a radian of an oscillation.
+const MISSED: f64 = 3e-6;
+/// Largest share by which the numbers still move in an iteration that rounding does not let converge.
+const ROUNDED: f64 = 1e-12;
+
+/// The stages of a step: the changes Z, and the rates there.
+pub(crate) struct Stages<const N: usize> {
+    pub moved: [[f64; N]; NODES],
+    pub rates: [[f64; N]; NODES],
+}
+
+/// One step of `h` from `y`. `slopes[i][j]` is the derivative of the rate of number i by number j, and `sizes` are those of
+/// the first M numbers to which errors are relative. Newton's iteration ends where no number would move by the share
+/// `converged` of its size any more; the error is NaN if it does not.
+pub(crate) fn step<const M: usize, const N: usize>(
+    mut f: impl FnMut(&[f64; N], &mut [f64; N]),
+    y: &[f64; N],
+    slopes: &SMatrix<f64, M, M>,
+    sizes: &[f64; M],
+    (h, converged): (f64, f64),
+) -> (Step<f64, N>, Stages<N>)
+where
+    Const<M>: ToTypenum + DimMin<Const<M>, Output = Const<M>>,
+{
+    let one = SMatrix::<f64, M, M>::identity();
+    let complex = |[re, im]: [f64; 2]| Complex::new(re, im);
+    let single = (one - slopes * (h / SINGLE.0)).lu();
+    let pairs = PAIRS.map(|(g, ..)| {
+        let per = Complex::new(h, 0.0) / complex(g);
+        (one.map(Complex::from) - slopes.map(|x| per * x)).lu()
+    });
+    let mut all = Stages { moved: [[0.0; N]; NODES], rates: [*y; NODES] };
+    let (mut last, mut done) = (None::<f64>, false);
+    for _ in 0..ITERATIONS {
+        for i in 0..NODES {
+            f(&core::array::from_fn(|n| y[n] + all.moved[i][n]), &mut all.rates[i]);
+        }
+        // What is left of the equation of each stage.
+        let left: [[f64; N]; NODES] = core::array::from_fn(|i| {
+            core::array::from_fn(|n| {
+                h * (0..NODES).map(|j| A[i][j] * all.rates[j][n]).sum::<f64>() - all.moved[i][n]
+            })
+        });
+        let mut moves = left;
+        let solved = single
+            .solve(&SVector::<f64, M>::from_fn(|n, _| (0..NODES).map(|i| SINGLE.2[i] * left[i][n]).sum()));
+        let twice = [0, 1].map(|k| {
+            let of = |n: usize| (0..NODES).map(|i| complex(PAIRS[k].2[i]) * left[i][n]).sum::<Complex<f64>>();
+            pairs[k].solve(&SVector::<Complex<f64>, M>::from_fn(|n, _| of(n)))
+        });
+        let (Some(single), [Some(first), Some(second)]) = (solved, twice) else { break };
+        let mut most = 0.0f64;
+        for i in 0..NODES {
+            for n in 0..M {
+                let pairs = complex(PAIRS[0].1[i]) * first[n] + complex(PAIRS[1].1[i]) * second[n];
+                moves[i][n] = SINGLE.1[i] * single[n] + 2.0 * pairs.re;
+                most = most.max(moves[i][n].abs() / sizes[n]);
+            }
+            for n in 0..N {
+                all.moved[i][n] += moves[i][n];
+                // A rate may depend on an integral that is not among the first M numbers.
+                most = if n < M { most } else { most.max(moves[i][n].abs() / (1.0 + all.moved[i][n].abs())) };
+            }
+        }
+        let share = last.map_or(1.0, |last| most / last);
+        done = most * share.min(1.0) < converged || share > 0.5 && most < ROUNDED;
+        if done || !most.is_finite() || share > 2.0 {
+            break;
+        }
+        last = Some(most);
+    }
+    let difference =
+        |weights: &[f64; NODES], n: usize| (0..NODES).map(|i| weights[i] * all.moved[i][n]).sum::<f64>();
+    let size = |weights: &[f64; NODES]| {
+        (0..M).map(|n| difference(weights, n) / sizes[n]).fold(f64::MIN_POSITIVE, f64::hypot)
+    };
+    let square = (0.8 * size(&FIFTH) / size(&THIRD)).min(1.0);
+    let share = if done { MISSED * square } else { f64::NAN };
+    let fifth =
+        core::array::from_fn(|n| share * difference(&FIFTH, n).hypot(square.sqrt() * difference(&FOURTH, n)));
+    (Step { change: all.moved[NODES - 1], fifth, third: [0.0; N] }, all)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The angle of a pendulum and of its speed at time 4, after `n` steps.
+    fn swung(n: u32) -> [f64; 2] {
+        let (mut y, h) = ([1.0, 0.0], 4.0 / f64::from(n));
+        for _ in 0..n {
+            let slopes = SMatrix::<f64, 2, 2>::new(0.0, 1.0, -f64::cos(y[0]), 0.0);
+            let pendulum = |y: &[f64; 2], rate: &mut [f64; 2]| *rate = [y[1], -y[0].sin()];
+            let change = step(pendulum, &y, &slopes, &[1.0; 2], (h, 1e-16)).0.change;
+            y = [y[0] + change[0], y[1] + change[1]];
+        }
+        y
+    }
+
+    #[test]
+    fn a_pendulum_has_an_error_of_ninth_order() {
+        let exact = swung(64);
+        let error = |n: u32| (swung(n)[0] - exact[0]).hypot(swung(n)[1] - exact[1]);
+        for n in [3, 4, 5] {
+            let order = (error(n) / error(2 * n)).log2();
+            assert!((order - 9.0).abs() < 1.3, "{n}: {order}");
+        }
+    }
+
+    #[test]
+    fn a_number_that_follows_another_a_million_times_faster_does_not_shorten_the_steps() {
+        // x turns at the rate 1, and y is drawn to x at the rate 1e6.
+        let rate = 1e6;
+        let f = |y: &[f64; 3], all: &mut [f64; 3]| *all = [-y[1], y[0], -rate * (y[2] - y[0])];
+        #[rustfmt::skip]
+        let slopes = SMatrix::<f64, 3, 3>::new(0.0, -1.0, 0.0,  1.0, 0.0, 0.0,  rate, 0.0, -rate);
+        // y = (cos t + sin t/rate)/(1 + 1/rate^2) stays on its slow solution.
+        let slow = |t: f64| (t.cos() + t.sin() / rate) / (1.0 + 1.0 / (rate * rate));
+        let (mut y, h) = ([1.0, 0.0, slow(0.0)], 0.25);
+        for n in 1..=40 {
+            let change = step(f, &y, &slopes, &[1.0; 3], (h, 1e-16)).0.change;
+            y = core::array::from_fn(|i| y[i] + change[i]);
+            let t = h * f64::from(n);
+            assert!((y[0] - t.cos()).abs() < 2e-13 && (y[2] - slow(t)).abs() < 1e-12, "{t}: {y:?}");
+        }
+    }
+
+    #[test]
+    fn the_error_of_a_step_is_known_within_a_factor() {
+        let f = |y: &[f64; 2], all: &mut [f64; 2]| *all = [-y[1], y[0]];
+        let slopes = SMatrix::<f64, 2, 2>::new(0.0, -1.0, 1.0, 0.0);
+        for h in [0.3, 0.5, 0.8, 1.2] {
+            for turn in 0..8 {
+                let (s, c) = (0.7 * f64::from(turn)).sin_cos();
+                let (made, _) = step(f, &[c, s], &slopes, &[1.0; 2], (h, 1e-16));
+                let (far, near) = (h + 0.7 * f64::from(turn)).sin_cos();
+                let off = (made.change[0] - (near - c)).hypot(made.change[1] - (far - s));
+                let said = made.fifth[0].hypot(made.fifth[1]);
+                assert!(
+                    off < 3.0 * said + 1e-15 && said < 1e3 * off + 1e-13,
+                    "{h}, {turn}: {off:e} {said:e}"
+                );
+            }
+        }
+    }
+}

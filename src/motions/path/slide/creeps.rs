@@ -1,0 +1,101 @@
+//! The slip on a patch of contact, which creeps as long as the body drills ([`patch`](crate::laws::contact::patch)).
+//!
+//! ```text
+//! S = |u|,   R = eps |w_z|,   dt = (S + R)/(S + R + soft) dsigma
+//! u -> its slow value at the rate (mu N/R) b     of which a time step of dsigma ~ 1 follows a part
+//! ```
+//! Where the patch drills slowly, u follows the forces of rolling thousands of times faster than the body moves, and
+//! [`radau`] takes the steps.
+
+use super::Slide;
+use crate::laws::contact::slip::SlipResponse;
+use crate::methods::flow::{Flow, FlowPlace};
+use crate::methods::{radau, rk8};
+use crate::motions::halt::Halt;
+use crate::numbers::Dual;
+use nalgebra::SMatrix;
+
+/// The number of numbers that react to each other: sine, cosine, w and u.
+const REACTING: usize = 7;
+/// Steps are implicit where the body turns by less than this angle in a unit of sigma, which is about the longest stable
+/// explicit step.
+const STIFF: f64 = 0.2;
+/// An implicit step may be this many times longer than an explicit one, since it amplifies no rounding.
+pub(super) const IMPLICIT_TURNS: f64 = 8.0;
+
+impl Slide {
+    /// Writes the rates of the numbers on a patch of contact, the couple of which makes heat, too.
+    #[inline(never)]
+    pub(super) fn patched<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) -> SlipResponse<f64> {
+        let (at, pace, heat) = self.law.answers((y[0], y[1]), [y[2], y[3], y[4]], [y[5], y[6]]);
+        self.law.writes(y, all, (&at, pace));
+        all[8] += pace * heat;
+        at
+    }
+
+    /// The speed of the slip, and under a patch also that of its rim by the drilling.
+    #[inline(never)]
+    pub(in crate::motions::path) fn rubs<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        let slip = y[5].hypot(y[6]);
+        self.law.patch().map_or(slip, |patch| slip + patch * (y[0] * y[2] + y[1] * y[4]).abs())
+    }
+
+    /// Whether a patch of contact drills, so that its contact point creeps.
+    pub(in crate::motions::path) fn creeps<const N: usize>(&self, y: &[f64; N]) -> bool {
+        self.law.patch().is_some() && self.rubs(y) > self.over()
+    }
+
+    /// The halt of a patch that neither slips nor drills any more.
+    #[inline(never)]
+    pub(super) fn hardly_rubs<const N: usize>(&self, y: &[f64; N]) -> Option<(Halt, [f64; N])> {
+        let mut rests = *y;
+        (rests[5], rests[6]) = (0.0, 0.0);
+        (self.rubs(y) <= self.over()).then_some((Halt::Standstill, rests))
+    }
+
+    /// The response for margins with their slopes, of which there is one copy for a patch.
+    #[inline(never)]
+    pub(super) fn sloped_on(
+        &self,
+        (s, c): (Dual<f64>, Dual<f64>),
+        w: [Dual<f64>; 3],
+        u: [Dual<f64>; 2],
+        patch: Dual<f64>,
+    ) -> (SlipResponse<Dual<f64>>, Dual<f64>, Dual<f64>) {
+        self.sloped.on_patch((s, c), w, u, patch)
+    }
+
+    /// Whether u follows the body's motion thousands of times faster than the body turns.
+    #[inline(never)]
+    pub(super) fn creeps_fast<const N: usize>(&self, place: &FlowPlace<N>) -> bool {
+        place.rate[7] < STIFF / 3.0 * self.calm(&place.y)
+    }
+
+    /// An implicit step and its stages.
+    pub(super) fn creeps_on<const N: usize>(
+        &self,
+        from: &FlowPlace<N>,
+        h: f64,
+    ) -> (rk8::Step<f64, N>, radau::Stages<N>) {
+        let y = &from.y;
+        let (fast, rubs) = (Self::fastest(y), self.rubs(y));
+        let sizes = [y[0], 1.0, fast, fast, fast, rubs, rubs];
+        radau::step(|y, all| self.write_rates(y, all), y, &self.slopes(y), &sizes, (h, 0.01 * self.tol))
+    }
+
+    /// The derivatives of the rates of sine, cosine, w and u by these numbers.
+    fn slopes<const N: usize>(&self, y: &[f64; N]) -> SMatrix<f64, REACTING, REACTING> {
+        let Some(patch) = self.sloped.patch() else { return SMatrix::zeros() };
+        let mut all = SMatrix::zeros();
+        for j in 0..REACTING {
+            let y: [Dual<f64>; REACTING + 1] =
+                core::array::from_fn(|i| Dual { value: y[i], slope: f64::from(u8::from(i == j)) });
+            let ([s, c], w, u) = ([y[0], y[1]], [y[2], y[3], y[4]], [y[5], y[6]]);
+            let (at, pace, _) = self.sloped_on((s, c), w, u, patch);
+            let mut rates = y;
+            self.sloped.writes(&y, &mut rates, (&at, pace));
+            (0..REACTING).for_each(|i| all[(i, j)] = rates[i].slope);
+        }
+        all
+    }
+}
