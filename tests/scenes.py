@@ -16,6 +16,8 @@ from spincyl.sweep import Status
 #: by public names alone, since benches/beside.py draws the same scenes for older builds
 LAWS = tuple(x for x in vars(sc.loss).values() if isinstance(x, type) and sc.loss.Law in x.__bases__)
 CONTACTS = ("rolling", "mu", "smooth", "coulomb", "viscous")
+#: "patch" is drawn only where it is named, so that the other scenes stay what they were
+SLIPPING = ("coulomb", "viscous", "patch")
 NUMBERS = ("theta", "w1", "w2", "w3")
 #: only one of the two computations may reach an end so close to the last time
 LATE = 1e-6
@@ -39,7 +41,7 @@ class Scene(NamedTuple):
     contact: str
     bodies: np.ndarray  # (count, 4): ell, i1, i3, fillet
     starts: np.ndarray  # (count, 6): theta, w1, w2, w3, slip along and across
-    table: np.ndarray  # (count, 2): mu or c, static
+    table: np.ndarray  # (count, 2): mu or c, static; (count, 3) with the radius of a patch
     losses: dict[int, np.ndarray]  # coefficients by the index of the law
     times: np.ndarray
     tol: float
@@ -52,15 +54,17 @@ class Scene(NamedTuple):
             return {"contact": self.contact}
         if self.contact == "mu":
             return {"mu": float(self.table[0, 0])}
-        a, b = self.table[i].T
-        return {"contact": sc.Coulomb(a, static=b) if self.contact == "coulomb" else sc.Viscous(a)}
+        a, b, *patch = self.table[i].T
+        if self.contact == "viscous":
+            return {"contact": sc.Viscous(a)}
+        return {"contact": sc.Coulomb(a, static=b, **({"patch": patch[0]} if patch else {}))}
 
     def asked(self, i):
         """Body, state and settings of motion i, or of all of them."""
         how = self.how | self.contact_of(i)
         ends = {} if self.theta_end is None else {"theta_end": self.theta_end[i]}
         body = sc.Body(*self.bodies[i].T[:3], fillet=self.bodies[i].T[3], **ends)
-        slips = self.contact in ("coulomb", "viscous")
+        slips = self.contact in SLIPPING
         state = sc.State(*self.starts[i].T[:4], slip=tuple(self.starts[i].T[4:]) if slips else None)
         if self.losses:
             laws = [LAWS[k](x[i]) for k, x in self.losses.items()]
@@ -185,7 +189,16 @@ def draw(rng, count, contact=None, laws=None):
     if contact in ("coulomb", "viscous"):
         how |= {"restitution": 0.0} if rng.random() < 0.2 else {}
     tol = float(rng.choice([1e-10, 1e-8, 1e-12]))
-    return Scene(contact, bodies, starts, np.stack([mu, static], axis=1), losses, times, tol, how)
+    table = np.stack([mu, static, *([draw_patches(rng, count)] if contact == "patch" else [])], axis=1)
+    if contact == "patch":
+        losses.pop(LAWS.index(sc.loss.Drilling), None)
+    return Scene(contact, bodies, starts, table, losses, times, tol, how)
+
+
+def draw_patches(rng, count):
+    """Radii of patches, from those of hard balls to a tenth of the body; some are 0, and some are larger."""
+    patch = typed(rng, log_uniform(rng, 1e-5, 0.1, count))
+    return np.where(rng.random(count) < 0.1, rng.choice([0.0, 1e-9, 1e-300, 0.5, 0.99], count), patch)
 
 
 class Alone(NamedTuple):

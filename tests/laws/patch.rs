@@ -191,7 +191,8 @@ fn a_coin_whirrs_to_its_face_in_one_phase_with_few_steps() {
         let coin = Body::solid(2.2 / 25.75).unwrap();
         let losses = Losses::of(Law::RollingResistance, resistance);
         let ask = Ask { losses, ..Ask::on(on(0.3, 0.4 / 25.75)) };
-        let m = roll_with(&coin, steady::state(&coin, 0.5).unwrap(), &[2000.0], &ask, || true).unwrap().unwrap();
+        let m =
+            roll_with(&coin, steady::state(&coin, 0.5).unwrap(), &[2000.0], &ask, || true).unwrap().unwrap();
         let event = m.event.unwrap();
         assert_eq!((event.ending, m.path.as_ref().unwrap().phases.len()), (Ending::Face, 1));
         assert!((event.time - lands).abs() < m.error.min(1e-5), "{} with {}", event.time, m.error);

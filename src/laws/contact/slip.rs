@@ -31,6 +31,9 @@ use crate::laws::state::State;
 use crate::methods::SHORT_CODE;
 use crate::numbers::Real;
 
+/// A patch of this radius or less is a point, since a motion on a patch differs from rolling by its radius at least.
+const POINT: f64 = 1e-16;
+
 /// The law of friction at a contact point that slips or sticks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Friction {
@@ -81,10 +84,10 @@ impl Friction {
         }
     }
 
-    /// The radius of the patch of contact; 0 for a point.
+    /// The radius of the patch of contact; 0 for a point, and for a patch that differs from a point by rounding.
     pub(crate) fn patch(&self) -> f64 {
         match *self {
-            Self::Coulomb { mu, patch, .. } if mu > 0.0 && !SHORT_CODE => patch,
+            Self::Coulomb { mu, patch, .. } if mu > 0.0 && patch > POINT && !SHORT_CODE => patch,
             _ => 0.0,
         }
     }

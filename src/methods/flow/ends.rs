@@ -90,12 +90,12 @@ fn is_near(a: Dual<f64>, b: Dual<f64>, h: f64) -> bool {
 /// The points of a step at three of its stages, with their times as shares of the step.
 #[inline(always)]
 fn looks<F: Flow<M>, const M: usize, const N: usize>(
-    flow: &F,
     (from, h): (&FlowPlace<N>, f64),
     stages: &Stages<f64, N>,
 ) -> [(f64, FlowPlace<N>); 3] {
     let at = |y: [f64; N], rate: [f64; N]| FlowPlace { y, carry: [0.0; N], rate };
-    if F::MAY_BE_STIFF && flow.is_stiff(from) {
+    // An explicit step begins with the rates at its start, an implicit one with changes.
+    if F::MAY_BE_STIFF && stages[0] != from.rate {
         return [1, 2, 3].map(|i| {
             let y = core::array::from_fn(|n| from.y[n] + stages[i][n]);
             (radau::AT[i], at(y, stages[radau::NODES + i]))
@@ -114,7 +114,7 @@ fn outlook<F: Flow<M>, const M: usize, const N: usize>(
     (before, after): Sides<'_, M>,
 ) -> Outlook {
     let (mut left, mut share, mut fallen, mut place) = (*before, 0.0, [false; M], from.y);
-    let looks = looks(flow, (from, h), stages).map(|(at, place)| (at, Some(place)));
+    let looks = looks::<F, M, N>((from, h), stages).map(|(at, place)| (at, Some(place)));
     for (at, look) in looks.into_iter().chain([(1.0, None)]) {
         let last = place;
         let here = look.map_or(*after, |look| {

@@ -233,7 +233,10 @@ pub(crate) trait Flow<const M: usize>: Copy {
             let (made, at) = self.implicit_step(from, h);
             stages[..radau::NODES].copy_from_slice(&at.moved);
             stages[radau::NODES..2 * radau::NODES].copy_from_slice(&at.rates);
-            return made;
+            // Where Newton's iteration does not converge, a short explicit step may do.
+            if !made.fifth[0].is_nan() {
+                return made;
+            }
         }
         let rates = here(
             #[inline(always)]

@@ -11,7 +11,7 @@ use super::Slide;
 use crate::laws::contact::slip::SlipResponse;
 use crate::methods::flow::{Flow, FlowPlace};
 use crate::methods::{radau, rk8};
-use crate::motions::halt::Halt;
+use crate::motions::halt::{Halt, loses};
 use crate::numbers::Dual;
 use nalgebra::SMatrix;
 
@@ -65,10 +65,11 @@ impl Slide {
         self.sloped.on_patch((s, c), w, u, patch)
     }
 
-    /// Whether u follows the body's motion thousands of times faster than the body turns.
+    /// Whether u, or psi' under a couple that grows with it, follows the motion much faster than the body turns.
     #[inline(never)]
     pub(super) fn creeps_fast<const N: usize>(&self, place: &FlowPlace<N>) -> bool {
-        place.rate[7] < STIFF / 3.0 * self.calm(&place.y)
+        let damped = if loses(N) { self.damped(&place.y) } else { f64::INFINITY };
+        place.rate[7].min(damped) < STIFF / 3.0 * self.calm(&place.y)
     }
 
     /// An implicit step and its stages.

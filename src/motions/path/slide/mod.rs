@@ -358,7 +358,7 @@ impl Flow<MARGINS> for Slide {
         // `calm` limits the time, and a step in sigma takes less time where the slip is slow.
         let mut most = self.calm(&place.y);
         if self.is_stiff(place) {
-            most *= IMPLICIT_TURNS;
+            return IMPLICIT_TURNS * most / place.rate[7];
         }
         if loses(N) && !self.settled {
             most = most.min(self.damped(&place.y));
