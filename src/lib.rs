@@ -9,7 +9,7 @@
 //! | --- | --- | --- | --- |
 //! | `numbers` | | single numbers, eight in lanes, with twice the digits, with a slope; sine and cosine | |
 //! | `methods` | [`rk4`] | one step of the method of Runge and Kutta | y + h (k1 + 2 k2 + 2 k3 + k4)/6 |
-//! | | | steps of eighth order up to an end (`flow`), roots, quadrature | |
+//! | | | steps of eighth order, or stiff ones of ninth, up to an end (`flow`), roots, quadrature | |
 //! | `laws` | [`body`] | moments of inertia, theta0, thetaInf, circle of contact | g = ell s - a c, h = a s + ell c + rho |
 //! | | [`state`] | inclination and angular velocity, and numbers derived from them | phi' = w1/s, psi' = w3 - ct w1 |
 //! | | [`scale`] | metres, kilograms and seconds | time in sqrt(R/g) |
@@ -22,6 +22,7 @@
 //! | | [`stability`] | stability of steady states: smooth table, rolling | kappa = -dtheta''/dtheta along the lines |
 //! | `motions` | [`exact`] | the solution by first integrals, at any time | dt = s^2 sqrt(J/G) dx |
 //! | | [`motion`] | a motion: times, states, and the event that ends it | N > 0, F <= mu N, theta < theta_end |
+//! | | [`turning`] | the spin from which a tippe top turns over | J = I1 w1 s + I3 w3 (ell + c) |
 //! | | [`stone`] | ellipsoids with any inertia: rattlebacks, eggs | (I + r^2 - r r^T) w' = ... + r x n |
 //! | | [`drift`] | slow drift along steady states, to rest | theta' = -P/E'(theta) |
 //! | `many` | [`sweep`] | steady states over dense grids, on lanes and threads | |
@@ -51,7 +52,7 @@ pub use laws::{body, contact, loss, newton, pose, scale, state, throw};
 #[cfg(feature = "many")]
 pub use many::{maps as sweep, motions as ensemble};
 pub use methods::rk4;
-pub use motions::{exact, motion};
+pub use motions::{exact, motion, turning};
 pub use states::{stability, steady};
 
 #[cfg(feature = "many")]

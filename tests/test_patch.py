@@ -58,3 +58,26 @@ def test_what_a_patch_does_not_go_with_is_refused_by_name():
             sc.roll(TOP, spun(3.0), 1.0, contact=PATCH, **how)
     with pytest.raises(ValueError, match="the page knows a point"):
         sc.play(contact=PATCH)
+
+
+def test_a_top_needs_more_spin_on_a_patch_than_jelletts_number_says():
+    top = sc.Body.ball(-0.2, 0.40, 0.42)
+    estimate = sc.turning_spin(top)
+    assert abs(estimate - 2.496) < 1e-3
+    needs = sc.turning_spin(top, sc.Coulomb(0.3, patch=0.02))
+    assert 1.6 < needs / estimate < 1.7
+    over = [turned(top, spin) for spin in (0.99 * needs, 1.01 * needs)]
+    assert over == [False, True]
+    family = sc.turning_spin(sc.Body(np.array([-0.2, 0.2]), 0.40, 0.42, fillet=1.0))
+    assert family[0] == estimate and np.isnan(family[1])
+    assert sc.turning_spin(top, sc.Coulomb(0.3)) == np.inf
+    with pytest.raises(ValueError, match="ell"):
+        sc.turning_spin(sc.Body.ball(0.2, 0.40, 0.42))
+    with pytest.raises(ValueError, match="family"):
+        sc.turning_spin(sc.Body(np.array([-0.2, -0.1]), 0.40, 0.42, fillet=1.0), sc.Viscous(0.3))
+
+
+def turned(top, spin):
+    start = top.with_centre_velocity(sc.State(0.1, 0.0, 0.0, spin), 0.0, 0.0)
+    m = sc.roll(top, start, np.linspace(0.0, 400.0, 401), contact=sc.Coulomb(0.3, patch=0.02))
+    return bool(m.theta.max() > np.pi - 0.14)

@@ -52,6 +52,7 @@ __all__ = [
     "growth_rate",
     "inclination",
     "inertia",
+    "jellett_spin",
     "kappa_rolling",
     "kappa_smooth",
     "launch_number",
@@ -108,6 +109,7 @@ __all__ = [
     "thrown",
     "thrown_slip",
     "thrown_w3",
+    "turning_spin",
     "two_rims",
     "uniform_stone",
     "units",
@@ -134,6 +136,7 @@ theta_balance: np.ufunc
 theta_limit: np.ufunc
 excess: np.ufunc
 critical_aspect: np.ufunc
+jellett_spin: np.ufunc
 body_i1: np.ufunc
 body_i3: np.ufunc
 standing_rolling: np.ufunc
@@ -196,6 +199,7 @@ def thrown(velocity: float, backspin: float, body: _Body) -> tuple[list[float], 
 def pressed(
     impulse: float, angle: float, finger: float, table: float, body: _Body
 ) -> tuple[list[float], list[float]]: ...
+def turning_spin(table: int, coefficients: tuple[float, float, float], lean: float, body: _Body) -> float: ...
 def from_metres(
     outer_diameter: float, inner_diameter: float, length: float, fillet: float
 ) -> tuple[float, float, float]: ...

@@ -75,7 +75,7 @@ def thrown(body: Body, velocity: Reals, backspin: Reals, *, scale: Scale | None 
         velocity, backspin = velocity * (seconds / metres), backspin * seconds
     given = velocity, backspin, *body._numbers
     if is_scalar(*given):
-        state, slip = _core.thrown(float(velocity), float(backspin), _six(body))
+        state, slip = _core.thrown(float(velocity), float(backspin), six(body))
         return State(*state, slip=(slip[0], slip[1]))
     w3, across = _core.thrown_w3(*given), _core.thrown_slip(*given)
     return _on_its_side(w3 * 0.0, w3, across)
@@ -215,7 +215,7 @@ def pressed(
     given = *push, *body._numbers
     if is_scalar(*given):
         one = [float(x) for x in push]
-        state, slip = _core.pressed(one[0], one[1], one[2], one[3], _six(body))
+        state, slip = _core.pressed(one[0], one[1], one[2], one[3], six(body))
         return State(*state, slip=(slip[0], slip[1]))
     laws: tuple[Callable[..., Result], ...] = (_core.pressed_w1, _core.pressed_w3, _core.pressed_slip)
     w1, w3, across = (law(*given) for law in laws)
@@ -329,6 +329,6 @@ def _known(body: object, scale: Scale | None) -> Scale | None:
     return scale_of(scale, made("body", body, Body))
 
 
-def _six(body: Body) -> tuple[float, float, float, float, float, float]:
+def six(body: Body) -> tuple[float, float, float, float, float, float]:
     ell, i1, i3, bore, fillet, most = (float(x) for x in body._numbers)
     return ell, i1, i3, bore, fillet, most

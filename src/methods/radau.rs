@@ -16,11 +16,11 @@ use super::rk8::Step;
 use nalgebra::{Complex, Const, DimMin, SMatrix, SVector, ToTypenum};
 
 /// The number of stages.
-pub(crate) const NODES: usize = 5;
+pub(crate) const RADAU_STAGES: usize = 5;
 #[rustfmt::skip]
-pub(crate) const AT: [f64; NODES] = [0.057104196114517682, 0.27684301363812383, 0.58359043236891682, 0.86024013565621945, 1.0];
+pub(crate) const PLACES: [f64; RADAU_STAGES] = [0.057104196114517682, 0.27684301363812383, 0.58359043236891682, 0.86024013565621945, 1.0];
 #[rustfmt::skip]
-const A: [[f64; NODES]; NODES] = [
+const A: [[f64; RADAU_STAGES]; RADAU_STAGES] = [
     [0.072998864317903324, -0.026735331107945572, 0.018676929763984354, -0.01287910609330644, 5.0428392338820152e-3],
     [0.15377523147918247, 0.14621486784749351, -0.03644456890512809, 0.021233063119304719, -7.9355799027287775e-3],
     [0.14006304568480987, 0.29896712949128348, 0.16758507013524896, -0.033969101686617747, 0.010944288744192252],
@@ -30,14 +30,14 @@ const A: [[f64; NODES]; NODES] = [
 /// The eigenvalues of 1/A, of which one is real and the others are pairs, and their right and left vectors, real and
 /// imaginary parts. They decide how fast Newton's iteration converges, not to what.
 #[rustfmt::skip]
-const SINGLE: (f64, [f64; NODES], [f64; NODES]) = (
+const SINGLE: (f64, [f64; RADAU_STAGES], [f64; RADAU_STAGES]) = (
     6.2867047517292766,
     [0.013576867344947943, 1.6179004017190875e-3, 0.079157853347447208, 0.41225608268046145, 1.0],
     [27.697693775684088, 12.783337911304406, 3.2084893867134299, -0.95149041224891622, 0.7415504960259896],
 );
-type Pair = ([f64; 2], [[f64; 2]; NODES], [[f64; 2]; NODES]);
+type Twins = ([f64; 2], [[f64; 2]; RADAU_STAGES], [[f64; 2]; RADAU_STAGES]);
 #[rustfmt::skip]
-const PAIRS: [Pair; 2] = [
+const TWINS: [Twins; 2] = [
     (
         [5.7009532986717894, 3.2102656003085499],
         [
@@ -65,22 +65,22 @@ const PAIRS: [Pair; 2] = [
 ];
 /// The divided differences of y: of fifth order at the start and the nodes, of fourth at the nodes, of third at the last four.
 #[rustfmt::skip]
-const FIFTH: [f64; NODES] = [199.88739542347736, -127.022853068795, 92.10283313613322, -64.167375490815583, 25.2];
+const SPREAD_5: [f64; RADAU_STAGES] = [199.88739542347736, -127.022853068795, 92.10283313613322, -64.167375490815583, 25.2];
 #[rustfmt::skip]
-const FOURTH: [f64; NODES] = [11.414409029082395, -35.165389444477812, 53.750332212318185, -55.199351796922768, 25.2];
+const SPREAD_4: [f64; RADAU_STAGES] = [11.414409029082395, -35.165389444477812, 53.750332212318185, -55.199351796922768, 25.2];
 #[rustfmt::skip]
-const THIRD: [f64; NODES] = [0.0, -7.7272010942866557, 28.298810103886992, -44.332583267514491, 23.760974257914154];
+const SPREAD_3: [f64; RADAU_STAGES] = [0.0, -7.7272010942866557, 28.298810103886992, -44.332583267514491, 23.760974257914154];
 /// Largest number of Newton's iterations.
 const ITERATIONS: usize = 14;
 /// The factor of the error: about right for a radian of an oscillation.
 const MISSED: f64 = 3e-6;
 /// Largest share by which the numbers still move in an iteration that rounding does not let converge.
-const ROUNDED: f64 = 1e-12;
+const STALLED: f64 = 1e-12;
 
 /// The stages of a step: the changes Z, and the rates there.
-pub(crate) struct Stages<const N: usize> {
-    pub moved: [[f64; N]; NODES],
-    pub rates: [[f64; N]; NODES],
+pub(crate) struct Collocated<const N: usize> {
+    pub moved: [[f64; N]; RADAU_STAGES],
+    pub rates: [[f64; N]; RADAU_STAGES],
 }
 
 /// One step of `h` from `y`. `slopes[i][j]` is the derivative of the rate of number i by number j, and `sizes` are those of
@@ -92,41 +92,44 @@ pub(crate) fn step<const M: usize, const N: usize>(
     slopes: &SMatrix<f64, M, M>,
     sizes: &[f64; M],
     (h, converged): (f64, f64),
-) -> (Step<f64, N>, Stages<N>)
+) -> (Step<f64, N>, Collocated<N>)
 where
     Const<M>: ToTypenum + DimMin<Const<M>, Output = Const<M>>,
 {
     let one = SMatrix::<f64, M, M>::identity();
     let complex = |[re, im]: [f64; 2]| Complex::new(re, im);
     let single = (one - slopes * (h / SINGLE.0)).lu();
-    let pairs = PAIRS.map(|(g, ..)| {
+    let pairs = TWINS.map(|(g, ..)| {
         let per = Complex::new(h, 0.0) / complex(g);
         (one.map(Complex::from) - slopes.map(|x| per * x)).lu()
     });
-    let mut all = Stages { moved: [[0.0; N]; NODES], rates: [*y; NODES] };
+    let mut all = Collocated { moved: [[0.0; N]; RADAU_STAGES], rates: [*y; RADAU_STAGES] };
     let (mut last, mut done) = (None::<f64>, false);
     for _ in 0..ITERATIONS {
-        for i in 0..NODES {
+        for i in 0..RADAU_STAGES {
             f(&core::array::from_fn(|n| y[n] + all.moved[i][n]), &mut all.rates[i]);
         }
         // What is left of the equation of each stage.
-        let left: [[f64; N]; NODES] = core::array::from_fn(|i| {
+        let left: [[f64; N]; RADAU_STAGES] = core::array::from_fn(|i| {
             core::array::from_fn(|n| {
-                h * (0..NODES).map(|j| A[i][j] * all.rates[j][n]).sum::<f64>() - all.moved[i][n]
+                h * (0..RADAU_STAGES).map(|j| A[i][j] * all.rates[j][n]).sum::<f64>() - all.moved[i][n]
             })
         });
         let mut moves = left;
-        let solved = single
-            .solve(&SVector::<f64, M>::from_fn(|n, _| (0..NODES).map(|i| SINGLE.2[i] * left[i][n]).sum()));
+        let solved = single.solve(&SVector::<f64, M>::from_fn(|n, _| {
+            (0..RADAU_STAGES).map(|i| SINGLE.2[i] * left[i][n]).sum()
+        }));
         let twice = [0, 1].map(|k| {
-            let of = |n: usize| (0..NODES).map(|i| complex(PAIRS[k].2[i]) * left[i][n]).sum::<Complex<f64>>();
+            let of = |n: usize| {
+                (0..RADAU_STAGES).map(|i| complex(TWINS[k].2[i]) * left[i][n]).sum::<Complex<f64>>()
+            };
             pairs[k].solve(&SVector::<Complex<f64>, M>::from_fn(|n, _| of(n)))
         });
         let (Some(single), [Some(first), Some(second)]) = (solved, twice) else { break };
         let mut most = 0.0f64;
-        for i in 0..NODES {
+        for i in 0..RADAU_STAGES {
             for n in 0..M {
-                let pairs = complex(PAIRS[0].1[i]) * first[n] + complex(PAIRS[1].1[i]) * second[n];
+                let pairs = complex(TWINS[0].1[i]) * first[n] + complex(TWINS[1].1[i]) * second[n];
                 moves[i][n] = SINGLE.1[i] * single[n] + 2.0 * pairs.re;
                 most = most.max(moves[i][n].abs() / sizes[n]);
             }
@@ -137,22 +140,24 @@ where
             }
         }
         let share = last.map_or(1.0, |last| most / last);
-        done = most * share.min(1.0) < converged || share > 0.5 && most < ROUNDED;
+        done = most * share.min(1.0) < converged || share > 0.5 && most < STALLED;
         if done || !most.is_finite() || share > 2.0 {
             break;
         }
         last = Some(most);
     }
-    let difference =
-        |weights: &[f64; NODES], n: usize| (0..NODES).map(|i| weights[i] * all.moved[i][n]).sum::<f64>();
-    let size = |weights: &[f64; NODES]| {
+    let difference = |weights: &[f64; RADAU_STAGES], n: usize| {
+        (0..RADAU_STAGES).map(|i| weights[i] * all.moved[i][n]).sum::<f64>()
+    };
+    let size = |weights: &[f64; RADAU_STAGES]| {
         (0..M).map(|n| difference(weights, n) / sizes[n]).fold(f64::MIN_POSITIVE, f64::hypot)
     };
-    let square = (0.8 * size(&FIFTH) / size(&THIRD)).min(1.0);
+    let square = (0.8 * size(&SPREAD_5) / size(&SPREAD_3)).min(1.0);
     let share = if done { MISSED * square } else { f64::NAN };
-    let fifth =
-        core::array::from_fn(|n| share * difference(&FIFTH, n).hypot(square.sqrt() * difference(&FOURTH, n)));
-    (Step { change: all.moved[NODES - 1], fifth, third: [0.0; N] }, all)
+    let fifth = core::array::from_fn(|n| {
+        share * difference(&SPREAD_5, n).hypot(square.sqrt() * difference(&SPREAD_4, n))
+    });
+    (Step { change: all.moved[RADAU_STAGES - 1], fifth, third: [0.0; N] }, all)
 }
 
 #[cfg(test)]

@@ -19,6 +19,7 @@ pub mod path;
 mod result;
 mod rk4;
 pub(crate) mod stone;
+pub mod turning;
 pub(crate) mod walk;
 mod within;
 

@@ -15,6 +15,7 @@ mod watch;
 use crate::laws::contact::landing::two_rims;
 use crate::laws::contact::slip::{self, centre_velocity};
 use crate::laws::throw;
+use crate::motions::turning::jellett_spin;
 use crate::states::steady::MOST;
 use crate::states::{stability, steady};
 use crate::{Body, Contact, Error, Scale, State};
@@ -171,6 +172,11 @@ static LAWS: &[ArrayFunction] = &[
         inputs: 2,
         value: Value::One(|x| or_nan(Body::critical_aspect(x[0], x[1]))),
     },
+    ArrayFunction {
+        name: "jellett_spin",
+        inputs: 6,
+        value: Value::One(|x| of_body(x, |b| or_nan(jellett_spin(b)))),
+    },
     ArrayFunction { name: "body_i1", inputs: 6, value: Value::One(|x| of_body(x, Body::i1)) },
     ArrayFunction { name: "body_i3", inputs: 6, value: Value::One(|x| of_body(x, Body::i3)) },
     ArrayFunction {
@@ -321,7 +327,7 @@ mod _core {
     #[pymodule_export]
     use super::loss::loss_laws;
     #[pymodule_export]
-    use super::motion::{roll, swing};
+    use super::motion::{roll, swing, turning_spin};
     #[pymodule_export]
     use super::options::motion_options;
     #[pymodule_export]

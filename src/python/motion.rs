@@ -1,7 +1,7 @@
 //! Motions: the functions take plain arrays and return a dictionary of plain arrays.
 
 use super::BODY;
-use super::options::{MotionAsked, contact_of};
+use super::options::{MotionAsked, contact_of, table_of};
 use super::stone::{STONE, stone_of};
 use super::watch::Watch;
 use crate::error::room;
@@ -10,6 +10,7 @@ use crate::laws::stone::{Ellipsoid, StoneState};
 use crate::motions::exact::Swing;
 use crate::motions::motion;
 use crate::motions::stone;
+use crate::motions::turning;
 use crate::motions::{Ask, Kind, Method, Motion, Moving, Start};
 use crate::{Body, Error, State};
 use numpy::ndarray::ArrayView2;
@@ -227,6 +228,22 @@ pub fn roll<'py>(
         }
         _ => Err(PyValueError::new_err("state: that of another kind of body")),
     }
+}
+
+/// The spin from which a top turns over on a table, or ValueError.
+#[pyfunction]
+pub fn turning_spin(
+    py: Python<'_>,
+    table: u8,
+    coefficients: [f64; 3],
+    lean: f64,
+    body: [f64; BODY],
+) -> PyResult<f64> {
+    let (top, friction) = (Body::of_numbers(body)?, table_of(table)?.with(coefficients).friction());
+    let mut watch = Watch::new(None);
+    let found = py.detach(|| turning::turning_spin(&top, friction, lean, || watch.still()))?;
+    watch.done(py)?;
+    found.ok_or_else(|| PyRuntimeError::new_err("the search was given up"))
 }
 
 /// Whether a motion has a slip and phases.

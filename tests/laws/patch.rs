@@ -6,6 +6,7 @@ use spincyl::contact::{Table, patch};
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::path::Kind;
 use spincyl::motion::{Ask, Ending, Motion, Start, roll_with};
+use spincyl::turning::{jellett_spin, turning_spin};
 use spincyl::{Body, State, steady};
 use std::f64::consts::PI;
 
@@ -224,4 +225,25 @@ fn a_patch_goes_with_neither_drilling_friction_nor_a_restitution() {
     for wrong in [-0.1, 1.0, f64::NAN] {
         assert!(of(Ask::on(on(0.3, wrong))).starts_with("patch = "));
     }
+}
+
+#[test]
+fn a_top_needs_more_spin_than_jelletts_number_says_on_any_patch() {
+    let top = Body::ball(-0.2, 0.4, 0.42).unwrap();
+    let estimate = jellett_spin(&top).unwrap();
+    assert!((estimate - 2.496).abs() < 1e-3, "{estimate}");
+    // By an independent model: 4.14, 4.18 and 4.50 for 0.1, 0.3 and 1 mm with mu = 0.3; 3.15 and 5.25 with 0.1 and 0.6.
+    for (mu, millimetres, spin) in
+        [(0.3, 0.1, 4.14), (0.3, 0.3, 4.18), (0.3, 1.0, 4.50), (0.1, 0.1, 3.15), (0.6, 0.1, 5.25)]
+    {
+        let found = turning_spin(&top, on(mu, millimetres / 15.0), 0.1, || true).unwrap().unwrap();
+        assert!((found - spin).abs() < 0.01 * spin, "{found} for {spin}");
+    }
+    // At a point it rolls and stays down with any spin; on a film Jellett's number nearly suffices.
+    assert_eq!(turning_spin(&top, on(0.3, 0.0), 0.1, || true).unwrap(), Some(f64::INFINITY));
+    let film = turning_spin(&top, Friction::Viscous { c: 1.0 }, 0.1, || true).unwrap().unwrap();
+    assert!(film > estimate && film < 1.1 * estimate, "{film}");
+    // A body that is no top is refused.
+    assert!(turning_spin(&Body::solid(1.0).unwrap(), on(0.3, 0.01), 0.1, || true).is_err());
+    assert!(jellett_spin(&Body::ball(0.2, 0.4, 0.42).unwrap()).is_err());
 }

@@ -98,7 +98,7 @@ fn looks<F: Flow<M>, const M: usize, const N: usize>(
     if F::MAY_BE_STIFF && stages[0] != from.rate {
         return [1, 2, 3].map(|i| {
             let y = core::array::from_fn(|n| from.y[n] + stages[i][n]);
-            (radau::AT[i], at(y, stages[radau::NODES + i]))
+            (radau::PLACES[i], at(y, stages[radau::RADAU_STAGES + i]))
         });
     }
     rk8::LOOKS.map(|(stage, share)| (share, at(rk8::place(stage, &from.y, h, stages), stages[stage])))

@@ -182,7 +182,7 @@ pub(crate) trait Flow<const M: usize>: Copy {
         &self,
         _: &FlowPlace<N>,
         _: f64,
-    ) -> (rk8::Step<f64, N>, radau::Stages<N>) {
+    ) -> (rk8::Step<f64, N>, radau::Collocated<N>) {
         unreachable!("only a stiff flow takes implicit steps")
     }
     /// Called for each step that is taken, with the step, the length in sigma of the part that is taken, and
@@ -231,8 +231,8 @@ pub(crate) trait Flow<const M: usize>: Copy {
     ) -> rk8::Step<f64, N> {
         if Self::MAY_BE_STIFF && self.is_stiff(from) {
             let (made, at) = self.implicit_step(from, h);
-            stages[..radau::NODES].copy_from_slice(&at.moved);
-            stages[radau::NODES..2 * radau::NODES].copy_from_slice(&at.rates);
+            stages[..radau::RADAU_STAGES].copy_from_slice(&at.moved);
+            stages[radau::RADAU_STAGES..2 * radau::RADAU_STAGES].copy_from_slice(&at.rates);
             // Where Newton's iteration does not converge, a short explicit step may do.
             if !made.fifth[0].is_nan() {
                 return made;

@@ -77,7 +77,7 @@ impl Slide {
         &self,
         from: &FlowPlace<N>,
         h: f64,
-    ) -> (rk8::Step<f64, N>, radau::Stages<N>) {
+    ) -> (rk8::Step<f64, N>, radau::Collocated<N>) {
         let y = &from.y;
         let (fast, rubs) = (Self::fastest(y), self.rubs(y));
         let sizes = [y[0], 1.0, fast, fast, fast, rubs, rubs];

@@ -186,7 +186,7 @@ impl Flow<MARGINS> for Slide {
         &self,
         from: &FlowPlace<N>,
         h: f64,
-    ) -> (rk8::Step<f64, N>, radau::Stages<N>) {
+    ) -> (rk8::Step<f64, N>, radau::Collocated<N>) {
         self.creeps_on(from, h)
     }
 
