@@ -74,25 +74,24 @@ pub(super) fn walked(
     // `SHORT_CODE` compiles one kind of walk only, with the pose and the lost energy.
     let loses = !ask.losses.is_none() || ask.table.friction().patch() > 0.0;
     match (SHORT_CODE || ask.pose, !SHORT_CODE && !loses) {
-        (true, true) => run::<13>((body, start), ask, (tol, integrates), times, go_on),
-        (true, false) => run::<14>((body, start), ask, (tol, integrates), times, go_on),
-        (false, true) => run::<9>((body, start), ask, (tol, integrates), times, go_on),
-        (false, false) => run::<10>((body, start), ask, (tol, integrates), times, go_on),
+        (true, true) => walk::<13>((body, start), ask, (tol, integrates), times)?.run(go_on),
+        (true, false) => walk::<14>((body, start), ask, (tol, integrates), times)?.run(go_on),
+        (false, true) => walk::<9>((body, start), ask, (tol, integrates), times)?.run(go_on),
+        (false, false) => walk::<10>((body, start), ask, (tol, integrates), times)?.run(go_on),
     }
 }
 
-/// Each length of numbers has its own copy, so that only one walk lies on the stack.
+/// A walk at its start, on the heap: while it runs, threads with a small stack need theirs.
 #[inline(never)]
-fn run<const N: usize>(
+fn walk<'a, const N: usize>(
     (body, start): (&Body, &Start),
     ask: &Ask,
     (tol, integrates): (f64, bool),
-    times: &[f64],
-    go_on: &mut dyn FnMut() -> bool,
-) -> Result<Option<Followed>, Error> {
-    let mut walk = BodyWalk::<N>::of_body(body, ask, tol, times, start)?;
+    times: &'a [f64],
+) -> Result<Box<BodyWalk<'a, N>>, Error> {
+    let mut walk = Box::new(BodyWalk::of_body(body, ask, tol, times, start)?);
     walk.of.integrates |= integrates;
-    walk.run(go_on)
+    Ok(walk)
 }
 
 /// Refuses a body, a start or options out of range. Returns the tolerance of the steps.

@@ -72,7 +72,7 @@ pub(crate) fn followed(
     let (start, fine) = check(start, times, ask)?;
     let mut runs = |times: &[f64], recorded: Option<&RefCell<Recorded>>| -> Runs {
         let mut run = |tol: f64, recorded| {
-            StoneWalk::of_stone((stone, &start), times, ask, (tol, fine), recorded)?.run(go_on)
+            Box::new(StoneWalk::of_stone((stone, &start), times, ask, (tol, fine), recorded)?).run(go_on)
         };
         let Some(found) = run(fine, recorded)? else { return Ok(None) };
         Ok(run(rougher(fine), None)?.map(|rough| [found, rough]))

@@ -174,7 +174,10 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
     }
 
     /// The whole motion; None if it was interrupted.
-    pub fn run(mut self, go_on: &mut dyn FnMut() -> bool) -> Result<Option<Followed<P::State>>, Error> {
+    pub fn run(
+        mut self: Box<Self>,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<Followed<P::State>>, Error> {
         loop {
             match self.advance(go_on)? {
                 WalkStep::Flows(mut y) => {
