@@ -1,9 +1,12 @@
 """Friction of a round patch in Python: one and many, measured bodies, what it tells, and what is refused."""
 
+import json
+
 import numpy as np
 import pytest
 
 import spincyl as sc
+from spincyl import cli
 
 TOP = sc.Body.ball(-0.2, 0.4, 0.42)
 PATCH = sc.Coulomb(0.3, patch=0.02)
@@ -81,3 +84,18 @@ def turned(top, spin):
     start = top.with_centre_velocity(sc.State(0.1, 0.0, 0.0, spin), 0.0, 0.0)
     m = sc.roll(top, start, np.linspace(0.0, 400.0, 401), contact=sc.Coulomb(0.3, patch=0.02))
     return bool(m.theta.max() > np.pi - 0.14)
+
+
+def test_the_command_line_takes_a_patch(capsys):
+    m = sc.roll(TOP, spun(7.0), np.linspace(0, 20, 2001), contact=PATCH)
+    top = ["roll", *"--ball -0.2 --i1 0.4 --i3 0.42 --theta 0.1 --w3 7 --t 20 --json".split()]
+    top += ["--slip", "0", str(-7 * np.sin(0.1))]
+    dry = ["--contact", "coulomb", "--mu", "0.3"]
+    for patch in (["--patch", "0.02"], ["--radius", "15mm", "--patch", "0.3mm"]):
+        assert cli.main([*top, *dry, *patch]) == 0
+        told = json.loads(capsys.readouterr().out)
+        assert told["contact"].startswith("Coulomb(0.3, patch=0.0")
+        assert abs(told["dissipated"] - m.dissipated[-1]) < 1e-9
+    for wrong, why in (([*dry, "--patch", "0.3mm"], "needs --radius"), (["--patch", "0.02"], "goes with")):
+        assert cli.main([*top, *wrong]) != 0
+        assert why in capsys.readouterr().err

@@ -246,15 +246,26 @@ def _start(args: Namespace, body: Body) -> State:
     return replace(start.kicked(args.kick), slip=args.slip)
 
 
-def _contact(args: Namespace) -> AnyContact:
+def coulomb(args: Namespace, scale: Scale | None) -> Coulomb:
+    """The dry table of --mu, --static and --patch, in natural units."""
+    patch = 0.0 if args.patch is None else args.patch
+    if isinstance(patch, Metres):
+        if scale is None:
+            raise ValueError(f"--patch {float(patch):g}m needs --radius, or a body measured in metres")
+        patch = float(patch) / scale.metres(1.0)
+    with _naming("patch", "--patch"):
+        return Coulomb(args.mu, args.static, patch)
+
+
+def _contact(args: Namespace, scale: Scale | None) -> AnyContact:
     """The contact given by the options, with its coefficients."""
-    for name, law in (("static", "coulomb"), ("viscosity", "viscous")):
+    for name, law in (("static", "coulomb"), ("patch", "coulomb"), ("viscosity", "viscous")):
         if getattr(args, name) is not None and args.contact != law:
             raise ValueError(f"--{name} goes with --contact {law}")
     if args.contact == "coulomb":
         if args.mu is None:
             raise ValueError("--contact coulomb needs --mu")
-        return Coulomb(args.mu, args.static)
+        return coulomb(args, scale)
     if args.contact == "viscous":
         if args.viscosity is None:
             raise ValueError("--contact viscous needs --viscosity")
@@ -281,7 +292,7 @@ def roll_(args: Namespace) -> None:
     last, step = natural("--t", args.t, scale), natural("--step", args.step, scale)
     start, t = _start(args, body), np.linspace(0.0, last or 0.0, args.points)
     writer = recipient(args)
-    contact = _contact(args)
+    contact = _contact(args, scale)
     mu = np.inf if args.mu is None or args.contact == "coulomb" else args.mu
     how: dict[str, Any] = {"step": step, "tol": args.tol, "contact": contact, "mu": mu}
     how["losses"] = losses_of(args, scale)

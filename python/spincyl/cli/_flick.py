@@ -7,20 +7,21 @@ from typing import Any
 
 import numpy as np
 
-from spincyl import Body, Coulomb, Scale, State, flicked, launch_number, pressed, roll
+from spincyl import Body, Scale, State, flicked, launch_number, pressed, roll
 from spincyl._input.units import (
     MetresPerSecond,
     NewtonSeconds,
     Seconds,
     angle,
     impulse,
+    part,
     quantity,
     speed,
     time,
     whole,
 )
 from spincyl._measured import speaking
-from spincyl.cli._commands import body_of, delivered, natural, recipient
+from spincyl.cli._commands import body_of, coulomb, delivered, natural, recipient
 from spincyl.cli._losses import TEXT as LAWS
 from spincyl.cli._losses import losses_of, option
 from spincyl.cli._output import Working
@@ -75,6 +76,7 @@ def options(sub: ArgumentParser) -> None:
     how = sub.add_argument_group("the motion")
     how.add_argument("--mu", type=float, required=True, help="coefficient of friction of the table")
     how.add_argument("--static", type=float, metavar="MU", help="up to which it is held (default: --mu)")
+    how.add_argument("--patch", type=part, metavar="RADIUS", help="of a patch of contact, or as in 0.3mm")
     lasting = how.add_mutually_exclusive_group()
     lasting.add_argument("--seconds", type=quantity("duration"), help="how long (default 3)")
     lasting.add_argument("--t", type=time, metavar="TIME", help="the same in sqrt(R/g), or as in 2s")
@@ -101,7 +103,7 @@ def flick(args: Namespace) -> None:
     if lasting is None:
         lasting = 100.0 if scale is None else Seconds(3.0)
     last = natural("--seconds" if args.t is None else "--t", lasting, scale)
-    contact = Coulomb(args.mu, args.static)
+    contact = coulomb(args, scale)
     losses = losses_of(args, scale)
     start = _pushed(args, body, scale) if args.impulse is not None else _launched(args, body, scale)
     writer = recipient(args)

@@ -294,6 +294,9 @@ def _roll_options(sub: ArgumentParser) -> None:
         help="friction coefficient: where rolling needs more it ends (default: never), coulomb slips",
     )
     how.add_argument("--static", type=float, metavar="MU", help="of coulomb: up to which it is held (--mu)")
+    how.add_argument(
+        "--patch", type=part, metavar="RADIUS", help="of coulomb: that of a patch, or as in 0.3mm"
+    )
     how.add_argument("--viscosity", type=float, metavar="C", help="of viscous: friction C N times the slip")
     _losses.option(how, "--loss")
     how.add_argument("--beyond", action="store_true", help="go on beyond lift-off, slip or the side")
