@@ -40,6 +40,8 @@ FAMILIES = {
     "stones": (stones, {"contact": "rolling", "want": ("final", "end", "reversals")}),
     "stones that slip": (stones, {"contact": sc.Coulomb(0.3), "want": ("final", "spin", "dissipated")}),
     "eggs": (eggs, {"contact": sc.Viscous(0.1)}),
+    "eggs on a patch": (eggs, {"contact": sc.Coulomb(0.3, patch=0.02), "want": ("final", "dissipated")}),
+    "bodies on a patch": (bodies, {"contact": sc.Coulomb(0.3, patch=0.02), "want": ("final", "end")}),
 }
 
 

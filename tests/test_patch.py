@@ -99,3 +99,55 @@ def test_the_command_line_takes_a_patch(capsys):
     for wrong, why in (([*dry, "--patch", "0.3mm"], "needs --radius"), (["--patch", "0.02"], "goes with")):
         assert cli.main([*top, *wrong]) != 0
         assert why in capsys.readouterr().err
+
+
+def as_a_stone(top):
+    """A ball as a stone, and its state: written and followed by other equations."""
+    return sc.Ellipsoid((1.0, 1.0, 1.0), np.diag([top.i1, top.i1, top.i3]), offset=(0.0, 0.0, top.ell))
+
+
+def test_a_top_that_is_given_as_a_stone_turns_over_as_the_ball_does():
+    for patch, mu in ((0.02, 0.3), (0.1, 0.15), (0.3, 0.6)):
+        t, table = np.linspace(0.0, 30.0, 61), sc.Coulomb(mu, patch=patch)
+        top = sc.roll(TOP, spun(7.0), t, contact=table, tol=1e-12)
+        stone, theta = as_a_stone(TOP), 0.1
+        up = np.array([-np.sin(theta), 0.0, np.cos(theta)])
+        start = stone.with_centre_velocity(sc.EllipsoidState(up, np.array([0.0, 0.0, 7.0])), 0.0, 0.0)
+        m = sc.roll(stone, start, t, contact=table, tol=1e-12)
+        assert np.abs(np.arccos(m.vertical[:, 2]) - top.theta).max() < 1e-9 + m.error + top.error
+        assert np.abs(m.dissipated - top.dissipated).max() < 1e-9 + m.error + top.error
+        assert np.abs(m.spin - top.drilling).max() < 1e-9 + m.error + top.error
+
+
+def test_an_egg_rises_on_a_patch_if_it_spins_fast():
+    # A spheroid of 22 and 30.8 mm on a patch of 1 mm, from 1.47 rad: by an independent model it is upright after 0.8 s
+    # at 106 rad/s, and comes to 1.15 rad at 63.
+    axes = np.array([22 / 30.8, 22 / 30.8, 1.0])
+    b = axes[0]
+    egg = sc.Ellipsoid(tuple(axes), np.diag([b * b + 1, b * b + 1, 2 * b * b]) / 5)
+    second = np.sqrt(9.81 / 0.0308)
+    up = np.array([-np.sin(1.47), 0.0, np.cos(1.47)])
+    leans = []
+    for spin in (106.0, 63.0):
+        start = egg.with_centre_velocity(sc.EllipsoidState(up, spin / second * up), 0.0, 0.0)
+        t = np.linspace(0.0, 2.0, 401)
+        m = sc.roll(egg, start, t * second, contact=sc.Coulomb(0.3, patch=1 / 30.8))
+        assert np.ptp(m.energy + m.dissipated) < 1e-9
+        leans.append(m.theta)
+    assert abs(t[np.argmax(leans[0] < 0.2)] - 0.8) < 0.05
+    assert 1.1 < leans[1].min() < 1.2
+
+
+def test_the_drilling_of_a_patch_takes_the_reversals_of_a_rattleback():
+    stone = sc.Ellipsoid.rattleback((1.0, 0.15, 0.1), twist=np.radians(2.0))
+    start, t = stone.spinning(-0.6, pitch=0.02), np.linspace(0.0, 60.0, 121)
+    found = [sc.roll(stone, start, t, contact=sc.Coulomb(0.3, patch=patch)) for patch in (0.0, 1e-3, 0.05)]
+    left = [np.abs(m.spin[t > 30]).max() for m in found]
+    assert left[0] > 0.2 and 0.1 < left[1] < left[0] and left[2] < 0.05, left
+    for m in found:
+        assert np.ptp(m.energy + m.dissipated) < 1e-9
+    # Many at once are those one by one.
+    many = sc.sweep.roll(
+        stone, start, 60.0, contact=sc.Coulomb(0.3, patch=np.array([0.0, 1e-3, 0.05])), want="spin"
+    )
+    assert np.abs(many["spin"].values - [m.spin[-1] for m in found[:2]]).max() < 1e-6

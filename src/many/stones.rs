@@ -23,9 +23,9 @@ pub struct StoneRow {
     pub state: [f64; 6],
     /// The slip at the start.
     pub slip: [f64; 2],
-    /// The coefficients of sliding and of static friction, or c of viscous friction and any number; None for
-    /// those of `ask`.
-    pub coefficients: Option<[f64; 2]>,
+    /// The coefficients of sliding and of static friction and the radius of the patch, or c of viscous friction and any
+    /// numbers; None for those of `ask`.
+    pub coefficients: Option<[f64; 3]>,
 }
 
 /// The result of one motion of many.

@@ -209,7 +209,7 @@ pub fn stones<'py>(
     let body: [&[f64]; STONE] = columns.all(Ellipsoid::NAMES)?;
     let state: [&[f64]; 6] = columns.all(["n1", "n2", "n3", "w1", "w2", "w3"])?;
     let slip: [&[f64]; 2] = columns.all(["slip_x", "slip_y"])?;
-    let friction = columns.some(["coefficient", "static"])?;
+    let friction = columns.some(["coefficient", "static", "patch"])?;
     let mut status = codes(out, "status")?;
     let status = status.as_slice_mut()?;
     let count = status.len();

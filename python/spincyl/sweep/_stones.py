@@ -7,7 +7,7 @@ import numpy as np
 
 from spincyl import _core
 from spincyl._asked import Asked
-from spincyl._contact import AnyContact, Coulomb, Viscous, code, fitting, has_patch
+from spincyl._contact import AnyContact, Coulomb, Viscous, code, fitting
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._ellipsoid_state import EllipsoidState
 from spincyl._ending import ErrorWarning
@@ -52,10 +52,8 @@ def question(
     fields = dict(zip(_core.stone_names(), stones._columns(), strict=True))
     parts = states.vertical, states.w, states._pair
     fields |= zip((*_FINAL, *slip), (x for part in parts for x in components(part)), strict=True)
-    if has_patch(contact):
-        raise ValueError(f"contact = {contact!r}: stones touch at a point, patch = 0")
     if isinstance(contact, Coulomb | Viscous):
-        fields |= zip(("coefficient", "static"), contact._numbers[:2], strict=True)
+        fields |= zip(("coefficient", "static", "patch"), contact._numbers, strict=True)
     asked = Asked(np.array([end]), tol=number("tol", tol), contact=contact, mu=number("mu", mu))
     return Question(fields, names, frozenset(), asked, wanted, scale, seconds)
 

@@ -18,7 +18,7 @@
 //! Error: 2e-15 of f and g for any k; a test of `patch` compares them with 20 digits.
 
 use crate::methods::search::crossing;
-use crate::numbers::Real;
+use crate::numbers::{Dual, Real};
 use core::f64::consts::PI;
 
 /// f and g/q for k >= 1 as polynomials in 2 s - 1, Chebyshev series of 22 terms; the terms left out sum up to 7e-17.
@@ -39,9 +39,12 @@ const COUPLE: [f64; 22] = [
     7.788838364640695e-10, -2.9336446980264517e-10,
 ];
 
+/// A step takes at most this share of what is left to k = 1.
+const NEARER_K: f64 = 0.5;
+
 /// f/S and g, where S = |u| and R = eps |w_z|. Both must not be zero.
 #[inline(always)]
-pub(crate) fn shares<T: Real>(slip: T, turn: T) -> [T; 2] {
+fn shares<T: Real>(slip: T, turn: T) -> [T; 2] {
     let number = |x: f64| slip.splat(x);
     let one = number(1.0);
     // Each side is computed with arguments that suit it, where it is not needed, too.
@@ -57,6 +60,24 @@ pub(crate) fn shares<T: Real>(slip: T, turn: T) -> [T; 2] {
     let sum = |terms: &[f64; 22]| terms.iter().rev().fold(number(0.0), |sum, x| sum.mac(side, number(*x)));
     let outside = [sum(&FORCE) / fast, share * sum(&COUPLE)];
     [0, 1].map(|i| turn.select_lt(slip, outside[i], within[i]))
+}
+
+/// The friction of a patch of this radius that slips and drills: f/S, the couple over mu N, and S + R, which is how fast it
+/// rubs. The couple acts against the drilling.
+#[inline(always)]
+pub(crate) fn rubs<T: Real>(slip: T, drilling: T, radius: T) -> [T; 3] {
+    let turn = radius * drilling.abs();
+    let [share, couple] = shares(slip, turn);
+    let (zero, against) = (slip.splat(0.0), radius * couple);
+    [share, drilling.select_lt(zero, against, zero.select_lt(drilling, -against, zero)), slip + turn]
+}
+
+/// The longest step, in the variable of the slopes, of a slip S = |u| and R = eps |w_z| with these values and slopes. At
+/// k = 1 the friction has a term (2 |k - 1|)^(5/2)/5 on one side only, so that steps become shorter towards k = 1, and one
+/// that passes it is so short that this term is below the tolerance.
+pub(crate) fn longest(slip: Dual<f64>, turn: Dual<f64>, tol: f64) -> f64 {
+    let (size, past) = (slip.value + turn.value, (slip.slope - turn.slope).abs());
+    ((NEARER_K * (slip.value - turn.value).abs()).max(tol.powf(0.4) * size) / past).min(f64::INFINITY)
 }
 
 /// f and g of a slip that is `k` times eps |w_z|.

@@ -22,7 +22,7 @@
 //! dimensions.
 
 use super::JAMMED;
-use super::patch::shares;
+use super::patch::rubs;
 use crate::error::{Error, within};
 use crate::laws::body::{Body, Shape};
 use crate::laws::loss::{Couples, Law, Losses};
@@ -270,21 +270,15 @@ impl<T: Real> Slipping<T> {
     #[inline(always)]
     pub fn on_patch(&self, (s, c): (T, T), w: [T; 3], u: [T; 2], patch: T) -> (SlipResponse<T>, T, T) {
         let drilling = s * w[0] + c * w[2];
-        let (slip, turn) = (u[0].mac(u[0], u[1] * u[1]).sqrt(), patch * drilling.abs());
-        let [share, couple] = shares(slip, turn);
-        // The couple is odd in the drilling, and -mu N eps g where the body drills.
-        let zero = s.splat(0.0);
-        let against = self.strength * patch * couple;
-        let twist = drilling.select_lt(zero, against, zero.select_lt(drilling, -against, zero));
-        let size = slip + turn;
+        let [share, twist, size] = rubs(u[0].mac(u[0], u[1] * u[1]).sqrt(), drilling, patch);
         let pull = u.map(|u| u * share * size);
         let (mut at, pace) = self.with((s, c), w, u, (pull, size, size + self.soft));
         // Neither the contact force nor the slip across the axis depends on a couple about the vertical.
-        let (twist, rim) = (twist * at.force[0], &self.shape.rim);
-        let (turn1, turn3) = (twist * s * self.per_i1, twist * c * self.per_i3);
+        let (couple, rim) = (self.strength * twist * at.force[0], &self.shape.rim);
+        let (turn1, turn3) = (couple * s * self.per_i1, couple * c * self.per_i3);
         (at.w[0], at.w[2]) = (at.w[0] + turn1, at.w[2] + turn3);
         at.u[1] = at.u[1] + (rim.depth((s, c)) * turn1 - rim.radius((s, c)) * turn3);
-        (at, pace, self.strength * at.force[0] * turn * couple)
+        (at, pace, -(couple * drilling))
     }
 
     /// Writes the derivatives of sine, cosine, w, u, time and, as the ninth number, heat with respect to sigma.

@@ -75,14 +75,14 @@ impl Table {
     }
 
     /// The same law with other coefficients, as [`TableKind::with`] takes them.
-    pub(crate) fn with_coefficients(&self, [a, b]: [f64; 2]) -> Self {
+    pub(crate) fn with_coefficients(&self, coefficients: [f64; 3]) -> Self {
         let kind = match self {
             Self::Rolling { .. } => TableKind::Rolling,
             Self::Smooth => TableKind::Smooth,
             Self::Rubs(Friction::Coulomb { .. }) => TableKind::Coulomb,
             Self::Rubs(Friction::Viscous { .. }) => TableKind::Viscous,
         };
-        kind.with([a, b, self.friction().patch()])
+        kind.with(coefficients)
     }
 
     /// Refuses coefficients outside their range; the error names the coefficient.

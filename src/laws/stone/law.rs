@@ -7,6 +7,8 @@
 //! slip   f = n - mu e (Coulomb, e = u/|u|) or n - c u (viscous),   F = N f,   w' = N I^-1 (r x f) - I^-1 (w x I w)
 //!        B = r x (I^-1 (w x I w)) + w x (r' + w x r),   N (1 + (I^-1 (r x f)) x r . n) = 1 - B.n
 //!        u' = F - n + w' x r + w x (r' + w x r)   in the laboratory;   heat' = mu N |u|, c N u^2
+//! patch  f = n - mu f(k) e,  and the couple -mu N eps g(k) sgn(w.n) n;   r x f in N and w' includes this couple over N
+//! held   w' has the couple M n with (w.n)' = w'.n = 0                       where static friction stops the drilling
 //! E      = (w.I w + v^2)/2 - r.n,   v = u - w x r
 //! ```
 //! Vectors stand along the axes of the ellipsoid: n is the vertical, r leads from the centre of mass to the contact
@@ -19,6 +21,8 @@
 //! digits from equations in the laboratory.
 
 use crate::laws::contact::JAMMED;
+use crate::laws::contact::patch::rubs;
+use crate::methods::SHORT_CODE;
 use crate::numbers::Real;
 use crate::numbers::vector::{Symmetric, cross, dot, plus};
 
@@ -36,6 +40,8 @@ pub(crate) struct StoneLaw<T> {
     pub soft: T,
     /// Whether the friction is Coulomb's.
     pub dry: bool,
+    /// The radius of the patch of contact; None for a point.
+    radius: Option<T>,
 }
 
 /// The place of the contact point, and its change in time, along the axes of the body.
@@ -57,6 +63,8 @@ pub(crate) struct StoneResponse<T> {
     pub free: T,
     /// The factor of N minus [`JAMMED`]; where this number vanishes no unique force exists.
     pub room: T,
+    /// The couple of a patch about the vertical.
+    pub couple: T,
 }
 
 impl<T: Real> StoneLaw<T> {
@@ -67,13 +75,25 @@ impl<T: Real> StoneLaw<T> {
         let [x, y, z, ..] = inverse.0;
         // Friction changes the slip by about this speed in a quarter of the unit of time.
         let soft = strength * (one + reach * (x + y + z)) * one.splat(0.25);
-        Self { squares, inertia, inverse, offset, strength, soft, dry }
+        Self { squares, inertia, inverse, offset, strength, soft, dry, radius: None }
+    }
+
+    /// The same stone on a patch of this radius.
+    pub fn with_patch(self, radius: Option<T>) -> Self {
+        Self { radius, ..self }
+    }
+
+    /// The radius of the patch of contact; None for a point, which is all that a page knows.
+    #[inline(always)]
+    pub fn patch(&self) -> Option<T> {
+        if SHORT_CODE { None } else { self.radius }
     }
 
     /// The same law with numbers of another type.
     pub fn map<U: Real>(&self, f: impl Fn(T) -> U) -> StoneLaw<U> {
         let &Self { squares, inertia, offset, strength, dry, .. } = self;
         StoneLaw::new(squares.map(&f), Symmetric(inertia.0.map(&f)), offset.map(&f), f(strength), dry)
+            .with_patch(self.radius.map(&f))
     }
 
     /// The contact point of a stone with the vertical `n`, which turns with `w`.
@@ -92,6 +112,12 @@ impl<T: Real> StoneLaw<T> {
     /// The response of a stone whose contact point rests. The force is computed only if it is used.
     #[inline(always)]
     pub fn rolling(&self, at: &Touching<T>, w: [T; 3]) -> StoneResponse<T> {
+        self.resting(at, w, false)
+    }
+
+    /// The response of a stone whose contact point rests, and whose drilling w.n a couple keeps if it is `held`.
+    #[inline(always)]
+    pub fn resting(&self, at: &Touching<T>, w: [T; 3], held: bool) -> StoneResponse<T> {
         let &Touching { n, r, r_rate } = at;
         let one = n[0].splat(1.0);
         let carried = cross(w, plus(r_rate, one, cross(w, r)));
@@ -106,20 +132,33 @@ impl<T: Real> StoneLaw<T> {
             e - x * z,
             f - x * y,
         ]);
-        let dw = whole.solve(couple);
+        let mut dw = whole.solve(couple);
+        let mut kept = one.splat(0.0);
+        if held {
+            let gives = whole.solve(n);
+            kept = -(dot(dw, n) / dot(gives, n));
+            dw = plus(dw, kept, gives);
+        }
         let force = plus(plus(n, -one, carried), -one, cross(dw, r));
-        StoneResponse { w: dw, force, free: dot(force, n), room: one }
+        StoneResponse { w: dw, force, free: dot(force, n), room: one, couple: kept }
     }
 
     /// The response to the friction force -strength N `pull`, where `pull` is horizontal.
     #[inline(always)]
     pub fn pulled(&self, at: &Touching<T>, w: [T; 3], pull: [T; 3]) -> StoneResponse<T> {
+        self.twisted(at, w, pull, None)
+    }
+
+    /// The response to this friction force, and to a couple `twist` N about the vertical.
+    #[inline(always)]
+    fn twisted(&self, at: &Touching<T>, w: [T; 3], pull: [T; 3], twist: Option<T>) -> StoneResponse<T> {
         let &Touching { n, r, r_rate } = at;
         let one = n[0].splat(1.0);
         let still = self.inverse.times(cross(self.inertia.times(w), w));
         let carried = plus(cross(w, plus(r_rate, one, cross(w, r))), one, cross(still, r));
         let f = plus(n, -self.strength, pull);
-        let turned = self.inverse.times(cross(r, f));
+        let lever = cross(r, f);
+        let turned = self.inverse.times(twist.map_or(lever, |twist| plus(lever, twist, n)));
         let factor = one + dot(cross(turned, r), n);
         let free = one - dot(carried, n);
         let normal = free / factor;
@@ -128,6 +167,7 @@ impl<T: Real> StoneLaw<T> {
             force: f.map(|x| x * normal),
             free,
             room: factor - one.splat(JAMMED),
+            couple: twist.map_or(one.splat(0.0), |twist| twist * normal),
         }
     }
 
@@ -138,9 +178,20 @@ impl<T: Real> StoneLaw<T> {
         if !self.dry {
             return (self.pulled(at, w, u), one);
         }
+        if let Some(patch) = self.patch() {
+            return self.on_patch(at, w, u, patch);
+        }
         let speed = dot(u, u).sqrt();
         let per = one / speed;
         (self.pulled(at, w, u.map(|x| x * per)), speed / (speed + self.soft))
+    }
+
+    /// The same on a patch of contact.
+    #[inline(never)]
+    fn on_patch(&self, at: &Touching<T>, w: [T; 3], u: [T; 3], patch: T) -> (StoneResponse<T>, T) {
+        let [share, twist, size] = rubs(dot(u, u).sqrt(), dot(w, at.n), patch);
+        let to = self.twisted(at, w, u.map(|x| x * share), Some(self.strength * twist));
+        (to, size / (size + self.soft))
     }
 
     /// The rate of the slip in the laboratory, along the axes of the body.

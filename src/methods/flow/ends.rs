@@ -89,7 +89,7 @@ fn is_near(a: Dual<f64>, b: Dual<f64>, h: f64) -> bool {
 
 /// The points of a step at three of its stages, with their times as shares of the step.
 #[inline(always)]
-fn looks<F: Flow<M>, const M: usize, const N: usize>(
+pub(crate) fn looks<F: Flow<M>, const M: usize, const N: usize>(
     (from, h): (&FlowPlace<N>, f64),
     stages: &Stages<f64, N>,
 ) -> [(f64, FlowPlace<N>); 3] {

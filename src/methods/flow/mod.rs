@@ -14,7 +14,7 @@ pub(crate) mod lanes;
 #[cfg(feature = "many")]
 pub(crate) mod schedule;
 
-pub(crate) use ends::only_zero;
+pub(crate) use ends::{looks, only_zero};
 
 use super::radau;
 use super::rk8::{self, growth, plus};

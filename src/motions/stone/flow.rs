@@ -13,9 +13,10 @@ use super::turns::Spot;
 use crate::laws::contact::grip;
 use crate::laws::stone::law::{StoneLaw, StoneResponse, Touching, across, laboratory, turning};
 use crate::laws::stone::{StonePose, StoneState};
-use crate::methods::flow::{Flow, FlowPlace, TakenStep};
-use crate::methods::rk8;
+use crate::methods::flow::{Flow, FlowPlace, TakenStep, looks};
+use crate::methods::{SHORT_CODE, radau, rk8};
 use crate::motions::halt::{Halt, TIME};
+use crate::motions::path::lossy::DRILLS;
 use crate::motions::walk::{MOMENT, slip_over};
 use crate::numbers::vector::{dot, plus};
 use crate::numbers::{Dual, Real};
@@ -40,6 +41,8 @@ const ALMOST_NONE: f64 = 1e-150;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Touch {
     Rolls,
+    /// It rolls, and friction of the patch of contact holds the drilling at zero.
+    Held,
     Slips,
     /// The table is smooth, and the slip is not followed.
     Smooth,
@@ -77,12 +80,13 @@ pub(super) struct Seen<T> {
 impl StoneFlow<'_> {
     /// The response of a stone with these numbers, over plain numbers or numbers with a slope.
     #[inline(always)]
-    fn seen<T: Real>(&self, law: &StoneLaw<T>, q: [T; 4], w: [T; 3], slip: [T; 2]) -> Seen<T> {
+    pub(super) fn seen<T: Real>(&self, law: &StoneLaw<T>, q: [T; 4], w: [T; 3], slip: [T; 2]) -> Seen<T> {
         let lab = laboratory(q);
         let at = law.touching(lab[2], w);
         let zero = w[0].splat(0.0);
         let (to, pace) = match self.touch {
             Touch::Rolls => (law.rolling(&at, w), zero.splat(1.0)),
+            Touch::Held => (law.resting(&at, w, true), zero.splat(1.0)),
             Touch::Smooth => (law.pulled(&at, w, [zero; 3]), zero.splat(1.0)),
             Touch::Slips => law.slipping(&at, w, across(&lab, slip)),
         };
@@ -90,7 +94,7 @@ impl StoneFlow<'_> {
     }
 
     #[inline(always)]
-    fn seen_at<const N: usize>(&self, y: &[f64; N]) -> Seen<f64> {
+    pub(super) fn seen_at<const N: usize>(&self, y: &[f64; N]) -> Seen<f64> {
         let [a, b, c, d, e, f, g] = core::array::from_fn(|i| y[i]);
         self.seen(&self.law, [a, b, c, d], [e, f, g], slip_of(y))
     }
@@ -103,7 +107,7 @@ impl StoneFlow<'_> {
         if !self.watch {
             return [edge, one, one];
         }
-        let hold = if self.touch != Touch::Rolls {
+        let hold = if !self.rests() {
             seen.to.room
         } else if self.mu.is_finite() {
             let along = plus(seen.to.force, -seen.to.free, seen.at.n);
@@ -114,14 +118,21 @@ impl StoneFlow<'_> {
         [edge, seen.to.free, hold]
     }
 
+    /// Whether the contact point rests on the table.
+    #[inline(always)]
+    pub fn rests(&self) -> bool {
+        matches!(self.touch, Touch::Rolls | Touch::Held)
+    }
+
     /// The speed below which a slip counts as zero.
     pub fn over(&self) -> f64 {
-        slip_over(self.law.dry, self.law.strength)
+        self.law.patch().map_or(slip_over(self.law.dry, self.law.strength), |patch| patch * DRILLS)
     }
 
     /// The margins at some numbers.
-    pub fn margins_at(&self, y: &[f64; ALL]) -> [f64; STONE_MARGINS] {
-        self.margins_of(&self.seen_at(y))
+    pub fn margins_at<const N: usize>(&self, y: &[f64; N]) -> [f64; STONE_MARGINS] {
+        let seen = self.seen_at(y);
+        self.on_patch(self.margins_of(&seen), (&seen, [y[4], y[5], y[6]]), self.grips(y))
     }
 
     /// The sum of |d margin/dy_k| over the numbers of the state, for margin `i`.
@@ -184,7 +195,7 @@ pub(super) fn spot<const N: usize>(y: &[f64; N], rate: &[f64; N]) -> Spot {
 
 /// The slip among the numbers; zero for a stone without one.
 #[inline(always)]
-fn slip_of<const N: usize>(y: &[f64; N]) -> [f64; 2] {
+pub(super) fn slip_of<const N: usize>(y: &[f64; N]) -> [f64; 2] {
     if N == ALL { [y[8], y[9]] } else { [0.0; 2] }
 }
 
@@ -223,8 +234,11 @@ impl Flow<STONE_MARGINS> for StoneFlow<'_> {
                 let (u, rate) = (slip_of(y), self.law.slip_rate(&at, w, &to));
                 (all[8], all[9]) = (dot(lab[0], rate), dot(lab[1], rate));
                 all[10] = -(u[0] * dot(lab[0], to.force) + u[1] * dot(lab[1], to.force));
+                if self.law.patch().is_some() {
+                    all[10] -= to.couple * dot(w, at.n);
+                }
                 (all[11], all[12]) = (u[0] + dot(lab[0], at.r_rate), u[1] + dot(lab[1], at.r_rate));
-            } else if self.touch == Touch::Rolls {
+            } else if self.rests() {
                 (all[11], all[12]) = (dot(lab[0], at.r_rate), dot(lab[1], at.r_rate));
             }
         }
@@ -238,15 +252,16 @@ impl Flow<STONE_MARGINS> for StoneFlow<'_> {
         let [a, b, c, d, e, f, g] = core::array::from_fn(dual);
         let none = Dual { value: 0.0, slope: 0.0 };
         let slip = if N == ALL { [dual(8), dual(9)] } else { [none; 2] };
-        self.margins_of(&self.seen(&self.sloped, [a, b, c, d], [e, f, g], slip))
+        let seen = self.seen(&self.sloped, [a, b, c, d], [e, f, g], slip);
+        self.on_patch(self.margins_of(&seen), (&seen, [e, f, g]), self.grips(&place.y))
     }
 
     fn margin<const N: usize>(&self, y: &[f64; N], i: usize) -> f64 {
-        self.margins_of(&self.seen_at(y))[i]
+        self.margins_at(y)[i]
     }
 
     fn end(&self, i: usize) -> Halt {
-        [Halt::Face, Halt::LiftOff, if self.touch == Touch::Rolls { Halt::Slips } else { Halt::Jam }][i]
+        [Halt::Face, Halt::LiftOff, if self.rests() { Halt::Slips } else { Halt::Jam }][i]
     }
 
     #[inline(always)]
@@ -256,7 +271,8 @@ impl Flow<STONE_MARGINS> for StoneFlow<'_> {
         // The error of a dry slip is relative to its speed, so that a vanishing slip keeps its direction.
         let [u, v] = slip_of(y);
         let dry = self.touch == Touch::Slips && self.law.dry;
-        let per_slip = if dry { per_speed.max(1e3 / u.hypot(v)) } else { per_speed };
+        let slip = if self.law.patch().is_some() { self.rubs(y) } else { u.hypot(v) };
+        let per_slip = if dry { per_speed.max(1e3 / slip) } else { per_speed };
         let per = |i: usize| match i {
             0..4 | 7 => per_tol,
             8 | 9 => per_slip,
@@ -281,13 +297,33 @@ impl Flow<STONE_MARGINS> for StoneFlow<'_> {
     }
 
     fn longest<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
-        self.stride * self.calm(&place.y) / place.rate[TIME].min(1.0)
+        let most = self.stride * self.calm(&place.y) / place.rate[TIME].min(1.0);
+        if self.law.patch().is_some() { most.min(self.kinked(place)) } else { most }
+    }
+
+    const MAY_BE_STIFF: bool = !SHORT_CODE;
+
+    #[inline(always)]
+    fn is_stiff<const N: usize>(&self, place: &FlowPlace<N>) -> bool {
+        N == ALL && self.law.patch().is_some() && self.creeps_fast(place)
+    }
+
+    #[inline(never)]
+    fn implicit_step<const N: usize>(
+        &self,
+        from: &FlowPlace<N>,
+        h: f64,
+    ) -> (rk8::Step<f64, N>, radau::Collocated<N>) {
+        self.creeps_on(from, h)
     }
 
     /// The halt of an almost vanished slip, extrapolated linearly to u = 0.
     fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
         if self.touch != Touch::Slips || !self.law.dry {
             return None;
+        }
+        if self.law.patch().is_some() {
+            return self.hardly_rubs(&place.y);
         }
         let (u, rate) = (slip_of(&place.y), slip_of(&place.rate));
         let speed = u[0].hypot(u[1]);
@@ -326,8 +362,8 @@ impl Flow<STONE_MARGINS> for StoneFlow<'_> {
         let Some(turns) = &mut recorded.turns else { return };
         let mut spots = [spot(&from.y, &from.rate); rk8::LOOKS.len() + 2];
         let end = spot(&to.y, &to.rate);
-        for (to, (stage, _)) in spots[1..].iter_mut().zip(rk8::LOOKS) {
-            let look = spot(&rk8::place(stage, &from.y, h, stages), &stages[stage]);
+        for (to, (_, look)) in spots[1..].iter_mut().zip(looks::<Self, STONE_MARGINS, N>((from, h), stages)) {
+            let look = spot(&look.y, &look.rate);
             *to = if look.t < end.t { look } else { end };
         }
         spots[rk8::LOOKS.len() + 1] = end;
@@ -344,7 +380,7 @@ impl Flow<STONE_MARGINS> for StoneFlow<'_> {
         // A slip that is missed where static friction only just holds would be too short to matter.
         if let Some(recorded) = self.recorded
             && margin < NEAR_END * self.tol * self.fastest(y)
-            && !(self.touch == Touch::Rolls && self.law.dry && i == HOLD)
+            && !(self.rests() && self.law.dry && i == HOLD)
         {
             recorded.borrow_mut().grazes.push([y[TIME], margin / self.leans(y, i)]);
         }

@@ -1,5 +1,6 @@
 //! Motions of stones that roll and slip.
 
+mod creeps;
 mod flow;
 pub(crate) mod known;
 mod moving;
@@ -45,10 +46,6 @@ pub(crate) fn check(
     ask.table.check()?;
     if let Some(value) = ask.losses.coefficients.into_iter().find(|x| *x != 0.0) {
         return Err(Error::OutOfRange { name: "losses", value, expected: "none: a stone has no losses" });
-    }
-    if ask.table.friction().patch() > 0.0 {
-        let (value, expected) = (ask.table.friction().patch(), "0: a stone touches at a point");
-        return Err(Error::OutOfRange { name: "patch", value, expected });
     }
     if let Some(value) = ask.restitution {
         return Err(Error::OutOfRange {

@@ -38,6 +38,8 @@ const DOUBTFUL: f64 = 0.9;
 /// The data of a stone's walk: the flow of the present phase.
 pub(super) struct StonePhases<'n> {
     flow: StoneFlow<'n>,
+    /// Whether friction of the patch has just let the drilling go.
+    freed: bool,
     /// The horizontal position of the centre of mass at the start, which is constant on a smooth table.
     still_centre: [f64; 2],
 }
@@ -54,7 +56,9 @@ impl<'a, 'n> StoneWalk<'a, 'n> {
         let &Start { state: y, slip, time, .. } = start;
         let friction = ask.table.friction();
         let dry = matches!(friction, Friction::Coulomb { mu, .. } if mu > 0.0 || friction.sticks());
+        let patch = friction.patch();
         let law = stone.law(friction.strength(), dry && ask.table.rubs());
+        let law = law.with_patch((patch > 0.0).then_some(patch));
         let edge = if stone.theta_end < core::f64::consts::PI { stone.theta_end.cos() } else { -2.0 };
         let flow = StoneFlow {
             sloped: law.map(|x| Dual { value: x, slope: 0.0 }),
@@ -72,7 +76,7 @@ impl<'a, 'n> StoneWalk<'a, 'n> {
         at[4..7].copy_from_slice(&y.w);
         at[8..10].copy_from_slice(&slip);
         let [x, y, _] = flow.pose(&at, [0.0; 2]).centre;
-        let of = StonePhases { flow, still_centre: [x, y] };
+        let of = StonePhases { flow, freed: false, still_centre: [x, y] };
         let mut walk = Self::new(of, at, ask, fine, (time, times))?;
         walk.next = Some(walk.first_phase()?);
         StonePhases::perturbs(&mut walk);
@@ -81,7 +85,7 @@ impl<'a, 'n> StoneWalk<'a, 'n> {
 
     /// The contact in a phase without a slip under friction.
     fn resting(&self) -> Touch {
-        if self.kind() == Kind::Slipping { Touch::Smooth } else { Touch::Rolls }
+        if self.kind() == Kind::Slipping { Touch::Smooth } else { self.of.flow.resting(&self.at).touch }
     }
 
     /// Whether the edge lies on the table, and does not leave it.
@@ -156,6 +160,14 @@ impl<'a, 'n> StoneWalk<'a, 'n> {
             Halt::Standstill => {
                 self.stop_slip();
                 after_rest(self.rest().decides())
+            }
+            Halt::Slips if let Some(slip) = self.of.flow.creeps(&self.at).filter(|_| rubs) => {
+                (self.at[8], self.at[9]) = (slip[0], slip[1]);
+                Next::Slips
+            }
+            Halt::Slips if self.of.flow.touch == Touch::Held && self.of.flow.grips(&self.at) > 0.0 => {
+                self.of.freed = true;
+                Next::Rolls { at_limit: false }
             }
             Halt::Slips if rubs => after_rest(self.rest().lets_go()),
             halt if halt != Halt::Face && self.ask.beyond && !rubs => {
@@ -284,6 +296,13 @@ impl<'n> Phases<ALL> for StonePhases<'n> {
         walk.at
     }
 
+    fn rubbing(walk: &StoneWalk<'_, 'n>) -> f64 {
+        walk.of.flow.rubs(&walk.at)
+    }
+    fn begins_slowly(walk: &StoneWalk<'_, 'n>) -> bool {
+        walk.of.flow.law.patch().is_none()
+    }
+
     fn slow(walk: &mut StoneWalk<'_, 'n>, _: [f64; 2]) -> StoneSlips {
         walk.of.flow.touch = Touch::Slips;
         StoneSlips::of(&walk.of.flow.law, walk.of.flow.tol)
@@ -314,7 +333,8 @@ impl<'n> Phases<ALL> for StonePhases<'n> {
         at_limit: bool,
         _: &mut dyn FnMut() -> bool,
     ) -> Result<Option<WalkStep<ALL>>, Error> {
-        walk.of.flow.touch = walk.resting();
+        walk.of.flow.touch = if walk.of.freed { Touch::Rolls } else { walk.resting() };
+        walk.of.freed = false;
         walk.of.flow.mu = walk.ask.table.mu() * if at_limit { 1.0 + GRACE } else { 1.0 };
         Ok(Some(WalkStep::Flows(walk.at)))
     }

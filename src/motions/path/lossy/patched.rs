@@ -23,7 +23,7 @@ use crate::numbers::{Dual, Real};
 /// Largest number of evaluations for the length of drilling friction.
 const FITS: usize = 20;
 /// A contact point that is let go begins to creep with at most this share of the friction of a slip.
-const MOST_CREEP: f64 = 0.999;
+pub(crate) const MOST_CREEP: f64 = 0.999;
 /// A patch that drills faster than this, in sqrt(g/R), creeps.
 pub(crate) const DRILLS: f64 = 1e-9;
 
@@ -118,7 +118,9 @@ impl LossyFlow {
         let (s, c) = y.theta.sin_cos();
         let (friction, turn) = (along.hypot(across), eps * (s * y.w1 + c * y.w3).abs());
         let slip = turn * patch::slip_for((friction / (mu * normal)).min(MOST_CREEP)) / friction;
-        (self.is_patch() && turn > 0.0 && friction > 0.0).then(|| [-(slip * across), -(slip * along)])
+        // A slower one would count as none.
+        let rubs = slip * friction + turn > eps * DRILLS;
+        (self.is_patch() && friction > 0.0 && rubs).then(|| [-(slip * across), -(slip * along)])
     }
 }
 

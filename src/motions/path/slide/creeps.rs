@@ -8,18 +8,21 @@
 //! [`radau`] takes the steps.
 
 use super::Slide;
+use crate::laws::contact::patch;
 use crate::laws::contact::slip::SlipResponse;
 use crate::methods::flow::{Flow, FlowPlace};
 use crate::methods::{radau, rk8};
 use crate::motions::halt::{Halt, loses};
-use crate::numbers::Dual;
+use crate::numbers::{Dual, Real};
 use nalgebra::SMatrix;
 
 /// The number of numbers that react to each other: sine, cosine, w and u.
 const REACTING: usize = 7;
 /// Steps are implicit where the body turns by less than this angle in a unit of sigma, which is about the longest stable
 /// explicit step.
-const STIFF: f64 = 0.2;
+pub(crate) const STIFF: f64 = 0.2;
+/// Relative error that rounding of w gives the drilling. The slip need not be known better.
+pub(crate) const ROUNDED_DRILLING: f64 = 4e-15;
 /// An implicit step may be this many times longer than an explicit one, since it amplifies no rounding.
 pub(super) const IMPLICIT_TURNS: f64 = 8.0;
 
@@ -65,6 +68,16 @@ impl Slide {
         self.sloped.on_patch((s, c), w, u, patch)
     }
 
+    /// The longest step in sigma towards and past k = 1.
+    #[inline(never)]
+    pub(super) fn kinked<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
+        let [s, c, w1, _, w3, u_h, u_2] =
+            core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
+        let slip = (u_h * u_h + u_2 * u_2).sqrt();
+        let turn = |patch: Dual<f64>| patch * (s * w1 + c * w3).abs();
+        self.sloped.patch().map_or(f64::INFINITY, |radius| patch::longest(slip, turn(radius), self.tol))
+    }
+
     /// Whether u, or psi' under a couple that grows with it, follows the motion much faster than the body turns.
     #[inline(never)]
     pub(super) fn creeps_fast<const N: usize>(&self, place: &FlowPlace<N>) -> bool {
@@ -79,9 +92,10 @@ impl Slide {
         h: f64,
     ) -> (rk8::Step<f64, N>, radau::Collocated<N>) {
         let y = &from.y;
-        let (fast, rubs) = (Self::fastest(y), self.rubs(y));
-        let sizes = [y[0], 1.0, fast, fast, fast, rubs, rubs];
-        radau::step(|y, all| self.write_rates(y, all), y, &self.slopes(y), &sizes, (h, 0.01 * self.tol))
+        let (fast, converged) = (Self::fastest(y), 0.01 * self.tol);
+        let slip = self.rubs(y) + ROUNDED_DRILLING / converged * self.law.patch().unwrap_or(0.0) * fast;
+        let sizes = [y[0], 1.0, fast, fast, fast, slip, slip];
+        radau::step(|y, all| self.write_rates(y, all), y, &self.slopes(y), &sizes, (h, converged))
     }
 
     /// The derivatives of the rates of sine, cosine, w and u by these numbers.

@@ -28,6 +28,7 @@ use crate::motions::walk::{MOMENT, slip_over};
 use crate::numbers::{Dual, Real};
 use core::f64::consts::PI;
 use creeps::IMPLICIT_TURNS;
+pub(crate) use creeps::{ROUNDED_DRILLING, STIFF};
 use lossy::ways;
 
 /// The halts of the margins, in the order of the margins.
@@ -358,12 +359,15 @@ impl Flow<MARGINS> for Slide {
         // `calm` limits the time, and a step in sigma takes less time where the slip is slow.
         let mut most = self.calm(&place.y);
         if self.is_stiff(place) {
-            return IMPLICIT_TURNS * most / place.rate[7];
+            return (IMPLICIT_TURNS * most / place.rate[7]).min(self.kinked(place));
         }
         if loses(N) && !self.settled {
             most = most.min(self.damped(&place.y));
         }
         most /= place.rate[7].min(1.0);
+        if self.law.patch().is_some() {
+            most = most.min(self.kinked(place));
+        }
         let Some(losses) = self.sloped.losses.filter(|_| loses(N) && !self.settled) else { return most };
         let [s, c, w1, w2, w3] = core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
         most.min(losses.longest(&losses.seen(&self.sloped.shape.rim, (s, c), w1 / s, [w1, w2, w3]), false))

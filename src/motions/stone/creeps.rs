@@ -1,0 +1,148 @@
+//! The patch of contact of a stone: the slip that creeps while the stone drills, and the drilling that friction holds.
+//!
+//! ```text
+//! S = |u|,   R = eps |w.n|                                               slips until S + R is nearly zero
+//! |M| <= mu_s N eps g(k),   f(k) = F/(mu_s N)                            holds the drilling
+//! |w.n| = 2 DRILLS, or F = mu N                                          slips, with u = -R k F/|F|
+//! ```
+//! Where the drilling passes zero the stone rolls through that moment, as a body of revolution does
+//! ([`lossy`](crate::motions::path::lossy)); the couple, which acts for so short a time, is left out.
+//!
+//! Error: the slip that is left out, DRILLS eps at most, and the couple times the time that DRILLS takes.
+
+use super::flow::{ALL, HOLD, STONE_MARGINS, Seen, StoneFlow, Touch, slip_of};
+use crate::laws::contact::patch;
+use crate::laws::stone::law::{laboratory, turning};
+use crate::methods::flow::{Flow, FlowPlace};
+use crate::methods::{radau, rk8};
+use crate::motions::halt::{Halt, TIME};
+use crate::motions::path::lossy::{DRILLS, MOST_CREEP};
+use crate::motions::path::slide::{ROUNDED_DRILLING, STIFF};
+use crate::numbers::vector::{dot, plus};
+use crate::numbers::{Dual, Real};
+use nalgebra::SMatrix;
+
+/// The number of numbers that react to each other: the quaternion, w, the time and u.
+const STONE_REACTING: usize = 10;
+/// A coefficient of static friction beyond this counts as this, since a couple of 0 infinities would be NaN.
+const STICKY: f64 = 1e9;
+
+impl StoneFlow<'_> {
+    /// The speed of the slip, and that of the rim of the patch by the drilling.
+    pub(super) fn rubs<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        let [u, v] = slip_of(y);
+        u.hypot(v) + self.law.patch().map_or(0.0, |patch| patch * self.drilling(y).abs())
+    }
+
+    fn drilling<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        dot(self.seen_at(y).at.n, [y[4], y[5], y[6]])
+    }
+
+    /// The halt of a patch that neither slips nor drills any more.
+    #[inline(never)]
+    pub(super) fn hardly_rubs<const N: usize>(&self, y: &[f64; N]) -> Option<(Halt, [f64; N])> {
+        let mut rests = *y;
+        (rests[8], rests[9]) = (0.0, 0.0);
+        (self.rubs(y) <= self.over()).then_some((Halt::Standstill, rests))
+    }
+
+    /// The margins of a stone on a patch, whose contact point rests only as long as the patch does not drill. `grips` is
+    /// the couple per normal force that can hold the drilling; its derivative is left out.
+    #[inline(always)]
+    pub(super) fn on_patch<T: Real>(
+        &self,
+        mut margins: [T; STONE_MARGINS],
+        (seen, w): (&Seen<T>, [T; 3]),
+        grips: f64,
+    ) -> [T; STONE_MARGINS] {
+        if self.touch == Touch::Held {
+            margins[HOLD] =
+                margins[HOLD].min(seen.to.free * seen.to.free.splat(grips) - seen.to.couple.abs());
+        } else if self.may_drill() {
+            let drilling = dot(seen.at.n, w).abs();
+            margins[HOLD] = margins[HOLD].min(drilling.splat(2.0 * DRILLS) - drilling);
+        }
+        margins
+    }
+
+    /// Whether the contact point rests on a patch that is not held.
+    fn may_drill(&self) -> bool {
+        self.law.patch().is_some() && self.touch == Touch::Rolls && self.watch
+    }
+
+    /// The couple per normal force that can hold the drilling beside the force of these numbers; 0 if nothing is held.
+    pub(super) fn grips<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        let Some(radius) = self.law.patch().filter(|_| self.touch == Touch::Held) else { return 0.0 };
+        let Seen { at, to, .. } = self.seen_at(y);
+        let (mu, along) = (self.mu.min(STICKY), plus(to.force, -to.free, at.n));
+        let share = dot(along, along).sqrt() / (mu * to.free.max(f64::MIN_POSITIVE));
+        mu * radius * patch::of(patch::slip_for(share.min(1.0)))[1]
+    }
+
+    /// The same flow of a stone whose contact point rests: held, if friction holds the drilling.
+    pub(super) fn resting<const N: usize>(&self, y: &[f64; N]) -> Self {
+        let held = Self { touch: Touch::Held, ..*self };
+        let holds =
+            self.law.patch().is_some() && self.drilling(y).abs() <= DRILLS && held.margins_at(y)[HOLD] >= 0.0;
+        if holds { held } else { Self { touch: Touch::Rolls, ..*self } }
+    }
+
+    /// The slip of the creep of a stone that rolls here, in the laboratory; None if the stone hardly drills.
+    pub(super) fn creeps(&self, y: &[f64; ALL]) -> Option<[f64; 2]> {
+        let radius = self.law.patch()?;
+        let Seen { lab, to, .. } = Self { touch: Touch::Rolls, ..*self }.seen_at(y);
+        let pushed = [0, 1].map(|i| dot(lab[i], to.force));
+        let (friction, turn) = (pushed[0].hypot(pushed[1]), radius * self.drilling(y).abs());
+        let share = (friction / (self.law.strength * to.free)).min(MOST_CREEP);
+        let slip = turn * patch::slip_for(share) / friction;
+        // A slower one would count as none.
+        (friction > 0.0 && slip * friction + turn > self.over()).then(|| pushed.map(|f| -(slip * f)))
+    }
+
+    /// The longest step in sigma towards and past k = 1.
+    #[inline(never)]
+    pub(super) fn kinked<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
+        let Some(radius) = self.sloped.patch().filter(|_| self.touch == Touch::Slips) else {
+            return f64::INFINITY;
+        };
+        let [a, b, c, d, e, f, g, _, u, v] =
+            core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
+        let drilling = dot(laboratory([a, b, c, d])[2], [e, f, g]).abs();
+        patch::longest((u * u + v * v).sqrt(), radius * drilling, self.tol)
+    }
+
+    /// Whether u follows the forces of rolling much faster than the stone turns.
+    #[inline(never)]
+    pub(super) fn creeps_fast<const N: usize>(&self, place: &FlowPlace<N>) -> bool {
+        self.touch == Touch::Slips && place.rate[TIME] < STIFF / 3.0 * self.calm(&place.y)
+    }
+
+    /// An implicit step and its stages.
+    pub(super) fn creeps_on<const N: usize>(
+        &self,
+        from: &FlowPlace<N>,
+        h: f64,
+    ) -> (rk8::Step<f64, N>, radau::Collocated<N>) {
+        let y = &from.y;
+        let (fast, converged) = (self.fastest(y), 0.01 * self.tol);
+        let slip = self.rubs(y) + ROUNDED_DRILLING / converged * self.law.patch().unwrap_or(0.0) * fast;
+        let sizes = [1.0, 1.0, 1.0, 1.0, fast, fast, fast, 1.0, slip, slip];
+        radau::step(|y, all| self.write_rates(y, all), y, &self.slopes(y), &sizes, (h, converged))
+    }
+
+    /// The derivatives of the rates of the quaternion, of w and u by these numbers and the time.
+    fn slopes<const N: usize>(&self, y: &[f64; N]) -> SMatrix<f64, STONE_REACTING, STONE_REACTING> {
+        let mut all = SMatrix::zeros();
+        for j in 0..STONE_REACTING {
+            let dual = |i: usize| Dual { value: y[i], slope: f64::from(u8::from(i == j)) };
+            let (q, w) = ([dual(0), dual(1), dual(2), dual(3)], [dual(4), dual(5), dual(6)]);
+            let Seen { lab, at, to, pace } = self.seen(&self.sloped, q, w, [dual(8), dual(9)]);
+            let rate = self.sloped.slip_rate(&at, w, &to);
+            let ([a, b, c, d], [e, f, g]) = (turning(q, w), to.w);
+            let one = pace.splat(1.0);
+            let rates = [a, b, c, d, e, f, g, one, dot(lab[0], rate), dot(lab[1], rate)];
+            (0..STONE_REACTING).for_each(|i| all[(i, j)] = (pace * rates[i]).slope);
+        }
+        all
+    }
+}
