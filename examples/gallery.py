@@ -26,6 +26,7 @@ SCENES = (
     "hurricane_balls",
     "hula_hoop",
     "tippe_top_turns",
+    "billiard",
     "falling_pencil",
     "rattleback",
     "rising_egg",

@@ -1,4 +1,4 @@
-"""A tippe top turns over on a wet table, but rolls and stays down on a dry one."""
+"""A tippe top turns over on a wet table, and on a dry one with a patch of contact."""
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -10,16 +10,22 @@ Floats = NDArray[np.float64]
 
 
 def jellett(motion: sc.Motion) -> Floats:
-    """Jellett's constant, L along the way from the contact to the centre of mass.
+    """Jellett's number, L along the way from the contact to the centre of mass.
 
-    L.(C - P) = I1 w1 sin(theta) + I3 w3 (ell + cos(theta)): friction acts at P and
-    cannot change it, whatever its law is.
+    L.(C - P) = I1 w1 sin(theta) + I3 w3 (ell + cos(theta)): a force at P cannot change
+    it, whatever its law is. The couple of a patch takes some of it.
     """
     sin, cos = np.sin(motion.theta), np.cos(motion.theta)
-    constant: Floats = body.i1 * motion.w[:, 0] * sin + body.i3 * motion.w[:, 2] * (
+    number: Floats = body.i1 * motion.w[:, 0] * sin + body.i3 * motion.w[:, 2] * (
         body.ell + cos
     )
-    return constant
+    return number
+
+
+def kept(motion: sc.Motion, last: int) -> str:
+    """Jellett's number at the start and later."""
+    number = jellett(motion)
+    return f"{number[0]:.6f}, then {number[last]:.6f}"
 
 
 # the top of Leine and Glocker, Eur. J. Mech. A 22, 193 (2003), without its stem:
@@ -28,6 +34,7 @@ scale = sc.Scale(radius=0.015, mass=0.006, gravity=9.81)
 unit = scale.mass * scale.radius**2
 body = sc.Body.ball(-0.003 / scale.radius, 8e-7 / unit, 7e-7 / unit)
 wet, dry = sc.Viscous(0.3), sc.Coulomb(0.3)
+patch = sc.Coulomb.from_si(0.3, patch="0.3mm", scale=scale)
 table = wet
 spun = sc.State(0.1, 0.0, 0.0, 180 * float(scale.seconds(1.0)))
 start = body.with_centre_velocity(spun, 0.0, 0.0)
@@ -35,14 +42,16 @@ t = np.linspace(0.0, 400.0, 4001)
 
 
 def picture() -> None:
-    """Draw the inclination of the axis on both tables."""
+    """Draw the inclination of the axis on the three tables."""
     for contact, label in (
-        (wet, "wet table: it turns over"),
-        (dry, "dry table: it stays down"),
+        (wet, "wet table"),
+        (patch, "dry table, a patch of 0.3 mm"),
+        (dry, "dry table, a point"),
     ):
         motion = sc.roll(body, start, t, contact=contact)
         plt.plot(scale.seconds(motion.t), np.degrees(motion.theta), lw=1.5, label=label)
     plt.axhline(180, color="0.5", ls="--", lw=1)
+    plt.xlim(0, 8)
     plt.yticks(range(0, 181, 45))
     plt.xlabel("time (s)")
     plt.ylabel("inclination of its axis (degrees)")
@@ -51,24 +60,22 @@ def picture() -> None:
 
 
 if __name__ == "__main__":
-    over = sc.roll(body, start, t, contact=wet)
-    when = scale.seconds(over.t[np.argmax(over.theta > np.pi / 2)])
-    print(f"Wet: its axis is level after {when:.2f} s,")
-    last = np.degrees(over.theta[-1])
-    print(f"and after {scale.seconds(t[-1]):.1f} s it stands at {last:.1f} degrees.")
-    # Dry friction does not weaken with the slip, so that it stops the rim at once. A
-    # top that rolls keeps its energy and two more constants (see tippe_top.py): it
-    # needs little friction and stays where it is.
+    for name, contact in (("Wet", wet), ("A patch of 0.3 mm", patch)):
+        over = sc.roll(body, start, t, contact=contact)
+        level, head = (int(np.argmax(over.theta > lean)) for lean in (np.pi / 2, 3.0))
+        print(f"{name}: its axis is level after {scale.seconds(t[level]):.2f} s,")
+        print(f"and 172 degrees off after {scale.seconds(t[head]):.2f} s;", end=" ")
+        print(f"Jellett's number: {kept(over, head)}.")
+    # Dry friction at a point does not weaken with the slip, so that it stops the rim at
+    # once. A top that rolls keeps its energy and two more constants (see tippe_top.py):
+    # it needs little friction and stays where it is.
     stuck = sc.roll(body, start, t, contact=dry, want="force")
     rolls = stuck.phases[-1]
     rolling = stuck.t >= rolls.time
     first, most = np.degrees([rolls.state.theta, stuck.theta[rolling].max()])
     needs = stuck.friction_coefficient[rolling].max()
-    print(f"Dry: it rolls from {scale.seconds(rolls.time):.5f} s on,", end=" ")
+    print(f"A point: it rolls from {scale.seconds(rolls.time):.5f} s on,", end=" ")
     print(f"{first:.2f} degrees off,")
     print(f"and leans by at most {most:.2f} degrees from then on, for it needs")
     print(f"a friction of at most {needs:.4f} and has {dry.mu:g}.")
-    for name, motion in (("Wet", over), ("Dry", stuck)):
-        constant = jellett(motion)
-        stays = np.ptp(constant) < 1e-12
-        print(f"{name}: Jellett's constant stays {constant[0]:.6f}: {stays}")
+    print(f"Jellett's number: {kept(stuck, -1)}.")

@@ -150,4 +150,15 @@ def test_the_drilling_of_a_patch_takes_the_reversals_of_a_rattleback():
     many = sc.sweep.roll(
         stone, start, 60.0, contact=sc.Coulomb(0.3, patch=np.array([0.0, 1e-3, 0.05])), want="spin"
     )
-    assert np.abs(many["spin"].values - [m.spin[-1] for m in found[:2]]).max() < 1e-6
+    assert np.abs(many["spin"].values - [m.spin[-1] for m in found]).max() < 1e-6
+
+
+def test_an_arm_of_rolling_resistance_beyond_the_patch_is_warned_of():
+    losses = sc.loss.RollingResistance(0.05)
+    with pytest.warns(UserWarning, match="beside the patch"):
+        sc.roll(TOP, spun(3.0), 1.0, contact=PATCH, losses=losses)
+    with pytest.warns(UserWarning, match="beside the patch"):
+        sc.sweep.roll(TOP, spun(np.array([3.0, 4.0])), 1.0, contact=PATCH, losses=losses)
+    sc.roll(TOP, spun(3.0), 1.0, contact=PATCH, losses=sc.loss.RollingResistance(0.01))
+    with pytest.raises(AttributeError, match='want="force"'):
+        _ = sc.roll(TOP, spun(3.0), 1.0, contact=PATCH).couple

@@ -160,6 +160,7 @@ def ask(
             from spincyl import _lossy
 
             _lossy.check(losses, times, t0, given)
+            _lossy.narrow(losses, contact)
         check(state, contact, restitution, given)
     # the default `want` is an empty tuple: `choices` would take longer than this test
     want = NOTHING if type(want) is tuple and not want else choices(want)

@@ -4,8 +4,10 @@ from typing import Any
 
 import numpy as np
 
-from spincyl._input.numbers import Floats, is_scalar
-from spincyl._loss import made_law
+from spincyl._contact import AnyContact, Coulomb
+from spincyl._input.numbers import Floats, is_scalar, warn
+from spincyl._input.reprs import is_lazy
+from spincyl._loss import Loss, made_law
 
 _WHY = {
     "step": "the motion has steps of its own, tol= is their error",
@@ -25,4 +27,19 @@ def check(losses: object, times: Floats, t0: float, settings: dict[str, Any]) ->
         raise ValueError(
             f"t = {float(times[times < t0][0])!r}: expected times from the start on, t0 = {t0!r};"
             " what is lost does not come back"
+        )
+
+
+def narrow(losses: Loss, contact: AnyContact) -> None:
+    """Warn if the arm of rolling resistance ends outside the patch of contact, where no pressure acts."""
+    if not isinstance(contact, Coulomb):
+        return
+    arms = [law.coefficient for law in losses.laws if law._parameter == "delta"]
+    patch = contact.patch
+    if any(is_lazy(x) for x in (*arms, patch)):
+        return
+    if arms and np.any((np.asarray(arms[0]) > patch) & (np.asarray(patch) > 0)):
+        warn(
+            f"the arm of rolling resistance, {arms[0]!r}, is larger than the patch, {patch!r}: its force"
+            " would act beside the patch"
         )

@@ -17,7 +17,7 @@ from spincyl._input.equality import compared
 from spincyl._input.numbers import Floats, Reals, si
 from spincyl._labelled import AXES, Components, frame, labelled
 from spincyl._measured import in_si, natural_time, speaking, told
-from spincyl._outputs import ALOFT, BOTH, FORCE, FRICTION, LOSSES, PATCH, POSE, Number, output
+from spincyl._outputs import ALOFT, BOTH, COUPLE, FORCE, FRICTION, LOSSES, PATCH, POSE, Number, output
 from spincyl._phases import Impact, Phase, impacts, lowest, phases, slipping
 from spincyl._scale import Scale
 from spincyl._state import State
@@ -219,7 +219,7 @@ class Motion:
         PATCH, "(n,) slip over the radius of the patch times `drilling`; 0 where it rolls. Needs a patch."
     )
     couple = Number(
-        PATCH,
+        COUPLE,
         """(n,) couple of the patch about the vertical, M g R or J. Needs a patch and want="force".
 
         NaN where it rolls: friction then holds the drilling.

@@ -17,6 +17,7 @@ FRICTION = "{} is not there: the contact is {!r}; roll(..., contact=sc.Coulomb(m
 ALOFT = "{} is not there: the motion ends where it leaves the table; roll(..., restitution=0.0) goes on"
 LOSSES = "{} is not there: nothing is lost; roll(..., losses=sc.loss.DryContour(eps)) has it"
 PATCH = "{} is not there: the contact is {!r}; roll(..., contact=sc.Coulomb(mu, patch=eps)) has it"
+COUPLE = PATCH.replace("eps))", 'eps), want="force")')
 
 
 class Number(property):

@@ -75,7 +75,7 @@ const ITERATIONS: usize = 14;
 /// The factor of the error: about right for a radian of an oscillation.
 const MISSED: f64 = 3e-6;
 /// Largest share by which the numbers still move in an iteration that rounding does not let converge.
-const STALLED: f64 = 1e-12;
+const STALLED: f64 = 1e-6;
 
 /// The stages of a step: the changes Z, and the rates there.
 pub(crate) struct Collocated<const N: usize> {
@@ -104,7 +104,8 @@ where
         (one.map(Complex::from) - slopes.map(|x| per * x)).lu()
     });
     let mut all = Collocated { moved: [[0.0; N]; RADAU_STAGES], rates: [*y; RADAU_STAGES] };
-    let (mut last, mut done) = (None::<f64>, false);
+    let (mut last, mut unknown, mut moves, mut more) =
+        (None::<f64>, f64::INFINITY, [[0.0; N]; RADAU_STAGES], 0.0);
     for _ in 0..ITERATIONS {
         for i in 0..RADAU_STAGES {
             f(&core::array::from_fn(|n| y[n] + all.moved[i][n]), &mut all.rates[i]);
@@ -115,7 +116,7 @@ where
                 h * (0..RADAU_STAGES).map(|j| A[i][j] * all.rates[j][n]).sum::<f64>() - all.moved[i][n]
             })
         });
-        let mut moves = left;
+        moves = left;
         let solved = single.solve(&SVector::<f64, M>::from_fn(|n, _| {
             (0..RADAU_STAGES).map(|i| SINGLE.2[i] * left[i][n]).sum()
         }));
@@ -140,8 +141,11 @@ where
             }
         }
         let share = last.map_or(1.0, |last| most / last);
-        done = most * share.min(1.0) < converged || share > 0.5 && most < STALLED;
-        if done || !most.is_finite() || share > 2.0 {
+        // All further moves together, if each is this share of the one before.
+        more = if share < 0.9 { share / (1.0 - share) } else { 10.0 };
+        unknown = most * more;
+        let stalls = last.is_some() && share > 0.9 && unknown < STALLED;
+        if unknown < converged || stalls || share > 2.0 || !most.is_finite() {
             break;
         }
         last = Some(most);
@@ -153,9 +157,11 @@ where
         (0..M).map(|n| difference(weights, n) / sizes[n]).fold(f64::MIN_POSITIVE, f64::hypot)
     };
     let square = (0.8 * size(&SPREAD_5) / size(&SPREAD_3)).min(1.0);
-    let share = if done { MISSED * square } else { f64::NAN };
+    let share = if unknown < STALLED { MISSED * square } else { f64::NAN };
     let fifth = core::array::from_fn(|n| {
-        share * difference(&SPREAD_5, n).hypot(square.sqrt() * difference(&SPREAD_4, n))
+        let unknown = moves.iter().fold(0.0, |most: f64, moves| most.max(moves[n].abs())) * more;
+        let spread = difference(&SPREAD_5, n).hypot(square.sqrt() * difference(&SPREAD_4, n));
+        share * spread + unknown
     });
     (Step { change: all.moved[RADAU_STAGES - 1], fifth, third: [0.0; N] }, all)
 }

@@ -27,6 +27,7 @@ from spincyl._input.numbers import (
 )
 from spincyl._input.threads import Progress, is_roomy
 from spincyl._loss import Loss, made_law
+from spincyl._lossy import narrow
 from spincyl._measured import natural_time, speaking
 from spincyl._phases import rubs
 from spincyl._roll import is_stone
@@ -230,6 +231,7 @@ def _checked(asked: Asked, losses: Loss | None) -> Asked:
         code(contact, rubs=True)
     if losses is not None:
         made_law(losses)
+        narrow(losses, contact)
     if not rubs(contact) and asked.stop_at is not None:
         raise ValueError("stop_at: only with contact=sc.Coulomb(...) or sc.Viscous(...)")
     if asked.restitution is not None:

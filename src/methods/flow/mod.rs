@@ -45,6 +45,8 @@ const TOIL_PER_TIME: f64 = 40_000.0;
 /// Whether the stages form a loop in parts of steps and on processors without AVX2, which shortens the
 /// compilation.
 const SPARES: bool = rk8::LOOPS || IN_REGISTERS;
+/// A part of an implicit step is divided into at most 2 to this power.
+const PARTINGS: i32 = 8;
 /// Number of crawling steps between two calls of [`Flow::stuck`].
 const TIRING: u64 = 20_000;
 
@@ -233,11 +235,20 @@ pub(crate) trait Flow<const M: usize>: Copy {
             let (made, at) = self.implicit_step(from, h);
             stages[..radau::RADAU_STAGES].copy_from_slice(&at.moved);
             stages[radau::RADAU_STAGES..2 * radau::RADAU_STAGES].copy_from_slice(&at.rates);
-            // Where Newton's iteration does not converge, a short explicit step may do.
-            if !made.fifth[0].is_nan() {
-                return made;
-            }
+            return made;
         }
+        self.explicit_step::<LOOP, N>(from, h, stages)
+    }
+
+    /// A step of [`rk8`].
+    #[cfg_attr(short_code, inline(never))]
+    #[cfg_attr(not(short_code), inline(always))]
+    fn explicit_step<const LOOP: bool, const N: usize>(
+        &self,
+        from: &FlowPlace<N>,
+        h: f64,
+        stages: &mut rk8::Stages<f64, N>,
+    ) -> rk8::Step<f64, N> {
         let rates = here(
             #[inline(always)]
             |y: &[f64; N], rate: &mut [f64; N]| self.write_rates_here(y, rate),
@@ -268,10 +279,39 @@ pub(crate) trait Flow<const M: usize>: Copy {
 
     /// The numbers after a part of length `h` of a step from a point.
     fn part<const N: usize>(&self, from: &FlowPlace<N>, h: f64) -> [f64; N] {
+        let y = self.part_at_once(from, h);
+        if Self::MAY_BE_STIFF && y[0].is_nan() {
+            // Newton's iteration has not converged, as it may in shorter parts.
+            return self.part_in_parts(from, h);
+        }
+        y
+    }
+
+    #[inline(always)]
+    fn part_at_once<const N: usize>(&self, from: &FlowPlace<N>, h: f64) -> [f64; N] {
         in_registers!(
             self.parted::<{ rk8::LOOPS }, N>(from, h).1,
             else self.parted::<SPARES, N>(from, h).1
         )
+    }
+
+    #[inline(never)]
+    fn part_in_parts<const N: usize>(&self, from: &FlowPlace<N>, h: f64) -> [f64; N] {
+        let mut y = [f64::NAN; N];
+        for count in (1..=PARTINGS).map(|k| 1 << k) {
+            let mut place = *from;
+            for _ in 0..count {
+                y = self.part_at_once(&place, h / f64::from(count));
+                if y[0].is_nan() {
+                    break;
+                }
+                place = self.place(y);
+            }
+            if !y[0].is_nan() {
+                break;
+            }
+        }
+        y
     }
 
     /// The numbers at time `t` within a step of `h` that ends at `after`, by Newton's iteration on parts of the step.
@@ -377,7 +417,11 @@ pub(crate) trait Flow<const M: usize>: Copy {
                 return Ok(Some(Flown { halt, y: self.shown(&here.y), step: h, steep, spent }));
             }
             tired = false;
-            let made = self.step::<LOOP, N>(&here, h, &mut stages);
+            let mut made = self.step::<LOOP, N>(&here, h, &mut stages);
+            if Self::MAY_BE_STIFF && made.fifth[0].is_nan() {
+                // Where Newton's iteration does not converge, a short explicit step may do.
+                made = self.explicit_step::<LOOP, N>(&here, h, &mut stages);
+            }
             spent.evaluations += 12;
             let error = self.error(&here.y, &made);
             let (y, carry) = plus(&here.y, &here.carry, &made.change);

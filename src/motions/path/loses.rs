@@ -125,6 +125,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             }
             Halt::Slips if let Some(slip) = flow.creeps(&self.of.state) => {
                 (self.at[5], self.at[6]) = (slip[0], slip[1]);
+                self.forgets_a_moment(self.at[7]);
                 Next::Slips
             }
             Halt::Slips if matches!(ask.table, Table::Rubs(_)) && flow.jumps(&self.of.state) => {

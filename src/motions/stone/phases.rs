@@ -163,6 +163,7 @@ impl<'a, 'n> StoneWalk<'a, 'n> {
             }
             Halt::Slips if let Some(slip) = self.of.flow.creeps(&self.at).filter(|_| rubs) => {
                 (self.at[8], self.at[9]) = (slip[0], slip[1]);
+                self.forgets_a_moment(self.at[TIME]);
                 Next::Slips
             }
             Halt::Slips if self.of.flow.touch == Touch::Held && self.of.flow.grips(&self.at) > 0.0 => {

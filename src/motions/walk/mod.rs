@@ -104,6 +104,9 @@ pub(crate) enum Pause<const N: usize> {
     Interrupted,
 }
 
+/// Phases shorter than this, in units of time, may be left out.
+const A_MOMENT: f64 = 1e-6;
+
 /// The computation of a motion, phase by phase.
 pub(crate) struct Walk<'a, P: Phases<N>, const N: usize> {
     /// The equations of the body or of the stone, and the data of the present phase.
@@ -119,6 +122,8 @@ pub(crate) struct Walk<'a, P: Phases<N>, const N: usize> {
     pub next: Option<Next>,
     /// The time at which the present phase began.
     pub began: f64,
+    /// Whether a phase before this moment goes on.
+    resumes: bool,
     /// Number of phases in succession that began at the same time as the phase before.
     pub still: u32,
     /// Number of phases in succession that began at most `SHORT` later than the phase before.
@@ -166,6 +171,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
             at,
             next: None,
             began: f64::NEG_INFINITY,
+            resumes: false,
             still: 0,
             short: 0,
             spent: Spent { evaluations: 0, erred: 0.0, patience: PATIENCE },
@@ -328,6 +334,10 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
     pub fn begins_phase(&mut self, kind: Kind) {
         self.began = self.at[TIME];
         self.allows_crawling();
+        if core::mem::take(&mut self.resumes) && self.made.path.phases.last().is_some_and(|p| p.kind == kind)
+        {
+            return;
+        }
         let (time, state, slip) = (self.t0 + self.at[TIME], P::state(self), P::slip(self));
         self.made.path.phases.push(Phase { time, kind, state, slip });
     }
@@ -361,6 +371,14 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         self.made.path.heat = self.at[P::HEAT];
         self.made.path.lost = if self.ask.losses.is_none() { 0.0 } else { self.at[N - 1] };
         Ok(self.made)
+    }
+
+    /// Leaves out a phase that has lasted for a moment only, as one in which the drilling of a patch passes zero does.
+    pub fn forgets_a_moment(&mut self, now: f64) {
+        if now - self.began < A_MOMENT && self.made.path.phases.len() > 1 {
+            self.made.path.phases.pop();
+            self.resumes = true;
+        }
     }
 
     /// The next requested time, counted from the start.

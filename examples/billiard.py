@@ -1,0 +1,121 @@
+"""The side spin of a billiard ball outlasts its rolling on a small patch of contact."""
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import matplotlib.pyplot as plt
+import numpy as np
+from numpy.typing import NDArray
+
+import spincyl as sc
+
+Floats = NDArray[np.float64]
+
+
+class Shot(NamedTuple):
+    """A shot until nothing moves, in SI."""
+
+    rolls: sc.Motion  # until the centre stops
+    turns: sc.Motion  # from then on, where only the patch still slows the ball
+    slides: float  # time when the slip is as fast as the rim of the patch, k = 1
+    stands: float  # time when the centre stops
+    ends: float  # time when the spin ends
+
+
+def shot(patch: float) -> Shot:
+    """Follow the ball with a patch of this radius in metres."""
+    contact = sc.Coulomb.from_si(MU, patch=patch, scale=body)
+    rolls = sc.roll(body, start, t, contact=contact, losses=losses)
+    assert rolls.event is not None
+    stands = rolls.event.time
+    turns = sc.roll(body, rolls.event.state, t, contact=contact)
+    spins = rolls.phases[-1].kind == "slipping"
+    last = int(np.argmax(rolls.creep < 1)) + 1
+    return Shot(
+        rolls,
+        turns,
+        slides=float(np.interp(-1, -rolls.creep[:last], rolls.t[:last])),
+        stands=stands,
+        ends=stands + turns.phases[-1].time if spins else rolls.phases[-1].time,
+    )
+
+
+def speed(motion: sc.Motion) -> Floats:
+    """Speed of the centre in m/s."""
+    centre = body.centre_velocity(motion.states)
+    found: Floats = scale.metres_per_second(np.hypot(*centre))
+    return found
+
+
+def creep() -> float:
+    """Slip of the ball over that of the rim of its patch, while it creeps, k.
+
+    Rolling resistance needs the force (5/7) (DELTA/R) M g, and a slow slip of the patch
+    gives (3 pi/8) k MU M g.
+    """
+    return 5 / 7 * DELTA / scale.radius / (3 * np.pi / 8 * MU)
+
+
+def lasts(spin: float, patch: float) -> float:
+    """Time in which drilling alone stops a spin, by a couple (3 pi/16) MU N eps."""
+    couple = 3 * np.pi / 16 * MU * scale.gravity * patch
+    return 0.4 * scale.radius**2 * spin / couple
+
+
+# 57 mm across and 170 g; rolling resistance acts at an arm of DELTA
+scale = sc.Scale(radius=0.0286, mass=0.17)
+body = replace(sc.Body.ball(0.0, 0.4, 0.4), scale=scale)
+MU, DELTA = 0.2, 0.01 * scale.radius
+losses = sc.loss.RollingResistance.from_si(DELTA, scale=body)
+VELOCITY, SIDE = 2.0, 60.0  # m/s, without roll; rad/s about the vertical
+start = replace(sc.thrown(body, VELOCITY, 0.0), w1=SIDE * scale.seconds(1.0))
+t = np.linspace(0.0, 21.0, 21001)
+SMALL, WIDE = 0.5e-3, 2e-3  # radii of the patch in metres
+
+
+def picture() -> None:
+    """Draw the speed of the centre and the spin, while it slides and until it ends."""
+    _, axes = plt.subplots(2, 2, sharex="col", sharey="row", width_ratios=(1, 2.2))
+    for patch, style in ((SMALL, "-"), (WIDE, "--")):
+        found = shot(patch)
+        parts = found.rolls, found.turns
+        time = np.concatenate((found.rolls.t, found.stands + found.turns.t))
+        speeds = np.concatenate([speed(part) for part in parts])
+        spins = np.concatenate([part.drilling for part in parts])
+        for (above, below), until in zip(axes.T, (0.6, 36.0), strict=True):
+            shown = time < 1.02 * until
+            above.plot(time[shown], speeds[shown], style)
+            below.plot(time[shown], spins[shown], style, label=f"{1e3 * patch:g} mm")
+    for ax in axes[:, 0]:
+        ax.axvspan(0, found.slides, color="#B2182B", alpha=0.12, lw=0)
+    for ax in axes[:, 1]:
+        ax.axvline(found.stands, color="0.4", ls=":", lw=1.5)
+    axes[0, 0].set(ylabel="speed (m/s)", title="it slides")
+    axes[0, 1].set(title="it creeps, stands, and spins on")
+    axes[1, 0].set(ylabel="spin (rad/s)", ylim=(-2, 63))
+    axes[1, 0].set(xlabel="time (s)", xlim=(0, 0.6), xticks=(0, 0.2, 0.4))
+    axes[1, 1].set(xlabel="time (s)", xlim=(0, 36))
+    axes[0, 1].text(found.stands + 0.6, 1.2, "its centre stands")
+    axes[1, 1].legend(title="patch of", loc="upper right")
+
+
+if __name__ == "__main__":
+    for patch in (SMALL, WIDE):
+        found = shot(patch)
+        rolls, spin = found.rolls, found.rolls.drilling
+        first, later, last = np.searchsorted(
+            rolls.t, (found.slides, found.slides + 1.0, found.ends)
+        )
+        print(f"A patch of {1e3 * patch:g} mm: it slides for {found.slides:.3f} s,")
+        print(f"  to {speed(rolls)[first]:.2f} m/s and {spin[first]:.1f} rad/s, and")
+        print(f"  creeps at k = {rolls.creep[later]:.4f} (closed form: {creep():.4f}).")
+        if found.ends > found.stands:
+            rest, closed = found.ends - found.stands, lasts(spin[-1], patch)
+            print(f"  It stands after {found.stands:.1f} s,", end=" ")
+            print(f"but spins at {spin[-1]:.1f} rad/s")
+            print(f"  and stops that {rest:.1f} s later (closed form: {closed:.1f} s).")
+        else:
+            rolling = speed(rolls)[last]
+            print(f"  Its spin ends after {found.ends:.1f} s,", end=" ")
+            print(f"when it rolls at {rolling:.1f} m/s,")
+            print(f"  and it stands after {found.stands:.1f} s.")
