@@ -221,10 +221,8 @@ pub(crate) trait Flow<const M: usize>: Copy {
         self.margins(place)
     }
 
-    /// A step; LOOP says whether its stages form a loop. In WebAssembly there is a single copy of this
-    /// function.
-    #[cfg_attr(short_code, inline(never))]
-    #[cfg_attr(not(short_code), inline(always))]
+    /// A step; LOOP says whether its stages form a loop.
+    #[inline(always)]
     fn step<const LOOP: bool, const N: usize>(
         &self,
         from: &FlowPlace<N>,
@@ -240,7 +238,7 @@ pub(crate) trait Flow<const M: usize>: Copy {
         self.explicit_step::<LOOP, N>(from, h, stages)
     }
 
-    /// A step of [`rk8`].
+    /// A step of [`rk8`]; in WebAssembly there is a single copy of this function.
     #[cfg_attr(short_code, inline(never))]
     #[cfg_attr(not(short_code), inline(always))]
     fn explicit_step<const LOOP: bool, const N: usize>(

@@ -14,7 +14,7 @@ use super::flow::{ALL, HOLD, STONE_MARGINS, Seen, StoneFlow, Touch, slip_of};
 use crate::laws::contact::patch;
 use crate::laws::stone::law::{laboratory, turning};
 use crate::methods::flow::{Flow, FlowPlace};
-use crate::methods::{radau, rk8};
+use crate::methods::{SHORT_CODE, radau, rk8};
 use crate::motions::halt::{Halt, TIME};
 use crate::motions::path::lossy::{DRILLS, MOST_CREEP};
 use crate::motions::path::slide::{ROUNDED_DRILLING, STIFF};
@@ -55,6 +55,9 @@ impl StoneFlow<'_> {
         (seen, w): (&Seen<T>, [T; 3]),
         grips: f64,
     ) -> [T; STONE_MARGINS] {
+        if SHORT_CODE {
+            return margins;
+        }
         if self.touch == Touch::Held {
             margins[HOLD] =
                 margins[HOLD].min(seen.to.free * seen.to.free.splat(grips) - seen.to.couple.abs());

@@ -86,7 +86,7 @@ impl StoneFlow<'_> {
         let zero = w[0].splat(0.0);
         let (to, pace) = match self.touch {
             Touch::Rolls => (law.rolling(&at, w), zero.splat(1.0)),
-            Touch::Held => (law.resting(&at, w, true), zero.splat(1.0)),
+            Touch::Held => (law.resting(&at, w, !SHORT_CODE), zero.splat(1.0)),
             Touch::Smooth => (law.pulled(&at, w, [zero; 3]), zero.splat(1.0)),
             Touch::Slips => law.slipping(&at, w, across(&lab, slip)),
         };

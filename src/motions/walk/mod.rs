@@ -24,6 +24,7 @@ use crate::error::{Error, copied, room};
 use crate::laws::contact::Table;
 use crate::laws::contact::slip::Friction;
 use crate::laws::contact::standstill::Standstill;
+use crate::methods::SHORT_CODE;
 use crate::methods::flow::{PATIENCE, Spent, Steps, toil_of};
 pub(crate) use phases::Phases;
 pub(crate) use slips::{SlowLaw, SlowSeries};
@@ -334,8 +335,8 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
     pub fn begins_phase(&mut self, kind: Kind) {
         self.began = self.at[TIME];
         self.allows_crawling();
-        if core::mem::take(&mut self.resumes) && self.made.path.phases.last().is_some_and(|p| p.kind == kind)
-        {
+        let resumes = !SHORT_CODE && core::mem::take(&mut self.resumes);
+        if resumes && self.made.path.phases.last().is_some_and(|p| p.kind == kind) {
             return;
         }
         let (time, state, slip) = (self.t0 + self.at[TIME], P::state(self), P::slip(self));

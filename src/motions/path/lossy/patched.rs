@@ -113,6 +113,9 @@ impl LossyFlow {
 
     /// The slip of a contact point on a patch that creeps under the contact force of this state.
     pub fn creeps(&self, y: &State) -> Option<[f64; 2]> {
+        if !self.is_patch() {
+            return None;
+        }
         let (mu, eps) = (self.slides, self.radius());
         let Force { normal, along, across } = self.force(y);
         let (s, c) = y.theta.sin_cos();
@@ -120,7 +123,7 @@ impl LossyFlow {
         let slip = turn * patch::slip_for((friction / (mu * normal)).min(MOST_CREEP)) / friction;
         // A slower one would count as none.
         let rubs = slip * friction + turn > eps * DRILLS;
-        (self.is_patch() && friction > 0.0 && rubs).then(|| [-(slip * across), -(slip * along)])
+        (friction > 0.0 && rubs).then(|| [-(slip * across), -(slip * along)])
     }
 }
 
