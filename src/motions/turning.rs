@@ -9,7 +9,7 @@
 //! on any table. On a patch the couple of drilling takes some of J: in creep both the rise and that loss are in proportion to
 //! the radius of the patch, so that a top needs more spin on the smallest patch, too. That spin comes from motions.
 //!
-//! Error: of the search, [`SPIN_KNOWN`] of the spin.
+//! Error: of the search, 1e-3 of the spin.
 
 use super::motion::roll_with;
 use super::{Ask, Method, Start};

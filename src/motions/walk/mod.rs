@@ -181,6 +181,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
     }
 
     /// The whole motion; None if it was interrupted.
+    #[allow(clippy::boxed_local)] // On the heap it leaves the stack to the flows.
     pub fn run(
         mut self: Box<Self>,
         go_on: &mut dyn FnMut() -> bool,
