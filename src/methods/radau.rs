@@ -15,6 +15,8 @@
 use super::rk8::Step;
 use nalgebra::{Complex, Const, DimMin, SMatrix, SVector, ToTypenum};
 
+/// The cost of a step in evaluations of the rates: some five iterations, J, and its factors.
+pub(crate) const COST: u64 = 60;
 /// The number of stages.
 pub(crate) const RADAU_STAGES: usize = 5;
 #[rustfmt::skip]

@@ -188,7 +188,8 @@ fn a_tippe_top_turns_over_on_a_dry_table_with_a_patch_and_on_a_point_it_never_do
 fn a_coin_whirrs_to_its_face_in_one_phase_with_few_steps() {
     // A 2-euro coin with a patch of 0.2 mm. The first time is that of explicit steps of eighth order, which take thirty
     // times as many and know it to 2e-7; they give up the second coin.
-    for (resistance, lands, most) in [(3e-3, 301.431_911_184, 400_000), (1e-3, 701.930_064_328, 900_000)] {
+    for (resistance, lands, most) in [(3e-3, 301.431_911_184, 1_500_000), (1e-3, 701.930_064_328, 3_000_000)]
+    {
         let coin = Body::solid(2.2 / 25.75).unwrap();
         let losses = Losses::of(Law::RollingResistance, resistance);
         let ask = Ask { losses, ..Ask::on(on(0.3, 0.4 / 25.75)) };

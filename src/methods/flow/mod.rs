@@ -420,7 +420,8 @@ pub(crate) trait Flow<const M: usize>: Copy {
                 // Where Newton's iteration does not converge, a short explicit step may do.
                 made = self.explicit_step::<LOOP, N>(&here, h, &mut stages);
             }
-            spent.evaluations += 12;
+            let implicit = Self::MAY_BE_STIFF && self.is_stiff(&here);
+            spent.evaluations += if implicit { radau::COST } else { 12 };
             let error = self.error(&here.y, &made);
             let (y, carry) = plus(&here.y, &here.carry, &made.change);
             let y = self.kept(y);
