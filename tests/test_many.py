@@ -33,6 +33,14 @@ def test_together_every_motion_is_what_it_is_alone(part):
     assert not wrong, "\n".join(wrong)
 
 
+def test_on_patches_every_motion_is_what_it_is_alone():
+    wrong = []
+    for number in range(20):
+        scene = scenes.draw(np.random.default_rng([SEED, 52, number]), FAMILY, "patch")
+        wrong += [apart for apart in scenes.compare(scene) if apart.kind or not apart.ratio <= HONEST]
+    assert not wrong, "\n".join(f"{apart.status}, {apart.ratio:.3g}: {apart.call}" for apart in wrong)
+
+
 def test_the_scenes_hold_every_kind_of_start_and_end():
     ends, contacts, laws = set(), set(), set()
     for number in range(40):

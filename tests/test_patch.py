@@ -153,6 +153,49 @@ def test_the_drilling_of_a_patch_takes_the_reversals_of_a_rattleback():
     assert np.abs(many["spin"].values - [m.spin[-1] for m in found]).max() < 1e-6
 
 
+STILL = np.zeros(3)
+
+
+@pytest.mark.parametrize("patch", [0.0, 1e-300, 1e-9, 0.02, 0.5, 0.99])
+def test_a_motion_from_rest_has_its_start_among_its_outputs(patch):
+    table = sc.Coulomb(0.1, patch=patch)
+    times = [0.0, 1e-9, 1e-3, 0.5]
+    lies = sc.roll(TOP, sc.State(np.pi / 2, 0.0, 0.0, 0.0), times, contact=table, want=("pose", "force"))
+    up = np.array([1.0, 0.0, 0.0])
+    stone = sc.roll(as_a_stone(TOP), sc.EllipsoidState(up, STILL, slip=(0.0, 0.0)), times, contact=table)
+    for m in (lies, stone):
+        assert m.t.tolist() == times and len(m.w) == len(times)
+        assert np.abs(m.w[0]).max() == 0.0 and np.abs(m.w[1]).max() < 1e-8
+        assert np.abs(m.w[3]).max() > 1e-3, "it falls"
+    assert np.abs(np.abs(stone.w[-1]).max() - np.abs(lies.w[-1]).max()) < 1e-7
+    assert sc.roll(TOP, lies.start, 0.0, contact=table).t.tolist() == [0.0]
+
+
+def test_stones_on_patches_of_all_sizes_keep_energy_and_heat_from_any_start():
+    rng = np.random.default_rng(52)
+    ends = {}
+    for _ in range(60):
+        a = np.sort(rng.uniform(0.3, 1.0, 3))[::-1] / 1.0
+        a = a / a[0]
+        stone = sc.Ellipsoid(tuple(a), np.diag((a**2).sum() - a**2) / 5)
+        up = np.eye(3)[rng.integers(3)] if rng.random() < 0.3 else rng.normal(size=3)
+        up = up / np.linalg.norm(up)
+        w = rng.normal(size=3) * rng.choice([0.0, 0.1, 1.0, 4.0])
+        kind = rng.random()
+        w = w - up * (w @ up) if kind < 0.2 else up * rng.choice([1e-300, 3e-9, -3.0]) if kind < 0.4 else w
+        slip = tuple(rng.normal(size=2) * rng.choice([0.0, 1e-300, 0.1, 1.0]))
+        mu, patch = float(rng.choice([0.1, 0.5, 1.0])), float(rng.choice([1e-17, 1e-6, 0.01, 0.1, 0.5]))
+        table = sc.Coulomb(mu, static=mu * rng.choice([1.0, 1.3, np.inf]), patch=patch)
+        start = sc.EllipsoidState(up, w, slip=slip)
+        m = sc.roll(stone, start, [0.0, 1.0, 3.0], t0=0.0, contact=table)
+        assert m.t.size > 0 or m.event is not None
+        if m.t.size:
+            kept = m.energy + m.dissipated
+            assert np.isfinite(m.w).all() and np.ptp(kept) <= 1e-8 * max(1.0, kept[0]), (stone, start, table)
+        ends[m.status.name] = ends.get(m.status.name, 0) + 1
+    assert ends["DONE"] > 20 and set(ends) <= {"DONE", "LIFT_OFF", "FACE", "PAINLEVE"}, ends
+
+
 def test_an_arm_of_rolling_resistance_beyond_the_patch_is_warned_of():
     losses = sc.loss.RollingResistance(0.05)
     with pytest.warns(UserWarning, match="beside the patch"):

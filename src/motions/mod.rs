@@ -4,6 +4,7 @@
 pub(crate) mod ask;
 mod conserved;
 mod course;
+pub(crate) mod creep;
 #[cfg(feature = "many")]
 pub mod drift;
 pub mod exact;

@@ -18,7 +18,7 @@
 //! Error: 2e-15 of f and g for any k; a test of `patch` compares them with 20 digits.
 
 use crate::methods::search::crossing;
-use crate::numbers::{Dual, Real};
+use crate::numbers::Real;
 use core::f64::consts::PI;
 
 /// f and g/q for k >= 1 as polynomials in 2 s - 1, Chebyshev series of 22 terms; the terms left out sum up to 7e-17.
@@ -38,9 +38,6 @@ const COUPLE: [f64; 22] = [
     -4.7414769990222716e-08, 2.0075365611152565e-08, -7.698819820569808e-09, 1.490654020365827e-09, -5.150680195913226e-10,
     7.788838364640695e-10, -2.9336446980264517e-10,
 ];
-
-/// A step takes at most this share of what is left to k = 1.
-const NEARER_K: f64 = 0.5;
 
 /// f/S and g, where S = |u| and R = eps |w_z|. Both must not be zero.
 #[inline(always)]
@@ -70,14 +67,6 @@ pub(crate) fn rubs<T: Real>(slip: T, drilling: T, radius: T) -> [T; 3] {
     let [share, couple] = shares(slip, turn);
     let (zero, against) = (slip.splat(0.0), radius * couple);
     [share, drilling.select_lt(zero, against, zero.select_lt(drilling, -against, zero)), slip + turn]
-}
-
-/// The longest step, in the variable of the slopes, of a slip S = |u| and R = eps |w_z| with these values and slopes. At
-/// k = 1 the friction has a term (2 |k - 1|)^(5/2)/5 on one side only, so that steps become shorter towards k = 1, and one
-/// that passes it is so short that this term is below the tolerance.
-pub(crate) fn longest(slip: Dual<f64>, turn: Dual<f64>, tol: f64) -> f64 {
-    let (size, past) = (slip.value + turn.value, (slip.slope - turn.slope).abs());
-    ((NEARER_K * (slip.value - turn.value).abs()).max(tol.powf(0.4) * size) / past).min(f64::INFINITY)
 }
 
 /// f and g of a slip that is `k` times eps |w_z|.

@@ -347,13 +347,17 @@ impl<const N: usize> Phases<N> for BodyPhases {
         walk.of.slide.law.patch().is_none()
     }
 
-    fn slow(walk: &mut BodyWalk<'_, N>, way: [f64; 2]) -> BodySlips {
-        let tol = walk.of.slide.tol;
-        if let Some(phase) = &walk.of.lying {
-            return BodySlips::of(&Slippery::Two(phase.flow.law, phase.flow.ways), tol, N);
+    fn lets_slip(walk: &mut BodyWalk<'_, N>, way: [f64; 2]) {
+        if walk.of.lying.is_none() {
+            walk.of.slide.sets_ways(&walk.of.state, [0.0; 2], way);
         }
-        walk.of.slide.sets_ways(&walk.of.state, [0.0; 2], way);
-        BodySlips::of(&Slippery::One(walk.of.slide.law), tol, N)
+    }
+    fn slow(walk: &BodyWalk<'_, N>) -> BodySlips {
+        let tol = walk.of.slide.tol;
+        match &walk.of.lying {
+            Some(phase) => BodySlips::of(&Slippery::Two(phase.flow.law, phase.flow.ways), tol, N),
+            None => BodySlips::of(&Slippery::One(walk.of.slide.law), tol, N),
+        }
     }
 
     fn clear_until(walk: &BodyWalk<'_, N>, series: &SlowSeries<N>) -> f64 {

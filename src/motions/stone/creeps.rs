@@ -1,11 +1,10 @@
 //! The patch of contact of a stone: the slip that creeps while the stone drills, and the drilling that friction holds.
 //!
 //! ```text
-//! S = |u|,   R = eps |w.n|                                               slips until S + R is nearly zero
 //! |M| <= mu_s N eps g(k),   f(k) = F/(mu_s N)                            holds the drilling
-//! |w.n| = 2 DRILLS, or F = mu N                                          slips, with u = -R k F/|F|
+//! |w.n| = 2 DRILLS, or F = mu N                                          slips, with the slip of its creep
 //! ```
-//! Where the drilling passes zero the stone rolls through that moment, as a body of revolution does
+//! [`creep`](crate::motions::creep) has the creep. Where the drilling passes zero the stone rolls through that moment, as a body of revolution does
 //! ([`lossy`](crate::motions::path::lossy)); the couple, which acts for so short a time, is left out.
 //!
 //! Error: the slip that is left out, DRILLS eps at most, and the couple times the time that DRILLS takes.
@@ -15,9 +14,8 @@ use crate::laws::contact::patch;
 use crate::laws::stone::law::{laboratory, turning};
 use crate::methods::flow::{Flow, FlowPlace};
 use crate::methods::{SHORT_CODE, radau, rk8};
+use crate::motions::creep::{DRILLS, Rubbing, is_fast, known_slip, slip_under};
 use crate::motions::halt::{Halt, TIME};
-use crate::motions::path::lossy::{DRILLS, MOST_CREEP};
-use crate::motions::path::slide::{ROUNDED_DRILLING, STIFF};
 use crate::numbers::vector::{dot, plus};
 use crate::numbers::{Dual, Real};
 use nalgebra::SMatrix;
@@ -38,12 +36,21 @@ impl StoneFlow<'_> {
         dot(self.seen_at(y).at.n, [y[4], y[5], y[6]])
     }
 
+    /// How fast the patch rubs, with slopes in sigma; None for a point, and for a contact point that rests.
+    fn rubbing<const N: usize>(&self, place: &FlowPlace<N>) -> Option<Rubbing<Dual<f64>>> {
+        let radius = self.sloped.patch().filter(|_| self.touch == Touch::Slips)?;
+        let [a, b, c, d, e, f, g, _, u, v] =
+            core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
+        Some(Rubbing::of([u, v], dot(laboratory([a, b, c, d])[2], [e, f, g]), radius))
+    }
+
     /// The halt of a patch that neither slips nor drills any more.
     #[inline(never)]
-    pub(super) fn hardly_rubs<const N: usize>(&self, y: &[f64; N]) -> Option<(Halt, [f64; N])> {
-        let mut rests = *y;
+    pub(super) fn hardly_rubs<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
+        let (radius, rubbing) = (self.law.patch()?, self.rubbing(place)?);
+        let mut rests = place.y;
         (rests[8], rests[9]) = (0.0, 0.0);
-        (self.rubs(y) <= self.over()).then_some((Halt::Standstill, rests))
+        rubbing.comes_to_rest(radius).then_some((Halt::Standstill, rests))
     }
 
     /// The margins of a stone on a patch, whose contact point rests only as long as the patch does not drill. `grips` is
@@ -95,29 +102,19 @@ impl StoneFlow<'_> {
         let radius = self.law.patch()?;
         let Seen { lab, to, .. } = Self { touch: Touch::Rolls, ..*self }.seen_at(y);
         let pushed = [0, 1].map(|i| dot(lab[i], to.force));
-        let (friction, turn) = (pushed[0].hypot(pushed[1]), radius * self.drilling(y).abs());
-        let share = (friction / (self.law.strength * to.free)).min(MOST_CREEP);
-        let slip = turn * patch::slip_for(share) / friction;
-        // A slower one would count as none.
-        (friction > 0.0 && slip * friction + turn > self.over()).then(|| pushed.map(|f| -(slip * f)))
+        slip_under(pushed, self.law.strength * to.free, radius * self.drilling(y).abs(), radius)
     }
 
     /// The longest step in sigma towards and past k = 1.
     #[inline(never)]
     pub(super) fn kinked<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
-        let Some(radius) = self.sloped.patch().filter(|_| self.touch == Touch::Slips) else {
-            return f64::INFINITY;
-        };
-        let [a, b, c, d, e, f, g, _, u, v] =
-            core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
-        let drilling = dot(laboratory([a, b, c, d])[2], [e, f, g]).abs();
-        patch::longest((u * u + v * v).sqrt(), radius * drilling, self.tol)
+        self.rubbing(place).map_or(f64::INFINITY, |rubbing| rubbing.longest(self.tol))
     }
 
     /// Whether u follows the forces of rolling much faster than the stone turns.
     #[inline(never)]
     pub(super) fn creeps_fast<const N: usize>(&self, place: &FlowPlace<N>) -> bool {
-        self.touch == Touch::Slips && place.rate[TIME] < STIFF / 3.0 * self.calm(&place.y)
+        self.touch == Touch::Slips && is_fast(place.rate[TIME], self.calm(&place.y))
     }
 
     /// An implicit step and its stages.
@@ -128,7 +125,7 @@ impl StoneFlow<'_> {
     ) -> (rk8::Step<f64, N>, radau::Collocated<N>) {
         let y = &from.y;
         let (fast, converged) = (self.fastest(y), 0.01 * self.tol);
-        let slip = self.rubs(y) + ROUNDED_DRILLING / converged * self.law.patch().unwrap_or(0.0) * fast;
+        let slip = known_slip(self.rubs(y), self.law.patch().unwrap_or(0.0), fast, converged);
         let sizes = [1.0, 1.0, 1.0, 1.0, fast, fast, fast, 1.0, slip, slip];
         radau::step(|y, all| self.write_rates(y, all), y, &self.slopes(y), &sizes, (h, converged))
     }

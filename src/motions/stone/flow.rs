@@ -15,8 +15,8 @@ use crate::laws::stone::law::{StoneLaw, StoneResponse, Touching, across, laborat
 use crate::laws::stone::{StonePose, StoneState};
 use crate::methods::flow::{Flow, FlowPlace, TakenStep, looks};
 use crate::methods::{SHORT_CODE, radau, rk8};
+use crate::motions::creep::{IMPLICIT_TURNS, rests_below};
 use crate::motions::halt::{Halt, TIME};
-use crate::motions::path::lossy::DRILLS;
 use crate::motions::walk::{MOMENT, slip_over};
 use crate::numbers::vector::{dot, plus};
 use crate::numbers::{Dual, Real};
@@ -126,7 +126,7 @@ impl StoneFlow<'_> {
 
     /// The speed below which a slip counts as zero.
     pub fn over(&self) -> f64 {
-        self.law.patch().map_or(slip_over(self.law.dry, self.law.strength), |patch| patch * DRILLS)
+        self.law.patch().map_or(slip_over(self.law.dry, self.law.strength), rests_below)
     }
 
     /// The margins at some numbers.
@@ -298,7 +298,10 @@ impl Flow<STONE_MARGINS> for StoneFlow<'_> {
 
     fn longest<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
         let most = self.stride * self.calm(&place.y) / place.rate[TIME].min(1.0);
-        if self.law.patch().is_some() { most.min(self.kinked(place)) } else { most }
+        if self.law.patch().is_none() {
+            return most;
+        }
+        (if self.is_stiff(place) { IMPLICIT_TURNS * most } else { most }).min(self.kinked(place))
     }
 
     const MAY_BE_STIFF: bool = !SHORT_CODE;
@@ -323,7 +326,7 @@ impl Flow<STONE_MARGINS> for StoneFlow<'_> {
             return None;
         }
         if self.law.patch().is_some() {
-            return self.hardly_rubs(&place.y);
+            return self.hardly_rubs(place);
         }
         let (u, rate) = (slip_of(&place.y), slip_of(&place.rate));
         let speed = u[0].hypot(u[1]);

@@ -304,8 +304,10 @@ impl<'n> Phases<ALL> for StonePhases<'n> {
         walk.of.flow.law.patch().is_none()
     }
 
-    fn slow(walk: &mut StoneWalk<'_, 'n>, _: [f64; 2]) -> StoneSlips {
+    fn lets_slip(walk: &mut StoneWalk<'_, 'n>, _: [f64; 2]) {
         walk.of.flow.touch = Touch::Slips;
+    }
+    fn slow(walk: &StoneWalk<'_, 'n>) -> StoneSlips {
         StoneSlips::of(&walk.of.flow.law, walk.of.flow.tol)
     }
 

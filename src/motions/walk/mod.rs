@@ -105,9 +105,6 @@ pub(crate) enum Pause<const N: usize> {
     Interrupted,
 }
 
-/// Phases shorter than this, in units of time, may be left out.
-const A_MOMENT: f64 = 1e-6;
-
 /// The computation of a motion, phase by phase.
 pub(crate) struct Walk<'a, P: Phases<N>, const N: usize> {
     /// The equations of the body or of the stone, and the data of the present phase.
@@ -373,14 +370,6 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         self.made.path.heat = self.at[P::HEAT];
         self.made.path.lost = if self.ask.losses.is_none() { 0.0 } else { self.at[N - 1] };
         Ok(self.made)
-    }
-
-    /// Leaves out a phase that has lasted for a moment only, as one in which the drilling of a patch passes zero does.
-    pub fn forgets_a_moment(&mut self, now: f64) {
-        if now - self.began < A_MOMENT && self.made.path.phases.len() > 1 {
-            self.made.path.phases.pop();
-            self.resumes = true;
-        }
     }
 
     /// The next requested time, counted from the start.

@@ -79,8 +79,10 @@ pub(crate) trait Phases<const N: usize>: Sized {
     fn begins_slowly(_: &Walk<'_, Self, N>) -> bool {
         true
     }
-    /// The series of slow slips, with which a slip from rest along `way` begins.
-    fn slow(walk: &mut Walk<'_, Self, N>, way: [f64; 2]) -> Self::Slow;
+    /// Lets a contact point at rest slip along `way`.
+    fn lets_slip(walk: &mut Walk<'_, Self, N>, way: [f64; 2]);
+    /// The series of slow slips, with which a slip from rest begins.
+    fn slow(walk: &Walk<'_, Self, N>) -> Self::Slow;
     /// The time since the start of a series up to which no margin fails, at most the duration of the series.
     fn clear_until(walk: &Walk<'_, Self, N>, series: &SlowSeries<N>) -> f64;
     /// The numbers at the time `MOMENT` after the beginning of a slip along `way`, whose speed grows at the

@@ -39,6 +39,9 @@ impl<const N: usize> SlowSeries<N> {
     }
 }
 
+/// Phases shorter than this, in units of time, may be left out.
+const A_MOMENT: f64 = 1e-6;
+
 /// The series of slow slips under the laws of a phase.
 pub(crate) trait SlowLaw<const N: usize> {
     /// The series from the numbers `y` on, in a direction near `angle`, with a `speed` that grows at the rate
@@ -51,12 +54,13 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
     /// which an integrator takes over; None if the slip ends before that.
     pub(super) fn slips_off(&mut self, (alpha, growth): (f64, f64)) -> Option<[f64; N]> {
         let way = towards(alpha);
+        P::lets_slip(self, way);
         if !P::begins_slowly(self) {
             self.begins_phase(P::slip_kind(self));
             self.made.path.way = way;
-            return Some(P::nudged(self, way, growth));
+            return Some(self.slips_at_once(way, growth));
         }
-        let mut slow = P::slow(self, way);
+        let mut slow = P::slow(self);
         let Some(mut series) = slow.follow(&self.at, Series::of(alpha), growth, 0.0) else {
             self.next = Some(Next::Ends(Ending::Painleve));
             return None;
@@ -70,11 +74,7 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
         self.begins_phase(P::slip_kind(self));
         self.made.path.way = way;
         if !series.is_sound() {
-            let y = P::nudged(self, way, growth);
-            while self.until().is_some_and(|t| t <= y[TIME]) {
-                P::write(self, &{ self.at });
-            }
-            return Some(y);
+            return Some(self.slips_at_once(way, growth));
         }
         loop {
             let clear = P::clear_until(self, &series);
@@ -105,6 +105,23 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
                 None => return Some(y),
             }
             self.at = y;
+        }
+    }
+
+    /// Begins a slip that has no series with a straight line over the time `MOMENT`, and writes the outputs in that time.
+    fn slips_at_once(&mut self, way: [f64; 2], growth: f64) -> [f64; N] {
+        let y = P::nudged(self, way, growth);
+        while self.until().is_some_and(|t| t <= y[TIME]) {
+            P::write(self, &{ self.at });
+        }
+        y
+    }
+
+    /// Leaves out a phase that has lasted for a moment only, as one in which the drilling of a patch passes zero does.
+    pub fn forgets_a_moment(&mut self, now: f64) {
+        if now - self.began < A_MOMENT && self.made.path.phases.len() > 1 {
+            self.made.path.phases.pop();
+            self.resumes = true;
         }
     }
 }

@@ -31,7 +31,7 @@ use crate::numbers::{Dual, Real};
 use core::f64::consts::PI;
 use free::pace_of;
 pub(crate) use free::{LossyUnheld, from_side};
-pub(crate) use patched::{DRILLS, MOST_CREEP, with_patch};
+pub(crate) use patched::with_patch;
 pub(crate) use steps::at_rest;
 
 /// The reason why the contact point does not move along the rim.

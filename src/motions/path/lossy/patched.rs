@@ -17,15 +17,12 @@ use crate::laws::contact::{Force, patch};
 use crate::laws::loss::{Law, Losses};
 use crate::laws::state::State;
 use crate::methods::SHORT_CODE;
+use crate::motions::creep::{DRILLS, slip_under};
 use crate::motions::halt::{MARGINS, TIME};
 use crate::numbers::{Dual, Real};
 
 /// Largest number of evaluations for the length of drilling friction.
 const FITS: usize = 20;
-/// A contact point that is let go begins to creep with at most this share of the friction of a slip.
-pub(crate) const MOST_CREEP: f64 = 0.999;
-/// A patch that drills faster than this, in sqrt(g/R), creeps.
-pub(crate) const DRILLS: f64 = 1e-9;
 
 /// These losses, with the drilling friction of a patch that carries no horizontal force.
 pub(crate) fn with_patch(losses: &Losses, friction: &Friction) -> Losses {
@@ -119,11 +116,8 @@ impl LossyFlow {
         let (mu, eps) = (self.slides, self.radius());
         let Force { normal, along, across } = self.force(y);
         let (s, c) = y.theta.sin_cos();
-        let (friction, turn) = (along.hypot(across), eps * (s * y.w1 + c * y.w3).abs());
-        let slip = turn * patch::slip_for((friction / (mu * normal)).min(MOST_CREEP)) / friction;
-        // A slower one would count as none.
-        let rubs = slip * friction + turn > eps * DRILLS;
-        (friction > 0.0 && rubs).then(|| [-(slip * across), -(slip * along)])
+        let turn = eps * (s * y.w1 + c * y.w3).abs();
+        slip_under([across, along], mu * normal, turn, eps)
     }
 }
 

@@ -8,24 +8,16 @@
 //! [`radau`] takes the steps.
 
 use super::Slide;
-use crate::laws::contact::patch;
 use crate::laws::contact::slip::SlipResponse;
 use crate::methods::flow::{Flow, FlowPlace};
 use crate::methods::{radau, rk8};
+use crate::motions::creep::{Rubbing, is_fast, known_slip};
 use crate::motions::halt::{Halt, loses};
-use crate::numbers::{Dual, Real};
+use crate::numbers::Dual;
 use nalgebra::SMatrix;
 
 /// The number of numbers that react to each other: sine, cosine, w and u.
 const REACTING: usize = 7;
-/// Steps are implicit where the body turns by less than this angle in a unit of sigma, which is about the longest stable
-/// explicit step.
-pub(crate) const STIFF: f64 = 0.2;
-/// Relative error that rounding of w gives the drilling. The slip need not be known better.
-pub(crate) const ROUNDED_DRILLING: f64 = 4e-15;
-/// An implicit step may be this many times longer than an explicit one, since it amplifies no rounding.
-pub(super) const IMPLICIT_TURNS: f64 = 8.0;
-
 impl Slide {
     /// Writes the rates of the numbers on a patch of contact, the couple of which makes heat, too.
     #[inline(never)]
@@ -39,8 +31,9 @@ impl Slide {
     /// The speed of the slip, and under a patch also that of its rim by the drilling.
     #[inline(never)]
     pub(in crate::motions::path) fn rubs<const N: usize>(&self, y: &[f64; N]) -> f64 {
-        let slip = y[5].hypot(y[6]);
-        self.law.patch().map_or(slip, |patch| slip + patch * (y[0] * y[2] + y[1] * y[4]).abs())
+        let drilling = y[0] * y[2] + y[1] * y[4];
+        let patched = |patch| Rubbing::of([y[5], y[6]], drilling, patch).speed();
+        self.law.patch().map_or(y[5].hypot(y[6]), patched)
     }
 
     /// Whether a patch of contact drills, so that its contact point creeps.
@@ -48,12 +41,20 @@ impl Slide {
         self.law.patch().is_some() && self.rubs(y) > self.over()
     }
 
+    /// How fast the patch rubs, with slopes in sigma; None for a point.
+    fn rubbing<const N: usize>(&self, place: &FlowPlace<N>) -> Option<Rubbing<Dual<f64>>> {
+        let [s, c, w1, _, w3, u_h, u_2] =
+            core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
+        self.sloped.patch().map(|patch| Rubbing::of([u_h, u_2], s * w1 + c * w3, patch))
+    }
+
     /// The halt of a patch that neither slips nor drills any more.
     #[inline(never)]
-    pub(super) fn hardly_rubs<const N: usize>(&self, y: &[f64; N]) -> Option<(Halt, [f64; N])> {
-        let mut rests = *y;
+    pub(super) fn hardly_rubs<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
+        let (radius, rubbing) = (self.law.patch()?, self.rubbing(place)?);
+        let mut rests = place.y;
         (rests[5], rests[6]) = (0.0, 0.0);
-        (self.rubs(y) <= self.over()).then_some((Halt::Standstill, rests))
+        rubbing.comes_to_rest(radius).then_some((Halt::Standstill, rests))
     }
 
     /// The response for margins with their slopes, of which there is one copy for a patch.
@@ -71,18 +72,14 @@ impl Slide {
     /// The longest step in sigma towards and past k = 1.
     #[inline(never)]
     pub(super) fn kinked<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
-        let [s, c, w1, _, w3, u_h, u_2] =
-            core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
-        let slip = (u_h * u_h + u_2 * u_2).sqrt();
-        let turn = |patch: Dual<f64>| patch * (s * w1 + c * w3).abs();
-        self.sloped.patch().map_or(f64::INFINITY, |radius| patch::longest(slip, turn(radius), self.tol))
+        self.rubbing(place).map_or(f64::INFINITY, |rubbing| rubbing.longest(self.tol))
     }
 
     /// Whether u, or psi' under a couple that grows with it, follows the motion much faster than the body turns.
     #[inline(never)]
     pub(super) fn creeps_fast<const N: usize>(&self, place: &FlowPlace<N>) -> bool {
         let damped = if loses(N) { self.damped(&place.y) } else { f64::INFINITY };
-        place.rate[7].min(damped) < STIFF / 3.0 * self.calm(&place.y)
+        is_fast(place.rate[7].min(damped), self.calm(&place.y))
     }
 
     /// An implicit step and its stages.
@@ -93,7 +90,7 @@ impl Slide {
     ) -> (rk8::Step<f64, N>, radau::Collocated<N>) {
         let y = &from.y;
         let (fast, converged) = (Self::fastest(y), 0.01 * self.tol);
-        let slip = self.rubs(y) + ROUNDED_DRILLING / converged * self.law.patch().unwrap_or(0.0) * fast;
+        let slip = known_slip(self.rubs(y), self.law.patch().unwrap_or(0.0), fast, converged);
         let sizes = [y[0], 1.0, fast, fast, fast, slip, slip];
         radau::step(|y, all| self.write_rates(y, all), y, &self.slopes(y), &sizes, (h, converged))
     }

@@ -21,14 +21,12 @@ use crate::laws::loss::{Couples, Losses};
 use crate::laws::state::State;
 use crate::methods::flow::{FASTEST, Flow, FlowPlace};
 use crate::methods::{SHORT_CODE, radau, rk8};
+use crate::motions::creep::{IMPLICIT_TURNS, rests_below};
 use crate::motions::halt::{Halt, MARGINS, TIME, loses, poses};
 use crate::motions::path::face::FLAT;
-use crate::motions::path::lossy::DRILLS;
 use crate::motions::walk::{MOMENT, slip_over};
 use crate::numbers::{Dual, Real};
 use core::f64::consts::PI;
-use creeps::IMPLICIT_TURNS;
-pub(crate) use creeps::{ROUNDED_DRILLING, STIFF};
 use lossy::ways;
 
 /// The halts of the margins, in the order of the margins.
@@ -72,7 +70,7 @@ impl Slide {
 
     /// The speed below which a slip counts as zero.
     pub fn over(&self) -> f64 {
-        self.law.patch().map_or(slip_over(self.law.dry, self.law.strength), |patch| patch * DRILLS)
+        self.law.patch().map_or(slip_over(self.law.dry, self.law.strength), rests_below)
     }
 
     /// The energy of the body with these numbers.
@@ -304,7 +302,7 @@ impl Flow<MARGINS> for Slide {
         }
         let [u_h, u_2] = [place.y[5], place.y[6]];
         if self.law.patch().is_some() {
-            return self.hardly_rubs(&place.y);
+            return self.hardly_rubs(place);
         }
         let speed = u_h.hypot(u_2);
         // `slowing` is the rate in sigma at which the speed of the slip falls.

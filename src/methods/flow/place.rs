@@ -1,0 +1,52 @@
+//! The points of a flow, its result, its cost, and the limits of its steps.
+
+use crate::methods::rk8;
+
+/// A point of a flow: its numbers, the rounding errors carried along, and the rates of the numbers.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct FlowPlace<const N: usize> {
+    pub y: [f64; N],
+    pub carry: [f64; N],
+    pub rate: [f64; N],
+}
+
+/// A step that is taken from a point: its length in sigma, and the rates at its stages.
+pub(crate) type TakenStep<'a, const N: usize> = (&'a FlowPlace<N>, f64, &'a rk8::Stages<f64, N>);
+
+/// The result of a flow.
+pub(crate) struct Flown<H, const N: usize> {
+    pub halt: H,
+    /// The numbers at the end of the flow.
+    pub y: [f64; N],
+    /// The next step.
+    pub step: f64,
+    /// The rate, in time, at which the margin or the speed fell whose zero ended the flow; infinite for other
+    /// ends.
+    pub steep: f64,
+    pub spent: Spent,
+}
+
+/// The cost of a flow.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Spent {
+    pub evaluations: u64,
+    /// The sum of the estimated errors of all steps, in units of the tolerance.
+    pub erred: f64,
+    /// Number of crawling steps that are still allowed.
+    pub patience: u64,
+}
+
+/// The limits of the steps of a flow.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Steps {
+    /// The first step, if it is known.
+    pub first: Option<f64>,
+    /// Largest number of steps.
+    pub most: u64,
+    /// Largest number of crawling steps.
+    pub patience: u64,
+    /// Largest number of evaluations.
+    pub toil: u64,
+    /// Whether [`Flow::stuck`] is called before the first step, since the steps before this flow crawled.
+    pub tired: bool,
+}

@@ -1,0 +1,89 @@
+//! A patch of contact along a motion: when it counts as at rest, how fast it creeps, and which steps it needs. Bodies and
+//! stones share this.
+//!
+//! ```text
+//! S = |u|,   R = eps |w_z|                        the patch rests if S + R <= eps DRILLS, and no longer grows
+//! S = R k,   f(k) = F/(mu N)                      the slip of a creep under the force F
+//! dt/dsigma < STIFF/3 (3 radians of the turning)  u follows the motion much faster than the body turns
+//! ```
+//! [`radau`](crate::methods::radau) takes the steps where u is that fast; at k = 1 the steps are short.
+//!
+//! Error: the slip and the drilling that are left out, eps DRILLS and DRILLS.
+
+use crate::laws::contact::patch;
+use crate::numbers::{Dual, Real};
+
+/// A patch that drills faster than this, in sqrt(g/R), creeps.
+pub(crate) const DRILLS: f64 = 1e-9;
+/// A contact point that is let go begins to creep with at most this share of the friction of a slip.
+const MOST_CREEP: f64 = 0.999;
+/// Steps are implicit where the body turns by less than this angle in a unit of sigma, which is about the longest stable
+/// explicit step.
+const STIFF: f64 = 0.2;
+/// An implicit step may be this many times longer than an explicit one, since it amplifies no rounding.
+pub(crate) const IMPLICIT_TURNS: f64 = 8.0;
+/// Relative error that rounding of w gives the drilling. The slip need not be known better.
+const ROUNDED_DRILLING: f64 = 4e-15;
+/// A step takes at most this share of what is left to k = 1.
+const NEARER_K: f64 = 0.5;
+
+/// The speed below which a patch of this radius counts as at rest.
+pub(crate) fn rests_below(radius: f64) -> f64 {
+    radius * DRILLS
+}
+
+/// How fast a patch rubs: its slip S, and the speed R of its rim by the drilling.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Rubbing<T> {
+    pub slip: T,
+    pub turn: T,
+}
+
+impl<T: Real> Rubbing<T> {
+    #[inline(always)]
+    pub fn of([u, v]: [T; 2], drilling: T, radius: T) -> Self {
+        Self { slip: u.mac(u, v * v).sqrt(), turn: radius * drilling.abs() }
+    }
+
+    #[inline(always)]
+    pub fn speed(&self) -> T {
+        self.slip + self.turn
+    }
+}
+
+impl Rubbing<Dual<f64>> {
+    /// Whether a patch of this radius comes to rest. A slip that begins is as slow, but grows.
+    pub fn comes_to_rest(&self, radius: f64) -> bool {
+        let speed = self.speed();
+        speed.value <= rests_below(radius) && (speed.slope <= 0.0 || speed.value == 0.0)
+    }
+
+    /// The longest step, in the variable of the slopes. At k = 1 the friction has a term (2 |k - 1|)^(5/2)/5 on one side
+    /// only, so that steps become shorter towards k = 1, and one that passes it is so short that this term is below the
+    /// tolerance.
+    pub fn longest(&self, tol: f64) -> f64 {
+        let left = (self.slip.value - self.turn.value).abs();
+        let past = (self.slip.slope - self.turn.slope).abs();
+        ((NEARER_K * left).max(tol.powf(0.4) * self.speed().value) / past).min(f64::INFINITY)
+    }
+}
+
+/// Whether u follows the motion much faster than the body turns, from the pace dt/dsigma of its steps and the time `calm` of
+/// three radians of the turning.
+pub(crate) fn is_fast(pace: f64, calm: f64) -> bool {
+    pace < STIFF / 3.0 * calm
+}
+
+/// The speed of the slip of a patch that rubs with this speed, to which errors of an implicit step are relative; `fast`
+/// is the largest speed, and the iteration goes down to the share `converged`.
+pub(crate) fn known_slip(rubs: f64, radius: f64, fast: f64, converged: f64) -> f64 {
+    rubs + ROUNDED_DRILLING / converged * radius * fast
+}
+
+/// The slip of a patch that creeps under this horizontal force, if its rim moves with the speed `turn` and friction is at
+/// most `limit`. None if it would count as at rest.
+pub(crate) fn slip_under(force: [f64; 2], limit: f64, turn: f64, radius: f64) -> Option<[f64; 2]> {
+    let friction = force[0].hypot(force[1]);
+    let slip = turn * patch::slip_for((friction / limit).min(MOST_CREEP));
+    (friction > 0.0 && slip + turn > rests_below(radius)).then(|| force.map(|f| -(slip / friction * f)))
+}
