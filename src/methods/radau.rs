@@ -142,15 +142,16 @@ where
                 most = most.max(by.abs() / size);
             }
         }
-        let share = last.map_or(1.0, |last| most / last);
+        // The first iteration does not show how fast they converge.
+        let Some(before) = last.replace(most) else { continue };
+        let share = most / before;
         // All further moves together, if each is this share of the one before.
         more = if share < 0.9 { share / (1.0 - share) } else { 10.0 };
         unknown = most * more;
-        let stalls = last.is_some() && share > 0.9 && unknown < STALLED;
+        let stalls = share > 0.9 && unknown < STALLED;
         if unknown < converged || stalls || share > 2.0 || !most.is_finite() {
             break;
         }
-        last = Some(most);
     }
     let difference = |weights: &[f64; RADAU_STAGES], n: usize| {
         (0..RADAU_STAGES).map(|i| weights[i] * all.moved[i][n]).sum::<f64>()
