@@ -136,7 +136,7 @@ impl StoneFlow<'_> {
         for j in 0..STONE_REACTING {
             let dual = |i: usize| Dual { value: y[i], slope: f64::from(u8::from(i == j)) };
             let (q, w) = ([dual(0), dual(1), dual(2), dual(3)], [dual(4), dual(5), dual(6)]);
-            let Seen { lab, at, to, pace } = self.seen(&self.sloped, q, w, [dual(8), dual(9)]);
+            let Seen { lab, at, to, pace } = self.seen(&self.sloped, q, w, Some([dual(8), dual(9)]));
             let rate = self.sloped.slip_rate(&at, w, &to);
             let ([a, b, c, d], [e, f, g]) = (turning(q, w), to.w);
             let one = pace.splat(1.0);

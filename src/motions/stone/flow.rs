@@ -78,17 +78,24 @@ pub(super) struct Seen<T> {
 }
 
 impl StoneFlow<'_> {
-    /// The response of a stone with these numbers, over plain numbers or numbers with a slope.
+    /// The response of a stone with these numbers, over plain numbers or numbers with a slope; `slip` is None if it is
+    /// not among the numbers.
     #[inline(always)]
-    pub(super) fn seen<T: Real>(&self, law: &StoneLaw<T>, q: [T; 4], w: [T; 3], slip: [T; 2]) -> Seen<T> {
+    pub(super) fn seen<T: Real>(
+        &self,
+        law: &StoneLaw<T>,
+        q: [T; 4],
+        w: [T; 3],
+        slip: Option<[T; 2]>,
+    ) -> Seen<T> {
         let lab = laboratory(q);
         let at = law.touching(lab[2], w);
         let zero = w[0].splat(0.0);
-        let (to, pace) = match self.touch {
-            Touch::Rolls => (law.rolling(&at, w), zero.splat(1.0)),
-            Touch::Held => (law.resting(&at, w, !SHORT_CODE), zero.splat(1.0)),
-            Touch::Smooth => (law.pulled(&at, w, [zero; 3]), zero.splat(1.0)),
-            Touch::Slips => law.slipping(&at, w, across(&lab, slip)),
+        let (to, pace) = match (self.touch, slip) {
+            (Touch::Rolls, _) => (law.rolling(&at, w), zero.splat(1.0)),
+            (Touch::Held, _) => (law.resting(&at, w, !SHORT_CODE), zero.splat(1.0)),
+            (Touch::Slips, Some(slip)) => law.slipping(&at, w, across(&lab, slip)),
+            _ => (law.pulled(&at, w, [zero; 3]), zero.splat(1.0)),
         };
         Seen { lab, at, to, pace }
     }
@@ -96,7 +103,7 @@ impl StoneFlow<'_> {
     #[inline(always)]
     pub(super) fn seen_at<const N: usize>(&self, y: &[f64; N]) -> Seen<f64> {
         let [a, b, c, d, e, f, g] = core::array::from_fn(|i| y[i]);
-        self.seen(&self.law, [a, b, c, d], [e, f, g], slip_of(y))
+        self.seen(&self.law, [a, b, c, d], [e, f, g], (N == ALL).then(|| slip_of(y)))
     }
 
     #[inline(always)]
@@ -250,8 +257,7 @@ impl Flow<STONE_MARGINS> for StoneFlow<'_> {
     fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; STONE_MARGINS] {
         let dual = |i: usize| Dual { value: place.y[i], slope: place.rate[i] };
         let [a, b, c, d, e, f, g] = core::array::from_fn(dual);
-        let none = Dual { value: 0.0, slope: 0.0 };
-        let slip = if N == ALL { [dual(8), dual(9)] } else { [none; 2] };
+        let slip = (N == ALL).then(|| [dual(8), dual(9)]);
         let seen = self.seen(&self.sloped, [a, b, c, d], [e, f, g], slip);
         self.on_patch(self.margins_of(&seen), (&seen, [e, f, g]), self.grips(&place.y))
     }
