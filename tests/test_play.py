@@ -46,7 +46,7 @@ def test_the_page_holds_its_script_and_the_core_that_is_asked_for_in_little_more
     # seven bits per byte, and a loader
     small = [zlib.compress(what, 9) for what in (core, (look + shown + text).encode())]
     assert len(page.encode()) < 8 / 7 * sum(map(len, small)) + 10_000
-    assert len(page.encode()) < (295_000 if friction else 150_000)
+    assert len(page.encode()) < (315_000 if friction else 150_000)
     assert "\r" not in page and "\0" not in page, "a browser would change these"
     assert "http" not in page.replace("http-equiv", "").replace("http://www.w3.org/2000/svg", "")
 
@@ -93,7 +93,7 @@ def test_what_is_told_comes_back_as_what_it_was():
         page = sc.play(body, 1.4, kick=0.02)
         assert page.body == body
         assert page.state == body.steady(1.4).kicked(0.02)
-    for contact in ("rolling", "smooth", sc.Coulomb(0.3), sc.Viscous(0.2)):
+    for contact in ("rolling", "smooth", sc.Coulomb(0.3), sc.Coulomb(0.3, patch=0.02), sc.Viscous(0.2)):
         assert sc.play(PIPE, contact=contact).contact == contact
     for law in sc.loss.DryContour(1e-3), sc.loss.AirQuadratic(1e-5), sc.loss.BoundaryLayer(1e-6):
         assert sc.play(PIPE, losses=law).losses == law
@@ -113,6 +113,30 @@ def test_a_restitution_is_a_word_of_the_page_and_none_where_there_is_none():
     page.restitution, page.contact = 0.3, "rolling"
     page.state = PIPE.steady(1.4)
     assert page.restitution == 0.3 and page.motion.status == 0, "bounces are those of a table with friction"
+
+
+def test_a_patch_is_a_word_of_the_page_and_no_body_bounces_on_one():
+    page = sc.play(PIPE, contact=sc.Coulomb(0.3, patch=0.02))
+    assert "contact=coulomb&mu=0.3&patch=0.02" in page.address
+    with pytest.raises(ValueError, match="restitution = 0.5: no body bounces on a patch"):
+        page.restitution = 0.5
+    with pytest.raises(ValueError, match="no body bounces on a patch"):
+        sc.play(PIPE, contact=sc.Coulomb(0.3, patch=0.02), restitution=0.5)
+    page.contact = sc.Coulomb(0.3)
+    assert "patch" not in page.address
+    page.restitution = 0.5
+    with pytest.raises(ValueError, match="no body bounces on a patch"):
+        page.contact = sc.Coulomb(0.3, patch=0.02)
+
+
+def test_the_patch_of_a_measured_body_has_its_unit_on_the_page_as_elsewhere():
+    dry = sc.Coulomb.from_si(0.3, patch="0.5mm", scale=SIZED)
+    page = sc.play(SIZED, contact=dry)
+    assert "patch=0.02" in page.address and page.contact.patch == dry.patch and page.motion.status == 0
+    with pytest.raises(ValueError, match="the patch of a measured body has its unit"):
+        sc.play(SIZED, contact=sc.Coulomb(0.3, patch=0.02))
+    with pytest.raises(ValueError, match="patch = 0.7: expected 0 to 0.5"):
+        sc.play(PIPE, contact=sc.Coulomb(0.3, patch=0.7))
 
 
 SIZED = sc.measured(outer_diameter=0.05, inner_diameter=0.04, length=0.15, mass=0.1)
@@ -240,11 +264,16 @@ def test_the_command_writes_the_page_that_is_asked_for(tmp_path, capsys):
     assert main(["play", *words, "--restitution", "0.5", "-o", str(path)]) == 0
     asked = sc.play(PIPE, math.radians(85), contact=sc.Coulomb(0.2), restitution=0.5)
     assert path.read_text("utf-8") == asked.html
+    assert main(["play", *words, "--patch", "0.02", "-o", str(path)]) == 0
+    asked = sc.play(PIPE, math.radians(85), contact=sc.Coulomb(0.2, patch=0.02))
+    assert path.read_text("utf-8") == asked.html
     assert main(["play", "--contact", "viscous", "--viscosity", "0.2", "-o", str(path)]) == 0
     assert path.read_text("utf-8") == sc.play(contact=sc.Viscous(0.2)._known()).html
     sizes = ["--outer", "50mm", "--inner", "40mm", "--length", "150mm", "--mass", "100g"]
     assert main(["play", *sizes, "--theta", "1.4", "-o", str(path)]) == 0
     assert path.read_text("utf-8") == sc.play(SIZED, 1.4).html
+    sizes += ["--contact", "coulomb", "--mu", "0.3", "--patch", "0.5mm"]
+    assert main(["play", *sizes, "-o", str(path)]) == 0 and '"patch":0.02' in path.read_text("utf-8")
     wet = ["--contact", "viscous"]
     bounces = (["--restitution", "0.5"], [*words, "--restitution", "2"])
     odd = (["--mu", "0.3"], ["--contact", "coulomb"], ["--theta", "300deg"], wet, [*wet, "--mu", "1"])
@@ -347,14 +376,17 @@ def test_a_weak_flick_lies_on_its_side_and_rolls_straight_unless_it_is_told_to_e
     assert (rows[:, HIGH] == 0).all() and rows[0, KIND] == 3 and rows[-1, KIND] == 5
     at_rest_at(page, 50.0)
     assert "rolls on its side" in page.locator(".clock").inner_text()
-    knob = page.locator("#knob-restitution")
-    assert knob.is_visible()
+    knob, patch = page.locator("#knob-restitution"), page.locator("#knob-patch")
+    assert knob.is_visible() and not patch.is_visible()
     knob.evaluate("e => { e.value = -0.05; e.dispatchEvent(new Event('input')); }")
     settled(page)
     assert state(page)["restitution"] is None or math.isnan(state(page)["restitution"])
     assert ask(page, "head()")["ending"] == 2
+    patch.evaluate("e => { e.value = -1; e.dispatchEvent(new Event('input')); }")
+    settled(page)
+    assert state(page)["patch"] == pytest.approx(0.1) and not knob.is_visible(), "nothing bounces on a patch"
     page.select_option("#knob-contact", "rolling")
     settled(page)
-    assert not knob.is_visible()
+    assert not knob.is_visible() and not patch.is_visible()
     page.wait_for_function("() => !location.hash.includes('restitution')")
     assert page.complaints == []

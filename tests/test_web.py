@@ -46,8 +46,8 @@ def ask(request):
 
 def test_the_lean_core_gives_the_same_answers_but_knows_no_friction():
     state, map_asked = (1.3, *STEADY[1:]), ("map", (60, 50, 0.3, 3.0, 0.0, HALF, 0.5, 0.0))
-    asked = [map_asked, ("tube", (2.5, 0.0, 0.0)), ("start", (*state, 0.0, 0.0, 0.0, ENDLESS, 20.0, 9, NONE)),
-             ("follow", (9, 0.0, 20.0)), ("start", (*state, 0.0, 0.0, 2.0, 0.3, 20.0, 9, NONE))]  # fmt: skip
+    asked = [map_asked, ("tube", (2.5, 0.0, 0.0)), ("start", (*state, 0.0, 0.0, 0.0, ENDLESS, 0.0, 20.0, 9, NONE)),
+             ("follow", (9, 0.0, 20.0)), ("start", (*state, 0.0, 0.0, 2.0, 0.3, 0.0, 20.0, 9, NONE))]  # fmt: skip
     lean, full = (
         core.ask((COMMITTED / name).read_bytes(), asked) for name in ("core.wasm.gz", "core.friction.wasm.gz")
     )
@@ -100,14 +100,14 @@ def test_steady_states_are_those_of_the_package(ask, which):
 WIDE = 18  # numbers in a row
 
 
-def compared(ask, given, start, table, mu, native, losses=(0, 0.0), bounce=NONE):
+def compared(ask, given, start, table, mu, native, losses=(0, 0.0), bounce=NONE, patch=0.0):
     """Compare both motions at the same times, within both claimed errors."""
     t = native.t
     end = 20.0
     answers = ask(
         given,
         ("losses", losses),
-        ("start", (*start, table, mu, end, 301, bounce)),
+        ("start", (*start, table, mu, patch, end, 301, bounce)),
         ("follow", (301, 0.0, end)),
         ("follow", (7, 0.123, 0.9 * end)),
         ("poses", (0.0, end, 301)),
@@ -152,6 +152,9 @@ LOSSES = {
     "wet": (sc.Viscous(0.4), 3, 0.4, None, (0, 0.0)),
     "wet and worn": (sc.Viscous(0.4), 3, 0.4, sc.loss.DryContour(1e-3), (0, 1e-3)),
     "worn": (sc.Coulomb(0.2), 2, 0.2, sc.loss.DryContour(1e-3), (0, 1e-3)),
+    "a wide patch": (sc.Coulomb(0.2, patch=0.1), 2, 0.2, None, (0, 0.0)),
+    "a patch": (sc.Coulomb(0.2, patch=0.01), 2, 0.2, None, (0, 0.0)),
+    "a small patch, worn": (sc.Coulomb(0.2, patch=1e-4), 2, 0.2, sc.loss.DryContour(1e-3), (0, 1e-3)),
 }
 
 
@@ -165,7 +168,8 @@ def test_motions_that_slip_or_lose_energy_agree_within_the_error_that_they_state
     state = sc.State(state.theta, state.w1, state.w2, state.w3, slip=slip)
     native = sc.roll(body, state, TIMES, contact=contact, losses=loss, want=WANT)
     start = (state.theta, state.w1, state.w2, state.w3, *slip)
-    told, rows, few = compared(ask, given, start, code, mu, native, losses)
+    patch = getattr(contact, "patch", 0.0)
+    told, rows, few = compared(ask, given, start, code, mu, native, losses, patch=patch)
     assert told[0] == 1.0
     # a time between two rows is computed from the row before it
     there = sc.roll(body, state, few[:, 0], t0=0.0, contact=contact, losses=loss, want=WANT)
@@ -225,7 +229,7 @@ def test_flights_impacts_and_lying_agree_within_the_error_that_they_state(ask, w
 
 
 def test_without_a_restitution_a_motion_ends_where_it_leaves_the_table_or_lands(ask):
-    start = (FALLS.theta, FALLS.w1, FALLS.w2, FALLS.w3, *FALLS.slip, 2.0, 0.2, 20.0, 301)
+    start = (FALLS.theta, FALLS.w1, FALLS.w2, FALLS.w3, *FALLS.slip, 2.0, 0.2, 0.0, 20.0, 301)
     _, ends, rolls = ask(BODIES["cylinder"][0], ("start", (*start, NONE)), ("start", (*start, 0.0)))
     native = sc.roll(BODIES["cylinder"][1], FALLS, TIMES, contact=sc.Coulomb(0.2))
     assert ends.out[1] == native.status == sc.Ending.SIDE and rolls.out[1] == 0
@@ -284,7 +288,7 @@ def test_a_flicked_tube_leaves_the_hand_as_the_package_says_and_rises(ask):
     )
     assert thrown.out[6] > 1.0
     *_, start, rows = ask(
-        given, losses, ("start", (*thrown.out[:6], 2.0, 0.2, 5.0, 50, NONE)), ("follow", (50, 0.0, 5.0))
+        given, losses, ("start", (*thrown.out[:6], 2.0, 0.2, 0.0, 5.0, 50, NONE)), ("follow", (50, 0.0, 5.0))
     )
     assert start.code == rows.code == 0
     assert rows.out.reshape(-1, WIDE)[:, 1].min() < HALF - 0.05
@@ -310,9 +314,11 @@ REFUSED = {
     "too fast": (1, [("rattleback", (1.0, 0.2, 0.2, 0.0, 1e7, 0.0, 1.0, 9))]),
     "too long": (10, [("rattleback", (1.0, 0.2, 0.2, 0.0, 1.0, 0.0, 1e6, 2))]),
     "no motion": (9, [("tube", (2.5, 0.0, 0.0)), ("follow", (3, 0.0, 1.0))]),
-    "bounces": (1, [("tube", (2.5, 0.0, 0.0)), ("start", (*STEADY, 0.0, 0.0, 2.0, 0.3, 9.0, 9, 1.5))]),
+    "bounces": (1, [("tube", (2.5, 0.0, 0.0)), ("start", (*STEADY, 0.0, 0.0, 2.0, 0.3, 0.0, 9.0, 9, 1.5))]),
+    "wide": (1, [("tube", (2.5, 0.0, 0.0)), ("start", (*STEADY, 0.0, 0.0, 2.0, 0.3, 1.0, 9.0, 9, NONE))]),
+    "bounces on a patch": (1, [("tube", (2.5, 0.0, 0.0)), ("start", (*STEADY, 0.0, 0.0, 2.0, 0.3, 0.1, 9.0, 9, 0.5))]),
     "too much": (10, [("tube", (2.5, 0.0, 0.0)), ("losses", (4, 1e-9)),
-                      ("start", (*STEADY, 0.0, 0.0, 0.0, ENDLESS, 1e7, 2, NONE))]),
+                      ("start", (*STEADY, 0.0, 0.0, 0.0, ENDLESS, 0.0, 1e7, 2, NONE))]),
 }  # fmt: skip
 
 
@@ -329,7 +335,7 @@ def test_a_refusal_is_a_code_with_a_meaning(ask, why):
 
 CALLS = {
     "tube": 3, "body": 5, "critical": 2, "map": 8, "curves": 5, "at_rest": 1, "by_rate": 1, "circular": 2,
-    "losses": 2, "start": 11, "follow": 3, "poses": 3, "phases": 0, "flick": 4, "thrown": 2, "rattleback": 8,
+    "losses": 2, "start": 12, "follow": 3, "poses": 3, "phases": 0, "flick": 4, "thrown": 2, "rattleback": 8,
 }  # fmt: skip
 
 

@@ -26,6 +26,14 @@ TABLES = CODES["Table"]
 class _Law:
     """Base of the laws of friction: coefficients are numbers or arrays, compared by value."""
 
+    #: False for numbers in natural units; True, or the scale, if they were given in SI.
+    _sized: ClassVar[Scale | bool] = False
+
+    def _known(self, of: Scale | bool = True) -> Self:
+        """Mark the numbers as given in SI for this scale; a measured body accepts no other scale."""
+        object.__setattr__(self, "_sized", of)
+        return self
+
     @property
     def _numbers(self) -> tuple[Reals, Reals, Reals]:
         raise NotImplementedError
@@ -66,16 +74,12 @@ class Coulomb(_Law):
     mu: Reals
     static: Reals = None
     patch: Reals = 0.0
-    #: False for a patch in natural units; True, or the scale, if it was given in SI.
-    _sized: ClassVar[Scale | bool] = False
 
     @classmethod
     def from_si(cls, mu: Reals, static: Reals = None, *, patch: Reals, scale: "Scale | Body") -> Self:
         """With a `patch` in metres, or as in "0.3mm", for a body of this scale."""
         of = scale_of(scale)
-        made = cls(mu, static, reals("patch", si("patch", patch, "metre")) / of._units[0])
-        object.__setattr__(made, "_sized", of)
-        return made
+        return cls(mu, static, reals("patch", si("patch", patch, "metre")) / of._units[0])._known(of)
 
     def __post_init__(self) -> None:
         mu = _coefficient("mu", self.mu)
@@ -129,8 +133,6 @@ class Viscous(_Law):
     """
 
     c: Reals
-    #: False for a coefficient in natural units; True, or the scale, if it was given in SI.
-    _sized: ClassVar[Scale | bool] = False
 
     @classmethod
     def from_si(cls, c: Reals, *, scale: "Scale | Body") -> Self:
@@ -138,11 +140,6 @@ class Viscous(_Law):
         of = scale_of(scale)
         speed = of.metres_per_second(1.0)
         return cls(_coefficient("c", si("c", c, "second/metre")) * speed)._known(of)
-
-    def _known(self, of: Scale | bool = True) -> Self:
-        """Mark the coefficient as given in SI for this scale; a measured body accepts no other scale."""
-        object.__setattr__(self, "_sized", of)
-        return self
 
     def __post_init__(self) -> None:
         c = _coefficient("c", self.c)

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from spincyl._body import Body
-from spincyl._contact import AnyContact, fitting, named
+from spincyl._contact import AnyContact, fitting, has_patch, named
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._ellipsoid_motion import EllipsoidMotion
 from spincyl._input.files import replaced
@@ -145,7 +145,8 @@ class Play:
     @contact.setter
     def contact(self, contact: AnyContact) -> None:
         _needed(self.friction, contact, None, None if self._told.get("stone") else self.body)
-        self._set(words_of_table(contact))
+        _bouncing(self.friction, contact, self.restitution)
+        self._set(words_of_table(contact), gone=("patch",))
 
     @property
     def restitution(self) -> float | None:
@@ -155,7 +156,7 @@ class Play:
 
     @restitution.setter
     def restitution(self, restitution: float | None) -> None:
-        _bouncing(self.friction, restitution)
+        _bouncing(self.friction, self.contact, restitution)
         self._set(words_of_restitution(restitution), gone=("restitution",))
 
     @property
@@ -284,7 +285,8 @@ def play(
     kick : float
         theta' given to it, in sqrt(g/R), -3 to 3.
     contact : {"rolling", "smooth"}, Coulomb or Viscous
-        Of Coulomb's law the page knows one coefficient: static = mu.
+        Of Coulomb's law the page knows one coefficient: static = mu, and a patch up to 0.5 R. Nothing
+        bounces on a patch.
     restitution : float, optional
         Of impacts, 0 to 1: on a table with friction a body that leaves it comes down again, and may lie on
         its side. Default: the motion ends there.
@@ -346,7 +348,7 @@ def play(
     told |= {"slow": within("slow", slow, 1, 1000)}
     told |= words_of_table(contact) | words_of_restitution(restitution) | words_of_loss(losses)
     _needed(friction, contact, losses, body)
-    _bouncing(friction, restitution)
+    _bouncing(friction, contact, restitution)
     return Play(told, line("title", title), friction)
 
 
@@ -372,10 +374,12 @@ def _needed(friction: bool, contact: AnyContact, losses: Loss | None, body: Body
         raise ValueError("friction = False: this table and losses need friction=True")
 
 
-def _bouncing(friction: bool, restitution: float | None) -> None:
-    """Refuse a restitution on a page without friction."""
+def _bouncing(friction: bool, contact: AnyContact, restitution: float | None) -> None:
+    """Refuse a restitution on a page without friction, and on a patch."""
     if not friction and restitution is not None:
         raise ValueError("friction = False: bounces need friction=True")
+    if restitution is not None and has_patch(contact):
+        raise ValueError(f"restitution = {restitution}: no body bounces on a patch, contact = {contact!r}")
 
 
 def _json(what: Any) -> str:

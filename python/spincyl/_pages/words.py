@@ -9,7 +9,7 @@ import numpy as np
 
 from spincyl import loss
 from spincyl._body import Body
-from spincyl._contact import AnyContact, Coulomb, Viscous, code, has_patch
+from spincyl._contact import AnyContact, Coulomb, Viscous, code
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._input.numbers import is_scalar, made, within
 from spincyl._loss import Law, Loss, sized
@@ -60,11 +60,10 @@ def words_of_table(contact: AnyContact) -> dict[str, Any]:
     if isinstance(contact, Coulomb | Viscous) and not is_scalar(*contact._numbers):
         raise ValueError(f"contact = {contact!r}: the page knows single numbers, not arrays of them")
     if isinstance(contact, Coulomb):
-        if has_patch(contact):
-            raise ValueError(f"contact = {contact!r}: the page knows a point of contact, patch = 0")
         if contact.static != contact.mu:
             raise ValueError(f"contact = {contact!r}: the page knows one coefficient, static = mu")
-        return {"contact": "coulomb", "mu": float(contact.mu)}
+        patch = {"patch": within("patch", contact.patch, 0, 0.5)} if contact.patch else {}
+        return {"contact": "coulomb", "mu": float(contact.mu)} | patch
     if isinstance(contact, Viscous):
         return {"contact": "viscous", "c": float(contact.c)}
     code(contact, rubs=True)
@@ -124,9 +123,12 @@ def state_of(words: Mapping[str, Any]) -> State:
 def table_of(words: Mapping[str, Any]) -> AnyContact:
     """The contact that the words describe."""
     found: Any = words.get("contact", "rolling")
+    # the unit was checked when it was set
     if found == "viscous":
-        return Viscous(words["c"])._known()  # its unit was checked when it was set
-    plain: AnyContact = Coulomb(words["mu"]) if found == "coulomb" else found
+        return Viscous(words["c"])._known()
+    if found == "coulomb":
+        return Coulomb(words["mu"], patch=words.get("patch", 0.0))._known()
+    plain: AnyContact = found
     return plain
 
 
@@ -192,6 +194,8 @@ def _all() -> Iterator[tuple[str, dict[str, Any]]]:
     top = replace(top, scale=Scale(0.015, 0.006, 9.81))
     spun = top.with_centre_velocity(State(0.1, 0.0, 0.0, 180 * np.sqrt(0.015 / 9.81)), 0.0, 0.0)
     yield "a tippe top turns over on a wet table", free(top, spun, Viscous(0.3), until=200, slow=5)
+    dry = Coulomb(0.3, patch=0.02)  # 0.3 mm
+    yield "a tippe top turns over on a dry table, on a patch", free(top, spun, dry, until=150, slow=5)
     hoop = thrown(Body.tube(0.0, bore=1.0), velocity=2.0, backspin=3.0)
     yield "a hula hoop comes back", free(Body.tube(0.0, bore=1.0), hoop, Coulomb(0.25), until=40, slow=10)
     rattleback = {"stone": [0.07, 0.014, 0.012], "twist": float(np.radians(2.0)), "spin": -5.0, "slow": 1}

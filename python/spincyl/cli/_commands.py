@@ -254,10 +254,10 @@ def coulomb(args: Namespace, scale: Scale | None) -> Coulomb:
             raise ValueError(f"--patch {float(patch):g}m needs --radius, or a body measured in metres")
         patch = float(patch) / scale.metres(1.0)
     with _naming("patch", "--patch"):
-        return Coulomb(args.mu, args.static, patch)
+        return Coulomb(args.mu, args.static, patch)._known()  # in natural units here
 
 
-def _contact(args: Namespace, scale: Scale | None) -> AnyContact:
+def contact_of(args: Namespace, scale: Scale | None) -> AnyContact:
     """The contact given by the options, with its coefficients."""
     for name, law in (("static", "coulomb"), ("patch", "coulomb"), ("viscosity", "viscous")):
         if getattr(args, name) is not None and args.contact != law:
@@ -292,7 +292,7 @@ def roll_(args: Namespace) -> None:
     last, step = natural("--t", args.t, scale), natural("--step", args.step, scale)
     start, t = _start(args, body), np.linspace(0.0, last or 0.0, args.points)
     writer = recipient(args)
-    contact = _contact(args, scale)
+    contact = contact_of(args, scale)
     mu = np.inf if args.mu is None or args.contact == "coulomb" else args.mu
     how: dict[str, Any] = {"step": step, "tol": args.tol, "contact": contact, "mu": mu}
     how["losses"] = losses_of(args, scale)

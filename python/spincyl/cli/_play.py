@@ -8,10 +8,11 @@ from dataclasses import replace
 from pathlib import Path
 
 from spincyl import play
-from spincyl._contact import AnyContact, Coulomb, Viscous
-from spincyl._input.units import angle
+from spincyl._contact import AnyContact
+from spincyl._input.units import angle, part
 from spincyl._pages.words import paper_tube
-from spincyl.cli._commands import body_of
+from spincyl._scale import Scale
+from spincyl.cli._commands import body_of, contact_of
 from spincyl.cli._losses import losses_of, option
 from spincyl.cli._output import writable
 
@@ -28,6 +29,7 @@ spincyl play --ell 6 --bore 0.8 --theta 89.5deg -o tube.html
 spincyl play --ell 0.375 --theta 80deg --kick -0.01 --contact smooth -o ice.html
 spincyl play --ell 0.17 --theta 0.3 --loss dry-contour=5e-3 --t 400 -o whirr.html
 spincyl play --ell 0.5 --theta 1.2 --contact coulomb --mu 0.3 --restitution 0.5 -o hops.html
+spincyl play --theta 80deg --contact coulomb --mu 0.3 --patch 0.01 -o dry.html
 spincyl play --balls --theta 78deg --open -o balls.html"""
 
 
@@ -41,6 +43,9 @@ def options(sub: ArgumentParser) -> None:
     tables = ("rolling", "smooth", "coulomb", "viscous")
     how.add_argument("--contact", choices=tables, default="rolling", help="the table (default: rolling)")
     how.add_argument("--mu", type=float, help="of coulomb: the coefficient of friction")
+    how.add_argument(
+        "--patch", type=part, metavar="RADIUS", help="of coulomb: that of a patch, or as in 0.3mm"
+    )
     how.add_argument("--viscosity", type=float, metavar="C", help="of viscous: friction C N times the slip")
     bounce = "0 to 1: it goes on where it leaves a table with friction (default: it ends there)"
     how.add_argument("--restitution", type=float, metavar="BOUNCE", help=bounce)
@@ -76,7 +81,7 @@ def run(args: Namespace) -> None:
         body,
         args.theta,
         kick=args.kick,
-        contact=_table(args),
+        contact=_table(args, scale),
         losses=losses_of(args, scale),
         restitution=args.restitution,
         t=args.t,
@@ -88,17 +93,9 @@ def run(args: Namespace) -> None:
         print("spincyl play: no browser was found to open it", file=sys.stderr)
 
 
-def _table(args: Namespace) -> AnyContact:
-    """The contact given by the options, with its coefficient."""
-    numbers = {"coulomb": ("mu", Coulomb), "viscous": ("viscosity", Viscous)}  # in natural units
-    for contact, (name, law) in numbers.items():
-        value = getattr(args, name)
-        if args.contact == contact:
-            if value is None:
-                raise ValueError(f"--contact {contact} needs --{name}")
-            made = law(value)
-            return made if isinstance(made, Coulomb) else made._known()
-        if value is not None:
-            raise ValueError(f"--{name} goes with --contact {contact}")
-    found: AnyContact = args.contact
-    return found
+def _table(args: Namespace, scale: Scale | None) -> AnyContact:
+    """The contact given by the options, with its coefficient; the page knows no static one."""
+    if args.mu is not None and args.contact != "coulomb":
+        raise ValueError("--mu goes with --contact coulomb")
+    args.static = None
+    return contact_of(args, scale)

@@ -28,7 +28,6 @@ use crate::laws::body::{Body, Shape};
 use crate::laws::loss::{Couples, Law, Losses};
 use crate::laws::newton::{self, Force};
 use crate::laws::state::State;
-use crate::methods::SHORT_CODE;
 use crate::numbers::Real;
 
 /// A patch of this radius or less is a point, since a motion on a patch differs from rolling by its radius at least.
@@ -87,7 +86,7 @@ impl Friction {
     /// The radius of the patch of contact; 0 for a point, and for a patch that differs from a point by rounding.
     pub(crate) fn patch(&self) -> f64 {
         match *self {
-            Self::Coulomb { mu, patch, .. } if mu > 0.0 && patch > POINT && !SHORT_CODE => patch,
+            Self::Coulomb { mu, patch, .. } if mu > 0.0 && patch > POINT => patch,
             _ => 0.0,
         }
     }
@@ -149,10 +148,10 @@ impl<T: Real> Slipping<T> {
         Self { radius, ..self }
     }
 
-    /// The radius of the patch of contact; None for a point, which is all that a page knows.
+    /// The radius of the patch of contact; None for a point.
     #[inline(always)]
     pub fn patch(&self) -> Option<T> {
-        if SHORT_CODE { None } else { self.radius }
+        self.radius
     }
 
     /// The same body with losses.

@@ -24,7 +24,6 @@ use crate::error::{Error, copied, room};
 use crate::laws::contact::Table;
 use crate::laws::contact::slip::Friction;
 use crate::laws::contact::standstill::Standstill;
-use crate::methods::SHORT_CODE;
 use crate::methods::flow::{PATIENCE, Spent, Steps, toil_of};
 pub(crate) use phases::Phases;
 pub(crate) use slips::{SlowLaw, SlowSeries};
@@ -333,7 +332,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
     pub fn begins_phase(&mut self, kind: Kind) {
         self.began = self.at[TIME];
         self.allows_crawling();
-        let resumes = !SHORT_CODE && core::mem::take(&mut self.resumes);
+        let resumes = core::mem::take(&mut self.resumes);
         if resumes && self.made.path.phases.last().is_some_and(|p| p.kind == kind) {
             return;
         }

@@ -13,6 +13,7 @@ const KNOBS = [
   { name: "precession", text: "centre’s circle", low: -1, high: () => 1, ...same, told: () => Number.isFinite(s.precession) ? decimal(here.circle) + " R" : "at rest" },
   { name: "contact", text: "table", choices: { rolling: "rubber: it rolls", smooth: "ice: no friction", coulomb: "dry friction μ", viscous: "wet: friction c u" } },
   { name: "mu", text: "friction μ", low: 0, high: () => 1, ...same, told: x => decimal(x) },
+  { name: "patch", text: "patch", low: -4.2, high: () => Math.log10(0.5), to: x => x < -4 ? 0 : 10 ** x, from: x => x > 0 ? Math.log10(x) : -4.2, told: x => x > 0 ? sized() ? decimal(1e3 * s.radius * x, 3) + " mm" : decimal(x, 4) + " R" : "a point" },
   { name: "c", text: "friction c", low: 0, high: () => 1, ...same, told: x => decimal(x) },
   { name: "restitution", text: "bounce e", low: -0.05, high: () => 1, to: x => x < 0 ? NaN : x, from: x => x >= 0 ? x : -0.05, told: x => x >= 0 ? decimal(x) : "it ends there" },
   { name: "law", text: "losses", choices: LAWS },
@@ -20,7 +21,7 @@ const KNOBS = [
 ];
 if (!rubs) {
   for (const law of ["coulomb", "viscous"]) delete KNOBS.find(knob => knob.name === "contact").choices[law];
-  KNOBS.splice(KNOBS.findIndex(knob => knob.name === "mu"), 5); // also removes c, the bounce and the losses, which follow
+  KNOBS.splice(KNOBS.findIndex(knob => knob.name === "mu"), 6); // also removes the patch, c, the bounce and the losses, which follow
   $("flick").hidden = true;
 }
 const form = $("knobs");
@@ -61,8 +62,10 @@ function knobs() {
     const off = knob.name === "mu" ? s.contact !== "coulomb" : knob.name === "c" ? s.contact !== "viscous" : knob.name === "loss" ? s.law === "none" : ["ell", "bore", "fillet"].includes(knob.name) && !isTube() || knob.name === "rate" && (s.w || !(here.rate > 0));
     // shows only the coefficient of the present law of friction
     if (["mu", "c"].includes(knob.name)) knob.label.hidden = (s.contact === "viscous") !== (knob.name === "c");
+    // a patch belongs to dry friction, and no body bounces on one
+    if (knob.name === "patch") knob.label.hidden = s.contact !== "coulomb" || Number.isFinite(s.restitution);
     // bounces are those of rims on a table with friction
-    if (knob.name === "restitution") knob.label.hidden = !rubbing() || body.most !== (body.ell > 0 && body.fillet < 1 ? Math.PI / 2 : Math.PI);
+    if (knob.name === "restitution") knob.label.hidden = !rubbing() || s.contact === "coulomb" && s.patch > 0 || body.most !== (body.ell > 0 && body.fillet < 1 ? Math.PI / 2 : Math.PI);
     knob.label.classList.toggle("off", off);
     knob.input.disabled = off && knob.name !== "rate";
     if (knob.choices) { knob.input.value = value; continue; }
@@ -155,8 +158,8 @@ $("preset").onchange = () => { const found = presets.find(p => p.name === $("pre
 function flick(hard = 1) {
   const { code, out } = isTube() && s.ell > 0 ? ask("flick", 1.2 * hard * Math.max(1, s.ell), 80 * deg, 0.3, 0) : { code: 9 };
   if (code) { $("because").textContent = "What is to be flicked must have two ends: " + refusal(code); return; }
-  const [theta, ...w] = out;
-  scene({ ell: s.ell, bore: s.bore, fillet: s.fillet, radius: s.radius, mass: s.mass, gravity: s.gravity, slow: s.slow, theta, w: w.slice(0, 5), contact: s.contact === "viscous" ? s.contact : "coulomb", mu: s.mu, c: s.c, restitution: s.restitution >= 0 ? s.restitution : 0.5, law: s.law, loss: s.loss });
+  const [theta, ...w] = out, patch = s.contact === "coulomb" ? s.patch : 0;
+  scene({ ell: s.ell, bore: s.bore, fillet: s.fillet, radius: s.radius, mass: s.mass, gravity: s.gravity, slow: s.slow, theta, w: w.slice(0, 5), contact: s.contact === "viscous" ? s.contact : "coulomb", mu: s.mu, patch, c: s.c, restitution: patch > 0 ? NaN : s.restitution >= 0 ? s.restitution : 0.5, law: s.law, loss: s.loss });
 }
 const HARD = 2;
 $("flick").onclick = e => flick(e.shiftKey ? HARD : 1);

@@ -4,16 +4,16 @@
 const RANGE = {
   __proto__: null, // no inherited keys: an address may contain "toString"
   ell: [-1, 8], bore: [0, 1], fillet: [0, 1], i1: [0, 1e3], i3: [0, 1e3], end: [0, Math.PI], theta: [1e-3, Math.PI], kick: [-3, 3],
-  precession: [-20, 20], mu: [0, 5], c: [0, 20], restitution: [0, 1], loss: [0, 1], until: [1, 2000], slow: [1, 1000], t: [0, 1e9], expose: [0, 3], radius: [1e-6, 1e3], mass: [1e-9, 1e9], gravity: [1e-6, 1e6], twist: [-0.3, 0.3], spin: [-50, 50],
+  precession: [-20, 20], mu: [0, 5], patch: [0, 0.5], c: [0, 20], restitution: [0, 1], loss: [0, 1], until: [1, 2000], slow: [1, 1000], t: [0, 1e9], expose: [0, 3], radius: [1e-6, 1e3], mass: [1e-9, 1e9], gravity: [1e-6, 1e6], twist: [-0.3, 0.3], spin: [-50, 50],
 };
 const CONTACTS = ["rolling", "smooth", "coulomb", "viscous"]; // in the order of the codes of the core
 // the laws of loss in the order of the core: name and label
 const LAWS = { none: "none", "dry-contour": "dry contour", "viscous-contour": "viscous contour", "rolling-resistance": "rolling resistance", drilling: "drilling", "air-linear": "air, linear", "air-quadratic": "air, quadratic", "air-film": "air film", "boundary-layer": "boundary layer" };
 // i1 and i3 belong to a body that is no tube, end is the inclination at which it lands, w is a state that is
 // not steady: w1, w2, w3 and the slip. radius, mass and gravity belong to a measured body, in metres,
-// kilograms and m/s^2. Without a restitution a motion ends where the body leaves the table. stone has the semi-axes of a rattleback in metres, twist is in radians and spin in
+// kilograms and m/s^2. patch is the radius of the contact, in R. Without a restitution a motion ends where the body leaves the table. stone has the semi-axes of a rattleback in metres, twist is in radians and spin in
 // radians per second.
-const BLANK = { ell: 2.5, bore: 0, fillet: 0, i1: NaN, i3: NaN, end: NaN, theta: 1.3, kick: 0, precession: NaN, contact: "rolling", mu: 0.3, c: 0.3, restitution: NaN, law: "none", loss: 1e-3, w: null, until: 60, slow: 20, radius: NaN, mass: NaN, gravity: 9.80665, stone: null, twist: 2 * Math.PI / 180, spin: -5 };
+const BLANK = { ell: 2.5, bore: 0, fillet: 0, i1: NaN, i3: NaN, end: NaN, theta: 1.3, kick: 0, precession: NaN, contact: "rolling", mu: 0.3, patch: 0, c: 0.3, restitution: NaN, law: "none", loss: 1e-3, w: null, until: 60, slow: 20, radius: NaN, mass: NaN, gravity: 9.80665, stone: null, twist: 2 * Math.PI / 180, spin: -5 };
 const s = { ...BLANK, ...given };
 
 // a figure in a page of text shows the body, and the map or the tracks beside it
@@ -28,7 +28,7 @@ function address() {
     const ofStone = ["stone", "twist", "spin"].includes(name);
     if (s.stone ? !ofStone && (Object.is(value, BLANK[name]) || !["slow", "gravity"].includes(name)) : ofStone) continue;
     if (!ofStone && (name === "w" ? !value : name === "contact" || name === "law" ? value === BLANK[name] : Object.is(value, BLANK[name]) && !["ell", "theta"].includes(name))) continue;
-    if (name === "mu" && s.contact !== "coulomb" || name === "c" && s.contact !== "viscous" || name === "restitution" && !rubbing() || name === "loss" && s.law === "none") continue;
+    if (["mu", "patch"].includes(name) && s.contact !== "coulomb" || name === "c" && s.contact !== "viscous" || name === "restitution" && !rubbing() || name === "loss" && s.law === "none") continue;
     words.push(`${name}=${typeof value === "string" ? value : Array.isArray(value) ? value.map(short).join(",") : short(value)}`);
   }
   return "#" + (figure ? [`figure=${figure}`, ...words] : words).join("&");
@@ -99,7 +99,7 @@ function begin() {
   const [w1, w2, w3, u, v] = s.w || (code ? [0, 0, 0, 0, 0] : [here.w1, here.w2, here.w3, 0, 0]);
   start = { w1, w2: w2 - s.kick, w3 };
   const kind = CONTACTS.indexOf(s.contact), exact = kind < 2 && !lossy();
-  const begun = ask("start", s.theta, w1, w2 - s.kick, w3, u, v, kind, kind < 2 ? Infinity : kind < 3 ? s.mu : s.c, exact ? LONG : s.until, ROWS, rubbing() ? s.restitution : NaN);
+  const begun = ask("start", s.theta, w1, w2 - s.kick, w3, u, v, kind, kind < 2 ? Infinity : kind < 3 ? s.mu : s.c, s.patch, exact ? LONG : s.until, ROWS, rubbing() ? s.restitution : NaN);
   if (begun.code) head = { code: begun.code, why: refusal(begun.code) };
   else head = { code: 0, ...labelled(OF_START, begun.out) };
 }

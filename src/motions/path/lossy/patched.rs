@@ -16,7 +16,6 @@ use crate::laws::contact::slip::Friction;
 use crate::laws::contact::{Force, patch};
 use crate::laws::loss::{Law, Losses};
 use crate::laws::state::State;
-use crate::methods::SHORT_CODE;
 use crate::motions::creep::{DRILLS, slip_under};
 use crate::motions::halt::{MARGINS, TIME};
 use crate::numbers::{Dual, Real};
@@ -44,10 +43,10 @@ impl LossyFlow {
         self
     }
 
-    /// Whether the contact is a patch; a page knows points only.
+    /// Whether the contact is a patch.
     #[inline(always)]
     pub(super) fn is_patch(&self) -> bool {
-        !SHORT_CODE && self.slides > 0.0
+        self.slides > 0.0
     }
 
     /// The radius of the patch, from the longest length of its drilling friction.

@@ -20,7 +20,7 @@ use crate::laws::contact::slip::{Friction, SlipResponse, Slipping};
 use crate::laws::loss::{Couples, Losses};
 use crate::laws::state::State;
 use crate::methods::flow::{FASTEST, Flow, FlowPlace};
-use crate::methods::{SHORT_CODE, radau, rk8};
+use crate::methods::{radau, rk8};
 use crate::motions::creep::{IMPLICIT_TURNS, rests_below};
 use crate::motions::halt::{Halt, MARGINS, TIME, loses, poses};
 use crate::motions::path::face::FLAT;
@@ -173,7 +173,7 @@ impl Flow<MARGINS> for Slide {
     const OVER: Halt = Halt::Time;
     const PAUSE: Halt = Halt::Pause;
     const ENDLESS: Option<Halt> = Some(Halt::Endless);
-    const MAY_BE_STIFF: bool = !SHORT_CODE;
+    const MAY_BE_STIFF: bool = true;
 
     #[inline(always)]
     fn is_stiff<const N: usize>(&self, place: &FlowPlace<N>) -> bool {
