@@ -22,7 +22,7 @@
 //! | | [`stability`] | stability of steady states: smooth table, rolling | kappa = -dtheta''/dtheta along the lines |
 //! | `motions` | [`exact`] | the solution by first integrals, at any time | dt = s^2 sqrt(J/G) dx |
 //! | | [`motion`] | a motion: times, states, and the event that ends it | N > 0, F <= mu N, theta < theta_end |
-//! | | [`turning`] | the spin from which a tippe top turns over | J = I1 w1 s + I3 w3 (ell + c) |
+//! | | [`turning`] | the spin from which a tippe top turns over, or an egg rises | J = I1 w1 s + I3 w3 (ell + c) |
 //! | | [`stone`] | ellipsoids with any inertia: rattlebacks, eggs | (I + r^2 - r r^T) w' = ... + r x n |
 //! | | [`drift`] | slow drift along steady states, to rest | theta' = -P/E'(theta) |
 //! | `many` | [`sweep`] | steady states over dense grids, on lanes and threads | |

@@ -226,6 +226,7 @@ def nouns():
         "State.in_si": (state.in_si, {"scale": TUBE}),
         "launch_number": (sc.launch_number, {"body": body, "state": sc.State(np.pi / 2, 1, 0.0, 2)}),
         "turning_spin": (sc.turning_spin, {"top": sc.Body.ball(-0.2, 0.40, 0.42), "contact": sc.Viscous(1.0), "lean": 0.1}),
+        "rising_spin": (sc.rising_spin, {"egg": sc.Ellipsoid.egg(1.0, 1.4), "contact": sc.Viscous(1.0), "lean": 0.1}),
         "swing": (sc.swing, {"body": body, "state": state, "contact": "rolling"}),
     }  # fmt: skip
     return found

@@ -26,11 +26,12 @@ def functions():
 def test_a_contact_that_is_not_given_rolls_everywhere():
     found = dict(functions())
     assert len(found) > 12 and {"spincyl.plot.branches", "spincyl.plot.landmarks"} < set(found)
-    # a map shows both contacts; a flick has no default; a top without a table has an estimate
+    # a map shows both contacts; a flick has no default; a top or an egg without a table has an estimate
     other = {name: contact for name, contact in found.items() if contact != "rolling"}
     assert other == {
         "spincyl.plot.portrait": None,
         "spincyl.sweep.flicks": inspect.Parameter.empty,
+        "spincyl.rising_spin": None,
         "spincyl.turning_spin": None,
     }
 

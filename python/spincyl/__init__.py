@@ -34,7 +34,7 @@ from spincyl._scale import Scale
 from spincyl._state import State
 from spincyl._swing import Swing, swing
 from spincyl._throw import dropped, flicked, launch_number, pressed, thrown
-from spincyl._turning import turning_spin
+from spincyl._turning import rising_spin, turning_spin
 from spincyl._upward import HOMES
 
 if TYPE_CHECKING:
@@ -84,6 +84,7 @@ __all__ = [
     "play",
     "plot",
     "pressed",
+    "rising_spin",
     "roll",
     "scene",
     "sweep",

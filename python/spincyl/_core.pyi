@@ -77,6 +77,7 @@ __all__ = [
     "region",
     "rests",
     "ridge",
+    "rising_spin",
     "rocking",
     "roll",
     "speed_o",
@@ -200,6 +201,9 @@ def pressed(
     impulse: float, angle: float, finger: float, table: float, body: _Body
 ) -> tuple[list[float], list[float]]: ...
 def turning_spin(table: int, coefficients: tuple[float, float, float], lean: float, body: _Body) -> float: ...
+def rising_spin(
+    table: int | None, coefficients: tuple[float, float, float], lean: float, stone: Sequence[float]
+) -> float: ...
 def from_metres(
     outer_diameter: float, inner_diameter: float, length: float, fillet: float
 ) -> tuple[float, float, float]: ...

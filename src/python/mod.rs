@@ -327,7 +327,7 @@ mod _core {
     #[pymodule_export]
     use super::loss::loss_laws;
     #[pymodule_export]
-    use super::motion::{roll, swing, turning_spin};
+    use super::motion::{rising_spin, roll, swing, turning_spin};
     #[pymodule_export]
     use super::options::motion_options;
     #[pymodule_export]

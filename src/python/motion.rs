@@ -246,6 +246,24 @@ pub fn turning_spin(
     found.ok_or_else(|| PyRuntimeError::new_err("the search was given up"))
 }
 
+/// The spin from which an egg that lies rises, on a table or by Jellett's number; or ValueError.
+#[pyfunction]
+pub fn rising_spin(
+    py: Python<'_>,
+    table: Option<u8>,
+    coefficients: [f64; 3],
+    lean: f64,
+    stone: [f64; STONE],
+) -> PyResult<f64> {
+    let egg = stone_of(&stone)?;
+    let Some(table) = table else { return Ok(turning::jellett_rising_spin(&egg)?) };
+    let friction = table_of(table)?.with(coefficients).friction();
+    let mut watch = Watch::new(None);
+    let found = py.detach(|| turning::rising_spin(&egg, friction, lean, || watch.still()))?;
+    watch.done(py)?;
+    found.ok_or_else(|| PyRuntimeError::new_err("the search was given up"))
+}
+
 /// Whether a motion has a slip and phases.
 fn rubs(ask: &Ask) -> bool {
     ask.table.rubs() || ask.restitution.is_some()

@@ -83,10 +83,7 @@ impl Desk {
     /// Begins a motion from theta, w, slip, the table (0 rolling, 1 smooth, 2 Coulomb, 3 viscous) with its mu
     /// or c, the radius of the patch of dry friction, the last time, the number of rows of a motion that is integrated,
     /// and the coefficient of restitution, with NaN for a motion that ends where the body leaves the table.
-    pub fn start(
-        &mut self,
-        [theta, w1, w2, w3, u_h, u_2, table, mu, patch, t, n, e]: [f64; 12],
-    ) -> Answer {
+    pub fn start(&mut self, [theta, w1, w2, w3, u_h, u_2, table, mu, patch, t, n, e]: [f64; 12]) -> Answer {
         self.motion = None;
         let (body, n) = (self.set_body()?, count("n", n, MOST)?);
         if !(t > 0.0 && t <= 1e12) {
