@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+import scipy.interpolate
 import scipy.optimize
 
 import spincyl as sc
@@ -265,3 +266,18 @@ def test_an_arm_of_rolling_resistance_beyond_the_patch_is_warned_of():
     sc.roll(TOP, spun(3.0), 1.0, contact=PATCH, losses=sc.loss.RollingResistance(0.01))
     with pytest.raises(AttributeError, match='want="force"'):
         _ = sc.roll(TOP, spun(3.0), 1.0, contact=PATCH).couple
+
+
+@pytest.mark.parametrize("radius", [0.2, 2.0])
+def test_the_heat_of_an_egg_is_the_work_of_its_friction_and_of_its_couple(radius):
+    lying = EGG.spinning(5.5, pitch=np.radians(85))
+    start, table = EGG.with_centre_velocity(lying, 0.0, 0.0), sc.Coulomb(0.3, patch=radius / 30.8)
+    m = sc.roll(EGG, start, np.linspace(0.0, 20.0, 20001), contact=table, want="force")
+    slip = np.hypot(*m.slip.T)
+    np.testing.assert_allclose(m.drilling, m.spin, rtol=1e-15)
+    np.testing.assert_allclose(m.creep, slip / (table.patch * np.abs(m.drilling)), rtol=1e-14)
+    assert (m.couple * m.drilling < 0).all() and m.creep.min() < 1 < m.creep.max()
+    power = scipy.interpolate.CubicSpline(m.t, m.friction * slip - m.couple * m.drilling)
+    np.testing.assert_allclose(power.integrate(0.0, 20.0), m.dissipated[-1], rtol=1e-6)
+    with pytest.raises(AttributeError, match="creep is not there: the contact is 'rolling'"):
+        _ = sc.roll(EGG, EGG.spinning(5.5), 1.0).creep

@@ -63,13 +63,17 @@ impl ToldRows<'_> {
 trait Told: Moving + Sized {
     type Body;
     /// Adds the arrays of the states, poses and forces.
-    fn tell(m: &Motion<Self>, body: &Self::Body, ask: &Ask, rows: &mut ToldRows<'_>) -> Result<(), Error>;
+    fn tell(m: &Motion<Self>, body: &Self::Body, rows: &mut ToldRows<'_>) -> Result<(), Error>;
+    /// The angular velocity about the vertical.
+    fn drilling(&self) -> f64;
+    /// The normal component of a force.
+    fn normal(force: &Self::Force) -> f64;
 }
 
 impl Told for State {
     type Body = Body;
 
-    fn tell(m: &Motion, body: &Body, ask: &Ask, rows: &mut ToldRows<'_>) -> Result<(), Error> {
+    fn tell(m: &Motion, body: &Body, rows: &mut ToldRows<'_>) -> Result<(), Error> {
         rows.add("theta", 0, &|i, to| to.push(m.states[i].theta))?;
         rows.add("w", 3, &|i, to| to.extend([m.states[i].w1, m.states[i].w2, m.states[i].w3]))?;
         if let Some(poses) = &m.poses {
@@ -92,40 +96,23 @@ impl Told for State {
                 rows.add("contact_force", 3, &|i, to| to.extend(force(i)))?;
             }
         }
-        let friction = ask.table.friction();
-        if let Some(path) = &m.path
-            && friction.patch() > 0.0
-        {
-            let drilling = |i: usize| drilling(&m.states[i]);
-            let creep = |i: usize| {
-                let speed = path.slip[i][0].hypot(path.slip[i][1]);
-                if speed > 0.0 { speed / (friction.patch() * drilling(i).abs()) } else { 0.0 }
-            };
-            rows.add("drilling", 0, &|i, to| to.push(drilling(i)))?;
-            rows.add("creep", 0, &|i, to| to.push(creep(i)))?;
-            if let Some(forces) = &m.forces {
-                let most = |i: usize| friction.strength() * friction.patch() * forces[i].normal;
-                let couple = |i: usize| match path.kinds[i] {
-                    Kind::Slipping => -(drilling(i).signum() * most(i) * patch::of(creep(i))[1]),
-                    _ => f64::NAN,
-                };
-                rows.add("couple", 0, &|i, to| to.push(couple(i)))?;
-            }
-        }
         Ok(())
     }
-}
 
-/// The drilling w_z of a state.
-fn drilling(y: &State) -> f64 {
-    let (s, c) = y.theta.sin_cos();
-    s * y.w1 + c * y.w3
+    fn drilling(&self) -> f64 {
+        let (s, c) = self.theta.sin_cos();
+        s * self.w1 + c * self.w3
+    }
+
+    fn normal(force: &Self::Force) -> f64 {
+        force.normal
+    }
 }
 
 impl Told for StoneState {
     type Body = Ellipsoid;
 
-    fn tell(m: &Motion<Self>, _: &Ellipsoid, _: &Ask, rows: &mut ToldRows<'_>) -> Result<(), Error> {
+    fn tell(m: &Motion<Self>, _: &Ellipsoid, rows: &mut ToldRows<'_>) -> Result<(), Error> {
         rows.add("theta", 0, &|i, to| to.push(m.states[i].theta()))?;
         rows.add("w", 3, &|i, to| to.extend(m.states[i].w))?;
         rows.add("vertical", 3, &|i, to| to.extend(m.states[i].vertical))?;
@@ -147,6 +134,14 @@ impl Told for StoneState {
         }
         Ok(())
     }
+
+    fn drilling(&self) -> f64 {
+        self.spin()
+    }
+
+    fn normal(force: &Self::Force) -> f64 {
+        force.z
+    }
 }
 
 /// The arrays of a motion for Python; None if `go_on` returns false.
@@ -158,7 +153,7 @@ fn columns<S: Told>(
 ) -> Result<Option<Vec<NamedArray>>, Error> {
     let mut rows = ToldRows { count: m.times.len(), columns: Vec::new(), goes_on: true, go_on };
     rows.add("t", 0, &|i, to| to.push(m.times[i]))?;
-    S::tell(m, body, ask, &mut rows)?;
+    S::tell(m, body, &mut rows)?;
     if let Some(path) = &m.path
         && !path.aloft.is_empty()
     {
@@ -177,6 +172,26 @@ fn columns<S: Told>(
     {
         rows.add("slip", 2, &|i, to| to.extend(path.slip[i]))?;
         rows.add("dissipated", 0, &|i, to| to.push(path.dissipated[i]))?;
+    }
+    let friction = ask.table.friction();
+    if let Some(path) = &m.path
+        && friction.patch() > 0.0
+    {
+        let drilling = |i: usize| m.states[i].drilling();
+        let creep = |i: usize| {
+            let speed = path.slip[i][0].hypot(path.slip[i][1]);
+            if speed > 0.0 { speed / (friction.patch() * drilling(i).abs()) } else { 0.0 }
+        };
+        rows.add("drilling", 0, &|i, to| to.push(drilling(i)))?;
+        rows.add("creep", 0, &|i, to| to.push(creep(i)))?;
+        if let Some(forces) = &m.forces {
+            let most = |i: usize| friction.strength() * friction.patch() * S::normal(&forces[i]);
+            let couple = |i: usize| match path.kinds[i] {
+                Kind::Slipping => -(drilling(i).signum() * most(i) * patch::of(creep(i))[1]),
+                _ => f64::NAN,
+            };
+            rows.add("couple", 0, &|i, to| to.push(couple(i)))?;
+        }
     }
     if let Some(path) = &m.path
         && !ask.losses.is_none()

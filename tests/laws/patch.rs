@@ -1,12 +1,12 @@
 //! Friction of a round patch: balls that drill, slip and creep, the limits of small patches, and laws of every motion.
 
 use crate::common::{drawn, wander};
+use spincyl::Ellipsoid;
 use spincyl::contact::slip::{Friction, derivative};
 use spincyl::contact::{Table, patch};
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::path::Kind;
 use spincyl::motion::{Ask, Ending, Motion, Start, roll_with};
-use spincyl::Ellipsoid;
 use spincyl::turning::{jellett_rising_spin, jellett_spin, rising_spin, turning_spin};
 use spincyl::{Body, State, steady};
 use std::f64::consts::PI;
