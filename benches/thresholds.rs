@@ -5,7 +5,8 @@
 //! thresholds follow         of each line of the input its result: ending, time, phases, claimed error, last numbers
 //! ```
 //! The scenes are drawn once and followed by many versions of the library, so that all of them get the same numbers.
-//! Twenty kinds take turns, and after 2,000 scenes five kinds of bodies that hop, fall or lie on their sides. Most of them are planted beside a decision: slips that hardly move, friction that is just
+//! Twenty kinds take turns, and after 2,000 scenes five kinds of bodies that hop, fall or lie on their sides, and after 2,500
+//! five on a patch of contact. Most of them are planted beside a decision: slips that hardly move, friction that is just
 //! enough, faces that are all but down, losses that all but hold.
 
 use spincyl::contact::{Friction, Table, TableKind, slip};
@@ -19,6 +20,9 @@ use std::io::{BufRead, Write};
 /// Kinds of scenes in which the body stays on the table, up to the number `ON_THE_TABLE`, and of those after them.
 const ON_THE_TABLE: u64 = 2000;
 const ALOFT: [&str; 5] = ["hops", "dropped", "bounces level", "lies", "rolls on its side"];
+const AT_A_POINT: u64 = 2500;
+const PATCHES: [&str; 5] =
+    ["slips on a patch", "rolls on a patch", "drills on a patch", "top on a patch", "stone on a patch"];
 const KINDS: [&str; 20] = [
     "slips",
     "rest",
@@ -84,7 +88,7 @@ impl Draw {
 struct Scene {
     /// ell, I1, I3, fillet and theta_end of a body; the 13 numbers of a stone.
     body: Vec<f64>,
-    table: [f64; 3],
+    table: [f64; 4],
     losses: [f64; 8],
     /// NaN for None, which ends a motion where the body leaves the table or its other rim lands.
     restitution: f64,
@@ -128,7 +132,7 @@ impl Scene {
         let mut take = |count: usize| -> Vec<f64> { rest.by_ref().take(count).collect() };
         let body = take(all[0] as usize);
         let start = if body.len() == 5 { 4 } else { 6 };
-        let (table, losses, restitution, aloft) = (take(3), take(8), take(1)[0], take(2));
+        let (table, losses, restitution, aloft) = (take(4), take(8), take(1)[0], take(2));
         let [start, slip, end] = [take(start), take(2), take(1)];
         Self {
             body,
@@ -143,11 +147,11 @@ impl Scene {
     }
 
     fn ask(&self) -> Ask {
-        let [kind, a, b] = self.table;
+        let [kind, numbers @ ..] = self.table;
         let kinds = [TableKind::Rolling, TableKind::Smooth, TableKind::Coulomb, TableKind::Viscous];
         let losses = Losses { coefficients: self.losses };
         let restitution = Some(self.restitution).filter(|e| !e.is_nan());
-        Ask { losses, restitution, ..Ask::on(kinds[kind as usize].with([a, b])) }
+        Ask { losses, restitution, ..Ask::on(kinds[kind as usize].with(numbers)) }
     }
 
     fn follow(&self) -> Result<String, Error> {
@@ -188,12 +192,13 @@ fn told<S: spincyl::motion::Moving>(found: &Motion<S>, numbers: impl Fn(&S) -> V
     format!("{ending} {time:e} {phases} {:e} {}", found.error, last.join(" "))
 }
 
-fn numbers_of(table: Table) -> [f64; 3] {
+/// The kind of the table, its one or two coefficients, and the radius of a patch.
+fn numbers_of(table: Table) -> [f64; 4] {
     match table {
-        Table::Rolling { mu } => [0.0, mu, 0.0],
-        Table::Smooth => [1.0, 0.0, 0.0],
-        Table::Rubs(Friction::Coulomb { mu, fixed, .. }) => [2.0, mu, fixed],
-        Table::Rubs(Friction::Viscous { c }) => [3.0, c, 0.0],
+        Table::Rolling { mu } => [0.0, mu, 0.0, 0.0],
+        Table::Smooth => [1.0, 0.0, 0.0, 0.0],
+        Table::Rubs(Friction::Coulomb { mu, fixed, patch }) => [2.0, mu, fixed, patch],
+        Table::Rubs(Friction::Viscous { c }) => [3.0, c, 0.0, 0.0],
     }
 }
 
@@ -364,7 +369,54 @@ fn stone_scene(draw: &mut Draw, slips: bool) -> Scene {
 /// The kind of the scene of a number.
 fn kind(number: u64) -> &'static str {
     let of = |all: &[&'static str]| all[(number % all.len() as u64) as usize];
-    if number < ON_THE_TABLE { of(&KINDS) } else { of(&ALOFT) }
+    match number {
+        ..ON_THE_TABLE => of(&KINDS),
+        ON_THE_TABLE..AT_A_POINT => of(&ALOFT),
+        _ => of(&PATCHES),
+    }
+}
+
+/// The scene of a body or a stone on a patch of contact.
+fn patch_scene(draw: &mut Draw, kind: &str) -> Scene {
+    let patch = if draw.happens(0.7) { draw.power(-4.0, -0.7) } else { draw.power(-9.0, -4.0) };
+    let on = |mu: f64, share: f64| Table::from(Friction::Coulomb { mu, fixed: mu * share, patch });
+    let share = if draw.happens(0.7) { 1.0 } else { draw.within(1.02, 1.5) };
+    let mu = draw.power(-1.3, 0.0);
+    if kind == "stone on a patch" {
+        let mut all = stone_scene(draw, true);
+        if all.table[0] == 2.0 {
+            all.table[3] = patch;
+        }
+        return all;
+    }
+    let (of, mut y) = if kind == "top on a patch" {
+        let top = Body::ball(draw.within(-0.3, -0.05), 0.4, draw.within(0.36, 0.44)).unwrap();
+        (top, State { theta: draw.power(-2.0, 0.0), w1: 0.0, w2: 0.0, w3: draw.within(1.0, 8.0) })
+    } else {
+        let of = body(draw, true);
+        (of, state(draw, &of))
+    };
+    let (s, c) = y.theta.sin_cos();
+    let (drilling, along) = (s * y.w1 + c * y.w3, c * y.w1 - s * y.w3);
+    // A drilling that vanishes, or all but does.
+    if kind == "drills on a patch" {
+        let drilling = draw.of(&[0.0, 0.5, 1.0, 1.5, 2.0, 3.0]) * 1e-9 * draw.sign();
+        (y.w1, y.w3) = (s * drilling + c * along, c * drilling - s * along);
+    }
+    let slip = match kind {
+        "slips on a patch" => {
+            patch * drilling.abs() * beside_one(draw) * draw.of(&[0.1, 0.999, 1.0, 1.0, 3.0])
+        }
+        "drills on a patch" => draw.of(&[0.0, 0.0, 1e-12, 1e-9]) * patch,
+        "top on a patch" => draw.of(&[0.0, 1.0]) * draw.power(-3.0, 0.5),
+        _ => 0.0,
+    };
+    // Friction that is just enough for rolling, or just not.
+    let needed = needs(&of, &y);
+    let enough = kind == "rolls on a patch" && needed.is_finite() && draw.happens(0.5);
+    let mu = if enough { (needed * beside_one(draw)).clamp(1e-3, 3.0) } else { mu };
+    let end = if kind == "top on a patch" { 20.0 } else { 5.0 };
+    Scene { slip: turned(draw, slip), ..Scene::of(&of, on(mu, share), y, end) }
 }
 
 /// The scene of a body that may leave the table or lie on its side.
@@ -404,8 +456,10 @@ fn aloft_scene(draw: &mut Draw, kind: &str) -> Scene {
 fn scene(number: u64) -> Scene {
     let mut draws = Draw(number);
     let draw = &mut draws;
-    if number >= ON_THE_TABLE {
-        return aloft_scene(draw, kind(number));
+    match number {
+        ..ON_THE_TABLE => {}
+        ON_THE_TABLE..AT_A_POINT => return aloft_scene(draw, kind(number)),
+        _ => return patch_scene(draw, kind(number)),
     }
     let (rolling, three) = (Table::default(), 3.0);
     match kind(number) {

@@ -1,4 +1,4 @@
-"""Every threshold of docs/thresholds.md, halved and doubled: which of 2,000 motions change, and by how much.
+"""Every threshold of docs/thresholds.md, halved and doubled: which of 2,800 motions change, and by how much.
 
     python3 tests/thresholds.py            about 20 minutes, on one core
     python3 tests/thresholds.py --write    the same, and writes the measured columns of the page
@@ -41,7 +41,7 @@ from typing import NamedTuple
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "thresholds.md"
 PROGRAM = ROOT / "benches" / "thresholds.rs"
-SCENES = 2500
+SCENES = 2800
 FACTORS = {"halved": 0.5, "doubled": 2.0}
 FAR = (1e-3, 1e3)
 #: seconds after which a factor of 1000 is given up: a limit of the work, say

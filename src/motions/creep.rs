@@ -8,13 +8,13 @@
 //! ```
 //! [`radau`](crate::methods::radau) takes the steps where u is that fast; at k = 1 the steps are short.
 //!
-//! Error: the slip and the drilling that are left out, eps DRILLS and DRILLS.
+//! Error: the drilling that is left out, `LOST_DRILLING` times what is left of it.
 
 use crate::laws::contact::patch;
 use crate::numbers::{Dual, Real};
 
 /// A patch that drills faster than this, in sqrt(g/R), creeps.
-pub(crate) const DRILLS: f64 = 1e-9;
+pub(crate) const DRILLS: f64 = 1e-10;
 /// A contact point that is let go begins to creep with at most this share of the friction of a slip.
 const MOST_CREEP: f64 = 0.999;
 /// Steps are implicit where the body turns by less than this angle in a unit of sigma, which is about the longest stable
@@ -24,6 +24,11 @@ const STIFF: f64 = 0.2;
 pub(crate) const IMPLICIT_TURNS: f64 = 8.0;
 /// Relative error that rounding of w gives the drilling. The slip need not be known better.
 const ROUNDED_DRILLING: f64 = 4e-15;
+/// What is left to rest is followed along a straight line if it takes less than this time, in sqrt(R/g).
+const SOON: f64 = 1e-6;
+/// The drilling with which a patch comes to be held, or with which a creep begins, has no friction on its way from or to
+/// zero, and this many times as much is claimed as an error.
+pub(crate) const LOST_DRILLING: f64 = 4.0;
 /// A step takes at most this share of what is left to k = 1.
 const NEARER_K: f64 = 0.5;
 
@@ -56,6 +61,13 @@ impl Rubbing<Dual<f64>> {
     pub fn comes_to_rest(&self, radius: f64) -> bool {
         let speed = self.speed();
         speed.value <= rests_below(radius) && (speed.slope <= 0.0 || speed.value == 0.0)
+    }
+
+    /// How far the variable of the slopes is from rest, by the last slope; 0 if that takes longer than `SOON` at the pace
+    /// dt/dsigma, so that a straight line is no longer exact.
+    pub fn left(&self, pace: f64) -> f64 {
+        let left = self.speed().value / -self.speed().slope;
+        if left * pace <= SOON { left.max(0.0) } else { 0.0 }
     }
 
     /// The longest step, in the variable of the slopes. At k = 1 the friction has a term (2 |k - 1|)^(5/2)/5 on one side

@@ -5,8 +5,10 @@ use super::write::state;
 use crate::error::Error;
 use crate::laws::contact::Table;
 use crate::laws::contact::standstill::standstill;
+use crate::laws::state::State;
 use crate::methods::flow::{Flow, Steps};
 use crate::motions::Ending;
+use crate::motions::creep::LOST_DRILLING;
 use crate::motions::halt::Halt;
 use crate::motions::path::lossy::LossyFlow;
 use crate::motions::walk::{Next, Pause, Phases, STILL, after_rest, ending, most_phases};
@@ -18,6 +20,9 @@ impl<const N: usize> BodyWalk<'_, N> {
         let on = (&self.of.body, self.contact());
         let (losses, y, friction) = (self.of.rolling_losses, self.of.state, self.friction());
         let mut flow = LossyFlow::new(on, mu, &losses, self.of.slide.tol, &y).on_patch(&friction, &y);
+        if flow.is_patch() && flow.holds_drilling() {
+            self.claims(LOST_DRILLING * drilling(&self.of.state).abs());
+        }
         let halt = flow.at_start(&self.of.state);
         // The friction that would hold a moving contact point is not that of a body at rest.
         let may_rest = halt.is_none_or(|halt| halt == Halt::Slips && self.of.is_still());
@@ -125,6 +130,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             }
             Halt::Slips if let Some(slip) = flow.creeps(&self.of.state) => {
                 (self.at[5], self.at[6]) = (slip[0], slip[1]);
+                self.claims(LOST_DRILLING * drilling(&self.of.state).abs());
                 self.forgets_a_moment(self.at[7]);
                 Next::Slips
             }
@@ -140,4 +146,8 @@ impl<const N: usize> BodyWalk<'_, N> {
         self.continues_with(next);
         Ok(None)
     }
+}
+
+fn drilling(y: &State) -> f64 {
+    y.theta.sin() * y.w1 + y.theta.cos() * y.w3
 }

@@ -32,7 +32,7 @@ impl StoneFlow<'_> {
         u.hypot(v) + self.law.patch().map_or(0.0, |patch| patch * self.drilling(y).abs())
     }
 
-    fn drilling<const N: usize>(&self, y: &[f64; N]) -> f64 {
+    pub(super) fn drilling<const N: usize>(&self, y: &[f64; N]) -> f64 {
         dot(self.seen_at(y).at.n, [y[4], y[5], y[6]])
     }
 
@@ -48,9 +48,10 @@ impl StoneFlow<'_> {
     #[inline(never)]
     pub(super) fn hardly_rubs<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
         let (radius, rubbing) = (self.law.patch()?, self.rubbing(place)?);
-        let mut rests = place.y;
+        let left = rubbing.left(place.rate[TIME]);
+        let mut rests: [f64; N] = core::array::from_fn(|i| place.y[i] + left * place.rate[i]);
         (rests[8], rests[9]) = (0.0, 0.0);
-        rubbing.comes_to_rest(radius).then_some((Halt::Standstill, rests))
+        rubbing.comes_to_rest(radius).then(|| (Halt::Standstill, self.kept(rests)))
     }
 
     /// The margins of a stone on a patch, whose contact point rests only as long as the patch does not drill. `grips` is

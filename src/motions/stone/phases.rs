@@ -13,6 +13,7 @@ use crate::laws::stone::law::{across, laboratory};
 use crate::laws::stone::{Ellipsoid, StoneState};
 use crate::methods::SHORT_CODE;
 use crate::methods::flow::{Flow, Flown, Steps};
+use crate::motions::creep::LOST_DRILLING;
 use crate::motions::halt::{Halt, TIME};
 use crate::motions::walk::slow::clear_until;
 use crate::motions::walk::{Next, Pause, Phases, SlowSeries, Walk, WalkStep, after_rest, ending};
@@ -163,6 +164,7 @@ impl<'a, 'n> StoneWalk<'a, 'n> {
             }
             Halt::Slips if let Some(slip) = self.of.flow.creeps(&self.at).filter(|_| rubs) => {
                 (self.at[8], self.at[9]) = (slip[0], slip[1]);
+                self.claims(LOST_DRILLING * self.of.flow.drilling(&self.at).abs());
                 self.forgets_a_moment(self.at[TIME]);
                 Next::Slips
             }
@@ -338,6 +340,9 @@ impl<'n> Phases<ALL> for StonePhases<'n> {
     ) -> Result<Option<WalkStep<ALL>>, Error> {
         walk.of.flow.touch = if walk.of.freed { Touch::Rolls } else { walk.resting() };
         walk.of.freed = false;
+        if walk.of.flow.touch == Touch::Held {
+            walk.claims(LOST_DRILLING * walk.of.flow.drilling(&walk.at).abs());
+        }
         walk.of.flow.mu = walk.ask.table.mu() * if at_limit { 1.0 + GRACE } else { 1.0 };
         Ok(Some(WalkStep::Flows(walk.at)))
     }

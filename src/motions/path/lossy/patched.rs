@@ -45,7 +45,7 @@ impl LossyFlow {
 
     /// Whether the contact is a patch.
     #[inline(always)]
-    pub(super) fn is_patch(&self) -> bool {
+    pub(in crate::motions::path) fn is_patch(&self) -> bool {
         self.slides > 0.0
     }
 

@@ -12,7 +12,7 @@ use crate::laws::contact::slip::SlipResponse;
 use crate::methods::flow::{Flow, FlowPlace};
 use crate::methods::{radau, rk8};
 use crate::motions::creep::{Rubbing, is_fast, known_slip};
-use crate::motions::halt::{Halt, loses};
+use crate::motions::halt::{Halt, TIME, loses};
 use crate::numbers::Dual;
 use nalgebra::SMatrix;
 
@@ -52,9 +52,10 @@ impl Slide {
     #[inline(never)]
     pub(super) fn hardly_rubs<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
         let (radius, rubbing) = (self.law.patch()?, self.rubbing(place)?);
-        let mut rests = place.y;
+        let left = rubbing.left(place.rate[TIME]);
+        let mut rests: [f64; N] = core::array::from_fn(|i| place.y[i] + left * place.rate[i]);
         (rests[5], rests[6]) = (0.0, 0.0);
-        rubbing.comes_to_rest(radius).then_some((Halt::Standstill, rests))
+        rubbing.comes_to_rest(radius).then(|| (Halt::Standstill, self.kept(rests)))
     }
 
     /// The response for margins with their slopes, of which there is one copy for a patch.
