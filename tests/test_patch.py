@@ -281,3 +281,13 @@ def test_the_heat_of_an_egg_is_the_work_of_its_friction_and_of_its_couple(radius
     np.testing.assert_allclose(power.integrate(0.0, 20.0), m.dissipated[-1], rtol=1e-6)
     with pytest.raises(AttributeError, match="creep is not there: the contact is 'rolling'"):
         _ = sc.roll(EGG, EGG.spinning(5.5), 1.0).creep
+
+
+def test_a_loss_without_a_derivative_at_rest_does_not_stop_a_stiff_slip():
+    """Boundary layer friction grows with the power 3/2 of psi', which is zero all along a planar motion."""
+    law = sc.loss.BoundaryLayer(6.4e-4) + sc.loss.ViscousContour(6.5e-6)
+    start = sc.State(4.36e-5, 0.0, 0.0, 0.0, slip=(-6.1, 0.0))
+    for patch in (4.9e-5, 0.0):
+        m = sc.roll(sc.Body(1.1, 1.69, 1.43), start, 0.2, contact=sc.Coulomb(0.17, patch=patch), losses=law)
+        assert m.status == sc.Ending.FACE and m.error < 1e-11
+        assert abs(m.event.time - 0.016378) < 1e-5

@@ -13,6 +13,7 @@
 //! Error: that of a pendulum goes as h^9; the tests at the end run it, a stiff equation, and the estimate of the error.
 
 use super::rk8::Step;
+use crate::numbers::larger;
 use nalgebra::{Complex, Const, DimMin, SMatrix, SVector, ToTypenum};
 
 /// The cost of a step in evaluations of the rates: some five iterations, J, and its factors.
@@ -98,9 +99,11 @@ pub(crate) fn step<const M: usize, const N: usize>(
 where
     Const<M>: ToTypenum + DimMin<Const<M>, Output = Const<M>>,
 {
+    // A law may have no derivative at rest, as a power of a speed has none at zero.
+    let slopes = slopes.map(|x| if x.is_finite() { x } else { 0.0 });
     let one = SMatrix::<f64, M, M>::identity();
     let complex = |[re, im]: [f64; 2]| Complex::new(re, im);
-    let single = (one - slopes * (h / SINGLE.0)).lu();
+    let single = (one - slopes.map(|x| x * (h / SINGLE.0))).lu();
     let pairs = TWINS.map(|(g, ..)| {
         let per = Complex::new(h, 0.0) / complex(g);
         (one.map(Complex::from) - slopes.map(|x| per * x)).lu()
@@ -139,7 +142,7 @@ where
                 *moved += *by;
                 // A rate may depend on an integral that is not among the first M numbers.
                 let size = sizes.get(n).copied().unwrap_or(1.0 + moved.abs());
-                most = most.max(by.abs() / size);
+                most = larger(most, by.abs() / size);
             }
         }
         // The first iteration does not show how fast they converge.

@@ -3,7 +3,7 @@
 #[cfg(feature = "friction")]
 use crate::walk::Walked;
 use crate::{Answer, Desk, Refusal, count};
-use spincyl::contact::{Force, TableKind, force};
+use spincyl::contact::{Force, Table, TableKind, force};
 use spincyl::exact::Swing;
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::path::Kind;
@@ -47,11 +47,12 @@ pub(crate) enum Kept {
     Walked(Box<Walked>),
 }
 
-/// The request for a motion: the body, its start with its slip, the last time, and the number of rows.
+/// The request for a motion: the body, its start with its slip, the table, the last time, and the number of rows.
 #[cfg_attr(not(feature = "friction"), allow(dead_code))]
 pub(crate) struct Wish {
     pub body: Body,
     pub start: (State, [f64; 2]),
+    pub table: Table,
     pub t: f64,
     pub n: usize,
     pub restitution: Option<f64>,
@@ -101,10 +102,11 @@ impl Desk {
         let kind = TableKind::from_code(table as u8).unwrap_or_default();
         let kind = if mu.is_finite() || kind != TableKind::Coulomb { kind } else { TableKind::Rolling };
         let restitution = (!e.is_nan()).then_some(e);
-        let wish = Wish { body, start: (State { theta, w1, w2, w3 }, [u_h, u_2]), t, n, restitution };
+        let table = kind.with([mu, mu, patch]);
+        let wish = Wish { body, start: (State { theta, w1, w2, w3 }, [u_h, u_2]), table, t, n, restitution };
         if kind.rubs() || !self.losses.is_none() || restitution.is_some() {
             #[cfg(feature = "friction")]
-            return self.walk(&wish, kind.with([mu, mu, patch]));
+            return self.walk(&wish);
             #[cfg(not(feature = "friction"))]
             return Err(Refusal::Lean);
         }

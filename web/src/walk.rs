@@ -34,8 +34,8 @@ pub(crate) struct Walked {
 
 impl Desk {
     /// Begins a motion that is integrated.
-    pub(crate) fn walk(&mut self, wish: &Wish, table: Table) -> Answer {
-        let mut ask = Ask::on(table);
+    pub(crate) fn walk(&mut self, wish: &Wish) -> Answer {
+        let mut ask = Ask::on(wish.table);
         (ask.losses, ask.method, ask.pose, ask.force) = (self.losses, Method::Tolerance(TOL), true, true);
         ask.restitution = wish.restitution;
         let &Wish { body, start: (y, slip), t, n, .. } = wish;
