@@ -25,7 +25,7 @@ pub(crate) const IMPLICIT_TURNS: f64 = 8.0;
 /// Relative error that rounding of w gives the drilling. The slip need not be known better.
 const ROUNDED_DRILLING: f64 = 4e-15;
 /// What is left to rest is followed along a straight line if it takes less than this time, in sqrt(R/g).
-const SOON: f64 = 1e-6;
+const REST_IS_NEAR: f64 = 1e-6;
 /// The drilling with which a patch comes to be held, or with which a creep begins, has no friction on its way from or to
 /// zero, and this many times as much is claimed as an error.
 pub(crate) const LOST_DRILLING: f64 = 4.0;
@@ -63,11 +63,11 @@ impl Rubbing<Dual<f64>> {
         speed.value <= rests_below(radius) && (speed.slope <= 0.0 || speed.value == 0.0)
     }
 
-    /// How far the variable of the slopes is from rest, by the last slope; 0 if that takes longer than `SOON` at the pace
+    /// How far the variable of the slopes is from rest, by the last slope; 0 if that takes longer than `REST_IS_NEAR` at the pace
     /// dt/dsigma, so that a straight line is no longer exact.
     pub fn left(&self, pace: f64) -> f64 {
         let left = self.speed().value / -self.speed().slope;
-        if left * pace <= SOON { left.max(0.0) } else { 0.0 }
+        if left * pace <= REST_IS_NEAR { left.max(0.0) } else { 0.0 }
     }
 
     /// The longest step, in the variable of the slopes. At k = 1 the friction has a term (2 |k - 1|)^(5/2)/5 on one side

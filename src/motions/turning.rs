@@ -96,7 +96,7 @@ pub fn turning_spin(
 /// roundings. Errors: `OutOfRange` for another body, and for an egg that stands on an end without any spin, or that cannot
 /// lie.
 pub fn jellett_rising_spin(egg: &Ellipsoid) -> Result<f64, Error> {
-    let Lying { height, moment, .. } = Lying::of(egg)?;
+    let LyingEgg { height, moment, .. } = LyingEgg::of(egg)?;
     let ([b, _, a], [_, _, d], [i1, _, i3, ..]) = (egg.axes(), egg.offset(), egg.inertia.0);
     let curved = b * b / a;
     let least = [a - d, a + d].map(|h| {
@@ -175,7 +175,7 @@ fn rises(
     spin: f64,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Option<bool>, Error> {
-    let (sin, cos) = (Lying::of(egg)?.theta - lean).sin_cos();
+    let (sin, cos) = (LyingEgg::of(egg)?.theta - lean).sin_cos();
     let vertical = [sin, 0.0, cos];
     let state = StoneState { vertical, w: vertical.map(|x| spin * x) };
     let (times, ask) = watched(friction);
@@ -194,14 +194,14 @@ fn watched(friction: Friction) -> (Vec<f64>, Ask) {
 }
 
 /// An egg at rest on its side.
-struct Lying {
+struct LyingEgg {
     theta: f64,
     height: f64,
     /// The moment of inertia about the vertical.
     moment: f64,
 }
 
-impl Lying {
+impl LyingEgg {
     /// The egg on its side, or an error that names what is no egg.
     fn of(egg: &Ellipsoid) -> Result<Self, Error> {
         let ([b, c, a], [x, y, d]) = (egg.axes(), egg.offset());
