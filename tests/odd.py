@@ -213,6 +213,22 @@ def nouns():
         "Scale.newtons": (sc.Scale(0.01).newtons, {"force": 1.0}),
         "Scale.hertz": (sc.Scale(0.01).hertz, {"body": body, "rate": 1.0}),
         "Scale.turns": (sc.Scale(0.01).turns, {"angular_velocity": 1.0}),
+        "assembled": (sc.assembled, {"parts": [sc.parts.ball(diameter=1.0, mass=1.0)], "gravity": 9.8}),
+        "parts.assembled": (sc.parts.assembled, {"parts": [sc.parts.ball(diameter=1.0, mass=1.0)], "gravity": 9.8}),
+        **{
+            f"parts.{name}": (getattr(sc.parts, name), given)
+            for name, given in {
+                "cylinder": {"outer_diameter": 1.0, "length": 1.0, "inner_diameter": 0.0, "fillet": 0.0, "at": 0.0, "mass": 1.0},
+                "cone": {"lower_diameter": 1.0, "upper_diameter": 0.5, "length": 1.0, "mass": 1.0},
+                "ball": {"diameter": 1.0, "inner_diameter": 0.0, "mass": 1.0},
+                "cap": {"diameter": 1.0, "height": 0.5, "mass": 1.0},
+                "wall": {"lower_diameter": 1.0, "upper_diameter": 0.5, "length": 1.0, "mass": 1.0},
+                "disk": {"outer_diameter": 1.0, "inner_diameter": 0.0, "mass": 1.0},
+                "shell": {"diameter": 1.0, "height": 0.5, "mass": 1.0},
+                "ring": {"diameter": 1.0, "mass": 1.0},
+                "point": {"mass": 1.0, "at": 0.0},
+            }.items()
+        },
         "thrown": (sc.thrown, {"body": sc.Body.tube(0.0, 1.0), "velocity": 1.0, "backspin": 2.0, "scale": None}),
         "pressed": (
             sc.pressed, {"body": body, "impulse": 5.0, "angle": 0.8, "finger": 0.6, "table": 0.0, "scale": None},

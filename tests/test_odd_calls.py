@@ -21,10 +21,11 @@ MADE = {
     "": {
         "Drift", "DriftWarning", "EllipsoidMotion", "Ending", "ErrorWarning", "Event", "Impact", "Motion", "Phase", "Play", "Region", "Rocking",
         "Scene", "StepWarning", "Swing", "View",
-        "data", "loss", "plot", "sweep",
+        "data", "loss", "parts", "plot", "sweep",
     },
     "data.": {"Comparison", "Filmed", "FittedLoss", "Line", "LossFit", "Wobble"},
     "loss.": {"Loss"},
+    "parts.": {"Part"},
     "plot.": {"Landmark"},
     "sweep.": {"Answer", "Outcome", "Status", "save"},
 }  # fmt: skip

@@ -34,19 +34,21 @@ from spincyl._scale import Scale
 from spincyl._state import State
 from spincyl._swing import Swing, swing
 from spincyl._throw import dropped, flicked, launch_number, pressed, thrown
-from spincyl._turning import rising_spin, turning_spin
+from spincyl._turning import turning_spin
 from spincyl._upward import HOMES
 
 if TYPE_CHECKING:
-    from spincyl import data, loss, plot, sweep
+    from spincyl import data, loss, parts, plot, sweep
     from spincyl._drift import Drift, DriftWarning, drift
     from spincyl._ellipsoid import Ellipsoid, Rocking
     from spincyl._ellipsoid_motion import EllipsoidMotion
     from spincyl._ellipsoid_state import EllipsoidState
     from spincyl._pages.play import Play, play
     from spincyl._pages.view import View, view
+    from spincyl._rising import rising_spin
     from spincyl._studio.exposure import exposure
     from spincyl._studio.scene import Scene, scene
+    from spincyl.parts import assembled
 
 __version__ = "0.1.0"
 __all__ = [
@@ -73,6 +75,7 @@ __all__ = [
     "Swing",
     "View",
     "Viscous",
+    "assembled",
     "data",
     "drift",
     "dropped",
@@ -81,6 +84,7 @@ __all__ = [
     "launch_number",
     "loss",
     "measured",
+    "parts",
     "play",
     "plot",
     "pressed",
@@ -99,6 +103,7 @@ __all__ = [
 _LATER = {
     "data": None,
     "loss": None,
+    "parts": None,
     "plot": None,
     "sweep": None,
     "drift": "_drift",
@@ -108,9 +113,11 @@ _LATER = {
     "EllipsoidMotion": "_ellipsoid_motion",
     "EllipsoidState": "_ellipsoid_state",
     "Rocking": "_ellipsoid",
+    "assembled": "parts",
     "exposure": "_studio.exposure",
     "play": "_pages.play",
     "Play": "_pages.play",
+    "rising_spin": "_rising",
     "scene": "_studio.scene",
     "Scene": "_studio.scene",
     "view": "_pages.view",

@@ -93,10 +93,10 @@ class Body(Laws):
     fillet: Reals = 0.0
     theta_end: Reals = np.nan
     scale: Scale | None = field(default=None, kw_only=True)
-    # the arguments of `from_metres`, for `__repr__`
-    _measured: ClassVar[dict[str, float]] = {}
-    # whether every field is a float: one body, not a family
-    _single: ClassVar[bool] = False
+    _measured: ClassVar[dict[str, float]] = {}  # the arguments of `from_metres`, for `__repr__`
+    # of `parts.assembled`: name, form and numbers in R about the centre of mass
+    _parts: ClassVar[tuple[tuple[str, int, tuple[float, ...]], ...]] = ()
+    _single: ClassVar[bool] = False  # whether every field is a float: one body, not a family
 
     def __post_init__(self) -> None:
         if self.scale is not None and not isinstance(self.scale, Scale):
@@ -438,7 +438,7 @@ class Body(Laws):
 
     @property
     def _most(self) -> int:
-        """Largest number of inclinations that one rate can have: the length of the axis "root"."""
+        """Largest number of inclinations of one rate: the length of the axis "root"."""
         return 3 if self._is_sharp else 5
 
 

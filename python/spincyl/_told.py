@@ -29,6 +29,9 @@ def message(m: "Motion") -> str:
 
 def ends(m: "Motion") -> str:
     """The behaviour of the body at the end of the motion, as "slips"; a wide body stands on its edge."""
+    whole = not getattr(m.body, "_parts", None) or m.body.theta_end == np.pi / 2
+    if m.status == Ending.SIDE and not whole:
+        return "lands on another part"
     if m.status == Ending.SIDE and m.body.ell < 1:
         return "stands on its edge"
     return MESSAGES[m.status][1]

@@ -7,6 +7,7 @@ mod ensemble;
 mod loss;
 mod motion;
 mod options;
+mod parts;
 mod stone;
 mod sweep;
 mod ufunc;
@@ -330,6 +331,8 @@ mod _core {
     use super::motion::{rising_spin, roll, swing, turning_spin};
     #[pymodule_export]
     use super::options::motion_options;
+    #[pymodule_export]
+    use super::parts::of_parts;
     #[pymodule_export]
     use super::stone::{
         check_stone, check_stones, egg, rattleback, rocking, spin_limits, stone_columns, stone_energies,

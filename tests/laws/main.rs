@@ -23,6 +23,7 @@ mod losses;
 mod lying;
 mod moving;
 mod paper;
+mod parts;
 mod patch;
 mod poses;
 mod references;

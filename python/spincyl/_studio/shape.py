@@ -18,7 +18,7 @@ import numpy as np
 from spincyl._body import Body
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._input.numbers import Floats, one_of
-from spincyl._studio import stone_shape
+from spincyl._studio import parts_shape, stone_shape
 from spincyl._studio.surface import (
     BLUE,
     IVORY,
@@ -83,7 +83,9 @@ def reach(body: Body | Ellipsoid) -> float:
 
 def size(body: Body | Ellipsoid) -> float:
     """Radius round the centre of a body that a camera has to show."""
-    return reach(body) if isinstance(body, Ellipsoid) else math.hypot(1.0, float(body.ell))
+    if isinstance(body, Ellipsoid) or body._parts:
+        return reach(body)
+    return math.hypot(1.0, float(body.ell))
 
 
 class Skin(NamedTuple):
@@ -119,6 +121,8 @@ def profiles(body: Body | Ellipsoid) -> list[Profile]:
     """
     if isinstance(body, Ellipsoid):
         return stone_shape.profiles(body)
+    if body._parts:
+        return parts_shape.profiles(body)
     ell, bore = float(body.ell), _bore(body)
     if body.fillet > 0:
         return _rounded(body)
@@ -189,6 +193,8 @@ def marks(body: Body | Ellipsoid, upper: Letter = "O") -> list[Part]:
     one_of("upper", upper, ("O", "X"))
     if isinstance(body, Ellipsoid):
         return stone_shape.marks(body, upper)
+    if body._parts:
+        return parts_shape.marks(body, upper)
     lower: Letter = "X" if upper == "O" else "O"
     return [_mark(body, upper, 1), _mark(body, lower, -1)]
 

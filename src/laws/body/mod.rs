@@ -14,6 +14,7 @@
 //! as an unevaluated sum of two doubles, because the steady states of a body near the critical shape depend on the last
 //! digits of the excess; `body::tube` gives its error.
 
+pub mod parts;
 pub(crate) mod rim;
 mod tube;
 

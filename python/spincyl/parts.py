@@ -1,0 +1,252 @@
+"""Parts on one axis, of which `assembled` makes a body: cylinders, cones, balls, thin walls, rings, points.
+
+Diameters, lengths and heights are in metres, or texts such as "18mm". Each part has a `mass` (kg) or a
+`density`: kg per m^3 of a solid part, per m^2 of a thin wall, per m of a ring. `at` is the height of its
+lowest point; by default a part stands on the one before it, and the first one at 0.
+
+>>> import spincyl as sc
+>>> from spincyl import parts
+>>> top = sc.assembled([
+...     parts.ball(diameter="2mm", density=7800),
+...     parts.cylinder(outer_diameter="2mm", length="30mm", at="1mm", density=7800),
+...     parts.cylinder(outer_diameter="40mm", inner_diameter="2mm", length="4mm", at="12mm", density=7800),
+... ])
+>>> print(f"{top.scale.mass * 1e3:.1f} g, lands at {top.theta_end * 180 / 3.14159:.1f} degrees")
+39.9 g, lands at 31.3 degrees
+"""
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import Any
+
+from spincyl import _core
+from spincyl._body import Body
+from spincyl._input.numbers import made, number, si
+from spincyl._scale import Scale
+
+__all__ = ["Part", "assembled", "ball", "cap", "cone", "cylinder", "disk", "point", "ring", "shell", "wall"]
+
+#: Codes of the forms, and the places of heights among their numbers, the first of which is the lowest point.
+_SOLID, _BALL, _WALL, _SHELL, _RING = range(5)
+_HEIGHTS = {_SOLID: (4, 5), _BALL: (3, 2, 4), _WALL: (2, 3), _SHELL: (2, 1, 3), _RING: (1,)}
+
+
+@dataclass(frozen=True)
+class Part:
+    """A part of a body; the functions of this module make it."""
+
+    name: str
+    form: int
+    #: radii and heights in metres, from its lowest point
+    numbers: tuple[float, ...]
+    amount: float
+    dense: bool
+    at: float | None
+
+    def raised(self, by: float) -> "Part":
+        """The part with its heights raised."""
+        heights = _HEIGHTS[self.form]
+        return replace(self, numbers=tuple(x + by if i in heights else x for i, x in enumerate(self.numbers)))
+
+    @property
+    def top(self) -> float:
+        """The height of its highest point."""
+        return max(self.numbers[i] for i in _HEIGHTS[self.form])
+
+
+def cylinder(
+    *,
+    outer_diameter: float,
+    length: float,
+    inner_diameter: float = 0.0,
+    fillet: float = 0.0,
+    at: float | None = None,
+    mass: float | None = None,
+    density: float | None = None,
+) -> Part:
+    """A solid or hollow cylinder. A `fillet` rounds its outer edges; its mass stays that of the sharp one."""
+    r, b = _metres("outer_diameter", outer_diameter) / 2, _metres("inner_diameter", inner_diameter) / 2
+    rest = 0.0, _metres("length", length), _metres("fillet", fillet)
+    return _part("cylinder", _SOLID, (r, r, b, b, *rest), at, mass, density)
+
+
+def cone(
+    *,
+    lower_diameter: float,
+    upper_diameter: float,
+    length: float,
+    at: float | None = None,
+    mass: float | None = None,
+    density: float | None = None,
+) -> Part:
+    """A solid cone, or a frustum: one diameter may be 0."""
+    r, s = _metres("lower_diameter", lower_diameter) / 2, _metres("upper_diameter", upper_diameter) / 2
+    return _part("cone", _SOLID, (r, s, 0.0, 0.0, 0.0, _metres("length", length), 0.0), at, mass, density)
+
+
+def ball(
+    *,
+    diameter: float,
+    inner_diameter: float = 0.0,
+    at: float | None = None,
+    mass: float | None = None,
+    density: float | None = None,
+) -> Part:
+    """A solid or hollow ball."""
+    r, b = _metres("diameter", diameter) / 2, _metres("inner_diameter", inner_diameter) / 2
+    return _part("ball", _BALL, (r, b, r, 0.0, 2 * r), at, mass, density)
+
+
+def cap(
+    *,
+    diameter: float,
+    height: float,
+    upper: bool = False,
+    at: float | None = None,
+    mass: float | None = None,
+    density: float | None = None,
+) -> Part:
+    """The lowest part of a solid ball of this diameter, `height` high; with `upper` the highest one."""
+    r, h = _metres("diameter", diameter) / 2, _metres("height", height)
+    return _part("cap", _BALL, (r, 0.0, h - r if upper else r, 0.0, h), at, mass, density)
+
+
+def wall(
+    *,
+    lower_diameter: float,
+    upper_diameter: float,
+    length: float,
+    at: float | None = None,
+    mass: float | None = None,
+    density: float | None = None,
+) -> Part:
+    """A thin wall, open on both ends: a tube, a paper cone, a cup. The density is in kg/m^2."""
+    r, s = _metres("lower_diameter", lower_diameter) / 2, _metres("upper_diameter", upper_diameter) / 2
+    return _part("wall", _WALL, (r, s, 0.0, _metres("length", length)), at, mass, density)
+
+
+def disk(
+    *,
+    outer_diameter: float,
+    inner_diameter: float = 0.0,
+    at: float | None = None,
+    mass: float | None = None,
+    density: float | None = None,
+) -> Part:
+    """A thin disk, with a hole or not: a floor, a lid. The density is in kg/m^2."""
+    r, b = _metres("outer_diameter", outer_diameter) / 2, _metres("inner_diameter", inner_diameter) / 2
+    return _part("disk", _WALL, (b, r, 0.0, 0.0), at, mass, density)
+
+
+def shell(
+    *,
+    diameter: float,
+    height: float | None = None,
+    upper: bool = False,
+    at: float | None = None,
+    mass: float | None = None,
+    density: float | None = None,
+) -> Part:
+    """A thin spherical wall, whole or `height` high; with `upper` its highest part. In kg/m^2."""
+    r = _metres("diameter", diameter) / 2
+    h = 2 * r if height is None else _metres("height", height)
+    return _part("shell", _SHELL, (r, h - r if upper else r, 0.0, h), at, mass, density)
+
+
+def ring(
+    *, diameter: float, at: float | None = None, mass: float | None = None, density: float | None = None
+) -> Part:
+    """A thin ring, such as a tyre or a weight; it can touch the table. The density is in kg/m."""
+    return _part("ring", _RING, (_metres("diameter", diameter) / 2, 0.0), at, mass, density)
+
+
+def point(*, mass: float, at: float | None = None) -> Part:
+    """A mass on the axis that has no extent and touches nothing."""
+    return _part("point", _RING, (0.0, 0.0), at, mass, None)
+
+
+def assembled(parts: Iterable[Part], *, gravity: float = Scale.gravity) -> Body:
+    """A measured body put together from parts on one axis.
+
+    Parameters
+    ----------
+    parts : iterable of Part
+        From the lowest to the highest, unless they say where they are.
+    gravity : float
+        In m/s^2.
+
+    Returns
+    -------
+    Body
+        With its moments, its `scale` (R is the outer radius of its rim, and the mass that of all parts) and
+        `theta_end`; `natural` is the same in natural units. Pictures and pages of its motions show its parts.
+        It stands on its lowest edge or ball, of edges at the same height on the widest, and `theta_end` is
+        where another one touches the table. A body whose other rim is as wide and as far from its centre of
+        mass has two equal rims, and may lie on both. Error: a few roundings.
+
+    Raises
+    ------
+    ValueError
+        Naming the number of a part that none has; if there is no mass, or nothing that touches the table.
+    TypeError
+        If something is no part.
+
+    Notes
+    -----
+    Parts may overlap, and their masses add up. A wheel whose axle sticks out stands on the axle, and rolls on
+    it: give such an axle as a `point` in the middle of its mass if it never touches the table.
+
+    Examples
+    --------
+    >>> import spincyl as sc
+    >>> balls = sc.assembled([sc.parts.ball(diameter=x, density=7800) for x in ("18mm", "14mm")])
+    >>> print(f"{balls.scale.mass * 1e3:.1f} g, lands at {balls.theta_end * 180 / 3.14159:.1f} degrees")
+    35.0 g, lands at 97.2 degrees
+    """
+    placed: list[Part] = []
+    try:
+        given = list(parts)
+    except TypeError:
+        raise TypeError(f"parts: expected parts in a list, not {type(parts).__name__}") from None
+    for i, part in enumerate(given):
+        made(f"parts[{i}]", part, Part)
+        low = placed[-1].top if placed else 0.0
+        placed.append(part.raised(low if part.at is None else part.at))
+    found = _core.assembled([(part.form, list(part.numbers), part.amount, part.dense) for part in placed])
+    (ell, i1, i3, fillet, theta_end), mass, radius, centre = found
+    # the core says pi/2 for two equal rims and for a body that has none to land on
+    body = Body(ell, i1, i3, fillet=fillet, theta_end=theta_end, scale=Scale(radius, mass, gravity))
+    shape = tuple((part.name, part.form, _scaled(part, centre, radius)) for part in placed)
+    for each in (body, body.natural):
+        object.__setattr__(each, "_parts", shape)
+    return body
+
+
+def _scaled(part: Part, centre: float, radius: float) -> tuple[float, ...]:
+    """The numbers of a part in R, with heights counted from the centre of mass."""
+    return tuple(x / radius for x in part.raised(-centre).numbers)
+
+
+def _metres(name: str, value: float) -> float:
+    return number(name, si(name, value, "metre"))
+
+
+def _part(
+    name: str,
+    form: int,
+    numbers: tuple[float, ...],
+    at: float | None,
+    mass: float | None,
+    density: float | None,
+) -> Part:
+    if (mass is None) == (density is None):
+        raise TypeError(f"mass, density: give one of them to the {name}")
+    if mass is not None:
+        amount: Any = number("mass", si("mass", mass, "kilogram"))
+    else:
+        amount = number("density", density)
+    low = None if at is None else _metres("at", at)
+    if low is not None and not math.isfinite(low):
+        raise ValueError(f"at = {low}: expected a height")
+    return Part(name, form, numbers, amount, mass is None, low)

@@ -1,0 +1,406 @@
+//! Bodies put together from coaxial parts.
+//!
+//! ```text
+//! dm = sigma pi (r^2 - b^2) dz   of a solid between the radii b and r,   sigma ds 2 pi r   of a thin wall
+//! I3 = sum of r^2 dm,   I1 = I3/2 + sum of (z - z0)^2 dm,   z0 = sum of z dm / M
+//! d(theta) = r s - z c + rho     the depth of an edge of the radius r, rounded by rho, below a point of the axis
+//! ```
+//! The squares of all radii are polynomials of z, of at most the second degree, so that Gauss's rule with four nodes is exact.
+//! The body stands on the edge, or the ball, that is lowest where the axis is upright, and theta_end is where another one
+//! becomes lower.
+//!
+//! Error: a few roundings of the moments about a point within the body.
+
+use super::Body;
+use crate::error::{Error, within};
+use core::f64::consts::{FRAC_PI_2, PI, TAU};
+
+/// How much of a part there is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Amount {
+    /// The mass of the part.
+    Mass(f64),
+    /// Mass per volume of a solid part, per area of a thin one, per length of a ring.
+    Density(f64),
+}
+
+/// The form of a part. Lengths are in one unit, and heights are counted upward from one point of the axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Form {
+    /// A cylinder, a cone or a frustum: outer and inner radii at the lower and the upper end, the heights of both ends, and
+    /// the radius by which both outer edges of a cylinder are rounded. The mass is that of the sharp body.
+    Solid {
+        /// Outer radii.
+        radii: [f64; 2],
+        /// Inner radii.
+        bores: [f64; 2],
+        /// Heights of the ends.
+        ends: [f64; 2],
+        /// Radius of the fillets.
+        fillet: f64,
+    },
+    /// A ball, hollow or not, or its part between two heights: outer and inner radius, the height of the centre.
+    Ball {
+        /// Outer radius.
+        radius: f64,
+        /// Inner radius.
+        hollow: f64,
+        /// Height of the centre.
+        centre: f64,
+        /// Heights between which it lies.
+        ends: [f64; 2],
+    },
+    /// A thin wall in the form of a cylinder, a cone, a frustum or a disk.
+    Wall {
+        /// Radii at the ends.
+        radii: [f64; 2],
+        /// Heights of the ends.
+        ends: [f64; 2],
+    },
+    /// A thin spherical wall between two heights.
+    Shell {
+        /// Radius of the sphere.
+        radius: f64,
+        /// Height of its centre.
+        centre: f64,
+        /// Heights between which it lies.
+        ends: [f64; 2],
+    },
+    /// A thin ring; a point on the axis if its radius is zero.
+    Ring {
+        /// Radius.
+        radius: f64,
+        /// Height.
+        height: f64,
+    },
+}
+
+/// A part of a body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BodyPart {
+    /// Its form.
+    pub form: Form,
+    /// Its mass or density.
+    pub amount: Amount,
+}
+
+/// A body that has been put together.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Assembled {
+    /// The body, in natural units.
+    pub body: Body,
+    /// Its mass, in the unit of the parts.
+    pub mass: f64,
+    /// The unit of length R, the outer radius of the rim, in the unit of the parts.
+    pub radius: f64,
+    /// The height of the centre of mass.
+    pub centre: f64,
+}
+
+/// Mass, first and second moment of z, and the moment of inertia about the axis.
+#[derive(Clone, Copy)]
+struct Mass {
+    whole: f64,
+    height: f64,
+    /// Sum of (z - height)^2 dm.
+    along: f64,
+    axial: f64,
+}
+
+/// A circle of radius `r` at the height `z`, rounded by `rho`, that touches for theta within `from` and `to`.
+#[derive(Clone, Copy)]
+struct Edge {
+    r: f64,
+    z: f64,
+    rho: f64,
+    from: f64,
+    to: f64,
+}
+
+/// Nodes and weights of Gauss's rule on [0, 1].
+const NODES: [[f64; 2]; 4] = [
+    [0.069_431_844_202_973_71, 0.173_927_422_568_726_93],
+    [0.330_009_478_207_571_87, 0.326_072_577_431_273_07],
+    [0.669_990_521_792_428_1, 0.326_072_577_431_273_07],
+    [0.930_568_155_797_026_3, 0.173_927_422_568_726_93],
+];
+/// Edges at the same place to this share of R are one.
+const SAME_EDGE: f64 = 1e-12;
+/// Allowed lengths, masses and densities.
+const SIZE: (f64, f64) = (0.0, 1e100);
+
+impl Form {
+    /// Returns an error that names the number that is out of range.
+    fn check(&self) -> Result<(), Error> {
+        let size = |name, values: &[f64]| {
+            values.iter().try_for_each(|x| within(name, *x, SIZE, "lengths of 0 to 1e100").map(drop))
+        };
+        let rises = |ends: [f64; 2], thin: bool| {
+            let expected = "heights of two ends, the lower one first";
+            within("ends", ends[0], (-SIZE.1, SIZE.1), expected)?;
+            let least = if thin { ends[0] } else { ends[0].next_up() };
+            within("ends", ends[1], (least, SIZE.1), expected).map(drop)
+        };
+        match *self {
+            Self::Solid { radii, bores, ends, fillet } => {
+                size("radii", &radii)?;
+                rises(ends, false)?;
+                for k in 0..2 {
+                    within("bores", bores[k], (0.0, radii[k]), "inner radii of at most the outer ones")?;
+                }
+                let most = if radii[0] == radii[1] {
+                    (0.5 * (ends[1] - ends[0])).min(radii[0] - bores[0].max(bores[1]))
+                } else {
+                    0.0
+                };
+                within("fillet", fillet, (0.0, most), "a fillet that fits into the wall of a cylinder")
+                    .map(drop)
+            }
+            Self::Ball { radius, hollow, centre, ends } => {
+                size("radius", &[radius])?;
+                within("hollow", hollow, (0.0, radius), "an inner radius of at most the outer one")?;
+                rises(ends, false)?;
+                Self::cuts(radius, centre, ends)
+            }
+            Self::Wall { radii, ends } => {
+                size("radii", &radii)?;
+                rises(ends, radii[0] != radii[1])
+            }
+            Self::Shell { radius, centre, ends } => {
+                size("radius", &[radius])?;
+                rises(ends, false)?;
+                Self::cuts(radius, centre, ends)
+            }
+            Self::Ring { radius, height } => {
+                size("radius", &[radius])?;
+                within("height", height, (-SIZE.1, SIZE.1), "a height").map(drop)
+            }
+        }
+    }
+
+    fn cuts(radius: f64, centre: f64, ends: [f64; 2]) -> Result<(), Error> {
+        let far = radius * (1.0 + 4.0 * f64::EPSILON) + 4.0 * f64::EPSILON * centre.abs();
+        ends.iter().try_for_each(|z| {
+            within("ends", z - centre, (-far, far), "heights within the ball, from its centre").map(drop)
+        })
+    }
+
+    /// The mass at density 1, with its moments.
+    fn mass(&self) -> Mass {
+        let of = |ends: [f64; 2], slice: &dyn Fn(f64) -> [f64; 2]| Mass::between(ends, slice);
+        match *self {
+            Self::Solid { radii, bores, ends, .. } => of(ends, &|x| {
+                let [r, b] = [radii, bores].map(|[a, b]| a + x * (b - a));
+                disk(r * r, b * b)
+            }),
+            Self::Ball { radius, hollow, centre, ends } => {
+                let whole =
+                    of(ends, &|x| disk(squared(radius, ends[0] + x * (ends[1] - ends[0]) - centre), 0.0));
+                let [low, high] = [ends[0].max(centre - hollow), ends[1].min(centre + hollow)];
+                if low >= high {
+                    return whole;
+                }
+                whole.without(of([low, high], &|x| {
+                    disk(squared(hollow, low + x * (high - low) - centre), 0.0)
+                }))
+            }
+            Self::Wall { radii, ends } => {
+                let long = (radii[1] - radii[0]).hypot(ends[1] - ends[0]);
+                Mass::along(ends, &|x| {
+                    let r = radii[0] + x * (radii[1] - radii[0]);
+                    [long * TAU * r, r * r]
+                })
+            }
+            Self::Shell { radius, centre, ends } => {
+                of(ends, &|x| [TAU * radius, squared(radius, ends[0] + x * (ends[1] - ends[0]) - centre)])
+            }
+            Self::Ring { radius, height } => {
+                let whole = if radius > 0.0 { TAU * radius } else { 1.0 };
+                Mass { whole, height, along: 0.0, axial: whole * radius * radius }
+            }
+        }
+    }
+
+    /// The edges, and the ball, with which the part may touch the table.
+    fn edges(&self) -> Vec<Edge> {
+        let edge = |r, z, rho| Edge { r, z, rho, from: 0.0, to: PI };
+        match *self {
+            Self::Solid { radii, ends, fillet, .. } => vec![
+                edge(radii[0] - fillet, ends[0] + fillet, fillet),
+                edge(radii[1] - fillet, ends[1] - fillet, fillet),
+            ],
+            Self::Wall { radii, ends } => vec![edge(radii[0], ends[0], 0.0), edge(radii[1], ends[1], 0.0)],
+            Self::Ball { radius, centre, ends, .. } | Self::Shell { radius, centre, ends } => {
+                let at = ends.map(|z| ((centre - z) / radius).clamp(-1.0, 1.0));
+                let cut = |k: usize| edge(squared(radius, ends[k] - centre).max(0.0).sqrt(), ends[k], 0.0);
+                let ball = Edge { from: at[0].acos(), to: at[1].acos(), ..edge(0.0, centre, radius) };
+                vec![ball, cut(0), cut(1)]
+            }
+            Self::Ring { radius, height } => {
+                if radius > 0.0 {
+                    vec![edge(radius, height, 0.0)]
+                } else {
+                    Vec::new()
+                }
+            }
+        }
+    }
+}
+
+/// The mass of a thin disk per height at density 1, and its mean square of the radius.
+fn disk(outer: f64, inner: f64) -> [f64; 2] {
+    [PI * (outer - inner), 0.5 * (outer + inner)]
+}
+
+/// The square of the radius of a ball at a height above its centre.
+fn squared(radius: f64, z: f64) -> f64 {
+    (radius - z) * (radius + z)
+}
+
+impl Mass {
+    /// Of slices between two heights, each with its mass per height and mean square of the radius.
+    fn between(ends: [f64; 2], slice: &dyn Fn(f64) -> [f64; 2]) -> Self {
+        let length = ends[1] - ends[0];
+        Self::along(ends, &|x| {
+            let [mass, square] = slice(x);
+            [length * mass, square]
+        })
+    }
+
+    /// Of slices along a line between two heights, each with its mass per share of the line.
+    fn along(ends: [f64; 2], slice: &dyn Fn(f64) -> [f64; 2]) -> Self {
+        let sum = |of: &dyn Fn(f64, f64) -> f64| -> f64 {
+            NODES
+                .iter()
+                .map(|[x, weight]| {
+                    let [mass, square] = slice(*x);
+                    weight * mass * of(*x, square)
+                })
+                .sum()
+        };
+        let whole = sum(&|_, _| 1.0);
+        let (length, mean) = (ends[1] - ends[0], sum(&|x, _| x) / whole.max(f64::MIN_POSITIVE));
+        Self {
+            whole,
+            height: ends[0] + mean * length,
+            along: sum(&|x, _| (x - mean) * (x - mean)) * length * length,
+            axial: sum(&|_, square| square),
+        }
+    }
+
+    /// Without a part of it.
+    fn without(self, inner: Self) -> Self {
+        let whole = self.whole - inner.whole;
+        let height = (self.whole * self.height - inner.whole * inner.height) / whole;
+        let moved = |of: Self| of.along + of.whole * (of.height - height) * (of.height - height);
+        Self { whole, height, along: moved(self) - moved(inner), axial: self.axial - inner.axial }
+    }
+
+    fn times(self, factor: f64) -> Self {
+        let Self { whole, height, along, axial } = self;
+        Self { whole: factor * whole, height, along: factor * along, axial: factor * axial }
+    }
+}
+
+impl Edge {
+    /// How deep it is below the origin.
+    fn depth(&self, theta: f64) -> f64 {
+        self.r * theta.sin() - self.z * theta.cos() + self.rho
+    }
+
+    /// The inclinations at which another edge is as deep, in (0, pi).
+    fn meets(&self, other: &Self) -> [Option<f64>; 2] {
+        // a sin theta - b cos theta = e is sin(theta - turn) = e/far.
+        let (a, b, e) = (other.r - self.r, other.z - self.z, self.rho - other.rho);
+        let far = a.hypot(b);
+        if e.abs() > far || far == 0.0 {
+            return [None; 2];
+        }
+        let (turn, by) = (b.atan2(a), (e / far).asin());
+        let inside = |theta: f64| {
+            let theta = theta.rem_euclid(TAU);
+            Some(theta)
+                .filter(|theta| *theta > 0.0 && *theta < PI && *theta >= other.from && *theta <= other.to)
+        };
+        [inside(turn + by), inside(turn + PI - by)]
+    }
+
+    /// Whether another edge that is as deep here becomes deeper.
+    fn gives_way(&self, other: &Self, theta: f64) -> bool {
+        let rate = |of: &Self| of.r * theta.cos() + of.z * theta.sin();
+        rate(other) > rate(self)
+    }
+}
+
+/// Puts a body together from parts on one axis.
+///
+/// It stands on the lowest edge or ball, and of edges at the same height on the widest. Inside a concave outline nothing
+/// touches. A body whose other rim is as wide, and as far from the centre of mass, has two equal rims.
+///
+/// Errors: `OutOfRange`, which names the number of a part, "parts" for a body without a mass or without an extent, and what
+/// [`Body::rounded`] refuses.
+pub fn assembled(parts: &[BodyPart]) -> Result<Assembled, Error> {
+    let none =
+        |value| Error::OutOfRange { name: "parts", value, expected: "parts with a mass and an extent" };
+    let (mut masses, mut edges) = (Vec::new(), Vec::new());
+    for BodyPart { form, amount } in parts {
+        form.check()?;
+        let mass = form.mass();
+        masses.push(match *amount {
+            Amount::Mass(m) => {
+                within("mass", m, SIZE, "a mass of 0 to 1e100")?;
+                if mass.whole <= 0.0 && m > 0.0 {
+                    return Err(none(mass.whole));
+                }
+                mass.times(if m > 0.0 { m / mass.whole } else { 0.0 })
+            }
+            Amount::Density(density) => {
+                within("density", density, SIZE, "a density of 0 to 1e100")?;
+                mass.times(density)
+            }
+        });
+        edges.extend(form.edges());
+    }
+    let whole: f64 = masses.iter().map(|x| x.whole).sum();
+    if whole.is_nan() || whole <= 0.0 {
+        return Err(none(whole));
+    }
+    let centre = masses.iter().map(|x| x.whole * x.height).sum::<f64>() / whole;
+    let axial = masses.iter().map(|x| x.axial).sum::<f64>();
+    let along = masses.iter().map(|x| x.along + x.whole * (x.height - centre).powi(2)).sum::<f64>();
+    let (rim, theta_end) = stands(&edges).ok_or(none(0.0))?;
+    let radius = rim.r + rim.rho;
+    let per = 1.0 / (whole * radius * radius);
+    let (ell, fillet) = ((centre - rim.z) / radius, rim.rho / radius);
+    let body = Body::rounded(ell, (0.5 * axial + along) * per, axial * per, fillet)?;
+    // Its other rim may be another one.
+    let alike = |edge: &Edge| {
+        let off = [edge.r - rim.r, edge.rho - rim.rho, edge.z + rim.z - 2.0 * centre];
+        off.iter().all(|x| x.abs() <= SAME_EDGE * radius)
+    };
+    let level = (theta_end - FRAC_PI_2).abs() <= SAME_EDGE;
+    let theta_end = match level {
+        true if edges.iter().any(alike) => FRAC_PI_2,
+        true => FRAC_PI_2.next_down(),
+        false => theta_end,
+    };
+    Ok(Assembled { body: body.with_theta_end(theta_end)?, mass: whole, radius, centre })
+}
+
+/// The edge on which the body stands, and the inclination at which another one becomes deeper.
+fn stands(edges: &[Edge]) -> Option<(Edge, f64)> {
+    let lowest = |edge: &Edge| edge.depth(0.0);
+    let wide = edges.iter().map(|edge| edge.r + edge.rho).fold(0.0, f64::max);
+    let down = edges.iter().filter(|edge| edge.from == 0.0);
+    let deepest = down.clone().map(lowest).fold(f64::NEG_INFINITY, f64::max);
+    // The ball touches before the point at which it ends.
+    let rim = down
+        .filter(|edge| lowest(edge) >= deepest - SAME_EDGE * wide)
+        .max_by(|a, b| (a.r + a.rho).total_cmp(&(b.r + b.rho)))
+        .copied()
+        .filter(|rim| rim.r + rim.rho > 0.0)?;
+    let ends = edges.iter().flat_map(|other| {
+        rim.meets(other).into_iter().flatten().filter(|theta| rim.gives_way(other, *theta))
+    });
+    Some((rim, ends.fold(rim.to, f64::min)))
+}

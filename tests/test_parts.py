@@ -1,0 +1,143 @@
+"""Bodies put together from parts, in Python: what a user types, what is drawn, what is refused."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+import spincyl as sc
+from spincyl import parts
+from spincyl._studio import shape
+
+STEEL = 7800.0
+TOP = (
+    parts.ball(diameter="2mm", density=STEEL),
+    parts.cylinder(outer_diameter="2mm", length="30mm", at="1mm", density=STEEL),
+    parts.cylinder(outer_diameter="40mm", inner_diameter="2mm", length="4mm", at="12mm", density=STEEL),
+)
+BODIES = {
+    "top": TOP,
+    "two balls": [parts.ball(diameter=x, density=STEEL) for x in ("18mm", "14mm")],
+    "cup": [
+        parts.disk(outer_diameter="50mm", density=1.0),
+        parts.wall(lower_diameter="50mm", upper_diameter="80mm", length="95mm", at=0.0, density=1.0),
+    ],
+    "paper cone": [parts.wall(lower_diameter=0.1, upper_diameter=0.0, length=0.09, density=0.08)],
+    "half full": [
+        parts.wall(lower_diameter=0.066, upper_diameter=0.066, length=0.115, mass="13g"),
+        parts.cylinder(outer_diameter=0.0658, length=0.057, at=0.0, density=1000),
+    ],
+    "coin": [
+        parts.cylinder(outer_diameter="25.75mm", length="2.2mm", fillet="0.2mm", mass="8.5g"),
+        parts.ring(diameter="25mm", at="1.1mm", mass="0.5g"),
+    ],
+    "bowl": [parts.cap(diameter=0.2, height=0.1, density=700)],
+    "dome on a stick": [
+        parts.cone(lower_diameter=0.001, upper_diameter=0.004, length=0.03, density=700),
+        parts.shell(diameter=0.06, height=0.02, upper=True, density=1.0),
+        parts.point(mass=0.01, at=0.02),
+    ],
+}
+
+
+def test_a_measured_tube_is_a_body_of_one_part():
+    tube = sc.measured(outer_diameter=0.05, inner_diameter=0.04, length=0.15, mass=0.1)
+    made = sc.assembled([parts.cylinder(outer_diameter=0.05, inner_diameter=0.04, length=0.15, mass=0.1)])
+    assert made.scale == tube.scale and made.theta_end == np.pi / 2
+    for name in ("ell", "i1", "i3", "fillet"):
+        np.testing.assert_allclose(getattr(made, name), getattr(tube, name), rtol=1e-14)
+    assert abs(made.critical_hertz - tube.critical_hertz) < 1e-13
+    t = np.linspace(0, 1, 11)
+    a, b = (sc.roll(x, x.steady(1.4).kicked(0.05), t) for x in (made, tube))
+    assert np.abs(a.theta - b.theta).max() < 1e-11
+
+
+def test_parts_stand_on_each_other_unless_they_say_where_they_are():
+    stacked = sc.assembled(
+        [parts.cylinder(outer_diameter=0.02, length=0.01, density=STEEL) for _ in range(3)]
+    )
+    whole = sc.assembled([parts.cylinder(outer_diameter=0.02, length=0.03, density=STEEL)])
+    np.testing.assert_allclose(
+        [stacked.ell, stacked.i1, stacked.i3], [whole.ell, whole.i1, whole.i3], rtol=1e-14
+    )
+    balls = sc.assembled(BODIES["two balls"])
+    assert abs(np.cos(balls.theta_end) + 1 / 8) < 1e-15 and abs(balls.scale.mass - 0.035025) < 1e-6
+    low = parts.cylinder(outer_diameter=0.02, length=0.01, at=0.05, density=STEEL)
+    moved = sc.assembled([low, parts.ring(diameter=0.02, mass=1e-3, at=0.055)])
+    assert abs(moved.ell - 0.5) < 1e-15, "where the origin is does not matter"
+
+
+@pytest.mark.parametrize("name", BODIES)
+def test_a_body_of_parts_moves_and_is_drawn_as_what_it_is(name):
+    body = sc.assembled(BODIES[name])
+    theta = 0.5 * float(body.theta_end)
+    try:
+        start = body.steady(theta)
+    except ValueError:
+        start = sc.State(theta, 0.3, 0.0, 0.2)
+    m = sc.roll(body, start, np.linspace(0.0, 0.05, 6), want="pose")
+    assert m.t.size > 1
+    drawn = shape.parts(body)
+    assert len(drawn) >= 3 and {part.name for part in drawn} >= {"O", "X"}
+    for part in drawn:
+        assert (
+            np.isfinite(part.vertices).all() and np.abs(np.linalg.norm(part.normals, axis=1) - 1).max() < 1e-9
+        )
+        corners = part.vertices[part.triangles]
+        facing = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        assert (np.einsum("ij,ij->i", facing, part.normals[part.triangles[:, 0]]) > 0).mean() > 0.95, (
+            part.name
+        )
+    # nothing is drawn below the rim at any inclination up to the landing
+    outline = np.concatenate([p.vertices for p in drawn if p.name not in "OX"])
+    across, up = np.hypot(outline[:, 0], outline[:, 1]), outline[:, 2]
+    for lean in np.linspace(0.0, float(body.theta_end), 20):
+        rim = (1 - body.fillet) * np.sin(lean) + body.ell * np.cos(lean) + body.fillet
+        assert (across * np.sin(lean) - up * np.cos(lean)).max() <= rim + 1e-9
+    assert "<!DOCTYPE html>" in sc.view(m).html
+    again = pickle.loads(pickle.dumps(body))
+    assert again == body and again._parts == body._parts
+    assert body.natural._parts == body._parts and body.natural.scale is None
+
+
+def test_the_mass_is_that_of_the_drawn_volume():
+    body = sc.assembled(TOP)
+    volume = np.pi * (4 / 3 * 1e-9 + 1e-6 * 0.030 + (4e-4 - 1e-6) * 0.004)
+    np.testing.assert_allclose(body.scale.mass, STEEL * volume, rtol=1e-14)
+
+
+def test_it_says_what_lands():
+    m = sc.roll(sc.assembled(TOP), sc.State(0.3, 0.0, 0.1, 0.0), 1.0)
+    assert m.status == sc.Ending.SIDE and "lands on another part" in str(m)
+
+
+@pytest.mark.parametrize(
+    ("why", "make"),
+    [
+        ("mass, density: give one of them", lambda: parts.ball(diameter=0.01)),
+        ("mass, density: give one of them", lambda: parts.ball(diameter=0.01, mass=1, density=1)),
+        ("expected a Part", lambda: sc.assembled([3])),
+        ("diameter", lambda: parts.ball(diameter=[1, 2], mass=1)),
+    ],
+)
+def test_a_part_of_the_wrong_kind_is_refused(why, make):
+    with pytest.raises(TypeError, match=why):
+        make()
+
+
+@pytest.mark.parametrize(
+    ("why", "given"),
+    [
+        ("parts", []),
+        ("parts", [parts.point(mass=1.0)]),
+        ("bores", [parts.cylinder(outer_diameter=0.01, inner_diameter=0.02, length=0.01, density=1)]),
+        ("radii", [parts.cylinder(outer_diameter=-0.01, length=0.01, density=1)]),
+        ("radius", [parts.ball(diameter=np.nan, density=1)]),
+        ("density", [parts.ball(diameter=1.0, density=-1)]),
+        ("mass", [parts.ball(diameter=1.0, mass=np.nan)]),
+        ("ends", [parts.cap(diameter=0.02, height=0.03, density=1)]),
+    ],
+)
+def test_a_part_that_none_can_be_is_refused_by_name(why, given):
+    with pytest.raises(ValueError, match=f"^{why}"):
+        sc.assembled(given)
