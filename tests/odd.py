@@ -183,6 +183,8 @@ def nouns():
         "Body.angular_rate": (body.angular_rate, {"rate": 1.5}),
         "Body.steady": (body.steady, {"theta": 1.3}),
         "Body.circular": (body.circular, {"theta": 1.3, "precession": 1.0}),
+        "Body.circular of a radius": (body.circular, {"theta": 1.3, "radius": 3.0}),
+        "Body.circular of a spin": (body.circular, {"theta": 1.3, "w3": 2.0}),
         "Body.stability": (body.stability, {"at": 1.3, "contact": "rolling", "out": None, "where": True}),
         "Body.stable": (body.stable, {"at": 1.3, "contact": "rolling"}),
         "Body.nutation": (body.nutation, {"at": 1.3, "contact": "rolling"}),

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self, overload
 import numpy as np
 
 from spincyl import _core
+from spincyl._circular import circular as _circular
 from spincyl._input.equality import compared
 from spincyl._input.numbers import (
     Reals,
@@ -18,7 +19,6 @@ from spincyl._input.numbers import (
     is_scalar,
     kept,
     keywords,
-    made,
     number,
     radians,
     reals,
@@ -368,27 +368,29 @@ class Body(Laws):
         return State(theta, _core.steady_w1(theta, *numbers), theta * 0.0, _core.steady_w3(theta, *numbers))
 
     @elementwise
-    def circular(self, theta: Reals, precession: Reals) -> State:
-        """The steady state whose centre runs on a circle while it rolls.
+    def circular(
+        self, theta: Reals, precession: Reals = None, *, radius: Reals = None, w3: Reals = None
+    ) -> State:
+        """The steady state whose centre runs on a circle while it rolls; give one of three numbers.
 
         Parameters
         ----------
         theta : array_like
             Inclination in (0, pi/2], radians.
-        precession : array_like
+        precession : array_like, optional
             phi' in sqrt(g/R), 1e-100 to 1e100 in size. With `rate / sqrt(i3)` the centre rests.
+        radius : array_like, optional
+            Of the circle of the centre, in R: above 0 of a coin that leans inward, below 0 where the centre
+            runs the other way. The state precesses counterclockwise.
+        w3 : array_like, optional
+            Spin about the axis, sqrt(g/R). Gives both states, in a last axis: the slower one first.
 
         Raises
         ------
         ValueError
-            For a single state that is none; arrays hold NaN there.
+            For a single state that is none; arrays hold NaN there, and for a `radius` or `w3` without one.
         """
-        theta, precession = radians("theta", theta, self._leans), reals("precession", precession)
-        numbers = self._numbers
-        if is_scalar(theta, precession, *numbers):
-            return State(*_core.circular_state(float(theta), float(precession), numbers))
-        w1, w3 = (f(theta, precession, *numbers) for f in (_core.circular_w1, _core.circular_w3))
-        return State(theta, w1, w1 * 0.0, w3)
+        return _circular(self, theta, precession, radius, w3)
 
     def __repr__(self) -> str:
         return body(self)
@@ -440,11 +442,3 @@ class Body(Laws):
     def _most(self) -> int:
         """Largest number of inclinations of one rate: the length of the axis "root"."""
         return 3 if self._is_sharp else 5
-
-
-def one_body(body: object) -> Body:
-    """Return `body` if it is a single body, else raise TypeError or ValueError."""
-    found = made("body", body, Body)
-    if not is_scalar(*found._numbers):
-        raise ValueError("body: expected a single one, not an array of them")
-    return found

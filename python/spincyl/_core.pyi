@@ -67,6 +67,8 @@ __all__ = [
     "painleve",
     "portrait",
     "precession",
+    "precession_of_radius",
+    "precession_of_spin",
     "pressed",
     "pressed_slip",
     "pressed_w1",
@@ -125,6 +127,8 @@ region: np.ufunc
 steady_w1: np.ufunc
 steady_w3: np.ufunc
 circular_w1: np.ufunc
+precession_of_radius: np.ufunc
+precession_of_spin: np.ufunc
 circular_w3: np.ufunc
 inclination: np.ufunc
 states_w1: np.ufunc

@@ -120,6 +120,18 @@ static LAWS: &[ArrayFunction] = &[
         value: Value::One(|x| of_body(&x[2..], |b| or_nan(steady::circular(b, x[0], x[1]).map(|y| y.w3)))),
     },
     ArrayFunction {
+        name: "precession_of_radius",
+        inputs: 8,
+        value: Value::One(|x| of_body(&x[2..], |b| or_nan(steady::precession_of_radius(b, x[0], x[1])))),
+    },
+    ArrayFunction {
+        name: "precession_of_spin",
+        inputs: 9,
+        value: Value::One(|x| {
+            of_body(&x[3..], |b| or_nan(steady::precessions_of_spin(b, x[0], x[1]).map(|y| y[x[2] as usize])))
+        }),
+    },
+    ArrayFunction {
         name: "inclination",
         inputs: 8,
         value: Value::Pick(|x| some(&x[1..], |b| steady::inclinations(b, x[0]))),

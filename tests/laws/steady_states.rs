@@ -71,6 +71,31 @@ proptest! {
     }
 
     #[test]
+    fn the_circle_of_a_radius_or_of_a_spin_is_the_one_that_has_it(
+        body in any_rim(), u in 0.01..0.99f64, precession in prop_oneof![0.05..5.0f64, -5.0..-0.05f64],
+    ) {
+        // The centre of a homogeneous ball may run along any circle with any precession.
+        prop_assume!(body.fillet() < 1.0 || body.ell().abs() > 1e-3);
+        let theta = (u * steady_end(&body)).min(3.1);
+        let y = steady::circular(&body, theta, precession).unwrap();
+        let radius = -y.centre_velocity(&body).y / y.precession();
+        let angle = theta.sin_cos();
+        let near = |found: f64, asked: f64| (found / asked - 1.0).abs();
+        // The other way round it is as wide.
+        let found = steady::precession_of_radius(&body, theta, radius).unwrap();
+        let large = 1.0 + radius.abs() + body.ell();
+        let lost = large * large * (1.0 + 1.0 / (precession * precession)) / angle.0;
+        prop_assert!(near(found, precession.abs()) < 1e-13 * (1.0 + lost * lost), "{found} for {precession}: {radius}");
+        let both = steady::precessions_of_spin(&body, theta, y.w3).unwrap();
+        prop_assert!(both.iter().any(|x| near(*x, precession) < 1e-12 * (1.0 + lost * lost)), "{both:?} {precession}");
+        prop_assert!(both[0].abs() <= both[1].abs() || both[1].is_nan());
+        for x in both.into_iter().filter(|x| (1e-3..1e3).contains(&x.abs())) {
+            let there = steady::circular(&body, theta, x).unwrap();
+            prop_assert!((there.w3 - y.w3).abs() < 1e-12 * (1.0 + lost) * (1.0 + y.w3.abs() + x.abs() + 1.0 / x.abs()));
+        }
+    }
+
+    #[test]
     fn where_the_centre_rests_o_is_still_and_x_is_fast(body in ordinary_tube(), u in 0.01..0.99f64) {
         let Ok(y) = steady::state(&body, u * FRAC_PI_2) else { return Ok(()) };
         let close = |a: f64, b: f64| (a - b).abs() <= 1e-13 * (1.0 + b.abs());

@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from spincyl._body import Body, one_body
+from spincyl._body import Body
 from spincyl._input.equality import compared
 from spincyl._input.numbers import Floats, Reals, extra, number, reals
+from spincyl._single import one_body
 from spincyl._upward import above
 from spincyl.data._balance import Balance, Fit, with_ratio
 from spincyl.data._report import counted, section, variables, written

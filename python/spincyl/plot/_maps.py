@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from spincyl._body import Body, one_body
+from spincyl._body import Body
 from spincyl._contact import Contact, code
 from spincyl._input.numbers import flag, is_scalar, number, one_of, within
+from spincyl._single import one_body
 from spincyl._state import State
 from spincyl.plot._style import (
     BLACK,

@@ -5,10 +5,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from spincyl._body import Body, one_body
+from spincyl._body import Body
 from spincyl._contact import AnyContact, Coulomb, Viscous
 from spincyl._input.numbers import Reals, extra, floats, is_scalar, made, reals
 from spincyl._phases import KINDS
+from spincyl._single import one_body
 from spincyl._throw import flicked
 from spincyl.sweep._labels import Status, flags
 from spincyl.sweep._roll import roll

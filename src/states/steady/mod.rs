@@ -215,22 +215,68 @@ pub fn circular(body: &Body, theta: f64, precession: f64) -> Result<State, Error
         let expected = "1e-100 <= |precession| <= 1e100";
         return Err(Error::OutOfRange { name: "precession", value: precession, expected });
     }
-    let (shape, of) = (body.shape(), terms_of(body, theta));
-    let angle = sincos(theta);
-    let (s, c) = (angle.sin.hi, angle.cos.hi);
-    let n = of.n.hi;
-    let n = if n.is_nan() { -shape.rim.lever((s, c)) } else { n };
-    let [radius, depth, height] =
-        [shape.rim.radius((s, c)), shape.rim.depth((s, c)), shape.rim.height((s, c))];
-    let lever = shape.i1 * c + height * depth;
-    // The balance at the head of this file, divided by Omega, here `precession`; w3 keeps its digits for
-    // small theta.
-    let w3 = if body.is_ball() {
-        // For a ball n, A and w1 have the factor sin theta, which is divided out.
-        (lever * precession - n / precession) / (shape.i3 + height * shape.rim.rho)
-    } else {
-        (lever * precession * s - n / precession) / (shape.i3 * s + height * radius)
-    };
+    let CircularBalance { lever, n, k, s } = CircularBalance::of(body, theta);
+    let w3 = (lever * precession - n / precession) / k;
     within("w3", w3, (-f64::MAX, f64::MAX), "a slower precession, or a body of fewer than 1e100 radii")?;
     Ok(State { theta, w1: precession * s, w2: 0.0, w3 })
+}
+
+/// The positive precession phi' with which the centre of mass runs along a circle of this radius, in R; NaN where none is
+/// steady. The radius is positive where the centre runs against e2, as that of a coin that rolls round a wide circle and leans
+/// inward, and negative where it runs the other way.
+///
+/// The circular state is that of [`circular`]. Errors: `OutOfRange` for another angle, and for |radius| above 1e100. Error:
+/// 8 ulp, times the share of the largest of the terms lever, k depth/radius and k radius in their sum.
+pub fn precession_of_radius(body: &Body, theta: f64, radius: f64) -> Result<f64, Error> {
+    let theta = check(body, theta)?;
+    within("radius", radius, (-1e100, 1e100), "|radius| <= 1e100")?;
+    let CircularBalance { lever, n, k, s } = CircularBalance::of(body, theta);
+    let (rim, angle) = (body.shape().rim, theta.sin_cos());
+    // v_2 = a w3 - d w1 for the contact point at the distance a from the axis, d below the centre; w1 = Omega s.
+    let share = (rim.depth(angle) * s - radius) / rim.radius(angle);
+    Ok((n / (lever - k * share)).sqrt())
+}
+
+/// Both precessions phi' of a circular steady state with this spin w3 about the axis, the slower one first; NaN where there
+/// is none, and for a spin of 0 two opposite ones.
+///
+/// The circular state is that of [`circular`]. Errors: `OutOfRange` for another angle, and for |w3| above 1e100. Error: 8
+/// ulp of the larger one, of the slower one times how much the digits of k^2 w3^2 and of 4 lever n cancel.
+pub fn precessions_of_spin(body: &Body, theta: f64, w3: f64) -> Result<[f64; 2], Error> {
+    let theta = check(body, theta)?;
+    within("w3", w3, (-1e100, 1e100), "|w3| <= 1e100")?;
+    let CircularBalance { lever, n, k, .. } = CircularBalance::of(body, theta);
+    // lever Omega^2 - k w3 Omega - n = 0, without a difference of nearly equal numbers.
+    let half = 0.5 * k * w3;
+    let root = (half * half + lever * n).sqrt();
+    let far = if half < 0.0 { half - root } else { half + root };
+    let [a, b] = [far / lever, -n / far].map(|x| if x.is_finite() { x } else { f64::NAN });
+    Ok(if b.abs() <= a.abs() { [b, a] } else { [a, b] })
+}
+
+/// The balance of a circular steady state, divided by phi' = Omega: k w3 = lever Omega - n/Omega. For a ball n, A and w1 have
+/// the factor sin theta, which is divided out.
+struct CircularBalance {
+    lever: f64,
+    n: f64,
+    k: f64,
+    s: f64,
+}
+
+impl CircularBalance {
+    fn of(body: &Body, theta: f64) -> Self {
+        let (shape, of) = (body.shape(), terms_of(body, theta));
+        let angle = sincos(theta);
+        let (s, c) = (angle.sin.hi, angle.cos.hi);
+        let n = of.n.hi;
+        let n = if n.is_nan() { -shape.rim.lever((s, c)) } else { n };
+        let [radius, depth, height] =
+            [shape.rim.radius((s, c)), shape.rim.depth((s, c)), shape.rim.height((s, c))];
+        let lever = shape.i1 * c + height * depth;
+        if body.is_ball() {
+            Self { lever, n, k: shape.i3 + height * shape.rim.rho, s }
+        } else {
+            Self { lever: lever * s, n, k: shape.i3 * s + height * radius, s }
+        }
+    }
 }

@@ -1,0 +1,12 @@
+"""A body that is one, and no family."""
+
+from spincyl._body import Body
+from spincyl._input.numbers import is_scalar, made
+
+
+def one_body(body: object) -> Body:
+    """Return `body` if it is a single body, else raise TypeError or ValueError."""
+    found = made("body", body, Body)
+    if not is_scalar(*found._numbers):
+        raise ValueError("body: expected a single one, not an array of them")
+    return found
