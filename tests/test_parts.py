@@ -141,3 +141,45 @@ def test_a_part_of_the_wrong_kind_is_refused(why, make):
 def test_a_part_that_none_can_be_is_refused_by_name(why, given):
     with pytest.raises(ValueError, match=f"^{why}"):
         sc.assembled(given)
+
+
+def test_balls_and_stones_take_their_sizes_as_tubes_do():
+    i = 0.4
+    ball = sc.Body.ball(-0.2, i, i, diameter="30mm", mass="6g")
+    assert ball.scale == sc.Scale(0.015, 0.006) and ball.natural == sc.Body.ball(-0.2, i, i)
+    with pytest.raises(ValueError, match="mass: of balls that are measured"):
+        sc.Body.ball(-0.2, i, i, mass=1.0)
+    with pytest.warns(UserWarning, match="ball"):
+        sc.Body.ball(-0.2, i, i, diameter=30)
+    stone = sc.Ellipsoid.rattleback(("8cm", "16mm", "14mm"), twist=0.03, mass="40g")
+    other = sc.Ellipsoid.rattleback((0.08, 0.016, 0.014), twist=0.03).in_metres(0.04)
+    assert stone == other and stone.scale == other.scale
+    assert sc.Ellipsoid.rattleback(("8cm", "16mm", "14mm"), twist=0.03).scale.radius == 0.08
+    with pytest.raises(ValueError, match="give it a unit as well"):
+        sc.Ellipsoid.rattleback(("8cm", 16, 14), twist=0.03)
+
+
+def test_a_state_of_a_stone_is_told_in_si():
+    stone = sc.Ellipsoid.rattleback((0.08, 0.016, 0.014), twist=0.03, mass=0.04)
+    second = stone.scale.seconds(1.0)
+    state = sc.EllipsoidState.from_si((0, 0, 1), (0, 0, 5.0), slip=(0.1, 0.0), scale=stone)
+    np.testing.assert_allclose(state.w[2], 5.0 * second, rtol=1e-15)
+    np.testing.assert_allclose(state.slip[0], 0.1 * second / 0.08, rtol=1e-15)
+    m = sc.roll(stone, sc.EllipsoidState.from_si((0, 0, 1), (0, 0, 5.0), scale=stone), 0.01)
+    np.testing.assert_allclose(m.spin, 5.0, rtol=1e-9)
+    with pytest.raises(TypeError, match="scale"):
+        sc.EllipsoidState.from_si((0, 0, 1), (0, 0, 5.0), scale=3)
+
+
+def test_the_command_line_takes_the_thickness_of_a_wall(capsys):
+    from spincyl.cli import main
+
+    words = ["steady", "--outer", "50mm", "--length", "150mm", "--theta", "85deg"]
+    assert main([*words, "--wall", "5mm"]) == 0
+    thick = capsys.readouterr().out
+    assert main([*words, "--inner", "40mm"]) == 0
+    assert capsys.readouterr().out == thick
+    assert main([*words, "--inner", "40mm", "--wall", "5mm"]) == 2
+    assert "give one of --inner, --bore and --wall" in capsys.readouterr().err
+    assert main([*words, "--wall", "30mm"]) == 2
+    assert "--wall 0.03: expected 0 to 0.025 (metres)" in capsys.readouterr().err

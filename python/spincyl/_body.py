@@ -1,6 +1,5 @@
 """The body, its steady states and their stability."""
 
-import warnings
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self, overload
@@ -29,7 +28,7 @@ from spincyl._input.numbers import (
 from spincyl._input.reprs import is_lazy
 from spincyl._laws import Laws
 from spincyl._repr import FIELDS, body
-from spincyl._scale import Scale, dubious
+from spincyl._scale import Scale, ball_scale
 from spincyl._state import State
 from spincyl._upward import above
 
@@ -168,30 +167,21 @@ class Body(Laws):
         """
         separation = number("separation", separation)
         i1, theta_end = _core.check_balls(separation)
-        scale = None
-        if diameter is not None:
-            diameter = number("diameter", si("diameter", diameter, "metre"))
-            if not 2e-100 <= diameter <= 2e100:
-                raise ValueError(f"diameter = {diameter!r}: expected 2e-100 to 2e100 (metres)")
-            scale = Scale(diameter / 2, np.nan if mass is None else mass)
-            sides = (1 + separation) * diameter, diameter
-            why = dubious("pair of balls", sides, np.pi / 3 * diameter**3, scale.mass)
-            if why:
-                warnings.warn(why, UserWarning, stacklevel=2)
-        elif mass is not None:
-            raise ValueError("mass: of balls that are measured, diameter= in metres")
+        scale = ball_scale(diameter, mass, separation)
         return cls(separation, i1, 0.4, fillet=1.0, theta_end=theta_end, scale=scale)
 
     @classmethod
-    def ball(cls, offset: float, i1: float, i3: float) -> Self:
+    def ball(
+        cls, offset: float, i1: float, i3: float, *, diameter: float | None = None, mass: float | None = None
+    ) -> Self:
         """A ball whose centre of mass lies `offset` radii above its centre: negative in a tippe top.
 
         `i1` and `i3` are the moments about the centre of mass, across the line of the two centres and along
-        it. The ball goes through both poles, theta = 0 and pi.
+        it. The ball goes through both poles, theta = 0 and pi. With a `diameter` (metres) it is `measured`.
         """
         numbers = number("offset", offset), number("i1", i1), number("i3", i3)
         _core.check_ball(*numbers)
-        return cls(*numbers, fillet=1.0)
+        return cls(*numbers, fillet=1.0, scale=ball_scale(diameter, mass))
 
     @classmethod
     def from_metres(

@@ -21,7 +21,7 @@ def circular(body: "Body", theta: Reals, precession: Reals, radius: Reals, w3: R
     (name,) = chosen
     theta, number, numbers = radians("theta", theta, body._leans), reals(name, given[name]), body._numbers
     single = is_scalar(theta, number, *numbers)
-    asked = number
+    asked = float(number) if single else number
     if name == "radius":
         number = _core.precession_of_radius(theta, number, *numbers)
     elif name == "w3":
@@ -34,10 +34,10 @@ def circular(body: "Body", theta: Reals, precession: Reals, radius: Reals, w3: R
         numbers = spread
         single = False
     if single:
-        if np.isnan(number) and not np.isnan(asked):
-            raise ValueError(f"{name} = {given[name]!r}: no such circle is steady at theta = {theta!r}")
         if np.isnan(asked):
             raise ValueError(f"{name} = nan: expected a number")
+        if np.isnan(number):
+            raise ValueError(f"{name} = {given[name]!r}: no such circle is steady at theta = {theta!r}")
         return State(*_core.circular_state(float(theta), float(number), numbers))
     w1, w3 = (f(theta, number, *numbers) for f in (_core.circular_w1, _core.circular_w3))
     return State(theta, w1, w1 * 0.0, w3)

@@ -2,7 +2,7 @@
 
 import math
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any, NamedTuple, Self
@@ -19,6 +19,7 @@ from spincyl._input.numbers import (
     Floats,
     Reals,
     Result,
+    alike,
     components,
     fitting,
     kept,
@@ -149,7 +150,13 @@ class Ellipsoid:
 
     @classmethod
     def rattleback(
-        cls, axes: Reals, *, twist: Reals, moments: Reals | None = None, offset: Reals | None = None
+        cls,
+        axes: Reals,
+        *,
+        twist: Reals,
+        moments: Reals | None = None,
+        offset: Reals | None = None,
+        mass: float | None = None,
     ) -> Self:
         """A rattleback: its axes of inertia are turned against those of its shape.
 
@@ -157,7 +164,7 @@ class Ellipsoid:
         ----------
         axes : array_like, (..., 3)
             Semi-axes; it stands on the end of the third. A stone that is 16 cm long, 3.2 cm wide and 1.4 cm
-            deep has (0.08, 0.016, 0.014).
+            deep has (0.08, 0.016, 0.014), or ("8cm", "16mm", "14mm"): with units it is measured.
         twist : array_like
             Angle about axis 3, radians, by which the principal axes of inertia are turned: counterclockwise,
             seen from above.
@@ -167,6 +174,8 @@ class Ellipsoid:
         offset : array_like, (..., 3), optional
             From the centre of the ellipsoid to the centre of mass. Default: of the half, 3/8 of the third
             semi-axis below; with `moments`, none.
+        mass : float, optional
+            In kilograms: then it is measured, as by `in_metres`.
 
         Raises
         ------
@@ -181,19 +190,24 @@ class Ellipsoid:
         >>> print(f"{stone.growth_rates(-1.0).max() / stone.scale.seconds(1.0):.1f} per second")
         15.4 per second
         """
+        told = isinstance(axes, Sequence) and any(isinstance(x, str) for x in axes)
+        if told:
+            alike({f"axes[{i}]": x for i, x in enumerate(axes)})
+            axes = [number(f"axes[{i}]", si(f"axes[{i}]", x, "metre")) for i, x in enumerate(axes)]
         wide = [
             None if x is None else vectors(name, x, 3)
             for name, x in (("moments", moments), ("offset", offset))
         ]
         if wide[0] is not None:
             refuse("moments", wide[0], lambda x: ~np.isfinite(x), "expected finite numbers")
-        return cls._of(
+        found = cls._of(
             _core.rattleback,
             axes=(vectors("axes", axes, 3), True),
             moments=(wide[0], wide[0] is not None),
             twist=(_tilt("twist", twist), False),
             offset=(wide[1], wide[1] is not None),
         )
+        return found.in_metres(mass) if told or mass is not None else found
 
     @classmethod
     def egg(cls, radius: Reals, half_length: Reals, offset: Reals = 0.0) -> Self:

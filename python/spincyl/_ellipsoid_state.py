@@ -1,7 +1,7 @@
 """The state of a stone: its vertical, its angular velocity and its slip, or arrays of them."""
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -9,6 +9,7 @@ from spincyl import _core
 from spincyl._input.equality import compared
 from spincyl._input.numbers import Floats, Reals, Result, components, floats, reals, several
 from spincyl._input.reprs import call, is_lazy
+from spincyl._scale import scale_of
 
 
 def doubles(value: Reals) -> Reals:
@@ -65,6 +66,14 @@ class EllipsoidState:
     w: Reals
     slip: Reals | None = None
     height: ClassVar[None] = None  # a stone does not start in the air
+
+    @classmethod
+    def from_si(cls, vertical: Reals, w: Reals, *, slip: Reals | None = None, scale: Any) -> "EllipsoidState":
+        """A state with angular velocities in rad/s and a slip in m/s; `scale` may be a measured stone."""
+        metre, second, *_ = scale_of(scale)._units
+        found = cls(vertical, w, slip)
+        faster = None if found.slip is None else found.slip * (second / metre)
+        return cls(found.vertical, found.w * second, faster)
 
     def __post_init__(self) -> None:
         for name, width in (("vertical", 3), ("w", 3), ("slip", 2)):

@@ -4,6 +4,7 @@ Length R, time sqrt(R/g), speed sqrt(g R), angular velocity sqrt(g/R), force M g
 """
 
 import math
+import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, overload
 
@@ -232,3 +233,21 @@ def dubious(what: str, sides: tuple[float, float], volume: float, mass: float) -
     elif volume > 0 and (mass < _DENSITIES[0] * volume or mass > _DENSITIES[1] * volume):
         why = f"of {mass / volume:.3g} kg/m^3, and water has 1000; 1 g is 1e-3"
     return why and f"this is a {what} {why}: are these metres and kilograms?"
+
+
+def ball_scale(diameter: Any, mass: Any, separation: float | None = None) -> "Scale | None":
+    """The scale of a ball of this diameter, or of two with a `separation`; None without a diameter."""
+    if diameter is None:
+        if mass is not None:
+            raise ValueError("mass: of balls that are measured, diameter= in metres")
+        return None
+    across = number("diameter", si("diameter", diameter, "metre"))
+    if not 2e-100 <= across <= 2e100:
+        raise ValueError(f"diameter = {across!r}: expected 2e-100 to 2e100 (metres)")
+    found = Scale(across / 2, math.nan if mass is None else mass)
+    count, long = (1, 1.0) if separation is None else (2, 1 + separation)
+    what = "ball" if count == 1 else "pair of balls"
+    why = dubious(what, (long * across, across), count * math.pi / 6 * across**3, found.mass)
+    if why:
+        warnings.warn(why, UserWarning, stacklevel=3)
+    return found

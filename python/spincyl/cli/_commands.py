@@ -17,7 +17,7 @@ import numpy as np
 from spincyl import Body, Motion, Scale, State, StepWarning, roll
 from spincyl._contact import AnyContact, Coulomb, Viscous
 from spincyl._input.files import replaced
-from spincyl._input.numbers import extra
+from spincyl._input.numbers import extra, within
 from spincyl._input.units import Metres, Seconds
 from spincyl._measured import doubt, speaking
 from spincyl.cli._files import columns, needed, write_csv, writer_of
@@ -80,9 +80,12 @@ def _measured(args: Namespace) -> Body:
     told = args.ell, None if bore is not None else args.bore, args.i1, args.i3, args.radius
     if any(x is not None for x in told):
         raise ValueError("give either measures in metres or --ell, not both")
-    if bore is not None and args.inner is not None:
-        raise ValueError("give either --inner or --bore, not both")
+    if sum(x is not None for x in (bore, args.inner, args.wall)) > 1:
+        raise ValueError("give one of --inner, --bore and --wall")
     inner = args.inner if bore is None else float(bore)
+    if args.wall is not None:
+        with _naming("wall", "--wall"):
+            inner = args.outer - 2 * within("wall", args.wall, 0.0, args.outer / 2, "metres")
     more = {} if inner is None else {"inner_diameter": inner}
     if args.fillet is not None:
         more["fillet"] = (
@@ -128,7 +131,7 @@ def body_of(args: Namespace) -> tuple[Body, Scale | None]:
         radius = args.outer / 2
     if args.balls is not None or args.ball is not None:
         body = _ball_of(args)
-    elif any(x is not None for x in (args.outer, args.inner, args.length)):
+    elif any(x is not None for x in (args.outer, args.inner, args.wall, args.length)):
         body = _measured(args)
     else:
         body = _told(args)

@@ -262,6 +262,7 @@ def _shape_options(sub: ArgumentParser) -> None:
     )
     shape.add_argument("--outer", type=_length, metavar="LENGTH", help="outer diameter (of one ball)")
     shape.add_argument("--inner", type=_length, metavar="LENGTH", help="inner diameter (default 0: solid)")
+    shape.add_argument("--wall", type=_length, metavar="LENGTH", help="or how thick the wall is")
     shape.add_argument("--length", type=_length, metavar="LENGTH", help="length")
 
 
