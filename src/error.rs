@@ -5,6 +5,7 @@
 /// On a grid a point without an answer is NaN with a [`Region`](crate::states::stability::Region); only a question about a
 /// single body or state is answered by an error.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum Error {
     /// A number lies outside the range in which it is meaningful.
     #[error("{name} = {value:?}: expected {expected}")]

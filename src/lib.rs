@@ -109,6 +109,9 @@ pub mod stone {
 #[doc = include_str!("../README.md")]
 mod readme {}
 
+/// The matrices, vectors and quaternions of poses and forces, in the version that this crate is built with.
+pub use nalgebra;
+
 pub use body::Body;
 pub use contact::{Contact, rolling, smooth};
 pub use error::Error;

@@ -123,3 +123,10 @@ impl State {
         self.angular_velocity().cross(&(p - self.contact_arm(body)))
     }
 }
+
+impl core::fmt::Display for State {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let Self { theta, w1, w2, w3 } = self;
+        write!(f, "theta = {theta}, w = ({w1}, {w2}, {w3})")
+    }
+}

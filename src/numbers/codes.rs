@@ -4,8 +4,9 @@
 macro_rules! coded {
     ($(#[$about:meta])* pub enum $Name:ident { $($(#[$doc:meta])* $Value:ident = $code:literal,)+ }) => {
         $(#[$about])*
-        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
         #[repr(u8)]
+        #[non_exhaustive]
         pub enum $Name {
             $($(#[$doc])* $Value = $code,)+
         }
@@ -19,6 +20,35 @@ macro_rules! coded {
                 Self::ALL.into_iter().find(|value| *value as u8 == code)
             }
         }
+
+        impl TryFrom<u8> for $Name {
+            type Error = crate::error::Error;
+
+            /// The value with this code, or `OutOfRange`.
+            fn try_from(code: u8) -> Result<Self, Self::Error> {
+                let expected = concat!("the code of a value of ", stringify!($Name));
+                Self::from_code(code).ok_or(Self::Error::OutOfRange { name: "code", value: f64::from(code), expected })
+            }
+        }
+
+        impl core::fmt::Display for $Name {
+            /// The name of the value in words, as "lift off" of `LiftOff`.
+            fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+                f.pad(&$crate::numbers::codes::words(&format!("{self:?}")))
+            }
+        }
     };
 }
 pub(crate) use coded;
+
+/// The words of a name: "lift off" of "LiftOff".
+pub(crate) fn words(name: &str) -> String {
+    let mut all = String::new();
+    for letter in name.chars() {
+        if letter.is_uppercase() && !all.is_empty() {
+            all.push(' ');
+        }
+        all.extend(letter.to_lowercase());
+    }
+    all
+}

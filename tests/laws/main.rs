@@ -26,6 +26,7 @@ mod paper;
 mod parts;
 mod patch;
 mod poses;
+mod public;
 mod references;
 mod resting;
 mod slip;

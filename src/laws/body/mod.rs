@@ -338,6 +338,21 @@ pub(crate) fn landing_angle(theta: f64) -> (f64, f64) {
     if theta == FRAC_PI_2 { (1.0, 0.0) } else { theta.sin_cos() }
 }
 
+impl core::fmt::Display for Body {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let Self { ell, i1, i3, fillet, theta_end, .. } = self;
+        write!(f, "ell = {ell}, I1 = {i1}, I3 = {i3}")?;
+        if *fillet > 0.0 {
+            write!(f, ", fillet = {fillet}")?;
+        }
+        if *theta_end < PI && *theta_end != FRAC_PI_2 {
+            write!(f, ", theta_end = {theta_end}")
+        } else {
+            Ok(())
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

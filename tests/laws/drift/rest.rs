@@ -35,6 +35,7 @@ fn power(law: Law, theta: f64) -> f64 {
         Law::AirQuadratic => turn.powi(3),
         Law::AirFilm => core::f64::consts::FRAC_PI_4 * spin * spin / s,
         Law::BoundaryLayer => spin.powf(2.5),
+        law => unreachable!("{law} is not in the table of the power of each law"),
     }
 }
 
