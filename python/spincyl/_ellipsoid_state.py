@@ -7,7 +7,7 @@ import numpy as np
 
 from spincyl import _core
 from spincyl._input.equality import compared
-from spincyl._input.numbers import Floats, Reals, Result, components, elementwise, floats, reals, several
+from spincyl._input.numbers import Floats, Reals, Result, components, floats, reals, several
 from spincyl._input.reprs import call, is_lazy
 from spincyl._scale import scale_of
 
@@ -68,13 +68,13 @@ class EllipsoidState:
     height: ClassVar[None] = None  # a stone does not start in the air
 
     @classmethod
-    @elementwise
     def from_si(cls, vertical: Reals, w: Reals, *, slip: Reals | None = None, scale: Any) -> "EllipsoidState":
         """A state with angular velocities in rad/s and a slip in m/s; `scale` may be a measured stone."""
         metre, second, *_ = scale_of(scale)._units
         found = cls(vertical, w, slip)
-        faster = None if found.slip is None else found.slip * (second / metre)
-        return cls(found.vertical, found.w * second, faster)
+        with np.errstate(over="ignore"):
+            faster = None if found.slip is None else found.slip * (second / metre)
+            return cls(found.vertical, found.w * second, faster)
 
     def __post_init__(self) -> None:
         for name, width in (("vertical", 3), ("w", 3), ("slip", 2)):

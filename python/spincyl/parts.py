@@ -16,6 +16,7 @@ lowest point; by default a part stands on the one before it, and the first one a
 """
 
 import math
+import warnings
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any
@@ -23,7 +24,7 @@ from typing import Any
 from spincyl import _core
 from spincyl._body import Body
 from spincyl._input.numbers import made, number, si
-from spincyl._scale import Scale
+from spincyl._scale import Scale, dubious
 
 __all__ = ["Part", "assembled", "ball", "cap", "cone", "cylinder", "disk", "point", "ring", "shell", "wall"]
 
@@ -197,6 +198,11 @@ def assembled(parts: Iterable[Part], *, gravity: float = Scale.gravity) -> Body:
     Parts may overlap, and their masses add up. A wheel whose axle sticks out stands on the axle, and rolls on
     it: give such an axle as a `point` in the middle of its mass if it never touches the table.
 
+    Warns
+    -----
+    UserWarning
+        If it is larger than 5 m or smaller than 0.1 mm, as if millimetres were taken for metres.
+
     Examples
     --------
     >>> import spincyl as sc
@@ -204,18 +210,23 @@ def assembled(parts: Iterable[Part], *, gravity: float = Scale.gravity) -> Body:
     >>> print(f"{balls.scale.mass * 1e3:.1f} g, lands at {balls.theta_end * 180 / 3.14159:.1f} degrees")
     35.0 g, lands at 97.2 degrees
     """
-    placed: list[Part] = []
     try:
         given = list(parts)
     except TypeError:
         raise TypeError(f"parts: expected parts in a list, not {type(parts).__name__}") from None
+    lows = [0.0]
     for i, part in enumerate(given):
         made(f"parts[{i}]", part, Part)
-        low = placed[-1].top if placed else 0.0
-        placed.append(part.raised(low if part.at is None else part.at))
+        lows[i] = lows[i] if part.at is None else part.at
+        lows.append(lows[i] + part.top)
+    # heights count from the lowest point, so that they keep their digits
+    placed = [part.raised(low - min(lows[:-1])) for part, low in zip(given, lows, strict=False)]
     found = _core.assembled([(part.form, list(part.numbers), part.amount, part.dense) for part in placed])
     (ell, i1, i3, fillet, theta_end), mass, radius, centre = found
     # the core says pi/2 for two equal rims and for a body that has none to land on
+    why = dubious("body", (max((part.top for part in placed), default=0.0), 2 * radius), math.nan, math.nan)
+    if why:
+        warnings.warn(why, UserWarning, stacklevel=2)
     body = Body(ell, i1, i3, fillet=fillet, theta_end=theta_end, scale=Scale(radius, mass, gravity))
     shape = tuple((part.name, part.form, _scaled(part, centre, radius)) for part in placed)
     for each in (body, body.natural):

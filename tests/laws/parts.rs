@@ -120,6 +120,12 @@ fn it_stands_on_its_lowest_edge_and_ends_where_the_next_one_touches() {
     let bowl = whole(&[part(half, STEEL)]);
     assert!((bowl.body.theta_end() - FRAC_PI_2).abs() < 1e-15 && bowl.body.theta_end() < FRAC_PI_2);
     assert!((bowl.body.ell() + 0.375).abs() < 1e-15, "its centre of mass is 3/8 R below the middle");
+    // The other half on its flat side goes on to its round side: a ball that is tangential to the edge.
+    let dome = Form::Shell { radius: 1.0, centre: 0.0, ends: [0.0, 1.0] };
+    assert!((whole(&[part(dome, STEEL)]).body.theta_end() - FRAC_PI_2).abs() < 1e-7);
+    // A flatter cap begins to touch with its round side where the tangent of its edge lies on the table.
+    let low = Form::Ball { radius: 1.0, hollow: 0.0, centre: -0.6, ends: [0.0, 0.4] };
+    assert!((whole(&[part(low, STEEL)]).body.theta_end() - (PI - 0.6f64.acos())).abs() < 1e-7);
     // A rounded coin with a milled rim keeps its fillet.
     let coin = Form::Solid { radii: [12.0; 2], bores: [0.0; 2], ends: [0.0, 2.0], fillet: 0.5 };
     let milled =
@@ -154,6 +160,8 @@ fn what_is_no_body_is_refused_by_name() {
         ("fillet", Form::Solid { radii: [1.0; 2], bores: [0.0; 2], ends: [0.0, 1.0], fillet: 0.6 }, STEEL),
         ("parts", Form::Ring { radius: 0.0, height: 1.0 }, Amount::Mass(1.0)),
         ("parts", cylinder(1.0, 0.0, [0.0, 1.0]), Amount::Mass(0.0)),
+        ("height", cylinder(1.0, 0.0, [1e9, 1e9 + 1.0]), Amount::Mass(1.0)),
+        ("parts", Form::Wall { radii: [0.0, 1.0], ends: [0.0, 1.0] }, Amount::Mass(1.0)),
         ("parts", cylinder(1.0, 1.0, [0.0, 1.0]), Amount::Mass(1.0)),
     ] {
         assert!(named(form, amount).starts_with(said), "{said}: {}", named(form, amount));

@@ -9,7 +9,8 @@
 //! The body stands on the edge, or the ball, that is lowest where the axis is upright, and theta_end is where another one
 //! becomes lower.
 //!
-//! Error: a few roundings of the moments about a point within the body.
+//! Error: a few roundings of the moments about a point within the body; of theta_end as many, and 1e-8 where a ball touches at
+//! its own edge.
 
 use super::Body;
 use crate::error::{Error, within};
@@ -126,6 +127,8 @@ const NODES: [[f64; 2]; 4] = [
 ];
 /// Edges at the same place to this share of R are one.
 const SAME_EDGE: f64 = 1e-12;
+/// Largest height of a part over the largest radius; rounding would spoil those of a body that is farther away.
+const FARTHEST: f64 = 1e5;
 /// Allowed lengths, masses and densities.
 const SIZE: (f64, f64) = (0.0, 1e100);
 
@@ -313,10 +316,10 @@ impl Edge {
         // a sin theta - b cos theta = e is sin(theta - turn) = e/far.
         let (a, b, e) = (other.r - self.r, other.z - self.z, self.rho - other.rho);
         let far = a.hypot(b);
-        if e.abs() > far || far == 0.0 {
+        if e.abs() > far * (1.0 + SAME_EDGE) || far == 0.0 {
             return [None; 2];
         }
-        let (turn, by) = (b.atan2(a), (e / far).asin());
+        let (turn, by) = (b.atan2(a), (e / far).clamp(-1.0, 1.0).asin());
         let inside = |theta: f64| {
             let theta = theta.rem_euclid(TAU);
             Some(theta)
@@ -325,10 +328,12 @@ impl Edge {
         [inside(turn + by), inside(turn + PI - by)]
     }
 
-    /// Whether another edge that is as deep here becomes deeper.
+    /// Whether another edge that is as deep here becomes deeper, as a ball does beyond the circle at which it is cut.
     fn gives_way(&self, other: &Self, theta: f64) -> bool {
-        let rate = |of: &Self| of.r * theta.cos() + of.z * theta.sin();
-        rate(other) > rate(self)
+        let (s, c) = theta.sin_cos();
+        let (r, z) = (other.r - self.r, other.z - self.z);
+        let (rate, bend) = (r * c + z * s, z * c - r * s);
+        if rate.abs() <= 1e-6 * r.hypot(z) { bend > 0.0 } else { rate > 0.0 }
     }
 }
 
@@ -340,8 +345,11 @@ impl Edge {
 /// Errors: `OutOfRange`, which names the number of a part, "parts" for a body without a mass or without an extent, and what
 /// [`Body::rounded`] refuses.
 pub fn assembled(parts: &[BodyPart]) -> Result<Assembled, Error> {
-    let none =
-        |value| Error::OutOfRange { name: "parts", value, expected: "parts with a mass and an extent" };
+    let none = |value| Error::OutOfRange {
+        name: "parts",
+        value,
+        expected: "parts with a mass, and a rim or a ball on which they stand",
+    };
     let (mut masses, mut edges) = (Vec::new(), Vec::new());
     for BodyPart { form, amount } in parts {
         form.check()?;
@@ -370,6 +378,9 @@ pub fn assembled(parts: &[BodyPart]) -> Result<Assembled, Error> {
     let along = masses.iter().map(|x| x.along + x.whole * (x.height - centre).powi(2)).sum::<f64>();
     let (rim, theta_end) = stands(&edges).ok_or(none(0.0))?;
     let radius = rim.r + rim.rho;
+    let far = edges.iter().map(|edge| edge.z.abs()).fold(0.0, f64::max);
+    let wide = edges.iter().map(|edge| edge.r + edge.rho).fold(0.0, f64::max);
+    within("height", far, (0.0, FARTHEST * wide), "heights from a point of the axis that is near the body")?;
     let per = 1.0 / (whole * radius * radius);
     let (ell, fillet) = ((centre - rim.z) / radius, rim.rho / radius);
     let body = Body::rounded(ell, (0.5 * axial + along) * per, axial * per, fillet)?;
