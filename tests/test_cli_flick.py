@@ -171,7 +171,7 @@ def test_a_tube_that_is_flicked_too_gently_stays_on_its_side_and_it_is_said(caps
         ([*FLICK, "--restitution", "1.5"], "restitution = 1.5: expected None"),
         ([*FLICK, "--tol", "0"], "tol = 0.0: expected 1e-14 <= tol <= 0.1"),
         ([*FLICK, "--points", "1"], "--points 1: expected at least 2"),
-        ([*FLICK, "--inner", "1mm"], "give either --inner or --bore, not both"),
+        ([*FLICK, "--inner", "1mm"], "give one of --inner, --bore and --wall"),
         ([*PIPE, "--bore", "12.7mm", "--w1", "3", "--launch-number", "1"], "--bore 0.0127m needs --outer and --length"),
         (["flick", "--ell", "0", "--mu", "0.3", "--w1", "3", "--launch-number", "1"], "needs a body with two rims"),
     ],
