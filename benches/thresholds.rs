@@ -400,7 +400,7 @@ fn patch_scene(draw: &mut Draw, kind: &str) -> Scene {
     let (drilling, along) = (s * y.w1 + c * y.w3, c * y.w1 - s * y.w3);
     // A drilling that vanishes, or all but does.
     if kind == "drills on a patch" {
-        let drilling = draw.of(&[0.0, 0.5, 1.0, 1.5, 2.0, 3.0]) * 1e-9 * draw.sign();
+        let drilling = draw.of(&[0.0, 0.5, 1.0, 1.5, 2.0, 3.0]) * 1e-10 * draw.sign();
         (y.w1, y.w3) = (s * drilling + c * along, c * drilling - s * along);
     }
     let slip = match kind {

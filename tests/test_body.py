@@ -451,6 +451,9 @@ def test_a_coin_rolls_round_a_circle_of_the_radius_or_with_the_spin_that_is_aske
     assert many.w1.shape == (2, 3) and np.isfinite(many.w3).all() and abs(many.w3[1, 1] - wide.w3) < 1e-13
     pairs = sc.Body.solid(np.array([0.05, 2.0])).circular(1.4, w3=1.0)
     assert pairs.theta.shape == (2, 2)
+    named = pytest.importorskip("xarray").DataArray([wide.w3, 1.0, 2.0], dims="spin")
+    spins = coin.circular(1.4, w3=named)
+    assert spins.w1.dims == ("spin", "root") and abs(spins.precession[0, 0] - wide.precession) < 1e-13
     for wrong in ({}, {"radius": 1.0, "w3": 1.0}, {"precession": 1.0, "radius": 2.0}):
         with pytest.raises(TypeError, match="precession, radius, w3: give one of them"):
             coin.circular(1.4, **wrong)

@@ -373,7 +373,7 @@ class Body(Laws):
             Of the circle of the centre, in R: above 0 of a coin that leans inward, below 0 where the centre
             runs the other way. The state precesses counterclockwise.
         w3 : array_like, optional
-            Spin about the axis, sqrt(g/R). Gives both states, in a last axis: the slower one first.
+            Spin about the axis, sqrt(g/R). Gives both states, the slower first, in a last axis ("root").
 
         Raises
         ------

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from spincyl import _core
-from spincyl._input.numbers import Reals, is_scalar, radians, reals
+from spincyl._input.numbers import Reals, is_scalar, radians, reals, several
 from spincyl._state import State
 
 if TYPE_CHECKING:
@@ -19,20 +19,16 @@ def circular(body: "Body", theta: Reals, precession: Reals, radius: Reals, w3: R
     if len(chosen) != 1:
         raise TypeError("precession, radius, w3: give one of them")
     (name,) = chosen
-    theta, number, numbers = radians("theta", theta, body._leans), reals(name, given[name]), body._numbers
+    theta, number = radians("theta", theta, body._leans), reals(name, given[name])
+    numbers: Any = body._numbers
     single = is_scalar(theta, number, *numbers)
     asked = float(number) if single else number
     if name == "radius":
         number = _core.precession_of_radius(theta, number, *numbers)
     elif name == "w3":
-        both = [_core.precession_of_spin(theta, number, which, *numbers) for which in (0.0, 1.0)]
-        number, theta = (
-            np.stack(both, axis=-1),
-            np.stack([np.broadcast_to(theta, np.shape(both[0]))] * 2, axis=-1),
-        )
-        spread: Any = tuple(x if is_scalar(x) else np.expand_dims(x, -1) for x in numbers)
-        numbers = spread
-        single = False
+        theta, number, *numbers, root = several(2, theta, number, *numbers)
+        number, single = _core.precession_of_spin(theta, number, *numbers, root), False
+        theta = theta + 0.0 * number
     if single:
         if np.isnan(asked):
             raise ValueError(f"{name} = nan: expected a number")

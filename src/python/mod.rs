@@ -127,8 +127,11 @@ static LAWS: &[ArrayFunction] = &[
     ArrayFunction {
         name: "precession_of_spin",
         inputs: 9,
-        value: Value::One(|x| {
-            of_body(&x[3..], |b| or_nan(steady::precessions_of_spin(b, x[0], x[1]).map(|y| y[x[2] as usize])))
+        value: Value::Pick(|x| {
+            some(&x[2..], |b| {
+                let [slow, fast] = steady::precessions_of_spin(b, x[0], x[1]).unwrap_or([f64::NAN; 2]);
+                core::array::from_fn(|i| [slow, fast].get(i).copied().unwrap_or(f64::NAN))
+            })
         }),
     },
     ArrayFunction {
