@@ -79,6 +79,25 @@ pub mod drift {
     pub use crate::motions::drift::{Drift, End};
 }
 
+#[cfg(feature = "many")]
+pub mod custom {
+    //! Laws of loss and of friction that a user writes, and the motions of bodies under them.
+    //!
+    //! ```text
+    //! m(theta, w, N)     a couple along e1, e2, e3, in M g R, that takes the power -m.w >= 0
+    //! F = mu(|u|) N      friction against a slip u; a contact point at rest holds up to mu_s N
+    //! ```
+    //! A law is checked before a motion begins, at a thousand states: it is finite, gives no energy, and has no step where
+    //! the motion that it resists rests. A law with a step, like dry friction, has to be rounded: tanh(x/e) in place of
+    //! sgn(x). Such motions are slower than those of the laws in [`loss`](crate::loss), since nothing of them is
+    //! known in advance.
+    //!
+    //! Source of the example: Armstrong-Helouvry, Dupont and Canudas de Wit, Automatica 30, 1083 (1994), for Stribeck's law.
+
+    pub use crate::laws::custom::{CoupleLaw, Custom, FrictionLaw};
+    pub use crate::motions::custom::roll_with;
+}
+
 pub mod stone {
     //! Stones: ellipsoids with any inertia, such as a rattleback or an egg, which roll and slip without an axis of symmetry.
     //!

@@ -326,6 +326,8 @@ def laws():
     found["loss.BoundaryLayer.from_si"][1].update(density=1.2, viscosity=1.8e-5)
     dry = sc.loss.DryContour(1e-3)
     found |= {
+        "custom.Couple": (sc.custom.Couple, {"function": lambda theta, w, normal: -0.01 * w}),
+        "custom.Friction": (sc.custom.Friction, {"function": lambda speed: 0.3, "static": 0.4}),
         "loss.Law": (sc.loss.Law, {"coefficient": 1e-3}),
         "loss.Sum": (sc.loss.Sum, {"laws": [dry]}),
         "Loss.power": (dry.power, {"body": body, "state": state, "normal": 1.0}),

@@ -21,8 +21,9 @@ MADE = {
     "": {
         "Drift", "DriftWarning", "EllipsoidMotion", "Ending", "ErrorWarning", "Event", "Impact", "Motion", "Phase", "Play", "Region", "Rocking",
         "Scene", "StepWarning", "Swing", "View",
-        "data", "loss", "parts", "plot", "sweep",
+        "custom", "data", "loss", "parts", "plot", "sweep",
     },
+    "custom.": set(),
     "data.": {"Comparison", "Filmed", "FittedLoss", "Line", "LossFit", "Wobble"},
     "loss.": {"Loss"},
     "parts.": {"Part"},

@@ -76,6 +76,7 @@ __all__ = [
     "View",
     "Viscous",
     "assembled",
+    "custom",
     "data",
     "drift",
     "dropped",
@@ -101,6 +102,7 @@ __all__ = [
 
 # modules and names that most scenes do not need are loaded at first use
 _LATER = {
+    "custom": None,
     "data": None,
     "loss": None,
     "parts": None,

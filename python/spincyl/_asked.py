@@ -50,7 +50,9 @@ def crossing(
     _, t0, step, tol, _, contact, mu, beyond, want, restitution, losses, stop_at, spread = asked
     options: dict[str, Any] = {"t0": t0} if t0 else {}
     if contact != "rolling" or mu != math.inf:
-        options["table"], options["coefficients"] = table(contact, mu)
+        options["table"], options["coefficients"] = table(contact, mu, own=True)
+        if not isinstance(contact, str) and contact._function is not None:
+            options["friction"] = contact._function
     if step is not None or tol is not None:
         options |= {"step": step, "tol": tol}
     if want:
@@ -62,7 +64,8 @@ def crossing(
     if aloft is not None:
         options["aloft"] = aloft
     if losses is not None:
-        options["losses"] = losses._coefficients
+        own = losses._function
+        options |= {"losses": losses._coefficients} if own is None else {"couple": own}
     if restitution is not None:
         options["restitution"] = float(restitution)
     if stop_at:

@@ -1,7 +1,7 @@
 """Contacts of a body with the table: rolling, a smooth table, or a law of friction."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar, Literal, Self, TypeAlias
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, TypeAlias
 
 import numpy as np
 
@@ -28,10 +28,16 @@ class _Law:
 
     #: False for numbers in natural units; True, or the scale, if they were given in SI.
     _sized: ClassVar[Scale | bool] = False
+    #: The function of a law that a user wrote.
+    _function: ClassVar[Any] = None
 
     def _known(self, of: Scale | bool = True) -> Self:
         """Mark the numbers as given in SI for this scale; a measured body accepts no other scale."""
         object.__setattr__(self, "_sized", of)
+        return self
+
+    def _natural(self, scale: Scale | None) -> Self:
+        """The law in natural units, of a body with this scale."""
         return self
 
     @property
@@ -182,10 +188,15 @@ def rolls(contact: object) -> bool:
     return code(contact) == TABLES["rolling"]
 
 
-def table(contact: AnyContact, mu: float) -> tuple[int, tuple[float, float, float]]:
-    """Code and coefficients of a table for the core; ValueError if the coefficients are arrays."""
+def table(contact: AnyContact, mu: float, own: bool = False) -> tuple[int, tuple[float, float, float]]:
+    """Code and coefficients of a table for the core; ValueError if the coefficients are arrays.
+
+    A law that the user wrote is refused by TypeError, unless `own`.
+    """
     if isinstance(contact, str):
         return TABLES[contact], (mu, 0.0, 0.0)
+    if contact._function is not None and not own:
+        raise TypeError(f"contact = {contact!r}: a law of your own moves a single body by sc.roll")
     if not is_scalar(*contact._numbers):
         raise ValueError(f"contact = {contact!r}: expected single numbers, not arrays of them")
     first, second, patch = map(float, contact._numbers)

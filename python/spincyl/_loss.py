@@ -2,7 +2,7 @@
 
 import warnings
 from dataclasses import dataclass, fields
-from typing import Any, TypeVar
+from typing import Any, ClassVar, TypeVar
 
 import numpy as np
 
@@ -36,6 +36,8 @@ class Loss:
     """A law of loss, or several that are added: a couple on the body, and the power that it takes."""
 
     __array_ufunc__ = None  # NumPy's arrays are not to be added element by element
+    #: The function of a law that a user wrote.
+    _function: ClassVar[Any] = None
 
     @property
     def laws(self) -> "tuple[Law, ...]":
@@ -47,6 +49,10 @@ class Loss:
         """The coefficient of each law in the order of the core; 0 for absent laws."""
         own = {law._parameter: law.coefficient for law in self.laws}
         return [own.get(name, 0.0) for name in _LAWS]
+
+    def _natural(self, scale: Scale | None) -> "Loss":
+        """The law in natural units, of a body with this scale."""
+        return self
 
     @elementwise
     def power(self, body: Body, state: State, normal: Reals = 1.0) -> Result:
@@ -212,6 +218,8 @@ def titled(losses: Loss, scale: Scale | None = None) -> str:
     def told(law: Law) -> str:
         return f"{float(law.coefficient if scale is None else law.in_si(scale)):.4g}"
 
+    if losses._function is not None:
+        return repr(losses)
     return " + ".join(f"{type(law).__name__}({told(law)})" for law in losses.laws)
 
 
@@ -250,6 +258,8 @@ def made_law(losses: object, body: Body | None = None) -> Loss:
     if not isinstance(losses, Loss):
         like = "sc.loss.DryContour(1e-3), or laws added with +"
         raise TypeError(f"losses: expected a law of loss, as {like}, not {type(losses).__name__}")
+    if losses._function is not None:
+        return losses
     bare = [] if body is None or body.scale is None else [law for law in losses.laws if not law._sized]
     if bare:
         made = f"sc.loss.{type(bare[0]).__name__}.from_si(..., scale=body)"

@@ -17,7 +17,7 @@ _WHY = {
 
 def check(losses: object, times: Floats, t0: float, settings: dict[str, Any]) -> None:
     """Refuse arguments that exclude losses; `settings` are those that were given, by name."""
-    if not is_scalar(*made_law(losses)._coefficients):
+    if made_law(losses)._function is None and not is_scalar(*losses._coefficients):  # type: ignore[attr-defined]
         raise ValueError(
             f"losses = {losses!r}: expected single numbers, not arrays of them; sc.drift takes these"
         )
@@ -32,7 +32,7 @@ def check(losses: object, times: Floats, t0: float, settings: dict[str, Any]) ->
 
 def narrow(losses: Loss, contact: AnyContact) -> None:
     """Warn if the arm of rolling resistance ends outside the patch of contact, where no pressure acts."""
-    if not isinstance(contact, Coulomb):
+    if not isinstance(contact, Coulomb) or losses._function is not None:
         return
     arms = [law.coefficient for law in losses.laws if law._parameter == "delta"]
     patch = contact.patch

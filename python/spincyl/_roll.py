@@ -213,8 +213,10 @@ def roll(
         from spincyl._loss import made_law
 
         made_law(losses, one)
+        losses = losses._natural(scale)
     if scale is not None:
         fitting(contact, scale)
+        contact = contact if isinstance(contact, str) else contact._natural(scale)
         seconds = si("t", t, "second")
         t = natural_time("t", t, scale)
         t0, step = (

@@ -2,6 +2,8 @@
 
 pub mod body;
 pub mod contact;
+#[cfg(feature = "many")]
+pub(crate) mod custom;
 pub mod loss;
 pub mod newton;
 pub mod pose;

@@ -6,6 +6,8 @@ mod conserved;
 mod course;
 pub(crate) mod creep;
 #[cfg(feature = "many")]
+pub(crate) mod custom;
+#[cfg(feature = "many")]
 pub mod drift;
 pub mod exact;
 pub(crate) mod exactly;

@@ -2,6 +2,7 @@
 
 mod codes;
 mod columns;
+mod custom;
 mod drift;
 mod ensemble;
 mod loss;

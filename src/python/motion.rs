@@ -1,11 +1,13 @@
 //! Motions: the functions take plain arrays and return a dictionary of plain arrays.
 
 use super::BODY;
+use super::custom::PythonLaw;
 use super::options::{MotionAsked, contact_of, table_of};
 use super::stone::{STONE, stone_of};
 use super::watch::Watch;
 use crate::error::room;
 use crate::laws::contact::patch;
+use crate::laws::custom::{CoupleLaw, Custom, FrictionLaw};
 use crate::laws::stone::{Ellipsoid, StoneState};
 use crate::motions::exact::Swing;
 use crate::motions::motion;
@@ -148,7 +150,7 @@ impl Told for StoneState {
 fn columns<S: Told>(
     m: &Motion<S>,
     body: &S::Body,
-    ask: &Ask,
+    (ask, loses): (&Ask, bool),
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Option<Vec<NamedArray>>, Error> {
     let mut rows = ToldRows { count: m.times.len(), columns: Vec::new(), goes_on: true, go_on };
@@ -194,7 +196,7 @@ fn columns<S: Told>(
         }
     }
     if let Some(path) = &m.path
-        && !ask.losses.is_none()
+        && loses
     {
         rows.add("work_lost", 0, &|i, to| to.push(path.work_lost[i]))?;
     }
@@ -226,8 +228,15 @@ pub fn roll<'py>(
     times: PyReadonlyArray1<'py, f64>,
     asked: MotionAsked,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let (times, ask, start) = (times.as_slice()?, asked.ask()?, (asked.slip, asked.t0));
-    let aloft = asked.aloft;
+    let (times, start, aloft) = (times.as_slice()?, (asked.slip, asked.t0), asked.aloft);
+    if asked.is_custom()
+        && let (AnyBody::Rim(body), AnyState::Rim(state)) = (&body, &state)
+    {
+        let state = State::from(<[f64; 4]>::from(*state));
+        let start = Start { state, slip: start.0, time: start.1, aloft };
+        return custom(py, &Body::of_numbers((*body).into())?, start, times, &asked);
+    }
+    let ask = asked.ask()?;
     match (body, state) {
         (AnyBody::Rim(body), AnyState::Rim(state)) => {
             let body = Body::of_numbers(body.into())?;
@@ -243,6 +252,32 @@ pub fn roll<'py>(
         }
         _ => Err(PyValueError::new_err("state: that of another kind of body")),
     }
+}
+
+/// The motion of a body under functions of Python, which hold the GIL.
+fn custom<'py>(
+    py: Python<'py>,
+    body: &Body,
+    start: Start,
+    times: &[f64],
+    asked: &MotionAsked,
+) -> PyResult<Bound<'py, PyDict>> {
+    let (ask, mut watch) = (asked.ask_without_custom()?, Watch::new(None));
+    let couple = PythonLaw::of(py, asked.couple.as_ref());
+    let friction = PythonLaw::of(py, asked.friction.as_ref());
+    let laws = Custom {
+        couple: couple.as_ref().map(|law| law as &dyn CoupleLaw),
+        friction: friction.as_ref().map(|law| law as &dyn FrictionLaw),
+    };
+    let rolled = crate::motions::custom::roll_with(body, start, times, &ask, laws, || watch.still());
+    watch.done(py)?;
+    if let Some(error) = [couple, friction].into_iter().flatten().find_map(PythonLaw::raised) {
+        return Err(error);
+    }
+    let m = rolled?.ok_or_else(|| PyRuntimeError::new_err("the motion was given up"))?;
+    let columns = columns(&m, body, (&ask, asked.couple.is_some() || !ask.losses.is_none()), &mut || true)?
+        .unwrap_or_default();
+    dictionary(py, &m, columns, rubs(&ask))
 }
 
 /// The spin from which a top turns over on a table, or ValueError.
@@ -298,7 +333,8 @@ where
     let mut watch = Watch::new(None);
     let found = py.detach(|| {
         let Some(motion) = roll(&mut watch)? else { return Ok(None) };
-        Ok::<_, Error>(columns(&motion, body, ask, &mut || watch.still())?.map(|columns| (motion, columns)))
+        let columns = columns(&motion, body, (ask, !ask.losses.is_none()), &mut || watch.still())?;
+        Ok::<_, Error>(columns.map(|columns| (motion, columns)))
     })?;
     watch.done(py)?;
     let Some((m, columns)) = found else { return Err(PyRuntimeError::new_err("the motion was given up")) };

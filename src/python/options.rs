@@ -3,7 +3,7 @@
 use crate::laws::contact::{Contact, TableKind};
 use crate::laws::loss::{COUNT, Losses};
 use crate::motions::{Ask, Method};
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 
@@ -67,6 +67,9 @@ options! {
         stop_at_rolling: bool = false,
         pose: bool = false,
         force: bool = false,
+        /// Functions of the user's own: a couple, and a coefficient of friction.
+        couple: Option<Py<PyAny>> = None,
+        friction: Option<Py<PyAny>> = None,
         /// Whether the states of many motions are wanted at all times, not only at the end.
         spread: bool = false,
     }
@@ -80,6 +83,20 @@ pub fn motion_options() -> [&'static str; MotionAsked::NAMES.len()] {
 
 impl MotionAsked {
     pub fn ask(&self) -> PyResult<Ask> {
+        if self.is_custom() {
+            let told = "a law of your own moves single bodies of revolution: sc.roll(body, ...)";
+            return Err(PyTypeError::new_err(told));
+        }
+        self.ask_without_custom()
+    }
+
+    /// Whether some law is a function of Python.
+    pub fn is_custom(&self) -> bool {
+        self.couple.is_some() || self.friction.is_some()
+    }
+
+    /// The options that are no functions of Python.
+    pub fn ask_without_custom(&self) -> PyResult<Ask> {
         Ok(Ask {
             table: table_of(self.table)?.with(self.coefficients),
             losses: self.losses.map_or(Losses::NONE, |coefficients| Losses { coefficients }),

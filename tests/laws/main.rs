@@ -6,6 +6,7 @@ mod beside_folds;
 mod beside_turns;
 mod big;
 mod common;
+mod custom;
 mod drift;
 mod endings;
 mod ends;

@@ -9,7 +9,7 @@ import numpy as np
 
 from spincyl import loss
 from spincyl._body import Body
-from spincyl._contact import AnyContact, Coulomb, Viscous, code
+from spincyl._contact import AnyContact, Coulomb, Viscous, code, table
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._input.numbers import is_scalar, made, within
 from spincyl._loss import Law, Loss, sized
@@ -57,6 +57,8 @@ def words_of_state(state: State) -> dict[str, Any]:
 
 def words_of_table(contact: AnyContact) -> dict[str, Any]:
     """Words for a contact, with its coefficient."""
+    if not isinstance(contact, str) and isinstance(contact, Coulomb | Viscous):
+        table(contact, 0.0)  # refuses a law of the user's own
     if isinstance(contact, Coulomb | Viscous) and not is_scalar(*contact._numbers):
         raise ValueError(f"contact = {contact!r}: the page knows single numbers, not arrays of them")
     if isinstance(contact, Coulomb):

@@ -15,11 +15,11 @@
 //!
 //! Error: alpha is known to 1e-15 divided by the slope of f.
 
-use super::lossy::{self, Held, Lossy};
+use super::lossy::{Held, Lossy};
 use super::slip::{Friction, Slipping};
 use super::{Contact, Force, force};
 use crate::laws::body::Body;
-use crate::laws::loss::{Law, Losses, Ways, rounded};
+use crate::laws::loss::{Couples, Law, Losses, Ways, rounded};
 use crate::laws::state::State;
 use crate::methods::roots::Trig;
 use crate::numbers::Sum;
@@ -126,13 +126,24 @@ impl<F: Fn(f64) -> Option<f64>> HeldContact<F> {
 /// The behaviour of a contact point whose slip is zero.
 pub(crate) fn standstill(body: &Body, y: &State, friction: &Friction, losses: &Losses) -> Standstill {
     let Friction::Coulomb { mu, fixed, .. } = *friction else { return Standstill::Sticks };
-    rest(body, y, (friction, [mu, fixed]), losses).decides()
+    rest(body, y, (friction, [mu, fixed]), Couples::some(losses)).decides()
+}
+
+/// The behaviour of a contact point whose slip is zero, under these couples.
+pub(crate) fn standstill_under(
+    body: &Body,
+    y: &State,
+    friction: &Friction,
+    of: Option<Couples<f64>>,
+) -> Standstill {
+    let Friction::Coulomb { mu, fixed, .. } = *friction else { return Standstill::Sticks };
+    rest(body, y, (friction, [mu, fixed]), of).decides()
 }
 
 /// The direction in which a contact point slips off when static friction has just ceased to hold it.
 pub(crate) fn let_go(body: &Body, y: &State, friction: &Friction, losses: &Losses) -> Standstill {
     let Friction::Coulomb { mu, fixed, .. } = *friction else { return Standstill::Sticks };
-    rest(body, y, (friction, [mu, fixed]), losses).lets_go()
+    rest(body, y, (friction, [mu, fixed]), Couples::some(losses)).lets_go()
 }
 
 /// The forces at the contact point of a rim at rest.
@@ -140,9 +151,9 @@ fn rest(
     body: &Body,
     y: &State,
     (friction, mu): (&Friction, [f64; 2]),
-    losses: &Losses,
+    losses: Option<Couples<f64>>,
 ) -> HeldContact<impl Fn(f64) -> Option<f64>> {
-    let mut slipping = Slipping::on_losing(body, friction, losses);
+    let mut slipping = Slipping::on(body, friction).with_losses(losses);
     let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
     let (rolling, ways) = rolling(body, y, losses);
     if let Some(losses) = &mut slipping.losses {
@@ -166,14 +177,13 @@ fn rest(
 
 /// The force that keeps the contact point at rest, and the signs of the dry losses if the drilling is at
 /// rest, too.
-fn rolling(body: &Body, y: &State, losses: &Losses) -> (Force, Option<Ways>) {
-    if losses.is_none() {
-        return (force(Contact::Rolling, body, y), None);
-    }
+fn rolling(body: &Body, y: &State, losses: Option<Couples<f64>>) -> (Force, Option<Ways>) {
+    let Some(losses) = losses else { return (force(Contact::Rolling, body, y), None) };
     let ((s, c), w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
-    let mut law = Lossy::of(Contact::Rolling, body, losses);
+    let mut law = Lossy { rates: Contact::Rolling.rates(body), losses };
     if !law.losses.has(Law::Drilling) || (s * y.w1 + c * y.w3).abs() > rounded(s, w) {
-        return (lossy::force(Contact::Rolling, body, y, losses), None);
+        let [normal, along, across] = law.in_state(y).force;
+        return (Force { normal, along, across }, None);
     }
     let spin = y.spin();
     let contour = if spin == 0.0 { 0.0 } else { spin.signum() };

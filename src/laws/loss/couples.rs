@@ -129,6 +129,8 @@ pub(crate) struct Couples<T> {
     pub(super) present: [bool; COUNT],
     /// The signs of the motions that dry friction resists, where a caller holds them fixed within a step.
     pub ways: Option<Ways<T>>,
+    /// The couple of a law of the user's own, at the numbers for which these losses are made.
+    pub given: Option<Couple<T>>,
 }
 
 /// A step may change a speed at whose zero a law is not smooth by this fraction of it, or by `NEAR` if that is more.
@@ -198,6 +200,11 @@ impl Couples<f64> {
         self
     }
 
+    /// These losses with a couple of the user's own.
+    pub fn with_given(self, given: Couple<f64>) -> Self {
+        Self { given: Some(given), ..self }
+    }
+
     /// The couples of these losses; None if nothing is lost.
     pub fn some(losses: &Losses) -> Option<Self> {
         (!losses.is_none()).then(|| Self::of(losses, |x| x))
@@ -208,7 +215,7 @@ impl<T: Real> Couples<T> {
     #[inline(always)]
     pub fn of(losses: &Losses, number: impl Fn(f64) -> T) -> Self {
         let coefficients = losses.coefficients.map(number);
-        Self { coefficients, present: losses.coefficients.map(|x| x != 0.0), ways: None }
+        Self { coefficients, present: losses.coefficients.map(|x| x != 0.0), ways: None, given: None }
     }
 
     /// These losses in another type of number.
@@ -225,7 +232,7 @@ impl<T: Real> Couples<T> {
         for (to, from) in coefficients.iter_mut().zip(self.coefficients) {
             *to = number(from);
         }
-        Couples { coefficients, present: self.present, ways }
+        Couples { coefficients, present: self.present, ways, given: None }
     }
 
     /// The kinematics from sine and cosine of theta, w1/s and w, with the signs that a caller holds fixed.
@@ -240,7 +247,7 @@ impl<T: Real> Couples<T> {
     /// The losses with these coefficients among the laws that are present, where `ways` holds signs fixed.
     #[inline(always)]
     pub fn among(coefficients: [T; COUNT], present: [bool; COUNT], ways: Option<Ways<T>>) -> Self {
-        Self { coefficients, present, ways }
+        Self { coefficients, present, ways, given: None }
     }
 
     /// Which laws are present, in the order of [`Law::ALL`].
@@ -251,10 +258,11 @@ impl<T: Real> Couples<T> {
     /// Whether some law acts about the axis of the rocking.
     #[inline(always)]
     pub fn tilts(&self) -> bool {
-        self.has_any(
-            #[inline(always)]
-            |law| law.tilts(),
-        )
+        self.given.is_some()
+            || self.has_any(
+                #[inline(always)]
+                |law| law.tilts(),
+            )
     }
 
     /// Whether the couple of some law grows with the speed of the contact along the rim.

@@ -34,9 +34,8 @@ use crate::error::{Error, within};
 use crate::numbers::Real;
 use crate::numbers::codes::coded;
 use core::ops::Add;
-use couples::Couple;
 pub(crate) use couples::{
-    Couples, GRACE, Kinematics, NEAR, SLACK, Ways, going, holds, mirrored, rolling_growth, rounded,
+    Couple, Couples, GRACE, Kinematics, NEAR, SLACK, Ways, going, holds, mirrored, rolling_growth, rounded,
 };
 pub(crate) use law::{EndPowers, LossLaw, Resists, Speed};
 
@@ -118,7 +117,8 @@ macro_rules! laws {
             #[inline(always)]
             pub fn at(&self, seen: &Kinematics<T>) -> Couple<T> {
                 let zero = seen.spin.splat(0.0);
-                let (mut free, mut pressed) = ([zero; 3], [zero; 3]);
+                let Couple { mut free, mut pressed } =
+                    self.given.unwrap_or(Couple { free: [zero; 3], pressed: [zero; 3] });
                 $(if self.present[$code] {
                     let unit = $file::$Law::couple(seen);
                     let to = if $file::$Law::PRESSES { &mut pressed } else { &mut free };
@@ -138,6 +138,10 @@ macro_rules! laws {
                     let unit = if $file::$Law::PRESSES { unit * normal } else { unit };
                     power = self.coefficients[$code].mac(unit, power);
                 })+
+                if let Some(given) = &self.given {
+                    let ([m1, m2, m3], [w1, w2, w3]) = (given.under(normal), seen.w);
+                    power = power - (m1 * w1 + m2 * w2 + m3 * w3);
+                }
                 power
             }
 

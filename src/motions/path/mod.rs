@@ -28,7 +28,7 @@ mod slips;
 mod slow;
 mod strikes;
 mod tail;
-mod write;
+pub(crate) mod write;
 
 pub use super::ask::FINE;
 use super::ask::{check_flow, check_times_after};

@@ -15,13 +15,13 @@ use core::f64::consts::{PI, TAU};
 use nalgebra::Point2;
 
 /// The state from the numbers. A ball whose axis has passed the vertical leans to the other side.
-pub(super) fn state<const N: usize>(y: &[f64; N]) -> State {
+pub(crate) fn state<const N: usize>(y: &[f64; N]) -> State {
     let side = if y[0] < 0.0 { -1.0 } else { 1.0 };
     State { theta: (side * y[0]).atan2(y[1]), w1: side * y[2], w2: side * y[3], w3: y[4] }
 }
 
 /// The pose from the numbers of a flow.
-pub(super) fn pose<const N: usize>(y: &[f64; N]) -> Pose {
+pub(crate) fn pose<const N: usize>(y: &[f64; N]) -> Pose {
     let turn = if y[0] < 0.0 { PI } else { 0.0 };
     posed([y[9] + turn, y[10] - turn, y[11], y[12]], 0.0)
 }
@@ -37,7 +37,7 @@ pub(super) fn posed([phi, psi, x, y]: [f64; 4], height: f64) -> Pose {
 
 /// The errors of theta and of w from steps of this tolerance: relative to theta, and relative to the
 /// largest speed.
-fn state_errors(y: &State, tol: f64) -> [f64; 2] {
+pub(crate) fn state_errors(y: &State, tol: f64) -> [f64; 2] {
     let fastest = y.w1.abs().max(y.w2.abs()).max(y.w3.abs()).max(1.0);
     [tol * y.theta.min(1.0), tol * fastest]
 }

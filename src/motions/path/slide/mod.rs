@@ -15,7 +15,7 @@ mod creeps;
 mod lossy;
 
 use super::settled::EFFORT;
-use crate::laws::body::{Body, Shape, landing_angle};
+use crate::laws::body::{Body, Rim, Shape, landing_angle};
 use crate::laws::contact::slip::{Friction, SlipResponse, Slipping};
 use crate::laws::loss::{Couples, Losses};
 use crate::laws::state::State;
@@ -213,10 +213,7 @@ impl Flow<MARGINS> for Slide {
         }
         if poses(N) {
             let pace = all[7];
-            let rim = &self.law.shape.rim;
-            let (sin, cos) = y[9].sin_cos();
-            let (out, on) = (u_h + rim.rho * w2, u_2 + rim.radius((s, c)) * spin);
-            let pose = [precession, spin, out * cos - on * sin, out * sin + on * cos];
+            let pose = pose_rates(&self.law.shape.rim, y, [precession, spin], [u_h, u_2]);
             all[9..13].copy_from_slice(&pose.map(|x| pace * x));
         }
     }
@@ -300,23 +297,10 @@ impl Flow<MARGINS> for Slide {
         if loses(N) && self.law.patch().is_none() && self.settles(place) {
             return Some((Halt::Settles, place.y));
         }
-        let [u_h, u_2] = [place.y[5], place.y[6]];
         if self.law.patch().is_some() {
             return self.hardly_rubs(place);
         }
-        let speed = u_h.hypot(u_2);
-        // `slowing` is the rate in sigma at which the speed of the slip falls.
-        let slowing = -(u_h * place.rate[5] + u_2 * place.rate[6]) / speed;
-        if speed > self.over() || !self.sticks {
-            return None;
-        }
-        if slowing <= 0.0 && speed > 0.0 {
-            return None;
-        }
-        let left = if speed > 0.0 { speed / slowing } else { 0.0 };
-        let mut y: [f64; N] = core::array::from_fn(|i| place.y[i] + left * place.rate[i]);
-        (y[5], y[6]) = (0.0, 0.0);
-        Some((Halt::Standstill, y))
+        if self.sticks { vanished(place, self.over()).map(|y| (Halt::Standstill, y)) } else { None }
     }
 
     fn slows<const N: usize>(&self, halt: Halt, place: &FlowPlace<N>) -> f64 {
@@ -383,9 +367,37 @@ impl Flow<MARGINS> for Slide {
     }
 }
 
+/// The numbers at the end of a slip that is slower than `over`, extrapolated linearly.
+pub(crate) fn vanished<const N: usize>(place: &FlowPlace<N>, over: f64) -> Option<[f64; N]> {
+    let [u_h, u_2] = [place.y[5], place.y[6]];
+    let speed = u_h.hypot(u_2);
+    // `slowing` is the rate in sigma at which the speed of the slip falls.
+    let slowing = -(u_h * place.rate[5] + u_2 * place.rate[6]) / speed;
+    if speed > over || slowing <= 0.0 && speed > 0.0 {
+        return None;
+    }
+    let left = if speed > 0.0 { speed / slowing } else { 0.0 };
+    let mut y: [f64; N] = core::array::from_fn(|i| place.y[i] + left * place.rate[i]);
+    (y[5], y[6]) = (0.0, 0.0);
+    Some(y)
+}
+
+/// The rates of phi, psi and the place of the contact point.
+#[inline(always)]
+pub(crate) fn pose_rates<const N: usize>(
+    rim: &Rim<f64>,
+    y: &[f64; N],
+    [precession, spin]: [f64; 2],
+    [u_h, u_2]: [f64; 2],
+) -> [f64; 4] {
+    let (sin, cos) = y[9].sin_cos();
+    let (out, on) = (u_h + rim.rho * y[3], u_2 + rim.radius((y[0], y[1])) * spin);
+    [precession, spin, out * cos - on * sin, out * sin + on * cos]
+}
+
 /// A first step that is short enough, also for an almost flat face that turns or falls fast; the next
 /// steps grow fast.
-fn first<const N: usize>(y: &[f64; N]) -> f64 {
+pub(crate) fn first<const N: usize>(y: &[f64; N]) -> f64 {
     let fastest = y[2].abs().max(y[3].abs());
     0.02 / (1.0 + fastest.max(y[4].abs()).max((fastest / y[0].abs()).min(FASTEST)))
 }

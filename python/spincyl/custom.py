@@ -1,0 +1,161 @@
+"""Laws of your own: a couple that takes energy, and a coefficient of friction that depends on the speed.
+
+Each is a function of Python, plain or compiled (``numba.njit``), that a motion calls some thousand times. A law
+is checked before the motion begins: it is finite, a couple gives no energy, and neither has a step. A law of
+dry friction, which contains the sign of a speed, has to be rounded: ``tanh(x/e)`` in place of ``sign(x)``.
+
+>>> import numpy as np
+>>> import spincyl as sc
+>>> cubic = sc.custom.Couple(lambda theta, w, normal: -0.01 * (w @ w) * w)
+>>> coin = sc.Body.solid(0.1)
+>>> m = sc.roll(coin, coin.steady(0.5), np.linspace(0, 5, 11), losses=cubic)
+>>> float(m.work_lost[-1].round(4))
+0.1411
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, Self
+
+import numpy as np
+
+from spincyl._body import Body
+from spincyl._contact import Coulomb
+from spincyl._input.numbers import Floats, Reals, Result, number
+from spincyl._loss import Law, Loss
+from spincyl._scale import Scale
+from spincyl._state import State
+
+__all__ = ["Couple", "Friction"]
+
+#: A couple from theta, w along e1, e2, e3 (an array of 3), and the normal force.
+CoupleFunction = Callable[[float, Floats, float], Sequence[float] | Floats]
+_ALONE = "a law of your own moves a single body of revolution by sc.roll, and is its only law of loss"
+
+
+def _called(name: str, function: object, arguments: str) -> None:
+    if not callable(function):
+        raise TypeError(f"{name}: expected a function of {arguments}, not {type(function).__name__}")
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Couple(Loss):
+    """A law of loss: a couple on the body, from its inclination, angular velocity and normal force.
+
+    Parameters
+    ----------
+    function : callable
+        ``function(theta, w, normal)`` returns the couple along e1, e2, e3 (three numbers). `theta` is in
+        radians, `w` an array of the three components along the same axes in sqrt(g/R), `normal` the normal
+        force in M g, 0 or more, and the couple is in M g R. For a measured body the units are rad/s, N and
+        N m. The couple takes the power ``-couple @ w``, which must not be negative.
+
+    Raises
+    ------
+    TypeError
+        If it is no function; where it is used for many motions, a drift, a stone, or with another law.
+    ValueError
+        By `sc.roll`, with a value: of a couple that gives energy, is not finite, or has a step.
+
+    Notes
+    -----
+    The motion is integrated within `tol` (default 1e-10 for each step). `Motion.error` estimates its error
+    from a second, rougher run.
+    """
+
+    function: CoupleFunction
+
+    def __post_init__(self) -> None:
+        _called("function", self.function, "theta, w and the normal force")
+
+    @property
+    def _function(self) -> CoupleFunction:  # type: ignore[override]
+        return self.function
+
+    @property
+    def laws(self) -> tuple[Law, ...]:
+        """None can be listed: TypeError, since no coefficient says what a function does."""
+        raise TypeError(f"losses = {self!r}: {_ALONE}")
+
+    def _natural(self, scale: Scale | None) -> Loss:
+        if scale is None:
+            return self
+        joules, rate = scale._joule("a couple"), 1.0 / scale._units[1]
+        newtons = joules / scale._units[0]
+
+        def natural(theta: float, w: Floats, normal: float) -> Floats:
+            return np.asarray(self.function(theta, rate * w, newtons * normal)) / joules
+
+        return type(self)(natural)
+
+    def couple(self, body: Body, state: State, normal: Reals = 1.0) -> Result:
+        """The couple along e1, e2, e3: what the function returns for a single state."""
+        w = np.array([state.w1, state.w2, state.w3], dtype=float)
+        return np.asarray(self.function(float(state.theta), w, float(normal)), dtype=float)  # type: ignore[arg-type]
+
+    def power(self, body: Body, state: State, normal: Reals = 1.0) -> Result:
+        """The power ``-couple @ w`` in a single state."""
+        return -float(self.couple(body, state, normal) @ np.array([state.w1, state.w2, state.w3]))  # type: ignore[operator]
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Couple) and other.function is self.function
+
+    def __hash__(self) -> int:
+        return hash(self.function)
+
+    def __repr__(self) -> str:
+        return f"custom.Couple({_named(self.function)})"
+
+
+class Friction(Coulomb):
+    """Dry friction whose coefficient depends on the speed of the slip, such as Stribeck's.
+
+    Parameters
+    ----------
+    function : callable
+        ``function(speed)`` returns the coefficient of friction, 0 or more. `speed` is that of the slip, in
+        sqrt(g R), for a measured body in m/s.
+    static : float, optional
+        Coefficient up to which a body that rolls is held, at least ``function(0.0)``, which is the default.
+
+    Raises
+    ------
+    TypeError
+        If it is no function; where it is used for many motions, a stone, or a page.
+    ValueError
+        By `sc.roll`: of a coefficient that is negative, not finite, or has a step.
+
+    Examples
+    --------
+    A hoop thrown with backspin slips until its slip of 5 has been braked, u' = -2 mu(u):
+
+    >>> import numpy as np
+    >>> import spincyl as sc
+    >>> stribeck = sc.custom.Friction(lambda u: 0.2 + 0.2 * np.exp(-((u / 0.1) ** 2)))
+    >>> hoop, thrown = sc.Body.tube(0.0, bore=1.0), sc.State(np.pi / 2, 0.0, 0.0, -3.0, slip=(0.0, 5.0))
+    >>> sc.roll(hoop, thrown, 20.0, contact=stribeck).phases
+    ((0, 'slipping'), (12.3659806336, 'rolling'))
+    """
+
+    def __init__(self, function: Callable[[float], float], static: float | None = None) -> None:
+        _called("function", function, "the speed of the slip")
+        mu = number("function(0.0)", function(0.0))
+        super().__init__(mu, mu if static is None else static)
+        object.__setattr__(self, "function", function)
+
+    @property
+    def _function(self) -> Callable[[float], float]:  # type: ignore[override]
+        return self.function  # type: ignore[attr-defined, no-any-return]
+
+    def _natural(self, scale: Scale | None) -> Self:
+        if scale is None:
+            return self
+        speed = scale._units[0] / scale._units[1]
+        return type(self)(lambda u: self._function(speed * u), self.static)  # type: ignore[arg-type]
+
+    def __repr__(self) -> str:
+        return f"custom.Friction({_named(self._function)})"
+
+
+def _named(function: Any) -> str:
+    return getattr(function, "__name__", type(function).__name__)

@@ -1,0 +1,165 @@
+//! Laws of loss and of friction that a user of the library writes, and the check that each passes before a motion begins.
+
+use super::body::Body;
+use super::state::State;
+use crate::error::{Error, within};
+use core::f64::consts::PI;
+
+/// A law of loss: a couple on the body that takes energy.
+///
+/// A closure `|body: &Body, y: &State, normal: f64| -> [f64; 3]` is such a law.
+pub trait CoupleLaw {
+    /// The couple along e1, e2, e3 in M g R, in a state and under a normal force in M g (never negative). It is zero where
+    /// the motion that it resists rests, and continuous there.
+    fn couple(&self, body: &Body, y: &State, normal: f64) -> [f64; 3];
+}
+
+impl<F: Fn(&Body, &State, f64) -> [f64; 3]> CoupleLaw for F {
+    fn couple(&self, body: &Body, y: &State, normal: f64) -> [f64; 3] {
+        self(body, y, normal)
+    }
+}
+
+/// A law of friction: a coefficient that depends on the speed of the slip.
+///
+/// A closure `|speed: f64| -> f64` is such a law.
+pub trait FrictionLaw {
+    /// The coefficient of friction mu, 0 or more, at a speed of the slip in sqrt(g R), 0 or more.
+    fn coefficient(&self, speed: f64) -> f64;
+}
+
+impl<F: Fn(f64) -> f64> FrictionLaw for F {
+    fn coefficient(&self, speed: f64) -> f64 {
+        self(speed)
+    }
+}
+
+/// The laws of the user's own under which a body moves; the default has none.
+#[derive(Clone, Copy, Default)]
+#[non_exhaustive]
+pub struct Custom<'a> {
+    /// A couple in addition to the losses of `Ask`.
+    pub couple: Option<&'a dyn CoupleLaw>,
+    /// The coefficient of sliding friction, in place of that of the table.
+    pub friction: Option<&'a dyn FrictionLaw>,
+}
+
+impl<'a> Custom<'a> {
+    /// These laws with this couple.
+    pub fn with_couple(self, couple: &'a dyn CoupleLaw) -> Self {
+        Self { couple: Some(couple), ..self }
+    }
+
+    /// These laws with this friction.
+    pub fn with_friction(self, friction: &'a dyn FrictionLaw) -> Self {
+        Self { friction: Some(friction), ..self }
+    }
+
+    /// Refuses a couple that gives energy, is not finite or has a step where the motion rests, and a coefficient of
+    /// friction that is negative, not finite, above that of static friction (`fixed`) at rest, or has a step.
+    pub fn check(&self, body: &Body, fixed: f64) -> Result<(), Error> {
+        self.couple.map_or(Ok(()), |law| check_couple(law, body))?;
+        self.friction.map_or(Ok(()), |law| check_friction(law, fixed))
+    }
+}
+
+/// The law is asked near rest at this share of a speed.
+const NEARLY: f64 = 1e-9;
+/// A change of this share is a step.
+const STEP: f64 = 1e-3;
+/// A couple may give this share of its power by rounding.
+const ROUNDED: f64 = 1e-12;
+
+/// Every such state is joined to the next one by a line on which a step is searched for.
+const LINES: usize = 12;
+/// Number of halvings of such a line.
+const LINE_HALVINGS: u32 = 44;
+
+fn size(m: [f64; 3]) -> f64 {
+    m.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+/// The step of a function at one point between 0 and 1: what is left of its change where the half with the larger change
+/// is followed down to rounding.
+fn step(f: impl Fn(f64) -> [f64; 3]) -> f64 {
+    let apart = |a: [f64; 3], b: [f64; 3]| size(core::array::from_fn(|k| a[k] - b[k]));
+    let (mut from, mut to) = ((0.0, f(0.0)), (1.0, f(1.0)));
+    for _ in 0..LINE_HALVINGS {
+        let middle = 0.5 * (from.0 + to.0);
+        let half = (middle, f(middle));
+        if apart(from.1, half.1) > apart(half.1, to.1) { to = half } else { from = half }
+    }
+    apart(from.1, to.1)
+}
+
+fn check_couple(law: &dyn CoupleLaw, body: &Body) -> Result<(), Error> {
+    let refuse =
+        |value: f64, expected: &'static str| Err(Error::OutOfRange { name: "couple", value, expected });
+    let end = body.theta_end().min(PI);
+    let mut before = None;
+    for i in 0..1200 {
+        // Inclinations, directions and speeds that cover their ranges without a pattern.
+        let part = |k: f64| (0.5 + f64::from(i) * k).fract();
+        let theta = end * (0.02 + 0.96 * part(0.618_033_988_749_894_9));
+        let (cos, phi) =
+            (2.0 * part(0.754_877_666_246_692_7) - 1.0, 2.0 * PI * part(0.569_840_290_998_053_3));
+        let sin = (1.0 - cos * cos).sqrt();
+        let speed = [1e-2, 0.3, 1.0, 10.0][i as usize % 4];
+        let normal = [0.0, 0.5, 1.0, 3.0][i as usize / 4 % 4];
+        let at = |speed: f64| {
+            let y =
+                State { theta, w1: speed * sin * phi.cos(), w2: speed * sin * phi.sin(), w3: speed * cos };
+            (law.couple(body, &y, normal), y)
+        };
+        let (m, y) = at(speed);
+        let power = -(m[0] * y.w1 + m[1] * y.w2 + m[2] * y.w3);
+        if !size(m).is_finite() {
+            return refuse(size(m), "a couple that is finite in every state");
+        }
+        if power < -ROUNDED * size(m) * speed {
+            return refuse(power, "a couple that takes energy, m.w <= 0");
+        }
+        let mut jump = size(at(speed * NEARLY).0) / size(m).max(f64::MIN_POSITIVE);
+        if i as usize % LINES == 0
+            && let Some(State { theta, w1, w2, w3 }) = before.replace(y)
+        {
+            let between = |a: f64, b: f64, x: f64| a + x * (b - a);
+            let along = |x: f64| State {
+                theta: between(theta, y.theta, x),
+                w1: between(w1, y.w1, x),
+                w2: between(w2, y.w2, x),
+                w3: between(w3, y.w3, x),
+            };
+            let found = step(|x| law.couple(body, &along(x), normal));
+            jump = jump.max(found / size(m).max(f64::MIN_POSITIVE));
+        }
+        if jump > STEP {
+            return refuse(jump, "no step, and no couple at rest: tanh(x/e) in place of sgn(x)");
+        }
+    }
+    Ok(())
+}
+
+fn check_friction(law: &dyn FrictionLaw, fixed: f64) -> Result<(), Error> {
+    let most = law.coefficient(0.0);
+    within("static", fixed, (most, f64::INFINITY), "the coefficient at rest, or more")?;
+    let speed = |i: f64| 10f64.powf(-6.0 + 9.0 * i / 1000.0);
+    let mu = |i: f64| law.coefficient(if i < 0.0 { 0.0 } else { speed(i) });
+    for i in -1..1000 {
+        let [from, to] = [f64::from(i), f64::from(i + 1)];
+        within("mu", mu(to), (0.0, f64::MAX), "a coefficient of friction of 0 or more at every speed")?;
+        let rises = (mu(to) - mu(from)).abs() > STEP * (1.0 + most);
+        if rises
+            && step(|x| {
+                [law.coefficient((1.0 - x) * if i < 0 { 0.0 } else { speed(from) } + x * speed(to)), 0.0, 0.0]
+            }) > STEP
+        {
+            return Err(Error::OutOfRange {
+                name: "mu",
+                value: mu(to),
+                expected: "a coefficient without a step",
+            });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,307 @@
+//! One phase of a body under a user's laws: its equations, and the ends of the phase.
+//!
+//! ```text
+//! N from m(N)     secants of the couple, until N no longer changes
+//! ```
+//! The equations are those of the library's laws. Slopes of margins are differences, since a user's law has no derivative.
+
+use crate::laws::body::{Body, landing_angle};
+use crate::laws::contact::lossy::{Acted, Held, Lossy};
+use crate::laws::contact::slip::{Friction, Slipping};
+use crate::laws::contact::standstill::{Standstill, standstill_under};
+use crate::laws::contact::{Contact, Force, Table, grip};
+use crate::laws::custom::Custom;
+use crate::laws::loss::{Couple, Couples, Losses};
+use crate::laws::state::State;
+use crate::methods::flow::{Flow, FlowPlace};
+use crate::methods::{radau, rk8};
+use crate::motions::creep::is_fast;
+use crate::motions::halt::{Halt, TIME};
+use crate::motions::path::face::FLAT;
+use crate::motions::path::slide::{Slide, first, longest, pose_rates, vanished};
+use crate::motions::path::write::state;
+use crate::motions::walk::slip_over;
+use crate::motions::{Ask, Ending, Kind};
+use crate::numbers::Dual;
+use core::f64::consts::PI;
+use nalgebra::SMatrix;
+
+/// Number of margins: face, other rim, normal force, and room or grip.
+const CUSTOM_MARGINS: usize = 4;
+/// The number of numbers that react to each other: sine, cosine, w and u.
+const REACTING: usize = 7;
+/// Largest number of secants for the normal force.
+const SECANTS: usize = 40;
+/// Part of the longest step, or of a number, over which a slope is taken.
+const ASIDE: f64 = 1e-5;
+
+/// One phase: its body, its laws, and whether the contact point slips.
+#[derive(Clone, Copy)]
+pub(super) struct CustomFlow<'a> {
+    pub body: &'a Body,
+    pub ask: &'a Ask,
+    pub custom: Custom<'a>,
+    pub slips: bool,
+    pub tol: f64,
+}
+
+/// The response of the body: accelerations, force, the rates of the slip and of the time, and the margin of the slip.
+#[derive(Clone, Copy)]
+pub(super) struct Answer {
+    pub w: [f64; 3],
+    pub u: [f64; 2],
+    pub force: [f64; 3],
+    pub free: f64,
+    pub room: f64,
+    pub power: f64,
+    pub pace: f64,
+}
+
+impl<'a> CustomFlow<'a> {
+    /// The law of sliding friction at a speed.
+    pub(super) fn friction(&self, speed: f64) -> Friction {
+        match (self.ask.table.friction(), self.custom.friction) {
+            (Friction::Coulomb { fixed, .. }, Some(law)) => {
+                Friction::Coulomb { mu: law.coefficient(speed), fixed, patch: 0.0 }
+            }
+            (friction, _) => friction,
+        }
+    }
+
+    pub(super) fn kind(&self) -> Kind {
+        if self.slips || self.ask.table == Table::Smooth { Kind::Slipping } else { Kind::Rolling }
+    }
+
+    /// The response to the couple of all losses, from the response to given couples and its normal force.
+    fn solved<R>(
+        &self,
+        angle: (f64, f64),
+        w: [f64; 3],
+        answer: impl Fn(Option<Couples<f64>>) -> (R, f64),
+    ) -> (R, Option<Couples<f64>>) {
+        let built_in = Couples::some(&self.ask.losses);
+        let Some(law) = self.custom.couple else { return (answer(built_in).0, built_in) };
+        let side = if angle.0 < 0.0 { -1.0 } else { 1.0 };
+        let y = State { theta: (side * angle.0).atan2(angle.1), w1: side * w[0], w2: side * w[1], w3: w[2] };
+        let at = |normal: f64| {
+            let [m1, m2, m3] = law.couple(self.body, &y, normal.max(0.0));
+            [side * m1, side * m2, m3]
+        };
+        let of = |given: Couple<f64>| {
+            Some(built_in.unwrap_or(Couples::of(&Losses::NONE, |x| x)).with_given(given))
+        };
+        let (mut normal, mut m) = (1.0, at(1.0));
+        let mut couples = of(Couple { free: m, pressed: [0.0; 3] });
+        let (mut found, mut next) = answer(couples);
+        for _ in 0..SECANTS {
+            let more = at(next);
+            if more == m || (next - normal).abs() <= 4.0 * f64::EPSILON * (1.0 + next.abs()) {
+                return (found, couples);
+            }
+            let pressed: [f64; 3] = core::array::from_fn(|i| (more[i] - m[i]) / (next - normal));
+            let free = core::array::from_fn(|i| more[i] - pressed[i] * next);
+            (normal, m, couples) = (next, more, of(Couple { free, pressed }));
+            (found, next) = answer(couples);
+        }
+        let lost = Couple { free: [f64::NAN; 3], pressed: [f64::NAN; 3] };
+        (answer(of(lost)).0, of(lost))
+    }
+
+    /// The response of a body that rolls, or slides freely on a smooth table, and the couples that act.
+    fn held(&self, contact: Contact, angle: (f64, f64), w: [f64; 3]) -> (Acted<f64>, Option<Couples<f64>>) {
+        let rates = contact.rates(self.body);
+        self.solved(angle, w, |losses| {
+            let losses = losses.unwrap_or(Couples::of(&Losses::NONE, |x| x));
+            let acted = Lossy { rates, losses }.at(angle, w[0] / angle.0, w, Held::Nothing);
+            (acted, acted.force[0])
+        })
+    }
+
+    /// The response of a body that rolls, or slides freely.
+    fn rolls(&self, angle: (f64, f64), w: [f64; 3]) -> Answer {
+        let (at, _) = self.held(self.ask.table.contact(), angle, w);
+        let [normal, along, across] = at.force;
+        let held = grip(self.ask.table.mu(), normal, along * along + across * across);
+        let room = if self.ask.table.mu().is_finite() { held } else { 1.0 };
+        Answer { w: at.w, u: [0.0; 2], force: at.force, free: normal, room, power: at.power, pace: 1.0 }
+    }
+
+    /// The response of a body that slips with u, or that begins to slip along `way`.
+    pub(super) fn slides(
+        &self,
+        angle: (f64, f64),
+        w: [f64; 3],
+        u: [f64; 2],
+        way: Option<[f64; 2]>,
+    ) -> Answer {
+        let law = Slipping::on(self.body, &self.friction(u[0].hypot(u[1])));
+        let answer = |losses| {
+            let law = law.with_losses(losses);
+            let (at, pace) = match way {
+                Some(way) => (law.towards(angle, w, u, way), 1.0),
+                None => law.at(angle, w, u),
+            };
+            ((at, pace), at.force[0])
+        };
+        let ((at, pace), losses) = self.solved(angle, w, answer);
+        let power = law.with_losses(losses).power(angle, w, at.force[0]);
+        Answer { w: at.w, u: at.u, force: at.force, free: at.free, room: at.room, power, pace }
+    }
+
+    pub(super) fn answer<const N: usize>(&self, y: &[f64; N]) -> Answer {
+        let (angle, w) = ((y[0], y[1]), [y[2], y[3], y[4]]);
+        if self.slips { self.slides(angle, w, [y[5], y[6]], None) } else { self.rolls(angle, w) }
+    }
+
+    /// The force in a state near the numbers `y`; `way` is the direction in which a slip begins.
+    pub(super) fn force(&self, near: &State, u: [f64; 2], way: [f64; 2]) -> Force {
+        let (angle, w) = (near.theta.sin_cos(), [near.w1, near.w2, near.w3]);
+        let begins = (u == [0.0; 2]).then_some(way);
+        let at = if self.slips { self.slides(angle, w, u, begins) } else { self.rolls(angle, w) };
+        let [normal, along, across] = at.force;
+        Force { normal, along, across }
+    }
+
+    /// Writes the rates of all numbers from the response.
+    fn writes<const N: usize>(&self, y: &[f64; N], at: &Answer, all: &mut [f64; N]) {
+        let (precession, w2) = (y[2] / y[0], y[3]);
+        let [_, along, across] = at.force;
+        let heat = -(along * y[6] + across * y[5]);
+        let turns = [precession, y[4] - y[1] * precession];
+        let pose = pose_rates(&self.body.shape().rim, y, turns, [y[5], y[6]]);
+        let rates = [-(y[1] * w2), y[0] * w2, at.w[0], at.w[1], at.w[2], at.u[0], at.u[1], 1.0, heat];
+        for (to, rate) in all.iter_mut().zip(rates.into_iter().chain(pose).chain([at.power])) {
+            *to = at.pace * rate;
+        }
+    }
+
+    /// The rates of all numbers, in time, of a slip that begins along `way`.
+    pub(super) fn rates_along<const N: usize>(&self, y: &[f64; N], way: [f64; 2]) -> [f64; N] {
+        let (at, mut all) = (self.slides((y[0], y[1]), [y[2], y[3], y[4]], [0.0; 2], Some(way)), *y);
+        self.writes(y, &at, &mut all);
+        all
+    }
+
+    fn all_margins<const N: usize>(&self, y: &[f64; N]) -> [f64; CUSTOM_MARGINS] {
+        let at = self.answer(y);
+        let (high, far) = landing_angle(self.body.theta_end());
+        let side = if self.body.theta_end() < PI { high * y[1] - far * y[0] } else { 1.0 };
+        [if self.body.is_ball() { 1.0 } else { y[0] - FLAT }, side, at.free, at.room]
+    }
+
+    /// The behaviour of a contact point at rest.
+    pub(super) fn standstill(&self, y: &State) -> Standstill {
+        let (_, couples) = self.held(Contact::Rolling, y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
+        standstill_under(self.body, y, &self.friction(0.0), couples)
+    }
+
+    /// The end of a phase that is over at its start.
+    pub(super) fn at_start<const N: usize>(&self, y: &[f64; N], at: &Answer) -> Option<Ending> {
+        let (end, theta) = (self.body.theta_end(), state(y).theta);
+        let rises = y[3] > 0.0 || y[3] == 0.0 && at.w[1] > 0.0;
+        match () {
+            () if end < PI && (theta > end || theta == end && !rises) => Some(Ending::Side),
+            () if at.free <= 0.0 => Some(Ending::LiftOff),
+            () if self.slips && at.room <= 0.0 => Some(Ending::Painleve),
+            () => None,
+        }
+    }
+}
+
+impl Flow<CUSTOM_MARGINS> for CustomFlow<'_> {
+    type Halt = Halt;
+    const TIME: usize = TIME;
+    const OVER: Halt = Halt::Time;
+    const PAUSE: Halt = Halt::Pause;
+    const ENDLESS: Option<Halt> = Some(Halt::Endless);
+    const LOOPS: bool = true;
+    const MAY_BE_STIFF: bool = true;
+
+    fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {
+        self.writes(y, &self.answer(y), all);
+    }
+
+    /// A slip that begins follows its slow direction ever faster, the slower it is.
+    fn is_stiff<const N: usize>(&self, place: &FlowPlace<N>) -> bool {
+        let grows = place.y[5] * place.rate[5] + place.y[6] * place.rate[6] > 0.0;
+        grows && is_fast(place.rate[TIME], self.calm(&place.y))
+    }
+
+    fn implicit_step<const N: usize>(
+        &self,
+        from: &FlowPlace<N>,
+        h: f64,
+    ) -> (rk8::Step<f64, N>, radau::Collocated<N>) {
+        let (y, fast, slip) = (&from.y, Slide::fastest(&from.y), from.y[5].hypot(from.y[6]));
+        let sizes = [y[0], 1.0, fast, fast, fast, slip, slip];
+        let mut slopes = SMatrix::<f64, REACTING, REACTING>::zeros();
+        for j in 0..REACTING {
+            let (mut more, mut less) = (*y, *y);
+            (more[j], less[j]) = (y[j] + ASIDE * sizes[j], y[j] - ASIDE * sizes[j]);
+            let [above, below] = [self.rates(&more), self.rates(&less)];
+            (0..REACTING).for_each(|i| slopes[(i, j)] = (above[i] - below[i]) / (more[j] - less[j]));
+        }
+        radau::step(|y, all| self.write_rates(y, all), y, &slopes, &sizes, (h, 0.01 * self.tol))
+    }
+
+    fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; CUSTOM_MARGINS] {
+        let by = ASIDE * self.calm(&place.y).min(1.0);
+        let aside = |by: f64| {
+            self.all_margins(&core::array::from_fn::<f64, N, _>(|i| by.mul_add(place.rate[i], place.y[i])))
+        };
+        let [before, here, after] = [aside(-by), self.all_margins(&place.y), aside(by)];
+        core::array::from_fn(|i| Dual { value: here[i], slope: (after[i] - before[i]) / (2.0 * by) })
+    }
+
+    fn margin<const N: usize>(&self, y: &[f64; N], i: usize) -> f64 {
+        self.all_margins(y)[i]
+    }
+
+    fn end(&self, i: usize) -> Halt {
+        let last = if self.slips { Halt::Jam } else { Halt::Slips };
+        [Halt::Face, Halt::Side, Halt::LiftOff, last][i]
+    }
+
+    fn error<const N: usize>(&self, y: &[f64; N], made: &rk8::Step<f64, N>) -> f64 {
+        Slide::error(self.tol, y, made, self.slips)
+    }
+
+    fn fastest<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        Slide::fastest(y)
+    }
+
+    fn first<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        first(y)
+    }
+
+    fn calm<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        longest(y, &self.body.shape())
+    }
+
+    fn longest<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
+        self.calm(&place.y) / place.rate[TIME].min(1.0)
+    }
+
+    fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
+        let friction = self.friction(0.0);
+        let over = slip_over(true, friction.strength());
+        let sticks = self.slips && friction.sticks();
+        sticks.then(|| vanished(place, over)).flatten().map(|y| (Halt::Standstill, y))
+    }
+
+    fn stuck<const N: usize>(&self, _: &FlowPlace<N>, _: &[Dual<f64>; CUSTOM_MARGINS]) -> Option<Halt> {
+        None
+    }
+
+    fn is_extrapolated(halt: Halt) -> bool {
+        halt == Halt::Standstill
+    }
+
+    fn shown<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
+        *y
+    }
+
+    fn theta<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        y[0].atan2(y[1])
+    }
+}

@@ -1,0 +1,309 @@
+//! A body under laws of loss and of friction that a user writes ([`custom`](crate::custom)).
+//!
+//! ```text
+//! slips   until u = 0: then it rolls if |F_roll| <= mu_s N, else it slips in another direction
+//! rolls   until |F_roll| = mu_s N: then it slips                  both are integrated
+//! N       from m(N): secants of the couple until N no longer changes
+//! ```
+//! The equations of motion are those of the laws that the library has; the numbers of a slip, and the ends of a phase,
+//! too. Error: as for any motion that is integrated, from a second, rougher run.
+
+mod flow;
+
+use super::ask::{check_flow, check_times_after};
+use super::followed::{Followed, judged};
+use super::halt::{Halt, TIME};
+use super::judge::doubted;
+use super::path::without_slip;
+use super::path::write::{pose, state, state_errors};
+use super::walk::{MOMENT, STILL, ending, most_phases, slip_over};
+use super::{Ask, Ending, Event, Method, Motion, Path, Phase, Start, exact};
+use crate::error::{Error, room};
+use crate::laws::body::Body;
+use crate::laws::contact::Table;
+use crate::laws::contact::slip::Friction;
+use crate::laws::contact::standstill::{Standstill, towards};
+use crate::laws::custom::Custom;
+use crate::laws::loss::Law;
+use crate::laws::pose::Pose;
+use crate::laws::state::State;
+use crate::methods::flow::{Flow, PATIENCE, Steps, TOIL};
+use flow::CustomFlow;
+
+/// The tolerance of a step where none is given: a user's law may be slow.
+const FAIR: f64 = 1e-10;
+/// The numbers of such a motion: those of a slip, with the pose and the lost energy.
+const NUMBERS: usize = 14;
+/// For this time a slip keeps its direction after static friction has ceased to hold. The error is its cube.
+const LATER: f64 = 1e-5;
+
+/// The motion of a body from a start at the `times` under laws of the user's own, up to the event that ends it.
+///
+/// `ask` gives the table, smooth losses, poses and forces; a motion in the air, beyond events or on a patch of contact is
+/// refused, as are dry losses. Without a tolerance each step errs by at most 1e-10. With `custom.friction` the table needs
+/// Coulomb's friction, of which only the static coefficient acts. Errors as for
+/// [`motion::roll_with`](super::motion::roll_with), those of [`Custom::check`], and `Lost` where a law is not finite.
+///
+/// ```
+/// use spincyl::{Body, State, contact::Friction, custom::{self, Custom}, motion::{Ask, Start}};
+///
+/// // Stribeck's friction falls from 0.4 at rest to 0.2 at high speed.
+/// let stribeck = |speed: f64| 0.2 + 0.2 * (-(speed / 0.1).powi(2)).exp();
+/// let hoop = Body::tube(0.0, 1.0)?;
+/// let state = State { theta: std::f64::consts::FRAC_PI_2, w1: 0.0, w2: 0.0, w3: -3.0 };
+/// let start = Start { slip: [0.0, 5.0], ..state.into() };
+/// let (ask, laws) = (Ask::on(Friction::coulomb(0.4)), Custom::default().with_friction(&stribeck));
+/// let motion = custom::roll_with(&hoop, start, &[0.0, 20.0], &ask, laws, || true)?.expect("not interrupted");
+/// assert!((motion.states[1].w3 - -0.5).abs() < 1e-8); // the hoop rolls back as under any friction
+/// # Ok::<(), spincyl::Error>(())
+/// ```
+pub fn roll_with(
+    body: &Body,
+    start: impl Into<Start>,
+    times: &[f64],
+    ask: &Ask,
+    custom: Custom<'_>,
+    mut go_on: impl FnMut() -> bool,
+) -> Result<Option<Motion>, Error> {
+    let start = start.into();
+    let tol = check(body, &start, ask, &custom)?;
+    check_times_after(start.time, times)?;
+    let run = |tol: f64, times: &[f64]| {
+        let flow = CustomFlow { body, ask, custom, slips: false, tol };
+        CustomRun::new(flow, &start, times)?.run(&mut go_on)
+    };
+    Ok(judged(tol, times, run)?.map(Motion::from))
+}
+
+/// Refuses what such a motion cannot have. Returns the tolerance of its steps.
+fn check(body: &Body, start: &Start, ask: &Ask, custom: &Custom<'_>) -> Result<f64, Error> {
+    exact::check(body, &start.state)?;
+    ask.table.check()?;
+    ask.losses.check_for(body)?;
+    let tol = check_flow(ask)?;
+    let refuse = |name: &'static str, value: f64| {
+        Err(Error::OutOfRange { name, value, expected: "none together with a law of the user's own" })
+    };
+    if let Some(law) =
+        Law::ALL.into_iter().find(|law| law.presses() && ask.losses.coefficients[*law as usize] > 0.0)
+    {
+        return refuse(law.parameter(), ask.losses.coefficients[law as usize]);
+    }
+    if ask.restitution.is_some() || start.aloft.is_some() {
+        return refuse("restitution", ask.restitution.unwrap_or(f64::NAN));
+    }
+    if ask.table.friction().patch() > 0.0 {
+        return refuse("patch", ask.table.friction().patch());
+    }
+    if ask.beyond || ask.stop_at_rolling {
+        return refuse(if ask.beyond { "beyond" } else { "stop_at_rolling" }, 1.0);
+    }
+    if !ask.table.rubs() {
+        without_slip(start.slip)?;
+    }
+    if custom.friction.is_some() && !matches!(ask.table, Table::Rubs(Friction::Coulomb { .. })) {
+        let expected = "a table with Coulomb's friction for a law of friction of the user's own";
+        return Err(Error::OutOfRange { name: "contact", value: f64::NAN, expected });
+    }
+    custom.check(body, ask.table.mu())?;
+    Ok(if ask.method == Method::Exact { FAIR } else { tol })
+}
+
+/// The least growth of a slip that begins, so that it has a direction.
+const LEAST: f64 = 1e-30;
+
+/// The numbers after a time at these rates.
+fn moved(y: &[f64; NUMBERS], rate: &[f64; NUMBERS], by: f64) -> [f64; NUMBERS] {
+    core::array::from_fn(|i| by.mul_add(rate[i], y[i]))
+}
+
+/// The beginning of a phase, or the end of the motion.
+enum Beginning {
+    Rolls,
+    Slips,
+    /// A slip from rest along a direction, which it keeps for this time.
+    SlipsOff([f64; 2], f64),
+    Ends(Ending),
+}
+
+/// One run of a motion: its present phase, its numbers, and what it has found.
+struct CustomRun<'a> {
+    flow: CustomFlow<'a>,
+    start: &'a Start,
+    times: &'a [f64],
+    since: Vec<f64>,
+    at: [f64; NUMBERS],
+    /// The direction in which the present slip began from rest.
+    way: [f64; 2],
+    made: Followed,
+    patience: u64,
+}
+
+impl<'a> CustomRun<'a> {
+    fn new(flow: CustomFlow<'a>, start: &'a Start, times: &'a [f64]) -> Result<Self, Error> {
+        let (count, ask) = (times.len(), flow.ask);
+        let mut made = Followed { motion: Motion::empty(count, ask.pose)?, path: Path::empty(count, count)? };
+        if ask.force {
+            (made.motion.forces, made.motion.force_error) = (Some(room(count)?), 0.0);
+        }
+        made.motion.method = Method::Tolerance(flow.tol);
+        let (State { theta, w1, w2, w3 }, [along, across]) = (start.state, start.slip);
+        let ((s, c), mut at) = (theta.sin_cos(), [0.0; NUMBERS]);
+        at[..7].copy_from_slice(&[s, c, w1, w2, w3, along, across]);
+        let mut since = room(count)?;
+        since.extend(times.iter().map(|t| t - start.time + 0.0));
+        Ok(Self { flow, start, times, since, at, way: [0.0; 2], made, patience: PATIENCE })
+    }
+
+    /// The first phase.
+    fn first(&mut self) -> Beginning {
+        let Table::Rubs(friction) = self.flow.ask.table else { return Beginning::Rolls };
+        let over = slip_over(true, self.flow.friction(0.0).strength());
+        let rests = self.at[5].hypot(self.at[6]) <= over;
+        if rests && matches!(friction, Friction::Coulomb { .. }) {
+            self.rests(false)
+        } else {
+            Beginning::Slips
+        }
+    }
+
+    /// What follows where the contact point is at rest; `let_go` says that it has just ceased to be held.
+    fn rests(&mut self, let_go: bool) -> Beginning {
+        (self.at[5], self.at[6]) = (0.0, 0.0);
+        // At the limit itself a slip does not grow; later it does.
+        let (lasts, mut from) = (if let_go { LATER } else { MOMENT }, self.at);
+        if let_go {
+            self.flow.slips = false;
+            from = moved(&self.at, &self.flow.rates(&self.at), 0.5 * lasts);
+        }
+        match self.flow.standstill(&state(&from)) {
+            Standstill::Sticks => Beginning::Rolls,
+            Standstill::LiftsOff => Beginning::Ends(Ending::LiftOff),
+            Standstill::Undefined => Beginning::Ends(Ending::Painleve),
+            Standstill::Slips { alpha, .. } => Beginning::SlipsOff(towards(alpha), lasts),
+        }
+    }
+
+    /// Begins a phase; the end of the motion if it is over at once.
+    fn begins(&mut self, next: Beginning) -> Option<Ending> {
+        let (angle, w) = ((self.at[0], self.at[1]), [self.at[2], self.at[3], self.at[4]]);
+        self.flow.slips = !matches!(next, Beginning::Rolls);
+        let at = match next {
+            Beginning::Ends(ending) => return Some(ending),
+            Beginning::SlipsOff(way, _) => self.flow.slides(angle, w, [0.0; 2], Some(way)),
+            _ => self.flow.answer(&self.at),
+        };
+        if let Some(ending) = self.flow.at_start(&self.at, &at) {
+            return Some(ending);
+        }
+        let phases = &mut self.made.path.phases;
+        let (time, slip) = (self.start.time + self.at[TIME], [self.at[5], self.at[6]]);
+        phases.push(Phase { time, kind: self.flow.kind(), state: state(&self.at), slip });
+        let still = phases.iter().rev().take_while(|phase| phase.time >= time).count();
+        if still > STILL as usize || phases.len() > most_phases(&self.since) {
+            return Some(Ending::Bounded);
+        }
+        if let Beginning::SlipsOff(way, lasts) = next {
+            self.way = way;
+            let from = self.at;
+            while let Some(since) = self.due(from[TIME] + lasts) {
+                self.at = self.slipped(&from, since - from[TIME]);
+                self.writes();
+            }
+            self.at = self.slipped(&from, lasts);
+        }
+        None
+    }
+
+    /// The numbers at the time `lasts` after a slip has begun, by the rates in the middle of that time.
+    fn slipped(&self, from: &[f64; NUMBERS], lasts: f64) -> [f64; NUMBERS] {
+        let half = moved(from, &self.flow.rates_along(from, self.way), 0.5 * lasts);
+        let mut all = moved(from, &self.flow.rates_along(&half, self.way), lasts);
+        let speed = (all[5] * self.way[0] + all[6] * self.way[1]).max(LEAST * lasts);
+        (all[5], all[6]) = (speed * self.way[0], speed * self.way[1]);
+        all
+    }
+
+    /// The next of the times, if it is not after `until`.
+    fn due(&self, until: f64) -> Option<f64> {
+        self.since.get(self.made.motion.states.len()).copied().filter(|t| *t <= until)
+    }
+
+    /// Writes the present numbers.
+    fn writes(&mut self) {
+        self.made.written(&self.flow, (&self.start.state, &self.at), self.way);
+    }
+
+    /// The run to its end; None if it is interrupted.
+    fn run(mut self, go_on: &mut dyn FnMut() -> bool) -> Result<Option<Followed>, Error> {
+        let mut next = self.first();
+        loop {
+            if let Some(ending) = self.begins(next) {
+                let (now, state) = (self.at[TIME], state(&self.at));
+                while self.due(now).is_some() {
+                    self.writes();
+                }
+                self.made.motion.event = Some(Event { ending, time: self.start.time + now, state });
+                self.made.path.last_slip = [self.at[5], self.at[6]];
+                break;
+            }
+            let Some(halt) = self.flows(go_on)? else { return Ok(None) };
+            next = match halt {
+                Halt::Time => break,
+                Halt::Standstill => self.rests(false),
+                Halt::Slips if self.flow.ask.table.rubs() => self.rests(true),
+                Halt::Face => {
+                    let falls = self.at[1] * self.at[3];
+                    self.at[TIME] += if falls > 0.0 { self.at[0] / falls } else { 0.0 };
+                    self.at[0] = 0.0;
+                    Beginning::Ends(Ending::Face)
+                }
+                halt => Beginning::Ends(ending(halt)),
+            };
+        }
+        self.made.motion.times = self.times[..self.made.motion.states.len()].to_vec();
+        (self.made.path.heat, self.made.path.lost) = (self.at[8], self.at[NUMBERS - 1]);
+        Ok(Some(self.made))
+    }
+
+    /// Follows the present phase to its halt.
+    fn flows(&mut self, go_on: &mut dyn FnMut() -> bool) -> Result<Option<Halt>, Error> {
+        let (flow, start, began) = (self.flow, &self.start.state, self.at[TIME]);
+        let toil = TOIL.saturating_sub(self.made.motion.evaluations);
+        let steps = Steps { first: None, most: u64::MAX, patience: self.patience, toil, tired: false };
+        let first = self.made.motion.states.len();
+        let (made, way) = (&mut self.made, self.way);
+        let mut write = |y: &[f64; NUMBERS]| made.written(&flow, (start, y), way);
+        let Some(flown) = flow.run(flow.place(self.at), steps, &self.since[first..], &mut write, go_on)?
+        else {
+            return Ok(None);
+        };
+        self.made.motion.evaluations += flown.spent.evaluations;
+        self.made.path.erred += flown.spent.erred * flow.tol;
+        (self.at, self.patience) = (flown.y, flown.spent.patience);
+        if flow.slips {
+            self.made.path.slipping += self.at[TIME] - began;
+        }
+        Ok(Some(flown.halt))
+    }
+}
+
+impl Followed {
+    /// Adds the numbers `y` to the outputs of a motion from a start.
+    fn written(&mut self, flow: &CustomFlow<'_>, (start, y): (&State, &[f64; NUMBERS]), way: [f64; 2]) {
+        let (now, ask) = (state(y), flow.ask);
+        let side = if y[0] < 0.0 { -1.0 } else { 1.0 };
+        let slip = [side * y[5], side * y[6]];
+        let pose = ask.pose.then(|| {
+            let pose = pose(y);
+            if ask.table != Table::Smooth {
+                return pose;
+            }
+            Pose { contact_point: Pose::below_centre(flow.body, start, &now, pose.phi.rest), ..pose }
+        });
+        let force =
+            ask.force.then(|| doubted(&now, state_errors(&now, flow.tol), |y| flow.force(y, slip, way)));
+        self.put(now, slip, y[8], flow.kind(), pose, force);
+        self.path.work_lost.push(y[NUMBERS - 1]);
+    }
+}

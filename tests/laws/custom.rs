@@ -1,0 +1,220 @@
+//! Laws of the user's own: the same motions as under the library's laws, the balance of energy, and what is refused.
+
+use crate::common::{drawn, wander};
+use spincyl::contact::{Contact, Table, slip::Friction};
+use spincyl::custom::{self, Custom};
+use spincyl::loss::{Law, Losses};
+use spincyl::motion::{Ask, Ending, Method, Motion, Start, roll_with};
+use spincyl::{Body, Error, State};
+use std::f64::consts::FRAC_PI_2;
+
+const NONE: Losses = Losses::NONE;
+
+/// A body, a start that may slip, and a table, at random.
+fn any(r: &mut impl FnMut() -> f64) -> (Body, Start, Table) {
+    let body = match (4.0 * r()) as u8 {
+        0 => Body::ball(0.4 * r() - 0.2, 0.4, 0.42),
+        1 => Body::solid(0.02 + 0.5 * r()),
+        2 => Body::tube(0.5 + 2.0 * r(), 0.8 * r()),
+        _ => Body::rounded_tube(0.4 + r(), 0.0, 0.05 + 0.3 * r()),
+    };
+    let mut speed = || 3.0 * r() - 1.5;
+    let (w1, w2, w3, slip) = (speed(), 0.3 * speed(), 2.0 * speed(), [speed(), speed()]);
+    let state = State { theta: 0.4 + r(), w1, w2, w3 };
+    let (table, slips) = match (5.0 * r()) as u8 {
+        0 => (Friction::coulomb(0.1 + 0.4 * r()).into(), true),
+        1 => (Friction::coulomb(0.1 + 0.4 * r()).into(), false),
+        2 => (Friction::Viscous { c: 0.1 + r() }.into(), true),
+        3 => (Table::Rolling { mu: 0.2 + r() }, false),
+        _ => (Table::of(Contact::Smooth, 0.0), false),
+    };
+    (body.unwrap(), Start { slip: if slips { slip } else { [0.0; 2] }, ..state.into() }, table)
+}
+
+/// The largest difference of states and slips, and of the ends, beside the sum of the two claims.
+fn apart(a: &Motion, b: &Motion) -> [f64; 2] {
+    assert_eq!(a.ending(), b.ending());
+    let mut off = a.event.zip(b.event).map_or(0.0, |(a, b)| (a.time - b.time).abs());
+    for (a, b) in a.states.iter().zip(&b.states) {
+        let by = [a.theta - b.theta, a.w1 - b.w1, a.w2 - b.w2, a.w3 - b.w3];
+        off = by.iter().fold(off, |most: f64, x| most.max(x.abs()));
+    }
+    [off, a.error + b.error]
+}
+
+fn own(body: &Body, start: Start, times: &[f64], ask: &Ask, laws: Custom<'_>) -> Result<Motion, Error> {
+    custom::roll_with(body, start, times, ask, laws, || true).map(|found| found.expect("not interrupted"))
+}
+
+#[test]
+fn a_couple_of_the_air_that_a_user_writes_moves_a_body_as_that_of_the_library_does() {
+    let mut r = wander(5301);
+    let times: Vec<f64> = (0..=20).map(|i| 0.2 * f64::from(i)).collect();
+    let mut ended = 0;
+    for _ in 0..drawn(450) {
+        let (body, start, table) = any(&mut r);
+        let (b, b2) = (0.1 * r(), 0.05 * r());
+        let air = |_: &Body, y: &State, _: f64| {
+            let w = [y.w1, y.w2, y.w3];
+            let fast = w.iter().map(|x| x * x).sum::<f64>().sqrt();
+            w.map(|x| -(b + b2 * fast) * x)
+        };
+        let losses = Losses::of(Law::AirLinear, b) + Losses::of(Law::AirQuadratic, b2);
+        let ask = Ask { pose: true, force: true, ..Ask::on(table) };
+        let theirs = own(&body, start, &times, &ask, Custom::default().with_couple(&air)).unwrap();
+        let ours = roll_with(&body, start, &times, &Ask { losses, ..ask }, || true).unwrap().unwrap();
+        let [off, claimed] = apart(&theirs, &ours);
+        assert!(off <= claimed.max(1e-11), "{body:?} {start:?} {table:?}: {off:e} of {claimed:e}");
+        assert!(claimed < 1e-5, "{body:?} {start:?} {table:?}: {claimed:e}");
+        let path = [&theirs, &ours].map(|m| m.path.as_ref().unwrap());
+        assert!((path[0].heat - path[1].heat).abs() < 1e-8 + 10.0 * claimed);
+        assert!((path[0].lost - path[1].lost).abs() < 1e-8 + 10.0 * claimed);
+        let poses = [&theirs, &ours].map(|m| m.poses.as_ref().unwrap());
+        for (a, b) in poses[0].iter().zip(poses[1]) {
+            let off = (a.contact_point - b.contact_point).norm();
+            assert!(off < 1e-8 + 100.0 * claimed, "{body:?} {start:?} {table:?}: {off:e} of {claimed:e}");
+        }
+        let forces = [&theirs, &ours].map(|m| m.forces.as_ref().unwrap());
+        for (i, (a, b)) in forces[0].iter().zip(forces[1]).enumerate() {
+            let off =
+                (a.normal - b.normal).abs().max((a.along - b.along).abs()).max((a.across - b.across).abs());
+            assert!(
+                off <= theirs.force_error + ours.force_error,
+                "{i} {a:?} {b:?} {:?} {:?} {body:?} {start:?} {table:?}: {off:e}",
+                path[0].phases,
+                path[1].phases
+            );
+        }
+        ended += usize::from(theirs.ending() != Ending::Done);
+    }
+    assert!(ended > 20, "{ended} motions have an end before the last time");
+}
+
+#[test]
+fn a_constant_coefficient_that_a_user_writes_is_coulombs_friction() {
+    let mut r = wander(5302);
+    let times: Vec<f64> = (0..=20).map(|i| 0.3 * f64::from(i)).collect();
+    let mut phases = 0;
+    for _ in 0..drawn(300) {
+        let (body, start, _) = any(&mut r);
+        let (mu, more) = (0.05 + 0.3 * r(), if r() < 0.5 { 0.0 } else { 0.1 });
+        let constant = move |_: f64| mu;
+        let table = Table::from(Friction::Coulomb { mu, fixed: mu + more, patch: 0.0 });
+        // The coefficient of the table itself does not count.
+        let other = Table::from(Friction::Coulomb { mu: 0.5 * mu, fixed: mu + more, patch: 0.0 });
+        let theirs =
+            own(&body, start, &times, &Ask::on(other), Custom::default().with_friction(&constant)).unwrap();
+        let ours = roll_with(&body, start, &times, &Ask::on(table), || true).unwrap().unwrap();
+        let [off, claimed] = apart(&theirs, &ours);
+        assert!(off <= claimed.max(1e-11), "{body:?} {start:?} {table:?}: {off:e} of {claimed:e}");
+        let both = [&theirs, &ours].map(|m| m.path.as_ref().unwrap().phases.len());
+        assert_eq!(both[0], both[1], "{body:?} {start:?} {table:?}");
+        phases += both[0];
+    }
+    assert!(phases > 110, "{phases} phases");
+}
+
+#[test]
+fn rolling_resistance_rounded_by_a_user_tends_to_that_of_the_library() {
+    // Its couple is proportional to the normal force, which it changes.
+    let body = Body::solid(1.2).unwrap();
+    let start = Start::from(State { theta: 1.1, w1: 0.8, w2: 0.4, w3: 1.5 });
+    let (times, delta) = ([0.0, 0.5, 1.0, 1.5], 0.02);
+    let losses = Losses::of(Law::RollingResistance, delta);
+    let ours = roll_with(&body, start, &times, &Ask { losses, ..Ask::default() }, || true).unwrap().unwrap();
+    let off = |e: f64| {
+        let rounded = move |_: &Body, y: &State, normal: f64| {
+            let (s, c) = y.theta.sin_cos();
+            let (rolling, rocking) = (c * y.w1 - s * y.w3, y.w2);
+            let per = -(delta * normal) / (rolling * rolling + rocking * rocking + e * e).sqrt();
+            [per * rolling * c, per * rocking, -(per * rolling * s)]
+        };
+        let theirs =
+            own(&body, start, &times, &Ask::default(), Custom::default().with_couple(&rounded)).unwrap();
+        apart(&theirs, &ours)[0]
+    };
+    let [far, near] = [off(1e-1), off(1e-2)];
+    assert!(far < 1e-2 && near < 0.02 * far && near > 0.005 * far, "{far:e} {near:e}: of order e^2");
+}
+
+#[test]
+fn energy_heat_and_work_of_a_law_that_is_proportional_to_the_force_keep_their_sum() {
+    let mut r = wander(5303);
+    for _ in 0..drawn(180) {
+        let (body, start, table) = any(&mut r);
+        let c = 0.1 * r();
+        let cubic = move |_: &Body, y: &State, normal: f64| {
+            let square = y.w1 * y.w1 + y.w2 * y.w2 + y.w3 * y.w3;
+            [y.w1, y.w2, y.w3].map(|x| -c * (normal + normal * normal) * square * x)
+        };
+        let falling = |speed: f64| 0.1 + 0.3 / (1.0 + speed * speed);
+        let slips = matches!(table, Table::Rubs(Friction::Coulomb { .. }));
+        let laws = Custom::default().with_couple(&cubic);
+        let (laws, table) =
+            if slips { (laws.with_friction(&falling), Friction::coulomb(0.4).into()) } else { (laws, table) };
+        let ask = Ask { method: Method::Tolerance(1e-11), ..Ask::on(table) };
+        let m = own(&body, start, &[0.0, 0.5, 1.0, 2.0], &ask, laws).unwrap();
+        let path = m.path.as_ref().unwrap();
+        let sum = |i: usize| {
+            let energy = match table {
+                Table::Smooth => Contact::Smooth.energy(&body, &m.states[i]),
+                _ => spincyl::contact::slip::energy(&body, &m.states[i], path.slip[i]),
+            };
+            energy + path.dissipated[i] + path.work_lost[i]
+        };
+        for i in 1..m.states.len() {
+            assert!(
+                (sum(i) - sum(0)).abs() < 1e-9 * (1.0 + sum(0)),
+                "{body:?} {start:?} {table:?}: {:e}",
+                sum(i) - sum(0)
+            );
+            assert!(path.work_lost[i] >= path.work_lost[i - 1]);
+        }
+    }
+}
+
+#[test]
+fn a_hoop_under_stribecks_friction_slips_for_the_integral_of_the_inverse_coefficient() {
+    // u' = -2 mu(u) for a thin hoop, so that the slip lasts for the integral of du/(2 mu) from 0 to u.
+    let stribeck = |speed: f64| 0.2 + 0.2 * (-(speed / 0.7f64).powi(2)).exp();
+    let hoop = Body::tube(0.0, 1.0).unwrap();
+    let state = State { theta: FRAC_PI_2, w1: 0.0, w2: 0.0, w3: -3.0 };
+    let start = Start { slip: [0.0, 5.0], ..state.into() };
+    let ask = Ask { method: Method::Tolerance(1e-12), ..Ask::on(Friction::coulomb(0.4)) };
+    let m = own(&hoop, start, &[0.0, 20.0], &ask, Custom::default().with_friction(&stribeck)).unwrap();
+    let (mut lasts, n) = (0.0, 4000);
+    for i in 0..n {
+        let at = |x: f64| 0.5 / stribeck(5.0 * (f64::from(i) + x) / f64::from(n));
+        lasts += (at(0.0) + 4.0 * at(0.5) + at(1.0)) / 6.0 * 5.0 / f64::from(n);
+    }
+    let phases = &m.path.as_ref().unwrap().phases;
+    assert!((phases[1].time - lasts).abs() < 1e-10, "{} {lasts}", phases[1].time);
+}
+
+#[test]
+fn a_law_that_gives_energy_or_has_a_step_is_refused_by_name() {
+    let body = Body::solid(1.2).unwrap();
+    let start = Start::from(State { theta: 1.1, w1: 0.8, w2: 0.4, w3: 1.5 });
+    let refused = |laws: Custom<'_>, ask: Ask| match own(&body, start, &[0.0, 1.0], &ask, laws) {
+        Err(Error::OutOfRange { name, expected, .. }) => (name, expected),
+        other => panic!("{other:?}"),
+    };
+    let with = |law: &dyn custom::CoupleLaw| refused(Custom::default().with_couple(law), Ask::default());
+    let gives = |_: &Body, y: &State, _: f64| [0.1 * y.w1, -y.w2, -y.w3];
+    assert_eq!(with(&gives).1, "a couple that takes energy, m.w <= 0");
+    let dry = |_: &Body, y: &State, normal: f64| [0.0, 0.0, -0.1 * normal * y.w3.signum()];
+    assert!(with(&dry).1.contains("tanh"));
+    let nan = |_: &Body, y: &State, _: f64| [-y.w1, -y.w2, -y.w3 * (y.w3 + 5.0).sqrt()];
+    assert_eq!(with(&nan).1, "a couple that is finite in every state");
+    let rubs = |law: &dyn custom::FrictionLaw| {
+        refused(Custom::default().with_friction(law), Ask::on(Friction::coulomb(0.3)))
+    };
+    assert_eq!(rubs(&|speed: f64| 0.3 - speed).0, "mu");
+    assert_eq!(rubs(&|speed: f64| if speed < 1.0 { 0.3 } else { 0.1 }).0, "mu");
+    assert_eq!(rubs(&|_: f64| 0.4).0, "static");
+    let kind = |speed: f64| 0.2 + 0.0 * speed;
+    assert_eq!(refused(Custom::default().with_friction(&kind), Ask::default()).0, "contact");
+    let resisted = Ask { losses: Losses::of(Law::RollingResistance, 0.01) + NONE, ..Ask::default() };
+    assert_eq!(refused(Custom::default(), resisted).0, Law::RollingResistance.parameter());
+    assert_eq!(refused(Custom::default(), Ask { beyond: true, ..Ask::default() }).0, "beyond");
+}

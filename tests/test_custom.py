@@ -1,0 +1,137 @@
+"""Laws of a user's own: the library's motions, SI, and what they are refused for."""
+
+import numpy as np
+import pytest
+
+import spincyl as sc
+
+COIN = sc.Body.solid(0.1)
+START, T = COIN.steady(0.5), np.linspace(0, 5, 11)
+CUBIC = sc.custom.Couple(lambda theta, w, normal: -0.01 * (w @ w) * w)
+FALLING = sc.custom.Friction(lambda u: 0.1 + 0.2 / (1 + u * u))
+
+
+def test_a_drag_written_as_a_function_moves_a_coin_as_the_librarys_does():
+    own = sc.custom.Couple(lambda theta, w, normal: -0.01 * w)
+    ours = sc.roll(COIN, START, T, losses=sc.loss.AirLinear(0.01), want=("pose", "force"))
+    for tol, most in ((None, 1e-9), (1e-13, 1e-12)):
+        m = sc.roll(COIN, START, T, losses=own, tol=tol, want=("pose", "force"))
+        assert abs(m.w - ours.w).max() < m.error + ours.error < most
+        assert abs(m.work_lost - ours.work_lost).max() < 10 * most
+        assert abs(m.centre - ours.centre).max() < m.pose_error + ours.pose_error
+        assert abs(m.normal - ours.normal).max() < m.force_error + ours.force_error
+
+
+def test_what_a_law_loses_is_the_integral_of_its_power():
+    t = np.linspace(0, 5, 2001)
+    m = sc.roll(COIN, START, t, losses=CUBIC)
+    power = 0.01 * (m.w**2).sum(axis=1) ** 2
+    lost = np.concatenate([[0], np.cumsum((power[1:] + power[:-1]) / 2 * np.diff(t))])
+    assert abs(m.work_lost - lost).max() < 1e-7
+    assert np.ptp(COIN.energy(m.states) + m.work_lost) < 1e-9
+    assert CUBIC.power(COIN, START) == pytest.approx(power[0], rel=1e-12)
+
+
+def test_a_measured_body_gives_its_law_si():
+    tube = sc.measured(outer_diameter="22mm", length="50mm", mass="10g")
+    seen = []
+
+    def drag(theta, w, normal):
+        seen.append((np.linalg.norm(w), normal))
+        return -1e-8 * w  # N m s
+
+    start, t = tube.steady(1.2), np.linspace(0, 1, 5)
+    m = sc.roll(tube, start, t, losses=sc.custom.Couple(drag))
+    ours = sc.roll(tube, start, t, losses=sc.loss.AirLinear.from_si(1e-8, scale=tube))
+    assert abs(m.w - ours.w).max() < 1e-9 * abs(m.w).max()
+    assert m.work_lost[-1] == pytest.approx(ours.work_lost[-1], rel=1e-8)
+    fastest, normal = seen[-1]
+    assert fastest == pytest.approx(np.linalg.norm(m.w[-1]), rel=0.05)
+    assert normal == pytest.approx(0.01 * 9.80665, rel=0.05)
+
+
+def test_the_friction_of_a_measured_body_gets_metres_per_second():
+    ball = sc.Body.ball(0.0, i1=0.4, i3=0.4, diameter="57mm", mass="170g")
+    struck = sc.State(np.pi / 2, 0.0, 0.0, 0.0, slip=(0.0, 3.0))
+    falls = 0.05  # m/s
+    own = sc.custom.Friction(lambda v: 0.1 + 0.2 / (1 + (v / falls) ** 2))
+    of = ball.scale.metres_per_second(1.0)
+    natural = sc.custom.Friction(lambda u: 0.1 + 0.2 / (1 + (u * of / falls) ** 2))
+    ends = sc.roll(ball, struck, 2.0, contact=own).phases[1].time
+    other = sc.roll(ball.natural, struck, 40.0, contact=natural).phases[1].time
+    assert ends == pytest.approx(ball.scale.seconds(other), rel=1e-9)
+
+
+def test_a_billiard_ball_rolls_when_the_law_says():
+    ball = sc.Body.ball(0.0, i1=0.4, i3=0.4)
+    struck = sc.State(np.pi / 2, 0.0, 0.0, 0.0, slip=(0.0, 3.0))
+    m = sc.roll(ball, struck, 20.0, contact=FALLING)
+    u = (np.arange(20000) + 0.5) * 3 / 20000
+    lasts = (3 / 20000 / (3.5 * (0.1 + 0.2 / (1 + u * u)))).sum()
+    assert m.phases[1].kind == "rolling"
+    assert m.phases[1].time == pytest.approx(lasts, rel=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("law", "error", "words"),
+    [
+        (lambda theta, w, normal: 0.1 * w, ValueError, "takes energy"),
+        (lambda theta, w, normal: -0.1 * np.sign(w), ValueError, "tanh"),
+        (lambda theta, w, normal: w * np.nan, ValueError, "finite"),
+        (lambda theta, w, normal: -w[:2], TypeError, "three numbers"),
+        (lambda theta, w, normal: None, TypeError, "three numbers, along e1, e2, e3, not None"),
+        (lambda theta, w, normal: -w / (w @ w - w @ w), ValueError, "finite"),
+        (lambda theta: 0, TypeError, "positional argument"),
+    ],
+)
+@pytest.mark.filterwarnings("ignore:divide by zero", "ignore:invalid value")
+def test_a_couple_that_is_no_loss_is_refused(law, error, words):
+    with pytest.raises(error, match=words):
+        sc.roll(COIN, START, T, losses=sc.custom.Couple(law))
+
+
+def test_what_is_no_friction_is_refused():
+    for law, words in ((lambda u: 0.1 - u, "0 or more"), (lambda u: 0.3 if u < 1 else 0.1, "step")):
+        with pytest.raises(ValueError, match=words):
+            sc.roll(COIN, START, T, contact=sc.custom.Friction(law))
+    with pytest.raises(ValueError, match="static"):
+        sc.custom.Friction(lambda u: 0.3, static=0.1)
+    with pytest.raises(TypeError, match=r"function\(0.0\)"):
+        sc.custom.Friction(lambda u: np.array([1, 2]))
+
+
+def test_an_error_within_a_law_is_that_of_the_motion():
+    with pytest.raises(ZeroDivisionError):
+        sc.roll(COIN, START, T, losses=sc.custom.Couple(lambda theta, w, normal: 1 / 0))
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda: CUBIC + sc.loss.AirLinear(1e-3),
+        lambda: sc.loss.AirLinear(1e-3) + CUBIC,
+        lambda: sc.loss.Sum([CUBIC]),
+        lambda: sc.drift(COIN, 0.5, CUBIC),
+        lambda: sc.sweep.roll(COIN, START, T, losses=CUBIC),
+        lambda: sc.sweep.roll(COIN, START, T, contact=FALLING),
+        lambda: sc.turning_spin(sc.Body.ball(0.2, i1=0.4, i3=0.4), FALLING),
+        lambda: sc.roll(
+            sc.Ellipsoid.egg(1.0, 1.5), sc.Ellipsoid.egg(1.0, 1.5).spinning(1.0), T, contact=FALLING
+        ),
+        lambda: sc.play(COIN, START.theta, state=START, contact=FALLING),
+        lambda: sc.play(COIN, START.theta, state=START, losses=CUBIC),
+    ],
+)
+def test_what_cannot_follow_a_law_of_your_own_refuses_it(call):
+    with pytest.raises(TypeError, match="of your own|function of the speed"):
+        call()
+
+
+def test_a_custom_motion_is_shown_and_plotted():
+    import matplotlib.pyplot as plt
+
+    m = sc.roll(COIN, START, T, losses=CUBIC)
+    assert "custom.Couple" in repr(m.losses)
+    m.plot()
+    assert any("custom.Couple" in text for text in (ax.get_title() for ax in plt.gcf().axes))
+    plt.close("all")
