@@ -118,8 +118,8 @@ def test_an_error_within_a_law_is_that_of_the_motion():
         lambda: sc.roll(
             sc.Ellipsoid.egg(1.0, 1.5), sc.Ellipsoid.egg(1.0, 1.5).spinning(1.0), T, contact=FALLING
         ),
-        lambda: sc.play(COIN, START.theta, state=START, contact=FALLING),
-        lambda: sc.play(COIN, START.theta, state=START, losses=CUBIC),
+        lambda: sc.play(COIN, state=START, contact=FALLING),
+        lambda: sc.play(COIN, state=START, losses=CUBIC),
     ],
 )
 def test_what_cannot_follow_a_law_of_your_own_refuses_it(call):

@@ -1,8 +1,9 @@
 """Laws of your own: a couple that takes energy, and a coefficient of friction that depends on the speed.
 
-Each is a function of Python, plain or compiled (``numba.njit``), that a motion calls some thousand times. A law
-is checked before the motion begins: it is finite, a couple gives no energy, and neither has a step. A law of
-dry friction, which contains the sign of a speed, has to be rounded: ``tanh(x/e)`` in place of ``sign(x)``.
+Each is a function of Python, plain or compiled (``numba.njit``), that a motion calls some thousand times. A
+law is checked before the motion begins: it is finite, a couple gives no energy, and neither has a step. A
+law of dry friction, which contains the sign of a speed, has to be rounded: ``tanh(x/e)`` in place of
+``sign(x)``.
 
 >>> import numpy as np
 >>> import spincyl as sc
