@@ -136,7 +136,7 @@ def spread(client, blocks, count):
             x["stop"] - x["start"]
             for task in stream.data
             for x in task["startstops"]
-            if x["action"] == "compute" and "columns" in str(task["key"])
+            if x["action"] == "compute" and "block" in str(task["key"])
         ]
         # tasks shorter than a hundredth of the longest only pass on a result
         took = [t for t in took if t > max(took) / 100]

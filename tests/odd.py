@@ -354,6 +354,7 @@ def sweeps():
             sc.sweep.flicks,
             {"body": TUBE, "t": 0.1, "hertz": [10.0, 17.0], "w1": None, "launch": 1.3, "centre": None, "contact": sc.Coulomb(0.3)},
         ),
+        "sweep.inputs": (sc.sweep.inputs, {"rows": sc.sweep.roll(FAMILY, FAMILY.steady(1.3), 0.1)}),
         "sweep.roll": (sc.sweep.roll, {**rolls, "step": None}),
         "sweep.roll at times": (sc.sweep.roll, {"bodies": FAMILY, "states": FAMILY.steady(1.3), "t": [0.1, 0.2], "threads": 1}),
         "sweep.roll with friction": (sc.sweep.roll, rolls | {"contact": sc.Coulomb(0.3), "losses": dry, "t": 0.1}),

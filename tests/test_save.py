@@ -38,6 +38,7 @@ def test_a_saved_map_is_the_map(tmp_path):
     saved = sc.sweep.save(lazy(), tmp_path / "map.zarr", progress=told.append)
     expected = sc.sweep.portrait(THETA, ELL, want=("rate", "region"))
     assert all(np.array_equal(saved[k], expected[k], equal_nan=True) for k in expected)
+    assert {k: saved[k].dtype for k in expected} == {k: expected[k].dtype for k in expected}
     assert np.array_equal(saved["theta"], THETA) and told[-1] == 1.0
     # a second save computes nothing
     before = contents(tmp_path / "map.zarr")

@@ -104,7 +104,8 @@ class Coulomb(_Law):
         return self.mu, self.static, self.patch
 
     def __repr__(self) -> str:
-        same = self.static is self.mu or (not is_lazy(self.static) and np.array_equal(self.static, self.mu))
+        lazy = is_lazy(self.static) or is_lazy(self.mu)
+        same = self.static is self.mu or (not lazy and np.array_equal(self.static, self.mu))
         more = {} if same else {"static": self.static}
         point = is_scalar(self.patch) and self.patch == 0
         return call("Coulomb", self.mu, **more | ({} if point else {"patch": self.patch}))

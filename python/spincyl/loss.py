@@ -66,6 +66,7 @@ class DryContour(Law):
     """
 
     eps: Reals
+    _unit = "R"
 
     @classmethod
     def from_si(cls, eps: Reals, *, scale: Scale | Body) -> Self:
@@ -87,6 +88,7 @@ class ViscousContour(Law):
     """
 
     c: Reals
+    _unit = "M R sqrt(g R)"
 
     @classmethod
     def from_si(cls, c: Reals, *, scale: Scale | Body) -> Self:
@@ -108,6 +110,7 @@ class RollingResistance(Law):
     """
 
     delta: Reals
+    _unit = "R"
 
     @classmethod
     def from_si(cls, delta: Reals, *, scale: Scale | Body) -> Self:
@@ -130,6 +133,7 @@ class Drilling(Law):
     """
 
     length: Reals
+    _unit = "R"
 
     @classmethod
     def from_si(cls, length: Reals, *, scale: Scale | Body) -> Self:
@@ -148,6 +152,7 @@ class AirLinear(Law):
     """
 
     b: Reals
+    _unit = "M R sqrt(g R)"
 
     @classmethod
     def from_si(cls, b: Reals, *, scale: Scale | Body) -> Self:
@@ -166,6 +171,7 @@ class AirQuadratic(Law):
     """
 
     b2: Reals
+    _unit = "M R^2"
 
     @classmethod
     def from_si(cls, b2: Reals, *, scale: Scale | Body) -> Self:
@@ -190,6 +196,7 @@ class AirFilm(Law):
     """
 
     viscosity: Reals
+    _unit = "M g^(1/2)/R^(3/2)"
 
     @classmethod
     def from_si(cls, viscosity: Reals = _AIR, *, scale: Scale | Body) -> Self:
@@ -214,6 +221,7 @@ class BoundaryLayer(Law):
     """
 
     k: Reals
+    _unit = "M g^(1/4) R^(7/4)"
 
     @classmethod
     def from_si(

@@ -7,6 +7,7 @@ writes such a result to zarr and can be resumed.
 
 from spincyl.sweep._blocks import block_size
 from spincyl.sweep._flicks import Outcome, flicks
+from spincyl.sweep._inputs import inputs
 from spincyl.sweep._labels import Status
 from spincyl.sweep._map import boundaries, points, portrait, survey
 from spincyl.sweep._roll import Answer, roll
@@ -19,6 +20,7 @@ __all__ = [
     "block_size",
     "boundaries",
     "flicks",
+    "inputs",
     "points",
     "portrait",
     "roll",

@@ -41,8 +41,11 @@ def given_up(status: np.ndarray) -> None:
         warn(told, RuntimeWarning)
 
 
-def labelled(fields: dict[str, Reals]) -> list[Any]:
-    """Every field with named dimensions: its own, or "motion" names for the broadcast plain fields."""
+def labelled(fields: dict[str, Reals], more: dict[str, Reals]) -> tuple[list[Any], list[str]]:
+    """Every field with named dimensions: its own, or "motion" names for the broadcast plain fields.
+
+    Besides these names in their order. `more` are parts of the fields, and are labelled as these are.
+    """
     lib: Any = extra("xarray", "sweep")
     plain = [np.shape(x) for x in fields.values() if not hasattr(x, "dims")]
     try:
@@ -58,13 +61,25 @@ def labelled(fields: dict[str, Reals]) -> list[Any]:
         return lib.DataArray(x, dims=dims[rank - np.ndim(x) :])
 
     # xarray does not broadcast lengths of one by name: drop them where another field is longer
-    named = [label(x) for x in fields.values()]
-    return [x.squeeze([d for d in x.dims if x.sizes[d] == 1]) if _longer(x, named) else x for x in named]
+    named = [label(x) for x in (*fields.values(), *more.values())]
+    long = {d for x in named for d in x.dims if x.sizes[d] > 1}
+    short = [[d for d in x.dims if x.sizes[d] == 1 and d in long] for x in named]
+    return [x.squeeze(out) if out else x for x, out in zip(named, short, strict=True)], dims
 
 
-def _longer(x: Any, others: list[Any]) -> bool:
-    """Whether `x` has a dimension of length one that is longer in one of the others."""
-    return any(x.sizes[d] == 1 and any(o.sizes.get(d, 1) > 1 for o in others) for d in x.dims)
+def free(named: list[Any], names: list[str], spread: frozenset[str]) -> None:
+    """Refuse inputs that have a coordinate, or the only dimension, with the name of an output."""
+    coords, dims = {c for x in named for c in x.coords}, {d for x in named for d in x.dims}
+    for name in names:
+        if name in coords or (dims == {name} and name not in spread):
+            why = f"bodies, states: {name!r} is a coordinate of theirs, and a result of the sweep"
+            raise ValueError(f"{why}: rename it, as by .rename({name}='{name}_start')")
+
+
+def in_order(array: Any, dims: list[str]) -> Any:
+    """The array with those of its dimensions that are in `dims` in that order, as NumPy broadcasts them."""
+    own = iter([d for d in dims if d in array.dims])
+    return array.transpose(*(next(own) if d in dims else d for d in array.dims))
 
 
 def applied(

@@ -32,6 +32,7 @@ from spincyl._measured import natural_time, speaking
 from spincyl._phases import rubs
 from spincyl._roll import is_stone
 from spincyl._state import State, gripping, landed
+from spincyl.sweep._inputs import kept_bodies, kept_contact
 from spincyl.sweep._labels import flags, given_up
 from spincyl.sweep._swept import Question, swept
 
@@ -188,11 +189,12 @@ def roll(
         labels = LABELS | _stones.LABELS
         return swept(_stones.fill, stones, labels, threads=threads, progress=progress, length="a")
     bodies, states = made("bodies", bodies, Body), made("states", states, State)
-    scale, seconds = bodies.scale, t
+    scale, seconds, pace = bodies.scale, t, step
     if scale is not None:
         fitting(contact, scale)
         seconds = si("t", t, "second")
         t = natural_time("t", t, scale)
+        pace = si("step", step, "second")
         step = None if step is None else natural_time("step", step, scale)
         if losses is not None:
             made_law(losses, bodies)
@@ -214,13 +216,14 @@ def roll(
     names = [*_STATE, *(_SLIP if slips else ())] if {"final", "states"} & {*wanted} else []
     spread = frozenset(names if asked.spread else ())
     names += [name for name in summaries if name in wanted] + ["error", "method", "status"]
-    question = Question(fields, names, spread, asked, wanted, scale, seconds)
+    told = kept_bodies(bodies, states, losses) | kept_contact(contact)
+    question = Question(fields, names, spread, asked, wanted, scale, seconds, told)
     result = swept(_fill, question, LABELS, threads=threads, progress=progress)
     result["method"].attrs |= flags(Answer)
     if losses is not None:
         result.attrs["losses"] = repr(losses)
     if asked.step is not None:
-        result.attrs["step"] = asked.step * bodies._second
+        result.attrs["step"] = number("step", pace)
     return result
 
 

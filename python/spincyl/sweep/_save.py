@@ -41,7 +41,8 @@ def save(
     Parameters
     ----------
     result : xarray.Dataset
-        What `portrait` or `roll` returned for dask-backed inputs; one block of dask is one block on disk.
+        What `portrait` or `roll` returned for dask-backed inputs; one block of dask is one block on disk. Its
+        coordinates are saved with it (`inputs`), but for those that are dropped before.
     path : path
         A directory: of a new store, or of one that this function began for the same sweep. What is done is
         marked in a directory beside it, `path` with ".sweep" at its end.
@@ -223,15 +224,15 @@ def _record(result: "xarray.Dataset") -> Record:
     chunks = _chunks(result)
     record = {
         "job": result.attrs["spincyl_sweep"],
-        "format": 2,
+        "format": 3,
         "chunks": chunks,
         "variables": {
             str(name): [*map(str, x.dims), *x.shape, str(x.dtype)] for name, x in result.variables.items()
         },
         "columns": {
             str(name): list(map(str, x.dims))
-            for name, x in result.data_vars.items()
-            if not chunks or set(chunks) & set(x.dims)
+            for name, x in result.variables.items()
+            if (name in result.data_vars or x.chunks) and (not chunks or set(chunks) & set(x.dims))
         },
     }
     found: Record = json.loads(json.dumps(record))
@@ -263,7 +264,7 @@ def _begin(result: "xarray.Dataset", store: Store, record: Record) -> tuple[Reco
 
 
 def _layout(result: "xarray.Dataset", record: Record) -> dict[str, bytes]:
-    """The files of a store without its blocks: metadata, coordinates, and variables that are not lazy."""
+    """The files of a store without its blocks: metadata, and coordinates that are not lazy."""
     import zarr
     from zarr.storage import MemoryStore
 
@@ -273,8 +274,9 @@ def _layout(result: "xarray.Dataset", record: Record) -> dict[str, bytes]:
     for name in columns:
         # one block that is never computed: a graph with the real blocks would take long to build
         x = result[name]
-        layout[name] = x.dims, array.zeros(x.shape, x.dtype, chunks=-1), x.attrs
+        layout[name] = x.dims, array.zeros(x.shape, dtype=x.dtype, chunks=-1), x.attrs
         layout[name].encoding["chunks"] = tuple(chunks.get(d, (n,))[0] for d, n in x.sizes.items())
+    layout = layout.set_coords(list(result.coords))
     layout.attrs = {**result.attrs, "spincyl_sweep": json.dumps(result.attrs["spincyl_sweep"])}
     made: dict[str, Any] = {}
     with warnings.catch_warnings(), zarr.config.set({"array.write_empty_chunks": True}):
@@ -321,10 +323,19 @@ def _is_done(store: Store, block: Block, record: Record, sweep: str) -> bool:
         return False
 
 
+def _own(columns: dict[str, list[str]], block: Block) -> dict[str, list[str]]:
+    """The columns of which a block writes a chunk: of several blocks with one chunk, the first writes it."""
+    return {
+        name: dims
+        for name, dims in columns.items()
+        if all(first == 0 or dim in dims for dim, (first, _) in block.items())
+    }
+
+
 def _mark(store: Store, block: Block, chunks: Chunks, columns: dict[str, list[str]], sweep: str) -> bytes:
     """The mark of a completed block: a checksum for each chunk, None where zarr omits fill values."""
     found: dict[str, int | None] = {}
-    for name, dims in columns.items():
+    for name, dims in _own(columns, block).items():
         at = (str(_number(block, dim, chunks)) for dim in dims)
         found[name] = checksum(store.folder.joinpath(name, "c", *at))
     return _records.mark(sweep, found)
@@ -344,9 +355,10 @@ def _write(
         first = int(number.flat[0]) * size
         block[dim] = first, min(first + size, length)
     try:
-        for (name, dims), x in zip(columns.items(), arrays[len(chunks) :], strict=True):
+        computed = dict(zip(columns, arrays[len(chunks) :], strict=True))
+        for name, dims in _own(columns, block).items():
             array = zarr.open_array(_zarr(store.folder), path=name, mode="r+", zarr_format=3)
-            array[tuple(slice(*block[dim]) if dim in block else slice(None) for dim in dims)] = x
+            array[tuple(slice(*block[dim]) if dim in block else slice(None) for dim in dims)] = computed[name]
         with replaced(_marker(store, block)) as part:
             part.write_bytes(_mark(store, block, chunks, columns, sweep))
     except OSError as e:

@@ -14,6 +14,7 @@ from spincyl._ending import ErrorWarning
 from spincyl._input.numbers import Floats, Reals, components, made, number, si, warn, within, words
 from spincyl._input.threads import Progress
 from spincyl._measured import natural_time
+from spincyl.sweep._inputs import kept_contact, kept_stones
 from spincyl.sweep._labels import given_up
 from spincyl.sweep._swept import Question
 
@@ -55,7 +56,8 @@ def question(
     if isinstance(contact, Coulomb | Viscous):
         fields |= zip(("coefficient", "static", "patch"), contact._numbers, strict=True)
     asked = Asked(np.array([end]), tol=number("tol", tol), contact=contact, mu=number("mu", mu))
-    return Question(fields, names, frozenset(), asked, wanted, scale, seconds)
+    told = kept_stones(stones, states) | kept_contact(contact)
+    return Question(fields, names, frozenset(), asked, wanted, scale, seconds, told)
 
 
 def fill(

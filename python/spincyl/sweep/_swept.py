@@ -15,7 +15,8 @@ from spincyl._measured import speaking
 from spincyl._phases import rubs
 from spincyl._scale import Scale
 from spincyl.sweep._common import in_si, is_lazy, signature
-from spincyl.sweep._labels import Status, applied, flags, labelled
+from spincyl.sweep._inputs import with_inputs
+from spincyl.sweep._labels import Status, applied, flags, free, in_order, labelled
 
 if TYPE_CHECKING:
     import xarray
@@ -34,6 +35,7 @@ class Question(NamedTuple):
     want: tuple[str, ...]  # as the caller gave it
     scale: Scale | None
     seconds: Reals  # the times as the caller gave them
+    kept: dict[str, Reals]  # what is to be a coordinate of the result
 
 
 def swept(
@@ -47,7 +49,7 @@ def swept(
 ) -> "xarray.Dataset":
     """The Dataset of a sweep. `law` fills the columns of a block; `labels` are their units and meanings."""
     lib: Any = extra("xarray", "sweep")
-    fields, names, spread, asked, want, scale, seconds = question
+    fields, names, spread, asked, want, scale, seconds, kept = question
     lazy, at = is_lazy(*fields.values()), asked.times
     options = crossing(asked._replace(contact=kind(asked.contact)))
     share = 1 if lazy and threads is None else thread_count(threads)
@@ -56,9 +58,12 @@ def swept(
     # an empty block raises errors about the arguments before any work
     with speaking(scale, length):
         fill(*(np.empty(0) for _ in fields), threads=1, progress=None)
+    given, dims = labelled(fields, kept)
+    free(given, names, spread)
     data = applied(
-        run, labelled(fields), names, [*map(_dtype, names)], [name in spread for name in names], at
+        run, given[: len(fields)], names, [*map(_dtype, names)], [name in spread for name in names], at
     )
+    data = {name: in_order(array, dims) for name, array in data.items()}
     for name, array in data.items():
         array.attrs = dict(zip(("units", "long_name"), labels[name], strict=True))
     data["status"].attrs |= flags(Status)
@@ -66,6 +71,9 @@ def swept(
     attrs: dict[str, object] = {"contact": named(asked.contact), "t": float(at[-1]), "tol": asked.tol}
     if not rubs(asked.contact):
         attrs["mu"] = asked.mu
+    attrs |= {"beyond": 1} if asked.beyond else {}  # numbers, since netCDF has no booleans
+    more = {"restitution": asked.restitution, "stop_at": asked.stop_at}
+    attrs |= {name: x for name, x in more.items() if x is not None}
     if lazy:
         own = {} if scale is None else {"scale": scale}
         attrs["spincyl_sweep"] = signature("roll", fields, t=at.tolist(), want=want, **options, **own)
@@ -75,7 +83,7 @@ def swept(
         result.attrs["t"] = float(told[-1])
         if spread:
             result["t"] = ("t", told, {"units": "s"})
-    return result
+    return with_inputs(result, dict(zip(kept, given[len(fields) :], strict=True)), length)
 
 
 def _block(

@@ -1,0 +1,205 @@
+"""The inputs of a sweep as coordinates of its result, and bodies, states and laws made of them again."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from spincyl import _core, loss
+from spincyl._body import Body
+from spincyl._contact import CODES, AnyContact, Coulomb, Viscous
+from spincyl._input.numbers import Floats, Reals, components, extra, floats, made
+from spincyl._loss import Law, Loss, Sum, sized
+from spincyl._repr import FIELDS
+from spincyl._scale import Scale
+from spincyl._state import State
+
+if TYPE_CHECKING:
+    import xarray
+
+    from spincyl._ellipsoid import Ellipsoid
+    from spincyl._ellipsoid_state import EllipsoidState
+
+_W = ("w1", "w2", "w3")
+_MOMENTS = ("i1", "i3")
+_AXES = _core.stone_names()  # of a stone: semi-axes, inertia, offset, theta_end
+_NORMAL = ("n1", "n2", "n3")
+_LAWS: dict[str, type[Law]] = {
+    name: getattr(loss, kind) for kind, (name, _) in zip(CODES["Law"], _core.loss_laws(), strict=True)
+}
+#: Every coordinate that these functions give, with its unit; in that of a stone R is a.
+_UNITS = (
+    dict(zip((f"body_{name}" for name in FIELDS), ("R", "M R^2", "M R^2", "1", "R", "rad"), strict=True))
+    | dict(zip((f"body_{name}" for name in _AXES[:-1]), ["R"] * 3 + ["M R^2"] * 6 + ["R"] * 3, strict=True))
+    | {f"start_{name}": "sqrt(g/R)" for name in _W}
+    | {f"start_{name}": "1" for name in _NORMAL}
+    | {f"start_slip_{way}": "sqrt(g R)" for way in ("along", "across", "x", "y")}
+    | {"start_theta": "rad", "start_height": "R", "start_lift": "sqrt(g R)"}
+    | {"contact_mu": "1", "contact_static": "1", "contact_patch": "R", "contact_c": "1/sqrt(g R)"}
+    | {f"loss_{name}": law._unit for name, law in _LAWS.items()}
+)
+
+
+def kept_bodies(bodies: Body, states: State, losses: Loss | None) -> dict[str, Reals]:
+    """The fields of bodies, of states and of losses, by the names of their coordinates.
+
+    The moments of a tube follow from its bore and are left out, unless the bores are lazy and may be NaN.
+    """
+    tube = not hasattr(bodies.bore, "chunks") or bodies.bore.chunks is None
+    tube = tube and not np.isnan(np.asarray(bodies.bore)).any()
+    found = {f"body_{name}": getattr(bodies, name) for name in FIELDS if not (tube and name in _MOMENTS)}
+    found |= {f"start_{name}": getattr(states, name) for name in ("theta", *_W)}
+    if states.slip is not None:
+        found |= zip(("start_slip_along", "start_slip_across"), states.slip, strict=True)
+    if states.height is not None:
+        found |= {"start_height": states.height, "start_lift": states.lift}
+    if losses is not None:
+        found |= {f"loss_{law._parameter}": law.coefficient for law in losses.laws}
+    return found
+
+
+def kept_stones(stones: "Ellipsoid", states: "EllipsoidState") -> dict[str, Reals]:
+    """The numbers of stones and of their states, by the names of their coordinates."""
+    found = dict(zip((f"body_{name}" for name in _AXES), stones._columns(), strict=True))
+    found |= zip((f"start_{name}" for name in _NORMAL), components(states.vertical), strict=True)
+    found |= zip((f"start_{name}" for name in _W), components(states.w), strict=True)
+    if states.slip is not None:
+        found |= zip(("start_slip_x", "start_slip_y"), components(states.slip), strict=True)
+    return found
+
+
+def kept_contact(contact: AnyContact) -> dict[str, Reals]:
+    """The coefficients of a law of friction, by the names of their coordinates."""
+    if isinstance(contact, Viscous):
+        return {"contact_c": contact.c}
+    if not isinstance(contact, Coulomb):
+        return {}
+    own = {} if contact.static is contact.mu else {"contact_static": contact.static}
+    return {"contact_mu": contact.mu, **own, "contact_patch": contact.patch}
+
+
+def with_inputs(result: "xarray.Dataset", named: dict[str, Any], length: str) -> "xarray.Dataset":
+    """The result with these inputs as coordinates, each along the dimensions along which it varies.
+
+    Numbers that are NaN say nothing and are left out. A lazy input is cut into the blocks of the result.
+    """
+    cut = result.chunksizes
+    coords: dict[str, Any] = {}
+    for name, given in named.items():
+        if given.chunks is None:
+            dims, data = _varying(given.dims, floats(given.data))
+        else:
+            dims, data = given.dims, given.data.astype(np.float64).rechunk([cut[d] for d in given.dims])
+        if dims or data == data:
+            coords[name] = dims, data, {"units": _UNITS[name].replace("R", length)}
+    # inputs that are variables of an earlier sweep bring its coordinates with them
+    return result.drop_vars(_UNITS, errors="ignore").assign_coords(coords)
+
+
+def _varying(dims: tuple[Any, ...], data: Floats) -> tuple[tuple[Any, ...], Floats]:
+    """Dimensions and numbers without those dimensions along which all numbers have the same bits."""
+    for dim in dims:
+        bits = np.moveaxis(data, dims.index(dim), 0).view(np.int64)
+        if len(bits) > 1 and (bits[0] == bits[-1]).all() and (bits == bits[:1]).all():
+            dims, data = tuple(d for d in dims if d != dim), np.take(data, 0, dims.index(dim))
+    return dims, data
+
+
+def inputs(rows: "xarray.Dataset") -> dict[str, Any]:
+    """The arguments of a sweep, from the coordinates and attributes of its result or of some of its rows.
+
+    Parameters
+    ----------
+    rows : xarray.Dataset
+        What `roll` or `flicks` returned, or what `save` has stored, opened; or any part of it, as of `isel`.
+
+    Returns
+    -------
+    dict
+        The keywords of `roll`: "bodies", "states", "t", "contact" and "tol", and those of "losses",
+        "restitution", "mu", "step", "beyond" and "stop_at" that were given. Rolled again a row has the same
+        bits: the coordinates are the numbers that were rolled. Of lazy coordinates bodies and states are
+        lazy: ``.load()`` reads the rows first.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If `rows` is no Dataset, or lacks the coordinates or attributes of a sweep; of a single row that is no
+        body or no state, naming its number.
+
+    Notes
+    -----
+    The coordinates are "body_", "start_", "contact_" and "loss_" with the names of fields of bodies (for an
+    `Ellipsoid` a1, i11, i23, d1, ...), states, `Coulomb`, `Viscous` and laws of loss, in natural units: also
+    of measured bodies, for whom all else is in SI.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import spincyl as sc
+    >>> body = sc.Body.solid(np.linspace(0.9, 3, 1000))
+    >>> found = sc.sweep.roll(body, body.steady(1.3).kicked(0.05), 20.0, want=("final", "end"))
+    >>> row = found.isel(motion=999)
+    >>> given = sc.sweep.inputs(row)
+    >>> given["bodies"]
+    Body.solid(3.0)
+    >>> bool(sc.sweep.roll(**given)["w3"] == row["w3"])
+    True
+    """
+    made("rows", rows, extra("xarray", "sweep").Dataset)
+    at, stones = rows.attrs, "body_a1" in rows.coords
+    missing = [name for name in ("start_w3", "body_a1" if stones else "body_ell") if name not in rows.coords]
+    missing += [name for name in ("contact", "t", "tol") if name not in at]
+    if missing:
+        raise ValueError(f"rows: expected a result of sweep.roll, and this has no {missing[0]!r}")
+    given: dict[str, Any] = {name: _input(rows[name]) for name in _UNITS if name in rows.coords}
+    scale = Scale(*(at[name] for name in ("radius", "mass", "gravity"))) if "radius" in at else None
+    known: Any = True if scale is None else scale
+    found = _stones(given, scale) if stones else _bodies(given, scale)
+    found |= {"t": rows["t"].to_numpy() if "t" in rows.coords else at["t"], "tol": at["tol"]}
+    found |= {name: at[name] for name in ("mu", "step", "restitution", "stop_at") if name in at}
+    found |= {"beyond": True} if "beyond" in at else {}
+    if "contact_c" in given:
+        found["contact"] = Viscous(given["contact_c"])._known(known)
+    elif "contact_mu" in given:
+        numbers = (given.get(f"contact_{name}") for name in ("mu", "static", "patch"))
+        found["contact"] = Coulomb(*numbers)._known(known)
+    else:
+        found["contact"] = at["contact"]
+    laws = [
+        sized(law(given[f"loss_{name}"]), known) for name, law in _LAWS.items() if f"loss_{name}" in given
+    ]
+    return found | ({"losses": Sum(laws) if len(laws) > 1 else laws[0]} if laws else {})
+
+
+def _input(array: Any) -> Any:
+    """A number, or an array without coordinates but those of its dimensions."""
+    return float(array) if array.ndim == 0 else array.reset_coords(drop=True)
+
+
+def _bodies(given: dict[str, Any], scale: Scale | None) -> dict[str, Any]:
+    body = Body(*(given.get(f"body_{name}", np.nan) for name in FIELDS), scale=scale)
+    slip = tuple(given[f"start_slip_{way}"] for way in ("along", "across") if f"start_slip_{way}" in given)
+    more = {name: given.get(f"start_{name}") for name in ("height", "lift")}
+    state = State(*(given[f"start_{name}"] for name in ("theta", *_W)), slip=slip or None, **more)
+    return {"bodies": body, "states": state}
+
+
+def _stones(given: dict[str, Any], scale: Scale | None) -> dict[str, Any]:
+    from spincyl._ellipsoid import Ellipsoid
+    from spincyl._ellipsoid_rows import SIX
+    from spincyl._ellipsoid_state import EllipsoidState
+
+    # broadcast by name, since stones and their states have no named dimensions
+    names = [f"body_{name}" for name in _AXES] + [f"start_{name}" for name in (*_NORMAL, *_W)]
+    names += [name for name in ("start_slip_x", "start_slip_y") if name in given]
+    lib: Any = extra("xarray", "sweep")
+    arrays = lib.broadcast(*(lib.DataArray(given.get(name, np.nan)) for name in names))
+    columns: list[Floats] = [array.data for array in arrays]
+    inertia: list[Any] = [[None] * 3 for _ in range(3)]
+    for (i, j), x in zip(SIX, columns[3:9], strict=True):
+        inertia[i][j] = inertia[j][i] = x
+    tensor = np.stack([np.stack(row, axis=-1) for row in inertia], axis=-2)
+    axes, offset, n, w = (np.stack(columns[i : i + 3], axis=-1) for i in (0, 9, 13, 16))
+    slip = np.stack(columns[19:], axis=-1) if len(columns) > 19 else None
+    stone = Ellipsoid(axes, tensor, offset, columns[12], scale=scale, _doubted=True)
+    return {"bodies": stone, "states": EllipsoidState(n, w, slip)}
