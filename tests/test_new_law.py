@@ -29,6 +29,7 @@ def typed(name):
 PLACES = {
     loss.__file__: (
         r"^class {name}\(Law\):$",
+        r'(?s)^class {name}\(Law\):$[^@]*^    {parameter}: Reals\n    _unit = "',
         r'^    "{name}",$',
         r"^    {name}\({parameter}\) +P = ",
     ),

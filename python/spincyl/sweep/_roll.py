@@ -136,14 +136,16 @@ def roll(
         What was wanted, and `error` (estimated, of the worst number of the states, and of "period" and
         "precession_per_period" where they are wanted and there is a period), `method` (`Answer`) and
         `status` (`Status`). Dimensions: those of the inputs, "motion" for plain arrays (several: "motion_0",
-        ...); "t". In natural units, of measured bodies in SI: each array has its `units`. The same bits for
-        any number of threads, any neighbours, and on AVX2, AVX-512 and NEON alike.
+        ...), as NumPy broadcasts them; "t". In natural units, of measured bodies in SI: each array has its
+        `units`. Coordinates are the bodies, states and laws of each motion (`sweep.inputs`). The same bits
+        for any number of threads, any neighbours, and on AVX2, AVX-512 and NEON alike.
 
     Raises
     ------
     ValueError, TypeError
-        Naming the argument, before any work. A body or a state of the family that is out of the range of
-        `spincyl.roll` has NaN and `Status.INVALID` instead.
+        Naming the argument, before any work; also an input labelled by a coordinate with the name of a
+        result. A body or a state of the family that is out of the range of `spincyl.roll` has NaN and
+        `Status.INVALID` instead.
     KeyboardInterrupt
         Within 0.1 s of Ctrl-C.
 
