@@ -65,10 +65,8 @@ fn ensembles(c: &mut Criterion) {
                     many.body.each_ref().map(Vec::as_slice),
                     many.state.each_ref().map(Vec::as_slice),
                 );
-                let out = MotionOutput {
-                    last: Some(states.each_mut().map(Vec::as_mut_slice)),
-                    ..MotionOutput::new(&mut error, &mut method, &mut status)
-                };
+                let mut out = MotionOutput::new(&mut error, &mut method, &mut status);
+                out.last = Some(states.each_mut().map(Vec::as_mut_slice));
                 roll(&starts, &job, out, 1, |_| true).unwrap()
             })
         });

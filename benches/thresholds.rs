@@ -10,7 +10,7 @@
 //! enough, faces that are all but down, losses that all but hold.
 
 use spincyl::contact::{Friction, Table, TableKind, slip};
-use spincyl::loss::Losses;
+use spincyl::loss::{Law, Losses};
 use spincyl::motion::{Ask, Event, Motion, Start, path::Path, roll_with};
 use spincyl::stone::{self, StoneState};
 use spincyl::{Body, Contact, Ellipsoid, Error, State, contact, steady};
@@ -149,9 +149,10 @@ impl Scene {
     fn ask(&self) -> Ask {
         let [kind, numbers @ ..] = self.table;
         let kinds = [TableKind::Rolling, TableKind::Smooth, TableKind::Coulomb, TableKind::Viscous];
-        let losses = Losses { coefficients: self.losses };
+        let all = Law::ALL.iter().zip(self.losses);
+        let losses = all.fold(Losses::NONE, |sum, (law, x)| sum.with(*law, x));
         let restitution = Some(self.restitution).filter(|e| !e.is_nan());
-        Ask { losses, restitution, ..Ask::on(kinds[kind as usize].with(numbers)) }
+        Ask::on(kinds[kind as usize].with(numbers)).with_losses(losses).with_restitution(restitution)
     }
 
     fn follow(&self) -> Result<String, Error> {
@@ -162,13 +163,13 @@ impl Scene {
             let body = Body::rounded(ell, i1, i3, fillet)?.with_theta_end(theta_end)?;
             let [theta, w1, w2, w3] = self.start[..] else { unreachable!() };
             let aloft = Some(self.aloft).filter(|[height, _]| !height.is_nan());
-            let start = Start { slip, aloft, ..State { theta, w1, w2, w3 }.into() };
+            let start = Start::from(State { theta, w1, w2, w3 }).with_slip(slip).with_aloft(aloft);
             let found = roll_with(&body, start, &times, &self.ask(), || true)?.unwrap();
             Ok(told(&found, |y| vec![y.theta, y.w1, y.w2, y.w3]))
         } else {
             let stone = Ellipsoid::of_numbers(self.body[..].try_into().unwrap())?;
             let [a, b, c, d, e, f] = self.start[..] else { unreachable!() };
-            let start = Start { slip, ..StoneState { vertical: [a, b, c], w: [d, e, f] }.into() };
+            let start = Start::from(StoneState { vertical: [a, b, c], w: [d, e, f] }).with_slip(slip);
             let found = stone::roll(&stone, start, &times, &self.ask(), || true)?.unwrap();
             Ok(told(&found, |y| [y.vertical, y.w].concat()))
         }
@@ -179,7 +180,7 @@ impl Scene {
 fn told<S: spincyl::motion::Moving>(found: &Motion<S>, numbers: impl Fn(&S) -> Vec<f64>) -> String {
     let path: Option<&Path<S>> = found.path.as_deref();
     let (ending, time, last) = match &found.event {
-        Some(Event { ending, time, state }) => (format!("{ending:?}"), *time, numbers(state)),
+        Some(Event { ending, time, state, .. }) => (format!("{ending:?}"), *time, numbers(state)),
         None => ("Done".into(), *found.times.last().unwrap(), numbers(found.states.last().unwrap())),
     };
     let slip = match (path, &found.event) {

@@ -73,6 +73,7 @@ pub mod drift {
     //! w1 and Omega, relative, and for w3 relative to |w|. Where these numbers go as a high power of the time that is left,
     //! the rounding of the time adds to their errors. Tests of `drift` and `test_late_drifts` check these bounds.
 
+    pub use crate::many::columns::LossColumns;
     pub use crate::many::drifts::{
         Centre, DriftOutput, DriftStarts, INVALID, Question, WIDTH, ask, single, stops,
     };

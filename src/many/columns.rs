@@ -2,6 +2,7 @@
 //! filled fall into blocks of rows.
 
 use crate::error::{Error, room};
+use crate::laws::loss::{COUNT, Law, Losses};
 
 pub(crate) fn rows<'a>(mut columns: impl Iterator<Item = &'a [f64]>) -> usize {
     columns.find(|x| x.len() != 1).map_or(1, <[f64]>::len)
@@ -15,6 +16,36 @@ pub(crate) fn fit<'a>(mut columns: impl Iterator<Item = &'a [f64]>, count: usize
 /// The number in a row of a column.
 pub(crate) fn at(column: &[f64], row: usize) -> f64 {
     column[if column.len() == 1 { 0 } else { row }]
+}
+
+/// Columns of the coefficients of losses, one for each law: each has the length n, or is a single number for all rows.
+///
+/// ```
+/// use spincyl::ensemble::LossColumns;
+/// use spincyl::loss::Law;
+///
+/// let arms = [0.0, 1e-3, 2e-3];
+/// let losses = LossColumns::NONE.with(Law::RollingResistance, &arms).with(Law::AirFilm, &[1e-7]);
+/// # let _ = losses;
+/// ```
+#[derive(Debug, Clone, Copy)]
+pub struct LossColumns<'a>(pub(crate) [&'a [f64]; COUNT]);
+
+impl<'a> LossColumns<'a> {
+    /// Nothing is lost.
+    pub const NONE: Self = Self([&[0.0]; COUNT]);
+
+    /// The same columns with this one for a law.
+    #[must_use]
+    pub fn with(mut self, law: Law, column: &'a [f64]) -> Self {
+        self.0[law as usize] = column;
+        self
+    }
+
+    /// The losses in a row.
+    pub(crate) fn row(&self, row: usize) -> Losses {
+        Losses { coefficients: self.0.map(|x| at(x, row)) }
+    }
 }
 
 /// Columns to be filled, which can be parted at a row.

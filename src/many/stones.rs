@@ -1,6 +1,5 @@
 //! Many stones at once, each followed on its own, on threads; and the reversals of their spin.
 
-use super::motions::{BOUNDED, INVALID};
 use super::threads::share;
 use crate::error::{Error, room};
 use crate::laws::stone::{Ellipsoid, StoneState};
@@ -10,7 +9,7 @@ use crate::motions::stone::check;
 use crate::motions::stone::followed;
 use crate::motions::stone::known::Recorded;
 use crate::motions::stone::turns::Reversals;
-use crate::motions::{Ask, Motion, Moving, Start};
+use crate::motions::{Ask, Ending, Motion, Moving, Start};
 use core::cell::RefCell;
 
 /// The numbers of one motion: its stone, the vertical, w and slip of its start, and its own coefficients of
@@ -31,8 +30,7 @@ pub struct StoneRow {
 /// The result of one motion of many.
 #[derive(Debug, Clone, Copy)]
 pub struct StoneSummary {
-    /// The status: that of an [`Ending`](crate::motions::Ending), 5 for a stone or a start that does not
-    /// exist, or 8 for a motion that was given up.
+    /// The status: the code of an [`Ending`].
     pub status: u8,
     /// The numbers, in the order of [`NAMES`](Self::NAMES).
     pub numbers: [f64; 13],
@@ -58,8 +56,8 @@ impl StoneSummary {
         "known_until",
     ];
 
-    const fn none(status: u8) -> Self {
-        Self { status, numbers: [f64::NAN; 13] }
+    const fn none(status: Ending) -> Self {
+        Self { status: status as u8, numbers: [f64::NAN; 13] }
     }
 }
 
@@ -83,7 +81,7 @@ pub fn many(
 ) -> Result<Option<Vec<StoneSummary>>, Error> {
     check(&StoneState { vertical: [0.0, 0.0, 1.0], w: [0.0; 3] }.into(), times, ask)?;
     let mut all = room(count)?;
-    all.resize(count, StoneSummary::none(INVALID));
+    all.resize(count, StoneSummary::none(Ending::Invalid));
     let blocks = all.chunks_mut(16).enumerate().collect();
     let done = share(blocks, threads, go_on, |(block, to): (usize, &mut [StoneSummary]), still| {
         for (k, to) in to.iter_mut().enumerate() {
@@ -99,7 +97,7 @@ fn one(
     (ask, turns): (&Ask, bool),
     still: &mut dyn FnMut() -> bool,
 ) -> StoneSummary {
-    let Ok(stone) = Ellipsoid::of_numbers(row.stone) else { return StoneSummary::none(INVALID) };
+    let Ok(stone) = Ellipsoid::of_numbers(row.stone) else { return StoneSummary::none(Ending::Invalid) };
     let [a, b, c, d, e, f] = row.state;
     let state = StoneState { vertical: [a, b, c], w: [d, e, f] };
     let start = Start { slip: row.slip, ..Start::from(state) };
@@ -113,13 +111,13 @@ fn one(
     });
     let found = match followed(&stone, &start, &times[times.len() - 1..], &ask, &recorded, still) {
         Ok(found) => found,
-        Err(Error::Painleve { .. }) => return StoneSummary::none(crate::motions::Ending::Painleve as u8),
-        Err(Error::OutOfRange { .. } | Error::Inertia { .. }) => return StoneSummary::none(INVALID),
-        Err(_) => return StoneSummary::none(BOUNDED),
+        Err(Error::Painleve { .. }) => return StoneSummary::none(Ending::Painleve),
+        Err(Error::OutOfRange { .. } | Error::Inertia { .. }) => return StoneSummary::none(Ending::Invalid),
+        Err(_) => return StoneSummary::none(Ending::Bounded),
     };
-    let Some(found) = found else { return StoneSummary::none(BOUNDED) };
+    let Some(found) = found else { return StoneSummary::none(Ending::Bounded) };
     let Some(last) = found.motion.event.map(|e| e.state).or(found.motion.states.last().copied()) else {
-        return StoneSummary::none(BOUNDED);
+        return StoneSummary::none(Ending::Bounded);
     };
     let end = found.motion.event.map_or(times[times.len() - 1], |e| e.time);
     let turns = recorded.into_inner().turns.map(|turns| turns.times);

@@ -21,8 +21,16 @@ pub enum Method {
     Tolerance(f64),
 }
 
-/// The options of a motion, on any table and with any losses.
+/// The options of a motion, on any table and with any losses. Each has a method `with_` and its name.
+///
+/// ```
+/// use spincyl::{contact::Friction, loss::{Law, Losses}, motion::Ask};
+///
+/// let ask = Ask::on(Friction::coulomb(0.3)).with_losses(Losses::of(Law::Drilling, 1e-3)).with_pose(true);
+/// assert!(ask.pose && !ask.force);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
 pub struct Ask {
     /// The table.
     pub table: Table,
@@ -47,7 +55,47 @@ pub struct Ask {
 impl Ask {
     /// The options of an exact motion on this table up to its first event, without losses, poses and forces.
     pub fn on(table: impl Into<Table>) -> Self {
-        Self { table: table.into(), ..Self::default() }
+        Self::default().with_table(table)
+    }
+
+    /// The same options on another table.
+    pub fn with_table(self, table: impl Into<Table>) -> Self {
+        Self { table: table.into(), ..self }
+    }
+
+    /// The same options with these losses.
+    pub fn with_losses(self, losses: Losses) -> Self {
+        Self { losses, ..self }
+    }
+
+    /// The same options with this method.
+    pub fn with_method(self, method: Method) -> Self {
+        Self { method, ..self }
+    }
+
+    /// The same options, to go on beyond events or not.
+    pub fn with_beyond(self, beyond: bool) -> Self {
+        Self { beyond, ..self }
+    }
+
+    /// The same options with this coefficient of restitution, or with `None`.
+    pub fn with_restitution(self, restitution: impl Into<Option<f64>>) -> Self {
+        Self { restitution: restitution.into(), ..self }
+    }
+
+    /// The same options, to stop at rolling or not.
+    pub fn with_stop_at_rolling(self, stop_at_rolling: bool) -> Self {
+        Self { stop_at_rolling, ..self }
+    }
+
+    /// The same options, with poses or without them.
+    pub fn with_pose(self, pose: bool) -> Self {
+        Self { pose, ..self }
+    }
+
+    /// The same options, with contact forces or without them.
+    pub fn with_force(self, force: bool) -> Self {
+        Self { force, ..self }
     }
 
     /// Whether energy is conserved and no law of friction acts, so that three first integrals
@@ -57,8 +105,9 @@ impl Ask {
     }
 }
 
-/// The start of a motion.
+/// The start of a motion: `Start::from` a state, and what it has besides.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Start<S = State> {
     /// The state at the start.
     pub state: S,
@@ -76,6 +125,23 @@ impl<S> From<S> for Start<S> {
     /// The start at time 0 on the table, without a slip.
     fn from(state: S) -> Self {
         Self { state, slip: [0.0; 2], time: 0.0, aloft: None }
+    }
+}
+
+impl<S> Start<S> {
+    /// The same start with this slip.
+    pub fn with_slip(self, slip: [f64; 2]) -> Self {
+        Self { slip, ..self }
+    }
+
+    /// The same start at this time.
+    pub fn with_time(self, time: f64) -> Self {
+        Self { time, ..self }
+    }
+
+    /// The same start in the air, with this height of the lowest point and its vertical velocity, or with `None`.
+    pub fn with_aloft(self, aloft: impl Into<Option<[f64; 2]>>) -> Self {
+        Self { aloft: aloft.into(), ..self }
     }
 }
 

@@ -82,6 +82,7 @@ impl Limits {
             Ending::Slip => self.plain_grip_of(y)[1],
             Ending::Done
             | Ending::Face
+            | Ending::Invalid
             | Ending::Painleve
             | Ending::Stops
             | Ending::Bounded

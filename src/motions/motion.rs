@@ -38,7 +38,7 @@ use crate::laws::state::State;
 pub fn roll(body: &Body, start: &State, times: &[f64]) -> Result<Motion, Error> {
     // The error for a first time that is not finite must name `t`, not `t0`.
     let time = times.first().copied().filter(|t| t.is_finite()).unwrap_or(0.0);
-    let start = Start { time, ..Start::from(start) };
+    let start = Start::from(start).with_time(time);
     roll_with(body, start, times, &Ask::default(), || true).map(|m| m.expect("nobody interrupts"))
 }
 
@@ -58,7 +58,7 @@ pub fn roll(body: &Body, start: &State, times: &[f64]) -> Result<Motion, Error> 
 /// // A hoop is thrown with backspin: it slips for a time (v + w)/(2 mu), and comes back if w > v.
 /// let hoop = Body::tube(0.0, 1.0)?;
 /// let state = State { theta: std::f64::consts::FRAC_PI_2, w1: 0.0, w2: 0.0, w3: -3.0 };
-/// let start = Start { slip: [0.0, 2.0 + 3.0], ..state.into() };
+/// let start = Start::from(state).with_slip([0.0, 2.0 + 3.0]);
 /// let ask = Ask::on(Friction::coulomb(0.25));
 /// let motion = roll_with(&hoop, start, &[0.0, 20.0], &ask, || true)?.expect("not interrupted");
 /// assert!((motion.states[1].w3 - -0.5).abs() < 1e-12); // the hoop rolls back

@@ -24,6 +24,9 @@ coded! {
         LiftOff = 3,
         /// Rolling needed more friction than mu N.
         Slip = 4,
+        /// There is no such body, state or table, or the step is too large for it. Only a row of many motions has this
+        /// status, with NaN in place of numbers; a single motion is refused by an error.
+        Invalid = 5,
         /// No contact force, or more than one, obeys the law of friction.
         Painleve = 6,
         /// The contact point stops, held by dry friction along the rim or by rolling resistance.
@@ -38,6 +41,7 @@ coded! {
 
 /// The point at which a motion leaves the model.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Event<S = State> {
     /// The kind of the event.
     pub ending: Ending,
@@ -57,6 +61,7 @@ impl<S> Event<S> {
 
 /// Times and states of a body, and the event that ended its motion.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Motion<S: Moving = State> {
     /// The requested times, up to the event.
     pub times: Vec<f64>,
@@ -162,6 +167,7 @@ coded! {
 
 /// A part of a motion in which the body does one thing all the time.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Phase<S = State> {
     /// The time at which the phase begins.
     pub time: f64,
@@ -175,6 +181,7 @@ pub struct Phase<S = State> {
 
 /// An impact of a rim on the table.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Strike {
     /// The time of the impact.
     pub time: f64,
@@ -186,7 +193,8 @@ pub struct Strike {
     pub states: [State; 2],
     /// The velocity of the lowest point of that rim before and after: along the lean, across it, and upwards.
     pub velocities: [[f64; 3]; 2],
-    /// The impulses along the lean, across it, and upwards, in M sqrt(g R); of both rims together if both are pushed. of both rims together if both are pushed.
+    /// The impulses along the lean, across it, and upwards, in M sqrt(g R); of both rims together if both are
+    /// pushed.
     pub impulse: [f64; 3],
     /// The energy lost, in M g R.
     pub lost: f64,
@@ -198,6 +206,7 @@ pub struct Strike {
 /// and the times and states of the phases and of the end; the error of the heat is that error times the
 /// largest speed.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Path<S = State> {
     /// The slip at each time, along the lean and across it.
     pub slip: Vec<[f64; 2]>,

@@ -13,11 +13,11 @@ macro_rules! coded {
 
         impl $Name {
             /// All values, in the order of their codes.
-            pub const ALL: [Self; [$($code),+].len()] = [$(Self::$Value),+];
+            pub const ALL: &'static [Self] = &[$(Self::$Value),+];
 
             /// The value with this code, the number in an array; None for any other number.
             pub fn from_code(code: u8) -> Option<Self> {
-                Self::ALL.into_iter().find(|value| *value as u8 == code)
+                Self::ALL.iter().copied().find(|value| *value as u8 == code)
             }
         }
 

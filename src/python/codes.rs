@@ -2,7 +2,7 @@
 
 use crate::laws::contact::TableKind;
 use crate::laws::loss::Law;
-use crate::many::motions::{Answer, BOUNDED, INVALID};
+use crate::many::motions::Answer;
 use crate::motions::drift::End;
 use crate::motions::{Ending, Kind};
 use crate::states::stability::Region;
@@ -28,18 +28,16 @@ fn constant(value: &impl Debug) -> String {
 /// a law of loss that of its class.
 #[pyfunction]
 pub fn codes() -> [(&'static str, Codes); 8] {
-    let endings = Ending::ALL.map(|x| (constant(&x), x as u8));
-    let mut status: Codes = endings.iter().filter(|(_, code)| *code != BOUNDED).cloned().collect();
-    status.extend([("INVALID".to_owned(), INVALID), ("BOUNDED".to_owned(), BOUNDED)]);
-    status.sort_by_key(|(_, code)| *code);
+    let status: Codes = Ending::ALL.iter().map(|x| (constant(x), *x as u8)).collect();
+    let endings = status.iter().filter(|(_, code)| *code != Ending::Invalid as u8).cloned();
     [
-        ("Ending", endings.to_vec()),
+        ("Ending", endings.collect()),
         ("Status", status),
-        ("Region", Region::ALL.map(|x| (constant(&x), x as u8)).to_vec()),
-        ("Answer", Answer::ALL.map(|x| (constant(&x), x as u8)).to_vec()),
-        ("Phase", Kind::ALL.map(|x| (format!("{x:?}").to_lowercase(), x as u8)).to_vec()),
-        ("Table", TableKind::ALL.map(|x| (x.name().to_owned(), x as u8)).to_vec()),
-        ("Law", Law::ALL.map(|x| (format!("{x:?}"), x as u8)).to_vec()),
-        ("Drift", End::ALL.map(|x| (x.name().to_owned(), x as u8)).to_vec()),
+        ("Region", Region::ALL.iter().map(|x| (constant(x), *x as u8)).collect()),
+        ("Answer", Answer::ALL.iter().map(|x| (constant(x), *x as u8)).collect()),
+        ("Phase", Kind::ALL.iter().map(|x| (format!("{x:?}").to_lowercase(), *x as u8)).collect()),
+        ("Table", TableKind::ALL.iter().map(|x| (x.name().to_owned(), *x as u8)).collect()),
+        ("Law", Law::ALL.iter().map(|x| (format!("{x:?}"), *x as u8)).collect()),
+        ("Drift", End::ALL.iter().map(|x| (x.name().to_owned(), *x as u8)).collect()),
     ]
 }

@@ -2,10 +2,12 @@
 
 use super::body_of;
 use super::columns::{GivenColumns, STATE, codes, numbers};
+use super::loss::parameters;
 use super::watch::Watch;
 use crate::error::room;
-use crate::laws::loss::{COUNT, Law, Losses};
+use crate::laws::loss::{COUNT, Losses};
 use crate::laws::state::State;
+use crate::many::columns::LossColumns;
 use crate::many::drifts::{self as drift, Centre, DriftOutput, DriftStarts, Question};
 use crate::motions::drift::Drift;
 use numpy::{PyArray1, PyReadonlyArray1};
@@ -28,7 +30,7 @@ fn starts<'a>(given: &'a GivenColumns<'_>, centre: &str) -> PyResult<DriftStarts
         centre: centre_of(centre)?,
         bodies: given.all(DRIFT_BODY)?,
         states: given.all(STATE)?,
-        losses: given.all::<COUNT>(Law::ALL.map(Law::parameter))?,
+        losses: LossColumns(given.all(parameters())?),
     })
 }
 

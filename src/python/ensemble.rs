@@ -1,9 +1,10 @@
 //! Many motions: the functions read and fill columns by name.
 
 use super::columns::{FilledColumns, GivenColumns, STATE, codes};
+use super::loss::parameters;
 use super::options::{MotionAsked, table_of};
 use super::watch::Watch;
-use crate::laws::loss::{COUNT, Law};
+use crate::many::columns::LossColumns;
 use crate::many::motions::{Job, MotionOutput, MotionStarts, SUMMARIES, Summary, roll_among};
 use numpy::{PyReadonlyArray1, PyReadwriteArray1};
 use pyo3::exceptions::PyValueError;
@@ -31,7 +32,7 @@ const LABELS: [[&str; 3]; 9] = [
 /// Name, unit and description of every column of a result.
 #[pyfunction]
 pub fn columns() -> Vec<[&'static str; 3]> {
-    Summary::ALL.into_iter().map(Summary::label).chain(LABELS).collect()
+    Summary::ALL.iter().copied().map(Summary::label).chain(LABELS).collect()
 }
 
 /// The names of the summaries of motions on a table of this kind, with losses or without, and with restitution or
@@ -39,7 +40,7 @@ pub fn columns() -> Vec<[&'static str; 3]> {
 #[pyfunction]
 pub fn summaries(table: u8, loses: bool, flies: bool) -> PyResult<Vec<&'static str>> {
     let rubs = table_of(table)?.rubs();
-    let of = Summary::ALL.into_iter().filter(|summary| summary.is_of(rubs, loses, flies));
+    let of = Summary::ALL.iter().copied().filter(|summary| summary.is_of(rubs, loses, flies));
     Ok(of.map(|summary| summary.label()[0]).collect())
 }
 
@@ -63,7 +64,7 @@ pub fn ensemble<'py>(
         states: given.all(STATE)?,
         slips: given.some(SLIP)?,
         coefficients: given.some(TABLE)?,
-        losses: given.some::<COUNT>(Law::ALL.map(Law::parameter))?,
+        losses: given.some(parameters())?.map(LossColumns),
         aloft: given.some(["height", "lift"])?,
     };
     let table = table_of(asked.table)?;
@@ -94,7 +95,7 @@ pub fn ensemble<'py>(
     let ((states, slips), (last, last_slip)) =
         if asked.spread { ((states, slips), (None, None)) } else { ((None, None), (states, slips)) };
     let mut summary = [const { None }; SUMMARIES];
-    for kind in Summary::ALL {
+    for &kind in Summary::ALL {
         summary[kind as usize] = wanted.take(kind.label()[0]);
     }
     let error = wanted.take("error").ok_or_else(|| PyValueError::new_err("no column error"))?;

@@ -28,5 +28,10 @@ fn losses_of(x: &[f64]) -> (Losses, f64) {
 /// The laws in the order of their coefficients: the coefficient's name, and the exponent of the end of a thin disk.
 #[pyfunction]
 pub fn loss_laws() -> [(&'static str, Option<f64>); COUNT] {
-    Law::ALL.map(|law| (law.parameter(), law.exponent()))
+    core::array::from_fn(|i| (Law::ALL[i].parameter(), Law::ALL[i].exponent()))
+}
+
+/// The names of the coefficients of all laws.
+pub fn parameters() -> [&'static str; COUNT] {
+    core::array::from_fn(|i| Law::ALL[i].parameter())
 }

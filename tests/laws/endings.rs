@@ -19,7 +19,7 @@ fn d9_d10_events_come_at_their_time() {
         for (method, allowed) in
             [(Method::Exact, 1e-12), (Method::Tolerance(1e-13), 1e-11), (Method::Step(1e-4), 1e-11)]
         {
-            let scene = Ask { table: Table::of(r.contact, mu), pose: true, force: true, ..by(method) };
+            let scene = by(method).with_table(Table::of(r.contact, mu)).with_pose(true).with_force(true);
             let times = [0.0, 0.5 * r.t, r.t + 1e-9, r.t + 1.0];
             let motion = moved(&r.body, &r.start, &times, scene).unwrap();
             let event = motion.event.unwrap();
@@ -29,7 +29,7 @@ fn d9_d10_events_come_at_their_time() {
             // no state after the event is returned, unless `beyond` is set
             assert_eq!((motion.times.len(), motion.states.len()), (2, 2));
             assert_eq!((motion.poses.unwrap().len(), motion.forces.unwrap().len()), (2, 2));
-            let beyond = moved(&r.body, &r.start, &times, Ask { beyond: true, ..scene }).unwrap();
+            let beyond = moved(&r.body, &r.start, &times, scene.with_beyond(true)).unwrap();
             assert_eq!((beyond.states.len(), beyond.event.map(|e| e.ending)), (4, Some(ending)));
         }
         checked += 1;
@@ -63,7 +63,7 @@ fn d8_a_head_on_fall_lands_on_the_face() {
             [(Method::Exact, 1e-12), (Method::Step(1e-3), 1e-12), (Method::Tolerance(1e-13), 1e-12)]
         {
             let times: Vec<f64> = (0..200).map(|i| 0.01 * f64::from(i)).collect();
-            let motion = moved(&body, &y, &times, Ask { pose: true, ..by(method) }).unwrap();
+            let motion = moved(&body, &y, &times, by(method).with_pose(true)).unwrap();
             let event = motion.event.unwrap();
             assert_eq!(event.ending, Ending::Face);
             assert!((event.time - time).abs() < allowed, "{method:?}, ell = {ell}: {:e}", event.time - time);
@@ -71,7 +71,7 @@ fn d8_a_head_on_fall_lands_on_the_face() {
             assert!(motion.states.iter().all(|y| numbers(y).iter().all(|x| x.is_finite()) && y.theta > 0.0));
             assert!(method != Method::Exact || motion.method == method, "{}", motion.error);
             // after a face has landed there are no states, even if `beyond` is set
-            let beyond = moved(&body, &y, &times, Ask { beyond: true, ..by(method) }).unwrap();
+            let beyond = moved(&body, &y, &times, by(method).with_beyond(true)).unwrap();
             assert_eq!(beyond.states.len(), motion.states.len());
         }
     }
@@ -113,8 +113,7 @@ fn beyond_an_event_a_motion_still_ends_where_the_face_lands() {
         let body = Body::solid(ell).unwrap();
         let times: Vec<f64> = (0..51).map(|i| 0.1 * f64::from(i)).collect();
         let all = [Method::Exact, Method::Step(1e-3), Method::Tolerance(1e-9)].map(|method| {
-            moved(&body, &y, &times, Ask { table: Table::Rolling { mu }, beyond: true, ..by(method) })
-                .unwrap()
+            moved(&body, &y, &times, by(method).with_table(Table::Rolling { mu }).with_beyond(true)).unwrap()
         });
         for m in &all {
             assert_eq!(m.event.map(|e| (e.ending, e.time)), all[0].event.map(|e| (e.ending, e.time)));
@@ -136,8 +135,7 @@ fn a_margin_that_dips_right_after_the_start_is_seen() {
     ] {
         let body = Body::solid(ell).unwrap();
         for method in [Method::Exact, Method::Step(1e-3), Method::Tolerance(1e-9)] {
-            let event =
-                moved(&body, &y, &[t], Ask { table: Table::Rolling { mu }, ..by(method) }).unwrap().event;
+            let event = moved(&body, &y, &[t], by(method).with_table(Table::Rolling { mu })).unwrap().event;
             assert_eq!(event.map(|e| e.ending), Some(Ending::Slip), "{method:?}");
         }
     }
@@ -154,8 +152,8 @@ fn a_margin_that_dips_right_after_the_start_is_seen() {
         let start = swing.state(peak - 0.012);
         let mu = 0.3 * demand(peak - 0.012) + 0.7 * demand(peak);
         if demand(peak - 0.012) < mu * (1.0 - 1e-9) && mu > 1e-6 {
-            let m = moved(&body, &start, &[0.1], Ask { table: Table::Rolling { mu }, ..by(Method::Exact) })
-                .unwrap();
+            let m =
+                moved(&body, &start, &[0.1], by(Method::Exact).with_table(Table::Rolling { mu })).unwrap();
             assert!(m.event.is_some_and(|e| e.time < 0.0121), "{body:?} {start:?} {mu}");
             checked += 1;
         }
@@ -168,7 +166,7 @@ fn an_integrator_that_stays_on_an_unstable_state_does_not_claim_to_be_right() {
     let body = Body::solid(2.5).unwrap();
     let balanced = state(1f64.atan2(2.5), 0.0, 0.0, 0.0);
     for (contact, t, off) in [(Contact::Smooth, 24.0, 1.3e-6), (Contact::Rolling, 60.0, 5.1e-4)] {
-        let scene = Ask { table: contact.into(), pose: true, ..Ask::default() };
+        let scene = Ask::default().with_table(contact).with_pose(true);
         // these doubles are not quite balanced, so that the body falls; `off` is from a model with 36 digits
         let exact = moved(&body, &balanced, &[t], scene).unwrap();
         let fallen = (exact.states[0].theta - balanced.theta).abs();
@@ -176,7 +174,7 @@ fn an_integrator_that_stays_on_an_unstable_state_does_not_claim_to_be_right() {
             exact.method == Method::Exact && fallen > 0.5 * off && fallen < 1.1 * off,
             "{contact:?} {fallen:e}"
         );
-        let m = moved(&body, &balanced, &[t], Ask { method: Method::Tolerance(1e-12), ..scene }).unwrap();
+        let m = moved(&body, &balanced, &[t], scene.with_method(Method::Tolerance(1e-12))).unwrap();
         assert!(m.error > 0.5 * off, "{contact:?}: {:e}", m.error);
     }
 }
@@ -239,7 +237,7 @@ fn d10_without_friction_coefficient_rolling_never_slips_and_with_none_at_once() 
     let rest = steady::state(&body, 1.3).unwrap();
     for method in [Method::Exact, Method::Step(1e-3), Method::Tolerance(1e-9)] {
         let at = |y: &State, mu: f64| {
-            moved(&body, y, &[5.0], Ask { table: Table::Rolling { mu }, ..by(method) }).unwrap().event
+            moved(&body, y, &[5.0], by(method).with_table(Table::Rolling { mu })).unwrap().event
         };
         assert!(at(&rest, f64::INFINITY).is_none());
         assert!(at(&rest, 0.0).is_none(), "a centre at rest needs no friction");
@@ -281,7 +279,7 @@ fn d12_what_makes_no_sense_is_refused_by_name_before_any_work() {
             assert_eq!(name(good, &[1.0], by(Method::Tolerance(tol))), "tol");
         }
         for mu in [-0.1, f64::NAN] {
-            assert_eq!(name(good, &[1.0], Ask { table: Table::Rolling { mu }, ..Ask::default() }), "mu");
+            assert_eq!(name(good, &[1.0], Ask::default().with_table(Table::Rolling { mu })), "mu");
         }
         for times in [&[][..], &[f64::NAN], &[1.0, 0.5], &[-1.0, 1.0], &[f64::INFINITY]] {
             assert_eq!(name(good, times, Ask::default()), "t", "{times:?}");
@@ -316,7 +314,7 @@ fn without_choices_a_motion_rolls_from_the_first_of_its_times() {
     for t0 in [0.0, -3.0, 1e6] {
         let times: Vec<f64> = (0..=50).map(|i| t0 + 0.1 * f64::from(i)).collect();
         let motion = roll(&body, &start, &times).unwrap();
-        let same = roll_with(&body, Start { time: t0, ..start.into() }, &times, &Ask::default(), || true)
+        let same = roll_with(&body, Start::from(start).with_time(t0), &times, &Ask::default(), || true)
             .unwrap()
             .unwrap();
         assert_eq!((&motion.states, motion.event), (&same.states, same.event));
@@ -334,7 +332,7 @@ fn a_nearly_flat_start_at_rest_lifts_off_when_it_does() {
     let y = state(3.865140946119193e-06, 5.882624766680439e-07, 0.0, 17.96860430677607);
     for beyond in [false, true] {
         for method in [Method::Exact, Method::Tolerance(1e-10)] {
-            let m = moved(&body, &y, &[1.0, 2.0, 3.3], Ask { beyond, ..by(method) }).unwrap();
+            let m = moved(&body, &y, &[1.0, 2.0, 3.3], by(method).with_beyond(beyond)).unwrap();
             let event = m.event.unwrap();
             assert_eq!(event.ending, Ending::LiftOff, "{method:?}");
             assert!((event.time - 0.00753015615484).abs() < m.error.max(1e-11), "{:e}", event.time);
@@ -347,13 +345,8 @@ fn an_event_claims_what_rounding_makes_of_it() {
     // the friction is a difference of numbers a million times as large: the event was once 1.5e-11 late
     let body = Body::new(677.4606718539745, 0.0012135351426975996, 5.704211882778903e-06).unwrap();
     let y = state(0.00011610786680656975, 0.2969581567039679, -0.003377231906356726, 201.17747235318797);
-    let m = moved(
-        &body,
-        &y,
-        &[1.0],
-        Ask { table: Table::Rolling { mu: 0.011121443405316313 }, ..Ask::default() },
-    )
-    .unwrap();
+    let m = moved(&body, &y, &[1.0], Ask::default().with_table(Table::Rolling { mu: 0.011121443405316313 }))
+        .unwrap();
     let event = m.event.unwrap();
     let off = (event.time - 4.3676495076120934e-05).abs();
     assert!(

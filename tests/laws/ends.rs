@@ -29,7 +29,7 @@ fn pressing(count: usize, slower: f64) -> Vec<(Body, State)> {
 /// Compares every motion with the single motion from its start; returns the share that lanes computed.
 fn as_alone(all: &[(Body, State)], job: &Job<'_>) -> f64 {
     let many = Many::of(all).run(job, 2);
-    let ask = Ask { table: Table::of(job.table.contact(), job.mu), beyond: job.beyond, ..Ask::default() };
+    let ask = Ask::default().with_table(Table::of(job.table.contact(), job.mu)).with_beyond(job.beyond);
     let mut lanes = 0;
     for (i, (body, start)) in all.iter().enumerate() {
         lanes += usize::from(many.method[i] == Answer::Lanes as u8);

@@ -8,7 +8,7 @@ use crate::common::{
 };
 use proptest::prelude::*;
 use spincyl::contact::{Table, TableKind};
-use spincyl::ensemble::{Answer, INVALID, Job, MotionOutput, MotionStarts, Summary, roll};
+use spincyl::ensemble::{Answer, Job, MotionOutput, MotionStarts, Summary, roll};
 use spincyl::exact::Swing;
 use spincyl::motion::{Ask, Ending, Method};
 use spincyl::{Body, Contact, State, contact, rk4, rolling, stability, steady};
@@ -133,9 +133,8 @@ fn ends_are_those_of_single_motions() {
         let many = Many::of(&all).run(&Job { mu, ..Job::new(&times) }, 2);
         let mut ended = [0, 0];
         for (i, (body, y)) in all.iter().enumerate() {
-            let Ok(alone) = moved(body, y, &times, Ask { table: Table::Rolling { mu }, ..Ask::default() })
-            else {
-                assert_eq!((many.status[i], many.method[i]), (INVALID, 0));
+            let Ok(alone) = moved(body, y, &times, Ask::default().with_table(Table::Rolling { mu })) else {
+                assert_eq!((many.status[i], many.method[i]), (Ending::Invalid as u8, 0));
                 continue;
             };
             assert_eq!(many.status[i], alone.ending() as u8, "{body:?} {y:?}: {}", many.method[i]);
@@ -313,7 +312,7 @@ fn what_makes_no_sense_is_refused_or_marked() {
         }
         let many = many.run(&Job::new(&times), 1);
         for i in 0..20 {
-            assert_eq!(many.status[i] == INVALID, i < bad.len(), "{body:?} {i}");
+            assert_eq!(many.status[i] == Ending::Invalid as u8, i < bad.len(), "{body:?} {i}");
             assert_eq!(many.last(i).theta.is_nan() && many.error[i].is_nan(), i < bad.len());
         }
     }
@@ -364,10 +363,10 @@ fn starts_at_rest_or_almost_go_the_way_of_an_integrator_by_every_route() {
         let (body, y, contact) = wild(&mut r);
         let y = State { w2: almost_at_rest(&mut r), ..y };
         let times = [0.3 + 3.0 * r()];
-        let scene = Ask { table: contact.into(), beyond: true, ..by(Method::Tolerance(1e-13)) };
+        let scene = by(Method::Tolerance(1e-13)).with_table(contact).with_beyond(true);
         let Ok(truth) = moved(&body, &y, &times, scene) else { continue };
-        let exact = moved(&body, &y, &times, Ask { method: Method::Exact, ..scene }).unwrap();
-        let posed = moved(&body, &y, &times, Ask { method: Method::Exact, pose: true, ..scene }).unwrap();
+        let exact = moved(&body, &y, &times, scene.with_method(Method::Exact)).unwrap();
+        let posed = moved(&body, &y, &times, scene.with_method(Method::Exact).with_pose(true)).unwrap();
         let lanes =
             Many::of(&[(body, y)]).run(&Job { table: contact.into(), beyond: true, ..Job::new(&times) }, 1);
         let there = truth.states.len();
@@ -424,7 +423,7 @@ proptest! {
                 let (time, landed) = swing.landing(1.0).unwrap();
                 (landed, swing.error(time))
             } else {
-                let ask = Ask { table: contact.into(), beyond: true, ..by(Method::Tolerance(1e-12)) };
+                let ask = by(Method::Tolerance(1e-12)).with_table(contact).with_beyond(true);
                 let alone = moved(&body, &y, &times, ask).unwrap();
                 // if a face lands at the requested time, only one of the two may have landed
                 let Some(there) = alone.states.first() else {

@@ -8,7 +8,7 @@ use spincyl::{Body, State, steady};
 const TOLERANCES: [f64; 3] = [1e-6, 1e-8, 1e-10];
 
 fn followed(body: &Body, start: Start, until: f64, ask: Ask, tol: f64) -> Motion {
-    let ask = Ask { method: Method::Tolerance(tol), ..ask };
+    let ask = ask.with_method(Method::Tolerance(tol));
     roll_with(body, start, &[until], &ask, || true).unwrap().unwrap()
 }
 
@@ -18,7 +18,7 @@ fn whirrs(losses: Losses, ending: Ending, most: [u64; 3]) {
     let body = Body::solid(0.0128 / 0.0751).unwrap();
     let start = steady::state(&body, 0.3).unwrap().kicked(0.05);
     for (tol, most) in TOLERANCES.into_iter().zip(most) {
-        let m = followed(&body, start.into(), 60.0, Ask { losses, ..Ask::default() }, tol);
+        let m = followed(&body, start.into(), 60.0, Ask::default().with_losses(losses), tol);
         assert_eq!(m.ending(), ending, "{losses:?} {tol:e}");
         assert!(m.evaluations <= most, "{losses:?} {tol:e}: {} evaluations, {most} allowed", m.evaluations);
     }
@@ -58,8 +58,8 @@ fn a_launch_costs_some_thousand_evaluations_until_it_rolls() {
         let state = State { theta: core::f64::consts::FRAC_PI_2, w1, w2: 0.0, w3 };
         let slip = [0.0, (body.ell() - body.i1() / body.ell()) * w1 - w3];
         for (tol, most) in TOLERANCES.into_iter().zip([3_000, 4_700, 7_200]) {
-            let ask = Ask { stop_at_rolling: true, ..Ask::on(Table::Rubs(Friction::coulomb(mu))) };
-            let m = followed(&body, Start { slip, ..state.into() }, 200.0, ask, tol);
+            let ask = Ask::on(Table::Rubs(Friction::coulomb(mu))).with_stop_at_rolling(true);
+            let m = followed(&body, Start::from(state).with_slip(slip), 200.0, ask, tol);
             assert!(m.evaluations <= most, "{w1} {tol:e}: {} evaluations, {most} allowed", m.evaluations);
         }
     }

@@ -11,12 +11,12 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 /// The motion of a body that starts in the air, or on the table where `aloft` is none, with poses.
 pub(crate) fn hops(body: &Body, start: &Start, table: Table, e: f64, times: &[f64]) -> Motion {
-    let ask = Ask { restitution: Some(e), pose: true, ..Ask::on(table) };
+    let ask = Ask::on(table).with_restitution(e).with_pose(true);
     roll_with(body, *start, times, &ask, || true).unwrap().unwrap()
 }
 
 pub(crate) fn dropped(state: State, slip: [f64; 2], height: f64, lift: f64) -> Start {
-    Start { slip, aloft: Some([height, lift]), ..state.into() }
+    Start::from(state).with_slip(slip).with_aloft([height, lift])
 }
 
 pub(crate) fn impacts(m: &Motion) -> &[Strike] {
@@ -125,7 +125,7 @@ fn the_mirror_image_of_a_motion_is_its_motion_to_the_last_bit() {
         let (body, start, mu, e) = any_drop(&mut r);
         let y = start.state;
         let mirror = State { w1: -y.w1, w3: -y.w3, ..y };
-        let image = Start { state: mirror, slip: [start.slip[0], -start.slip[1]], ..start };
+        let image = Start::from(mirror).with_aloft(start.aloft).with_slip([start.slip[0], -start.slip[1]]);
         let of = |start: &Start| hops(&body, start, coulomb(mu), e, &[0.7, 1.9, 4.0]);
         let (one, two) = (of(&start), of(&image));
         // In contact the direction of a slip from rest has other roundings.
@@ -176,7 +176,7 @@ fn in_the_air_angular_momentum_and_spin_stay_and_the_axis_turns_as_eulers_equati
     let mut r = wander(516);
     for _ in 0..drawn(24) {
         let (body, start, ..) = any_drop(&mut r);
-        let high = Start { aloft: Some([900.0, 0.0]), ..start };
+        let high = start.with_aloft([900.0, 0.0]);
         let times: Vec<f64> = (1..=40).map(|k| 0.2 * f64::from(k)).collect();
         let m = hops(&body, &high, coulomb(0.3), 0.5, &times);
         // The axes of the body, turned by steps of the exponential map of the angular velocity.
@@ -225,7 +225,7 @@ fn a_body_whose_normal_force_fails_for_a_moment_lands_twice_as_long_after() {
         let (w1, w3) = (3.0, launch * 6.0 / (tube.i3() * 3.0));
         let v = -tube.i1() / 6.0 * w1;
         let state = State { theta: FRAC_PI_2, w1, w2: 0.0, w3 };
-        let start = Start { slip: [0.0, v + 6.0 * w1 - w3], ..state.into() };
+        let start = Start::from(state).with_slip([0.0, v + 6.0 * w1 - w3]);
         let m = hops(&tube, &start, coulomb(0.3), 0.0, &[30.0]);
         let path = m.path.unwrap();
         let flies = path.phases.iter().position(|phase| phase.kind == Kind::Flying)?;
@@ -246,7 +246,7 @@ fn a_body_whose_normal_force_fails_for_a_moment_lands_twice_as_long_after() {
     };
     let normal = |t: f64| {
         let start = dropped(leaves.state, leaves.slip, 0.0, 0.0);
-        let m = hops(&tube, &Start { aloft: Some([1.0, 0.0]), ..start }, coulomb(0.3), 0.0, &[t]);
+        let m = hops(&tube, &start.with_aloft([1.0, 0.0]), coulomb(0.3), 0.0, &[t]);
         law(&m.states[0], [1.0, 0.0])
     };
     let zero =
@@ -276,11 +276,11 @@ fn a_start_in_the_air_needs_a_restitution_and_a_place_above_the_table() {
         roll_with(&body, dropped(state, [0.0; 2], height, 0.0), &[1.0], ask, || true)
     };
     assert!(of(1.0, &ask).unwrap_err().to_string().starts_with("height = 1.0: expected None"));
-    let on = Ask { restitution: Some(0.5), ..ask };
+    let on = ask.with_restitution(0.5);
     // At theta = 2 the other rim is 2 ell cos theta lower.
     assert!(of(0.8, &on).unwrap_err().to_string().starts_with("height = -0.8: expected both rims above"));
     assert!(of(0.84, &on).is_ok());
-    let far = Ask { restitution: Some(1.01), ..ask };
+    let far = ask.with_restitution(1.01);
     assert!(
         of(1.0, &far)
             .unwrap_err()

@@ -238,7 +238,7 @@ fn a_slip_that_jams_is_stopped_by_an_impact_without_a_fall() {
         }
         for (e, speed) in [(0.0, 1.0), (0.4, 0.3), (1.0, 2.0)] {
             let state = State { theta, w1: 0.0, w2: 0.0, w3: 0.0 };
-            let start = Start { slip: [speed * b.signum(), 0.0], ..state.into() };
+            let start = Start::from(state).with_slip([speed * b.signum(), 0.0]);
             let hit = impacts(&hops(&body, &start, coulomb(mu), e, &[1e-3]))[0];
             // The slip stops after the impulse p, while the rim presses harder; then it sticks, and comes up again.
             let (p, k) = (speed / (mu * a_h - b.abs()), a_n - b * b / a_h);
@@ -264,13 +264,13 @@ fn a_jam_is_the_limit_of_landings_ever_slower_and_where_the_rim_may_leave_as_wel
         let (w1, w2, w3, u, v) = (speed(), speed(), speed(), speed(), speed());
         let state = State { theta: 0.2 + 1.2 * r(), w1, w2, w3 };
         let (table, e) = (coulomb(0.95), r());
-        let start = Start { slip: [u, v], ..state.into() };
+        let start = Start::from(state).with_slip([u, v]);
         // Without restitution a jam is refused, and so tells us where one is.
         if roll_with(&body, start, &[0.0], &Ask::on(table), || true).is_ok() {
             continue;
         }
         let free = contact::force(Contact::Smooth, &body, &state).normal;
-        let ask = Ask { restitution: Some(e), pose: true, ..Ask::on(table) };
+        let ask = Ask::on(table).with_restitution(e).with_pose(true);
         let made = roll_with(&body, start, &[1e-9], &ask, || true);
         if free < 0.0 {
             assert!(made.unwrap_err().to_string().starts_with("no unique contact force (Painleve)"));

@@ -255,7 +255,7 @@ fn d6_a_nearly_flat_body_turns_by_the_fixed_angle() {
         assert!((turn / limit - 1.0).abs() <= allowed, "{}: {turn} {limit}", r.scene);
         // the same angle by integration
         for (tol, allowed) in [(1e-9, 1e-6), (1e-12, 1e-9)] {
-            let scene = Ask { method: Method::Tolerance(tol), pose: true, beyond: true, ..Ask::default() };
+            let scene = Ask::default().with_method(Method::Tolerance(tol)).with_pose(true).with_beyond(true);
             let motion = moved(&r.body, &r.start, &[r.t], scene).unwrap();
             let phi = motion.poses.unwrap()[0].phi.radians();
             assert!((phi - r.values[2]).abs() < allowed, "{} within {tol}: {phi} {}", r.scene, r.values[2]);
@@ -325,7 +325,7 @@ fn d11_the_suggested_step_is_within_a_factor_two_of_the_largest_that_keeps_the_n
 fn tolerances_are_kept_within_a_modest_factor_and_errors_are_said() {
     for r in motions().iter().filter(|r| r.kind == "state" && r.t == 20.0) {
         for tol in [1e-6, 1e-9, 1e-12] {
-            let scene = Ask { table: r.contact.into(), beyond: true, ..by(Method::Tolerance(tol)) };
+            let scene = by(Method::Tolerance(tol)).with_table(r.contact).with_beyond(true);
             let motion = moved(&r.body, &r.start, &[20.0], scene).unwrap();
             let error = distance(&motion.states[0], &r.values);
             assert!(error <= 1e3 * tol, "{} {:?}: {error:e} within {tol:e}", r.scene, r.contact);
@@ -337,7 +337,7 @@ fn tolerances_are_kept_within_a_modest_factor_and_errors_are_said() {
 #[test]
 fn called_without_a_method_the_answer_is_right_to_nine_digits_and_says_how() {
     for r in motions().iter().filter(|r| r.kind == "state") {
-        let scene = Ask { table: r.contact.into(), beyond: true, ..Ask::default() };
+        let scene = Ask::default().with_table(r.contact).with_beyond(true);
         let motion = moved(&r.body, &r.start, &[r.t], scene).unwrap();
         let error = distance(&motion.states[0], &r.values);
         if r.t < 1e9 {
@@ -364,15 +364,15 @@ fn near_the_flat_an_integrator_invents_no_end_and_loses_none() {
         let w1 = theta * (2.0 * r() - 1.0) * 10f64.powf(-3.0 + 3.7 * r());
         let y = state(theta, w1, -0.6 * r(), 4.0 * r() - 2.0);
         let scene = match i % 3 {
-            0 => Ask { table: Contact::Smooth.into(), ..Ask::default() },
-            1 => Ask { table: Table::Rolling { mu: 0.3 }, ..Ask::default() },
+            0 => Ask::default().with_table(Contact::Smooth),
+            1 => Ask::default().with_table(Table::Rolling { mu: 0.3 }),
             _ => Ask::default(),
         };
         let times = [1.0 + 14.0 * r()];
         let exact = moved(&body, &y, &times, scene).unwrap();
         for method in [Method::Tolerance(10f64.powf(-2.0 - 10.0 * r())), Method::Step(1e-3)] {
             // a step that jumps over the passage is refused
-            let Ok(stepped) = moved(&body, &y, &times, Ask { method, ..scene }) else { continue };
+            let Ok(stepped) = moved(&body, &y, &times, scene.with_method(method)) else { continue };
             assert_eq!(stepped.ending(), exact.ending(), "{body:?} {y:?} to {times:?}, {scene:?} {method:?}");
             compared += 1;
             if let Some((a, b)) = stepped.event.zip(exact.event) {

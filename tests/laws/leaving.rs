@@ -4,7 +4,7 @@ use crate::common::{by, drawn, moved, wander, wild};
 use spincyl::contact::Table;
 use spincyl::contact::slip::Friction;
 use spincyl::exact::Swing;
-use spincyl::motion::{Ask, Ending, Method, Start, roll_with};
+use spincyl::motion::{Ending, Method, Start, roll_with};
 use spincyl::{Body, Contact, Error, State, contact};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -32,7 +32,7 @@ fn random_runs(count: u64) -> [u64; 4] {
         };
         let Ok(swing) = Swing::new(&body, &y, contact, false) else { continue };
         let leaves_at = leaves(&swing, &body, contact, t, 1e-3);
-        match moved(&body, &y, &[t], Ask { table: contact.into(), ..by(method) }) {
+        match moved(&body, &y, &[t], by(method).with_table(contact)) {
             Err(Error::Step { .. }) => refused += 1,
             Err(e) => panic!("{body:?} {y:?}: {e}"),
             Ok(motion) => {
@@ -84,13 +84,13 @@ fn a_slip_that_hardly_begins_takes_no_tiny_steps_to_its_end() {
     let (ell, i1, i3) = (6.0, 12.41, 0.82);
     let body = Body::new(ell, i1, i3).unwrap();
     let friction = Table::Rubs(Friction::coulomb(0.2));
-    let ask = Ask { table: friction, ..by(Method::Tolerance(1e-10)) };
+    let ask = by(Method::Tolerance(1e-10)).with_table(friction);
     let mut grazing = 0;
     for k in 0..100 {
         let w1 = 3.180_904_52 * (1.0 + 1e-11 * f64::from(k));
         let state =
             State { theta: FRAC_PI_2, w1, w2: 0.0, w3: (1.05 + 0.55 * 129.0 / 199.0) * ell / (i3 * w1) };
-        let start = Start { slip: [0.0, (ell - i1 / ell) * w1 - state.w3], ..state.into() };
+        let start = Start::from(state).with_slip([0.0, (ell - i1 / ell) * w1 - state.w3]);
         let motion = roll_with(&body, start, &[0.0, 46.0], &ask, || true).unwrap().unwrap();
         let phases = &motion.path.as_ref().unwrap().phases;
         grazing += usize::from(phases.len() == 3 && phases[2].time - phases[1].time < 0.01);

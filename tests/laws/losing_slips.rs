@@ -19,7 +19,7 @@ fn a_drilling_that_friction_holds_stays_held_where_a_slip_begins() {
     };
     let friction = Friction::coulomb(0.15090048232247366);
     let length = 0.019706605318177556;
-    let ask = Ask { losses: Losses::of(Law::Drilling, length), ..Ask::on(Table::Rubs(friction)) };
+    let ask = Ask::on(Table::Rubs(friction)).with_losses(Losses::of(Law::Drilling, length));
     let times = [0.0, 0.95, 1.395, 1.5, 1.7];
     let motion = roll_with(&body, start, &times, &ask, || true).unwrap().unwrap();
     let drilling = |y: &State| y.theta.sin() * y.w1 + y.theta.cos() * y.w3;
@@ -70,7 +70,7 @@ fn a_contact_that_has_settled_while_it_slips_wins_no_energy_beyond_its_claim() {
         + Losses::of(Law::BoundaryLayer, 0.00027880854770654637);
     let mut times: Vec<f64> = (0..20).map(|i| 1.249 + 0.0003 * f64::from(i)).collect();
     times.insert(0, 0.0);
-    let ask = Ask { losses, ..Ask::on(Table::Rubs(Friction::coulomb(0.12973621726937773))) };
+    let ask = Ask::on(Table::Rubs(Friction::coulomb(0.12973621726937773))).with_losses(losses);
     let motion = roll_with(&body, start, &times, &ask, || true).unwrap().unwrap();
     let off = (0..motion.states.len()).map(|i| (total(&body, &motion, i) - total(&body, &motion, 0)).abs());
     let most = off.fold(0.0, f64::max);
@@ -196,7 +196,7 @@ fn a_whirr_that_slips_lands_where_its_turns_lead() {
         let tried = if arm == 0.02 { 2 } else { drawn(2) };
         for tol in [1e-10, 1e-12].into_iter().take(tried) {
             let table = Friction::coulomb(mu);
-            let ask = Ask { method: Method::Tolerance(tol), losses, ..Ask::on(table) };
+            let ask = Ask::on(table).with_method(Method::Tolerance(tol)).with_losses(losses);
             let other = roll_with(&body, start, &[0.0, 1000.0], &ask, || true).unwrap().unwrap();
             let apart = (other.event.unwrap().time - end.time).abs();
             assert!(apart < other.error && other.error < 1e-3, "{apart:e} {:e}", other.error);

@@ -3,7 +3,7 @@
 use crate::common::{any_rounded, any_state, numbers, ordinary_tube, path_of};
 use proptest::prelude::*;
 use spincyl::contact::{Friction, Table, lossy, slip};
-use spincyl::loss::{COUNT, Law, Losses};
+use spincyl::loss::{Law, Losses};
 use spincyl::motion::{Ask, Ending, Motion, roll_with};
 use spincyl::{Body, Contact, Error, State, newton, roll, steady};
 
@@ -14,13 +14,14 @@ fn bodies() -> impl Strategy<Value = Body> {
 /// Some of the laws, each with a coefficient that a table could have, and more.
 fn losses() -> impl Strategy<Value = Losses> {
     let one = || prop_oneof![Just(0.0), (-4.0..-1.0f64).prop_map(|x| 10f64.powf(x))];
-    std::array::from_fn::<_, COUNT, _>(|_| one()).prop_map(|coefficients| Losses { coefficients })
+    let all: Vec<_> = Law::ALL.iter().map(|_| one()).collect();
+    all.prop_map(|all| Law::ALL.iter().zip(all).fold(Losses::NONE, |sum, (law, x)| sum.with(*law, x)))
 }
 
 /// The losses that a body can have: a ball has no face that could press out air.
 fn possible(body: &Body, losses: Losses) -> Losses {
-    let one = |law: Law| Losses::of(law, losses.coefficients[law as usize]);
-    Law::ALL.map(one).into_iter().filter(|law| law.check_for(body).is_ok()).fold(Losses::NONE, |a, b| a + b)
+    let all = losses.iter().map(|(law, x)| Losses::of(law, x));
+    all.filter(|one| one.check_for(body).is_ok()).fold(Losses::NONE, |a, b| a + b)
 }
 
 /// The largest of some numbers, at least 1.
@@ -30,7 +31,7 @@ fn largest(numbers: impl IntoIterator<Item = f64>) -> f64 {
 
 /// A motion at these times on this table.
 pub fn follow(body: &Body, start: &State, losses: Losses, times: &[f64], on: impl Into<Table>) -> Motion {
-    let ask = Ask { losses, ..Ask::on(on) };
+    let ask = Ask::on(on).with_losses(losses);
     roll_with(body, start, times, &ask, || true).unwrap().unwrap()
 }
 
@@ -93,7 +94,7 @@ proptest! {
 
     #[test]
     fn the_couple_of_every_law_takes_its_power(body in bodies(), y in any_state(), normal in 0.1..3.0f64) {
-        for law in Law::ALL {
+        for &law in Law::ALL {
             let one = Losses::of(law, 0.3);
             let [m1, m2, m3] = one.couple(&body, &y, normal);
             let (power, taken) = (one.power(&body, &y, normal), -(m1 * y.w1 + m2 * y.w2 + m3 * y.w3));
@@ -165,7 +166,7 @@ proptest! {
             _ => Table::Rubs(Friction::coulomb(mu)),
         };
         let losses = possible(&body, losses);
-        let ask = Ask { losses, ..Ask::on(table) };
+        let ask = Ask::on(table).with_losses(losses);
         let path = match roll_with(&body, start, &quarters(), &ask, || true) {
             // a slip without a unique force, and a body that lies almost flat, are refused
             Err(Error::Painleve { .. }) => return Ok(()),
@@ -228,7 +229,7 @@ fn a_body_released_at_rest_falls_whatever_resists_it() {
     let disk = Body::solid(0.1).unwrap();
     let start = State { theta: 0.5, w1: 0.0, w2: 0.0, w3: 0.0 };
     let free = roll(&disk, &start, &[0.0, 10.0]).unwrap().event.unwrap();
-    for law in Law::ALL {
+    for &law in Law::ALL {
         let path = follow(&disk, &start, Losses::of(law, 1e-3), &[0.0, 10.0], ROLLS);
         let event = path.event.unwrap();
         assert_eq!(event.ending, Ending::Face, "{law:?}");
@@ -337,7 +338,7 @@ fn beyond_the_stop_a_face_falls_about_a_fixed_point_of_the_rim() {
     let start = steady::state(&coin, 0.02).unwrap();
     let losses = Losses::of(Law::DryContour, 5e-3);
     let stop = follow(&coin, &start, losses, &[0.0, 100.0], ROLLS).event.unwrap();
-    let ask = Ask { losses, beyond: true, pose: true, ..Ask::on(ROLLS) };
+    let ask = Ask::on(ROLLS).with_losses(losses).with_beyond(true).with_pose(true);
     let times: Vec<f64> = (0..=50).map(|i| stop.time + 1e-3 * f64::from(i)).collect();
     let path = roll_with(&coin, start, &times, &ask, || true).unwrap().unwrap();
     let event = path.event.unwrap();

@@ -11,11 +11,11 @@ use std::f64::consts::FRAC_PI_2;
 /// A body on its side, whose centre moves with the velocity v along the axis and across it.
 fn lying(body: &Body, w1: f64, w3: f64, [along, across]: [f64; 2]) -> Start {
     let state = State { theta: FRAC_PI_2, w1, w2: 0.0, w3 };
-    Start { slip: [along, across + body.ell() * w1 - w3], ..state.into() }
+    Start::from(state).with_slip([along, across + body.ell() * w1 - w3])
 }
 
 fn ask(friction: Friction, losses: Losses) -> Ask {
-    Ask { restitution: Some(0.0), losses, pose: true, force: true, ..Ask::on(friction) }
+    Ask::on(friction).with_restitution(0.0).with_losses(losses).with_pose(true).with_force(true)
 }
 
 fn moved(body: &Body, start: Start, mu: f64, times: &[f64]) -> Motion {
@@ -113,7 +113,7 @@ fn any_lying(r: &mut impl FnMut() -> f64) -> (Body, Start, f64) {
     let mut speed = || 3.0 * r() - 1.5;
     let (w1, w3, u, v) = (speed(), speed(), speed(), speed());
     let state = State { theta: FRAC_PI_2, w1, w2: 0.0, w3 };
-    (body, Start { slip: [u, v], ..state.into() }, 0.05 + 0.5 * r())
+    (body, Start::from(state).with_slip([u, v]), 0.05 + 0.5 * r())
 }
 
 /// Kinetic and potential energy, from the velocity of the centre.
@@ -201,11 +201,8 @@ fn the_mirror_image_of_a_lying_body_moves_as_its_mirror_image() {
     for _ in 0..drawn(90) {
         let (body, start, mu) = any_lying(&mut r);
         let y = start.state;
-        let image = Start {
-            state: State { w1: -y.w1, w3: -y.w3, ..y },
-            slip: [start.slip[0], -start.slip[1]],
-            ..start
-        };
+        let mirror = State { w1: -y.w1, w3: -y.w3, ..y };
+        let image = Start::from(mirror).with_slip([start.slip[0], -start.slip[1]]);
         let (one, two) = (moved(&body, start, mu, &[1.0, 4.0]), moved(&body, image, mu, &[1.0, 4.0]));
         for (a, b) in one.states.iter().zip(&two.states) {
             let far = one.error + two.error + 1e-13;
@@ -215,7 +212,7 @@ fn the_mirror_image_of_a_lying_body_moves_as_its_mirror_image() {
         }
         // Told from the other rim it is the same motion.
         let (there, slip) = spincyl::contact::landing::mirrored(&body, &y, start.slip);
-        let seen = moved(&body, Start { slip, ..there.into() }, mu, &[1.0, 4.0]);
+        let seen = moved(&body, Start::from(there).with_slip(slip), mu, &[1.0, 4.0]);
         for (a, b) in one.states.iter().zip(&seen.states) {
             let far = 10.0 * (one.error + seen.error) + 1e-12;
             assert!(
@@ -284,7 +281,7 @@ fn a_short_cylinder_rocks_from_rim_to_rim_for_the_time_of_housners_block() {
     for (ell, lies) in [(0.55, false), (0.62, true)] {
         let ice = Body::solid(ell).unwrap();
         let falls = State { theta: 1.2, w1: 0.0, w2: -0.1, w3: 0.0 };
-        let m = moved(&ice, Start { slip: [0.3, 0.0], ..falls.into() }, 0.0, &[9.0]);
+        let m = moved(&ice, Start::from(falls).with_slip([0.3, 0.0]), 0.0, &[9.0]);
         let path = m.path.as_ref().unwrap();
         assert_eq!(path.phases.len() == 2, lies, "{ell} {:?}", path.phases);
     }
@@ -322,7 +319,7 @@ fn what_two_rims_do_not_determine_is_refused_by_its_name() {
     let body = Body::solid(0.2).unwrap();
     let of = |w3: f64| {
         let state = State { theta: FRAC_PI_2, w1: 5.0, w2: 0.0, w3 };
-        let start = Start { slip: [0.5, 0.0], ..state.into() };
+        let start = Start::from(state).with_slip([0.5, 0.0]);
         roll_with(&body, start, &[0.01], &ask(Friction::coulomb(1.0), Losses::NONE), || true)
     };
     for (w3, refused) in [(-0.25, true), (-0.2, true), (-0.5, false), (0.3, false)] {
@@ -350,12 +347,10 @@ fn on_both_rims_the_lean_turns_no_faster_than_the_body_whichever_rim_sticks() {
     let times: Vec<f64> = (1..=400).map(|i| 0.01 * f64::from(i)).collect();
     for ([ell, i1, i3], [theta, w1, w2, w3], slip, [mu, fixed], law) in scenes {
         let body = Body::new(ell, i1, i3).unwrap();
-        let start = Start { slip, ..State { theta, w1, w2, w3 }.into() };
-        let ask = Ask {
-            pose: true,
-            force: true,
-            ..ask(Friction::Coulomb { mu, fixed, patch: 0.0 }, Losses::of(law, 0.03))
-        };
+        let start = Start::from(State { theta, w1, w2, w3 }).with_slip(slip);
+        let ask = ask(Friction::Coulomb { mu, fixed, patch: 0.0 }, Losses::of(law, 0.03))
+            .with_pose(true)
+            .with_force(true);
         let m = roll_with(&body, start, &times, &ask, || true).unwrap().unwrap();
         let (poses, path) = (m.poses.as_ref().unwrap(), m.path.as_ref().unwrap());
         let lies = |i: usize| path.kinds[i] as u8 >= Kind::Lying as u8;

@@ -16,7 +16,7 @@ fn on(mu: f64, patch: f64) -> Friction {
 }
 
 fn rolled(body: &Body, start: Start, friction: Friction, times: &[f64]) -> Motion {
-    roll_with(body, start, times, &Ask { force: true, ..Ask::on(friction) }, || true).unwrap().unwrap()
+    roll_with(body, start, times, &Ask::on(friction).with_force(true), || true).unwrap().unwrap()
 }
 
 fn drilling(y: &State) -> f64 {
@@ -41,7 +41,7 @@ fn any(r: &mut impl FnMut() -> f64) -> (Body, Start, f64, f64) {
     let state = State { theta: 0.0, w1: speed(), w2: 0.3 * speed(), w3: speed() };
     let slip = [0.3 * speed(), 0.3 * speed()];
     let state = State { theta: 0.4 + 0.8 * r(), ..state };
-    (body.unwrap(), Start { slip, ..state.into() }, 0.1 + 0.5 * r(), 10f64.powf(-1.0 - 1.5 * r()))
+    (body.unwrap(), Start::from(state).with_slip(slip), 0.1 + 0.5 * r(), 10f64.powf(-1.0 - 1.5 * r()))
 }
 
 #[test]
@@ -72,9 +72,9 @@ fn a_homogeneous_ball_slips_straight_on_whatever_its_side_spin() {
         let (u, spin, lean) = (0.5 + r(), 4.0 * r() - 2.0, 0.5 + r());
         // Seen from an axis that leans and is not turned, e_h stays e_h.
         let state = State { theta: lean, w1: spin * lean.sin(), w2: 0.0, w3: spin * lean.cos() };
-        let mut ask = Ask { pose: true, ..Ask::on(on(mu, eps)) };
+        let mut ask = Ask::on(on(mu, eps)).with_pose(true);
         ask.force = true;
-        let start = Start { slip: [u, 0.0], ..state.into() };
+        let start = Start::from(state).with_slip([u, 0.0]);
         let times: Vec<f64> = (1..20).map(|k| 0.05 * f64::from(k) * u / mu).collect();
         let m = roll_with(&ball, start, &times, &ask, || true).unwrap().unwrap();
         for (pose, slip) in m.poses.as_ref().unwrap().iter().zip(&m.path.as_ref().unwrap().slip) {
@@ -139,7 +139,7 @@ fn the_mirror_image_of_a_motion_is_its_motion() {
         let (body, start, mu, eps) = any(&mut r);
         let State { theta, w1, w2, w3 } = start.state;
         let image =
-            Start { slip: [start.slip[0], -start.slip[1]], ..State { theta, w1: -w1, w2, w3: -w3 }.into() };
+            Start::from(State { theta, w1: -w1, w2, w3: -w3 }).with_slip([start.slip[0], -start.slip[1]]);
         let [a, b] = [start, image].map(|start| rolled(&body, start, on(mu, eps), &[1.0, 3.0]));
         for (y, z) in a.states.iter().zip(&b.states) {
             assert_eq!([y.theta, y.w1, y.w2, y.w3], [z.theta, -z.w1, z.w2, -z.w3]);
@@ -151,7 +151,7 @@ fn the_mirror_image_of_a_motion_is_its_motion() {
 fn a_patch_that_shrinks_tends_to_a_point_with_the_square_where_it_slips_and_to_rolling_in_proportion() {
     let body = Body::ball(-0.2, 0.4, 0.42).unwrap();
     let state = State { theta: 0.3, w1: 0.5, w2: 0.1, w3: 4.0 };
-    let start = Start { slip: [1.2, -0.4], ..state.into() };
+    let start = Start::from(state).with_slip([1.2, -0.4]);
     let at = |eps: f64, t: f64| *rolled(&body, start, on(0.3, eps), &[t]).states.last().unwrap();
     let apart = |a: State, b: State| {
         (a.theta - b.theta).abs().max((a.w1 - b.w1).abs()).max((a.w2 - b.w2).abs()).max((a.w3 - b.w3).abs())
@@ -172,7 +172,7 @@ fn a_tippe_top_turns_over_on_a_dry_table_with_a_patch_and_on_a_point_it_never_do
     let top = Body::ball(-0.2, 0.4, 0.42).unwrap();
     let state = State { theta: 0.1, w1: 0.0, w2: 0.0, w3: 7.0 };
     // Its centre is at rest.
-    let start = Start { slip: [0.0, -7.0 * 0.1f64.sin()], ..state.into() };
+    let start = Start::from(state).with_slip([0.0, -7.0 * 0.1f64.sin()]);
     let times: Vec<f64> = (1..1200).map(|k| 0.05 * f64::from(k)).collect();
     // Seconds to 3 rad for patches of 0.1, 0.3 and 1 mm of a ball of 15 mm, by an independent model.
     let second = 1.0 / 0.0391;
@@ -193,7 +193,7 @@ fn a_coin_whirrs_to_its_face_in_one_phase_with_few_steps() {
     {
         let coin = Body::solid(2.2 / 25.75).unwrap();
         let losses = Losses::of(Law::RollingResistance, resistance);
-        let ask = Ask { losses, ..Ask::on(on(0.3, 0.4 / 25.75)) };
+        let ask = Ask::on(on(0.3, 0.4 / 25.75)).with_losses(losses);
         let m =
             roll_with(&coin, steady::state(&coin, 0.5).unwrap(), &[2000.0], &ask, || true).unwrap().unwrap();
         let event = m.event.unwrap();
@@ -221,9 +221,9 @@ fn a_patch_goes_with_neither_drilling_friction_nor_a_restitution() {
     let state = State { theta: 1.0, w1: 0.0, w2: 0.0, w3: 1.0 };
     let of = |ask: Ask| roll_with(&ball, Start::from(state), &[1.0], &ask, || true).unwrap_err().to_string();
     let ask = Ask::on(Table::from(on(0.3, 0.02)));
-    assert!(of(Ask { restitution: Some(0.5), ..ask }).contains("expected 0 together with a restitution"));
+    assert!(of(ask.with_restitution(0.5)).contains("expected 0 together with a restitution"));
     let drills = Losses::of(spincyl::loss::Law::Drilling, 1e-3);
-    assert!(of(Ask { losses: drills, ..ask }).contains("the same couple"));
+    assert!(of(ask.with_losses(drills)).contains("the same couple"));
     for wrong in [-0.1, 1.0, f64::NAN] {
         assert!(of(Ask::on(on(0.3, wrong))).starts_with("patch = "));
     }

@@ -9,10 +9,10 @@ use std::collections::{BTreeSet, HashMap};
 
 #[test]
 fn codes_are_numbers_and_numbers_are_codes() {
-    for ending in Ending::ALL {
+    for &ending in Ending::ALL {
         assert_eq!(Ending::try_from(ending as u8), Ok(ending));
     }
-    for law in Law::ALL {
+    for &law in Law::ALL {
         assert_eq!(Law::try_from(law as u8), Ok(law));
     }
     let wrong = Law::try_from(200).unwrap_err();
@@ -25,8 +25,8 @@ fn endings_and_laws_are_keys_and_words() {
     let mut counts: HashMap<Ending, usize> = HashMap::new();
     *counts.entry(Ending::LiftOff).or_default() += 1;
     assert_eq!(counts[&Ending::LiftOff], 1);
-    let sorted: BTreeSet<Law> = Law::ALL.into_iter().rev().collect();
-    assert!(sorted.into_iter().eq(Law::ALL));
+    let sorted: BTreeSet<Law> = Law::ALL.iter().copied().rev().collect();
+    assert!(sorted.iter().eq(Law::ALL));
     assert_eq!(
         (Ending::LiftOff.to_string(), Law::AirFilm.to_string()),
         ("lift off".into(), "air film".into())

@@ -14,7 +14,8 @@ fn a_ball_that_drills_on_while_resistance_holds_its_rolling_stops_whatever_the_t
     let start = State { theta: 1.0009553921895131, w1: 0.38977109408965055, w2: 0.0, w3: 0.0 };
     let found = [1e-6, 1e-8, 1e-10, 1e-12, 1e-14].map(|tol| {
         let method = Method::Tolerance(tol);
-        let ask = Ask { method, losses: Losses::of(Law::RollingResistance, 0.1), ..Ask::on(Table::Smooth) };
+        let ask =
+            Ask::on(Table::Smooth).with_method(method).with_losses(Losses::of(Law::RollingResistance, 0.1));
         roll_with(&body, start, &[0.0, 10.0], &ask, || true).unwrap().unwrap()
     });
     let end = |motion: &Motion| motion.event.filter(|event| event.ending == Ending::Stops).unwrap();
@@ -36,7 +37,7 @@ fn a_ball_that_drills_on_while_resistance_holds_its_rolling_stops_whatever_the_t
 #[test]
 fn a_uniform_ball_rolls_out_and_spins_on_whatever_axis_is_called_its_own() {
     let ball = Body::rounded(0.0, 0.4, 0.4, 1.0).unwrap();
-    let ask = Ask { losses: Losses::of(Law::RollingResistance, 0.01), ..Ask::on(ROLLS) };
+    let ask = Ask::on(ROLLS).with_losses(Losses::of(Law::RollingResistance, 0.01));
     for theta in [0.001, 0.5, FRAC_PI_2, 2.9] {
         for (speed, spin) in [(0.0, 2.7), (0.19, 5.4), (0.02, 1e-3)] {
             let (s, c) = theta.sin_cos();
@@ -58,7 +59,7 @@ fn a_weighted_ball_that_rolling_resistance_holds_stays_at_rest_on_a_table_with_f
     // The weight pulls with the couple 0.1 sin(theta); the coefficients are above and below that.
     for (k, stays) in [(0.454, true), (0.0413, true), (0.0411, false), (0.0, false)] {
         let losses = Losses::of(Law::RollingResistance, k);
-        let ask = Ask { losses, ..Ask::on(Friction::coulomb(0.247)) };
+        let ask = Ask::on(Friction::coulomb(0.247)).with_losses(losses);
         let motion = roll_with(&ball, start, &[0.0, 1.0], &ask, || true).unwrap().unwrap();
         let event = motion.event.map(|event| (event.ending, event.time, event.state));
         let rest = Some((Ending::Stops, 0.0, start));
@@ -73,7 +74,7 @@ fn a_weighted_ball_that_is_let_go_rocks_to_rest_and_stays_there() {
     let start = State { theta: 1.0, w1: 0.0, w2: 0.0, w3: 0.0 };
     let friction = Table::Rubs(Friction::coulomb(0.3));
     for table in [ROLLS, friction] {
-        let ask = Ask { losses: Losses::of(Law::RollingResistance, 0.027), ..Ask::on(table) };
+        let ask = Ask::on(table).with_losses(Losses::of(Law::RollingResistance, 0.027));
         let motion = roll_with(&ball, start, &[0.0, 40.0], &ask, || true).unwrap().unwrap();
         let event = motion.event.unwrap();
         assert_eq!(event.ending, Ending::Stops);
@@ -86,10 +87,8 @@ fn a_weighted_ball_that_is_let_go_rocks_to_rest_and_stays_there() {
 
 #[test]
 fn a_disk_on_its_edge_that_spins_about_the_vertical_does_not_roll() {
-    let (disk, ask) = (
-        Body::solid(0.0).unwrap(),
-        Ask { losses: Losses::of(Law::RollingResistance, 0.005), ..Ask::on(ROLLS) },
-    );
+    let (disk, ask) =
+        (Body::solid(0.0).unwrap(), Ask::on(ROLLS).with_losses(Losses::of(Law::RollingResistance, 0.005)));
     for (w1, w2) in [(1.0, 0.0), (2.0, 0.0), (2.0, 1e-6)] {
         for time in [1.0, 10.0] {
             let start = State { theta: FRAC_PI_2, w1, w2, w3: 0.0 };
@@ -115,7 +114,7 @@ fn a_disk_all_but_on_its_edge_falls_as_it_claims_whatever_the_tolerance() {
         let start = Start::from(state);
         for tol in [1e-4, 1e-6, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13, 1e-14] {
             let table = Table::Rubs(Friction::Viscous { c });
-            let ask = Ask { method: Method::Tolerance(tol), ..Ask::on(table) };
+            let ask = Ask::on(table).with_method(Method::Tolerance(tol));
             let motion = roll_with(&disk, start, &[17.0], &ask, || true).unwrap().unwrap();
             let off = (motion.states[0].theta - theta).abs();
             assert!(off < 5.0 * motion.error, "tol {tol:e}: off by {off:e}, claims {:e}", motion.error);
@@ -133,12 +132,12 @@ fn a_slipping_ball_that_rolling_resistance_stops_has_one_time_of_its_stop() {
         w2: -4.571949401105849e-06,
         w3: -0.021841463555552536,
     };
-    let start = Start { slip: [-0.8788704590281213, 0.0], ..state.into() };
+    let start = Start::from(state).with_slip([-0.8788704590281213, 0.0]);
     let losses = Losses::of(Law::RollingResistance, 0.08469917537452804)
         + Losses::of(Law::Drilling, 0.031018461102858726);
     let table = Table::Rubs(Friction::coulomb(0.0010786595683881079));
     let found = [1e-8, 1e-10, 1e-11, 1e-12, 1e-13, 3e-14, 1e-14].map(|tol| {
-        let ask = Ask { method: Method::Tolerance(tol), losses, ..Ask::on(table) };
+        let ask = Ask::on(table).with_method(Method::Tolerance(tol)).with_losses(losses);
         let motion = roll_with(&ball, start, &[0.0, 1.0], &ask, || true).unwrap().unwrap();
         assert_eq!(motion.event.unwrap().ending, Ending::Stops);
         motion
@@ -161,7 +160,7 @@ fn a_face_that_only_comes_nearer_takes_as_long_to_each_inclination_as_its_expone
     let start = steady::state(&disk, 0.3).unwrap().kicked(0.05);
     let losses = Losses::of(Law::RollingResistance, 0.0119) + Losses::of(Law::AirQuadratic, 0.0298);
     let at = |times: &[f64]| {
-        let ask = Ask { method: Method::Tolerance(1e-10), losses, ..Ask::default() };
+        let ask = Ask::default().with_method(Method::Tolerance(1e-10)).with_losses(losses);
         roll_with(&disk, start, times, &ask, || true).unwrap().unwrap()
     };
     let end = at(&[0.0, 100.0]).event.unwrap();

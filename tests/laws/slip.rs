@@ -108,8 +108,8 @@ proptest! {
         let i3 = hoop.i3();
         let start = State { theta: FRAC_PI_2, w1: 0.0, w2: 0.0, w3: -back };
         let grip = (v + back) / (mu * (1.0 + 1.0 / i3));
-        let ask = Ask { pose: true, ..Ask::on(Friction::coulomb(mu)) };
-        let path = roll_with(&hoop, Start { slip: [0.0, v + back], ..start.into() }, &[0.5 * grip, 2.0 * grip], &ask, || true)
+        let ask = Ask::on(Friction::coulomb(mu)).with_pose(true);
+        let path = roll_with(&hoop, Start::from(start).with_slip([0.0, v + back]), &[0.5 * grip, 2.0 * grip], &ask, || true)
             .unwrap().unwrap();
         prop_assert_eq!(path_of(&path).phases.len(), 2);
         let near = |a: f64, b: f64, size: f64| (a - b).abs() <= 1e-13 * (1.0 + size);
@@ -136,7 +136,7 @@ fn a_ball_keeps_jelletts_constant_and_a_rough_table_rolls() {
     };
     for friction in [Friction::coulomb(0.3), Friction::Viscous { c: 0.2 }] {
         let path =
-            roll_with(&top, Start { slip: [0.5, -1.0], ..start.into() }, &times, &Ask::on(friction), || true);
+            roll_with(&top, Start::from(start).with_slip([0.5, -1.0]), &times, &Ask::on(friction), || true);
         let path = path.unwrap().unwrap();
         let off = path.states.iter().map(|y| (jellett(y) / jellett(&start) - 1.0).abs());
         assert!(off.fold(0f64, f64::max) < 1e-13, "{friction:?}");
@@ -186,7 +186,7 @@ fn what_makes_no_sense_is_refused_by_name() {
     let (body, y) = (Body::solid(1.0).unwrap(), State { theta: 1.0, w1: 0.1, w2: 0.0, w3: 0.2 });
     let name = |friction: Friction, slip: [f64; 2], times: &[f64]| match roll_with(
         &body,
-        Start { slip, ..y.into() },
+        Start::from(y).with_slip(slip),
         times,
         &Ask::on(friction),
         || true,
@@ -210,7 +210,7 @@ fn what_makes_no_sense_is_refused_by_name() {
     let limit = slip::painleve(&light, 1.0);
     let pushed = roll_with(
         &light,
-        Start { slip: [2.0, 0.0], ..y.into() },
+        Start::from(y).with_slip([2.0, 0.0]),
         &[1.0],
         &Ask::on(Friction::coulomb(1.1 * limit)),
         || true,
@@ -224,8 +224,8 @@ fn a_tube_that_slips_in_every_nod_is_not_said_to_jam() {
     let (w1, w3, mu) = (3.392822265625, 3.324289864719004, 0.20241508483886717);
     let start = State { theta: FRAC_PI_2, w1, w2: 0.0, w3 };
     let slip = [0.0, (6.0 - tube.i1() / 6.0) * w1 - w3];
-    let ask = Ask { method: Method::Tolerance(1e-8), ..Ask::on(Friction::coulomb(mu)) };
-    let to = |t: f64| roll_with(&tube, Start { slip, ..start.into() }, &[t], &ask, || true);
+    let ask = Ask::on(Friction::coulomb(mu)).with_method(Method::Tolerance(1e-8));
+    let to = |t: f64| roll_with(&tube, Start::from(start).with_slip(slip), &[t], &ask, || true);
     assert!(path_of(&to(1e3).unwrap().unwrap()).phases.len() > 100);
     // A motion that is given up returns its phases up to there.
     let far = to(2e5).unwrap().unwrap();
@@ -243,7 +243,8 @@ fn what_lies_on_its_side_says_so_and_what_is_turned_fast_enough_rises() {
         let start = State { theta: FRAC_PI_2, w1, w2: 0.0, w3 };
         let slip = [0.0, -tube.i1() / 6.0 * w1 + 6.0 * w1 - w3];
         let ask = Ask::on(Friction::coulomb(0.3));
-        let path = roll_with(&tube, Start { slip, ..start.into() }, &[50.0], &ask, || true).unwrap().unwrap();
+        let path =
+            roll_with(&tube, Start::from(start).with_slip(slip), &[50.0], &ask, || true).unwrap().unwrap();
         assert_eq!(path.ending(), ending, "{launch}");
     }
 }
@@ -266,22 +267,19 @@ fn together(of: &[Vec<f64>; 4], times: &[f64], threads: usize) -> (Vec<Vec<f64>>
     let [w1, w3, slip, mu] = of;
     let count = w1.len();
     let (i1, i3) = ([tube.i1()], [tube.i3()]);
-    let starts = MotionStarts {
-        slips: Some([&[0.0], slip]),
-        coefficients: Some([mu, mu, &[0.0]]),
-        ..MotionStarts::new([&[6.0], &i1, &i3, &[0.0], &[f64::NAN]], [&[FRAC_PI_2], w1, &[0.0], w3])
-    };
+    let bodies: [&[f64]; 5] = [&[6.0], &i1, &i3, &[0.0], &[f64::NAN]];
+    let mut starts = MotionStarts::new(bodies, [&[FRAC_PI_2], w1, &[0.0], w3]);
+    starts.slips = Some([&[0.0], slip]);
+    starts.coefficients = Some([mu, mu, &[0.0]]);
     let mut last = vec![vec![7.0; count]; 6];
     let mut sums = vec![vec![7.0; count]; SUMMARIES];
     let (mut error, mut method, mut status) = (vec![7.0; count], vec![7; count], vec![7; count]);
     let mut columns = last.iter_mut().map(Vec::as_mut_slice);
     let mut summary = sums.iter_mut().map(|x| Some(x.as_mut_slice()));
-    let out = MotionOutput {
-        last: Some(core::array::from_fn(|_| columns.next().unwrap())),
-        last_slip: Some(core::array::from_fn(|_| columns.next().unwrap())),
-        summary: core::array::from_fn(|_| summary.next().unwrap()),
-        ..MotionOutput::new(&mut error, &mut method, &mut status)
-    };
+    let mut out = MotionOutput::new(&mut error, &mut method, &mut status);
+    out.last = Some(core::array::from_fn(|_| columns.next().unwrap()));
+    out.last_slip = Some(core::array::from_fn(|_| columns.next().unwrap()));
+    out.summary = core::array::from_fn(|_| summary.next().unwrap());
     let job = Job { table: TableKind::Coulomb, tol: 1e-12, ..Job::new(times) };
     assert!(roll(&starts, &job, out, threads, |_| true).unwrap());
     (last.into_iter().chain(sums).collect(), error, status)
@@ -317,7 +315,7 @@ fn side_by_side_a_slip_is_what_it_is_alone() {
         let [w1, w3, slip, mu] = [&all[0], &all[1], &all[2], &all[3]].map(|x| x[i]);
         let start = State { theta: FRAC_PI_2, w1, w2: 0.0, w3 };
         let ask = Ask::on(Friction::coulomb(mu));
-        let path = roll_with(&tube, Start { slip: [0.0, slip], ..start.into() }, &[40.0], &ask, || true)
+        let path = roll_with(&tube, Start::from(start).with_slip([0.0, slip]), &[40.0], &ask, || true)
             .unwrap()
             .unwrap();
         assert_eq!(path.ending() as u8, status[i], "{i}");
@@ -345,7 +343,7 @@ fn runs_of_a_state_that_rounding_pushes_over_agree_within_what_they_claim() {
     let body = Body::tube(0.375, 0.0).unwrap();
     let start = spincyl::steady::state(&body, 1.4).unwrap();
     let at = |t: f64, tol: f64| {
-        let ask = Ask { method: Method::Tolerance(tol), ..Ask::on(Friction::Viscous { c: 0.3 }) };
+        let ask = Ask::on(Friction::Viscous { c: 0.3 }).with_method(Method::Tolerance(tol));
         roll_with(&body, start, &[t], &ask, || true).unwrap().unwrap()
     };
     for t in [20.0, 30.0, 34.0, 36.0, 38.0] {

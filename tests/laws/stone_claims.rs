@@ -13,8 +13,8 @@ type Asked = (Ellipsoid, StoneState, f64, bool, f64);
 /// The largest difference of a motion and one of this tolerance, over the sum of their claims.
 fn beyond_claims(&(ref stone, start, mu, slips, tol): &Asked) -> f64 {
     let table = if slips { Friction::coulomb(mu).into() } else { Table::default() };
-    let ask = Ask { table, ..Ask::default() };
-    let rough = Ask { method: Method::Tolerance(10f64.powf(tol)), ..ask };
+    let ask = Ask::default().with_table(table);
+    let rough = ask.with_method(Method::Tolerance(10f64.powf(tol)));
     let roll = |ask| stone::roll(stone, start, &TIMES, ask, || true);
     let (Ok(Some(a)), Ok(Some(b))) = (roll(&ask), roll(&rough)) else { return 0.0 };
     let states = a.states.iter().zip(&b.states).map(|(x, y)| apart(x, y));
@@ -92,7 +92,7 @@ fn rough_motions_of_stones_end_where_fine_ones_do() {
         let stone = Ellipsoid::new(axes, inertia, offset).unwrap();
         let table = mu.map_or(Table::default(), |mu| Friction::coulomb(mu).into());
         let end = |method| {
-            let ask = Ask { table, method, ..Ask::default() };
+            let ask = Ask::default().with_table(table).with_method(method);
             stone::roll(&stone, StoneState { vertical, w }, &TIMES, &ask, || true).unwrap().unwrap()
         };
         let fine = end(Method::Exact).event.unwrap();

@@ -1,17 +1,18 @@
 //! Many motions with losses at once, against motions one at a time.
 
+use crate::common::many::{LAWS, loss_columns};
 use core::f64::consts::FRAC_PI_2;
 use spincyl::contact::{Table, TableKind};
-use spincyl::ensemble::{INVALID, Job, MotionOutput, MotionStarts, SUMMARIES, Summary, roll};
-use spincyl::loss::{COUNT, Law, Losses};
-use spincyl::motion::{Ask, Method, roll_with};
+use spincyl::ensemble::{Job, MotionOutput, MotionStarts, SUMMARIES, Summary, roll};
+use spincyl::loss::{Law, Losses};
+use spincyl::motion::{Ask, Ending, Method, roll_with};
 use spincyl::{Body, State};
 
 /// Bodies, states and losses as columns.
 struct Scene {
     bodies: [Vec<f64>; 5],
     states: [Vec<f64>; 4],
-    losses: [Vec<f64>; COUNT],
+    losses: [Vec<f64>; LAWS],
 }
 
 impl Scene {
@@ -19,7 +20,7 @@ impl Scene {
     /// none.
     fn of(count: usize) -> Self {
         let (mut bodies, mut states, mut losses) =
-            <([Vec<f64>; 5], [Vec<f64>; 4], [Vec<f64>; COUNT])>::default();
+            <([Vec<f64>; 5], [Vec<f64>; 4], [Vec<f64>; LAWS])>::default();
         let share = |i: usize, step: usize| ((i * step) % 1009) as f64 / 1009.0;
         for i in 0..count {
             let fillet = if i % 3 == 0 { 0.3 * share(i, 71) } else { 0.0 };
@@ -42,19 +43,17 @@ impl Scene {
     }
 
     fn losses(&self, i: usize) -> Losses {
-        Losses { coefficients: core::array::from_fn(|law| self.losses[law][i]) }
+        Law::ALL.iter().fold(Losses::NONE, |all, law| all.with(*law, self.losses[*law as usize][i]))
     }
 
     /// The ends, sums, claims and status.
     fn run(&self, on: TableKind, times: &[f64], threads: usize) -> (Vec<Vec<f64>>, Vec<u8>) {
         let count = self.states[0].len();
-        let starts = MotionStarts {
-            losses: Some(core::array::from_fn(|k| &self.losses[k][..])),
-            ..MotionStarts::new(
-                core::array::from_fn(|k| &self.bodies[k][..]),
-                core::array::from_fn(|k| &self.states[k][..]),
-            )
-        };
+        let mut starts = MotionStarts::new(
+            core::array::from_fn(|k| &self.bodies[k][..]),
+            core::array::from_fn(|k| &self.states[k][..]),
+        );
+        starts.losses = Some(loss_columns(&self.losses));
         let mut found = vec![vec![7.0; count]; 6 + SUMMARIES + 1];
         let (mut method, mut status) = (vec![9; count], vec![9; count]);
         let mut columns = found.iter_mut().map(Vec::as_mut_slice);
@@ -64,8 +63,8 @@ impl Scene {
         );
         let summary = core::array::from_fn(|_| columns.next());
         let claims = columns.next().unwrap();
-        let out =
-            MotionOutput { last, last_slip, summary, ..MotionOutput::new(claims, &mut method, &mut status) };
+        let mut out = MotionOutput::new(claims, &mut method, &mut status);
+        (out.last, out.last_slip, out.summary) = (last, last_slip, summary);
         let job = Job { table: on, tol: 1e-11, ..Job::new(times) };
         assert!(roll(&starts, &job, out, threads, |_| true).unwrap());
         (found, status)
@@ -88,9 +87,9 @@ fn side_by_side_a_body_loses_what_it_loses_alone_and_ends_as_it_does() {
             let [ell, i1, i3, fillet, _] = core::array::from_fn(|k| scene.bodies[k][i]);
             let body = Body::rounded(ell, i1, i3, fillet).unwrap();
             let start = State::from(core::array::from_fn(|k| scene.states[k][i]));
-            let ask = Ask { losses: scene.losses(i), method: Method::Tolerance(1e-11), ..Ask::on(table) };
+            let ask = Ask::on(table).with_losses(scene.losses(i)).with_method(Method::Tolerance(1e-11));
             let Ok(path) = roll_with(&body, start, &[20.0], &ask, || true) else {
-                assert_eq!(status[i], INVALID, "{i}");
+                assert_eq!(status[i], Ending::Invalid as u8, "{i}");
                 continue;
             };
             let path = path.unwrap();
@@ -145,7 +144,7 @@ fn what_loses_nothing_rolls_by_the_first_integrals() {
     scene.losses[Law::DryContour as usize][3] = f64::NAN;
     scene.losses[Law::AirLinear as usize][4] = -1.0;
     let (found, status) = scene.run(TableKind::Rolling, &[7.0], 1);
-    assert!(status[3] == INVALID && status[4] == INVALID && found[0][3].is_nan());
+    assert!(status[3] == Ending::Invalid as u8 && status[4] == Ending::Invalid as u8 && found[0][3].is_nan());
     for i in (0..40).filter(|i| ![3, 4].contains(i)) {
         let [ell, i1, i3, fillet, _] = core::array::from_fn(|k| scene.bodies[k][i]);
         let body = Body::rounded(ell, i1, i3, fillet).unwrap();

@@ -73,7 +73,7 @@ impl Desk {
     /// Sets the one law of loss by its number, with its coefficient; 0 for no loss.
     pub fn losses(&mut self, [law, coefficient]: [f64; 2]) -> Answer {
         let expected = "the number of a law of loss";
-        let known = Law::ALL.into_iter().find(|known| f64::from(*known as u8) == law);
+        let known = Law::ALL.iter().copied().find(|known| f64::from(*known as u8) == law);
         let known = known.ok_or(Refusal::Range { name: "law", value: law, expected })?;
         let losses = Losses::of(known, coefficient);
         losses.check()?;

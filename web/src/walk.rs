@@ -39,7 +39,7 @@ impl Desk {
         (ask.losses, ask.method, ask.pose, ask.force) = (self.losses, Method::Tolerance(TOL), true, true);
         ask.restitution = wish.restitution;
         let &Wish { body, start: (y, slip), t, n, .. } = wish;
-        let start = Start { slip, ..y.into() };
+        let start = Start::from(y).with_slip(slip);
         let motion = follow(&body, &start, &times(0.0, t, n.max(2)).collect::<Vec<_>>(), &ask)?;
         let Some(path) = &motion.path else { return Err(Refusal::Work) };
         let (code, time) = told(motion.event);
@@ -85,7 +85,7 @@ impl Walked {
         if let Some(near) = self.rows.iter().rev().find(sound) {
             let since: Vec<f64> = wanted.iter().map(|t| t - near.t).collect();
             let aloft = (near.kind == Kind::Flying).then_some([near.pose.height, near.lift]);
-            let start = Start { slip: near.slip, aloft, ..near.y.into() };
+            let start = Start::from(near.y).with_slip(near.slip).with_aloft(aloft);
             // A motion can pass through a row from which no motion can be started.
             if let Ok(motion) = follow(&self.body, &start, &since, &self.ask) {
                 return Ok(self.read(&motion, Some(near)));

@@ -194,7 +194,7 @@ pub(crate) fn rolling_growth((s, c): (f64, f64), [w1, w2, w3]: [f64; 3], [d1, d2
 impl Couples<f64> {
     /// These losses without the laws that act along the contour.
     pub fn off_the_contour(mut self) -> Self {
-        for law in Law::ALL.into_iter().filter(|law| law.is_along()) {
+        for law in Law::ALL.iter().copied().filter(|law| law.is_along()) {
             (self.coefficients[law as usize], self.present[law as usize]) = (0.0, false);
         }
         self

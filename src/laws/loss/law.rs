@@ -99,7 +99,7 @@ mod tests {
 
     #[test]
     fn a_law_resists_the_motion_that_it_names_and_takes_its_power() {
-        for (law, place) in Law::ALL.into_iter().flat_map(|law| PLACES.map(|place| (law, place))) {
+        for (law, place) in Law::ALL.iter().copied().flat_map(|law| PLACES.map(|place| (law, place))) {
             let seen = seen(place, 1.0);
             let (m, (s, c)) = (law.couple(&seen), seen.angle);
             let taken: f64 = -(0..3).map(|i| m[i] * seen.w[i]).sum::<f64>();
@@ -122,7 +122,7 @@ mod tests {
 
     #[test]
     fn a_law_is_dry_or_has_a_root_or_is_smooth_as_it_says() {
-        for (law, place) in Law::ALL.into_iter().flat_map(|law| PLACES.map(|place| (law, place))) {
+        for (law, place) in Law::ALL.iter().copied().flat_map(|law| PLACES.map(|place| (law, place))) {
             let [one, two] = [1e-6, 2e-6].map(|faster| largest(law.couple(&seen(place, faster))));
             // The couple turns round with the motion, so that it is smooth at rest if it goes as an odd power.
             let power = (two / one).log2();
@@ -141,7 +141,7 @@ mod tests {
 
     #[test]
     fn the_slope_of_a_law_is_that_of_its_couple() {
-        for (law, place) in Law::ALL.into_iter().flat_map(|law| PLACES.map(|place| (law, place))) {
+        for (law, place) in Law::ALL.iter().copied().flat_map(|law| PLACES.map(|place| (law, place))) {
             let (at, h) = (seen(place, 1.0), 1e-5);
             let push = |by: f64| {
                 let mut w = at.w;
@@ -160,8 +160,8 @@ mod tests {
 
     #[test]
     fn no_two_laws_have_a_coefficient_of_the_same_name() {
-        for law in Law::ALL {
-            let same = Law::ALL.into_iter().filter(|other| other.parameter() == law.parameter());
+        for &law in Law::ALL {
+            let same = Law::ALL.iter().copied().filter(|other| other.parameter() == law.parameter());
             assert_eq!(same.count(), 1, "{law:?}: PARAMETER");
         }
     }

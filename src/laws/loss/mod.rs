@@ -184,7 +184,7 @@ laws! {
 }
 
 /// The number of laws.
-pub const COUNT: usize = Law::ALL.len();
+pub(crate) const COUNT: usize = Law::ALL.len();
 
 // The number of a law is its index.
 const _: () = {
@@ -237,7 +237,7 @@ impl Law {
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Losses {
     /// The coefficients, in the order of [`Law::ALL`].
-    pub coefficients: [f64; COUNT],
+    pub(crate) coefficients: [f64; COUNT],
 }
 
 impl Losses {
@@ -250,18 +250,33 @@ impl Losses {
     /// use spincyl::loss::{Law, Losses};
     ///
     /// let both = Losses::of(Law::DryContour, 5e-3) + Losses::of(Law::AirFilm, 1e-7);
-    /// assert_eq!(both.coefficients[Law::AirFilm as usize], 1e-7);
+    /// assert_eq!((both.coefficient(Law::AirFilm), both.iter().count()), (1e-7, 2));
     /// ```
     pub fn of(law: Law, coefficient: f64) -> Self {
-        let mut losses = Self::NONE;
-        losses.coefficients[law as usize] = coefficient;
-        losses
+        Self::NONE.with(law, coefficient)
+    }
+
+    /// The same losses with this coefficient of a law.
+    #[must_use]
+    pub fn with(mut self, law: Law, coefficient: f64) -> Self {
+        self.coefficients[law as usize] = coefficient;
+        self
+    }
+
+    /// The coefficient of a law; 0 if it is absent.
+    pub fn coefficient(&self, law: Law) -> f64 {
+        self.coefficients[law as usize]
+    }
+
+    /// The laws that are present, with their coefficients, in the order of [`Law::ALL`].
+    pub fn iter(&self) -> impl Iterator<Item = (Law, f64)> {
+        Law::ALL.iter().copied().zip(self.coefficients).filter(|(_, coefficient)| *coefficient != 0.0)
     }
 
     /// Refuses coefficients outside their range, from 0 to 1e6; the error names the coefficient.
     pub fn check(&self) -> Result<(), Error> {
-        for law in Law::ALL {
-            let value = self.coefficients[law as usize];
+        for &law in Law::ALL {
+            let value = self.coefficient(law);
             within(
                 law.parameter(),
                 value,

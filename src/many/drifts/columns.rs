@@ -2,9 +2,9 @@
 
 use crate::error::Error;
 use crate::laws::body::Body;
-use crate::laws::loss::{COUNT, Losses};
+use crate::laws::loss::Losses;
 use crate::laws::state::State;
-use crate::many::columns::{Split, at, fit, rows};
+use crate::many::columns::{LossColumns, Split, at, fit, rows};
 use crate::motions::drift::rest::Rest;
 use crate::motions::drift::{Drift, End, check};
 
@@ -28,8 +28,8 @@ pub struct DriftStarts<'a> {
     pub bodies: [&'a [f64]; 6],
     /// Columns of theta, w1, w2 and w3; for a centre at rest only theta counts.
     pub states: [&'a [f64]; 4],
-    /// Columns of the coefficients of the laws, in the order of [`Law::ALL`](crate::laws::loss::Law::ALL).
-    pub losses: [&'a [f64]; COUNT],
+    /// Columns of the coefficients of the laws.
+    pub losses: LossColumns<'a>,
 }
 
 /// The code of a start without a drift; the codes of [`End`] are smaller.
@@ -108,7 +108,7 @@ impl DriftStarts<'_> {
     }
 
     fn columns(&self) -> impl Iterator<Item = &[f64]> {
-        self.bodies.iter().chain(&self.states).chain(&self.losses).copied()
+        self.bodies.iter().chain(&self.states).chain(&self.losses.0).copied()
     }
 
     pub(crate) fn fit(&self, count: usize) -> bool {
@@ -117,8 +117,7 @@ impl DriftStarts<'_> {
 
     pub(crate) fn row(&self, i: usize) -> DriftRow {
         let at = |x: &[f64]| at(x, i);
-        let coefficients = self.losses.map(at);
-        DriftRow { body: self.bodies.map(at), state: self.states.map(at), losses: Losses { coefficients } }
+        DriftRow { body: self.bodies.map(at), state: self.states.map(at), losses: self.losses.row(i) }
     }
 
     pub(crate) fn is_rounded(&self, i: usize) -> bool {

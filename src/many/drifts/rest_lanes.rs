@@ -127,7 +127,7 @@ fn task(row: &DriftRow) -> Option<DriftGoal> {
 /// The goal of a drift to the face, for a body with ell + rho = `height`.
 fn down(Losses { coefficients }: &Losses, height: f64) -> DriftGoal {
     let powers = || {
-        let some = Law::ALL.into_iter().filter(|law| coefficients[*law as usize] > 0.0);
+        let some = Law::ALL.iter().copied().filter(|law| coefficients[*law as usize] > 0.0);
         some.map(|law| law.powers().face[usize::from(height > 0.0)])
     };
     let finite = powers().any(|p| p < 1.0);

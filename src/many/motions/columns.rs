@@ -1,17 +1,18 @@
 //! The starts of an ensemble and the arrays for its results, as columns.
 
-use super::{Answer, INVALID};
+use super::Answer;
 use crate::error::Error;
 use crate::laws::body::Body;
-use crate::laws::loss::{COUNT, Losses};
+use crate::laws::loss::Losses;
 use crate::laws::state::State;
-use crate::many::columns::{Split, at, fit, rows};
-use crate::motions::Start;
+use crate::many::columns::{LossColumns, Split, at, fit, rows};
+use crate::motions::{Ending, Start};
 use crate::numbers::codes::coded;
 
 /// Bodies, states, slips, tables and losses as columns of numbers: each column has the length n, or is a single number
 /// for all.
 #[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
 pub struct MotionStarts<'a> {
     /// Columns of ell, i1, i3, fillet and theta_end (NaN for the default of the body).
     pub bodies: [&'a [f64]; 5],
@@ -21,8 +22,8 @@ pub struct MotionStarts<'a> {
     pub slips: Option<[&'a [f64]; 2]>,
     /// The coefficients of the table of each motion, and the radius of its patch; `None` means those of the job.
     pub coefficients: Option<[&'a [f64]; 3]>,
-    /// The coefficients of the losses, in the order of [`Law::ALL`](crate::laws::loss::Law::ALL).
-    pub losses: Option<[&'a [f64]; COUNT]>,
+    /// The coefficients of the losses; `None` means that nothing is lost.
+    pub losses: Option<LossColumns<'a>>,
     /// Height and vertical velocity of the lowest point of motions that start in the air.
     pub aloft: Option<[&'a [f64]; 2]>,
 }
@@ -79,7 +80,8 @@ impl<'a> MotionStarts<'a> {
 
     fn columns(&self) -> impl Iterator<Item = &'a [f64]> {
         let pairs = self.slips.into_iter().chain(self.aloft).flatten();
-        let laws = self.coefficients.into_iter().flatten().chain(self.losses.into_iter().flatten());
+        let laws =
+            self.coefficients.into_iter().flatten().chain(self.losses.into_iter().flat_map(|all| all.0));
         self.bodies.into_iter().chain(self.states).chain(pairs).chain(laws)
     }
 
@@ -118,7 +120,7 @@ impl<'a> MotionStarts<'a> {
     }
 
     pub(super) fn losses(&self, i: usize) -> Losses {
-        self.losses.map_or(Losses::NONE, |all| Losses { coefficients: all.map(|x| at(x, i)) })
+        self.losses.map_or(Losses::NONE, |all| all.row(i))
     }
 
     pub(super) fn has_patch(&self) -> bool {
@@ -235,6 +237,7 @@ impl Summary {
 
 /// The arrays for the results; a result whose array is `None` is not computed.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct MotionOutput<'a> {
     /// theta, w1, w2, w3, row-major (motion, time); NaN after the end of a motion.
     pub states: Option<[&'a mut [f64]; 4]>,
@@ -252,7 +255,7 @@ pub struct MotionOutput<'a> {
     pub error: &'a mut [f64],
     /// Code of the [`Answer`].
     pub method: &'a mut [u8],
-    /// Code of the [`Ending`](crate::motions::Ending), [`INVALID`] or [`BOUNDED`](super::BOUNDED).
+    /// Code of the [`Ending`](crate::motions::Ending).
     pub status: &'a mut [u8],
 }
 
@@ -331,7 +334,7 @@ impl<'a> MotionOutput<'a> {
     }
 
     /// Writes NaN for all numbers of motion `i`, and a status with the reason.
-    pub(super) fn blank(&mut self, i: usize, times: usize, status: u8) {
+    pub(super) fn blank(&mut self, i: usize, times: usize, ending: Ending) {
         for row in i * times..(i + 1) * times {
             self.put_state(row, &State::from([f64::NAN; 4]), [f64::NAN; 2]);
         }
@@ -339,12 +342,12 @@ impl<'a> MotionOutput<'a> {
         for column in self.summary.iter_mut().flatten() {
             column[i] = f64::NAN;
         }
-        self.tell(i, Answer::None, status, f64::NAN);
+        self.tell(i, Answer::None, ending as u8, f64::NAN);
     }
 
     /// Writes NaN for motion `i`, whose body or start is invalid.
     pub(super) fn refuse(&mut self, i: usize, times: usize) {
-        self.blank(i, times, INVALID);
+        self.blank(i, times, Ending::Invalid);
     }
 }
 

@@ -12,7 +12,7 @@
 use super::lossy_lanes::LossyLanes;
 use super::slip_lanes::Slips;
 use super::walks::{Among, Walks, lanes};
-use super::{Answer, BOUNDED, MotionBlock, MotionOutput, Summary};
+use super::{Answer, MotionBlock, MotionOutput, Summary};
 use crate::error::{Error, room, spare_for};
 use crate::laws::state::State;
 use crate::motions::followed::{Followed, rougher};
@@ -27,7 +27,7 @@ use fearless_simd::Level;
 /// Writes the results of motion `i`.
 fn put(out: &mut MotionOutput<'_>, i: usize, found: &Followed, times: &[f64]) {
     if let Some(event) = found.motion.event.filter(|event| event.ending == Ending::Bounded) {
-        out.blank(i, times.len(), BOUNDED);
+        out.blank(i, times.len(), Ending::Bounded);
         out.put(Summary::End, i, event.time);
         return;
     }
@@ -128,7 +128,7 @@ impl<'a> MotionBlock<'a> {
                     put(out, i, &found, times);
                 }
                 Err(e @ Error::Memory { .. }) => return Err(e),
-                Err(Error::Painleve { .. }) => out.blank(i, times.len(), Ending::Painleve as u8),
+                Err(Error::Painleve { .. }) => out.blank(i, times.len(), Ending::Painleve),
                 Err(_) => out.refuse(i, times.len()),
             }
         }

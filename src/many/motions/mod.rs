@@ -27,6 +27,7 @@ mod steps;
 mod swung;
 mod walks;
 
+pub use super::columns::LossColumns;
 use super::columns::{RowBlock, blocks};
 use super::threads::share_aside;
 use crate::error::{Error, spare, spare_for, within};
@@ -132,13 +133,6 @@ coded! {
     }
 }
 
-/// Status of a start without a motion (see [`Answer::None`]); the other codes are those of [`Ending`](crate::motion::Ending),
-/// and [`BOUNDED`].
-pub const INVALID: u8 = 5;
-
-/// Status of a motion that was given up, because it hardly advances or changes too often between slipping and rolling.
-pub const BOUNDED: u8 = 8;
-
 /// Number of motions in a block: small enough that the caller is asked often whether to go on, and that a
 /// block needs little memory.
 const MOTIONS_PER_BLOCK: usize = 2048;
@@ -150,8 +144,8 @@ const FLOWS: usize = 1024;
 /// asks `go_on` about fifty times a second with the fraction of the work that is done. Returns whether all motions are
 /// done; if not, the contents of `out` are unspecified.
 ///
-/// A motion whose body, state, table or loss is out of the range of [`roll_with`](crate::motion::roll_with) gets NaN and the status
-/// [`INVALID`]; a start without a unique contact force gets the status of
+/// A motion whose body, state, table or loss is out of the range of [`roll_with`](crate::motion::roll_with) gets NaN and the status of
+/// [`Ending::Invalid`](crate::motion::Ending::Invalid); a start without a unique contact force gets the status of
 /// [`Ending::Painleve`](crate::motion::Ending::Painleve). Errors, before any work: `OutOfRange` for times, a tolerance, a step
 /// or a mu that make no sense; at any time `Memory`.
 ///

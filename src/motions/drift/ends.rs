@@ -110,7 +110,7 @@ impl Goal {
             _ => 0.0,
         };
         let rise = if end == End::Upright || end == End::Lowest { 2.0 } else { 1.0 };
-        let some = Law::ALL.into_iter().filter(|law| losses.coefficients[*law as usize] > 0.0);
+        let some = Law::ALL.iter().copied().filter(|law| losses.coefficients[*law as usize] > 0.0);
         let power = rise - some.fold(f64::INFINITY, |least, law| least.min(exponent(law)));
         Self { end, theta, finite: power > 0.0, power }
     }
@@ -134,7 +134,7 @@ mod tests {
         let body = |ell: f64, i1: f64, i3: f64| Body::new(ell, i1, i3).unwrap();
         let (coin, disk, can) = (body(0.0, 0.25, 0.5), body(0.5, 0.33, 0.5), body(2.5, 2.33, 0.5));
         let (critical, ball) = (body(1.0, 0.5, 0.5), Body::ball(-0.3, 0.4, 0.38).unwrap());
-        for law in Law::ALL {
+        for &law in Law::ALL {
             let of = law.powers();
             let near = |body: &Body| exponent(law, body, |x| x);
             let about = |body: &Body| exponent(law, body, |x| body.theta_balance() - x);

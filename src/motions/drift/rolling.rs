@@ -366,7 +366,7 @@ impl<T: Real> Margins<T> {
     pub fn of(coefficients: &[T; COUNT], theta_end: T, start: T) -> Self {
         let [zero, one] = [0.0, 1.0].map(|x| start.splat(x));
         let [mut dry, mut drilling, mut firm, mut along] = [zero; 4];
-        for law in Law::ALL {
+        for &law in Law::ALL {
             let x = coefficients[law as usize];
             if law.presses() {
                 let to = if law.resists() == Resists::Drilling { &mut drilling } else { &mut dry };

@@ -147,7 +147,7 @@ mod tests {
 
     #[test]
     fn the_balance_knows_every_law_along_the_contour() {
-        for law in Law::ALL {
+        for &law in Law::ALL {
             let losses = Couples::of(&Losses::of(law, 0.3), |x| x);
             let slope = |s: f64, spin: f64| losses.slope(s, 0.9, spin);
             let known = law == Law::BoundaryLayer || slope(0.1, 1.0) == slope(0.1, 2.0);

@@ -1,8 +1,17 @@
 //! Many motions at once: their starts as columns, and the results.
 
 use super::numbers;
-use spincyl::ensemble::{Job, MotionOutput, MotionStarts, SUMMARIES, Summary, roll};
+use spincyl::ensemble::{Job, LossColumns, MotionOutput, MotionStarts, SUMMARIES, Summary, roll};
+use spincyl::loss::Law;
 use spincyl::{Body, State};
+
+/// The number of laws of loss.
+pub const LAWS: usize = Law::ALL.len();
+
+/// The columns of losses, law by law.
+pub fn loss_columns(columns: &[Vec<f64>; LAWS]) -> LossColumns<'_> {
+    Law::ALL.iter().zip(columns).fold(LossColumns::NONE, |all, (law, column)| all.with(*law, column))
+}
 
 /// Columns of bodies and states, and the results of their motions.
 #[derive(Default)]
@@ -43,12 +52,10 @@ impl Many {
             self.body.each_ref().map(Vec::as_slice),
             self.state.each_ref().map(Vec::as_slice),
         );
-        let out = MotionOutput {
-            states: Some(self.states.each_mut().map(Vec::as_mut_slice)),
-            last: Some(self.last.each_mut().map(Vec::as_mut_slice)),
-            summary: self.sums.each_mut().map(|x| Some(x.as_mut_slice())),
-            ..MotionOutput::new(&mut self.error, &mut self.method, &mut self.status)
-        };
+        let mut out = MotionOutput::new(&mut self.error, &mut self.method, &mut self.status);
+        out.states = Some(self.states.each_mut().map(Vec::as_mut_slice));
+        out.last = Some(self.last.each_mut().map(Vec::as_mut_slice));
+        out.summary = self.sums.each_mut().map(|x| Some(x.as_mut_slice()));
         assert!(roll(&starts, job, out, threads, |_| true).unwrap());
         self
     }

@@ -247,7 +247,7 @@ pub fn path_of(motion: &Motion) -> &Path {
 }
 
 pub fn by(method: Method) -> Ask {
-    Ask { method, ..Ask::default() }
+    Ask::default().with_method(method)
 }
 
 /// Pseudo-random numbers in [0, 1).

@@ -2,8 +2,8 @@
 
 use super::apart;
 use crate::common;
+use crate::common::many::{LAWS, loss_columns};
 use spincyl::drift::{Centre, DriftOutput, DriftStarts, INVALID, Question, WIDTH};
-use spincyl::loss::COUNT;
 use spincyl::{Body, State, steady};
 
 /// Columns of random starts; one in fifty has a negative coefficient.
@@ -11,7 +11,7 @@ struct Many {
     centre: Centre,
     bodies: [Vec<f64>; 6],
     states: [Vec<f64>; 4],
-    losses: [Vec<f64>; COUNT],
+    losses: [Vec<f64>; LAWS],
 }
 
 impl Many {
@@ -45,8 +45,8 @@ impl Many {
             for (column, x) in all.states.iter_mut().zip(common::numbers(&y)) {
                 column.push(x);
             }
-            let first = (COUNT as f64 * r()) as usize;
-            let second = (COUNT as f64 * r()) as usize;
+            let first = (LAWS as f64 * r()) as usize;
+            let second = (LAWS as f64 * r()) as usize;
             for (i, column) in all.losses.iter_mut().enumerate() {
                 let here = i == first || (i == second && second > 3);
                 column.push(if here { 10f64.powf(-5.0 * r()) } else { 0.0 });
@@ -65,7 +65,7 @@ impl Many {
             centre: *centre,
             bodies: core::array::from_fn(|i| bodies[i].as_slice()),
             states: core::array::from_fn(|i| states[i].as_slice()),
-            losses: core::array::from_fn(|i| losses[i].as_slice()),
+            losses: loss_columns(losses),
         }
     }
 

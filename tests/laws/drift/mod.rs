@@ -24,5 +24,5 @@ fn apart(a: f64, b: f64) -> f64 {
 /// The laws that a body can have: without a face there is no air film.
 fn laws_of(body: &Body) -> impl Iterator<Item = Law> + use<> {
     let body = *body;
-    Law::ALL.into_iter().filter(move |law| Losses::of(*law, 1.0).check_for(&body).is_ok())
+    Law::ALL.iter().copied().filter(move |law| Losses::of(*law, 1.0).check_for(&body).is_ok())
 }

@@ -41,7 +41,7 @@ fn power(law: Law, theta: f64) -> f64 {
 
 #[test]
 fn a_thin_disk_stops_when_the_table_says_for_every_law() {
-    for law in Law::ALL {
+    for &law in Law::ALL {
         for theta in [1e-3, 0.1, 0.3, 0.7] {
             let k = 3e-3;
             let found = drift(&disk(), theta, Losses::of(law, k));
@@ -86,7 +86,7 @@ fn a_thin_disk_has_its_closed_forms_at_any_time() {
 #[test]
 fn halving_a_coefficient_doubles_every_time() {
     for (body, theta) in [(disk(), 0.4), (Body::solid(0.3).unwrap(), 0.2), (Body::solid(2.5).unwrap(), 1.2)] {
-        for law in Law::ALL {
+        for &law in Law::ALL {
             let [whole, half] = [1e-3, 5e-4].map(|k| drift(&body, theta, Losses::of(law, k)));
             assert_eq!(whole.stops_at() * 2.0, half.stops_at(), "{law:?}");
             let between = 0.5 * (theta + whole.ends_at_theta());
@@ -137,7 +137,7 @@ fn laws_together_add_their_rates_as_far_as_a_balance_that_is_never_reached() {
 fn a_coefficient_that_is_next_to_nothing_slows_the_clock_and_nothing_else() {
     let tall = Body::tube(3.8448, 0.5).unwrap();
     for (body, theta) in [(tall, 0.24), (Body::solid(2.5).unwrap(), 1.2), (Body::solid(0.3).unwrap(), 0.2)] {
-        for law in Law::ALL {
+        for &law in Law::ALL {
             let usual = drift(&body, theta, Losses::of(law, 1e-4));
             for k in [1e-250, 1e-290, 1e-300] {
                 let slow = drift(&body, theta, Losses::of(law, k));

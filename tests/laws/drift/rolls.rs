@@ -135,7 +135,7 @@ fn rolling_ends_where_it_is_no_longer_stable_and_passes_a_ridge_unnoticed() {
         let body = Body::solid(ell).unwrap();
         let y = steady::state(&body, theta).unwrap();
         if stability::rolling(&body, &y) > 0.0 {
-            for d in Law::ALL.map(|law| roll(&body, &y, Losses::of(law, 1e-3))) {
+            for d in Law::ALL.iter().map(|law| roll(&body, &y, Losses::of(*law, 1e-3))) {
                 if d.ended() == End::StabilityLost {
                     let last = d.state(d.stops_at()).unwrap();
                     assert!(stability::rolling(&body, &last).abs() < 1e-9, "{ell} {theta}");

@@ -43,7 +43,7 @@ pub(crate) struct AirFlight {
 /// The laws that act on a body in the air; None if there are none.
 pub(crate) fn in_air(losses: &Losses) -> Option<Couples<f64>> {
     let mut left = *losses;
-    for law in Law::ALL.into_iter().filter(|law| !law.acts_in_air()) {
+    for law in Law::ALL.iter().copied().filter(|law| !law.acts_in_air()) {
         left.coefficients[law as usize] = 0.0;
     }
     Couples::some(&left)

@@ -212,7 +212,7 @@ impl LossyFlow {
         let (sine, cosine) = landing_angle(self.theta_end);
         let there = f64::from(u8::from(self.theta_end < core::f64::consts::PI));
         all[..4].copy_from_slice(&[sine, cosine, there, self.mu]);
-        for law in Law::ALL {
+        for &law in Law::ALL {
             all[4 + law as usize] = self.law.losses.coefficient(law);
         }
         all[4 + COUNT..].copy_from_slice(&[self.ways.contour, self.ways.drilling]);
