@@ -22,6 +22,7 @@
 //! | | [`stability`] | stability of steady states: smooth table, rolling | kappa = -dtheta''/dtheta along the lines |
 //! | `motions` | [`exact`] | the solution by first integrals, at any time | dt = s^2 sqrt(J/G) dx |
 //! | | [`motion`] | a motion: times, states, and the event that ends it | N > 0, F <= mu N, theta < theta_end |
+//! | | [`measured`] | bodies with a size and a mass, and their motions in SI | I1 = i1/(M R^2) |
 //! | | [`turning`] | the spin from which a tippe top turns over, or an egg rises | J = I1 w1 s + I3 w3 (ell + c) |
 //! | | [`stone`] | ellipsoids with any inertia: rattlebacks, eggs | (I + r^2 - r r^T) w' = ... + r x n |
 //! | | [`drift`] | slow drift along steady states, to rest | theta' = -P/E'(theta) |
@@ -52,7 +53,7 @@ pub use laws::{body, contact, loss, newton, pose, scale, state, throw};
 #[cfg(feature = "many")]
 pub use many::{maps as sweep, motions as ensemble};
 pub use methods::rk4;
-pub use motions::{exact, motion, turning};
+pub use motions::{exact, measured, motion, turning};
 pub use states::{stability, steady};
 
 #[cfg(feature = "many")]
@@ -136,6 +137,7 @@ pub use body::Body;
 pub use contact::{Contact, rolling, smooth};
 pub use error::Error;
 pub use laws::stone::Ellipsoid;
+pub use measured::Measured;
 pub use motion::{Motion, roll};
 pub use scale::Scale;
 pub use state::State;

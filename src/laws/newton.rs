@@ -23,6 +23,7 @@ use nalgebra::Vector3;
 
 /// The contact force, in units of the weight.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Force {
     /// The vertical component N.
     pub normal: f64,

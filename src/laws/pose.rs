@@ -22,6 +22,7 @@ const TAU_LO: f64 = 2.449_293_598_294_706_4e-16;
 
 /// An angle as whole turns and a remainder.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Angle {
     /// The number of whole turns, an integer.
     pub turns: f64,
@@ -53,8 +54,38 @@ impl Angle {
     }
 }
 
+/// The rotation from e1, e2, e3, which follow the precession phi and the inclination, to the axes of the laboratory.
+pub fn axes(phi: f64, theta: f64) -> UnitQuaternion<f64> {
+    let about = |axis, angle| UnitQuaternion::from_axis_angle(&axis, angle);
+    about(Vector3::z_axis(), phi) * about(Vector3::y_axis(), -theta)
+}
+
+/// The angles phi, theta and psi of an orientation, which is `axes(phi, theta)` after a turn by psi about the third
+/// axis. Theta is in [0, pi], phi and psi are in [-pi, pi]; phi is 0 where the third axis is vertical. Error: a few
+/// roundings, divided by sin theta for phi and psi, but not for their sum, or their difference where theta is near pi.
+///
+/// ```
+/// use spincyl::pose::{axes, euler_angles};
+///
+/// let [phi, theta, psi] = euler_angles(&axes(2.0, 1.3));
+/// assert!((phi - 2.0).abs() < 1e-15 && (theta - 1.3).abs() < 1e-15 && psi.abs() < 1e-15);
+/// ```
+pub fn euler_angles(orientation: &UnitQuaternion<f64>) -> [f64; 3] {
+    let [x, y, z, w] = <[f64; 4]>::from(orientation.coords);
+    let (lean, upright) = (x.hypot(y), z.hypot(w));
+    let (sum, difference) = (2.0 * z.atan2(w), 2.0 * x.atan2(-y));
+    let [phi, psi] = match (lean == 0.0, upright == 0.0) {
+        (true, _) => [0.0, sum],
+        (_, true) => [0.0, -difference],
+        _ => [0.5 * (sum + difference), 0.5 * (sum - difference)],
+    };
+    let near = |angle: f64| angle - TAU * (angle / TAU).round();
+    [near(phi), 2.0 * lean.atan2(upright), near(psi)]
+}
+
 /// Orientation and place of a body at a state.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Pose {
     /// Precession angle since the start.
     pub phi: Angle,
@@ -66,6 +97,17 @@ pub struct Pose {
     pub height: f64,
 }
 
+impl State {
+    /// The state of a body with this orientation, the turn from its own axes to those of the laboratory, of which the
+    /// third is the vertical, and this angular velocity along the axes of the laboratory, in sqrt(g/R). Error: a few
+    /// roundings of the angular velocity, divided by sin theta for w1 and w2.
+    pub fn from_twist(orientation: &UnitQuaternion<f64>, angular_velocity: Vector3<f64>) -> Self {
+        let [phi, theta, _] = euler_angles(orientation);
+        let w = axes(phi, theta).inverse() * angular_velocity;
+        Self { theta, w1: w.x, w2: w.y, w3: w.z }
+    }
+}
+
 impl Pose {
     /// The pose in which every motion starts.
     pub fn start() -> Self {
@@ -74,10 +116,7 @@ impl Pose {
 
     /// The rotation from the body's own axes, of which e3 is the third, to the axes of the laboratory.
     pub fn orientation(&self, y: &State) -> UnitQuaternion<f64> {
-        let about = |axis, angle| UnitQuaternion::from_axis_angle(&axis, angle);
-        about(Vector3::z_axis(), self.phi.rest)
-            * about(Vector3::y_axis(), -y.theta)
-            * about(Vector3::z_axis(), self.psi.rest)
+        axes(self.phi.rest, y.theta) * UnitQuaternion::from_axis_angle(&Vector3::z_axis(), self.psi.rest)
     }
 
     /// The centre of mass, in R.

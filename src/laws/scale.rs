@@ -1,18 +1,84 @@
-//! Natural units in metres, kilograms and seconds.
+//! Natural units in metres, kilograms and seconds, both ways.
 //!
 //! ```text
-//! length R,   time sqrt(R/g),   energy M g R,   angular velocity sqrt(g/R)
+//! length R,   time sqrt(R/g),   energy M g R,   angular velocity sqrt(g/R),   moment of inertia M R^2
 //! ```
-//! R is the outer radius of the body. Error: a few roundings.
+//! R is the outer radius of the body, or the largest semi-axis of a stone ([`unit`](super::stone::Ellipsoid::unit)). Every
+//! conversion is one product with its unit, or one quotient, and a unit is a few roundings off. So a number that is
+//! converted to SI and back differs by at most 2 ulp, as a test of `units` checks.
 
+use super::loss::Law;
 use crate::error::{Error, within};
 
-/// Turns natural units into metres, kilograms and seconds.
+/// Turns natural units into metres, kilograms and seconds, and back.
+///
+/// ```
+/// use spincyl::{Scale, loss::Law};
+///
+/// let coin = Scale::new(12e-3, 8e-3, 9.81)?;
+/// assert_eq!(coin.metres(coin.length(0.3)), 0.3);
+/// let arm = coin.coefficient(Law::RollingResistance, 0.02e-3); // of 0.02 mm
+/// assert!((arm - 0.02 / 12.0).abs() < 1e-18);
+/// # Ok::<(), spincyl::Error>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(try_from = "ScaleFile"))]
 pub struct Scale {
     radius: f64,
     mass: f64,
     gravity: f64,
+}
+
+/// The numbers of a scale in a file.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ScaleFile {
+    radius: f64,
+    mass: f64,
+    gravity: f64,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<ScaleFile> for Scale {
+    type Error = Error;
+
+    fn try_from(ScaleFile { radius, mass, gravity }: ScaleFile) -> Result<Self, Error> {
+        Self::new(radius, mass, gravity)
+    }
+}
+
+/// The two conversions of each quantity, from the table below.
+macro_rules! quantities {
+    ($($name:literal $natural:ident <-> $si:ident $spelled:literal = |$scale:ident| $unit:expr,)+) => {
+        impl Scale {
+            $(#[doc = concat!("Converts ", $name, " from natural units to ", $spelled, ".")]
+            pub fn $si(&self, $natural: f64) -> f64 {
+                let $scale = self;
+                $natural * $unit
+            }
+
+            #[doc = concat!("Converts ", $name, " from ", $spelled, " to natural units.")]
+            pub fn $natural(&self, $si: f64) -> f64 {
+                let $scale = self;
+                $si / $unit
+            })+
+        }
+    };
+}
+
+quantities! {
+    "a length" length <-> metres "metres" = |s| s.radius,
+    "a time" time <-> seconds "seconds" = |s| s.second(),
+    "a speed" speed <-> metres_per_second "metres per second" = |s| s.radius / s.second(),
+    "an angular velocity" angular_velocity <-> radians_per_second "radians per second" = |s| 1.0 / s.second(),
+    "an angular velocity" turning <-> turns "turns per second" = |s| 1.0 / (core::f64::consts::TAU * s.second()),
+    "a force" force <-> newtons "newtons" = |s| s.mass * s.gravity,
+    "an impulse" impulse <-> newton_seconds "newton seconds" = |s| s.mass * s.gravity * s.second(),
+    "an energy" energy <-> joules "joules" = |s| s.joule(),
+    "a couple" couple <-> newton_metres "newton metres" = |s| s.joule(),
+    "a power" power <-> watts "watts" = |s| s.joule() / s.second(),
+    "a moment of inertia" moment <-> kilogram_square_metres "kg m^2" = |s| s.mass * s.radius * s.radius,
 }
 
 impl Scale {
@@ -25,23 +91,37 @@ impl Scale {
         Ok(Self { radius, mass, gravity })
     }
 
-    /// A length in metres.
-    pub fn metres(&self, length: f64) -> f64 {
-        length * self.radius
+    /// The coefficient of a law of loss in natural units, from SI: in the unit that the law says ([`Law`]).
+    pub fn coefficient(&self, law: Law, in_si: f64) -> f64 {
+        in_si / self.unit_of(law)
     }
 
-    /// A time in seconds.
-    pub fn seconds(&self, time: f64) -> f64 {
-        time * (self.radius / self.gravity).sqrt()
+    /// The coefficient of a law of loss in SI, from natural units.
+    pub fn coefficient_in_si(&self, law: Law, coefficient: f64) -> f64 {
+        coefficient * self.unit_of(law)
     }
 
-    /// An energy in joules.
-    pub fn joules(&self, energy: f64) -> f64 {
-        energy * self.mass * self.gravity * self.radius
+    fn unit_of(&self, law: Law) -> f64 {
+        let (metre, second, joule) = (self.radius, self.second(), self.joule());
+        match law {
+            Law::DryContour | Law::RollingResistance | Law::Drilling => metre,
+            Law::ViscousContour | Law::AirLinear => joule * second,
+            Law::AirQuadratic => joule * second * second,
+            Law::AirFilm => joule * second / metre / metre / metre,
+            Law::BoundaryLayer => joule * second * second.sqrt(),
+        }
     }
 
-    /// An angular velocity in turns per second.
-    pub fn turns(&self, angular_velocity: f64) -> f64 {
-        angular_velocity / (core::f64::consts::TAU * self.seconds(1.0))
+    fn second(&self) -> f64 {
+        (self.radius / self.gravity).sqrt()
+    }
+
+    fn joule(&self) -> f64 {
+        self.mass * self.gravity * self.radius
+    }
+
+    /// The rim radius in metres, the mass in kilograms and gravity in m/s^2.
+    pub fn numbers(&self) -> [f64; 3] {
+        [self.radius, self.mass, self.gravity]
     }
 }

@@ -15,6 +15,7 @@ use nalgebra::Vector3;
 
 /// Inclination (radians) and angular velocity (in sqrt(g/R)) along the axes that follow the tilt.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct State {
     /// Inclination, the angle from the vertical to the symmetry axis; 0 for a body that stands on its face.
     pub theta: f64,
@@ -41,6 +42,19 @@ impl From<State> for [f64; 4] {
 }
 
 impl State {
+    /// The state with this inclination and these rates: theta', phi' (precession) and psi' (spin), in sqrt(g/R).
+    ///
+    /// ```
+    /// use spincyl::State;
+    ///
+    /// let y = State::from_rates(1.3, 0.1, 0.7, -2.0);
+    /// assert_eq!((y.w2, y.precession(), y.spin()), (-0.1, 0.7, -2.0));
+    /// ```
+    pub fn from_rates(theta: f64, thetadot: f64, precession: f64, spin: f64) -> Self {
+        let (s, c) = theta.sin_cos();
+        Self { theta, w1: precession * s, w2: -thetadot, w3: precession.mul_add(c, spin) }
+    }
+
     /// The same state with its tilting rate `theta'` changed by `thetadot`.
     #[must_use]
     pub fn kicked(self, thetadot: f64) -> Self {

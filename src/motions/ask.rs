@@ -1,15 +1,25 @@
 //! The options of a motion, and the checks that refuse values out of range.
 
 use crate::error::{Error, within};
+use crate::laws::body::Body;
 use crate::laws::contact::Table;
+use crate::laws::contact::slip::{centre_rise, centre_velocity};
 use crate::laws::loss::Losses;
+use crate::laws::pose::{axes, euler_angles};
 use crate::laws::state::State;
+use nalgebra::{UnitQuaternion, Vector3};
 
 /// The default tolerance of a step of a motion with friction or losses.
 pub const FINE: f64 = 1e-14;
 
+/// Share of the velocities below which a vertical velocity of the lowest point is taken for rounding of what was given.
+const NO_RISE: f64 = 1e-9;
+/// Share of the velocities below which a slip is taken for none: 16 ulp.
+const NO_SLIP: f64 = 16.0 * f64::EPSILON;
+
 /// The method that computes a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Method {
     /// The first integrals, or an integrator within a tolerance where these lose all their digits. A motion
     /// that slips or loses energy is integrated as accurately as doubles allow.
@@ -30,6 +40,11 @@ pub enum Method {
 /// assert!(ask.pose && !ask.force);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 #[non_exhaustive]
 pub struct Ask {
     /// The table.
@@ -107,14 +122,17 @@ impl Ask {
 
 /// The start of a motion: `Start::from` a state, and what it has besides.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
 pub struct Start<S = State> {
     /// The state at the start.
     pub state: S,
     /// The slip of the contact point along the lean and across it; of a stone along x and y
     /// ([`stone::roll`](super::stone::roll)).
+    #[cfg_attr(feature = "serde", serde(default))]
     pub slip: [f64; 2],
     /// The time of the start.
+    #[cfg_attr(feature = "serde", serde(default))]
     pub time: f64,
     /// The height of the rim's lowest point over the table and its vertical velocity, for a body that starts in the
     /// air; it needs a restitution.
@@ -142,6 +160,48 @@ impl<S> Start<S> {
     /// The same start in the air, with this height of the lowest point and its vertical velocity, or with `None`.
     pub fn with_aloft(self, aloft: impl Into<Option<[f64; 2]>>) -> Self {
         Self { aloft: aloft.into(), ..self }
+    }
+}
+
+impl Start {
+    /// The start of a body with this orientation, angular velocity and velocity of its centre of mass: the turn from its
+    /// own axes to those of the laboratory, of which the third is the vertical, and vectors along the latter, in
+    /// sqrt(g/R) and sqrt(g R). `height` is that of the centre above the table, of a body in the air; with `None` the body
+    /// is on the table. A motion counts phi and psi from this orientation on, whose own are
+    /// [`euler_angles`](crate::laws::pose::euler_angles).
+    ///
+    /// Errors: `OutOfRange` for a velocity that is not finite or, on the table, would move the lowest point up or down.
+    /// Error of the slip: 16 ulp of the velocities, divided by sin theta; a slip below 16 ulp is taken for none.
+    ///
+    /// ```
+    /// use spincyl::nalgebra::{UnitQuaternion, Vector3};
+    /// use spincyl::{Body, motion::Start};
+    ///
+    /// let (ball, w) = (Body::ball(0.0, 0.4, 0.4)?, Vector3::new(0.0, 2.0, 0.3));
+    /// let turned = UnitQuaternion::from_euler_angles(0.1, 0.2, 0.3);
+    /// let rolls = Start::from_twist(&ball, &turned, w, w.cross(&Vector3::z()), None)?;
+    /// assert_eq!(rolls.slip, [0.0, 0.0]);
+    /// assert!(Start::from_twist(&ball, &turned, w, Vector3::z(), None).is_err());
+    /// # Ok::<(), spincyl::Error>(())
+    /// ```
+    pub fn from_twist(
+        body: &Body,
+        orientation: &UnitQuaternion<f64>,
+        angular_velocity: Vector3<f64>,
+        velocity: Vector3<f64>,
+        height: Option<f64>,
+    ) -> Result<Self, Error> {
+        let state = State::from_twist(orientation, angular_velocity);
+        let v = axes(-euler_angles(orientation)[0], 0.0) * velocity;
+        let (rim, angle) = (body.shape().rim, state.theta.sin_cos());
+        let fastest = velocity.amax() + angular_velocity.amax() * (1.0 + rim.ell.abs());
+        let most = if height.is_some() { f64::MAX } else { NO_RISE * fastest };
+        let expected = "a velocity of the centre that keeps the lowest point on the table, or a height";
+        let rise = within("velocity", v.z - centre_rise(body, &state), (-most, most), expected)?;
+        let [along, across] = centre_velocity(body, &state, [0.0; 2]);
+        let slip = [v.x - along, v.y - across].map(|u| if u.abs() <= NO_SLIP * fastest { 0.0 } else { u });
+        let aloft = height.map(|height| [height - rim.height(angle), rise]);
+        Ok(Self::from(state).with_slip(slip).with_aloft(aloft))
     }
 }
 

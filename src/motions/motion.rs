@@ -14,7 +14,7 @@
 use super::conserved::conserved;
 use super::exact::Swing;
 use super::limits::{self, Limits};
-pub use super::{Ask, Ending, Event, Method, Motion, Moving, Start, path};
+pub use super::{Ask, Ending, Event, Method, Motion, Moving, Sample, Start, path};
 use crate::error::Error;
 use crate::laws::body::Body;
 use crate::laws::contact::{Contact, Table};
@@ -84,11 +84,13 @@ fn rolled(
     ask: &Ask,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Option<Motion>, Error> {
-    if !ask.conserves() {
-        return path::follow(body, start, times, ask, go_on);
-    }
-    path::without_slip(start.slip)?;
-    conserved(body, start, times, ask, go_on)
+    let found = if ask.conserves() {
+        path::without_slip(start.slip)?;
+        conserved(body, start, times, ask, go_on)
+    } else {
+        path::follow(body, start, times, ask, go_on)
+    };
+    Ok(found?.map(|motion| Motion { smooth: ask.table == Table::Smooth, ..motion }))
 }
 
 /// The first event of an exact motion that the model does not cover, from time 0 on; `mu` is the coefficient

@@ -7,8 +7,6 @@ use crate::error::{Error, room};
 pub use crate::laws::contact::impact::Hit;
 use crate::laws::state::State;
 use crate::numbers::codes::coded;
-use core::f64::consts::PI;
-use nalgebra::{UnitQuaternion, Vector3};
 
 coded! {
     /// The end of a motion. Its number is the status of a result.
@@ -41,6 +39,7 @@ coded! {
 
 /// The point at which a motion leaves the model.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Event<S = State> {
     /// The kind of the event.
@@ -61,6 +60,14 @@ impl<S> Event<S> {
 
 /// Times and states of a body, and the event that ended its motion.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(bound(
+        serialize = "S: serde::Serialize, S::Pose: serde::Serialize, S::Force: serde::Serialize",
+        deserialize = "S: serde::Deserialize<'de>, S::Pose: serde::Deserialize<'de>, S::Force: serde::Deserialize<'de>"
+    ))
+)]
 #[non_exhaustive]
 pub struct Motion<S: Moving = State> {
     /// The requested times, up to the event.
@@ -77,15 +84,19 @@ pub struct Motion<S: Moving = State> {
     pub method: Method,
     /// Estimated error: the largest over all numbers of all states, and over the time and the
     /// state of the event.
+    #[cfg_attr(feature = "serde", serde(with = "crate::numbers::file"))]
     pub error: f64,
     /// Estimated error of the poses: the largest over all of their numbers; NaN without poses.
+    #[cfg_attr(feature = "serde", serde(with = "crate::numbers::file"))]
     pub pose_error: f64,
     /// Estimated error of the contact forces per weight: the largest over all of their numbers; NaN
     /// without forces.
+    #[cfg_attr(feature = "serde", serde(with = "crate::numbers::file"))]
     pub force_error: f64,
     /// Predicted share of the nutation's amplitude that a fixed step takes away; 0 with the other methods.
     pub step_loss: f64,
     /// A fixed step that takes away less than a thousandth of the amplitude; infinite with the other methods.
+    #[cfg_attr(feature = "serde", serde(with = "crate::numbers::file"))]
     pub advice: f64,
     /// Whether the loss of amplitude, the nutation or the precession makes the fixed step questionable.
     pub coarse: bool,
@@ -93,6 +104,8 @@ pub struct Motion<S: Moving = State> {
     pub evaluations: u64,
     /// Slip, phases and lost energy, on a table with a law of friction or for a body with losses.
     pub path: Option<Box<Path<S>>>,
+    /// Whether the table is smooth, so that the centre moves only up and down.
+    pub(super) smooth: bool,
 }
 
 impl<S: Moving> Motion<S> {
@@ -113,6 +126,7 @@ impl<S: Moving> Motion<S> {
             coarse: false,
             evaluations: 0,
             path: None,
+            smooth: false,
         })
     }
 
@@ -129,21 +143,6 @@ impl<S: Moving> Motion<S> {
     /// The ending of the motion; `Done` without an event.
     pub fn ending(&self) -> Ending {
         self.event.map_or(Ending::Done, |e| e.ending)
-    }
-}
-
-impl Motion {
-    /// The orientation at each time, if poses were requested. It is that of the body's axes at the start,
-    /// whichever rim touches the table.
-    pub fn orientations(&self) -> impl Iterator<Item = UnitQuaternion<f64>> {
-        // A pose on the other rim describes the body after a half turn about its own first axis.
-        let over = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), PI);
-        let turned = |i: usize| self.path.as_ref().is_some_and(|path| path.turned[i]);
-        let poses = self.poses.iter().flatten().zip(&self.states).enumerate();
-        poses.map(move |(i, (pose, y))| {
-            let found = pose.orientation(y);
-            if turned(i) { found * over } else { found }
-        })
     }
 }
 
@@ -167,6 +166,7 @@ coded! {
 
 /// A part of a motion in which the body does one thing all the time.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Phase<S = State> {
     /// The time at which the phase begins.
@@ -181,6 +181,7 @@ pub struct Phase<S = State> {
 
 /// An impact of a rim on the table.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Strike {
     /// The time of the impact.
@@ -206,6 +207,7 @@ pub struct Strike {
 /// and the times and states of the phases and of the end; the error of the heat is that error times the
 /// largest speed.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Path<S = State> {
     /// The slip at each time, along the lean and across it.
@@ -231,11 +233,13 @@ pub struct Path<S = State> {
     pub impacts: Vec<Strike>,
     /// Slip and force (N, across the lean, along it) of the other rim at each time, NaN unless the body lies on both;
     /// empty if the motion ends where the body comes to lie.
+    #[cfg_attr(feature = "serde", serde(with = "crate::numbers::file::rows"))]
     pub other_rim: Vec<[f64; 5]>,
     /// The slip at the event that ended the motion.
     pub last_slip: [f64; 2],
     /// For a stone, the time up to which the claimed error is at most 1 % of the largest speed (at most 0.01
     /// for slow motions); infinite if this holds up to the end.
+    #[cfg_attr(feature = "serde", serde(with = "crate::numbers::file"))]
     pub known_until: f64,
     /// Whether the motion goes on in the air and on both rims.
     pub(crate) goes_on: bool,

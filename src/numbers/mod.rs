@@ -3,6 +3,8 @@
 mod angle;
 pub(crate) mod codes;
 mod dual;
+#[cfg(feature = "serde")]
+pub(crate) mod file;
 pub(crate) mod power;
 mod real;
 mod series;

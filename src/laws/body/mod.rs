@@ -14,6 +14,8 @@
 //! as an unevaluated sum of two doubles, because the steady states of a body near the critical shape depend on the last
 //! digits of the excess; `body::tube` gives its error.
 
+#[cfg(feature = "serde")]
+mod file;
 pub mod parts;
 pub(crate) mod rim;
 mod tube;
@@ -26,7 +28,8 @@ pub(crate) use rim::{Rim, Shape};
 pub(crate) use tube::{Wall, rounded_tube, tube, tube_or_nan};
 
 const ELL: (f64, f64) = (0.0, 1e150);
-const I1: (f64, f64) = (1e-150, 1e300);
+/// A smaller moment is that of a body whose mass lies within 3 % of R of its centre; moments in kg m^2 are as small.
+const I1: (f64, f64) = (1e-3, 1e300);
 const I3: (f64, f64) = (1e-150, 1e150);
 const FILLET: (f64, f64) = (0.0, 1.0);
 
@@ -34,6 +37,11 @@ const FILLET: (f64, f64) = (0.0, 1.0);
 ///
 /// In natural units the mass M, the outer radius R and gravity g are 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(try_from = "file::BodyFile", into = "file::BodyFile")
+)]
 pub struct Body {
     ell: f64,
     i1: f64,
@@ -89,7 +97,9 @@ impl Body {
     /// Any axisymmetric body on a sharp rim, such as a bottle or a can, given by the height `ell` of its centre of mass
     /// above the plane of the rim (in R) and by its moments about the centre of mass (in M R^2).
     ///
-    /// A real body has `0 < i3 <= 2 i1`; equality holds for a flat body.
+    /// A real body has `0 < i3 <= 2 i1`; equality holds for a flat body. An `i1` below 1e-3 is refused, as of a body whose
+    /// mass lies within 3 % of R of its centre: the moments in kg m^2 of most bodies that a hand can hold are as small,
+    /// and [`Measured::with_moments`](crate::Measured::with_moments) takes those.
     pub fn new(ell: f64, i1: f64, i3: f64) -> Result<Self, Error> {
         Self::rounded(ell, i1, i3, 0.0)
     }
@@ -108,7 +118,7 @@ impl Body {
             (ELL.0, "0 <= ell <= 1e150")
         };
         within("ell", ell, (low, ELL.1), expected)?;
-        within("i1", i1, I1, "1e-150 <= i1 <= 1e300")?;
+        within("i1", i1, I1, "1e-3 <= i1 <= 1e300 (in units of M R^2, not in kg m^2)")?;
         within("i3", i3, I3, "1e-150 <= i3 <= 1e150")?;
         Self { i1, i3, excess: Sum::of(i1, -i3) / i3.into(), ..Self::bare(ell, fillet) }.of_this_world()
     }

@@ -18,6 +18,7 @@ use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// How much of a part there is.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Amount {
     /// The mass of the part.
     Mass(f64),
@@ -27,6 +28,7 @@ pub enum Amount {
 
 /// The form of a part. Lengths are in one unit, and heights are counted upward from one point of the axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Form {
     /// A cylinder, a cone or a frustum: outer and inner radii at the lower and the upper end, the heights of both ends, and
     /// the radius by which both outer edges of a cylinder are rounded. The mass is that of the sharp body.
@@ -78,6 +80,7 @@ pub enum Form {
 
 /// A part of a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BodyPart {
     /// Its form.
     pub form: Form,

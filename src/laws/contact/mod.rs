@@ -33,6 +33,7 @@ pub use table::{Table, TableKind};
 
 /// The kind of contact with the table. The number is the code of the kind in arrays and files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[repr(u8)]
 pub enum Contact {
     /// Rolling without slipping.

@@ -35,12 +35,14 @@ const POINT: f64 = 1e-16;
 
 /// The law of friction at a contact point that slips or sticks.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Friction {
     /// Dry friction: the force is mu N against the slip, and at most `fixed` times N while the contact point rests.
     Coulomb {
         /// Coefficient of sliding friction, 0 or more and finite.
         mu: f64,
         /// Coefficient of static friction, at least `mu`; it may be infinite.
+        #[cfg_attr(feature = "serde", serde(with = "crate::numbers::file"))]
         fixed: f64,
         /// Radius of the patch of contact, below 1: it shares the friction between slip and drilling
         /// ([`patch`](super::patch)). 0 for a point.

@@ -7,10 +7,12 @@ use crate::numbers::codes::coded;
 
 /// The law of the contact between a table and a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Table {
     /// The contact point rests. The motion ends where rolling needs more friction than mu N; mu may be infinite.
     Rolling {
         /// Coefficient of friction.
+        #[cfg_attr(feature = "serde", serde(with = "crate::numbers::file"))]
         mu: f64,
     },
     /// The table is frictionless.

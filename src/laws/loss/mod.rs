@@ -24,6 +24,8 @@ mod boundary_layer;
 mod couples;
 mod drilling;
 mod dry_contour;
+#[cfg(feature = "serde")]
+mod file;
 mod law;
 mod rolling_resistance;
 mod viscous_contour;
@@ -235,6 +237,11 @@ impl Law {
 
 /// The coefficients of all laws of loss together; the coefficient of an absent law is 0.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(try_from = "std::collections::BTreeMap<Law, f64>", into = "std::collections::BTreeMap<Law, f64>")
+)]
 pub struct Losses {
     /// The coefficients, in the order of [`Law::ALL`].
     pub(crate) coefficients: [f64; COUNT],

@@ -13,6 +13,8 @@
 //! Sources: Walker, Sci. Am. 241(4), 172 (1979); Kane and Levinson, Int. J. Non-Linear Mech. 17, 175 (1982); Moffatt and
 //! Shimomura, Nature 416, 385 (2002), for the rising egg.
 
+#[cfg(feature = "serde")]
+mod file;
 pub(crate) mod law;
 mod state;
 
@@ -24,6 +26,11 @@ pub use state::{StonePose, StoneState};
 
 /// An ellipsoid with any inertia. If it has an edge, the edge lands at the inclination `theta_end` of axis 3.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(try_from = "file::EllipsoidFile", into = "file::EllipsoidFile")
+)]
 pub struct Ellipsoid {
     pub(crate) axes: [f64; 3],
     pub(crate) inertia: Symmetric<f64>,

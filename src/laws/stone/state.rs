@@ -5,6 +5,7 @@ use nalgebra::{Point2, Quaternion, UnitQuaternion};
 
 /// The vertical and the angular velocity of a stone, along the axes of the ellipsoid.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct StoneState {
     /// The unit vector that points upward.
     pub vertical: [f64; 3],
@@ -54,6 +55,7 @@ impl StoneState {
 
 /// The orientation of a stone, and its contact point.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct StonePose {
     /// The turn from the axes of the ellipsoid to those of the laboratory.
     pub orientation: UnitQuaternion<f64>,

@@ -1,0 +1,222 @@
+//! Measured bodies: a body with its size and mass, whose motions are in metres, kilograms and seconds.
+//!
+//! ```text
+//! ell = height/R,   I1 = i1/(M R^2),   I3 = i3/(M R^2),   R = outer_diameter/2 of a tube
+//! ```
+//! A motion is computed in natural units like any other; its times come from seconds, and [`Reading`]s of it are in SI,
+//! along the axes of the laboratory: z is up, the table is z = 0, and the body leans from +x at the start. States, slips
+//! and coefficients stay natural; [`Scale`] converts them. Error: that of the motion, and a few roundings.
+
+use super::{Ask, Ending, Kind, Motion, Start, motion};
+use crate::error::{Error, within};
+use crate::laws::body::Body;
+use crate::laws::scale::Scale;
+use nalgebra::{Point3, UnitQuaternion, Vector3};
+
+/// The measures of a uniform tube. A solid cylinder has no inner diameter, and a sharp rim no fillet.
+///
+/// ```
+/// use spincyl::measured::{Measured, Tube};
+///
+/// let coin = Tube { outer_diameter: 24e-3, length: 2e-3, mass: 8e-3, ..Tube::default() };
+/// assert_eq!(Measured::tube(&coin)?.body().ell(), 2.0 / 24.0);
+/// # Ok::<(), spincyl::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
+pub struct Tube {
+    /// In metres.
+    pub outer_diameter: f64,
+    /// In metres.
+    pub inner_diameter: f64,
+    /// In metres.
+    pub length: f64,
+    /// Radius of the outer edges, in metres.
+    pub fillet: f64,
+    /// In kilograms.
+    pub mass: f64,
+    /// In m/s^2.
+    pub gravity: f64,
+}
+
+impl Default for Tube {
+    /// No tube yet: only gravity is set, to the standard 9.80665 m/s^2.
+    fn default() -> Self {
+        Self {
+            outer_diameter: 0.0,
+            inner_diameter: 0.0,
+            length: 0.0,
+            fillet: 0.0,
+            mass: 0.0,
+            gravity: 9.80665,
+        }
+    }
+}
+
+/// A body that knows its size and its mass.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+pub struct Measured {
+    body: Body,
+    scale: Scale,
+}
+
+/// What a body does at one time, in SI along the axes of the laboratory.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct Reading {
+    /// The time in seconds.
+    pub time: f64,
+    /// The inclination in radians.
+    pub theta: f64,
+    /// The centre of mass in metres.
+    pub position: Point3<f64>,
+    /// The turn from the body's axes, of which the third is that of symmetry, to those of the laboratory.
+    pub orientation: UnitQuaternion<f64>,
+    /// The velocity of the centre of mass in m/s.
+    pub velocity: Vector3<f64>,
+    /// The angular velocity in rad/s.
+    pub angular_velocity: Vector3<f64>,
+    /// The contact point in metres, or the lowest point of the rim in the air.
+    pub contact_point: Point3<f64>,
+    /// The force of the table in newtons; NaN in the air.
+    pub force: Vector3<f64>,
+    /// Kinetic and potential energy in joules.
+    pub energy: f64,
+    /// What the contact point does, with a law of friction, losses or a restitution.
+    pub kind: Option<Kind>,
+}
+
+/// A motion of a measured body.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct MeasuredMotion {
+    /// The motion in natural units.
+    pub natural: Motion,
+    /// The body.
+    pub of: Measured,
+    /// The requested times in seconds.
+    pub seconds: Vec<f64>,
+}
+
+impl Measured {
+    /// A body whose natural units are these.
+    pub fn new(body: Body, scale: Scale) -> Self {
+        Self { body, scale }
+    }
+
+    /// A uniform tube. Errors: those of [`Body::from_metres`] and of [`Scale::new`].
+    pub fn tube(of: &Tube) -> Result<Self, Error> {
+        let body = Body::from_metres(of.outer_diameter, of.inner_diameter, of.length, of.fillet)?;
+        Ok(Self::new(body, Scale::new(0.5 * of.outer_diameter, of.mass, of.gravity)?))
+    }
+
+    /// Any axisymmetric body of this size, from the height of its centre of mass above the circle of the rim and the
+    /// fillet of the rim, both in metres, and its moments I1 and I3 about the centre of mass, in kg m^2.
+    ///
+    /// Errors: those of [`Body::rounded`], and `OutOfRange` for moments so small or large for its mass and radius that
+    /// they are in another unit.
+    ///
+    /// ```
+    /// use spincyl::{Body, Scale, measured::Measured};
+    ///
+    /// let coin = Scale::new(12e-3, 8e-3, 9.81)?;
+    /// let measured = Measured::with_moments(coin, [1e-3, 0.0], [2.9e-7, 5.76e-7])?;
+    /// assert!((measured.body().i3() - 0.5).abs() < 1e-15);
+    /// assert!(Measured::with_moments(coin, [1e-3, 0.0], [0.25, 0.5]).is_err()); // in M R^2
+    /// assert!(Body::new(1.0 / 12.0, 2.9e-7, 5.76e-7).is_err()); // in kg m^2
+    /// # Ok::<(), spincyl::Error>(())
+    /// ```
+    pub fn with_moments(scale: Scale, [height, fillet]: [f64; 2], [i1, i3]: [f64; 2]) -> Result<Self, Error> {
+        let [low, high] = [1e-3, 1e4].map(|natural| scale.kilogram_square_metres(natural));
+        within("i1", i1, (low, high), "kg m^2, from 1e-3 to 1e4 M R^2")?;
+        within("i3", i3, (0.0, high), "kg m^2, at most 1e4 M R^2")?;
+        let (ell, rho) = (scale.length(height), scale.length(fillet));
+        Ok(Self::new(Body::rounded(ell, scale.moment(i1), scale.moment(i3), rho)?, scale))
+    }
+
+    /// The body in natural units.
+    pub fn body(&self) -> &Body {
+        &self.body
+    }
+
+    /// The natural units of the body.
+    pub fn scale(&self) -> &Scale {
+        &self.scale
+    }
+
+    /// The motion from a start, at these times in seconds; poses and forces are always computed. The start and the options
+    /// are in natural units. Errors and `go_on`: those of [`roll_with`](motion::roll_with), whose times are natural.
+    ///
+    /// ```
+    /// use spincyl::{measured::{Measured, Tube}, motion::Ask, steady};
+    ///
+    /// let tube = Tube { outer_diameter: 15.875e-3, inner_diameter: 12.7e-3, length: 95.25e-3, mass: 20e-3, ..Tube::default() };
+    /// let pipe = Measured::tube(&tube)?;
+    /// let start = steady::state(pipe.body(), 1.4)?.kicked(0.05);
+    /// let motion = pipe.roll(start, &[0.0, 1.0, 2.0], &Ask::default(), || true)?.expect("not interrupted");
+    /// let last = motion.readings().last().unwrap();
+    /// assert_eq!((last.time, (1e3 * last.force.z).round()), (2.0, 178.0)); // seconds, millinewtons
+    /// # Ok::<(), spincyl::Error>(())
+    /// ```
+    pub fn roll(
+        &self,
+        start: impl Into<Start>,
+        seconds: &[f64],
+        ask: &Ask,
+        go_on: impl FnMut() -> bool,
+    ) -> Result<Option<MeasuredMotion>, Error> {
+        let times: Vec<f64> = seconds.iter().map(|t| self.scale.time(*t)).collect();
+        let ask = ask.with_pose(true).with_force(true);
+        let found = motion::roll_with(&self.body, start, &times, &ask, go_on)?;
+        Ok(found.map(|natural| MeasuredMotion { natural, of: *self, seconds: seconds.to_vec() }))
+    }
+}
+
+impl MeasuredMotion {
+    /// The motion at each of its times, in SI.
+    pub fn readings(&self) -> impl Iterator<Item = Reading> {
+        let Measured { body, scale } = &self.of;
+        let length = |x: f64| scale.metres(x);
+        self.natural.samples().zip(&self.seconds).filter_map(move |(now, seconds)| {
+            let (pose, force) = now.pose.zip(now.force)?;
+            let lowest = Point3::new(pose.contact_point.x, pose.contact_point.y, pose.height);
+            Some(Reading {
+                time: *seconds,
+                theta: now.state.theta,
+                position: now.centre(body)?.map(length),
+                orientation: now.orientation()?,
+                velocity: now.velocity(body)?.map(|v| scale.metres_per_second(v)),
+                angular_velocity: now.angular_velocity()?.map(|w| scale.radians_per_second(w)),
+                contact_point: lowest.map(length),
+                force: force.in_laboratory(pose.phi.rest).map(|f| scale.newtons(f)),
+                energy: scale.joules(now.energy(body)?),
+                kind: now.kind,
+            })
+        })
+    }
+
+    /// Estimated errors, the largest over all times: of theta, the angular velocity and the time of the end (radians, rad/s,
+    /// seconds), of places (metres), of forces (newtons).
+    pub fn error(&self) -> [f64; 3] {
+        let (m, scale) = (&self.natural, &self.of.scale);
+        let states = m.error * scale.radians_per_second(1.0).max(scale.seconds(1.0)).max(1.0);
+        let friction = m.forces.iter().flatten().fold(0.0, |most: f64, force| most.max(force.friction()));
+        [
+            states,
+            scale.metres(m.pose_error.max(m.error)),
+            scale.newtons(m.force_error + m.pose_error * friction),
+        ]
+    }
+
+    /// The ending of the motion, and its time in seconds if it came before the last time.
+    pub fn end(&self) -> (Ending, Option<f64>) {
+        let scale = &self.of.scale;
+        (self.natural.ending(), self.natural.event.map(|event| scale.seconds(event.time)))
+    }
+}

@@ -1,0 +1,58 @@
+//! Numbers in files: infinity and NaN, which JSON has not, are the words "inf", "-inf" and "NaN" in files that people read.
+
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+/// A number or a word.
+pub(crate) struct Written(f64);
+
+impl Serialize for Written {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        if self.0.is_finite() || !to.is_human_readable() {
+            to.serialize_f64(self.0)
+        } else {
+            to.collect_str(&self.0)
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for Written {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        #[derive(Deserialize)]
+        #[serde(untagged)]
+        enum Found {
+            Number(f64),
+            Word(String),
+        }
+        if !from.is_human_readable() {
+            return f64::deserialize(from).map(Self);
+        }
+        match Found::deserialize(from)? {
+            Found::Number(x) => Ok(Self(x)),
+            Found::Word(word) => word.parse().map(Self).map_err(D::Error::custom),
+        }
+    }
+}
+
+pub(crate) fn serialize<S: Serializer>(x: &f64, to: S) -> Result<S::Ok, S::Error> {
+    Written(*x).serialize(to)
+}
+
+pub(crate) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
+    Written::deserialize(from).map(|x| x.0)
+}
+
+/// The same of rows of numbers.
+pub(crate) mod rows {
+    use super::Written;
+    use serde::{Deserialize, Deserializer, Serializer};
+
+    pub(crate) fn serialize<S: Serializer>(rows: &[[f64; 5]], to: S) -> Result<S::Ok, S::Error> {
+        to.collect_seq(rows.iter().map(|row| row.map(Written)))
+    }
+
+    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<[f64; 5]>, D::Error> {
+        let rows = Vec::<[Written; 5]>::deserialize(from)?;
+        Ok(rows.into_iter().map(|row| row.map(|x| x.0)).collect())
+    }
+}
