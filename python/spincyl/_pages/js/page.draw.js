@@ -1,19 +1,31 @@
 // Draws one motion: camera, table, path, shadow, body and arrows.
 
+// one more arrow: the velocity of the centre
+ARROWS.push("velocity");
+letters.velocity = "v";
+fastest.velocity = 1e-9;
+// a pose with this velocity, from poses a moment apart
+function moving(m, t) {
+  const p = pose(m, t), h = 1e-4 / (1 + Math.hypot(...p.omega)), within = x => Math.min(Math.max(x, m.first), m.last), [a, b] = [-h, h].map(d => within(within(t) + d));
+  p.velocity = b > a ? [pose(m, b).centre, pose(m, a).centre].reduce((x, y) => along([1 / (b - a), x], [-1 / (b - a), y])) : [0, 0, 0];
+  return p;
+}
+
 // half the height that the camera must show at its first elevation, where nearer parts look larger
 const held = (reach, top) => 1.06 * Math.max((0.52 + 0.26) * reach + 0.38 * top, 0.44 * reach + 0.57 * top);
 // the contact path as a ribbon through poses at ascending times, and the extent that the camera must show
 function trace(m, times, poses) {
   const box = [[Infinity, Infinity], [-Infinity, -Infinity]];
   let top = 0;
-  for (const p of poses) {
+  poses.forEach((p, i) => {
     top = Math.max(top, 2 * p.centre[2]);
     for (const k of [0, 1]) {
       box[0][k] = Math.min(box[0][k], p.centre[k]);
       box[1][k] = Math.max(box[1][k], p.centre[k]);
     }
-    for (const v of ARROWS) fastest[v] = Math.max(fastest[v], Math.hypot(...p[v]));
-  }
+    if (i && times[i] > times[i - 1]) p.velocity = along([1, p.centre], [-1, poses[i - 1].centre]).map(x => x / (times[i] - times[i - 1]));
+    for (const v of ARROWS) fastest[v] = Math.max(fastest[v], Math.hypot(...p[v] || [0]));
+  });
   m.at = m.middle = [0, 1].map(k => (box[0][k] + box[1][k]) / 2).concat(0.45 * top);
   m.reach = Math.hypot(box[1][0] - box[0][0], box[1][1] - box[0][1]) / 2 + Math.hypot(1, m.ell);
   m.half = held(m.reach, top);
@@ -36,7 +48,8 @@ function panelled(m) {
   m.clock = make("output", "clock");
   m.clock.setAttribute("aria-live", "off");
   m.tips = Object.fromEntries(ARROWS.map(v => [v, make("i", "tip " + v, letters[v])]));
-  for (const v of ARROWS) m.tips[v].ariaHidden = true; // screen readers get this from the switches
+  for (const name of POINTS) m.tips[name] = make("i", "tip", name);
+  for (const v in m.tips) m.tips[v].ariaHidden = true; // screen readers get this from the switches
 }
 
 // the same distance for all motions, so that sizes can be compared
@@ -73,7 +86,7 @@ function project(m, place, width, height) {
 // the style sheet defines the colours
 function paints() {
   const style = getComputedStyle(document.documentElement), paint = { shadow: dusk.matches ? 0.45 : 0.24 };
-  for (const name of ["paper", "ground", "grid", "trace", ...ARROWS]) {
+  for (const name of ["paper", "ink", "ground", "grid", "trace", ...ARROWS]) {
     const text = style.getPropertyValue("--" + name).trim();
     paint[name] = [1, 3, 5].map(i => parseInt(text.slice(i, i + 2), 16) / 255);
   }
@@ -88,8 +101,23 @@ const note = (m, t) => t > m.after.at || m.after.event && t >= m.after.at ? m.af
 // direction, length and width of an arrow, or null; omega is shorter and wider than L, so that both show
 // where parallel
 function arrowOf(p, v) {
-  const size = Math.hypot(...p[v]), [long, wide] = v === "omega" ? [0.64, 1.3] : [0.8, 0.85], length = long * half * size / fastest[v];
+  const size = Math.hypot(...p[v]), [long, wide] = v === "momentum" ? [0.8, 0.85] : [0.64, 1.3], length = long * half * size / fastest[v];
   return $(v).checked && size > 1e-9 ? { along: p[v].map(x => x / size), length, wide: wide * length, root: p.centre } : null;
+}
+
+// the contact point, the centre, and the point opposite to the contact point
+const POINTS = ["P", "C", "O"], opposite = p => [p.contact, p.centre, along([2, p.centre], [-1, p.contact])];
+// rods with colour, root, direction, width and length: the line through these points, with a bead at each, and
+// the axis about which the body turns now, a little longer; its points move along it, or rest
+function rods(p) {
+  if (!$("axis").checked) return [];
+  const places = opposite(p), way = along([1, p.centre], [-1, p.contact]), long = Math.hypot(...way), square = dot(p.omega, p.omega), line = way.map(x => x / long), thick = 0.006 * half;
+  const found = [["ink", p.contact, line, thick, 2 * long], ...places.map(place => ["ink", along([1, place], [-2 * thick, line]), line, 2.4 * thick, 4 * thick])];
+  if (square > 1e-18) {
+    const on = along([1, p.centre], [1 / square, cross(p.omega, p.velocity)]), turns = p.omega.map(x => x / (dot(p.omega, way) < 0 ? -1 : 1) / Math.sqrt(square));
+    found.push(["omega", along([1, on], [dot(along([1, p.contact], [-1, on]), turns) - 0.35 * long, turns]), turns, 0.6 * thick, 2.7 * long]);
+  }
+  return found;
 }
 
 const MATT = 0.99;
@@ -111,7 +139,7 @@ const times4 = (a, b) => b.map((_, i) => [0, 1, 2, 3].reduce((sum, k) => sum + a
 const identity = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
 
 function draw(m, t, aspect) {
-  const paint = paints(), p = pose(m, t);
+  const paint = paints(), p = moving(m, t);
   m.at = aim(m, p);
   const view = camera(m, aspect, $("above").checked), shade = note(m, t) ? faded : colour => colour;
   gl.clearColor(...paint.paper, 1);
@@ -159,12 +187,16 @@ function draw(m, t, aspect) {
   gl.depthMask(true);
   gl.useProgram(surface.made);
   for (const piece of shapes[m.shape]) fill(piece, p.matrix, shade(piece.colour), piece.edge ? 0 : piece.mark ? MATT : 1);
-  gl.clear(gl.DEPTH_BUFFER_BIT); // arrows show through the body
+  gl.clear(gl.DEPTH_BUFFER_BIT); // arrows and rods show through the body
+  const placed = (root, e3, wide, length) => {
+    const any = Math.abs(e3[2]) < 0.9 ? [0, 0, 1] : [1, 0, 0], e1 = cross(any, e3), n = wide / Math.hypot(...e1), e2 = cross(e3, e1);
+    return [...e1.map(x => x * n), 0, ...e2.map(x => x * n), 0, ...e3.map(x => x * length), 0, ...root, 1];
+  };
+  for (const [colour, ...at] of rods(p)) fill(rod, placed(...at), paint[colour], MATT);
   for (const v of ARROWS) {
     const a = arrowOf(p, v);
     if (!a) continue;
-    const e3 = a.along, any = Math.abs(e3[2]) < 0.9 ? [0, 0, 1] : [1, 0, 0], e1 = cross(any, e3), n = a.wide / Math.hypot(...e1), e2 = cross(e3, e1);
-    const model = [...e1.map(x => x * n), 0, ...e2.map(x => x * n), 0, ...e3.map(x => x * a.length), 0, ...a.root, 1];
+    const model = placed(a.root, a.along, a.wide, a.length);
     // only back faces of the halo: a rim in the colour of the paper, visible on any ground
     gl.cullFace(gl.FRONT);
     fill(halo, model, paint.paper, 0);

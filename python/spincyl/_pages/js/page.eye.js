@@ -18,6 +18,11 @@ function named(m, p, arrows, width, height) {
     const inside = (x, most) => Math.min(Math.max(x, 0.6 * em), most - 0.6 * em);
     letter.style.transform = `translate(${inside(f.tip[0] - f.to[1] * right, width)}px, ${inside(f.tip[1] + f.to[0] * right, height)}px) translate(-50%, -50%)`;
   });
+  opposite(p).forEach((place, k) => {
+    const letter = m.tips[POINTS[k]], [x, y] = project(m, place, width, height);
+    letter.hidden = !$("axis").checked || $("shutter").value !== "0";
+    letter.style.transform = `translate(calc(${x}px + .7em), calc(${y}px + .3em)) translate(-50%, -50%)`;
+  });
 }
 
 function turn(dx, dy) {

@@ -41,7 +41,7 @@ function frame(at) {
   for (const [m, x, , w, h, top] of views) {
     Object.assign(m.panel.style, { left: x / ratio + "px", top: top / ratio + "px", width: w / ratio + "px", height: h / ratio + "px" });
     m.panel.classList.toggle("dark", exposed);
-    const there = note(m, now), p = pose(m, now);
+    const there = note(m, now), p = moving(m, now);
     const told = (there ? there.said + clock(there.t) : clock(now)) + "\nθ = " + (p.theta * 180 / Math.PI).toFixed(1) + "°" + doing(m, p);
     if (m.clock.value !== told) m.clock.value = told;
     if (playing && there?.event && !m.over) say([m]);

@@ -140,7 +140,7 @@ function shuttered() {
   $("shot").hidden = !open;
   $("drawn").disabled = open || !!without;
   if (lasting()) live.last = open ? Math.min(head.lasts, now + 3.5 * TURN / Math.max(speed, 0.05)) : Math.min(head.lasts, live.first + live.span);
-  if (open) for (const v of ARROWS) live.tips[v].hidden = true;
+  if (open) for (const v in live.tips) live.tips[v].hidden = true;
   forget();
 }
 $("shutter").onchange = () => { if ($("shutter").value !== "0") { play_(false); } shuttered(); show(); };

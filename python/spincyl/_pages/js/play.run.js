@@ -69,7 +69,7 @@ function frame(at) {
   if (open) {
     expose([[live, 0, 0, width, height, 0]]);
   } else if (rows.length) {
-    const row = rowAt(Math.min(now, head.lasts)), p = pose(live, now);
+    const row = rowAt(Math.min(now, head.lasts)), p = moving(live, now);
     delete document.documentElement.dataset.exposed;
     live.over = head.ending && now >= head.lasts;
     live.after = { at: head.lasts, event: head.ending > 0 };
@@ -82,7 +82,7 @@ function frame(at) {
   } else {
     if (drawing) { gl.clearColor(...paints().paper, 1); gl.clear(gl.COLOR_BUFFER_BIT); }
     live.clock.value = "";
-    for (const v of ARROWS) live.tips[v].hidden = true;
+    for (const v in live.tips) live.tips[v].hidden = true;
   }
   timing.frame = performance.now() - began;
   filmed();

@@ -85,7 +85,7 @@ function look(first, many = STATES) {
   tracked = lasting() && head.integrated ? { rows: rowsOf("follow", WIDE, ROWS, 0, head.lasts < s.until ? s.until : head.lasts), first: 0, last: head.lasts } : { rows, first: live.first, last: live.last };
   if (!rows.length) return;
   latest = rows[0];
-  for (const v of ["omega", "momentum"]) fastest[v] = 1e-9;
+  for (const v in fastest) fastest[v] = 1e-9;
   const poses = rows.map(row => placed(row));
   live.wide = 0.012 * Math.hypot(1, live.ell);
   // what one rim draws does not go on from what the other has drawn, and in the air none draws

@@ -86,7 +86,7 @@ look = (first, many) => {
   rows = head.kept;
   tracked = { rows, first: 0, last: head.lasts };
   Object.assign(live, { first: 0, last: head.lasts, wide: 0.006, far: false, runs: null });
-  for (const v of ["omega", "momentum"]) fastest[v] = 1e-9;
+  for (const v in fastest) fastest[v] = 1e-9;
   trace(live, live.times, live.times.map(t => pose(live, t)));
   ({ reach, half } = live);
 };
