@@ -393,6 +393,10 @@ def measurements():
         "data.wobble": (sc.data.wobble, {"t": t, "sound": sound, "between": (2.0, 200.0)}),
         "data.example": (sc.data.example, {"name": "flicks"}),
         "data.Columns": (sc.data.Columns, {"columns": [("t", np.ones(2))]}),
+        "data.fit_stop": (
+            sc.data.fit_stop,
+            {"body": TUBE, "law": sc.loss.DryContour, "from_": 1.4, "seconds": [2.0, 2.2], "error": None, "from_err": 0.01, "centre": "rest"},
+        ),
         "data.LossFit.of": (lossfit().of, {"law": sc.loss.DryContour}),
         **{
             f"data.{name}": (getattr(sc.data, name), {"path": sc.data.example(file)})

@@ -252,7 +252,7 @@ def test_what_cannot_be_a_spin_down_is_refused_by_name():
         ({"body": 2.5}, "body"),
         ({"theta": "steep"}, "theta"),
         ({"laws": "DryContour"}, "laws"),
-        ({"laws": [sc.loss.DryContour(1e-3)]}, "laws: expected classes"),
+        ({"laws": [sc.loss.DryContour(1e-3)]}, "laws: expected a class of sc.loss"),
     ):
         with pytest.raises(TypeError, match=said):
             sc.data.fit_losses(**({"t": t, "theta": theta, "body": EULER} | given))

@@ -101,29 +101,18 @@ __all__ = [
 
 
 # modules and names that most scenes do not need are loaded at first use
-_LATER = {
-    "custom": None,
-    "data": None,
-    "loss": None,
-    "parts": None,
-    "plot": None,
-    "sweep": None,
-    "drift": "_drift",
-    "Drift": "_drift",
-    "DriftWarning": "_drift",
-    "Ellipsoid": "_ellipsoid",
+_LATER: dict[str, str | None] = {
+    **dict.fromkeys(("custom", "data", "loss", "parts", "plot", "sweep")),
+    **dict.fromkeys(("drift", "Drift", "DriftWarning"), "_drift"),
+    **dict.fromkeys(("Ellipsoid", "Rocking"), "_ellipsoid"),
     "EllipsoidMotion": "_ellipsoid_motion",
     "EllipsoidState": "_ellipsoid_state",
-    "Rocking": "_ellipsoid",
     "assembled": "parts",
     "exposure": "_studio.exposure",
-    "play": "_pages.play",
-    "Play": "_pages.play",
+    **dict.fromkeys(("play", "Play"), "_pages.play"),
     "rising_spin": "_rising",
-    "scene": "_studio.scene",
-    "Scene": "_studio.scene",
-    "view": "_pages.view",
-    "View": "_pages.view",
+    **dict.fromkeys(("scene", "Scene"), "_studio.scene"),
+    **dict.fromkeys(("view", "View"), "_pages.view"),
 }
 
 

@@ -27,6 +27,8 @@ from spincyl._state import State, numbers
 
 #: Name of the coefficient and exponent of each law, in the order of the core.
 _LAWS = dict(_core.loss_laws())
+#: Unit in which each coefficient is printed; a text with it is what `from_si` takes.
+_PRINTED = dict(zip(_LAWS, ("mm", "N m s", "mm", "mm", "N m s", "N m s^2", "Pa s", "C"), strict=True))
 _MOST = 1e6
 _Kind = TypeVar("_Kind", bound="Law")
 _EXPECTED = "expected a positive number: a loss takes energy"
@@ -91,6 +93,9 @@ class Loss:
     def __add__(self, other: "Loss") -> "Loss":
         return NotImplemented if not isinstance(other, Loss) else _added((*self.laws, *other.laws))
 
+    def __str__(self) -> str:
+        return titled(self) if is_scalar(*self._coefficients) else repr(self)
+
     def __radd__(self, other: int) -> "Loss":
         return self if type(other) is int and other == 0 else NotImplemented  # sum() starts with 0
 
@@ -140,6 +145,17 @@ class Law(Loss):
         small = 2.0**-40  # no law warns of so small a coefficient
         law = type(self).from_si(small, scale=scale)  # type: ignore[attr-defined]
         return self.coefficient / law.coefficient * small
+
+    def _printed(self, scale: "Scale | bool | None") -> tuple[float, str]:
+        """The factor from the coefficient to what is printed, and its unit, which `from_si` reads in a text.
+
+        In natural units where the size is not known, or the mass is not and the law needs it.
+        """
+        unit = _PRINTED[self._parameter]
+        if not isinstance(scale, Scale) or not (unit == "mm" or scale._is_weighed):
+            return 1.0, ""
+        with warnings.catch_warnings(action="ignore"):  # a mass of 1 kg is as good as any
+            return (1e3 if unit == "mm" else 1.0) * self.in_si(scale) / self.coefficient, f" {unit}"
 
     @property
     def exponent(self) -> float | None:
@@ -215,14 +231,15 @@ def _added(laws: tuple[Law, ...]) -> Loss:
 
 
 def titled(losses: Loss, scale: Scale | None = None) -> str:
-    """Laws with their coefficients to four digits for a title; in SI if `scale` is given."""
+    """Laws with their coefficients to four digits; with a scale in the units that `from_si` reads."""
 
     def told(law: Law) -> str:
-        return f"{float(law.coefficient if scale is None else law.in_si(scale)):.4g}"
+        factor, unit = law._printed(scale or law._sized)
+        return f"{type(law).__name__}({float(law.coefficient) * factor:.4g}{unit})"
 
     if losses._function is not None:
         return repr(losses)
-    return " + ".join(f"{type(law).__name__}({told(law)})" for law in losses.laws)
+    return " + ".join(map(told, losses.laws))
 
 
 def positive(name: str, value: Reals, unit: str = "") -> Reals:

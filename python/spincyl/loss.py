@@ -233,7 +233,10 @@ class BoundaryLayer(Law):
         """
         metres, seconds, joules = units(scale, weighed=True)
         density = positive("density", density, "kilogram/metre**3")
-        viscosity, C = positive("viscosity", viscosity, "pascal*second"), positive("C", C)
+        viscosity, C = (
+            positive("viscosity", viscosity, "pascal*second"),
+            positive("C", C, "C" if isinstance(C, str) else ""),
+        )
         fitting({"C": C, "density": density, "viscosity": viscosity})
         with np.errstate(over="ignore"):
             found = C * np.sqrt(density * viscosity) * metres**4 / (joules * seconds**1.5)

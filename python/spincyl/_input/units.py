@@ -108,6 +108,7 @@ def quantity(kind: str) -> Callable[[str], float]:
 
     def read(text: str) -> float:
         number, unit = _parts(text)
+        unit = unit.replace(" ", "")  # "N m s" as well as "Nms"
         if unit not in {"", *units}:
             known = ", ".join(filter(str.isascii, units))
             raise ArgumentTypeError(f"{text!r}: expected {_one(kind)}, bare or in {known}")
@@ -140,6 +141,7 @@ _KINDS = {
     "newton*metre*second": "damping",
     "newton*metre*second**2": "drag",
     "pascal*second": "viscosity",
+    "C": "layer",
 }
 
 

@@ -16,6 +16,7 @@ from spincyl._contact import named
 from spincyl._ellipsoid_motion import EllipsoidMotion
 from spincyl._input.numbers import Floats, Reals, is_scalar
 from spincyl._input.reprs import is_lazy
+from spincyl._loss import titled
 from spincyl._motion import Motion
 from spincyl._scale import Scale
 from spincyl._state import State
@@ -109,7 +110,7 @@ def _motion(found: Motion) -> tuple[list[tuple[str, str]], tuple[float, ...]]:
     """The rows of any motion, and the inclinations between which the body nods."""
     rows = [("body", repr(found.body)), ("contact", named(found.contact))]
     if found.losses is not None:
-        rows.append(("losses", repr(found.losses)))
+        rows.append(("losses", titled(found.losses, found.scale)))
     reached: tuple[float, ...] = ()
     if found.t.size:
         time = "√(a/g)" if isinstance(found, EllipsoidMotion) and found.scale is None else _time(found.scale)

@@ -98,5 +98,5 @@ def _write_picture(m: Motion, scale: Scale | None, path: Path) -> None:
 def _write_view(m: Motion, scale: Scale | None, path: Path) -> None:
     from spincyl import view
 
-    about = f"{m.body!r}, {named(m.contact)}" + ("" if m.losses is None else f", {titled(m.losses)}")
+    about = f"{m.body!r}, {named(m.contact)}" + ("" if m.losses is None else f", {titled(m.losses, m.scale)}")
     view(m, labels=[about], title=about, scale=scale).save(path)

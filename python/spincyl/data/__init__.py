@@ -9,6 +9,7 @@ from spincyl.data._line import Line
 from spincyl.data._losses import fit_losses
 from spincyl.data._lossfit import FittedLoss, LossFit
 from spincyl.data._sound import read_phyphox, read_sound
+from spincyl.data._stop import FittedStop, StopFit, fit_stop
 from spincyl.data._tracker import read_table, read_tracker
 from spincyl.data._wobble import Wobble, wobble
 
@@ -17,12 +18,15 @@ __all__ = [
     "Comparison",
     "Filmed",
     "FittedLoss",
+    "FittedStop",
     "Line",
     "LossFit",
+    "StopFit",
     "Wobble",
     "compare",
     "example",
     "fit_losses",
+    "fit_stop",
     "from_above",
     "read_phyphox",
     "read_sound",

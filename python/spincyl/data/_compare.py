@@ -12,7 +12,7 @@ from spincyl._input.numbers import Floats, Reals, extra, number, reals
 from spincyl._single import one_body
 from spincyl._upward import above
 from spincyl.data._balance import Balance, Fit, with_ratio
-from spincyl.data._report import counted, section, variables, written
+from spincyl.data._report import counted, section, student, variables, written
 from spincyl.data._spindown import leaning
 
 if TYPE_CHECKING:
@@ -289,11 +289,5 @@ def _doubts(found: Fit, alone: Fit, both: Fit | None, own: float, known: bool, *
 
 
 def _sure(errors: float, freedom: int, known: bool) -> float:
-    """The number of standard errors as unlikely as `errors` of a normal deviate; more for few points.
-
-    Student's t from the normal deviate, after Wallace (1959), Ann. Math. Statist. 30, 1121.
-    """
-    if known:
-        return errors
-    normal = errors * (8 * freedom + 3) / (8 * freedom + 1)
-    return math.sqrt(freedom * math.expm1(min(normal**2 / freedom, 50.0)))
+    """The number of standard errors as unlikely as `errors` of a normal deviate; more for few points."""
+    return errors if known else student(errors, freedom)

@@ -12,7 +12,7 @@ from spincyl._input.numbers import Floats, Reals, extra
 from spincyl.data._curve import Curve
 from spincyl.data._line import line
 from spincyl.data._lossfit import FittedLoss, LossFit, Refused, called, in_si
-from spincyl.data._spindown import CENTRES, Several, SpinDown, asked, measured
+from spincyl.data._spindown import Several, SpinDown, asked, centres, measured
 
 _RESTED = 0.02  #: First guess of the share in `Curve` that gives where the centre was at rest.
 _CORRELATED = 0.999  #: Two coefficients with a higher correlation cannot be told apart.
@@ -101,10 +101,10 @@ def fit_losses(
     ('DryContour', 0.001)
     """
     odrpack = extra("odrpack", "lab")
-    sums = asked(laws, centre)
+    kept, sums = centres(centre), asked(laws)
     columns = t, theta, precession, t_err, theta_err, precession_err
     found, refused = [], []
-    for one in CENTRES if centre is None else (centre,):
+    for one in kept:
         try:
             data = measured(body, *columns, one, start, max(map(len, sums)))
         except Several:

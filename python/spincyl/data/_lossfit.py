@@ -5,6 +5,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+import numpy as np
+
 from spincyl._body import Body
 from spincyl._input.equality import compared
 from spincyl._input.numbers import Floats
@@ -43,6 +45,16 @@ class FittedLoss(NamedTuple):
     drift: Any  #: the fitted drift, from the first time on
 
     @property
+    def coefficients_si(self) -> Floats:
+        """The coefficients in the units that `from_si` takes; an error says where that needs a mass."""
+        return self.coefficients * _units(self)
+
+    @property
+    def coefficient_errs_si(self) -> Floats:
+        """Their standard errors in the same units."""
+        return self.coefficient_errs * _units(self)
+
+    @property
     def coefficient(self) -> float:
         """The coefficient, of a single law."""
         (found,) = self.coefficients
@@ -55,9 +67,7 @@ class FittedLoss(NamedTuple):
         return float(found)
 
     def __repr__(self) -> str:
-        said = ", ".join(
-            f"{k:.5g} +- {e:.2g}" for k, e in zip(self.coefficients, self.coefficient_errs, strict=True)
-        )
+        said = ", ".join(f"{k:.5g} +- {e:.2g}{unit}" for k, e, unit in printed(self))
         rolling = " by rolling" if self.centre == "rolling" else ""
         return f"<{self.name}{rolling}: {said}, {_stops(self)}, chi2 {self.chi2:.3g}, dAIC {self.daic:.1f}>"
 
@@ -135,14 +145,16 @@ class LossFit(NamedTuple):
         rows = [
             ("body", repr(self.body)),
             ("law", best.name + ("" if self.told_apart else ", not told apart from others")),
-            ("centre", _CENTRE[best.centre]),
+            ("centre", CENTRE[best.centre]),
             ("# data points", str(len(self.t))),
             ("# variables", str(len(names) + 1)),
             ("reduced chi-square", written(best.chi2)),
             ("Akaike info crit", written(best.aic)),
         ]
-        pairs = zip(names, best.coefficients.tolist(), best.coefficient_errs.tolist(), strict=True)
-        told = [(name, k, error, "") for name, k, error in pairs]
+        told = [
+            (name, k, error, unit and f"({unit.strip()})")
+            for name, (k, error, unit) in zip(names, printed(best), strict=True)
+        ]
         told.append(("theta at the first time", best.theta, best.theta_err, ""))
         unit = "(derived)" if self.body.scale is None else "(seconds, derived)"
         told.append(("stops at", best.stops_at, best.stops_at_err, unit))
@@ -210,6 +222,18 @@ def called(laws: Sequence[Any]) -> str:
     return " + ".join(law.__name__ for law in laws)
 
 
+def printed(found: FittedLoss) -> list[tuple[float, float, str]]:
+    """Coefficients with errors and units as they are printed: `from_si` reads them."""
+    pairs = zip(found.law.laws, found.coefficients.tolist(), found.coefficient_errs.tolist(), strict=True)
+    units = [(law._printed(found.drift.body.scale), k, error) for law, k, error in pairs]
+    return [(factor * k, factor * error, unit) for (factor, unit), k, error in units]
+
+
+def _units(found: FittedLoss) -> Floats:
+    """Of each coefficient the factor to the unit that `from_si` takes."""
+    return np.array([law.in_si(found.drift.body) / law.coefficient for law in found.law.laws], np.float64)
+
+
 def _stops(found: FittedLoss) -> str:
     if math.isinf(found.stops_at):
         return "never stops"
@@ -222,9 +246,7 @@ def _stops(found: FittedLoss) -> str:
 
 def cells(found: FittedLoss) -> tuple[str, str, str, str, str, str]:
     """A row of the table: name, centre, coefficients, stopping time, chi2, dAIC."""
-    told = ", ".join(
-        f"{k:.4g} +- {e:.1g}" for k, e in zip(found.coefficients, found.coefficient_errs, strict=True)
-    )
+    told = ", ".join(f"{k:.4g} +- {e:.1g}{unit}" for k, e, unit in printed(found))
     stops = _stops(found).removeprefix("stops at ").removesuffix(" stops")
     return found.name, found.centre, told, stops, f"{found.chi2:.3g}", f"{found.daic:.1f}"
 
@@ -238,7 +260,7 @@ def remark(found: FittedLoss) -> str:
 
 def notes(found: LossFit) -> list[str]:
     """Notes below the table."""
-    which = "with the centre at rest, or by rolling" if found.centre == "either" else _CENTRE[found.centre]
+    which = "with the centre at rest, or by rolling" if found.centre == "either" else CENTRE[found.centre]
     said = [f"{len(found.t)} points; drift {which}"]
     said += [f"errors of {name} from its scatter about the best law" for name in found.estimated]
     for no in found.refused:
@@ -247,4 +269,4 @@ def notes(found: LossFit) -> list[str]:
     return said
 
 
-_CENTRE = {"rest": "with the centre at rest", "rolling": "by rolling"}
+CENTRE = {"rest": "with the centre at rest", "rolling": "by rolling"}

@@ -33,7 +33,8 @@ def variables(rows: Sequence[tuple[str, float, float, str]]) -> list[str]:
             share = f" ({100 * abs(error / value):.2g}%)" if value else ""
             digits = max(0, 1 - math.floor(math.log10(error)))
             plain = 1e-4 <= abs(value) < 1e6 and digits <= 12
-            said = f"{value:.{digits}f}" if plain else f"{value:.6g}"
+            known = 1 + digits + math.floor(math.log10(abs(value))) if value else 1
+            said = f"{value:.{digits}f}" if plain else f"{value:.{max(known, 2)}g}"
             said = f"{said} +/- {error:.2g}{share}"
         told.append((f"{name}:", f"{said} {note}" if note else said))
     return section("Variables", told, "  ")
@@ -48,3 +49,12 @@ def counted(many: int) -> str:
     """A count, in words if it is small."""
     words = ("none", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine")
     return words[many] if many < len(words) else str(many)
+
+
+def student(errors: float, freedom: int) -> float:
+    """The number of standard errors, found from few points, as unlikely as `errors` of a normal deviate.
+
+    Student's t from the normal deviate, after Wallace (1959), Ann. Math. Statist. 30, 1121.
+    """
+    normal = errors * (8 * freedom + 3) / (8 * freedom + 1)
+    return math.sqrt(freedom * math.expm1(min(normal**2 / freedom, 50.0)))

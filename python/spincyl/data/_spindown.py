@@ -67,13 +67,28 @@ class SpinDown(NamedTuple):
         return self._replace(errors=errors)
 
 
-def asked(laws: Sequence[Any] | None, centre: str | None) -> list[tuple[Any, ...]]:
-    """The laws to fit, each as a tuple of one class or of two whose laws add."""
+def centres(centre: str | None) -> tuple[str, ...]:
+    """Which drifts are asked for: one of them, or both."""
+    return CENTRES if centre is None else (one_of("centre", centre, CENTRES),)
+
+
+def known_laws() -> list[Any]:
+    """All classes of laws of loss."""
     from spincyl import loss
 
-    if centre is not None:
-        one_of("centre", centre, CENTRES)
-    known = [getattr(loss, name) for name in LAWS]
+    return [getattr(loss, name) for name in LAWS]
+
+
+def known_law(name: str, law: Any) -> Any:
+    """A class of laws of loss, or TypeError naming the argument."""
+    if not any(law is one for one in known_laws()):
+        raise TypeError(f"{name}: expected a class of sc.loss such as sc.loss.DryContour, not {law!r}")
+    return law
+
+
+def asked(laws: Sequence[Any] | None) -> list[tuple[Any, ...]]:
+    """The laws to fit, each as a tuple of one class or of two whose laws add."""
+    known = known_laws()
     if laws is None:
         return [(law,) for law in known]
     if isinstance(laws, str | type) or not isinstance(laws, Sequence):
@@ -81,8 +96,7 @@ def asked(laws: Sequence[Any] | None, centre: str | None) -> list[tuple[Any, ...
     found = [tuple(law) if isinstance(law, tuple | list) else (law,) for law in laws]
     for law in found:
         for one in law:
-            if not any(one is k for k in known):
-                raise TypeError(f"laws: expected classes of sc.loss such as sc.loss.DryContour, not {one!r}")
+            known_law("laws", one)
         if not 1 <= len(law) <= 2 or len(set(law)) < len(law):
             names = ", ".join(one.__name__ for one in law)
             raise ValueError(f"laws: expected one law, or two different ones that add, not ({names})")

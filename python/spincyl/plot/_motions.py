@@ -85,7 +85,7 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
     tilt.set_ylabel(r"inclination  $\theta$ (degrees)")
     how = {"rolling": "rolling", "smooth": "smooth table"}.get(named(m.contact)) or _law(m)
     if m.losses is not None:
-        how = f"{how}, {titled(m.losses)}"
+        how = f"{how}, {titled(m.losses, scale)}"
     if isinstance(m, EllipsoidMotion):
         _spin(tilt, m, t, scale, thick)
         tilt.set_title(how)

@@ -85,9 +85,9 @@ fn check(body: &Body, start: &Start, ask: &Ask, custom: &Custom<'_>) -> Result<f
         Err(Error::OutOfRange { name, value, expected: "none together with a law of the user's own" })
     };
     if let Some(law) =
-        Law::ALL.into_iter().find(|law| law.presses() && ask.losses.coefficients[*law as usize] > 0.0)
+        Law::ALL.into_iter().find(|law| law.presses() && ask.losses.coefficient(*law) > 0.0)
     {
-        return refuse(law.parameter(), ask.losses.coefficients[law as usize]);
+        return refuse(law.parameter(), ask.losses.coefficient(law));
     }
     if ask.restitution.is_some() || start.aloft.is_some() {
         return refuse("restitution", ask.restitution.unwrap_or(f64::NAN));

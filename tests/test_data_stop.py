@@ -1,0 +1,216 @@
+"""A stopwatch: the time in which a coin stops gives the coefficient of a loss, with an error that holds."""
+
+import math
+import warnings
+
+import numpy as np
+import pytest
+
+import spincyl as sc
+
+COIN = sc.measured(outer_diameter="25.75mm", length="2.2mm", mass="8.5g")
+STOPS = ("DryContour", "ViscousContour", "RollingResistance", "AirFilm", "BoundaryLayer")
+START, HAND, EYE = math.radians(20), 0.2, math.radians(2)
+film = pytest.mark.filterwarnings(
+    "ignore:the film of AirFilm fills"
+)  # it does not below a coin at 20 degrees
+named = pytest.mark.parametrize("name", STOPS)
+
+
+def lasts(law, theta=START, centre="rest", body=COIN):
+    """Seconds to the end of a drift."""
+    with warnings.catch_warnings(action="ignore"):  # a film of air does not fill so wide a gap
+        return float(sc.drift(body, theta, law, centre).stops_at)
+
+
+def typical(name):
+    """A law that stops the coin after eight seconds."""
+    kind, scale = getattr(sc.loss, name), COIN.scale
+    one = sc.drift(COIN.natural, START, kind(1e-9)).stops_at * 1e-9
+    return kind.from_si(float(kind(one / (8 / scale.seconds(1.0))).in_si(COIN)), scale=COIN)
+
+
+@named
+@film
+@pytest.mark.parametrize("centre", ["rest", "rolling"])
+def test_the_exact_time_of_a_drift_gives_back_its_coefficient(name, centre):
+    true = typical(name)
+    found = sc.data.fit_stop(COIN, type(true), START, lasts(true, centre=centre), error=0.01, centre=centre)
+    (fit,) = found.fits
+    assert fit.coefficient == pytest.approx(float(true.coefficient), rel=1e-9)
+    assert fit.coefficient_si == pytest.approx(float(true.in_si(COIN)), rel=1e-9)
+    assert fit.coefficient_err_si / fit.coefficient_si == pytest.approx(0.01 / found.stops_at)
+    assert lasts(fit.law, centre=centre) == pytest.approx(found.stops_at, rel=1e-9)
+    assert fit.centre == centre and fit.drift.centre == centre
+
+
+@named
+@film
+def test_both_drifts_are_fitted_unless_one_is_named(name):
+    found = sc.data.fit_stop(COIN, getattr(sc.loss, name), "20deg", [7.0, 7.4])
+    assert (
+        [fit.centre for fit in found.fits]
+        == ["rest", "rolling"]
+        == [found.of(c).centre for c in ("rest", "rolling")]
+    )
+    ratio = found.of("rolling").coefficient / found.of("rest").coefficient
+    assert ratio == pytest.approx(lasts(typical(name), centre="rolling") / 8, rel=1e-6)
+
+
+@pytest.mark.parametrize(("many", "error"), [(5, None), (2, None), (1, HAND), (5, HAND)])
+@pytest.mark.parametrize("centre", ["rest", "rolling"])
+def test_the_coefficient_of_a_rough_measurement_is_within_its_error_two_times_of_three(many, error, centre):
+    true, law = typical("DryContour"), sc.loss.DryContour
+    pulls = []
+    for seed in range(150):
+        rng = np.random.default_rng(seed)
+        # the mark on the wall is off in all tries; the hand is late or early in each
+        time = lasts(true, START + EYE * rng.normal(), centre) + HAND * rng.normal(size=many)
+        fit = sc.data.fit_stop(COIN, law, START, time, error=error, from_err=EYE, centre=centre).fits[0]
+        pulls.append((fit.coefficient - float(true.coefficient)) / fit.coefficient_err)
+        assert fit.coefficient_err == pytest.approx(math.hypot(fit.by_times, fit.by_angle))
+    assert 0.58 < np.mean(np.abs(pulls) < 1) < 0.8  # 0.68 +- 0.04 of 150
+    assert abs(np.mean(pulls)) < 0.3
+
+
+def test_the_scatter_of_few_times_tells_their_error_two_times_of_three():
+    for many in (2, 3, 6):
+        within = 0
+        for seed in range(300):
+            time = 8 + HAND * np.random.default_rng(seed).normal(size=many)
+            found = sc.data.fit_stop(COIN, sc.loss.DryContour, START, time, centre="rest")
+            within += abs(found.stops_at - 8) < found.stops_at_err
+        assert 0.6 < within / 300 < 0.76, many  # 0.683 +- 0.027
+
+
+@pytest.mark.parametrize("name", ["DryContour", "ViscousContour", "RollingResistance"])
+def test_a_coin_that_rolls_to_its_end_is_timed_to_the_first_order_of_its_loss(name):
+    """The motion itself, not the drift, keeps the time."""
+    true = typical(name)
+    m = sc.roll(COIN, COIN.steady(START), [0.0, 20.0], losses=true)
+    fit = sc.data.fit_stop(
+        COIN, type(true), START, m.event.time + HAND * np.array([-1.0, 0.3, 1.1, -0.4, 0.2]), from_err=EYE
+    )
+    one = fit.of("rolling")
+    assert abs(one.coefficient - float(true.coefficient)) < one.coefficient_err
+    exact = sc.data.fit_stop(COIN, type(true), START, m.event.time, error=0.01).of("rolling")
+    assert exact.coefficient == pytest.approx(float(true.coefficient), rel=3e-3)
+
+
+def test_what_is_printed_can_be_given_back():
+    for name in STOPS:
+        with warnings.catch_warnings(action="ignore"):
+            fit = sc.data.fit_stop(COIN, getattr(sc.loss, name), START, [7.0, 7.2], centre="rest").fits[0]
+        (said,) = str(fit.law).split("(")[1:]
+        number, unit = said.rstrip(")").split(" ", 1)
+        assert f": {number} +- " in repr(fit) and repr(fit).endswith(f" {unit}>")
+        back = getattr(sc.loss, name).from_si(said.rstrip(")"), scale=COIN)
+        assert float(back.coefficient) == pytest.approx(fit.coefficient, rel=1e-3)
+
+
+def test_a_body_of_unknown_mass_has_a_length_in_millimetres_and_no_couple_in_si():
+    coin = sc.measured(outer_diameter="25.75mm", length="2.2mm")
+    dry, viscous = (
+        sc.data.fit_stop(coin, law, START, [7.0, 7.2], centre="rest").fits[0]
+        for law in (sc.loss.DryContour, sc.loss.ViscousContour)
+    )
+    assert repr(dry).endswith(" mm>") and "N m s" not in repr(viscous)
+    with pytest.raises(ValueError, match="needs the mass"):
+        viscous.coefficient_si
+
+
+def test_the_report_says_where_the_error_comes_from():
+    found = sc.data.fit_stop(COIN, sc.loss.DryContour, "20deg", [6.9, 7.3, 7.0, 7.4, 7.1], from_err="2deg")
+    said = found.report()
+    for told in (
+        "DryContour",
+        "20 +/- 2 degrees",
+        "7.14 +/- 0.11 s",
+        "in mm",
+        "times 1.5%, angle 15%",
+        "by rolling",
+    ):
+        assert told in said
+    assert max(map(len, said.splitlines())) <= 88
+    assert "DryContour by rolling" in found._repr_html_() and "<svg" in found._repr_html_()
+
+
+@pytest.mark.parametrize("name", ["AirLinear", "AirQuadratic"])
+def test_a_law_under_which_the_coin_never_stops_is_refused_by_name(name):
+    assert getattr(sc.loss, name)(1e-3).exponent is None
+    with pytest.raises(ValueError, match=f"^law: under {name} this body never stops from 20 degrees on"):
+        sc.data.fit_stop(COIN, getattr(sc.loss, name), "20deg", [7.0, 7.2])
+
+
+def test_drilling_stops_no_thin_disk_and_a_coin_only_while_its_centre_rests():
+    thin = sc.measured(outer_diameter="25mm", length="1e-9mm")
+    with warnings.catch_warnings(action="ignore"), pytest.raises(ValueError, match="^law: "):
+        sc.data.fit_stop(thin, sc.loss.Drilling, "20deg", [7.0, 7.2], centre="rolling")
+    found = sc.data.fit_stop(COIN, sc.loss.Drilling, "20deg", [7.0, 7.2])
+    assert [fit.centre for fit in found.fits] == ["rest"]
+    assert found.refused[0].centre == "rolling" and "drilling stops" in found.refused[0].why
+    assert "not fitted" in found.report() and "not fitted" in found._repr_html_()
+    with pytest.raises(KeyError, match="rolling.*drilling stops"):
+        found.of("rolling")
+
+
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        ({"seconds": 7.1}, "^seconds: one time says nothing of its error: give it, as in error=0.2"),
+        ({"seconds": [7.1]}, "^seconds: one time"),
+        ({"seconds": [7.1, math.nan]}, "^seconds: one time"),
+        ({"seconds": [7.1, 7.1]}, "^seconds: times that are all the same"),
+        ({"seconds": []}, "^seconds: expected at least one time"),
+        ({"seconds": [math.nan]}, "^seconds: expected at least one"),
+        ({"seconds": [7.0, -1.0]}, "^seconds = -1.0: expected more than 0"),
+        ({"seconds": [7.0, 0.0]}, "^seconds = 0.0: expected more than 0"),
+        ({"seconds": [7.0, math.inf]}, "^seconds = inf: expected"),
+        ({"seconds": [1e300, 2e300]}, "^seconds = 1e\\+300: expected"),
+        ({"seconds": [1e-300, 2e-300]}, "^seconds = 1.5e-300: it would stop within .* of a turn"),
+        ({"seconds": np.ones((2, 2))}, "^seconds: expected a time or a list of them"),
+        ({"error": 0.0}, "^error = 0.0: expected a positive time"),
+        ({"error": 9.0}, "^error = 9.0: expected a positive time, less than it took"),
+        ({"error": math.nan}, "^error = nan: expected a positive time"),
+        ({"from_": 20}, "^from_ = 20.0: expected .* degrees"),
+        ({"from_": 0.0}, "^from_ = 0.0: expected a positive angle"),
+        ({"from_": "100deg"}, "^from_: theta = "),
+        ({"from_": math.nan}, "^from_ = nan"),
+        ({"from_err": -0.1}, "^from_err = -0.1: expected 0 or more, less than from_"),
+        ({"from_err": "25deg"}, "^from_err = .*: expected 0 or more, less than from_"),
+        ({"centre": "moving"}, "^centre = 'moving': expected 'rest' or 'rolling'"),
+        ({"body": COIN.natural}, "^body: its size is not known"),
+        ({"body": sc.measured(outer_diameter=0.02, length=0.05), "from_": "40deg"}, "^from_: .* forbidden"),
+    ],
+)
+def test_what_makes_no_sense_is_refused_by_its_name(given, told):
+    good = {"body": COIN, "law": sc.loss.DryContour, "from_": "20deg", "seconds": [7.0, 7.2]}
+    with pytest.raises(ValueError, match=told):
+        sc.data.fit_stop(**good | given)
+
+
+@pytest.mark.parametrize(
+    "law", [sc.loss.DryContour(1e-3), [sc.loss.DryContour], sc.loss.Law, "DryContour", None]
+)
+def test_the_law_is_one_class(law):
+    with pytest.raises(TypeError, match="^law: expected a class of sc.loss such as sc.loss.DryContour"):
+        sc.data.fit_stop(COIN, law, "20deg", [7.0, 7.2])
+
+
+def test_a_time_may_have_its_unit_and_a_missed_one_is_left_out():
+    one = sc.data.fit_stop(COIN, sc.loss.DryContour, START, "0.12 min", error="200ms", from_err="2deg")
+    assert one.stops_at == pytest.approx(7.2) and one.stops_at_err == pytest.approx(0.2)
+    assert sc.data.fit_stop(COIN, sc.loss.DryContour, START, [7.0, math.nan, 7.2]).seconds.size == 2
+
+
+def test_minutes_that_were_typed_for_seconds_are_warned_of():
+    with pytest.warns(UserWarning, match="it turns 1.8 times before it stops.* in seconds"):
+        sc.data.fit_stop(COIN, sc.loss.DryContour, START, [0.117, 0.121])
+    with pytest.warns(UserWarning, match="the times go from 0.12 to 7.1 s: are all of them in seconds"):
+        sc.data.fit_stop(COIN, sc.loss.DryContour, START, [0.12, 7.1], error=0.2)
+
+
+def test_a_film_of_air_that_cannot_fill_the_gap_is_warned_of_once():
+    with pytest.warns(sc.DriftWarning, match="fills the gap below theta") as said:
+        sc.data.fit_stop(COIN, sc.loss.AirFilm, START, [7.0, 7.2])
+    assert len(said) == 1 and said[0].filename == __file__
