@@ -24,7 +24,6 @@ use crate::laws::contact::Table;
 use crate::laws::contact::slip::Friction;
 use crate::laws::contact::standstill::{Standstill, towards};
 use crate::laws::custom::Custom;
-use crate::laws::loss::Law;
 use crate::laws::pose::Pose;
 use crate::laws::state::State;
 use crate::methods::flow::{Flow, PATIENCE, Steps, TOIL};
@@ -51,7 +50,7 @@ const LATER: f64 = 1e-5;
 /// let stribeck = |speed: f64| 0.2 + 0.2 * (-(speed / 0.1).powi(2)).exp();
 /// let hoop = Body::tube(0.0, 1.0)?;
 /// let state = State { theta: std::f64::consts::FRAC_PI_2, w1: 0.0, w2: 0.0, w3: -3.0 };
-/// let start = Start { slip: [0.0, 5.0], ..state.into() };
+/// let start = Start::from(state).with_slip([0.0, 5.0]);
 /// let (ask, laws) = (Ask::on(Friction::coulomb(0.4)), Custom::default().with_friction(&stribeck));
 /// let motion = custom::roll_with(&hoop, start, &[0.0, 20.0], &ask, laws, || true)?.expect("not interrupted");
 /// assert!((motion.states[1].w3 - -0.5).abs() < 1e-8); // the hoop rolls back as under any friction
@@ -84,10 +83,8 @@ fn check(body: &Body, start: &Start, ask: &Ask, custom: &Custom<'_>) -> Result<f
     let refuse = |name: &'static str, value: f64| {
         Err(Error::OutOfRange { name, value, expected: "none together with a law of the user's own" })
     };
-    if let Some(law) =
-        Law::ALL.into_iter().find(|law| law.presses() && ask.losses.coefficient(*law) > 0.0)
-    {
-        return refuse(law.parameter(), ask.losses.coefficient(law));
+    if let Some((law, value)) = ask.losses.iter().find(|(law, value)| law.presses() && *value > 0.0) {
+        return refuse(law.parameter(), value);
     }
     if ask.restitution.is_some() || start.aloft.is_some() {
         return refuse("restitution", ask.restitution.unwrap_or(f64::NAN));
