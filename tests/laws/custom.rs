@@ -1,11 +1,11 @@
 //! Laws of the user's own: the same motions as under the library's laws, the balance of energy, and what is refused.
 
 use crate::common::{drawn, wander};
-use spincyl::contact::{Contact, Table, slip::Friction};
+use spincyl::contact::{Contact, Table, lossy, slip::Friction};
 use spincyl::custom::{self, Custom};
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::{Ask, Ending, Method, Motion, Start, roll_with};
-use spincyl::{Body, Error, State};
+use spincyl::{Body, Error, State, newton};
 use std::f64::consts::FRAC_PI_2;
 
 /// A body, a start that may slip, and a table, at random.
@@ -212,4 +212,29 @@ fn a_law_that_gives_energy_or_has_a_step_is_refused_by_name() {
     let resisted = Ask::default().with_losses(Losses::of(Law::RollingResistance, 0.01));
     assert_eq!(refused(Custom::default(), resisted).0, Law::RollingResistance.parameter());
     assert_eq!(refused(Custom::default(), Ask::default().with_beyond(true)).0, "beyond");
+}
+
+#[test]
+fn under_any_couple_a_body_rolls_by_newtons_equations_and_its_contact_point_stays_at_rest() {
+    let mut r = wander(5304);
+    for _ in 0..drawn(900) {
+        let (body, Start { state: y, .. }, _) = any(&mut r);
+        let couple = [r() - 0.5, r() - 0.5, r() - 0.5];
+        for contact in [Contact::Rolling, Contact::Smooth] {
+            let (rate, force) = lossy::under_couple(contact, &body, &y, couple);
+            let same = newton::derivative(&body, &y, &force, couple);
+            let off = [rate.w1 - same.w1, rate.w2 - same.w2, rate.w3 - same.w3].map(f64::abs);
+            assert!(off.into_iter().all(|x| x < 1e-11), "{body:?} {y:?} {couple:?}: {off:?}");
+            // The energy changes by the power of the couple, since the force of the table does no work.
+            let energy = |by: f64| {
+                let State { theta, w1, w2, w3 } = y;
+                let moved =
+                    [theta + by * rate.theta, w1 + by * rate.w1, w2 + by * rate.w2, w3 + by * rate.w3];
+                contact.energy(&body, &State::from(moved))
+            };
+            let power = couple[0] * y.w1 + couple[1] * y.w2 + couple[2] * y.w3;
+            let grows = (energy(1e-5) - energy(-1e-5)) / 2e-5;
+            assert!((grows - power).abs() < 1e-7, "{body:?} {y:?} {couple:?}: {grows} {power}");
+        }
+    }
 }

@@ -17,7 +17,7 @@
 use super::reduced::{Coefficients, Rates};
 use super::{Contact, rolling};
 use crate::laws::body::Body;
-use crate::laws::loss::{Couples, Law, Losses};
+use crate::laws::loss::{Couple, Couples, Law, Losses};
 use crate::laws::newton;
 use crate::laws::state::State;
 use crate::numbers::Real;
@@ -175,6 +175,28 @@ impl Lossy<f64> {
 pub fn derivative(contact: Contact, body: &Body, y: &State, losses: &Losses) -> (State, f64) {
     let Acted { w: [w1, w2, w3], power, .. } = Lossy::of(contact, body, losses).in_state(y);
     (State { theta: -y.w2, w1, w2, w3 }, power)
+}
+
+/// The time derivative of (theta, w1, w2, w3), and the contact force, of a body that rolls, or slides freely, under any
+/// couple along e1, e2, e3, in M g R.
+///
+/// ```
+/// use spincyl::{Body, Contact, contact::lossy, newton, steady};
+///
+/// let body = Body::solid(2.5)?;
+/// let (state, couple) = (steady::state(&body, 1.3)?, [0.01, -0.02, 0.03]);
+/// let (rate, force) = lossy::under_couple(Contact::Rolling, &body, &state, couple);
+/// // These are the accelerations of Newton's and Euler's equations under that force and that couple.
+/// let same = newton::derivative(&body, &state, &force, couple);
+/// assert!((rate.w1 - same.w1).abs().max((rate.w2 - same.w2).abs()).max((rate.w3 - same.w3).abs()) < 1e-12);
+/// # Ok::<(), spincyl::Error>(())
+/// ```
+pub fn under_couple(contact: Contact, body: &Body, y: &State, couple: [f64; 3]) -> (State, newton::Force) {
+    let given = Couple { free: couple, pressed: [0.0; 3] };
+    let losses = Couples::of(&Losses::NONE, |x| x).with_given(given);
+    let at = Lossy { rates: contact.rates(body), losses }.in_state(y);
+    let ([w1, w2, w3], [normal, along, across]) = (at.w, at.force);
+    (State { theta: -y.w2, w1, w2, w3 }, newton::Force { normal, along, across })
 }
 
 /// The contact force on a body that rolls, or slides freely, with losses.
