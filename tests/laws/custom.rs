@@ -10,7 +10,8 @@ use std::f64::consts::FRAC_PI_2;
 
 /// A body, a start that may slip, and a table, at random.
 fn any(r: &mut impl FnMut() -> f64) -> (Body, Start, Table) {
-    let body = match (4.0 * r()) as u8 {
+    let body = match (5.0 * r()) as u8 {
+        4 => Body::ball(0.1, 0.4, 0.42).and_then(|ball| ball.with_theta_end(1.2 + r())),
         0 => Body::ball(0.4 * r() - 0.2, 0.4, 0.42),
         1 => Body::solid(0.02 + 0.5 * r()),
         2 => Body::tube(0.5 + 2.0 * r(), 0.8 * r()),
