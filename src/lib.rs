@@ -15,6 +15,7 @@
 //! | | [`scale`] | metres, kilograms and seconds | time in sqrt(R/g) |
 //! | | [`newton`] | the motion under a given force | I1 w2' = I3 w1 w3 - I1 ct w1^2 - g N - h Fh |
 //! | | [`loss`] | laws of the energy that contact and air take | P = -m.w |
+//! | | [`custom`] | laws that a user writes, and motions under them | P = -m.w >= 0, F = mu(u) N |
 //! | | [`contact`] | the force of a table: [`rolling`], [`smooth`], slip; the landing of a rim | F = v' + Wf x v + z |
 //! | | [`throw`] | the state in which a body leaves the hand | v_2 = J (f cos beta - sin beta) + Q |
 //! | | [`pose`] | the orientation, the contact path and the centre of the body | P' = A psi' e2 - rho theta' e_h |
@@ -81,7 +82,6 @@ pub mod drift {
     pub use crate::motions::drift::{Drift, End};
 }
 
-#[cfg(feature = "many")]
 pub mod custom {
     //! Laws of loss and of friction that a user writes, and the motions of bodies under them.
     //!

@@ -2,7 +2,6 @@
 
 pub mod body;
 pub mod contact;
-#[cfg(feature = "many")]
 pub(crate) mod custom;
 pub mod loss;
 pub mod newton;

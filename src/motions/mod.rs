@@ -5,7 +5,6 @@ pub(crate) mod ask;
 mod conserved;
 mod course;
 pub(crate) mod creep;
-#[cfg(feature = "many")]
 pub(crate) mod custom;
 #[cfg(feature = "many")]
 pub mod drift;
