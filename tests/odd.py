@@ -28,7 +28,7 @@ class Hostile:
 
 
 #: Callbacks, which may themselves refuse their arguments.
-CALLED = ("progress", "(job")
+CALLED = ("progress", "(job", "function")
 
 
 def values():
@@ -141,6 +141,7 @@ def stones():
             sc.Ellipsoid.rattleback, {"axes": axes, "twist": 0.1, "moments": (0.02, 0.2, 0.21), "offset": (0, 0, 0)},
         ),
         "Ellipsoid.egg": (sc.Ellipsoid.egg, {"radius": 0.7, "half_length": 1.0, "offset": 0.0}),
+        "Ellipsoid.with_weights": (stone.with_weights, {"weights": [(0.1, (0.5, 0.0, 0.0))]}),
         "Ellipsoid.in_metres": (stone.in_metres, {"mass": 200.0, "gravity": 9.8}),
         "Ellipsoid.spinning": (stone.spinning, spinning),
         "Ellipsoid.with_centre_velocity": (stone.with_centre_velocity, {"state": start, "x": 0.0, "y": 0.1}),

@@ -32,6 +32,24 @@ def test_what_a_law_loses_is_the_integral_of_its_power():
     assert CUBIC.power(COIN, START) == pytest.approx(power[0], rel=1e-12)
 
 
+def test_arms_of_rolling_and_of_rocking_that_agree_are_rolling_resistance():
+    def arms(theta, w, normal, rolling, rocking, e):
+        s, c = np.sin(theta), np.cos(theta)
+        w_h = c * w[0] - s * w[2]
+        size = np.hypot(rolling * w_h, rocking * w[1]) + rocking * e
+        m_h, m_2 = -normal * rolling**2 * w_h / size, -normal * rocking**2 * w[1] / size
+        return c * m_h, m_2, -s * m_h
+
+    start = START.kicked(0.1)
+    ours = sc.roll(COIN, start, 5.0, losses=sc.loss.RollingResistance(2e-3))
+    off = []
+    for e in (1e-3, 1e-4):
+        law = sc.custom.Couple(lambda *at, e=e: arms(*at, 2e-3, 2e-3, e))
+        off.append(abs(sc.roll(COIN, start, 5.0, losses=law).w - ours.w).max())
+    assert off[0] < 2e-5
+    assert off[1] == pytest.approx(off[0] / 10, rel=0.1)  # of first order in the rounding
+
+
 def test_a_measured_body_gives_its_law_si():
     tube = sc.measured(outer_diameter="22mm", length="50mm", mass="10g")
     seen = []

@@ -40,9 +40,9 @@ from spincyl._upward import HOMES
 if TYPE_CHECKING:
     from spincyl import data, loss, parts, plot, sweep
     from spincyl._drift import Drift, DriftWarning, drift
-    from spincyl._ellipsoid import Ellipsoid, Rocking
+    from spincyl._ellipsoid import Ellipsoid
     from spincyl._ellipsoid_motion import EllipsoidMotion
-    from spincyl._ellipsoid_state import EllipsoidState
+    from spincyl._ellipsoid_state import EllipsoidState, Rocking
     from spincyl._pages.play import Play, play
     from spincyl._pages.view import View, view
     from spincyl._rising import rising_spin
@@ -104,9 +104,9 @@ __all__ = [
 _LATER: dict[str, str | None] = {
     **dict.fromkeys(("custom", "data", "loss", "parts", "plot", "sweep")),
     **dict.fromkeys(("drift", "Drift", "DriftWarning"), "_drift"),
-    **dict.fromkeys(("Ellipsoid", "Rocking"), "_ellipsoid"),
+    "Ellipsoid": "_ellipsoid",
     "EllipsoidMotion": "_ellipsoid_motion",
-    "EllipsoidState": "_ellipsoid_state",
+    **dict.fromkeys(("EllipsoidState", "Rocking"), "_ellipsoid_state"),
     "assembled": "parts",
     "exposure": "_studio.exposure",
     **dict.fromkeys(("play", "Play"), "_pages.play"),

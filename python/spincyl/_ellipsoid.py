@@ -2,18 +2,17 @@
 
 import math
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import Any, NamedTuple, Self
+from typing import Any, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from spincyl import _core
 from spincyl._contact import AnyContact, Coulomb, Viscous, code
 from spincyl._ellipsoid_rows import SIX, blockwise, checked, made_by, parts, six
-from spincyl._ellipsoid_state import EllipsoidState, doubles, vectors
+from spincyl._ellipsoid_state import EllipsoidState, Rocking, doubles, vectors
 from spincyl._input.equality import compared
 from spincyl._input.numbers import (
     Floats,
@@ -36,14 +35,7 @@ from spincyl._input.numbers import (
 from spincyl._input.reprs import is_lazy
 from spincyl._scale import Scale, dubious
 from spincyl._slip import slip_of_stone
-
-
-class Rocking(NamedTuple):
-    """How a stone rocks that spins upright; of its two modes the slower first. In sqrt(g/a)."""
-
-    growth: Floats  #: (..., 2) how fast each mode grows; negative of one that dies
-    frequency: Floats  #: (..., 2) angular frequency; 0 of a mode that leaves without rocking
-    eigenvalues: NDArray[np.complex128]  #: (..., 4) all of them
+from spincyl._weights import weighted
 
 
 @compared
@@ -214,6 +206,24 @@ class Ellipsoid:
         """A uniform spheroid, whose centre of mass lies `offset` above its centre along its axis (axis 3)."""
         given = {"radius": radius, "half_length": half_length, "offset": offset}
         return cls._of(_core.egg, **{name: (doubles(reals(name, x)), False) for name, x in given.items()})
+
+    def with_weights(self, weights: Iterable[Any]) -> Self:
+        """Fix point masses to a single stone: clay on a rattleback, or an unbalanced disk.
+
+        Parameters
+        ----------
+        weights : list of (mass, (x, y, z))
+            Masses in that of the stone, at places from the centre of the ellipsoid along its axes, in the
+            largest semi-axis. Of a measured stone in kilograms and metres, or texts such as "5g" and "12mm".
+
+        Examples
+        --------
+        >>> import spincyl as sc
+        >>> disk = sc.Ellipsoid.uniform((1.0, 1.0, 0.05)).with_weights([(0.2, (1.0, 0.0, 0.0))])
+        >>> disk.offset.round(4).tolist()  # from the axis of the disk to its centre of mass
+        [0.1667, 0.0, 0.0]
+        """
+        return weighted(self, weights)
 
     def in_metres(self, mass: float | None = None, *, gravity: float = 9.80665) -> Self:
         """The same stone, measured: the lengths that it was given are metres.

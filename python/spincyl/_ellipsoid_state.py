@@ -1,9 +1,10 @@
 """The state of a stone: its vertical, its angular velocity and its slip, or arrays of them."""
 
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from spincyl import _core
 from spincyl._input.equality import compared
@@ -31,6 +32,14 @@ def vectors(name: str, value: Reals, *last: int) -> Reals:
     if not is_lazy(array):
         array.setflags(write=False)
     return array
+
+
+class Rocking(NamedTuple):
+    """How a stone rocks that spins upright; of its two modes the slower first. In sqrt(g/a)."""
+
+    growth: Floats  #: (..., 2) how fast each mode grows; negative of one that dies
+    frequency: Floats  #: (..., 2) angular frequency; 0 of a mode that leaves without rocking
+    eigenvalues: NDArray[np.complex128]  #: (..., 4) all of them
 
 
 @compared

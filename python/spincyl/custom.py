@@ -70,7 +70,7 @@ class Couple(Loss):
         _called("function", self.function, "theta, w and the normal force")
 
     @property
-    def _function(self) -> CoupleFunction:  # type: ignore[override]
+    def _function(self) -> CoupleFunction:
         return self.function
 
     @property
@@ -92,11 +92,11 @@ class Couple(Loss):
     def couple(self, body: Body, state: State, normal: Reals = 1.0) -> Result:
         """The couple along e1, e2, e3: what the function returns for a single state."""
         w = np.array([state.w1, state.w2, state.w3], dtype=float)
-        return np.asarray(self.function(float(state.theta), w, float(normal)), dtype=float)  # type: ignore[arg-type]
+        return np.asarray(self.function(float(state.theta), w, float(normal)), dtype=float)
 
     def power(self, body: Body, state: State, normal: Reals = 1.0) -> Result:
         """The power ``-couple @ w`` in a single state."""
-        return -float(self.couple(body, state, normal) @ np.array([state.w1, state.w2, state.w3]))  # type: ignore[operator]
+        return -float(self.couple(body, state, normal) @ np.array([state.w1, state.w2, state.w3]))
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Couple) and other.function is self.function
@@ -145,14 +145,14 @@ class Friction(Coulomb):
         object.__setattr__(self, "function", function)
 
     @property
-    def _function(self) -> Callable[[float], float]:  # type: ignore[override]
+    def _function(self) -> Callable[[float], float]:
         return self.function  # type: ignore[attr-defined, no-any-return]
 
     def _natural(self, scale: Scale | None) -> Self:
         if scale is None:
             return self
         speed = scale._units[0] / scale._units[1]
-        return type(self)(lambda u: self._function(speed * u), self.static)  # type: ignore[arg-type]
+        return type(self)(lambda u: self._function(speed * u), self.static)
 
     def __repr__(self) -> str:
         return f"custom.Friction({_named(self._function)})"
