@@ -290,7 +290,15 @@ def motions():
             {"motion": motion(), "seconds": None, "scale": None, "upper": "O", "size": 4, "samples": 1e3, "width": None},
         ),
         "scene": (
-            sc.scene, {"body": body, "state": state, "scale": None, "seconds": 0.1, "points": 3, "mu": 1.0, "contact": "rolling"},
+            sc.scene, {"motion": motion(), "scale": None},
+        ),
+        "Scene.compare": (
+            sc.scene(motion()).compare,
+            {"time": [0.1, 0.2], "position": np.zeros((2, 3)), "orientation": np.eye(4)[[3, 3]], "scalar_first": False},
+        ),
+        "Scene.couple": (
+            sc.scene(motion()).couple,
+            {"orientation": [0.6, 0.0, 0.0, 0.8], "angular_velocity": [0.1, 0.2, 0.3], "normal_force": 1.0, "scalar_first": False},
         ),
         "view": (
             sc.view, {"(motions": motion(), "labels": None, "title": "x", "scale": None, "slow": None, "upper": "O"},

@@ -45,7 +45,7 @@ def told(path):
 
 
 def scene(path):
-    return sc.scene(BODY, BODY.steady(1.3)).save(path)
+    return sc.scene(sc.roll(BODY, BODY.steady(1.3), 1.0)).save(path)
 
 
 def typed(*words):

@@ -233,7 +233,7 @@ def test_forces_and_energies_of_a_body_that_was_not_weighed_are_refused_and_noth
         lambda: RULED.scale.joules(1.0),
         lambda: RULED.scale.newtons(1.0),
         lambda: sc.pressed(RULED, 0.1, 0.8),
-        lambda: sc.scene(RULED, START, seconds=0.1),
+        lambda: sc.scene(m),
         lambda: sc.loss.AirFilm.from_si(scale=RULED),
     ):
         with pytest.raises(ValueError, match="needs the mass"):
@@ -294,8 +294,7 @@ def test_everything_that_takes_a_scale_takes_it_from_the_body(tmp_path, motion):
     assert np.allclose(sc.exposure(motion, 0.1, width=10.0 * scale.radius, **small), wide)
     sounds = motion.sound(tmp_path / "a.wav", 0.2), n.sound(tmp_path / "b.wav", 0.2, scale=scale)
     assert sounds[0].read_bytes() == sounds[1].read_bytes()
-    plain = sc.scene(TUBE.natural, TUBE.steady(1.4), seconds=0.2, scale=scale)
-    assert sc.scene(TUBE, TUBE.steady(1.4), seconds=0.2).data == plain.data
+    assert sc.scene(motion).data == sc.scene(n, scale=scale).data
     assert sc.thrown(TUBE, 1.0, 30.0) == sc.thrown(TUBE.natural, 1.0, 30.0, scale=scale)
     assert sc.pressed(TUBE, 0.1, 0.8) == sc.pressed(TUBE.natural, 0.1, 0.8, scale=scale)
     film = sc.data.example("tube_from_above")
@@ -312,7 +311,7 @@ def test_a_contradiction_between_a_scale_and_a_measured_body_is_refused(tmp_path
         lambda: sc.view(motion, scale=other),
         lambda: sc.exposure(motion, 0.1, scale=other),
         lambda: motion.sound(tmp_path / "a.wav", scale=other),
-        lambda: sc.scene(TUBE, START, scale=other),
+        lambda: sc.scene(motion, scale=other),
         lambda: sc.data.from_above(sc.data.example("tube_from_above"), TUBE, scale=other),
         lambda: sc.thrown(TUBE, 1.0, 1.0, scale=other),
         lambda: sc.pressed(TUBE, 1.0, 1.0, scale=other),

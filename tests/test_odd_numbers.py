@@ -270,7 +270,7 @@ def test_a_number_of_threads_that_is_none_is_refused_by_the_name_of_the_variable
 def test_what_is_no_path_is_refused_by_name_wherever_something_is_saved():
     m = sc.roll(odd.BODY, odd.STATE, 0.5)
     for save in (
-        sc.view(m).save, sc.play(odd.BODY).save, sc.scene(odd.TUBE, odd.TUBE.steady(1.4)).save,
+        sc.view(m).save, sc.play(odd.BODY).save, sc.scene(odd.measured_motion()).save,
         lambda path: m.sound(path, scale=sc.Scale(0.01)),
     ):  # fmt: skip
         for bad in (3, None, b"x.html", ["x.html"]):

@@ -1,365 +1,319 @@
-"""Scenes with a known solution: consistent in themselves, and read by a real contact engine."""
+"""Scenes for contact engines: what their files say, what is refused, and how an engine is compared."""
 
 import json
-import pathlib
-import re
+import math
 import subprocess
 import sys
 
-import eulers_disk
-import mujoco
 import numpy as np
-import nutating_cylinder
 import pytest
-from page_scenes import BALLS, CAPSULE, CYLINDER, PIPE, ROUNDED, TIPPE
+from engine_scenes import (
+    ALOFT,
+    COIN,
+    EGG,
+    EURO,
+    LOST,
+    PIPE,
+    PRESSED,
+    RATTLE,
+    RUBBED,
+    SCENES,
+    THROWN,
+    TUBE,
+    rolled,
+    scene_of,
+)
+from page_scenes import CYLINDER
 from scipy.spatial.transform import Rotation
 
 import spincyl as sc
 
-ROOT = pathlib.Path(__file__).parents[1]
-APART = sc.Body.balls(1.5)
-EULER = sc.Body.from_metres(outer_diameter=0.0751, length=0.0128)
-SCENES = {
-    "cylinder": lambda: sc.scene(CYLINDER, nutating_cylinder.start),
-    "tube": lambda: sc.scene(
-        PIPE, PIPE.steady(np.radians(85)), scale=sc.Scale(7.9375e-3, mass=0.02, gravity=9.81), seconds=0.2
-    ),
-    "Euler's disk": lambda: sc.scene(
-        EULER, EULER.steady(0.3).kicked(0.1), scale=sc.Scale(0.03755, mass=0.44)
-    ),
-    "rolling coin": lambda: sc.scene(EULER, EULER.circular(1.2, 0.3)),
-    "NumPy's numbers": lambda: sc.scene(
-        sc.Body.tube(np.float64(2.0), np.float64(0.5)),
-        sc.Body.tube(2.0, 0.5).steady(np.float64(1.3)),
-        scale=sc.Scale(np.float64(0.5)),
-        seconds=np.float64(0.5),
-        mu=np.float32(0.5),
-    ),
-    "rounded can": lambda: sc.scene(ROUNDED, ROUNDED.steady(1.3).kicked(0.05)),
-    "rounded coin": lambda: sc.scene(
-        eulers_disk.body, eulers_disk.start, scale=sc.Scale(0.03755, mass=0.44), seconds=0.2
-    ),
-    "capsule": lambda: sc.scene(CAPSULE, CAPSULE.steady(1.35).kicked(0.05)),
-    "Hurricane balls": lambda: sc.scene(
-        BALLS, BALLS.steady(np.radians(78)), scale=sc.Scale(0.008, mass=0.033)
-    ),
-    "balls on a rod": lambda: sc.scene(APART, APART.steady(np.radians(85)).kicked(0.02)),
-    "tippe top": lambda: sc.scene(TIPPE, sc.State(0.6, 1.0, 0.0, 2.0), mu=5.0),
-    "round on ice": lambda: sc.scene(ROUNDED, ROUNDED.steady(1.3).kicked(0.05), contact="smooth"),
-    "on ice": lambda: sc.scene(CYLINDER, nutating_cylinder.start, contact="smooth"),
-}
+
+def test_the_files_hold_strict_json_with_a_version_and_a_line_for_each_entry(tmp_path):
+    for name in ("tube", "egg", "hops", "dry contour"):
+        (path,) = scene_of(name).save(tmp_path / f"{name}.json")
+        text = path.read_text()
+        data = json.loads(text, parse_constant=lambda word: pytest.fail(word))
+        assert (
+            data == scene_of(name).data and next(iter(data)) == "spincyl-scene" and data["spincyl-scene"] == 1
+        )
+        assert max(map(len, text.splitlines())) > 1000 and len(text.splitlines()) < 120
+        lengths = {
+            len(x)
+            for k, x in data["expected"].items()
+            if isinstance(x, list) and k not in ("phases", "impacts")
+        }
+        assert lengths == {len(data["expected"]["time"])}
 
 
-@pytest.fixture(params=list(SCENES))
-def scene(request):
-    return SCENES[request.param]()
-
-
-def test_a_rigid_body_with_these_numbers_touches_the_table_with_a_resting_point(scene):
-    data = json.loads(json.dumps(scene.data))
-    body, start = data["body"], data["start"]
-    axes = Rotation.from_quat(start["orientation"])
-    axis = axes.as_matrix()[:, 2]
-    arm = lowest_place(body, axis)
-    lowest = np.array(start["position"]) + arm
-    assert lowest[2] == pytest.approx(0.0, abs=1e-12 * body["radius"])
-    velocity = np.array(start["velocity"]) + np.cross(start["angular_velocity"], arm)
-    speed = np.linalg.norm(start["angular_velocity"]) * body["radius"]
-    assert velocity[2] == pytest.approx(0.0, abs=1e-12 * speed)
-    if data["table"]["friction"] > 0:
-        assert np.abs(velocity).max() < 1e-12 * speed
-    else:
-        assert start["velocity"][:2] == [0.0, 0.0]
-    local = axes.inv().apply(start["angular_velocity"])
-    assert np.allclose(local, start["angular_velocity_in_body_axes"], rtol=1e-13, atol=1e-13 * speed)
-
-
-def lowest_place(body, axis):
-    """Vector from the centre of mass to the lowest point of the body, from its measures."""
-    down = np.array([0, 0, -1.0])
-    rim = down - (down @ axis) * axis
-    rim /= np.linalg.norm(rim)
-    if "core" not in body:
-        return -body["half_length"] * axis + body["radius"] * rim
-    core = body["core"]
-    places = [end[2] * axis + core["radius"] * rim + core["swollen_by"] * down for end in core["ends"]]
-    return min(places, key=lambda place: place[2])
-
-
-def test_its_energy_is_that_of_a_rigid_body_and_does_not_change(scene):
-    data = scene.data
-    body, start, expected = data["body"], data["start"], data["expected"]
-    w = np.array(start["angular_velocity_in_body_axes"])
-    kinetic = 0.5 * body["mass"] * np.dot(start["velocity"], start["velocity"]) + 0.5 * np.dot(
-        body["inertia"], w * w
+def test_the_suffix_says_which_file_is_written(tmp_path):
+    scene = scene_of("tube")
+    names = {p.name for name in ("mu0.3", "a.json", "b.xml", "c.XML") for p in scene.save(tmp_path / name)}
+    assert (
+        names
+        == {"mu0.3.json", "mu0.3.xml", "a.json", "b.xml", "c.XML"}
+        == {p.name for p in tmp_path.iterdir()}
     )
-    height = start["position"][2]
-    energy = kinetic - body["mass"] * data["gravity"][2] * height
-    assert np.allclose(expected["energy"], energy, rtol=1e-12)
-
-
-def test_its_poses_agree_with_its_inclinations_and_its_force_carries_the_body(scene):
-    m = scene.motion
-    close = sc.scene(
-        m.body,
-        m.start,
-        scale=scene.scale,
-        seconds=0.02 * float(scene.scale.seconds(m.t[-1])),
-        points=1001,
-        contact=m.contact,
-    )
-    data = close.data
-    expected = {k: np.array(v) for k, v in data["expected"].items() if isinstance(v, list)}
-    axis = Rotation.from_quat(expected["orientation"]).as_matrix()[:, :, 2]
-    assert np.allclose(np.arccos(axis[:, 2]), expected["theta"], atol=1e-12)
-    # M z'' = N - M g, by finite differences of the heights
-    z, t = expected["position"][:, 2], expected["time"]
-    lift = np.gradient(np.gradient(z, t, edge_order=2), t, edge_order=2)[3:-3]
-    force = expected["normal_force"][3:-3] / data["body"]["mass"] + data["gravity"][2]
-    assert np.abs(lift - force).max() < 0.02 * np.abs(force).max() + 1e-6 * abs(data["gravity"][2])
-    assert 0 < data["error"]["theta"] < 1e-9
-    # velocities are derivatives of the poses
-    position, start = expected["position"], data["start"]
-    h = expected["time"][1]
-    velocity = (-1.5 * position[0] + 2 * position[1] - 0.5 * position[2]) / h
-    speed = np.linalg.norm(start["angular_velocity"]) * data["body"]["radius"]
-    assert np.allclose(velocity, start["velocity"], atol=1e-4 * speed)
-    turned = Rotation.from_quat(expected["orientation"])
-    first, second = ((turned[k] * turned[0].inv()).as_rotvec() for k in (1, 2))
-    w = (2 * first - 0.5 * second) / h
-    assert np.allclose(w, start["angular_velocity"], atol=1e-4 * np.linalg.norm(w))
-
-
-def test_mujoco_reads_it_and_starts_where_we_do(scene):
-    model = mujoco.MjModel.from_xml_string(scene.mjcf)
-    state = mujoco.MjData(model)
-    mujoco.mj_resetDataKeyframe(model, state, 0)
-    mujoco.mj_forward(model, state)
-    data = scene.data
-    assert model.body_mass[1] == data["body"]["mass"]
-    assert np.allclose(np.sort(model.body_inertia[1]), np.sort(data["body"]["inertia"]), rtol=1e-12)
-    assert model.opt.gravity[2] == data["gravity"][2]
-    assert np.allclose(state.qpos[:3], data["start"]["position"])
-    assert np.arccos(state.xmat[1][8]) == pytest.approx(data["expected"]["theta"][0], abs=1e-9)
-    assert state.energy.sum() == pytest.approx(data["expected"]["energy"][0], rel=1e-12)
-    gaps = [c.dist - c.includemargin for c in state.contact]
-    assert abs(min(gaps, default=0.0)) < 1e-9 * data["body"]["radius"]
-    # pushed slightly into the table, the engine finds this depth, at the contact point of the solution
-    deep = 1e-6 * data["body"]["radius"]
-    state.qpos[2] -= deep
-    mujoco.mj_forward(model, state)
-    felt = min(state.contact, key=lambda c: c.dist - c.includemargin)
-    assert felt.dist - felt.includemargin == pytest.approx(-deep, rel=1e-3)
-    assert np.abs(felt.pos).max() < 2 * deep
-
-
-def deviation(scene, seconds, spin=1.0):
-    model = mujoco.MjModel.from_xml_string(scene.mjcf)
-    state = mujoco.MjData(model)
-    mujoco.mj_resetDataKeyframe(model, state, 0)
-    state.qvel[3] *= spin
-    off = 0.0
-    expected = scene.data["expected"]
-    while state.time < seconds:
-        mujoco.mj_step(model, state)
-        theta = np.arccos(state.xmat[1][8])
-        off = max(off, abs(theta - np.interp(state.time, expected["time"], expected["theta"])))
-    return off
-
-
-@pytest.mark.parametrize("name", ["cylinder", "rounded can", "capsule", "balls on a rod"])
-def test_mujoco_follows_it_for_a_while_and_not_with_a_wrong_sign(name):
-    scene = SCENES[name]()
-    assert deviation(scene, 0.6) < 0.02 < 0.2 < deviation(scene, 0.6, spin=-1.0)
-
-
-def test_it_is_written_as_json_and_mjcf(tmp_path, scene):
-    paths = scene.save(tmp_path / "a scene")
-    assert [p.name for p in paths] == ["a scene.json", "a scene.xml"]
-    assert json.loads(paths[0].read_text()) == scene.data
-    mujoco.MjModel.from_xml_path(str(paths[1]))
+    assert (tmp_path / "b.xml").read_text() == (tmp_path / "c.XML").read_text() == scene.mjcf
     with pytest.raises(OSError, match="nowhere"):
         scene.save(tmp_path / "nowhere" / "x")
 
 
-def test_a_disk_without_thickness_has_a_scene_but_not_for_mujoco(tmp_path):
-    coin = sc.Body.solid(0.0)
-    scene = sc.scene(coin, coin.steady(0.5))
-    assert [p.suffix for p in scene.save(tmp_path / "coin")] == [".json"]
-    with pytest.raises(ValueError, match="ell = 0"):
-        scene.mjcf
+def test_a_body_is_told_as_what_it_touches_with():
+    told = {name: scene_of(name).data["body"]["shape"] for name in SCENES}
+    kinds = {
+        "tube": "cylinder", "rounded can": "cylinder", "capsule": "capsule", "Hurricane balls": "balls",
+        "balls on a rod": "balls", "tippe top": "ball", "disk": "rim", "torus": "rim", "glass": "rim",
+        "spool": "cylinder", "top": "ball", "egg": "ellipsoid",
+    }  # fmt: skip
+    assert {name: told[name]["type"] for name in kinds} == kinds
+    tube, can, top = (told[name] for name in ("tube", "rounded can", "tippe top"))
+    assert (tube["radius"], tube["inner_radius"], tube["half_length"]) == pytest.approx(
+        (7.9375e-3, 6.35e-3, 47.625e-3)
+    )
+    assert [x["height"] for x in tube["circles"]] == pytest.approx([-47.625e-3, 47.625e-3])
+    assert can["circles"] == [{"height": -1.2, "radius": 0.7}, {"height": 1.2, "radius": 0.7}]
+    assert (can["swollen_by"], can["half_length"], can["lands_at"]) == pytest.approx((0.3, 1.5, math.pi / 2))
+    assert (top["circles"], top["swollen_by"]) == ([{"height": 0.3, "radius": 0.0}], 1.0)
+    glass, body = told["glass"], scene_of("glass").motion.body
+    assert glass["lands_at"] == pytest.approx(body.theta_end) and len(glass["circles"]) == 1
+    assert glass["circles"][0]["height"] == pytest.approx(-0.03 * body.ell)
+    stone = scene_of("rattleback").data["body"]
+    assert stone["shape"]["semi_axes"] == pytest.approx([0.08, 0.016, 0.014])
+    assert stone["shape"]["centre"] == pytest.approx([0.0, 0.0, 3 / 8 * 0.014])
+    turned, inertia = np.array(stone["principal_axes"]), np.array(stone["inertia"])
+    assert np.allclose(turned @ inertia @ turned.T, np.diag(stone["principal_moments"]), atol=1e-15)
+    assert np.linalg.det(turned) == pytest.approx(1.0) and stone["mass"] == 0.05
+    assert stone["principal_moments"] == pytest.approx(0.05 * 0.08**2 * RATTLE.moments)
 
 
-def test_a_body_with_a_fillet_is_a_core_swollen_by_it():
-    made = {name: SCENES[name]().data["body"] for name in SCENES if "ice" not in name}
-    shapes = {name: (x["shape"], x["core"]["type"]) for name, x in made.items() if "core" in x}
-    assert shapes == {
-        "rounded can": ("cylinder with rounded edges on its lower rim", "cylinder"),
-        "rounded coin": ("cylinder with rounded edges on its lower rim", "cylinder"),
-        "capsule": ("capsule", "segment"),
-        "Hurricane balls": ("two balls", "points"),
-        "balls on a rod": ("two balls", "points"),
-        "tippe top": ("ball", "points"),
+def test_natural_units_are_a_metre_and_a_kilogram_unless_a_scale_says_more():
+    m = sc.roll(COIN, COIN.steady(0.4), [0.0, 1.0, 2.0])
+    plain, small = sc.scene(m).data, sc.scene(m, scale=EURO).data
+    assert plain["scale"] == {"R": 1.0, "M": 1.0, "g": 9.80665, "second": math.sqrt(1 / 9.80665)}
+    assert (small["body"]["mass"], small["body"]["shape"]["radius"]) == (0.0085, 0.012875)
+    assert small["expected"]["time"][-1] == pytest.approx(2 * math.sqrt(0.012875 / 9.80665), rel=1e-15)
+    moment = small["body"]["inertia"][2][2]
+    assert moment == pytest.approx(0.0085 * 0.012875**2 / 2, rel=1e-14)
+    own = sc.scene(sc.roll(TUBE, TUBE.steady(1.4), [0.0, 0.1])).data
+    assert own["expected"]["time"] == [0.0, 0.1] and own["body"]["mass"] == 0.02
+
+
+def test_the_friction_of_a_scene_is_that_of_its_motion():
+    told = {
+        name: scene_of(name).data["table"]["friction"]
+        for name in (*RUBBED, "tube", "on ice", "dropped on rubber")
     }
-    for x in made.values():
-        if "core" in x:
-            core = x["core"]
-            assert core["radius"] + core["swollen_by"] == pytest.approx(x["radius"])
-            half = (core["ends"][-1][2] - core["ends"][0][2]) / 2 + core["swollen_by"]
-            assert half == pytest.approx(x["half_length"])
-    can = made["rounded can"]
-    assert (can["half_length"], can["fillet"], can["height_over_rim"]) == pytest.approx((1.5, 0.3, 1.2))
-    assert made["tippe top"]["core"]["ends"] == [[0.0, 0.0, 0.3]]
+    assert {k: told["from slip to roll"][k] for k in ("law", "mu", "static", "patch")} == {
+        "law": "coulomb", "mu": 0.5, "static": 0.6, "patch": 0.0,
+    }  # fmt: skip
+    assert (
+        told["viscous film"]["c"] == pytest.approx(1.0, rel=1e-14) and told["viscous film"]["unit"] == "s/m"
+    )
+    assert told["patch"]["patch"] == 0.05 and told["on ice"]["mu"] == 0.0
+    assert 0 < told["tube"]["needed"] < told["tube"]["mu"] == 1.0
+    assert told["dropped on rubber"]["needed"] is None and told["dropped on rubber"]["mu"] == 1000.0
+    # it holds with what it has, and not with less than it needs
+    needs = scene_of("cylinder")
+    needed, body = needs.data["table"]["friction"]["needed"], needs.motion.body
+    until = needs.motion.t[-1]
+    ends = [sc.roll(body, needs.motion.start, until, mu=x * needed).status for x in (0.99, 1.01)]
+    assert ends == [sc.Ending.SLIP, sc.Ending.DONE]
+    assert rolled(CYLINDER, CYLINDER.steady(1.3), mu=0.7).data["table"]["friction"]["mu"] == 0.7
+    steep = rolled(CYLINDER, sc.State(0.3, 2.0, 0.0, 0.0), 0.1).data["table"]["friction"]
+    assert steep["mu"] == pytest.approx(max(1.0, 1.5 * steep["needed"]))
+    grips = sc.roll(COIN, THROWN, [0.0, 0.5], contact=sc.Coulomb(0.3, static=np.inf))
+    assert sc.scene(grips).data["table"]["friction"]["static"] is None
 
 
-def test_what_mujoco_draws_of_a_rounded_body_is_the_hull_of_its_surface():
-    scene = SCENES["rounded can"]()
-    model = mujoco.MjModel.from_xml_string(scene.mjcf)
-    start, n = model.mesh_vertadr[0], model.mesh_vertnum[0]
-    places = Rotation.from_quat(np.roll(model.mesh_quat[0], -1)).apply(model.mesh_vert[start : start + n])
-    places = places + model.mesh_pos[0]
-    assert np.abs(places).max(axis=0) == pytest.approx([1.0, 1.0, 1.5], abs=1e-5)
-    geom = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_GEOM, "looks")
-    assert model.geom_contype[geom] == model.geom_conaffinity[geom] == 0, "it is only looked at"
-    assert np.allclose(np.sort(model.body_inertia[1]), np.sort(scene.data["body"]["inertia"]), rtol=1e-12)
+def test_events_and_the_end_have_their_times():
+    fall = rolled(sc.Body.solid(1.0), sc.State(0.3, 0.0, 0.0, 0.0), 2.0)
+    end = fall.data["expected"]["ending"]
+    assert end["kind"] == "FACE" and end["why"].startswith("the face landed")
+    assert end["time"] == pytest.approx(fall.scale.seconds(fall.motion.event.time))
+    assert fall.data["expected"]["time"][-1] <= end["time"]
+    mixed = scene_of("from slip to roll")
+    phases = mixed.data["expected"]["phases"]
+    assert [x["kind"] for x in phases][:2] == ["slipping", "rolling"]
+    assert [x["time"] for x in phases] == pytest.approx(
+        [mixed.scale.seconds(p.time) for p in mixed.motion.phases]
+    )
+    assert scene_of("on ice").data["expected"]["phases"] == [{"time": 0.0, "kind": "slipping"}]
+    for name in ALOFT:
+        scene = scene_of(name)
+        told, known = scene.data["expected"]["impacts"], scene.motion.impacts
+        assert [x["kind"] for x in told] == [x.kind for x in known]
+        assert [x["time"] for x in told] == pytest.approx([scene.scale.seconds(x.time) for x in known])
 
 
-def test_a_torus_of_fillets_without_a_wall_has_a_scene_but_not_for_mujoco(tmp_path):
-    torus = sc.Body(0.0, 0.6, 0.8, fillet=0.4)
-    scene = sc.scene(torus, torus.circular(1.0, 0.8), seconds=0.1)
-    assert [p.suffix for p in scene.save(tmp_path / "torus")] == [".json"]
-    with pytest.raises(ValueError, match=r"fillet = 0\.4"):
-        scene.mjcf
+def test_a_clock_that_begins_late_and_a_single_time_make_the_same_scene():
+    start = COIN.steady(0.4).kicked(0.05)
+    t = np.linspace(0, 2, 5)
+    first = sc.scene(sc.roll(COIN, start, t)).data
+    late = sc.scene(sc.roll(COIN, start, t + 7.0, t0=7.0)).data
+    late_only = sc.scene(sc.roll(COIN, start, [8.0, 9.0], t0=7.0)).data["expected"]
+    for key in ("time", "position", "orientation", "velocity"):
+        assert np.allclose(late["expected"][key], first["expected"][key], atol=1e-13)
+        assert np.allclose(late_only[key], np.array(first["expected"][key])[[0, 2, 4]], atol=1e-13)
+    one = sc.scene(sc.roll(COIN, start, 2.0)).data["expected"]
+    assert np.allclose(one["position"], np.array(first["expected"]["position"])[[0, 4]], atol=1e-13)
+    law = sc.Coulomb(0.3)
+    slides = sc.scene(sc.roll(COIN, THROWN, t + 7.0, contact=law)).data["expected"]
+    assert slides["phases"] == sc.scene(sc.roll(COIN, THROWN, t, contact=law)).data["expected"]["phases"]
 
 
-def test_a_scene_that_is_not_all_rolling_is_refused_and_told_how_it_ends():
-    can = sc.Body.solid(1.0)
-    for start, how, said in (
-        (sc.State(0.3, 0.0, 0.0, 0.0), {}, "face landed"),
-        (nutating_cylinder.start, {"mu": 0.01}, "mu = 0.0[0-9]+ would do"),
-        (CYLINDER.steady(1.3), {"seconds": 0.0}, "seconds"),
-        (CYLINDER.steady(1.3), {"points": 1}, "points"),
-        (CYLINDER.steady(1.3), {"mu": np.inf}, "mu"),
-        (CYLINDER.steady(1.3), {"contact": "icy"}, "contact"),
+def test_what_has_no_answer_is_refused_and_says_why():
+    can, weightless = sc.Body.solid(1.0), sc.measured(outer_diameter=0.02, length=0.1)
+    upright = sc.roll(COIN, COIN.steady(0.4), [0.0, 1.0])
+    for motion, how, said in (
+        (sc.roll(CYLINDER, CYLINDER.steady(1.3), [1.0, 0.0]), {}, "^motion: expected times that ascend"),
+        (sc.roll(CYLINDER, CYLINDER.steady(1.3), [0.0, 0.0]), {}, "^motion: expected times that ascend"),
+        (sc.roll(CYLINDER, CYLINDER.steady(1.3), 0.0), {}, "^motion: has no time after its start"),
+        (sc.roll(can, sc.State(0.3, 0.0, 0.0, 0.0), 5.0), {}, "^motion: has no time .*the face landed"),
+        (
+            sc.roll(can, sc.State(0.3, 0.9, 0.0, 0.0), 9.0, mu=0.01, beyond=True),
+            {},
+            "^motion: goes on beyond",
+        ),
+        (sc.roll(weightless, weightless.steady(1.4), 1.0), {}, "^a force in SI needs the mass"),
+        (
+            sc.roll(TUBE, TUBE.steady(1.4), 1.0),
+            {"scale": EURO},
+            "^scale = .* is not that of the measured body",
+        ),
     ):
         with pytest.raises(ValueError, match=said):
-            sc.scene(can if start.w1 == 0 else CYLINDER, start, **how)
+            sc.scene(motion, **how)
+    for wrong in (COIN, None, upright.states, [upright]):
+        with pytest.raises(TypeError, match="^motion: expected a Motion"):
+            sc.scene(wrong)
     with pytest.raises(TypeError, match="scale"):
-        sc.scene(CYLINDER, CYLINDER.steady(1.3), scale=1.0)
-    # with the friction that the message proposes there is a scene, however few its times
-    for points in (2, 3, 101):
-        with pytest.raises(ValueError, match="would do") as caught:
-            sc.scene(CYLINDER, nutating_cylinder.start, mu=0.01, seconds=2.0, points=points)
-        enough = float(str(caught.value).split("mu = ")[1].split()[0])
-        scene = sc.scene(CYLINDER, nutating_cylinder.start, mu=enough, seconds=2.0, points=points)
-        assert 0.95 * enough < scene.data["expected"]["friction_coefficient_needed"] < enough
+        sc.scene(upright, scale=1.0)
 
 
-def test_energy_and_force_are_as_good_as_it_says(scene):
-    m = scene.motion
-    data = sc.scene(
-        m.body, m.start, scale=scene.scale, seconds=float(scene.scale.seconds(m.t[-1])), contact=m.contact
-    ).data
-    # another method with steps ten times smaller
-    other = sc.roll(m.body, m.start, m.t, tol=1e-13, contact=m.contact, want=("pose", "force"))
-    weight = scene.scale.mass * scene.scale.gravity
-    for name, mine, unit in (
-        ("energy", other.energy, scene.scale.joules(1.0)),
-        ("normal_force", other.normal, weight),
-        ("contact_force", other.contact_force, weight),
+def test_a_stone_that_is_not_known_to_its_end_has_no_scene():
+    stone = sc.Ellipsoid.rattleback((0.06, 0.012, 0.01), twist=np.radians(3)).in_metres(0.02)
+    start = stone.spinning(-8.0 * stone.scale.seconds(1.0), pitch=0.01, roll=0.01)
+    with pytest.warns(sc.ErrorWarning):
+        m = sc.roll(stone, start, np.linspace(0, 40, 41))
+    with pytest.raises(
+        ValueError, match="^motion: not known up to its last time: .*known to 1 % up to t = 2"
     ):
-        off = np.abs(np.array(data["expected"][name]) - mine * unit).max()
-        spare = other.error / m.error
-        assert off < data["error"][name] * (1 + spare) + 1e-13 * np.abs(mine * unit).max()
-        assert data["error"][name] < 1e-6 * np.abs(mine * unit).max()
+        sc.scene(m)
+    known = sc.scene(m.at(np.linspace(0, 0.5 * m.known_until, 11)))
+    assert known.data["error"]["angle"] < 1
 
 
-def test_a_name_with_a_point_stays_whole(tmp_path):
-    scene = SCENES["cylinder"]()
-    names = {p.name for name in ("mu0.3", "mu0.5.json") for p in scene.save(tmp_path / name)}
-    assert names == {"mu0.3.json", "mu0.3.xml", "mu0.5.json", "mu0.5.xml"}
+def answer(scene, t):
+    """The answer as an engine would give it: SI, at these seconds."""
+    m = scene.motion.at(np.array(t) / scene.scale.seconds(1.0))
+    return scene.scale.metres(m.centre), m.orientation
 
 
-def test_the_script_prints_how_far_mujoco_and_we_deviate(tmp_path):
-    words = [
-        sys.executable,
-        str(ROOT / "examples" / "contact_engine.py"),
-        "--seconds",
-        "0.02",
-        "--save",
-        "scenes",
-    ]
-    ran = subprocess.run(words, capture_output=True, text=True, cwd=tmp_path, check=True)
-    rows = ran.stdout.splitlines()
-    assert len(rows) == 2 + 5 * 4 and sum("MuJoCo" in row for row in rows) == 10
-    assert len(list((tmp_path / "scenes").iterdir())) == 10
+@pytest.mark.parametrize("name", ["tube", "rattleback slips", "hops", "lies", "dry contour", "dropped coin"])
+def test_an_engine_that_is_right_has_no_deviation_and_one_that_is_wrong_has_its_own(name):
+    scene = scene_of(name)
+    t = np.linspace(0, scene.data["expected"]["time"][-1], 7)
+    x, q = answer(scene, t)
+    same = scene.compare(t, x, -q)
+    assert same.position.max() == 0 == np.abs(same.theta).max() and same.angle.max() < 1e-15
+    assert (same.position_error, same.angle_error) == pytest.approx(
+        [scene.data["error"][k] for k in ("position", "angle")], rel=0.9
+    )
+    aside = Rotation.from_rotvec([0.0, 0.0, 0.01])
+    off = scene.compare(t, x + np.array([0.0, 3e-4, 4e-4]), (aside * Rotation.from_quat(q)).as_quat())
+    assert np.allclose(off.position, 5e-4, rtol=1e-9) and np.allclose(off.angle, 0.01, rtol=1e-9)
+    assert np.abs(off.theta).max() < 1e-14, "an azimuth is no inclination"
+    swapped = scene.compare(t, x, np.roll(q, 1, axis=1), scalar_first=True)
+    assert (swapped.position == 0).all() and (swapped.angle == same.angle).all()
+    assert (swapped.time == t).all() and "centre 0 m" in repr(swapped)
 
 
-@pytest.mark.parametrize("seed", range(4))
-def test_the_friction_that_is_advised_would_do(seed):
-    rng, advised = np.random.default_rng(seed), 0
-    for _ in range(40):
-        body = sc.Body.solid(rng.uniform(0.05, 3))
-        state = sc.State(rng.uniform(0.1, 1.5), *rng.uniform((-3, -1, -6), (3, 1, 6)))
-        try:
-            sc.scene(body, state, seconds=0.3, mu=rng.uniform(0, 0.5))
-        except ValueError as e:
-            if found := re.search(r"mu = (\S+) would do$", str(e)):
-                assert sc.scene(body, state, seconds=0.3, mu=float(found[1])).mu == float(found[1])
-                advised += 1
-            elif str(e).endswith("no mu would do"):
-                with pytest.raises(ValueError, match="before 0.3 s are over"):
-                    sc.scene(body, state, seconds=0.3, mu=1e12)
-    assert advised > 2
+def test_what_lies_beyond_the_end_of_the_answer_is_left_out_and_what_is_no_trajectory_refused():
+    fall = rolled(sc.Body.solid(1.0), sc.State(0.3, 0.0, 0.0, 0.0), 2.0)
+    end = fall.data["expected"]["ending"]["time"]
+    t = np.linspace(0, 2 * end, 11)
+    x, q = answer(fall, t)
+    rows = len(x)
+    assert rows < 11
+    found = fall.compare(t, np.resize(x, (11, 3)), np.resize(q, (11, 4)))
+    assert found.time.size == rows and found.position.max() == 0
+    # a motion without an end is known at any time, also beyond those of the file
+    tube = scene_of("tube")
+    far = [0.0, 3 * tube.data["expected"]["time"][-1]]
+    assert tube.compare(far, *answer(tube, far)).position.max() == 0
+    x, q = answer(tube, [0.0, 0.01])
+    for wrong, said in (
+        (([0.01, 0.0], x, q), "^time: .*ascending"),
+        (([-0.1, 0.0], x, q), "^time: .*since the start"),
+        (([], x, q), "^time: expected finite numbers"),
+        (([0.0, np.nan], x, q), "^time: expected finite numbers"),
+        (([0.0, 0.01], x[:, :2], q), r"^position: expected finite numbers of shape \(2, 3\), not \(2, 2\)"),
+        (([0.0, 0.01], x + np.inf, q), "^position"),
+        (([0.0, 0.01], x, q[:1]), "^orientation"),
+        (([0.0, 0.01], x, 1.1 * q), "^orientation: expected unit quaternions"),
+    ):
+        with pytest.raises(ValueError, match=said):
+            tube.compare(*wrong)
+    with pytest.raises(ValueError, match="^time = .*the answer ends before, the face landed"):
+        fall.compare([3 * end], x[:1], q[:1])
+    with pytest.raises(TypeError, match="^scalar_first"):
+        tube.compare([0.0, 0.01], x, q, scalar_first=1)
+    with pytest.warns(UserWarning, match="turned by .* scalar_first=True"):
+        tube.compare([0.0, 0.01], x, np.roll(q, 1, axis=1))
+    with pytest.raises(ValueError, match="^orientation"):
+        tube.couple([0, 0, 0, 2.0], [0, 0, 1.0], 1.0)
 
 
-def test_what_slips_and_a_stone_have_no_scene_and_what_is_advised_instead_works():
-    body = sc.measured(outer_diameter=0.1, length=1.0, mass=1.0)
-    slips = body.with_centre_velocity(sc.State(0.2, 0.3, 0.0, 2.0), 0.0, 0.0)
-    of = "a scene is of a body that rolls, or slides on a smooth table"
-    with pytest.raises(ValueError, match=rf"^state: slips, .*{of}.*restitution= makes one"):
-        sc.scene(body, slips)
-    assert sc.roll(body, slips, 0.1, contact=sc.Coulomb(0.2)).phases[0].kind == "slipping"
-    for law in (sc.Coulomb(0.2), sc.Viscous(0.2)):
-        for state in (slips, body.steady(1.5)):
-            with pytest.raises(
-                ValueError, match=rf"^contact = .*: expected 'rolling' or 'smooth': {of}.*mu= is"
-            ):
-                sc.scene(body, state, contact=law)
-    stone = sc.Ellipsoid.rattleback((0.12, 0.06, 0.03), twist=0.35).in_metres(0.5)
-    with pytest.raises(TypeError, match="^body: expected a Body, not Ellipsoid"):
-        sc.scene(stone, stone.spinning(hertz=-1.0, pitch=0.01))
-    with pytest.raises(TypeError, match="^state: expected a State, not EllipsoidState"):
-        sc.scene(body, stone.spinning(hertz=-1.0, pitch=0.01))
+def test_energy_and_force_are_as_good_as_they_say():
+    for name in ("cylinder", "tube", "round on ice"):
+        scene = scene_of(name)
+        m, data = scene.motion, scene.data
+        # another method with steps ten times smaller
+        other = sc.roll(m.body, m.start, m.t, tol=1e-13, contact=m.contact, want=("pose", "force"))
+        spare, joule, newton = 1 + other.error / m.error, scene.scale.joules(1.0), scene.scale.newtons(1.0)
+        for key, mine in (
+            ("energy", joule * other.energy),
+            ("normal_force", newton * other.normal),
+            ("contact_force", newton * other.contact_force),
+            ("position", scene.scale.metres(other.centre)),
+        ):
+            off = np.abs(np.array(data["expected"][key]) - mine).max()
+            assert off < data["error"][key] * spare * 10 + 1e-13 * np.abs(mine).max()
+            assert data["error"][key] < 1e-6 * np.abs(mine).max()
 
 
-def test_a_scene_goes_on_in_the_air_with_the_energy_of_its_start_and_the_impacts_of_the_motion():
-    pipe, coin = sc.Body.tube(6.0, bore=0.8), sc.Body.solid(0.1)
-    hops = sc.pressed(pipe, 12.0, np.radians(60), finger=0.3)
-    falls = sc.dropped(coin, 2.0, 1.2, w1=1.0, w2=-0.4, w3=0.5, velocity=(0.3, 0.2, 0.1))
-    scale = sc.Scale(0.01, mass=0.02)
-    for body, start, restitution in ((pipe, hops, 0.5), (coin, falls, 0.3)):
-        scene = sc.scene(body, start, scale=scale, mu=0.3, restitution=restitution, seconds=0.3)
-        data, m = json.loads(json.dumps(scene.data, allow_nan=False)), scene.motion
-        begins, expected = data["start"], data["expected"]
-        v, w = (np.array(begins[x]) for x in ("velocity", "angular_velocity_in_body_axes"))
-        moments = np.array(data["body"]["inertia"])
-        energy = 0.02 * (v @ v / 2 + scale.gravity * begins["position"][2]) + moments @ w**2 / 2
-        assert energy == pytest.approx(expected["energy"][0], rel=1e-13)
-        assert len(expected["impacts"]) == len(m.impacts) > 10
-        lost = sum(blow["energy_lost"] for blow in expected["impacts"])
-        heat = scale.joules(m.dissipated[-1])
-        assert energy - lost - heat == pytest.approx(expected["energy"][-1], rel=1e-12)
-        assert data["table"]["restitution"] == restitution
-        assert expected["height"][0] == pytest.approx(scale.metres(m.height[0]))
-        assert "solref" in scene.mjcf
-    # a softer blow needs more damping
-    damping = [
-        float(
-            re.search(r'solref="\S+ -(\S+)"', sc.scene(pipe, hops, mu=0.3, restitution=e, seconds=0.1).mjcf)[
-                1
-            ]
+def test_the_command_line_writes_scenes_by_their_suffix(tmp_path):
+    def run(*words):
+        return subprocess.run(
+            [sys.executable, "-m", "spincyl", *words], capture_output=True, text=True, cwd=tmp_path
         )
-        for e in (0.0, 0.5, 1.0)
-    ]
-    assert damping[0] > damping[1] > 1e6 * damping[2] > 0
+
+    roll = "roll --outer 24mm --length 2mm --mass 8g --theta 20deg --t 0.5s --points 11".split()
+    told = run(
+        *roll, "--contact", "coulomb", "--mu", "0.4", "--loss", "dry-contour=0.05mm", "-o", "coin.json"
+    )
+    assert told.returncode == 0 and "the scene in coin.json" in told.stdout
+    data = json.loads((tmp_path / "coin.json").read_text())
+    assert data["table"]["losses"][0]["value"] == pytest.approx(5e-5) and data["body"]["mass"] == 0.008
+    coin = sc.measured(outer_diameter=0.024, length=0.002, mass=0.008)
+    how = {"contact": sc.Coulomb(0.4), "losses": sc.loss.DryContour.from_si(5e-5, scale=coin)}
+    mine = sc.scene(sc.roll(coin, coin.steady(np.radians(20)), np.linspace(0, 0.5, 11), **how))
+    assert np.allclose(data["expected"]["position"], mine.data["expected"]["position"], atol=1e-13)
+    flick = "flick --outer 15.875mm --inner 12.7mm --length 95.25mm --mu 0.3 --precession 17Hz --launch-number 1.3"
+    assert run(*flick.split(), "--restitution", "0", "--seconds", "0.2", "-o", "flick.xml").returncode == 0
+    assert "<mujoco" in (tmp_path / "flick.xml").read_text()
+
+
+def test_every_kind_of_motion_has_a_scene():
+    kinds = {x["kind"] for name in SCENES for x in scene_of(name).data["expected"]["phases"]}
+    assert kinds >= {"rolling", "slipping", "flying", "lying"}
+    laws = {x["law"] for name in LOST for x in scene_of(name).data["table"]["losses"]}
+    assert laws == {x for x in sc.loss.__all__ if x not in ("Law", "Loss", "Sum")}
+    assert {scene_of(name).data["table"]["friction"]["law"] for name in SCENES} == {
+        "rolling",
+        "smooth",
+        "coulomb",
+        "viscous",
+    }
+    assert PIPE is scene_of("lies").motion.body and EGG.natural == scene_of("egg").motion.body and PRESSED

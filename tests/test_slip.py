@@ -151,11 +151,9 @@ def test_what_is_asked_of_a_rolling_body_is_refused_for_one_that_slips(name):
     assert sc.roll(PIPE, same, 1.0).theta == sc.roll(PIPE, still, 1.0).theta
 
 
-def test_no_sweep_and_no_scene_forgets_a_slip():
+def test_no_sweep_forgets_a_slip():
     with pytest.raises(ValueError, match="^state: slips"):
         sc.sweep.roll(PIPE, sc.State(1.4, 1.0, 0.0, 2.0, slip=([0.0, 1.0], 0.0)), 1.0)
-    with pytest.raises(ValueError, match="^state: slips"):
-        sc.scene(PIPE, LAUNCH, scale=sc.Scale(0.01), seconds=0.1)
 
 
 def test_labels_and_lazy_arrays_go_through_a_slip():

@@ -397,8 +397,6 @@ def test_the_card_of_a_motion_tells_the_spin():
 
 @pytest.mark.filterwarnings("ignore::spincyl.ErrorWarning")
 def test_what_makes_no_sense_of_a_stone_is_refused_by_name(tmp_path):
-    with pytest.raises(TypeError, match="body: expected a Body, not Ellipsoid"):
-        sc.scene(SMALL, SMALL.spinning(1.0))
     with pytest.raises(ValueError, match="upper"):
         sc.view(motion_of("turns back"), upper="Y")
     with pytest.raises(ValueError, match="no duration"):

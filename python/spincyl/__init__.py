@@ -47,13 +47,14 @@ if TYPE_CHECKING:
     from spincyl._pages.view import View, view
     from spincyl._rising import rising_spin
     from spincyl._studio.exposure import exposure
-    from spincyl._studio.scene import Scene, scene
+    from spincyl._studio.scene import Deviation, Scene, scene
     from spincyl.parts import assembled
 
 __version__ = "0.1.0"
 __all__ = [
     "Body",
     "Coulomb",
+    "Deviation",
     "Drift",
     "DriftWarning",
     "Ellipsoid",
@@ -111,7 +112,7 @@ _LATER: dict[str, str | None] = {
     "exposure": "_studio.exposure",
     **dict.fromkeys(("play", "Play"), "_pages.play"),
     "rising_spin": "_rising",
-    **dict.fromkeys(("scene", "Scene"), "_studio.scene"),
+    **dict.fromkeys(("Deviation", "scene", "Scene"), "_studio.scene"),
     **dict.fromkeys(("view", "View"), "_pages.view"),
 }
 

@@ -418,3 +418,16 @@ def extra(module: str, name: str) -> ModuleType:
     except ImportError as e:
         message = f"this needs {module.split('.', maxsplit=1)[0]}: pip install 'spincyl[{name}]'"
         raise ImportError(message) from e
+
+
+def plain(value: Any) -> Any:
+    """What JSON can hold: lists for arrays and tuples, None for numbers that are not finite."""
+    if isinstance(value, dict):
+        return {key: plain(x) for key, x in value.items()}
+    if isinstance(value, np.ndarray):
+        value = value.tolist()
+    if isinstance(value, list | tuple):
+        return [plain(x) for x in value]
+    if isinstance(value, float | np.floating):
+        return float(value) if math.isfinite(value) else None
+    return value

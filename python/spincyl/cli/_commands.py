@@ -338,8 +338,9 @@ def delivered(
     if piped:
         write_csv(columns(m, scale), sys.stdout)
     elif args.output is not None:
-        shown = Path(args.output).suffix.lower() in {".html", ".glb"}
-        print(f"{'the motion' if shown else f'{m.t.size} times'} in {args.output}")
+        suffix = Path(args.output).suffix.lower()
+        shown = {".html": "the motion", ".glb": "the motion", ".json": "the scene", ".xml": "the scene"}
+        print(f"{shown.get(suffix, f'{m.t.size} times')} in {args.output}")
 
 
 def report(args: Namespace) -> None:

@@ -32,6 +32,7 @@ def writer_of(path: Path) -> Callable[[Motion, Scale | None, Path], None]:
     writers = {".csv": _write_csv, ".npz": _write_npz, ".nc": _write_nc}
     writers |= dict.fromkeys(_PICTURES, _write_picture)
     writers |= dict.fromkeys((".html", ".glb"), _write_view)
+    writers |= dict.fromkeys((".json", ".xml"), _write_scene)
     suffix = path.suffix.lower()
     if suffix not in writers:
         raise ValueError(f"-o {path}: expected a name that ends in {', '.join(writers)}")
@@ -100,3 +101,9 @@ def _write_view(m: Motion, scale: Scale | None, path: Path) -> None:
 
     about = f"{m.body!r}, {named(m.contact)}" + ("" if m.losses is None else f", {titled(m.losses, m.scale)}")
     view(m, labels=[about], title=about, scale=scale).save(path)
+
+
+def _write_scene(m: Motion, scale: Scale | None, path: Path) -> None:
+    from spincyl import scene
+
+    scene(m, scale=scale).save(path)

@@ -75,6 +75,7 @@ spincyl roll --balls --outer 16mm --theta 80deg --kick 0.05 --t 0.5s -o balls.cs
 spincyl roll --ball -0.3 --i1 0.4 --i3 0.4 --theta 0.1 --w3 3 --t 20 -o top.csv
 spincyl roll --ell 0 --bore 1 --theta 90deg --w3 -3 --slip 0 5 --contact coulomb --mu 0.25 --t 20
 spincyl roll --ell 0.1704 --theta 0.3 --t 200 --loss dry-contour=5e-3 -o whirr.html
+spincyl roll --ell 2.5 --theta 1.3 --kick 0.02 --radius 20mm --mass 0.1 --t 1s -o scene.xml
 spincyl roll --ell 2.5 --theta 1.3 --t 20 -o - | head"""
 
 _FLICK = f"""{_flick.TEXT}{_BODY}
@@ -310,7 +311,8 @@ def _output_option(sub: ArgumentParser) -> None:
         "--output",
         metavar="FILE",
         help=".csv, .npz, .nc (xarray), a picture: .png, .pdf, .svg, a page to watch it in: .html, an"
-        " animated scene: .glb, or - for CSV on standard output",
+        " animated body: .glb, a scene to check a contact engine with: .json, .xml (MuJoCo), or - for CSV"
+        " on standard output",
     )
 
 

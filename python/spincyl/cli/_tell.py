@@ -10,6 +10,7 @@ import numpy as np
 
 from spincyl import Body, Motion, Scale, State, swing
 from spincyl._contact import Contact, Coulomb, Viscous, named
+from spincyl._input.numbers import plain
 from spincyl._phases import Phase, duration, rubs
 
 Row: TypeAlias = tuple[str, str, str]  # name, natural value, SI value
@@ -25,20 +26,8 @@ def table(rows: Iterator[Row], file: TextIO | None = None) -> None:
 def print_json(value: Any, file: TextIO | None = None) -> None:
     """Print strict JSON, with null for numbers that are not finite."""
     wide = isinstance(value, dict) and "columns" in value
-    json.dump(_plain(value), file or sys.stdout, indent=None if wide else 2, allow_nan=False)
+    json.dump(plain(value), file or sys.stdout, indent=None if wide else 2, allow_nan=False)
     print(file=file)
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, dict):
-        return {key: _plain(x) for key, x in value.items()}
-    if isinstance(value, np.ndarray):
-        value = value.tolist()
-    if isinstance(value, list | tuple):
-        return [_plain(x) for x in value]
-    if isinstance(value, float | np.floating):
-        return float(value) if math.isfinite(value) else None
-    return value
 
 
 def body_numbers(body: Body, scale: Scale | None) -> Numbers:
