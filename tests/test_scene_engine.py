@@ -132,6 +132,24 @@ class Bare(sc.Scene):
         return re.sub('friction="[^"]*"', 'friction="0 0 0"', super().mjcf)
 
 
+class Rolling(sc.Scene):
+    """A scene whose model has MuJoCo's own friction against rolling."""
+
+    @property
+    def mjcf(self):
+        arm = self.data["table"]["losses"][0]["value"]
+        model = super().mjcf.replace('condim="3"', 'condim="6"').replace('noslip_iterations="30"', "")
+        return re.sub('friction="[^"]*"', f'friction="1 0 {arm!r}"', model)
+
+
+def test_rolling_resistance_of_mujoco_stays_half_of_the_law_away():
+    scene = rolls(0.4, losses=sc.loss.RollingResistance(2e-2))
+    does = rolls(0.4).motion
+    effect = np.linalg.norm(does.centre[-1] - scene.motion.centre[-1])
+    own = [run(Rolling(scene.motion, scene.scale), finer).position.max() for finer in (1, 3)]
+    assert min(own) > 0.3 * effect and own[1] > 0.8 * own[0]
+
+
 @pytest.mark.parametrize(
     "name", ["cylinder", "capsule", "balls on a rod", "torus", "glass", "spool", "rattleback"]
 )

@@ -130,20 +130,16 @@ def test_a_film_is_sent_nowhere(tmp_path, monkeypatch):
             server.accept()
 
 
-@pytest.mark.parametrize("kind", [name for name in JOBS if name not in ("scene.xml", "report.md")])
+@pytest.mark.parametrize("kind", [name for name in JOBS if name != "report.md"])
 def test_every_kind_of_file_has_the_name_that_it_was_given(tmp_path, monkeypatch, kind):
     (tmp_path / "home").mkdir()
     (tmp_path / "here" / "~").mkdir(parents=True)
     monkeypatch.setenv("HOME", str(tmp_path / "home"))
     monkeypatch.chdir(tmp_path / "here")
     suffix = Path(kind).suffix
-    names = [f"~/in{suffix}", f"a::b{suffix}", f"-y{suffix}"]
-    if kind != "scene.json":  # a scene fixes its suffixes
-        names.append(f"http:c{suffix.upper()}")
+    names = [f"~/in{suffix}", f"a::b{suffix}", f"-y{suffix}", f"http:c{suffix.upper()}"]
     for name in names:
         JOBS[kind](name)
-    if kind == "scene.json":
-        names += [name.replace("json", "xml") for name in names]
     assert files(".") == sorted(names) and not files("../home")
 
 
