@@ -391,6 +391,9 @@ def measurements():
             sc.data.compare,
             {"body": body, "theta": theta, "rate": body.rate(theta), "theta_err": None, "rate_err": None, "common": 0.0},
         ),
+        "data.compare in hertz": (
+            sc.data.compare, {"body": TUBE, "theta": theta, "hertz": TUBE.hertz(theta), "theta_err": 0.01, "hertz_err": 0.1},
+        ),
         "data.compare with errors": (
             sc.data.compare, {"body": body, "theta": theta, "rate": body.rate(theta), "theta_err": 0.01, "rate_err": 0.01},
         ),
@@ -424,6 +427,7 @@ def pictures(folder):
         "plot.branches": (
             sc.plot.branches, {"ells": [2.5], "bore": 0.0, "contact": "smooth", "ax": None, "rate_max": 3.0, "marks": None},
         ),
+        "plot.branches in hertz": (sc.plot.branches, {"ells": TUBE, "hertz": True, "rate_max": 20.0}),
         "plot.portrait": (sc.plot.portrait, {"data": None, "bore": 0.0, "fillet": 0.0, "contact": None, "ax": None, "ell_max": 3.0}),
         "plot.energy": (sc.plot.energy, {"bore": 0.0, "ax": None, "ell_max": 3.0}),
         "plot.motion": (sc.plot.motion, {"m": motion(), "axes": None}),

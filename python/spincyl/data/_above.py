@@ -147,7 +147,7 @@ def from_above(
     >>> sc.data.from_above(sc.data.example("tube_from_above"), tube)
     <Filmed: 7.294 +- 0.0018 turns a second, 83 +- 0.3 degrees, steady at 83.4; 32 frames>
     """
-    body, scale = sized(tube, scale)
+    body, scale = with_size("tube", tube, scale)
     ruler = number("ruler", ruler)
     if not 0 <= ruler < 0.5:
         raise ValueError(f"ruler = {ruler!r}: expected a share from 0 to 0.5, such as 0.01 for one per cent")
@@ -194,18 +194,19 @@ def from_above(
     return found
 
 
-def sized(tube: Any, scale: Scale | None) -> tuple[Body, Scale]:
+def with_size(name: str, body: Any, scale: Scale | None) -> tuple[Body, Scale]:
     """A single body and its scale: the given one, its own, or that of the measures that made the body."""
-    if not isinstance(tube, Body):
-        raise TypeError(f"tube: expected a Body, not {type(tube).__name__}")
-    if not is_scalar(*tube._numbers):
-        raise ValueError("tube: expected a single body, not an array of them")
-    found = scale_of(scale, tube)
-    if found is None and tube._measured:
-        found = Scale(radius=float(tube._measured["outer_diameter"]) / 2)
+    if not isinstance(body, Body):
+        raise TypeError(f"{name}: expected a Body, not {type(body).__name__}")
+    if not is_scalar(*body._numbers):
+        raise ValueError(f"{name}: expected a single body, not an array of them")
+    found = scale_of(scale, body)
+    if found is None and body._measured:
+        found = Scale(radius=float(body._measured["outer_diameter"]) / 2)
     if found is None:
-        raise ValueError("tube: its size is not known: make it by sc.measured, or give scale=")
-    return tube, found
+        more = ", or give scale=" if name == "tube" else ""
+        raise ValueError(f"{name}: its size is not known: make it by sc.measured{more}")
+    return body, found
 
 
 def _ends(tracks: Mapping[str, Any], ends: Sequence[str] | None) -> tuple[str, str]:

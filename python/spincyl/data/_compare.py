@@ -1,6 +1,7 @@
 """Comparison of measured inclinations and rates with the steady states of a body."""
 
 import math
+import re
 import warnings
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -8,9 +9,10 @@ import numpy as np
 
 from spincyl._body import Body
 from spincyl._input.equality import compared
-from spincyl._input.numbers import Floats, Reals, extra, number, reals
+from spincyl._input.numbers import Floats, Reals, extra, number, reals, turns_per_second
 from spincyl._single import one_body
 from spincyl._upward import above
+from spincyl.data._above import with_size
 from spincyl.data._balance import Balance, Fit, with_ratio
 from spincyl.data._report import counted, section, student, variables, written
 from spincyl.data._spindown import leaning
@@ -40,6 +42,17 @@ class Comparison(NamedTuple):
     alone: float = math.nan  #: the factor that explains the points best with the ratio as built
     alone_err: float = math.nan
     alone_chi2: float = math.nan  #: per degree of freedom, of that
+    unit: float = math.nan  #: turns a second of a reduced rate of 1; NaN unless `hertz` was given
+
+    @property
+    def hertz(self) -> Floats:
+        """(n,) measured turns a second, if they were given."""
+        return self.rate * self.unit
+
+    @property
+    def hertz_err(self) -> Floats:
+        """Their standard errors."""
+        return self.rate_err * self.unit
 
     def __repr__(self) -> str:
         return (
@@ -52,13 +65,18 @@ class Comparison(NamedTuple):
 
         rows = [
             ("body", repr(self.body)),
-            ("points", f"{len(self.theta)}, θ from {span(self.theta)}"),
+            ("points", f"{len(self.theta)}, θ from {span(self.theta)}{self._rates()}"),
             ("I₁/I₃ that fits", f"{self.ratio:.6g} ± {self.ratio_err:.2g}"),
             ("I₁/I₃ as built", f"{self.expected:.6g}"),
             ("χ² per degree of freedom", f"{self.chi2:.3g}"),
         ]
         middle = self.theta[np.argsort(self.theta)[len(self.theta) // 2]]
         return framed("Comparison", rows, drawing(self.body, middle, "θ"))
+
+    def _rates(self) -> str:
+        """The range of the turns a second, if these were given."""
+        low, high = self.hertz.min(), self.hertz.max()
+        return "" if math.isnan(self.unit) else f", {low:.4g} to {high:.4g} turns a second"
 
     @property
     def fitted(self) -> Body:
@@ -78,7 +96,7 @@ class Comparison(NamedTuple):
         varied = 1 + (self.factor_err > 0)
         rows = [
             ("body", repr(self.body)),
-            ("# data points", str(len(self.theta))),
+            ("# data points", str(len(self.theta)) + self._rates()),
             ("# variables", str(varied)),
             ("reduced chi-square", written(self.chi2)),
         ]
@@ -106,10 +124,12 @@ class Comparison(NamedTuple):
 def compare(
     body: Body,
     theta: Reals,
-    rate: Reals,
+    rate: Reals | None = None,
     *,
+    hertz: Reals | None = None,
     theta_err: Reals | None = None,
     rate_err: Reals | None = None,
+    hertz_err: Reals | None = None,
     common: float = 0.0,
 ) -> Comparison:
     """How well a body's steady states explain a measurement, and which inertia ratio explains it best.
@@ -121,8 +141,10 @@ def compare(
     theta : array_like, 1-D
         Inclinations in radians, of balls and of what leans further than its side beyond pi/2, too.
     rate : array_like, 1-D
-        Reduced rates: turns per second over `scale.hertz(body, 1.0)`.
-    theta_err, rate_err : array_like, optional
+        Reduced rates: turns per second over `body.critical_hertz`.
+    hertz : array_like, 1-D
+        Or turns per second, of a measured body or one from `Body.from_metres`.
+    theta_err, rate_err or hertz_err : array_like, optional
         Standard errors, both or none. Without, points are weighed by a degree and two per cent, and their
         scatter gives the error of the ratio.
     common : float
@@ -169,10 +191,15 @@ def compare(
     """
     one_body(body)
     extra("odrpack", "lab")
+    rate, rate_err, unit = _reduced(body, rate, rate_err, hertz, hertz_err)
     common = number("common", common)
     if not common >= 0 or 0 < common < 1e-6:
         raise ValueError(f"common = {common!r}: expected 0, or a share such as 0.03, or inf")
-    x = _points(theta, rate, theta_err, rate_err, body)
+    try:
+        x = _points(theta, rate, theta_err, rate_err, body)
+    except (TypeError, ValueError) as e:
+        said = str(e) if hertz is None else re.sub(r"\brate(?=\b|_err)", "hertz", str(e))
+        raise type(e)(said) from None
     known = theta_err is not None
     own = float(body.i1) / float(body.i3)
     curve = Balance(body, *x.values())
@@ -195,7 +222,7 @@ def compare(
     ratio, ratio_err, factor, factor_err = found.told(known)
     # a real body has I3 <= 2 I1; measurement errors may bring the ratio slightly below 1/2
     if not found.success or not ratio + 5 * ratio_err >= 0.5:
-        raise ValueError(f"no real body fits: I1/I3 = {ratio:.3g}; is rate in units of scale.hertz(body, 1)?")
+        raise ValueError(f"no real body fits: I1/I3 = {ratio:.3g}; give turns a second as hertz=")
     said = _doubts(found, alone, both, own, known, fitted=common > 0)
     if said:
         warnings.warn(said, UserWarning, stacklevel=2)
@@ -218,7 +245,29 @@ def compare(
         alone=one,
         alone_err=one_err,
         alone_chi2=alone.chi2,
+        unit=unit,
     )
+
+
+def _reduced(
+    body: Body, rate: Reals | None, rate_err: Reals | None, hertz: Reals | None, hertz_err: Reals | None
+) -> tuple[Reals, Reals | None, float]:
+    """Reduced rates with their errors, and the turns a second of one; NaN where rates were given."""
+    if (rate is None) == (hertz is None):
+        raise TypeError("rate, hertz: give one of them")
+    if hertz is None:
+        if hertz_err is not None:
+            raise TypeError("hertz_err: goes with hertz=; of reduced rates give rate_err=")
+        return rate, rate_err, math.nan
+    if rate_err is not None:
+        raise TypeError("rate_err: goes with reduced rates; of hertz= give hertz_err=")
+    found, scale = with_size("body", body, None)
+    unit = float(scale.hertz(found, 1.0))
+    given = (("hertz", hertz), ("hertz_err", hertz_err))
+    turns, errors = (
+        None if x is None else reals(name, turns_per_second(name, x)) / unit for name, x in given
+    )
+    return turns, errors, unit
 
 
 def _points(
@@ -241,7 +290,7 @@ def _points(
     x = {name: values[measured] for name, values in x.items()}
     leaning("theta", x["theta"], body)
     if not ((x["rate"] >= 1e-6) & (x["rate"] <= 1e6)).all():
-        raise ValueError("rate: expected reduced rates from 1e-6 to 1e6")
+        raise ValueError("rate: expected positive numbers, reduced rates from 1e-6 to 1e6")
     for name, of in (("theta_err", 1.0), ("rate_err", x["rate"])):
         if not ((x[name] >= 1e-12 * of) & (x[name] <= 1e3 * of)).all():
             raise ValueError(f"{name}: expected positive numbers, 1e-12 to 1e3 of a radian or of the rate")
@@ -263,7 +312,7 @@ def _doubts(found: Fit, alone: Fit, both: Fit | None, own: float, known: bool, *
     if one > 1.5 or one < 0.7:
         off = f"{one:.3g} times what the body as built has"
     if found.chi2 > 10:
-        hint = "is rate in units of scale.hertz(body, 1)?"
+        hint = "give turns a second as hertz="
         if alone.success and alone.squares < 0.1 * found.squares:
             hint = f"rates {off} would, with the ratio as built: {hint}"
         return f"chi2 = {found.chi2:.3g}: no inertia ratio explains these points within their errors; {hint}"

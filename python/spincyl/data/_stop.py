@@ -180,8 +180,8 @@ def fit_stop(
     >>> found.of("rest")
     <DryContour with the centre at rest: 0.006845 +- 0.001 mm>
     """
-    scale = one_body(body).scale
-    if scale is None:
+    one_body(body)
+    if body.scale is None:
         raise ValueError("body: its size is not known: make it by sc.measured, or give it a scale")
     kind = known_law("law", law)
     theta, theta_err = (

@@ -12,11 +12,13 @@ from spincyl._contact import Contact, code
 from spincyl._input.numbers import flag, is_scalar, number, one_of, within
 from spincyl._single import one_body
 from spincyl._state import State
+from spincyl.data._above import with_size
 from spincyl.plot._style import (
     BLACK,
     BLUE,
     FORBIDDEN,
     GREEN,
+    HERTZ,
     ORANGE,
     PURPLE,
     ROLLING,
@@ -80,8 +82,9 @@ def branches(
     *,
     contact: Contact = "rolling",
     ax: "Axes | None" = None,
-    rate_max: float = 3.0,
+    rate_max: float | None = None,
     marks: bool | None = None,
+    hertz: bool = False,
 ) -> "Axes":
     """Draw theta against the reduced rate of the steady states: solid where stable, dashed where not.
 
@@ -96,10 +99,12 @@ def branches(
         Which stability: see `Body.stability`; "smooth" is the paper's criterion.
     ax : matplotlib Axes, optional
         Default: a new one.
-    rate_max : float
-        Right edge.
+    rate_max : float, optional
+        Right edge: a reduced rate, or turns per second. Default: a reduced rate of 3, of the fastest body.
     marks : bool, optional
         Whether to mark A to G; default for a single body.
+    hertz : bool
+        Against turns per second, of measured bodies or those from `Body.from_metres`.
 
     Raises
     ------
@@ -110,25 +115,33 @@ def branches(
     bodies = [x if isinstance(x, Body) else Body.tube(x, bore) for x in _ells(ells)]
     bores = {float(body.bore) for body in bodies}
     code(contact)
-    rate_max = within("rate_max", rate_max, 1e-3, 1e3)
+    units = [
+        float(with_size("ells", x, None)[1].hertz(x, 1.0)) if flag("hertz", hertz) else 1.0 for x in bodies
+    ]
+    rate_max = 3 * max(units) if rate_max is None else within("rate_max", rate_max, 1e-3, 1e3)
     marks = None if marks is None else flag("marks", marks)
     ax = new_axes(ax)
     ax.set(xlim=(0, rate_max), ylim=(0, 90), yticks=range(0, 91, 15))
     colours = [BLUE, ORANGE, GREEN, PURPLE, SKY, BLACK]
-    for body, colour in zip(bodies, colours * len(bodies), strict=False):
+    for body, unit, colour in zip(bodies, units, colours * len(bodies), strict=False):
         label = rf"$\ell = {body.ell:.4g}$" + (f", bore {body.bore:.4g}" if len(bores) > 1 else "")
-        for stable, theta, rate in pieces(body, contact, rate_max):
+        for stable, theta, rate in pieces(body, contact, rate_max / unit):
             line = ax.plot(
-                rate, np.degrees(theta), "-" if stable else "--", color=colour, lw=2.4 if stable else 1.8
+                unit * rate,
+                np.degrees(theta),
+                "-" if stable else "--",
+                color=colour,
+                lw=2.4 if stable else 1.8,
             )
             line[0].set_label(label if label else "_")
             label = ""
     if len(bodies) == 1:
         _shade(ax, bodies[0], contact)
     if marks or (marks is None and len(bodies) == 1):
-        for body in bodies:
-            _mark(ax, landmarks(body, contact), rate_max)
-    ax.set_xlabel(r"reduced rotation rate  $\widetilde\Omega = \Omega\,\sqrt{I_3/(MgR)}$")
+        for body, unit in zip(bodies, units, strict=True):
+            _mark(ax, [x._replace(rate=unit * x.rate) for x in landmarks(body, contact)], rate_max)
+    reduced = r"reduced rotation rate  $\widetilde\Omega = \Omega\,\sqrt{I_3/(MgR)}$"
+    ax.set_xlabel(HERTZ if hertz else reduced)
     ax.set_ylabel(r"inclination  $\theta$ (degrees)")
     ax.set_title(title(contact, bores.pop() if len(bores) == 1 else 0.0))
     if len(bodies) > 1:

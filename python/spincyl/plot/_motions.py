@@ -19,7 +19,7 @@ from spincyl._studio.poses import pace, span
 from spincyl._studio.shape import steepest
 from spincyl._told import ends
 from spincyl.plot import _aloft
-from spincyl.plot._style import BLACK, BLUE, ORANGE, RED, new_axes, own_ticks, sized
+from spincyl.plot._style import BLACK, BLUE, HERTZ, ORANGE, RED, new_axes, own_ticks, sized
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -325,18 +325,18 @@ def comparison(found: "Comparison", ax: "Axes | None" = None) -> "Axes":
         (found.body, BLUE, "-", f"$I_1/I_3 = {found.expected:.4g}$, as built"),
         (found.fitted, ORANGE, "--", rf"$I_1/I_3 = {found.ratio:.4g} \pm {found.ratio_err:.1g}$, fitted"),
     )
-    most = steepest(found.body)
+    most, unit = steepest(found.body), 1.0 if np.isnan(found.unit) else found.unit
     wide = np.linspace(0, most, 4001)[1:]
     for body, colour, line, label in curves:
         balance = float(body.theta_balance)  # NaN for a ball
         theta = np.sort(np.append(wide, balance)) if balance < most else wide
-        ax.plot(body.rate(theta), np.degrees(theta), line, color=colour, lw=2, label=label)
+        ax.plot(unit * body.rate(theta), np.degrees(theta), line, color=colour, lw=2, label=label)
     bars: dict[str, Any] = {"fmt": "o", "color": BLACK, "ms": 4, "lw": 1.2, "capsize": 2, "label": "measured"}
     degrees = np.degrees(found.theta), np.degrees(found.theta_err)
     top = 180 if degrees[0].max() > 90 else 90
-    ax.errorbar(found.rate, degrees[0], xerr=found.rate_err, yerr=degrees[1], **bars)
-    ax.set(xlim=(0, 1.25 * float(found.rate.max())), ylim=(0, top), yticks=range(0, top + 1, 15))
-    ax.set_xlabel(r"reduced rotation rate  $\widetilde\Omega$")
+    ax.errorbar(unit * found.rate, degrees[0], xerr=unit * found.rate_err, yerr=degrees[1], **bars)
+    ax.set(xlim=(0, 1.25 * unit * float(found.rate.max())), ylim=(0, top), yticks=range(0, top + 1, 15))
+    ax.set_xlabel(HERTZ if unit != 1 else r"reduced rotation rate  $\widetilde\Omega$")
     ax.set_ylabel(r"inclination  $\theta$ (degrees)")
     fillet = rf", $\rho = {found.body.fillet:.4g}$" if found.body.fillet else ""
     ax.set_title(rf"$\ell = {found.body.ell:.4g}${fillet}, $\chi^2$ per degree of freedom {found.chi2:.2g}")

@@ -21,6 +21,7 @@ BLUE, ORANGE, GREEN, PURPLE, SKY, BLACK = "#0072B2", "#D55E00", "#009E73", "#CC7
 RED = "#B2182B"  # times of slipping
 FORBIDDEN, UNSTABLE, ROLLING, STABLE = "#BDBDBD", "#F6C9A8", "#F0E442", "#BFDDF2"
 SMOOTH = "#DDB3CD"  # stable on a smooth table only
+HERTZ = "turns per second"
 # sizes in figures that this package makes; the user's own axes keep their sizes
 SIZES = {
     "font.size": 13.0,
@@ -42,7 +43,10 @@ def sized(draw: Callable[_Given, _Drawn]) -> Callable[_Given, _Drawn]:
 
     @wraps(draw)
     def drawn(*args: _Given.args, **kwargs: _Given.kwargs) -> _Drawn:
-        bound = given.bind(*args, **kwargs).arguments.get(axes)
+        try:
+            bound = given.bind(*args, **kwargs).arguments.get(axes)
+        except TypeError:  # which names the function in this call
+            return draw(*args, **kwargs)
         if bound is not None:
             _refuse(axes, bound)
             return draw(*args, **kwargs)
