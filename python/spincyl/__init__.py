@@ -25,6 +25,7 @@ from typing import TYPE_CHECKING, Any
 from spincyl._body import Body
 from spincyl._contact import Coulomb, Viscous
 from spincyl._ending import Ending, ErrorWarning, Event
+from spincyl._input.hints import instead as _instead
 from spincyl._laws import Region
 from spincyl._measured import measured
 from spincyl._motion import Motion
@@ -133,7 +134,8 @@ HOMES.update(
 
 def __getattr__(name: str) -> Any:
     if name not in _LATER:
-        raise AttributeError(f"module 'spincyl' has no attribute {name!r}")
+        more = "" if name.startswith("_") else _instead(name, __all__)
+        raise AttributeError(f"module 'spincyl' has no attribute {name!r}{more}")
     room = _LATER[name]
     if room is None:
         return import_module(f"spincyl.{name}")

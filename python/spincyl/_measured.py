@@ -6,7 +6,6 @@ is returned in SI. `Motion.natural` is the motion in natural units, from which p
 
 import math
 import re
-import warnings
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import replace
@@ -15,7 +14,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from spincyl._body import Body
-from spincyl._input.numbers import Floats, Reals, number, reals, si, within
+from spincyl._input.hints import helpful
+from spincyl._input.numbers import Floats, Reals, number, reals, si, warn, within
 from spincyl._scale import Scale, dubious, unit
 
 if TYPE_CHECKING:
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 _GRAVITY = 9.80665
 
 
+@helpful
 def measured(
     *,
     outer_diameter: float,
@@ -110,7 +111,7 @@ def measured(
     scale = Scale(given["outer_diameter"] / 2, given.get("mass", math.nan), gravity)
     why = doubt(**given)
     if why:
-        warnings.warn(why, UserWarning, stacklevel=2)
+        warn(why)
     shown = given | ({} if scale.gravity == _GRAVITY else {"gravity": scale.gravity})
     if not given["fillet"]:
         del shown["fillet"]

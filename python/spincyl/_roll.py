@@ -1,6 +1,5 @@
 """`roll`: reads the arguments, computes the motion, and converts it to the units of the body."""
 
-import warnings
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, TypeGuard, overload
 
@@ -10,11 +9,13 @@ from spincyl._asked import Method, Want, ask, times_of
 from spincyl._body import Body
 from spincyl._contact import AnyContact, fitting
 from spincyl._ending import Ending, ErrorWarning
+from spincyl._input.hints import helpful
 from spincyl._input.numbers import Reals, number, si, warn
 from spincyl._measured import in_si, natural_time, speaking
 from spincyl._motion import Motion, rolled
 from spincyl._state import State
 from spincyl._swing import single
+from spincyl._told import shortened
 
 if TYPE_CHECKING:
     from spincyl._ellipsoid import Ellipsoid
@@ -66,6 +67,7 @@ def roll(
     restitution: float | None = None,
     losses: "Loss | None" = None,
 ) -> Motion: ...
+@helpful
 def roll(
     body: "Body | Ellipsoid",
     state: "State | EllipsoidState",
@@ -231,10 +233,10 @@ def roll(
     if m.status == Ending.BOUNDED:
         at = f"t = {m.event.time:.6g}" + (" s" if scale is not None else "") if m.event else "its start"
         told = f"given up at {at}: the motion slips and rolls by turns too often, or hardly advances"
-        warnings.warn(f"{told}; the result ends there (Ending.BOUNDED)", RuntimeWarning, stacklevel=2)
+        warn(f"{told}; the result ends there (Ending.BOUNDED)", RuntimeWarning)
     if m.coarse:
         why = f"RK4 takes {100 * m.step_loss:.3g} % of the nutation's amplitude away"
         if m.step_loss <= 1e-3:
             why = "more than 0.3 rad of precession or 0.5 rad of nutation in a step"
-        warnings.warn(f"step = {step!r}: {why}; {m.advice:.2e} would do, or tol=", StepWarning, stacklevel=2)
-    return m
+        warn(f"step = {step!r}: {why}; {m.advice:.2e} would do, or tol=", StepWarning)
+    return shortened(m)

@@ -16,30 +16,17 @@ from spincyl._upward import above
 if TYPE_CHECKING:
     from spincyl._body import Body
 
-#: Natural unit of each output of a motion; outputs that are not listed are pure numbers.
-UNITS = {
-    "t": "sqrt(R/g)",
-    "theta": "rad",
-    "w": "sqrt(g/R)",
-    "energy": "M g R",
-    "phi": "rad",
-    "psi": "rad",
-    "contact_point": "R",
-    "centre": "R",
-    "normal": "M g",
-    "friction": "M g",
-    "contact_force": "M g",
-    "slip": "sqrt(g R)",
-    "dissipated": "M g R",
-    "work_lost": "M g R",
-    "height": "R",
-    "lift": "sqrt(g R)",
-    "drilling": "sqrt(g/R)",
-    "couple": "M g R",
-    "slip_other": "sqrt(g R)",
-    "normal_other": "M g",
-    "friction_other": "M g",
+_OUTPUTS = {
+    "sqrt(R/g)": "t",
+    "rad": "theta phi psi",
+    "sqrt(g/R)": "w drilling",
+    "R": "contact_point centre height",
+    "sqrt(g R)": "slip lift slip_other",
+    "M g": "normal friction contact_force normal_other friction_other",
+    "M g R": "energy dissipated work_lost couple",
 }
+#: Natural unit of each output of a motion; outputs that are not listed are pure numbers.
+UNITS = {name: unit for unit, names in _OUTPUTS.items() for name in names.split()}
 _WEIGHED = ("J", "N")
 _LENGTHS = 1e-4, 5.0  # metres
 _DENSITIES = 12.0, 23e3  # kg/m^3, from foam to osmium

@@ -33,7 +33,8 @@ def thrown(body: Body, velocity: Reals, backspin: Reals, *, scale: Scale | None 
     Parameters
     ----------
     body : Body
-        One, or a family. Its rim touches the table at theta = pi/2.
+        One, or a family. Its rim touches the table at theta = pi/2. A can or a coin touches it with both of
+        its rims: `roll` follows it with ``restitution=0.0``, to where it rolls on its side.
     velocity : array_like
         Of the centre, in sqrt(g R); with `scale` in m/s.
     backspin : array_like
@@ -75,6 +76,9 @@ def thrown(body: Body, velocity: Reals, backspin: Reals, *, scale: Scale | None 
         velocity, backspin = velocity * (seconds / metres), backspin * seconds
     given = velocity, backspin, *body._numbers
     if is_scalar(*given):
+        if body.theta_end < np.pi / 2:
+            why = "a body that can stand on edge; on two rims, as of a cup, it runs in a circle: start it"
+            raise ValueError(f"theta_end = {body.theta_end!r}: expected at least pi/2: {why} by sc.State")
         state, slip = _core.thrown(float(velocity), float(backspin), six(body))
         return State(*state, slip=(slip[0], slip[1]))
     w3, across = _core.thrown_w3(*given), _core.thrown_slip(*given)

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from spincyl._ending import MESSAGES, Ending
+from spincyl._input.short import short
 from spincyl._phases import how_found, told
 
 if TYPE_CHECKING:
@@ -18,6 +19,8 @@ def message(m: "Motion") -> str:
         why = "the other rim does not rise"
     if m.event:
         why += f": the body {ends(m)} at t = {m.event.time:.12g}{_second(m)}"
+        if m.status == Ending.SIDE and m.event.time == m._asked.t0 and m._asked.restitution is None:
+            why += ", and with restitution=0.0 it goes on"
     pose = "" if np.isnan(m.pose_error) else f", of the pose {m.pose_error:.1e}"
     force = "" if np.isnan(m.force_error) else f", of the forces {m.force_error:.1e}"
     errors = f"error about {m.error:.1e}{pose}{force}"
@@ -25,6 +28,15 @@ def message(m: "Motion") -> str:
         phases = told(m._phases or (), _second(m))
         return "; ".join(filter(None, (why, phases, _how(m), errors, m._doubt)))
     return f"{why}; found {_how(m)}, {errors}"
+
+
+def shortened(m: "Motion") -> "Motion":
+    """The same motion; if it ended early, its arrays say so to whom plots them against all times."""
+    if m.event and m.t.size < m._asked.times.size:
+        at = f"the body {ends(m)} at t = {m.event.time:.6g}{_second(m)}"
+        why = f"{at}: plot against m.t, the times up to there"
+        m.__dict__.update({name: short(getattr(m, name), why) for name in ("t", "theta", "w")})
+    return m
 
 
 def ends(m: "Motion") -> str:

@@ -17,6 +17,8 @@ from typing import Any, ParamSpec, TypeAlias, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from spincyl._input.hints import explain
+
 #: A number or an array of numbers; NumPy, pandas, xarray and dask arrays keep their kind.
 Reals: TypeAlias = Any
 #: What an elementwise function returns: a number for numbers, else an array of the inputs' kind.
@@ -300,6 +302,9 @@ def elementwise(law: Callable[_Given, _Found]) -> Callable[_Given, _Found]:
                 own = given.pop("self")
                 given[type(own).__name__] = own
             fitting({name: of_its_shape(x) for name, x in given.items()})
+            raise
+        except TypeError as e:
+            explain(law, named, e)
             raise
 
     return quiet

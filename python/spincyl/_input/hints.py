@@ -1,0 +1,69 @@
+"""Names that are not there: an error that says what there is instead."""
+
+import difflib
+from collections.abc import Callable, Iterable
+from functools import wraps
+from inspect import signature
+from typing import Any, ParamSpec, TypeVar
+
+_Given = ParamSpec("_Given")
+_Found = TypeVar("_Found")
+_FEW = 24  #: More names than these are not listed.
+_LEVEL = "the table is flat and level, and no other is modelled"
+#: What there is instead of names that the library does not have.
+_INSTEAD = {
+    **dict.fromkeys(("slope", "incline", "tilt", "bowl", "concave"), _LEVEL),
+    "height": "how high a body is, is its length=; sc.dropped(body, height, theta) starts in the air",
+    **dict.fromkeys(("thickness", "width"), "how thick a disk is, is its length="),
+    **dict.fromkeys(("radius", "diameter"), "outer_diameter= is the size of a tube, in metres"),
+    **dict.fromkeys(("friction", "mu_s"), "a table that rubs is contact=sc.Coulomb(mu, static)"),
+    "cone": "sc.assembled([sc.parts.cone(...)]) is a body, and so is any sum of parts",
+    **dict.fromkeys(
+        ("cylinder", "disk", "disc", "coin"), "sc.Body.solid(ell), or sc.measured(...) in metres"
+    ),
+    **dict.fromkeys(("ring", "hoop"), "sc.Body.tube(ell, bore), or sc.measured(...) in metres"),
+    "sphere": "sc.Body.ball(...), or sc.parts.ball in sc.assembled([...])",
+    **dict.fromkeys(("ellipsoid", "stone", "egg", "rattleback"), "sc.Ellipsoid is a class of its own"),
+    **dict.fromkeys(("cube", "box", "top"), "bodies of revolution and ellipsoids are modelled, see sc.parts"),
+}
+
+
+def instead(name: str, known: Iterable[str]) -> str:
+    """What there is instead of a name, after a colon; empty if nothing is near."""
+    names = [x for x in known if not x.startswith("_")]
+    if name in _INSTEAD:
+        return f": {_INSTEAD[name]}"
+    near = difflib.get_close_matches(name, names, 3, 0.7)
+    told = f"did you mean {' or '.join(near)}?" if near else f"there are {', '.join(names)}"
+    return f": {told}" if near or 0 < len(names) <= _FEW else ""
+
+
+def helpful(call: Callable[_Given, _Found]) -> Callable[_Given, _Found]:
+    """Decorator: the error about an argument that there is not says what there is."""
+
+    @wraps(call)
+    def helped(*args: _Given.args, **named: _Given.kwargs) -> _Found:
+        try:
+            return call(*args, **named)
+        except TypeError as e:
+            explain(call, named, e)
+            raise
+
+    return helped
+
+
+def explain(call: Callable[..., Any], named: dict[str, Any], error: TypeError) -> None:
+    """Raise a TypeError that says what arguments there are, if one of these is unknown."""
+    known = signature(call).parameters
+    odd = next((x for x in named if x not in known), None)
+    if odd is not None and f"unexpected keyword argument {odd!r}" in str(error):
+        named_ = [x for x, of in known.items() if of.kind != of.VAR_KEYWORD and x not in ("self", "cls")]
+        raise TypeError(f"{error}{instead(odd, named_)}") from None
+
+
+class Named(type):
+    """Metaclass: the error about a name that the class does not have says what there is."""
+
+    def __getattr__(cls, name: str) -> Any:
+        more = "" if name.startswith("_") else instead(name, dir(cls))
+        raise AttributeError(f"type object {cls.__name__!r} has no attribute {name!r}{more}")

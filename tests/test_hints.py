@@ -1,0 +1,124 @@
+"""Names that are not there: the error names the function and says what there is instead."""
+
+import inspect
+import pickle
+import re
+
+import numpy as np
+import pytest
+
+import spincyl as sc
+
+BODY = sc.Body.solid(2.5)
+STATE = BODY.steady(1.3)
+
+
+@pytest.mark.parametrize(
+    ("call", "told"),
+    [
+        (lambda: sc.roll(BODY, STATE, 1.0, slope=0.1), "'slope': the table is flat and level"),
+        (lambda: sc.roll(BODY, STATE, 1.0, incline=0.1), "'incline': the table is flat and level"),
+        (lambda: sc.roll(BODY, STATE, 1.0, height=0.1), "'height': .*sc.dropped\\(body, height, theta\\)"),
+        (lambda: BODY.roll(STATE, 1.0, tols=0.1), "^roll\\(\\) .*'tols': did you mean tol\\?"),
+        (lambda: sc.roll(BODY, STATE, 1.0, mass=0.1), "'mass': there are body, state, t, t0, step"),
+        (lambda: sc.measured(outer_diameter=0.1, height=0.1), "^measured\\(\\) .*'height': .*length="),
+        (lambda: sc.measured(outer_diameter=0.1, lenght=0.1), "'lenght': did you mean length\\?"),
+        (
+            lambda: sc.thrown(BODY, 1.0, 2.0, slope=0.1),
+            "^thrown\\(\\) .*'slope': the table is flat and level",
+        ),
+        (lambda: sc.plot.branches([2.5], slope=0.1), "^branches\\(\\) .*'slope'"),
+    ],
+)
+def test_an_unknown_argument_names_its_function_and_what_there_is(call, told):
+    with pytest.raises(TypeError, match=told) as caught:
+        call()
+    assert re.match(r"\w+\(\) got an unexpected keyword argument '\w+'", str(caught.value))
+
+
+def test_every_public_function_is_named_by_the_error_about_an_unknown_argument():
+    for module in (sc, sc.loss, sc.parts, sc.data, sc.plot, sc.sweep):
+        for name in module.__all__:
+            call = getattr(module, name)
+            of = inspect.signature(call).parameters.values() if inspect.isfunction(call) else []
+            if not of or any(p.kind == p.VAR_KEYWORD for p in of):  # which passes them on
+                continue
+            plain = [None for p in of if p.default is p.empty and p.kind != p.KEYWORD_ONLY]
+            with pytest.raises(
+                TypeError, match=f"\\b{name}\\(\\) got an unexpected keyword argument 'nowhere'"
+            ):
+                call(*plain, nowhere=1)
+
+
+@pytest.mark.parametrize(
+    ("of", "name", "told"),
+    [
+        (sc.Body, "cone", "sc.parts.cone"),
+        (sc.Body, "cube", "sc.parts"),
+        (sc.Body, "cylinder", "sc.Body.solid"),
+        (sc.Body, "steadi", "did you mean steady"),
+        (sc, "cone", "sc.parts.cone"),
+        (sc, "rol", "did you mean roll\\?"),
+    ],
+)
+def test_a_name_that_is_not_there_says_what_is(of, name, told):
+    with pytest.raises(AttributeError, match=f"has no attribute '{name}': .*{told}"):
+        getattr(of, name)
+    assert not hasattr(of, "_nothing") and not hasattr(BODY, "cone")
+
+
+def test_a_can_that_is_thrown_says_how_it_goes_on_with_two_rims():
+    can = sc.Body.solid(1.8)
+    thrown = sc.thrown(can, 1.0, 2.0)
+    m = sc.roll(can, thrown, 5.0, contact=sc.Coulomb(0.3))
+    assert m.status == sc.Ending.SIDE and "with restitution=0.0 it goes on" in m.message
+    m = sc.roll(can, thrown, 5.0, contact=sc.Coulomb(0.3), restitution=0.0)
+    assert m.status == sc.Ending.DONE and "restitution" not in m.message
+    falls = sc.roll(can, can.steady(1.45).kicked(-0.5), 50.0)
+    assert falls.status == sc.Ending.SIDE and "restitution" not in falls.message
+
+
+def test_a_cup_cannot_be_thrown_and_says_why():
+    parts = sc.parts
+    floor = parts.disk(outer_diameter="50mm", density=0.3)
+    wall = parts.wall(lower_diameter="50mm", upper_diameter="80mm", length="90mm", at=0, density=0.3)
+    with pytest.raises(ValueError, match="theta_end = 1.4.*on two rims, as of a cup, it runs in a circle"):
+        sc.thrown(sc.assembled([floor, wall]), 1.0, 2.0)
+
+
+T = np.linspace(0.0, 60.0, 601)
+
+
+def ended():
+    """A motion that ends before the last time: a coin comes to rest."""
+    coin = sc.measured(outer_diameter=25e-3, length=2e-3, mass=8e-3)
+    loss = sc.loss.DryContour.from_si("0.02mm", scale=coin)
+    return sc.roll(coin, coin.steady(0.3), T, losses=loss, want=("pose", "force"))
+
+
+def test_a_motion_shorter_than_the_times_asked_for_says_so_when_it_is_plotted_against_them():
+    plt = pytest.importorskip("matplotlib.pyplot")
+    m = ended()
+    assert m.t.size < T.size
+    for values in (m.theta, np.degrees(m.theta), m.w[:, 2], m.normal, m.centre[:, 0], m.energy, 1e3 * m.phi):
+        with pytest.raises(ValueError, match="the body rolls no more at t = 1.9112 s: plot against m.t"):
+            plt.plot(T, values)
+        plt.plot(m.t, values)
+    plt.close("all")
+
+
+def test_what_a_short_motion_holds_are_arrays_like_any_other():
+    m = ended()
+    plain = np.asarray(m.theta)
+    assert type(plain) is np.ndarray and repr(m.theta) == repr(plain) and m.theta.shape == plain.shape
+    assert m.theta.shape[0] == plain.size and np.array_equal(m.theta, plain)
+    assert (
+        type(m.theta.max()) is np.float64
+        and type(m.theta[0]) is np.float64
+        and type(plain.sum()) is np.float64
+    )
+    again = pickle.loads(pickle.dumps(m))
+    assert again == m and type(again.theta) is np.ndarray
+    assert m.to_xarray()["theta"].shape == plain.shape and len(m.to_dataframe()) == plain.size
+    whole = sc.roll(BODY, STATE, [0.0, 1.0])
+    assert type(whole.theta) is np.ndarray and type(whole.t) is np.ndarray
