@@ -150,7 +150,7 @@ def test_a_project_of_trackers_and_an_experiment_of_phyphoxs_are_said_to_be_such
     other.write_text('<phyphox version="1.7"><title>Audio</title></phyphox>')
     for path in (plain, packed):
         with pytest.raises(
-            ValueError, match=rf"{path.name}: a project of Tracker's, not an export: File > Export > Data"
+            ValueError, match=rf"{path.name}: (.*: )?a project of Tracker's, (not a table|but no point)"
         ):
             read(path)
     with pytest.raises(ValueError, match=r"a.phyphox: an experiment of phyphox's, not what it recorded"):

@@ -167,12 +167,12 @@ def test_a_zip_bomb_is_refused_whatever_its_header_says(tmp_path, monkeypatch, m
     assert len(raw) < 50_000
     lying = raw.replace(struct.pack("<I", 200_004), struct.pack("<I", 100))
     assert lying != raw
-    monkeypatch.setattr(_sound, "MOST_BYTES", 300_000)
+    monkeypatch.setattr(_contents, "MOST_BYTES", 300_000)
     with pytest.raises(ValueError, match="file.csv: holds more than"):
         sc.data.read_phyphox(written(tmp_path, raw))  # each table alone is below the limit
     with pytest.raises(ValueError, match="file.csv: "):
         sc.data.read_phyphox(written(tmp_path, lying))
-    monkeypatch.setattr(_sound, "MOST_BYTES", 400_008)
+    monkeypatch.setattr(_contents, "MOST_BYTES", 400_008)
     assert sc.data.read_phyphox(written(tmp_path, raw))["B"]["x"].size == 50_000
 
 

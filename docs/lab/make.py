@@ -1,6 +1,8 @@
 """Makes the sample data of the lab page: computed, with errors from a random generator; no measurement."""
 
+import re
 import wave
+import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -27,6 +29,83 @@ for i, row in enumerate(zip(seconds, *ends[0].T, *ends[1].T, strict=True)):
         cells[3:] = ["", ""]
     lines.append("\t".join(cells))
 (ROOM / "tube_from_above.txt").write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+# the same as a project: pixels downward from the upper left corner, axes that lie 5 degrees askew
+HOME = "org.opensourcephysics."
+
+
+def held(kind: str, **values: object) -> str:
+    """An object of a project with its properties; those that are no numbers stand as they are."""
+    types = {float: "double", int: "int", bool: "boolean"}
+    lines = [
+        f'<property name="{name}" type="{types[type(x)]}">{str(x).lower()}</property>'
+        if type(x) in types
+        else f'<property name="{name}" {x}</property>'
+        for name, x in values.items()
+    ]
+    return f'<object class="{HOME}{kind}">\n' + "\n".join(lines) + "\n</object>\n"
+
+
+def among(kind: str, items: dict[str, str]) -> str:
+    """A property that is an array or a collection of objects."""
+    inside = "".join(f'<property name="{n}" type="object">\n{x}</property>\n' for n, x in items.items())
+    return f'type="{"collection" if kind[0] == "j" else "array"}" class="{kind}">\n{inside}'
+
+
+def text(words: str) -> str:
+    """The rest of a property that is text."""
+    return f'type="string">{words}'
+
+
+def one(thing: str) -> str:
+    """The rest of a property that is an object."""
+    return f'type="object">\n{thing}'
+
+
+places = [(x + 1j * y) * np.exp(1j * np.radians(5.0)) * 9000.0 for x, y in (end.T for end in ends)]
+tracks = [held("cabrillo.tracker.CoordAxes", name=text("axes"))]
+for name, end in zip("OX", places, strict=True):
+    marks = {
+        f"[{i}]": held(
+            "cabrillo.tracker.PointMass$FrameData", x=round(640 + z.real, 3), y=round(360 - z.imag, 3)
+        )
+        for i, z in enumerate(end.tolist())
+        if name == "O" or i not in (11, 12)
+    }
+    data = among(f"[L{HOME}cabrillo.tracker.PointMass$FrameData;", marks)
+    tracks.append(held("cabrillo.tracker.PointMass", mass=1.0, name=text(name), framedata=data))
+axes = held(
+    "media.core.ImageCoordSystem$FrameData",
+    xorigin=640.0,
+    yorigin=360.0,
+    angle=5.0,
+    xscale=9000.0,
+    yscale=9000.0,
+)
+project = held(
+    "cabrillo.tracker.TrackerPanel",
+    semantic_version=text("6.1.0"),
+    videoclip=one(
+        held(
+            "media.core.VideoClip", video_framecount=34, startframe=0, stepsize=1, stepcount=34, starttime=0.0
+        )
+    ),
+    clipcontrol=one(held("media.core.StepperClipControl", rate=1.0, delta_t=1000 / 240)),
+    coords=one(
+        held(
+            "media.core.ImageCoordSystem",
+            fixedorigin=True,
+            fixedangle=True,
+            fixedscale=True,
+            framedata=among(f"[L{HOME}media.core.ImageCoordSystem$FrameData;", {"[0]": axes}),
+        )
+    ),
+    length_unit=text("m"),
+    tracks=among("java.util.ArrayList", {f"item{i}": x for i, x in enumerate(tracks)}),
+)
+project = '<?xml version="1.0" encoding="UTF-8"?>\n' + re.sub('name="item[0-9]*"', 'name="item"', project)
+with zipfile.ZipFile(ROOM / "tube_from_above.trz", "w", zipfile.ZIP_DEFLATED) as packed:
+    packed.writestr(zipfile.ZipInfo("tube.trk"), project, zipfile.ZIP_DEFLATED)
 
 # ten flicks: inclination and turns per second, as read off the films
 degrees = np.array([4.5, 5.5, 6.5, 7.5, 73.0, 75.0, 77.0, 79.0, 82.0, 85.0])

@@ -14,7 +14,7 @@ from collections.abc import Iterable
 from io import BytesIO
 from itertools import pairwise
 
-_UTF_16 = (b"\xff\xfe", b"\xfe\xff")
+UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 #: Encodings that are tried to suggest readings of an undecoded name.
 _USUAL = ("utf-8", "gbk", "big5", "cp932", "cp949", "cp1250", "cp1251", "cp1252", "cp1253")
 _SHOWN = 8  # largest number of readings in a message
@@ -55,14 +55,14 @@ def decoded(raw: bytes, name: str, encoding: str | None = None) -> str:
         not_packed_project(raw, name)
         raise ValueError(f"{name}: a workbook or a zip file, not text; export it as CSV")
     if encoding is not None:
-        text = _as_told(raw, name, encoding)
-    elif raw[:2] in _UTF_16:
+        text = as_told(raw, name, encoding)
+    elif raw[:2] in UTF_16:
         try:
             text = raw.decode("utf-16")
         except UnicodeDecodeError as e:
             raise ValueError(f"{name}: its UTF-16 is torn at byte {e.start} of {len(raw)}") from None
     else:
-        text = _found_out(raw)
+        text = found_out(raw)
     text = text.removeprefix("\ufeff")
     if "\0" in text:
         raise ValueError(f"{name}: not text; export it as CSV")
@@ -74,7 +74,7 @@ def decoded(raw: bytes, name: str, encoding: str | None = None) -> str:
     return text.replace("\u2212", "-")  # the typographic minus sign
 
 
-_PROJECT = "a project of Tracker's, not an export: File > Export > Data writes a table"
+_PROJECT = "a project of Tracker's, not a table: data.read_tracker reads it"
 
 
 def legible(name: str, names: Iterable[str]) -> None:
@@ -125,7 +125,7 @@ def not_packed_project(raw: bytes, name: str) -> None:
         raise ValueError(f"{name}: {_PROJECT}")
 
 
-def _as_told(raw: bytes, name: str, encoding: str) -> str:
+def as_told(raw: bytes, name: str, encoding: str) -> str:
     if not isinstance(encoding, str):
         raise TypeError(f"encoding: expected the name of one, such as 'gbk', not {type(encoding).__name__}")
     try:
@@ -138,7 +138,7 @@ def _as_told(raw: bytes, name: str, encoding: str) -> str:
     raise ValueError(f"{name}: not in encoding = {encoding!r}: {told}")
 
 
-def _found_out(raw: bytes) -> str:
+def found_out(raw: bytes) -> str:
     """Text decoded from UTF-8 or, if certain, from Windows-1252; otherwise ASCII with surrogates."""
     if raw.isascii():
         return raw.decode("ascii")

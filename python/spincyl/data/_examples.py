@@ -6,6 +6,7 @@ from pathlib import Path
 #: File and content of each example.
 _EXAMPLES = {
     "tube_from_above": ("tube_from_above.txt", "both ends of a tube, as Tracker exports them; 34 frames"),
+    "tube_project": ("tube_from_above.trz", "the same film as a project of Tracker's, packed"),
     "flicks": ("flicks.csv", "inclination in degrees and turns per second of ten flicks of that tube"),
     "spin_down": ("spin_down.csv", "seconds, degrees and turns per second of a disk that comes to its end"),
     "whirr": ("whirr.wav", "the sound of that disk, eight seconds"),
@@ -17,8 +18,8 @@ def example(name: str) -> Path:
 
     Parameters
     ----------
-    name : {"tube_from_above", "flicks", "spin_down", "whirr"}
-        Both ends of a tube on film (`read_tracker`, `from_above`); ten flicks of it, degrees and turns per
+    name : {"tube_from_above", "tube_project", "flicks", "spin_down", "whirr"}
+        Both ends of a tube on film (`read_tracker`, `from_above`), exported or as a project; ten flicks of it, degrees and turns per
         second (`read_table`, `compare`); a disk that comes to its end, filmed (`read_table`, `fit_losses`)
         and heard (`read_sound`, `wobble`). The tube has the measures 0.625, 0.5 and 3.75 inches, the disk is
         75.1 mm wide and 12.8 mm thick.

@@ -5,9 +5,7 @@ within a frame; so the few fields of a WAV file are read here.
 """
 
 import struct
-import zipfile
 from collections import Counter
-from io import BytesIO
 from os import PathLike
 from pathlib import Path, PurePosixPath
 
@@ -15,7 +13,7 @@ import numpy as np
 
 from spincyl._input.numbers import Floats
 from spincyl.data._columns import Columns
-from spincyl.data._contents import MOST_BYTES, contents, limited
+from spincyl.data._contents import contents, unpacked
 from spincyl.data._encoding import not_packed_project
 from spincyl.data._tracker import table
 
@@ -58,7 +56,7 @@ def read_phyphox(path: str | PathLike[str], *, encoding: str | None = None) -> d
     raw, name = contents(path), str(path)
     if raw[:4] not in (b"PK\x03\x04", b"PK\x05\x06"):
         return {Path(path).stem: table(raw, name, encoding)}
-    found = _unpacked(raw, name)
+    found = unpacked(raw, name, _is_table)
     if not found:
         not_packed_project(raw, name)
         raise ValueError(f"{name}: no CSV in this zip file; export from phyphox as CSV")
@@ -74,29 +72,9 @@ def read_phyphox(path: str | PathLike[str], *, encoding: str | None = None) -> d
     }
 
 
-def _unpacked(raw: bytes, name: str) -> list[tuple[str, bytes]]:
-    """Names and contents of the tables in a zip file, without those about the phone and of macOS."""
-    found: list[tuple[str, bytes]] = []
-    left = MOST_BYTES
-    try:
-        with zipfile.ZipFile(BytesIO(raw)) as file:
-            for entry in file.infolist():
-                inside = PurePosixPath(entry.filename)
-                if inside.suffix.lower() not in (".csv", ".txt") or {"meta", "__MACOSX"} & {*inside.parts}:
-                    continue
-                with file.open(entry) as packed:
-                    held = limited(packed, name, left)
-                left -= len(held)
-                found.append((entry.filename, held))
-    except MemoryError:
-        raise
-    except ValueError as e:
-        raise ValueError(str(e) if name in str(e) else f"{name}: a torn zip file: {e}") from None
-    except (
-        Exception
-    ) as e:  # a damaged or encrypted file raises errors of many kinds; nothing is read from disk here
-        raise ValueError(f"{name}: a torn zip file, or one that needs a password: {e!r}") from None
-    return found
+def _is_table(inside: PurePosixPath) -> bool:
+    """Whether a file in a zip file is a table, and not about the phone."""
+    return inside.suffix.lower() in (".csv", ".txt") and "meta" not in inside.parts
 
 
 def read_sound(path: str | PathLike[str]) -> tuple[Floats, Floats]:

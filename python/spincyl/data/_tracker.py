@@ -10,6 +10,7 @@ from spincyl._input.numbers import Floats
 from spincyl.data._columns import UNITS, Columns
 from spincyl.data._contents import MOST_BYTES, contents
 from spincyl.data._encoding import decoded, legible
+from spincyl.data._project import project
 
 #: Delimiters of columns in the order of trial; spaces come last, since names contain them.
 _DELIMITERS = ("\t", ";", ",", None)
@@ -91,28 +92,31 @@ def table(raw: bytes, name: str, encoding: str | None = None) -> Columns:
 
 
 def read_tracker(path: str | PathLike[str], *, encoding: str | None = None) -> dict[str, Columns]:
-    """The tracks of a text file that Tracker exported (File > Export > Data).
+    """The tracks of a project that Tracker saved, or of a text file that it exported (File > Export > Data).
 
     Parameters
     ----------
     path : path
-        One track (its name, a line of column names, numbers) or several ("#multi:", names above their
-        columns). Separated by tabs, semicolons, commas or spaces, decimal point or comma: found out.
+        A project (.trk, .trz), or a text with one track (its name, a line of column names, numbers) or
+        several ("#multi:", names above their columns), separated by tabs, semicolons, commas or spaces,
+        decimal point or comma: found out.
     encoding : str, optional
-        Of the text, as of `read_table`.
+        Of the text, as of `read_table`; of a project, if it is not the one that it declares.
 
     Returns
     -------
     dict
         By track, by column: arrays of numbers of one length, NaN where a cell is empty. Columns before the
         first name of a track, such as t, belong to every one. A track without a name is called "track". A
-        column "x (cm)" is called "x", and the `units` of its track say "cm".
+        column "x (cm)" is called "x", and the `units` of its track say "cm". Of a project the columns are t,
+        x and y of each point mass, over the frames of its clip from the first to the last in which any point
+        was marked; the unit is that of its scale of length, "px" where none was set.
 
     Raises
     ------
     ValueError
-        If the file is no such table, naming it and the line, as of `read_table`; if its UTF-16 is torn, the
-        byte.
+        If the file is no such table or project, naming it and the line, as of `read_table`; if its UTF-16 is
+        torn, the byte.
     OSError
         If the file cannot be read.
     TypeError
@@ -121,9 +125,15 @@ def read_tracker(path: str | PathLike[str], *, encoding: str | None = None) -> d
     Notes
     -----
     Tracker is the video analysis tool of Open Source Physics. Angles are in the unit that was chosen there.
+    A project has the places of the marks in the picture, its axes and its scale, from which x and y follow as
+    they do in Tracker; and how long a frame lasts on average, where a film with uneven frames has other times
+    in Tracker, and in what it exports. Tracks that Tracker computes, as of a model, are not in it.
     """
-    found = _named(contents(path), str(path), encoding, "a table of Tracker's", 2)
-    legible(str(path), found)
+    raw, name = contents(path), str(path)
+    found = project(raw, name, encoding)
+    if found is None:
+        found = _named(raw, name, encoding, "a table of Tracker's", 2)
+        legible(name, found)
     return found
 
 
