@@ -127,6 +127,7 @@ HOMES.update(
         "LossFit.plot": ("spincyl.plot", "losses"),
         "Motion.plot": ("spincyl.plot", "motion"),
         "Motion.sound": ("spincyl._studio.sound", "sound"),
+        "loss.typical": ("spincyl.data._typical", "typical"),
         "card": ("spincyl._studio.cards", "card"),
     }
 )

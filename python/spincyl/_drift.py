@@ -140,8 +140,7 @@ class Drift:
 
     def __repr__(self) -> str:
         unit = "" if self.body.scale is None else " s"
-        losses = repr(self.losses) if self.body.scale is None else str(self.losses)
-        what = f"<Drift of {self.body!r}, {losses}, centre={self.centre!r}: "
+        what = f"<Drift of {self.body!r}, {self.losses}, centre={self.centre!r}: "
         if self._shape == ():
             return f"{what}{self.ended} at theta = {self.ends_at_theta:.6g}, t = {self.stops_at:.6g}{unit}>"
         return f"{what}shape {self._shape}>"

@@ -232,14 +232,10 @@ def _added(laws: tuple[Law, ...]) -> Loss:
 
 def titled(losses: Loss, scale: Scale | None = None) -> str:
     """Laws with their coefficients to four digits; with a scale in the units that `from_si` reads."""
-
-    def told(law: Law) -> str:
-        factor, unit = law._printed(scale or law._sized)
-        return f"{type(law).__name__}({float(law.coefficient) * factor:.4g}{unit})"
-
     if losses._function is not None:
         return repr(losses)
-    return " + ".join(map(told, losses.laws))
+    scaled = [(law, *law._printed(scale or law._sized)) for law in losses.laws]
+    return " + ".join(f"{type(law).__name__}({float(law.coefficient) * k:.4g}{of})" for law, k, of in scaled)
 
 
 def positive(name: str, value: Reals, unit: str = "") -> Reals:

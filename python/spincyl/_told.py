@@ -33,8 +33,7 @@ def message(m: "Motion") -> str:
 def shortened(m: "Motion") -> "Motion":
     """The same motion; if it ended early, its arrays say so to whom plots them against all times."""
     if m.event and m.t.size < m._asked.times.size:
-        at = f"the body {ends(m)} at t = {m.event.time:.6g}{_second(m)}"
-        why = f"{at}: plot against m.t, the times up to there"
+        why = f"the body {ends(m)} at t = {m.event.time:.6g}{_second(m)}: plot against m.t, up to there"
         m.__dict__.update({name: short(getattr(m, name), why) for name in ("t", "theta", "w")})
     return m
 

@@ -25,7 +25,7 @@ falls with the time that is left::
 """
 
 from dataclasses import dataclass
-from typing import Self, TypeVar
+from typing import Any, Self, TypeVar
 
 import numpy as np
 
@@ -33,6 +33,7 @@ from spincyl._body import Body
 from spincyl._input.numbers import Reals, Result, fitting
 from spincyl._loss import Law, Loss, Sum, arm, over, positive, sized, units
 from spincyl._scale import Scale
+from spincyl._upward import above
 
 __all__ = [
     "AirFilm",
@@ -49,6 +50,18 @@ __all__ = [
 ]
 
 _Kind = TypeVar("_Kind", bound=Law)
+
+
+def __getattr__(name: str) -> Any:
+    if name != "typical":
+        raise AttributeError(f"module 'spincyl.loss' has no attribute {name!r}")
+    return above("loss.typical")()
+
+
+def __dir__() -> list[str]:
+    return [*globals(), "typical"]
+
+
 _AIR, _DENSITY = 1.8e-5, 1.2  # Pa s, kg/m^3
 
 
@@ -233,10 +246,7 @@ class BoundaryLayer(Law):
         """
         metres, seconds, joules = units(scale, weighed=True)
         density = positive("density", density, "kilogram/metre**3")
-        viscosity, C = (
-            positive("viscosity", viscosity, "pascal*second"),
-            positive("C", C, "C" if isinstance(C, str) else ""),
-        )
+        viscosity, C = positive("viscosity", viscosity, "pascal*second"), positive("C", C)
         fitting({"C": C, "density": density, "viscosity": viscosity})
         with np.errstate(over="ignore"):
             found = C * np.sqrt(density * viscosity) * metres**4 / (joules * seconds**1.5)

@@ -141,7 +141,7 @@ _KINDS = {
     "newton*metre*second": "damping",
     "newton*metre*second**2": "drag",
     "pascal*second": "viscosity",
-    "C": "layer",
+    "": "layer",
 }
 
 

@@ -19,10 +19,10 @@ def example(name: str) -> Path:
     Parameters
     ----------
     name : {"tube_from_above", "tube_project", "flicks", "spin_down", "whirr"}
-        Both ends of a tube on film (`read_tracker`, `from_above`), exported or as a project; ten flicks of it, degrees and turns per
-        second (`read_table`, `compare`); a disk that comes to its end, filmed (`read_table`, `fit_losses`)
-        and heard (`read_sound`, `wobble`). The tube has the measures 0.625, 0.5 and 3.75 inches, the disk is
-        75.1 mm wide and 12.8 mm thick.
+        Both ends of a tube on film (`read_tracker`, `from_above`), exported or as a project; ten flicks of
+        it, degrees and turns per second (`read_table`, `compare`); a disk that comes to its end, filmed
+        (`read_table`, `fit_losses`) and heard (`read_sound`, `wobble`). The tube has the measures 0.625, 0.5
+        and 3.75 inches, the disk is 75.1 mm wide and 12.8 mm thick.
 
     Returns
     -------
