@@ -131,7 +131,11 @@ def test_the_report_says_where_the_error_comes_from():
     ):
         assert told in said
     assert max(map(len, said.splitlines())) <= 88
-    assert "DryContour by rolling" in found._repr_html_() and "<svg" in found._repr_html_()
+    assert (
+        "by rolling" in found._repr_html_()
+        and " mm<" in found._repr_html_()
+        and "<svg" in found._repr_html_()
+    )
 
 
 @pytest.mark.parametrize("name", ["AirLinear", "AirQuadratic"])
@@ -210,8 +214,11 @@ def test_minutes_that_were_typed_for_seconds_are_warned_of():
 
 
 def test_a_film_of_air_that_cannot_fill_the_gap_is_warned_of_once():
-    with pytest.warns(sc.DriftWarning, match="fills the gap below theta") as said, pytest.warns(
-        UserWarning, match=r"viscosity = 0.000\d+ Pa s is far from the 1.8e-05 Pa s of sc.loss.typical"
+    with (
+        pytest.warns(sc.DriftWarning, match="fills the gap below theta") as said,
+        pytest.warns(
+            UserWarning, match=r"viscosity = 0.000\d+ Pa s is far from the 1.8e-05 Pa s of sc.loss.typical"
+        ),
     ):
         sc.data.fit_stop(COIN, sc.loss.AirFilm, START, [7.0, 7.2])
     kinds = [one for one in said if one.category is sc.DriftWarning]

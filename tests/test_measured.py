@@ -391,7 +391,7 @@ def test_motions_in_si_can_be_copied_and_show_themselves(motion):
         assert np.array_equal(other.normal, motion.normal) and other.scale == TUBE.scale
         assert np.array_equal(other.natural.normal, motion.natural.normal)
     assert "to 0.5 s" in motion._repr_html_() and repr(motion).startswith("<Motion of measured(outer")
-    assert " m<" in sc.swing(TUBE, START)._repr_html_()
+    assert " mm<" in sc.swing(TUBE, START)._repr_html_() and "starts with" in motion._repr_html_()
     assert "6.17777 Hz" in TUBE._repr_html_() and "none" in RULED.scale._repr_html_()
 
 

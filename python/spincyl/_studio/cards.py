@@ -63,8 +63,8 @@ def body(found: Body) -> str:
     ]
     if found.scale is not None:
         rows += [
-            ("radius R", _number(found.scale.radius, "m")),
-            ("mass M", _number(found.scale.mass, "kg")),
+            ("radius R", _number(1e3 * found.scale.radius, "mm")),
+            ("mass M", _number(1e3 * found.scale.mass, "g")),
             ("critical rate", _number(found.critical_hertz, "Hz")),
         ]
     picture = ""
@@ -94,6 +94,12 @@ def state(found: State) -> str:
 def motion(found: Motion) -> str:
     """The card of a motion: the body at its start, and the range of its inclination."""
     rows, reached = _motion(found)
+    if found.scale is not None:
+        turns = (
+            (name, found.scale.turns(x))
+            for name, x in (("φ′", found.start.precession), ("ψ′", found.start.spin))
+        )
+        rows.insert(2, ("starts with", ", ".join(f"{name} {_number(x, 'Hz')}" for name, x in turns)))
     return framed("Motion", rows, drawing(found.body, found.start.theta, "θ", reached))
 
 
@@ -137,8 +143,8 @@ def swing(found: Swing) -> str:
         ("inclination θ", f"{_angle(found.theta_min)} to {_angle(found.theta_max)}"),
         ("precession φ in a period", _angle(found.precession_per_period)),
         ("spin ψ in a period", _angle(found.spin_per_period)),
-        ("drift of the contact in a period", _number(found.drift, _length(found.scale))),
-        ("on a circle of radius", _number(found.drift_radius, _length(found.scale))),
+        ("drift of the contact in a period", _length(found.drift, found.scale)),
+        ("on a circle of radius", _length(found.drift_radius, found.scale)),
     ]
     return framed("Swing", rows, drawing(None, found.theta_max, "θ", (found.theta_min,)))
 
@@ -147,16 +153,16 @@ def _time(scale: Scale | None) -> str:
     return "√(R/g)" if scale is None else "s"
 
 
-def _length(scale: Scale | None) -> str:
-    return "R" if scale is None else "m"
+def _length(x: Reals, scale: Scale | None) -> str:
+    return _number(x, "R") if scale is None else _number(1e3 * x, "mm")
 
 
 def scale(found: Scale) -> str:
     """The card of a scale: the natural units in SI."""
     length, time, energy, hertz = found._units
     rows = [
-        ("radius R", f"{length:.6g} m"),
-        ("mass M", _number(found.mass, "kg")),
+        ("radius R", f"{1e3 * length:.6g} mm"),
+        ("mass M", _number(1e3 * found.mass, "g")),
         ("gravity g", f"{found.gravity:.6g} m/s²"),
         ("time √(R/g)", f"{time:.6g} s"),
         ("speed √(g R)", f"{length / time:.6g} m/s"),

@@ -108,7 +108,7 @@ class StopFit(NamedTuple):
     def _repr_html_(self) -> str:
         from spincyl._studio.cards import drawing, framed
 
-        rows = self._about() + [(CENTRE[found.centre], repr(found)[1:-1]) for found in self.fits]
+        rows = self._about() + [(CENTRE[one.centre], repr(one)[1:-1].split(": ")[1]) for one in self.fits]
         rows += [(no.centre, f"not fitted: {no.why}") for no in self.refused]
         return framed("StopFit", rows, drawing(self.body, self.theta, "θ"))
 
