@@ -110,7 +110,7 @@ LAWS = {
     "RollingResistance": "0.05 mm",
     "Drilling": "0.02 mm",
     "AirLinear": "1e-09 N m s",
-    "AirQuadratic": "1e-09 N m s^2",
+    "AirQuadratic": "1e-09 N m s²",
     "AirFilm": "1.8e-05 Pa s",
     "BoundaryLayer": "0.1 C",
 }

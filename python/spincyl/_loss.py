@@ -28,7 +28,7 @@ from spincyl._state import State, numbers
 #: Name of the coefficient and exponent of each law, in the order of the core.
 _LAWS = dict(_core.loss_laws())
 #: Unit in which each coefficient is printed; a text with it is what `from_si` takes.
-_PRINTED = dict(zip(_LAWS, ("mm", "N m s", "mm", "mm", "N m s", "N m s^2", "Pa s", "C"), strict=True))
+_PRINTED = dict(zip(_LAWS, ("mm", "N m s", "mm", "mm", "N m s", "N m s²", "Pa s", "C"), strict=True))
 _MOST = 1e6
 _Kind = TypeVar("_Kind", bound="Law")
 _EXPECTED = "expected a positive number: a loss takes energy"

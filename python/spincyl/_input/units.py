@@ -22,7 +22,7 @@ _UNITS = {
     "mass": {"kg": "1", "g": "1e-3", "mg": "1e-6"},
     "gravity": {"m/s2": "1", "m/s^2": "1", "m/s²": "1"},
     "damping": {"Nms": "1"},
-    "drag": {"Nms2": "1", "Nms^2": "1"},
+    "drag": {"Nms2": "1", "Nms^2": "1", "Nms²": "1"},
     "viscosity": {"Pas": "1", "mPas": "1e-3", "uPas": "1e-6"},
     "layer": {"C": "1"},
     "friction over speed": {"s/m": "1"},

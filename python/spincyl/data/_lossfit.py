@@ -127,8 +127,13 @@ class LossFit(NamedTuple):
     def table(self) -> str:
         """Laws by AIC: coefficients and stopping times with errors, chi2, and which are not told apart."""
         either = self.centre == "either"
-        head: tuple[str, ...] = ("law", "centre", "coefficient", "stops at", "chi2", "dAIC", "")
-        rows = [head, *((*cells(found), remark(found)) for found in self.fits)]
+        head: tuple[str, ...] = ("law", "centre", "coefficient", "stops at", "chi2", "dAIC")
+        if self.body.scale is not None:
+            head = (*head[:3], "stops at (s)", *head[4:])
+        rows = [head]
+        for found in self.fits:
+            *most, stops, chi2, daic = cells(found)
+            rows.append((*most, stops.removesuffix(" s"), chi2, f"{daic} {remark(found)}"))
         rows = [row if either else (row[0], *row[2:]) for row in rows]
         widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
         lines = [
