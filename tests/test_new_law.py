@@ -13,6 +13,7 @@ import spincyl as sc
 from spincyl import _core, loss
 from spincyl._contact import CODES
 from spincyl.cli import _losses
+from spincyl.sweep import _inputs
 
 ROOT = Path(__file__).parents[1]
 PACKAGE = Path(sc.__file__).parent
@@ -29,11 +30,11 @@ def typed(name):
 PLACES = {
     loss.__file__: (
         r"^class {name}\(Law\):$",
-        r'(?s)^class {name}\(Law\):$[^@]*^    {parameter}: Reals\n    _unit = "',
         r'^    "{name}",$',
         r"^    {name}\({parameter}\) +P = ",
     ),
     _losses.__file__: (r"^    loss\.{name}: ", r"^  {typed}=\S+ +or "),
+    _inputs.__file__: (r"^    loss\.{name}: ",),
     PAGE: (r'^const LAWS = .*\W{typed}"?: "',),
     # a row in each of two tables
     ROOT / "docs/stops.md": (r"(?s)^\| `{name}\({parameter}\)` \| .*^\| `{name}\({parameter}\)` \| ",),

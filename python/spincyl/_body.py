@@ -1,7 +1,6 @@
 """The body, its steady states and their stability."""
 
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self, overload
 
 import numpy as np
@@ -13,23 +12,25 @@ from spincyl._input.hints import Named
 from spincyl._input.numbers import (
     Reals,
     Result,
-    alike,
     elementwise,
     fitting,
     is_scalar,
     kept,
     keywords,
+    lengths,
+    metres,
     number,
     radians,
     reals,
     several,
-    si,
     turns_per_second,
+    within,
 )
 from spincyl._input.reprs import is_lazy
 from spincyl._laws import Laws
 from spincyl._repr import FIELDS, body
-from spincyl._scale import Scale, ball_scale
+from spincyl._scale import Scale
+from spincyl._sized import Sized
 from spincyl._state import State
 from spincyl._upward import above
 
@@ -42,7 +43,7 @@ _rate_of_one, _float64 = _core.rate_of_one, np.float64
 
 @compared
 @dataclass(frozen=True, eq=False, repr=False)
-class Body(Laws, metaclass=Named):
+class Body(Laws, Sized, metaclass=Named):
     """A rigid body of revolution that touches the table with its lower rim.
 
     Fields may be arrays that broadcast: then this is a family of bodies, and every method
@@ -168,8 +169,7 @@ class Body(Laws, metaclass=Named):
         """
         separation = number("separation", separation)
         i1, theta_end = _core.check_balls(separation)
-        scale = ball_scale(diameter, mass, separation)
-        return cls(separation, i1, 0.4, fillet=1.0, theta_end=theta_end, scale=scale)
+        return cls(separation, i1, 0.4, fillet=1.0, theta_end=theta_end)._across(diameter, mass)
 
     @classmethod
     def ball(
@@ -182,7 +182,7 @@ class Body(Laws, metaclass=Named):
         """
         numbers = number("offset", offset), number("i1", i1), number("i3", i3)
         _core.check_ball(*numbers)
-        return cls(*numbers, fillet=1.0, scale=ball_scale(diameter, mass))
+        return cls(*numbers, fillet=1.0)._across(diameter, mass)
 
     @classmethod
     def from_metres(
@@ -195,8 +195,7 @@ class Body(Laws, metaclass=Named):
         measures = {"outer_diameter": outer_diameter, "inner_diameter": inner_diameter, "length": length}
         if not (type(fillet) is float and fillet == 0):
             measures["fillet"] = fillet
-        measures, given = {name: number(name, si(name, x, "metre")) for name, x in measures.items()}, measures
-        alike(given)
+        measures = metres(lengths("", measures)[0])
         try:
             body = cls.tube(*_core.from_metres(**{"fillet": 0.0, **measures}))
         except ValueError as e:
@@ -221,8 +220,6 @@ class Body(Laws, metaclass=Named):
             _core.check_tube(1.0, float(bore), float(fillet))
         return _core.critical_aspect(bore, fillet)
 
-    # Quantities of a measured body.
-
     @property
     def critical_hertz(self) -> Result:
         """The critical rate in turns per second: where Omega~ = 1, which every body lying on its side has.
@@ -244,11 +241,6 @@ class Body(Laws, metaclass=Named):
         scale = self._sized("hertz")
         at = at if isinstance(at, State) else radians("at", at, self._leans)
         return scale.turns(at.precession if isinstance(at, State) else self.angular_rate(self.rate(at)))
-
-    @property
-    def natural(self) -> "Body":
-        """The same body in natural units: without its scale."""
-        return self if self.scale is None else self._natural
 
     def roll(self, state: State, t: Reals, **how: Any) -> "Motion":
         """How it moves on from a state: `spincyl.roll` of this body, in seconds if it is measured."""
@@ -389,14 +381,41 @@ class Body(Laws, metaclass=Named):
     def _repr_html_(self) -> str:
         return str(above("card")(self))
 
-    def _sized(self, what: str) -> Scale:
-        """The scale of the body, or AttributeError that says how to give the body one."""
-        if self.scale is None:
-            how = (
-                "sc.measured(...) makes a tube that does, dataclasses.replace(body, scale=sc.Scale(...)) any"
-            )
-            raise AttributeError(f"{what}: the body does not know its size; {how}")
-        return self.scale
+    def _radius(self) -> float:
+        if self.scale is not None:
+            return self.scale.radius
+        if not self._measured:
+            raise TypeError("radius: the body does not know its size: give its outer radius, in metres")
+        return self._measured["outer_diameter"] / 2
+
+    def _across(self, diameter: float | None, mass: float | None) -> Self:
+        """A ball, or two, measured if they have a diameter."""
+        if diameter is None:
+            if mass is not None:
+                raise ValueError("mass: of balls that are measured, diameter= in metres")
+            return self
+        across = within("diameter", metres({"diameter": diameter})["diameter"], 2e-100, 2e100, "metres")
+        return self.in_metres(mass, radius=across / 2)
+
+    def _bulk(self) -> tuple[str, tuple[float, float], float]:
+        if self._single and self.bore == self.bore:
+            half = self.ell + self.fillet
+            return "tube", (2 * half, 2.0), 2 * np.pi * (1 - self.bore**2) * half
+        if not self._single or self.fillet != 1:
+            return "body", (2.0, 2.0), 0.0
+        if self.theta_end == self.theta_end:  # where the upper one lands
+            return "pair of balls", (2 + 2 * self.ell, 2.0), 8 / 3 * np.pi
+        return "ball", (2.0, 2.0), 4 / 3 * np.pi
+
+    def _with_scale(self, scale: Scale | None) -> Self:
+        found = replace(self, scale=scale)
+        object.__setattr__(found, "_parts", self._parts)
+        if scale is not None and self._measured.get("outer_diameter") == 2 * scale.radius:
+            usual = {"mass": scale._is_weighed, "gravity": scale.gravity != Scale.gravity}
+            shown = self._measured | {"mass": scale.mass, "gravity": scale.gravity}
+            shown = {name: x for name, x in shown.items() if usual.get(name, True)}
+            object.__setattr__(found, "_measured", shown)
+        return found
 
     def _reduced(self, of: Reals, rate: Reals, hertz: Reals) -> Reals:
         """The reduced rate, given directly or in turns per second."""
@@ -408,10 +427,6 @@ class Body(Laws, metaclass=Named):
         if hertz is None:
             raise TypeError("rate: of a measured body give hertz=, or rate= for the reduced rate, by name")
         return reals("hertz", turns_per_second("hertz", hertz)) / scale.hertz(self, 1.0)
-
-    @cached_property
-    def _natural(self) -> "Body":
-        return replace(self, scale=None)
 
     @property
     def _second(self) -> float:

@@ -1,8 +1,7 @@
 """Stones: ellipsoids with any inertia, such as a rattleback or an egg, their state and their motion."""
 
 import math
-import warnings
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any, Self
@@ -18,29 +17,28 @@ from spincyl._input.numbers import (
     Floats,
     Reals,
     Result,
-    alike,
     components,
     fitting,
     kept,
+    lengths,
     made,
-    number,
     radians,
     reals,
     refuse,
     several,
-    si,
     turns_per_second,
     warn,
 )
 from spincyl._input.reprs import is_lazy
-from spincyl._scale import Scale, dubious
+from spincyl._scale import Scale
+from spincyl._sized import Sized
 from spincyl._slip import slip_of_stone
 from spincyl._weights import weighted
 
 
 @compared
 @dataclass(frozen=True, eq=False, repr=False)
-class Ellipsoid:
+class Ellipsoid(Sized):
     """An ellipsoid with any inertia on a table: a rattleback, an egg, a pebble. It has no axis of symmetry.
 
     Natural units: the mass M, gravity g and the largest semi-axis a are 1, in whatever unit the lengths were
@@ -136,9 +134,10 @@ class Ellipsoid:
         return cls(*numbers, _unit=unit)
 
     @classmethod
-    def uniform(cls, axes: Reals) -> Self:
-        """A uniform ellipsoid with these semi-axes, (..., 3)."""
-        return cls._of(_core.uniform_stone, axes=(vectors("axes", axes, 3), True))
+    def uniform(cls, axes: Reals, *, mass: float | None = None) -> Self:
+        """A uniform ellipsoid with these semi-axes, (..., 3); with a `mass`, or texts, it is `measured`."""
+        axes, told = lengths("axes", axes)
+        return cls._of(_core.uniform_stone, axes=(vectors("axes", axes, 3), True))._measured(told, mass)
 
     @classmethod
     def rattleback(
@@ -182,10 +181,7 @@ class Ellipsoid:
         >>> print(f"{stone.growth_rates(-1.0).max() / stone.scale.seconds(1.0):.1f} per second")
         15.4 per second
         """
-        told = isinstance(axes, Sequence) and any(isinstance(x, str) for x in axes)
-        if told:
-            alike({f"axes[{i}]": x for i, x in enumerate(axes)})
-            axes = [number(f"axes[{i}]", si(f"axes[{i}]", x, "metre")) for i, x in enumerate(axes)]
+        axes, told = lengths("axes", axes)
         wide = [
             None if x is None else vectors(name, x, 3)
             for name, x in (("moments", moments), ("offset", offset))
@@ -199,13 +195,20 @@ class Ellipsoid:
             twist=(_tilt("twist", twist), False),
             offset=(wide[1], wide[1] is not None),
         )
-        return found.in_metres(mass) if told or mass is not None else found
+        return found._measured(told, mass)
 
     @classmethod
-    def egg(cls, radius: Reals, half_length: Reals, offset: Reals = 0.0) -> Self:
-        """A uniform spheroid, whose centre of mass lies `offset` above its centre along its axis (axis 3)."""
+    def egg(
+        cls, radius: Reals, half_length: Reals, offset: Reals = 0.0, *, mass: float | None = None
+    ) -> Self:
+        """A uniform spheroid, whose centre of mass lies `offset` above its centre along its axis (axis 3).
+
+        With a `mass`, or lengths such as "22mm", it is measured, as by `in_metres`.
+        """
         given = {"radius": radius, "half_length": half_length, "offset": offset}
-        return cls._of(_core.egg, **{name: (doubles(reals(name, x)), False) for name, x in given.items()})
+        given, told = lengths("", given)
+        found = cls._of(_core.egg, **{name: (doubles(reals(name, x)), False) for name, x in given.items()})
+        return found._measured(told, mass)
 
     def with_weights(self, weights: Iterable[Any]) -> Self:
         """Fix point masses to a single stone: clay on a rattleback, or an unbalanced disk.
@@ -224,48 +227,6 @@ class Ellipsoid:
         [0.1667, 0.0, 0.0]
         """
         return weighted(self, weights)
-
-    def in_metres(self, mass: float | None = None, *, gravity: float = 9.80665) -> Self:
-        """The same stone, measured: the lengths that it was given are metres.
-
-        Parameters
-        ----------
-        mass : float, optional
-            In kilograms, or a quantity of pint's; what depends on it is refused without.
-        gravity : float
-            In m/s^2.
-
-        Returns
-        -------
-        Ellipsoid
-            With its `scale`: motions are asked for in seconds and told in SI, as of any measured body.
-            States, and what is asked of the stone itself, stay in natural units, but for `hertz=`.
-
-        Warns
-        -----
-        UserWarning
-            If it is larger than 5 m, smaller than 0.1 mm, lighter than foam or heavier than osmium.
-        """
-        kilograms = math.nan if mass is None else number("mass", si("mass", mass, "kilogram"))
-        units = np.unique(np.asarray(self._unit))
-        units = units[~np.isnan(units)]
-        if units.size != 1:
-            raise ValueError(
-                f"stones of {units.size} sizes, and a family has one scale: measure them one by one"
-            )
-        scale = Scale(float(units[0]), kilograms, gravity)
-        volume = float(np.max(4 / 3 * math.pi * np.prod(np.asarray(self.axes), axis=-1))) * scale.radius**3
-        # a stone with an edge is about half of its ellipsoid
-        cut = not bool(np.isnan(self.theta_end).all())
-        why = dubious("stone", (2 * scale.radius, 2 * scale.radius), volume / 2 if cut else volume, kilograms)
-        if why:
-            warnings.warn(why, UserWarning, stacklevel=2)
-        return replace(self, scale=scale)
-
-    @property
-    def natural(self) -> Self:
-        """The same stone without its scale."""
-        return self if self.scale is None else replace(self, scale=None)
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -330,6 +291,11 @@ class Ellipsoid:
             slip = slip_of_stone(self, n, w, x, y)
         return replace(state, slip=slip)
 
+    def hertz(self, state: EllipsoidState) -> Result:
+        """(...) turns per second about the vertical of a state; needs a measured stone."""
+        scale = self._sized("hertz")
+        return scale.turns(made("state", state, EllipsoidState).spin)
+
     def rocking(self, spin: Reals | None = None, *, hertz: Reals | None = None) -> Rocking:
         """How it rocks when it spins upright at a rate, its contact point at rest.
 
@@ -364,6 +330,30 @@ class Ellipsoid:
         """Whether neither mode of rocking grows at this spin (...); see `rocking`."""
         return np.all(self.rocking(spin, hertz=hertz).growth <= 0, axis=-1)
 
+    def _measured(self, told: bool, mass: float | None) -> Self:
+        """The stone in metres, if its lengths had units or it has a mass."""
+        return self.in_metres(mass) if told or mass is not None else self
+
+    def _radius(self) -> float:
+        if self.scale is not None:
+            return self.scale.radius
+        units = np.unique(np.asarray(self._unit))
+        units = units[~np.isnan(units)]
+        if units.size != 1:
+            raise ValueError(
+                f"stones of {units.size} sizes, and a family has one scale: measure them one by one"
+            )
+        return float(units[0])
+
+    def _bulk(self) -> tuple[str, tuple[float, float], float]:
+        volume = float(np.max(4 / 3 * math.pi * np.prod(np.asarray(self.axes), axis=-1)))
+        # a stone with an edge is about half of its ellipsoid
+        cut = not bool(np.isnan(np.asarray(self.theta_end)).all())
+        return "stone", (2.0, 2.0), volume / 2 if cut else volume
+
+    def _with_scale(self, scale: Scale | None) -> Self:
+        return replace(self, scale=scale)
+
     def _spin(self, spin: Reals | None, hertz: Reals | None) -> Reals:
         """The spin in sqrt(g/a), given directly or in turns per second."""
         if hertz is None:
@@ -371,9 +361,7 @@ class Ellipsoid:
         if spin is not None:
             raise TypeError("spin, hertz: give one of them")
         if self.scale is None:
-            raise ValueError(
-                "hertz: needs the size of the stone, as of in_metres(); or give spin= in sqrt(g/a)"
-            )
+            raise ValueError("hertz: the stone does not know its size, as of in_metres(); or give spin=")
         return doubles(reals("hertz", turns_per_second("hertz", hertz))) / self.scale._units[3]
 
     def spin_limits(self) -> Floats:

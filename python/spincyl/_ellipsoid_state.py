@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from spincyl import _core
 from spincyl._input.equality import compared
-from spincyl._input.numbers import Floats, Reals, Result, components, floats, reals, several
+from spincyl._input.numbers import Floats, Reals, Result, components, floats, reals, several, vector_in
 from spincyl._input.reprs import call, is_lazy
 from spincyl._scale import scale_of
 
@@ -80,10 +80,17 @@ class EllipsoidState:
     def from_si(cls, vertical: Reals, w: Reals, *, slip: Reals | None = None, scale: Any) -> "EllipsoidState":
         """A state with angular velocities in rad/s and a slip in m/s; `scale` may be a measured stone."""
         metre, second, *_ = scale_of(scale)._units
+        w, slip = vector_in("radian/second", "w", w), vector_in("metre/second", "slip", slip)
         found = cls(vertical, w, slip)
         with np.errstate(over="ignore"):
             faster = None if found.slip is None else found.slip * (second / metre)
             return cls(found.vertical, found.w * second, faster)
+
+    def in_si(self, scale: Any) -> dict[str, Any]:
+        """What `from_si` takes: the vertical, w in rad/s, and the slip in m/s if there is one."""
+        metre, second, *_ = scale_of(scale)._units
+        slip = {} if self.slip is None else {"slip": self.slip * (metre / second)}
+        return {"vertical": self.vertical, "w": self.w / second} | slip
 
     def __post_init__(self) -> None:
         for name, width in (("vertical", 3), ("w", 3), ("slip", 2)):

@@ -121,9 +121,9 @@ class Laws:
         rolling = rolls(contact)
         if isinstance(at, State):
             law = _core.state_kappa_rolling if rolling else _core.state_kappa_smooth
-            return law(*gripping(at, _ROLLS), *self._numbers, **keywords(law, ufunc))
+            return law(*gripping(at, _ROLLS), *self._numbers, **keywords(law, ufunc, "stability"))
         law = _core.kappa_rolling if rolling else _core.kappa_smooth
-        return law(radians("at", at, self._leans), *self._numbers, **keywords(law, ufunc))
+        return law(radians("at", at, self._leans), *self._numbers, **keywords(law, ufunc, "stability"))
 
     @elementwise
     def stable(self, at: Reals | State, contact: Contact = "rolling") -> Result:

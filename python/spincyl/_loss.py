@@ -113,8 +113,6 @@ class Law(Loss):
 
     #: False for a coefficient in natural units; True, or the scale, if it was given in SI.
     _sized: "Scale | bool" = False
-    #: The natural unit of the coefficient.
-    _unit: ClassVar[str]
 
     def __init__(self, coefficient: Reals) -> None:
         raise TypeError(

@@ -4,24 +4,20 @@ The motion of a measured body takes times in seconds, is computed in natural uni
 is returned in SI. `Motion.natural` is the motion in natural units, from which plots, pages and files start.
 """
 
-import math
 import re
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from spincyl._body import Body
 from spincyl._input.hints import helpful
-from spincyl._input.numbers import Floats, Reals, number, reals, si, warn, within
-from spincyl._scale import Scale, dubious, unit
+from spincyl._input.numbers import Floats, Reals, metres, reals, si, within
+from spincyl._scale import Scale, unit
 
 if TYPE_CHECKING:
     from spincyl._motion import Motion
-
-_GRAVITY = 9.80665
 
 
 @helpful
@@ -33,7 +29,7 @@ def measured(
     wall: float | None = None,
     mass: float | None = None,
     fillet: float = 0.0,
-    gravity: float = _GRAVITY,
+    gravity: float = Scale.gravity,
 ) -> Body:
     """A uniform tube that knows its size, from its measures in metres and kilograms.
 
@@ -77,7 +73,7 @@ def measured(
 
     See Also
     --------
-    Body : ``dataclasses.replace(body, scale=sc.Scale(radius, mass))`` gives a size to any other body.
+    Body.in_metres : gives a size to any other body.
 
     Examples
     --------
@@ -89,43 +85,16 @@ def measured(
     >>> print(f"{m.t[-1]} s, {m.normal[-1]:.3f} N")
     2.0 s, 0.178 N
     """
-    given: dict[str, Any] = {
-        "outer_diameter": outer_diameter,
-        "inner_diameter": inner_diameter,
-        "length": length,
-        "fillet": fillet,
-    }
-    given = {name: number(name, si(name, x, "metre")) for name, x in given.items()}
+    given = metres({"outer_diameter": outer_diameter, "inner_diameter": inner_diameter})
+    given |= metres({"length": length, "fillet": fillet})
     if wall is not None:
         thick = within("wall", si("wall", wall, "metre"), 0.0, given["outer_diameter"] / 2, "metres")
         if given["inner_diameter"]:
             raise TypeError("inner_diameter, wall: give one of them")
         given["inner_diameter"] = given["outer_diameter"] - 2 * thick
     body = Body.from_metres(**given)
-    if mass is not None:
-        given["mass"] = number("mass", si("mass", mass, "kilogram"))
-        if math.isnan(given["mass"]):
-            raise ValueError("mass = nan: expected kilograms, or no mass= if it is not known")
-    if not 2e-100 <= given["outer_diameter"] <= 2e100:
-        raise ValueError(f"outer_diameter = {given['outer_diameter']!r}: expected 2e-100 to 2e100 (metres)")
-    scale = Scale(given["outer_diameter"] / 2, given.get("mass", math.nan), gravity)
-    why = doubt(**given)
-    if why:
-        warn(why)
-    shown = given | ({} if scale.gravity == _GRAVITY else {"gravity": scale.gravity})
-    if not given["fillet"]:
-        del shown["fillet"]
-    found = replace(body, scale=scale)
-    object.__setattr__(found, "_measured", shown)
-    return found
-
-
-def doubt(
-    outer_diameter: float, inner_diameter: float, length: float, fillet: float, mass: float = math.nan
-) -> str:
-    """A reason to suspect millimetres or grams taken for metres or kilograms; empty if there is none."""
-    volume = math.pi / 4 * (outer_diameter - inner_diameter) * (outer_diameter + inner_diameter) * length
-    return dubious("tube", (length, outer_diameter), volume, mass)
+    within("outer_diameter", given["outer_diameter"], 2e-100, 2e100, "metres")
+    return body.in_metres(mass, gravity=gravity)
 
 
 def natural_time(name: str, time: Reals, scale: Scale) -> Reals:
@@ -213,6 +182,6 @@ def told(name: str, values: Any, scale: Scale | None) -> Any:
     factor, said = unit(name, scale)
     if factor is None and scale is not None and said in ("M g", "M g R"):
         in_si = {"M g": "N", "M g R": "J"}[said]
-        why = f"in {in_si} needs the mass of the body, sc.measured(..., mass=) in kilograms"
+        why = f"in {in_si} needs the mass of the body, body.in_metres(mass=) in kilograms"
         raise AttributeError(f"{name} {why}; natural.{name} of the motion is in {said}")
     return values if factor is None else values * factor

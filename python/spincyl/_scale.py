@@ -4,7 +4,6 @@ Length R, time sqrt(R/g), speed sqrt(g R), angular velocity sqrt(g/R), force M g
 """
 
 import math
-import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, overload
 
@@ -28,8 +27,6 @@ _OUTPUTS = {
 #: Natural unit of each output of a motion; outputs that are not listed are pure numbers.
 UNITS = {name: unit for unit, names in _OUTPUTS.items() for name in names.split()}
 _WEIGHED = ("J", "N")
-_LENGTHS = 1e-4, 5.0  # metres
-_DENSITIES = 12.0, 23e3  # kg/m^3, from foam to osmium
 
 
 @compared
@@ -196,7 +193,7 @@ def scale_of(scale: "Scale | Body | None", *bodies: "Body") -> Scale | None:
     """
     given = scale if scale is None or isinstance(scale, Scale) else getattr(scale, "scale", None)
     if scale is not None and not isinstance(given, Scale):
-        more = " that is not measured" if hasattr(scale, "scale") else ""
+        more = " that is not measured: body.in_metres(...) is" if hasattr(scale, "scale") else ""
         raise TypeError(f"scale: expected a Scale, not {type(scale).__name__}{more}")
     if scale is None and not bodies:
         raise TypeError("scale: expected a Scale or a measured body, not None")
@@ -208,33 +205,3 @@ def scale_of(scale: "Scale | Body | None", *bodies: "Body") -> Scale | None:
     if given is None and any(own != owns[0] for own in owns):
         raise ValueError(f"scale: the bodies have different ones, {owns}: give those of one scale, or scale=")
     return given if given is not None or not owns else owns[0]
-
-
-def dubious(what: str, sides: tuple[float, float], volume: float, mass: float) -> str:
-    """A reason to suspect millimetres or grams in the measures (length, width) of a body; empty if none."""
-    why = ""
-    if max(sides) > _LENGTHS[1]:
-        why = f"{sides[0]:.4g} m long and {sides[1]:.4g} m wide; 1 mm is 1e-3"
-    elif sides[1] < _LENGTHS[0]:
-        why = f"{sides[1]:.4g} m wide"
-    elif volume > 0 and (mass < _DENSITIES[0] * volume or mass > _DENSITIES[1] * volume):
-        why = f"of {mass / volume:.3g} kg/m^3, and water has 1000; 1 g is 1e-3"
-    return why and f"this is a {what} {why}: are these metres and kilograms?"
-
-
-def ball_scale(diameter: Any, mass: Any, separation: float | None = None) -> "Scale | None":
-    """The scale of a ball of this diameter, or of two with a `separation`; None without a diameter."""
-    if diameter is None:
-        if mass is not None:
-            raise ValueError("mass: of balls that are measured, diameter= in metres")
-        return None
-    across = number("diameter", si("diameter", diameter, "metre"))
-    if not 2e-100 <= across <= 2e100:
-        raise ValueError(f"diameter = {across!r}: expected 2e-100 to 2e100 (metres)")
-    found = Scale(across / 2, math.nan if mass is None else mass)
-    count, long = (1, 1.0) if separation is None else (2, 1 + separation)
-    what = "ball" if count == 1 else "pair of balls"
-    why = dubious(what, (long * across, across), count * math.pi / 6 * across**3, found.mass)
-    if why:
-        warnings.warn(why, UserWarning, stacklevel=3)
-    return found

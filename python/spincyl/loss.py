@@ -79,7 +79,6 @@ class DryContour(Law):
     """
 
     eps: Reals
-    _unit = "R"
 
     @classmethod
     def from_si(cls, eps: Reals, *, scale: Scale | Body) -> Self:
@@ -101,7 +100,6 @@ class ViscousContour(Law):
     """
 
     c: Reals
-    _unit = "M R sqrt(g R)"
 
     @classmethod
     def from_si(cls, c: Reals, *, scale: Scale | Body) -> Self:
@@ -123,7 +121,6 @@ class RollingResistance(Law):
     """
 
     delta: Reals
-    _unit = "R"
 
     @classmethod
     def from_si(cls, delta: Reals, *, scale: Scale | Body) -> Self:
@@ -146,7 +143,6 @@ class Drilling(Law):
     """
 
     length: Reals
-    _unit = "R"
 
     @classmethod
     def from_si(cls, length: Reals, *, scale: Scale | Body) -> Self:
@@ -165,7 +161,6 @@ class AirLinear(Law):
     """
 
     b: Reals
-    _unit = "M R sqrt(g R)"
 
     @classmethod
     def from_si(cls, b: Reals, *, scale: Scale | Body) -> Self:
@@ -184,7 +179,6 @@ class AirQuadratic(Law):
     """
 
     b2: Reals
-    _unit = "M R^2"
 
     @classmethod
     def from_si(cls, b2: Reals, *, scale: Scale | Body) -> Self:
@@ -209,7 +203,6 @@ class AirFilm(Law):
     """
 
     viscosity: Reals
-    _unit = "M g^(1/2)/R^(3/2)"
 
     @classmethod
     def from_si(cls, viscosity: Reals = _AIR, *, scale: Scale | Body) -> Self:
@@ -234,7 +227,6 @@ class BoundaryLayer(Law):
     """
 
     k: Reals
-    _unit = "M g^(1/4) R^(7/4)"
 
     @classmethod
     def from_si(

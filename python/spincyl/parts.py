@@ -24,7 +24,8 @@ from typing import Any
 from spincyl import _core
 from spincyl._body import Body
 from spincyl._input.numbers import made, number, si
-from spincyl._scale import Scale, dubious
+from spincyl._input.units import dubious
+from spincyl._scale import Scale
 
 __all__ = ["Part", "assembled", "ball", "cap", "cone", "cylinder", "disk", "point", "ring", "shell", "wall"]
 
@@ -229,8 +230,7 @@ def assembled(parts: Iterable[Part], *, gravity: float = Scale.gravity) -> Body:
         warnings.warn(why, UserWarning, stacklevel=2)
     body = Body(ell, i1, i3, fillet=fillet, theta_end=theta_end, scale=Scale(radius, mass, gravity))
     shape = tuple((part.name, part.form, _scaled(part, centre, radius)) for part in placed)
-    for each in (body, body.natural):
-        object.__setattr__(each, "_parts", shape)
+    object.__setattr__(body, "_parts", shape)
     return body
 
 

@@ -133,6 +133,29 @@ def si(name: str, value: Reals, unit: str) -> Reals:
     return _magnitude(name, value, unit, f"a number or a quantity in {unit}") if is_quantity(value) else value
 
 
+def metres(measures: dict[str, Any]) -> dict[str, float]:
+    """Single lengths in metres, by name."""
+    return {name: number(name, si(name, x, "metre")) for name, x in measures.items()}
+
+
+def lengths(name: str, value: Any) -> tuple[Any, bool]:
+    """Lengths by name or in a list, in metres if one of them is a text with its unit; and whether one is."""
+    listed = not isinstance(value, dict) and isinstance(value, Sequence)
+    named = {f"{name}[{i}]": x for i, x in enumerate(value)} if listed else value
+    if not isinstance(named, dict) or not any(isinstance(x, str) for x in named.values()):
+        return value, False
+    found = metres(named)
+    alike(named)
+    return [*found.values()] if listed else found, True
+
+
+def vector_in(unit: str, name: str, value: Reals) -> Reals:
+    """A vector in the unit of SI; of a list or a tuple each component may be a text or a quantity."""
+    if isinstance(value, list | tuple):
+        return [vector_in(unit, f"{name}[{i}]", x) for i, x in enumerate(value)]
+    return radians_per_second(name, value) if unit == "radian/second" else si(name, value, unit)
+
+
 def alike(measures: dict[str, Any]) -> None:
     """ValueError if some measures are texts with a unit and others bare numbers, whose unit is uncertain."""
     bare = [(name, x) for name, x in measures.items() if isinstance(x, Real) and x != 0]
@@ -191,11 +214,14 @@ def _dtypes(array: Any) -> Any:
     return [array.dtype] if hasattr(array, "dtype") else getattr(array, "dtypes", None)
 
 
-def keywords(law: np.ufunc, given: dict[str, Any]) -> dict[str, Any]:
-    """The keywords of a ufunc; an unsuitable `out` or `where` raises an error that names it.
+def keywords(law: np.ufunc, given: dict[str, Any], of: str = "") -> dict[str, Any]:
+    """The keywords of a ufunc, of the method `of`; an unsuitable `out` or `where` raises an error by name.
 
     A labelled `where` is refused, since pandas and xarray would apply it by position and ignore its labels.
     """
+    for word in given:
+        if word not in ("out", "where", "casting", "order", "dtype", "subok", "signature"):
+            raise TypeError(f"{of or law.__name__}() got an unexpected keyword argument {word!r}")
     out = given.get("out")
     if isinstance(out, tuple) and len(out) != 1:
         raise TypeError(f"out: expected an array to fill, not {len(out)} of them")

@@ -127,6 +127,8 @@ def quantity(kind: str) -> Callable[[str], float]:
     return read
 
 
+#: Sizes in metres and densities in kg/m^3, from foam to osmium, beyond which units are in doubt.
+_LENGTHS, _DENSITIES = (1e-4, 5.0), (12.0, 23e3)
 #: Kind of quantity by pint's name for its unit of SI.
 _KINDS = {
     "metre": "length",
@@ -188,3 +190,15 @@ def whole(text: str) -> int:
         if unit or not found:
             raise ArgumentTypeError(f"{text!r}: expected a whole number") from None
         return int(value)
+
+
+def dubious(what: str, sides: tuple[float, float], volume: float, mass: float) -> str:
+    """A reason to suspect millimetres or grams in the measures (length, width) of a body; empty if none."""
+    why = ""
+    if max(sides) > _LENGTHS[1]:
+        why = f"{sides[0]:.4g} m long and {sides[1]:.4g} m wide; 1 mm is 1e-3"
+    elif sides[1] < _LENGTHS[0]:
+        why = f"{sides[1]:.4g} m wide"
+    elif volume > 0 and (mass < _DENSITIES[0] * volume or mass > _DENSITIES[1] * volume):
+        why = f"of {mass / volume:.3g} kg/m^3, and water has 1000; 1 g is 1e-3"
+    return why and f"this is a {what} {why}: are these metres and kilograms?"

@@ -19,7 +19,7 @@ from spincyl._contact import AnyContact, Coulomb, Viscous
 from spincyl._input.files import replaced
 from spincyl._input.numbers import extra, within
 from spincyl._input.units import Metres, Seconds
-from spincyl._measured import doubt, speaking
+from spincyl._measured import speaking
 from spincyl.cli._files import columns, needed, write_csv, writer_of
 from spincyl.cli._losses import losses_of
 from spincyl.cli._output import Working, folder, writable
@@ -93,7 +93,7 @@ def _measured(args: Namespace) -> Body:
         )
     with _naming("fillet", "--fillet"):
         body = Body.from_metres(outer_diameter=args.outer, length=args.length, **more)
-    why = doubt(args.outer, more.get("inner_diameter", 0.0), args.length, 0.0)
+    why = body._doubt_of(Scale(args.outer / 2, math.nan))
     if why:
         print(f"spincyl: {why}", file=sys.stderr)
     return body

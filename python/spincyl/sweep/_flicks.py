@@ -1,6 +1,7 @@
 """Many flicks of a tube: which settle on one rim, which lie down again, and which hop before."""
 
 from enum import IntEnum
+from inspect import signature
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -127,6 +128,8 @@ def flicks(
     given = {"w1": w1, "hertz": hertz, "launch": launch, "spin_hertz": spin_hertz, "centre": centre}
     axes = {name: x for name, x in given.items() if x is not None}
     start = flicked(body, **{name: _axis(lib, name, x) for name, x in axes.items()})
+    for word in how.keys() - signature(roll).parameters.keys():
+        raise TypeError(f"flicks() got an unexpected keyword argument {word!r}")
     how = {"want": ("end", "rolling_time")} | how
     on = how.get("restitution") is not None
     if on:

@@ -26,6 +26,17 @@ _NORMAL = ("n1", "n2", "n3")
 _LAWS: dict[str, type[Law]] = {
     name: getattr(loss, kind) for kind, (name, _) in zip(CODES["Law"], _core.loss_laws(), strict=True)
 }
+#: The natural unit of the coefficient of each law of loss.
+_COEFFICIENTS = {
+    loss.DryContour: "R",
+    loss.ViscousContour: "M R sqrt(g R)",
+    loss.RollingResistance: "R",
+    loss.Drilling: "R",
+    loss.AirLinear: "M R sqrt(g R)",
+    loss.AirQuadratic: "M R^2",
+    loss.AirFilm: "M g^(1/2)/R^(3/2)",
+    loss.BoundaryLayer: "M g^(1/4) R^(7/4)",
+}
 #: Every coordinate that these functions give, with its unit; in that of a stone R is a.
 _UNITS = (
     dict(zip((f"body_{name}" for name in FIELDS), ("R", "M R^2", "M R^2", "1", "R", "rad"), strict=True))
@@ -35,7 +46,7 @@ _UNITS = (
     | {f"start_slip_{way}": "sqrt(g R)" for way in ("along", "across", "x", "y")}
     | {"start_theta": "rad", "start_height": "R", "start_lift": "sqrt(g R)"}
     | {"contact_mu": "1", "contact_static": "1", "contact_patch": "R", "contact_c": "1/sqrt(g R)"}
-    | {f"loss_{name}": law._unit for name, law in _LAWS.items()}
+    | {f"loss_{name}": _COEFFICIENTS[law] for name, law in _LAWS.items()}
 )
 
 
