@@ -136,13 +136,16 @@ def stones():
         "Ellipsoid": (
             sc.Ellipsoid, {"axes": axes, "inertia": inertia, "offset": (0, 0, 0), "theta_end": 1.5, "scale": None},
         ),
-        "Ellipsoid.uniform": (sc.Ellipsoid.uniform, {"axes": axes}),
+        "Ellipsoid.uniform": (sc.Ellipsoid.uniform, {"axes": axes, "mass": 200.0}),
         "Ellipsoid.rattleback": (
             sc.Ellipsoid.rattleback, {"axes": axes, "twist": 0.1, "moments": (0.02, 0.2, 0.21), "offset": (0, 0, 0)},
         ),
         "Ellipsoid.egg": (sc.Ellipsoid.egg, {"radius": 0.7, "half_length": 1.0, "offset": 0.0}),
         "Ellipsoid.with_weights": (stone.with_weights, {"weights": [(0.1, (0.5, 0.0, 0.0))]}),
         "Ellipsoid.in_metres": (stone.in_metres, {"mass": 200.0, "gravity": 9.8}),
+        "Ellipsoid.egg": (sc.Ellipsoid.egg, {"radius": 0.7, "half_length": 1.0, "offset": 0.0, "mass": None}),
+        "Ellipsoid.in_metres": (stone.in_metres, {"mass": 200.0, "radius": 1.0, "gravity": 9.8}),
+        "Ellipsoid.hertz": (stone.in_metres().hertz, {"state": start}),
         "Ellipsoid.spinning": (stone.spinning, spinning),
         "Ellipsoid.with_centre_velocity": (stone.with_centre_velocity, {"state": start, "x": 0.0, "y": 0.1}),
         "Ellipsoid.rocking": (stone.rocking, {"spin": 0.5}),
@@ -151,6 +154,7 @@ def stones():
         "Ellipsoid.energy": (stone.energy, {"state": start, "contact": "rolling"}),
         "EllipsoidState": (sc.EllipsoidState, {"vertical": vertical, "w": (0, 0, 1), "slip": (0, 0)}),
         "EllipsoidState.from_si": (sc.EllipsoidState.from_si, {"vertical": vertical, "w": (0, 0, 1), "slip": (0, 0), "scale": sc.Scale(0.01)}),
+        "EllipsoidState.in_si": (start.in_si, {"scale": sc.Scale(0.01)}),
         "roll of a stone": (sc.roll, given),
         "EllipsoidMotion.at": (sc.roll(stone, start, 1.0).at, {"t": [0.5, 1.0]}),
         "sweep.roll of stones": (sc.sweep.roll, swept),
@@ -243,6 +247,7 @@ def nouns():
         "flicked": (
             sc.flicked, {"body": TUBE, "hertz": 17.0, "w1": None, "launch": 1.3, "spin_hertz": None, "centre": None, "scale": None},
         ),
+        "Body.in_metres": (TUBE.in_metres, {"mass": 0.02, "radius": 8e-3, "gravity": 9.8}),
         "State.in_si": (state.in_si, {"scale": TUBE}),
         "launch_number": (sc.launch_number, {"body": body, "state": sc.State(np.pi / 2, 1, 0.0, 2)}),
         "turning_spin": (sc.turning_spin, {"top": sc.Body.ball(-0.2, 0.40, 0.42), "contact": sc.Viscous(1.0), "lean": 0.1}),

@@ -341,7 +341,7 @@ class Ellipsoid(Sized):
         units = units[~np.isnan(units)]
         if units.size != 1:
             raise ValueError(
-                f"stones of {units.size} sizes, and a family has one scale: measure them one by one"
+                f"radius: stones of {units.size} sizes, and a family has one scale: measure them one by one"
             )
         return float(units[0])
 
