@@ -90,7 +90,8 @@ fn rolled(
     } else {
         path::follow(body, start, times, ask, go_on)
     };
-    Ok(found?.map(|motion| Motion { smooth: ask.table == Table::Smooth, ..motion }))
+    Ok(found?
+        .map(|motion| Motion { smooth: ask.table == Table::Smooth && ask.restitution.is_none(), ..motion }))
 }
 
 /// The first event of an exact motion that the model does not cover, from time 0 on; `mu` is the coefficient

@@ -14,6 +14,8 @@ mod ensemble;
 mod equations;
 mod evaluations;
 mod exact;
+#[cfg(feature = "serde")]
+mod files;
 mod flight;
 mod hard_cases;
 mod impacts;
@@ -22,6 +24,7 @@ mod leaving;
 mod losing_slips;
 mod losses;
 mod lying;
+mod measured;
 mod moving;
 mod paper;
 mod parts;
@@ -39,6 +42,7 @@ mod sweep;
 mod thin_disk;
 mod throw;
 mod turning_points;
+mod twists;
 mod units;
 mod whirrs;
 

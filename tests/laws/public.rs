@@ -1,8 +1,8 @@
 //! What a program that depends on the crate may do with its types.
 
-use spincyl::loss::Law;
-use spincyl::motion::Ending;
+use spincyl::loss::{Law, Losses};
 use spincyl::motion::path::Kind;
+use spincyl::motion::{Ask, Ending, Start};
 use spincyl::nalgebra::Vector3;
 use spincyl::{Body, Contact, Error, State, rolling};
 use std::collections::{BTreeSet, HashMap};
@@ -50,4 +50,32 @@ fn vectors_are_those_of_the_nalgebra_that_comes_with_the_crate() {
     let centre: Vector3<f64> = y.centre_velocity(&body);
     assert!(centre.norm() > 0.0 && rolling::derivative(&body, &y).w2.is_finite());
     assert_ne!(Contact::Rolling, Contact::Smooth);
+}
+
+#[test]
+fn losses_are_read_and_set_law_by_law() {
+    let both = Losses::of(Law::AirFilm, 1e-7).with(Law::DryContour, 5e-3);
+    assert_eq!(both.iter().collect::<Vec<_>>(), [(Law::DryContour, 5e-3), (Law::AirFilm, 1e-7)]);
+    assert_eq!((both.coefficient(Law::AirFilm), both.coefficient(Law::Drilling)), (1e-7, 0.0));
+    assert!(both.with(Law::AirFilm, 0.0).with(Law::DryContour, 0.0).is_none());
+    assert_eq!(Losses::of(Law::DryContour, 5e-3) + Losses::of(Law::AirFilm, 1e-7), both);
+    assert!(both.with(Law::Drilling, -1.0).check().unwrap_err().to_string().starts_with("length = -1.0"));
+}
+
+#[test]
+fn options_and_starts_have_what_they_were_given() {
+    let losses = Losses::of(Law::AirLinear, 1e-3);
+    let ask =
+        Ask::on(Contact::Smooth).with_losses(losses).with_restitution(0.5).with_pose(true).with_force(true);
+    assert_eq!((ask.table, ask.losses, ask.restitution), (Contact::Smooth.into(), losses, Some(0.5)));
+    assert!(ask.pose && ask.force && !ask.beyond && !ask.stop_at_rolling);
+    assert_eq!(
+        ask.with_restitution(None).with_pose(false).with_force(false).with_losses(Losses::NONE),
+        Ask::on(Contact::Smooth)
+    );
+    assert!(ask.with_beyond(true).beyond && ask.with_stop_at_rolling(true).stop_at_rolling);
+    let y = State { theta: 1.0, w1: 0.1, w2: 0.2, w3: 0.3 };
+    let start = Start::from(y).with_slip([1.0, 2.0]).with_time(3.0).with_aloft([0.5, -1.0]);
+    assert_eq!((start.state, start.slip, start.time, start.aloft), (y, [1.0, 2.0], 3.0, Some([0.5, -1.0])));
+    assert_eq!(start.with_aloft(None).with_slip([0.0; 2]).with_time(0.0), y.into());
 }

@@ -2,8 +2,9 @@
 
 use crate::common::any_state;
 use proptest::prelude::*;
+use spincyl::loss::{Law, Losses};
 use spincyl::{Body, Scale, rolling, stability};
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_4, PI};
 
 proptest! {
     #![proptest_config(crate::common::cases(256))]
@@ -18,6 +19,91 @@ proptest! {
         let w = y.angular_velocity();
         let w = if w.amax() > 0.0 { w / w.amax() } else { w };
         prop_assert!((y.gamma() - w.angle(&nalgebra::Vector3::z())).abs() < 1e-7);
+    }
+}
+
+/// A conversion to SI and the one back, of every quantity.
+type Way = fn(&Scale, f64) -> f64;
+const WAYS: [(Way, Way); 11] = [
+    (Scale::metres, Scale::length),
+    (Scale::seconds, Scale::time),
+    (Scale::metres_per_second, Scale::speed),
+    (Scale::radians_per_second, Scale::angular_velocity),
+    (Scale::turns, Scale::turning),
+    (Scale::newtons, Scale::force),
+    (Scale::newton_seconds, Scale::impulse),
+    (Scale::joules, Scale::energy),
+    (Scale::newton_metres, Scale::couple),
+    (Scale::watts, Scale::power),
+    (Scale::kilogram_square_metres, Scale::moment),
+];
+
+/// The number of doubles from a to b.
+fn ulps(a: f64, b: f64) -> u64 {
+    a.to_bits().abs_diff(b.to_bits())
+}
+
+proptest! {
+    #![proptest_config(crate::common::cases(512))]
+
+    #[test]
+    fn what_goes_to_si_and_back_keeps_its_digits(
+        exponents in prop::array::uniform3(-100.0..100.0f64), small in any::<bool>(), x in -4.0..4.0f64,
+    ) {
+        let [r, m, g] = exponents.map(|e| 10f64.powf(if small { e / 50.0 } else { e }));
+        let scale = Scale::new(r, m, g).unwrap();
+        prop_assert_eq!(scale.numbers(), [r, m, g]);
+        for (to, back) in WAYS {
+            let (si, natural) = (to(&scale, x), back(&scale, x));
+            prop_assert!(si.is_normal() && natural.is_normal());
+            prop_assert!(ulps(back(&scale, si), x) <= 2 && ulps(to(&scale, natural), x) <= 2);
+        }
+        for &law in Law::ALL {
+            let si = scale.coefficient_in_si(law, x);
+            prop_assert!(si.is_normal() && ulps(scale.coefficient(law, si), x) <= 2, "{:?}", law);
+        }
+    }
+
+    /// Units of mechanics: N = kg m/s^2 and so on, to a few roundings.
+    #[test]
+    fn units_are_products_of_metres_kilograms_and_seconds(r in 1e-3..10.0f64, kg in 1e-3..10.0f64, g in 1.0..20.0f64) {
+        let scale = Scale::new(r, kg, g).unwrap();
+        let (m, s) = (scale.metres(1.0), scale.seconds(1.0));
+        prop_assert!((s * s * g / r - 1.0).abs() < 1e-15);
+        let expected = [
+            m, s, m / s, 1.0 / s, 1.0 / s / (2.0 * PI), kg * m / (s * s), kg * m / s, kg * m * m / (s * s),
+            kg * m * m / (s * s), kg * m * m / (s * s * s), kg * m * m,
+        ];
+        for ((to, _), unit) in WAYS.into_iter().zip(expected) {
+            prop_assert!((to(&scale, 1.0) / unit - 1.0).abs() < 4e-15, "{}", unit);
+        }
+    }
+
+    /// The power of each law, written in SI: with the weight in newtons and rates in rad/s, and A as a share of R.
+    #[test]
+    fn a_coefficient_in_si_takes_its_watts(
+        y in any_state(), r in 1e-3..1.0f64, kg in 1e-3..10.0f64, g in 1.0..20.0f64, x in 1e-6..1e-2f64,
+    ) {
+        let (body, scale) = (Body::solid(0.3).unwrap(), Scale::new(r, kg, g).unwrap());
+        let rate = |w: f64| scale.radians_per_second(w);
+        let (w, (s, c)) = (y.angular_velocity().map(rate), y.theta.sin_cos());
+        let (spin, weight) = (rate(y.spin()), kg * g);
+        for &law in Law::ALL {
+            let watts = match law {
+                Law::DryContour => x * weight * spin.abs(),
+                Law::ViscousContour => x * spin * spin,
+                Law::RollingResistance => x * weight * (c * w.x - s * w.z).hypot(w.y),
+                Law::Drilling => x * weight * (s * w.x + c * w.z).abs(),
+                Law::AirLinear => x * w.norm_squared(),
+                Law::AirQuadratic => x * w.norm().powi(3),
+                Law::AirFilm => FRAC_PI_4 * x * r.powi(3) * spin * spin / s,
+                Law::BoundaryLayer => x * spin.abs().powf(2.5),
+                _ => panic!("{law:?} has no power in this test"),
+            };
+            let losses = Losses::of(law, scale.coefficient(law, x));
+            let found = scale.watts(losses.power(&body, &y, 1.0));
+            prop_assert!((found - watts).abs() <= 1e-11 * watts, "{:?}: {} {}", law, found, watts);
+        }
     }
 }
 
