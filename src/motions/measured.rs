@@ -82,9 +82,9 @@ pub struct Reading {
     pub velocity: Vector3<f64>,
     /// The angular velocity in rad/s.
     pub angular_velocity: Vector3<f64>,
-    /// The contact point in metres, or the lowest point of the rim in the air.
+    /// The contact point in metres, or the lowest point of the rim in the air; one of them of a body that lies on both rims.
     pub contact_point: Point3<f64>,
-    /// The force of the table in newtons; NaN in the air.
+    /// The force of the table in newtons, on both rims together; NaN in the air.
     pub force: Vector3<f64>,
     /// Kinetic and potential energy in joules.
     pub energy: f64,
@@ -184,7 +184,7 @@ impl MeasuredMotion {
         let Measured { body, scale } = &self.of;
         let length = |x: f64| scale.metres(x);
         self.natural.samples().zip(&self.seconds).filter_map(move |(now, seconds)| {
-            let (pose, force) = now.pose.zip(now.force)?;
+            let pose = now.pose?;
             let lowest = Point3::new(pose.contact_point.x, pose.contact_point.y, pose.height);
             Some(Reading {
                 time: *seconds,
@@ -194,7 +194,7 @@ impl MeasuredMotion {
                 velocity: now.velocity(body)?.map(|v| scale.metres_per_second(v)),
                 angular_velocity: now.angular_velocity()?.map(|w| scale.radians_per_second(w)),
                 contact_point: lowest.map(length),
-                force: force.in_laboratory(pose.phi.rest).map(|f| scale.newtons(f)),
+                force: now.force_in_laboratory()?.map(|f| scale.newtons(f)),
                 energy: scale.joules(now.energy(body)?),
                 kind: now.kind,
             })

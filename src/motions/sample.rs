@@ -7,6 +7,7 @@
 
 use super::{Kind, Motion, Moving};
 use crate::laws::body::Body;
+use crate::laws::contact::Force;
 use crate::laws::contact::slip::{centre_rise, centre_velocity};
 use crate::laws::pose::{Pose, axes};
 use crate::laws::state::State;
@@ -39,6 +40,8 @@ pub struct Sample<S: Moving = State> {
     pub kind: Option<Kind>,
     /// The height of the lowest point and its vertical velocity.
     pub aloft: [f64; 2],
+    /// Slip and force (N, across the lean, along it) of the other rim of a body that lies on both.
+    pub other_rim: Option<[f64; 5]>,
     /// Whether the body stands on the rim that was the upper one at the start, from which state and pose are then told.
     pub turned: bool,
     smooth: bool,
@@ -70,6 +73,7 @@ impl<S: Moving> Motion<S> {
             slip: path.and_then(|path| path.slip.get(i).copied()),
             kind: path.and_then(|path| path.kinds.get(i).copied()),
             aloft: path.and_then(|path| path.aloft.get(i).copied()).unwrap_or_default(),
+            other_rim: path.and_then(|path| path.other_rim.get(i).copied().filter(|x| !x[2].is_nan())),
             turned: path.is_some_and(|path| path.turned.get(i).copied().unwrap_or_default()),
             smooth: self.smooth,
         })
@@ -100,6 +104,17 @@ impl Sample {
     /// The angular velocity along the axes of the laboratory, in sqrt(g/R), if poses were requested.
     pub fn angular_velocity(&self) -> Option<Vector3<f64>> {
         self.pose.map(|Pose { phi, .. }| axes(phi.rest, self.state.theta) * self.state.angular_velocity())
+    }
+
+    /// The force of the table along the axes of the laboratory, in weights, if poses and forces were requested: that on both
+    /// rims of a body that lies on both, and NaN in the air.
+    pub fn force_in_laboratory(&self) -> Option<Vector3<f64>> {
+        let other = self.other_rim.map_or([0.0; 3], |[_, _, force @ ..]| force);
+        self.pose.zip(self.force).map(|(pose, Force { normal, along, across })| {
+            let both =
+                Force { normal: normal + other[0], along: along + other[1], across: across + other[2] };
+            both.in_laboratory(pose.phi.rest)
+        })
     }
 
     /// The velocity of the centre of mass along the axes of the laboratory, in sqrt(g R), if poses were requested.
