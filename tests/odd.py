@@ -140,9 +140,7 @@ def stones():
         "Ellipsoid.rattleback": (
             sc.Ellipsoid.rattleback, {"axes": axes, "twist": 0.1, "moments": (0.02, 0.2, 0.21), "offset": (0, 0, 0)},
         ),
-        "Ellipsoid.egg": (sc.Ellipsoid.egg, {"radius": 0.7, "half_length": 1.0, "offset": 0.0}),
         "Ellipsoid.with_weights": (stone.with_weights, {"weights": [(0.1, (0.5, 0.0, 0.0))]}),
-        "Ellipsoid.in_metres": (stone.in_metres, {"mass": 200.0, "gravity": 9.8}),
         "Ellipsoid.egg": (sc.Ellipsoid.egg, {"radius": 0.7, "half_length": 1.0, "offset": 0.0, "mass": None}),
         "Ellipsoid.in_metres": (stone.in_metres, {"mass": 200.0, "radius": 1.0, "gravity": 9.8}),
         "Ellipsoid.hertz": (stone.in_metres().hertz, {"state": start}),

@@ -1,7 +1,7 @@
 """The motion of a stone."""
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -12,13 +12,12 @@ from spincyl._ellipsoid import Ellipsoid
 from spincyl._ellipsoid_state import EllipsoidState
 from spincyl._ending import Event
 from spincyl._input.numbers import Floats, Reals, components, made, si
+from spincyl._loss import Loss, made_law
+from spincyl._lossy import check, narrow
 from spincyl._measured import in_si, natural_time, speaking
 from spincyl._motion import ENDINGS, Motion
 from spincyl._outputs import FRICTION, Number
 from spincyl._phases import phases, rubs
-
-if TYPE_CHECKING:
-    from spincyl._loss import Loss
 
 
 class EllipsoidMotion(Motion):
@@ -121,7 +120,7 @@ class EllipsoidMotion(Motion):
             want=a.want | chosen(want),
             beyond=a.beyond,
             restitution=None,
-            losses=None,
+            losses=a.losses,
         )
 
     def _angle(self, name: str) -> Floats:
@@ -142,7 +141,7 @@ def roll(
     want: Want | Iterable[Want],
     beyond: bool,
     restitution: float | None,
-    losses: "Loss | None",
+    losses: Loss | None,
 ) -> "EllipsoidMotion":
     """Compute the motion of a stone: `spincyl.roll` calls this."""
     made("state", state, EllipsoidState)
@@ -150,8 +149,11 @@ def roll(
         raise ValueError(f"state: slips, and contact={contact!r} has no law for that: contact=sc.Coulomb(mu)")
     if step is not None or method is not None:
         raise ValueError("step, method: a stone has no first integrals but its energy; give tol=, or none")
-    if losses is not None or restitution is not None:
-        raise ValueError("losses, restitution: a stone has none; friction is contact=sc.Coulomb(mu)")
+    if restitution is not None:
+        raise ValueError("restitution: of bodies of revolution; a stone ends where it leaves the table")
+    if losses is not None:
+        made_law(losses, body)
+        narrow(losses, contact)
     scale, seconds = body.scale, t
     if scale is not None:
         fitting(contact, scale)
@@ -162,6 +164,9 @@ def roll(
     with speaking(scale, "a"):
         given: Any = plain
         asked = ask(given, t, t0, None, tol, None, contact, mu, beyond, want, None, None)
+        if losses is not None:
+            check(losses, asked.times, asked.t0, {})
+            asked = asked._replace(losses=losses)
         m = rolled(body.natural, state, asked)
     if scale is not None:
         m = in_si(m, body, times_of(seconds), None)  # type: ignore[arg-type, assignment]

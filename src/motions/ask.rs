@@ -4,7 +4,7 @@ use crate::error::{Error, within};
 use crate::laws::body::Body;
 use crate::laws::contact::Table;
 use crate::laws::contact::slip::{centre_rise, centre_velocity};
-use crate::laws::loss::Losses;
+use crate::laws::loss::{Law, Losses};
 use crate::laws::pose::{axes, euler_angles};
 use crate::laws::state::State;
 use nalgebra::{UnitQuaternion, Vector3};
@@ -268,6 +268,20 @@ pub(crate) fn check_flow(ask: &Ask) -> Result<f64, Error> {
             Err(Error::OutOfRange { name: "step", value, expected })
         }
     }
+}
+
+/// Refuses what a patch of contact does not go with.
+pub(crate) fn check_patch(ask: &Ask) -> Result<(), Error> {
+    let patch = ask.table.friction().patch();
+    if patch > 0.0 && ask.losses.coefficients[Law::Drilling as usize] > 0.0 {
+        let expected = "0 together with drilling friction, which is the same couple";
+        return Err(Error::OutOfRange { name: "patch", value: patch, expected });
+    }
+    if patch > 0.0 && ask.restitution.is_some() {
+        let expected = "0 together with a restitution";
+        return Err(Error::OutOfRange { name: "patch", value: patch, expected });
+    }
+    Ok(())
 }
 
 fn check_method(method: Method, span: f64) -> Result<(), Error> {

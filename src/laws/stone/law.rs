@@ -9,6 +9,7 @@
 //!        u' = F - n + w' x r + w x (r' + w x r)   in the laboratory;   heat' = mu N |u|, c N u^2
 //! patch  f = n - mu f(k) e,  and the couple -mu N eps g(k) sgn(w.n) n;   r x f in N and w' includes this couple over N
 //! held   w' has the couple M n with (w.n)' = w'.n = 0                       where static friction stops the drilling
+//! losses   the couple m = m0 + N mN on the right side of w', and N from it:   P = -m.w,   (E + heat)' = -P
 //! E      = (w.I w + v^2)/2 - r.n,   v = u - w x r
 //! ```
 //! Vectors stand along the axes of the ellipsoid: n is the vertical, r leads from the centre of mass to the contact
@@ -20,8 +21,10 @@
 //! Error: a few roundings of the terms written above; `tests/laws/stone.rs` checks it, with references of 25
 //! digits from equations in the laboratory.
 
+use crate::laws::body::Rim;
 use crate::laws::contact::JAMMED;
 use crate::laws::contact::patch::rubs;
+use crate::laws::loss::{Couple, Couples, Kinematics};
 use crate::methods::SHORT_CODE;
 use crate::numbers::Real;
 use crate::numbers::vector::{Symmetric, cross, dot, plus};
@@ -42,6 +45,8 @@ pub(crate) struct StoneLaw<T> {
     pub dry: bool,
     /// The radius of the patch of contact; None for a point.
     radius: Option<T>,
+    /// The losses beside friction; None if the stone has none.
+    pub losses: Option<Couples<T>>,
 }
 
 /// The place of the contact point, and its change in time, along the axes of the body.
@@ -50,6 +55,10 @@ pub(crate) struct Touching<T> {
     pub n: [T; 3],
     pub r: [T; 3],
     pub r_rate: [T; 3],
+    /// The couple of the losses; None if there are none.
+    pub lost: Option<Couple<T>>,
+    /// Whether dry friction holds the drilling at zero.
+    pub holds: bool,
 }
 
 /// The response of a stone in one state.
@@ -63,7 +72,7 @@ pub(crate) struct StoneResponse<T> {
     pub free: T,
     /// The factor of N minus [`JAMMED`]; where this number vanishes no unique force exists.
     pub room: T,
-    /// The couple of a patch about the vertical.
+    /// The couple of a patch about the vertical, or the one that holds the drilling.
     pub couple: T,
 }
 
@@ -75,7 +84,7 @@ impl<T: Real> StoneLaw<T> {
         let [x, y, z, ..] = inverse.0;
         // Friction changes the slip by about this speed in a quarter of the unit of time.
         let soft = strength * (one + reach * (x + y + z)) * one.splat(0.25);
-        Self { squares, inertia, inverse, offset, strength, soft, dry, radius: None }
+        Self { squares, inertia, inverse, offset, strength, soft, dry, radius: None, losses: None }
     }
 
     /// The same stone on a patch of this radius.
@@ -89,11 +98,17 @@ impl<T: Real> StoneLaw<T> {
         if SHORT_CODE { None } else { self.radius }
     }
 
+    /// The same stone with losses.
+    pub fn with_losses(self, losses: Option<Couples<T>>) -> Self {
+        Self { losses, ..self }
+    }
+
     /// The same law with numbers of another type.
     pub fn map<U: Real>(&self, f: impl Fn(T) -> U) -> StoneLaw<U> {
         let &Self { squares, inertia, offset, strength, dry, .. } = self;
         StoneLaw::new(squares.map(&f), Symmetric(inertia.0.map(&f)), offset.map(&f), f(strength), dry)
             .with_patch(self.radius.map(&f))
+            .with_losses(self.losses.as_ref().map(|losses| losses.map(&f)))
     }
 
     /// The contact point of a stone with the vertical `n`, which turns with `w`.
@@ -106,22 +121,44 @@ impl<T: Real> StoneLaw<T> {
         let r = core::array::from_fn(|i| -(wide[i] * per) - self.offset[i]);
         let moved = by(n_rate);
         let r_rate = core::array::from_fn(|i| (wide[i] * turn - moved[i]) * per);
-        Touching { n, r, r_rate }
+        Touching { n, r, r_rate, lost: None, holds: false }
+    }
+
+    /// What the laws of loss see of a stone that turns with `w`: a disk that stands upright, whose e1 is the vertical, and
+    /// whose e2 and e3 are the axes x and y of the laboratory.
+    #[inline(always)]
+    pub fn kinematics(losses: &Couples<T>, lab: &[[T; 3]; 3], w: [T; 3]) -> Kinematics<T> {
+        let (zero, one) = (w[0].splat(0.0), w[0].splat(1.0));
+        let [x, y, z] = [dot(lab[0], w), dot(lab[1], w), dot(lab[2], w)];
+        losses.seen(&Rim { ell: zero, a: one, rho: zero }, (one, zero), z, [z, x, y])
+    }
+
+    /// The same contact point, with the couple of the losses.
+    #[inline(always)]
+    pub fn losing(&self, at: Touching<T>, lab: &[[T; 3]; 3], w: [T; 3]) -> Touching<T> {
+        let Some(losses) = &self.losses else { return at };
+        let Couple { free, pressed } = losses.at(&Self::kinematics(losses, lab, w));
+        let own = |[z, x, y]: [T; 3]| plus(plus(lab[2].map(|a| z * a), x, lab[0]), y, lab[1]);
+        let lost = Couple { free: own(free), pressed: own(pressed) };
+        Touching { lost: Some(lost), holds: losses.holds_drilling(), ..at }
     }
 
     /// The response of a stone whose contact point rests. The force is computed only if it is used.
     #[inline(always)]
     pub fn rolling(&self, at: &Touching<T>, w: [T; 3]) -> StoneResponse<T> {
-        self.resting(at, w, false)
+        self.resting(at, w, at.holds)
     }
 
     /// The response of a stone whose contact point rests, and whose drilling w.n a couple keeps if it is `held`.
     #[inline(always)]
     pub fn resting(&self, at: &Touching<T>, w: [T; 3], held: bool) -> StoneResponse<T> {
-        let &Touching { n, r, r_rate } = at;
+        let &Touching { n, r, r_rate, lost, .. } = at;
         let one = n[0].splat(1.0);
         let carried = cross(w, plus(r_rate, one, cross(w, r)));
-        let couple = plus(cross(self.inertia.times(w), w), one, cross(r, plus(n, -one, carried)));
+        let mut couple = plus(cross(self.inertia.times(w), w), one, cross(r, plus(n, -one, carried)));
+        if let Some(lost) = &lost {
+            couple = plus(couple, one, lost.free);
+        }
         let [a, b, c, d, e, f] = self.inertia.0;
         let [x, y, z] = r;
         let whole = Symmetric([
@@ -133,14 +170,27 @@ impl<T: Real> StoneLaw<T> {
             f - x * y,
         ]);
         let mut dw = whole.solve(couple);
-        let mut kept = one.splat(0.0);
+        let (mut kept, mut room) = (one.splat(0.0), one);
+        let gives = if held { whole.solve(n) } else { n };
         if held {
-            let gives = whole.solve(n);
             kept = -(dot(dw, n) / dot(gives, n));
             dw = plus(dw, kept, gives);
         }
+        if let Some(lost) = &lost {
+            let mut turned = whole.solve(lost.pressed);
+            let mut twist = one.splat(0.0);
+            if held {
+                twist = -(dot(turned, n) / dot(gives, n));
+                turned = plus(turned, twist, gives);
+            }
+            let factor = one + dot(cross(turned, r), n);
+            // After a lift-off no force presses the stone on the table.
+            let normal = ((one - dot(plus(carried, one, cross(dw, r)), n)) / factor).max(one.splat(0.0));
+            (dw, kept) = (plus(dw, normal, turned), normal.mac(twist, kept));
+            room = factor - one.splat(JAMMED);
+        }
         let force = plus(plus(n, -one, carried), -one, cross(dw, r));
-        StoneResponse { w: dw, force, free: dot(force, n), room: one, couple: kept }
+        StoneResponse { w: dw, force, free: dot(force, n), room, couple: kept }
     }
 
     /// The response to the friction force -strength N `pull`, where `pull` is horizontal.
@@ -152,13 +202,26 @@ impl<T: Real> StoneLaw<T> {
     /// The response to this friction force, and to a couple `twist` N about the vertical.
     #[inline(always)]
     fn twisted(&self, at: &Touching<T>, w: [T; 3], pull: [T; 3], twist: Option<T>) -> StoneResponse<T> {
-        let &Touching { n, r, r_rate } = at;
+        let &Touching { n, r, r_rate, .. } = at;
         let one = n[0].splat(1.0);
-        let still = self.inverse.times(cross(self.inertia.times(w), w));
+        let mut still = self.inverse.times(cross(self.inertia.times(w), w));
+        let (mut keeps, mut twists) = (one.splat(0.0), one.splat(0.0));
+        if let Some(lost) = &at.lost {
+            still = plus(still, one, self.inverse.times(lost.free));
+        }
+        if at.holds {
+            (still, keeps) = self.without_drilling(n, still);
+        }
         let carried = plus(cross(w, plus(r_rate, one, cross(w, r))), one, cross(still, r));
         let f = plus(n, -self.strength, pull);
-        let lever = cross(r, f);
-        let turned = self.inverse.times(twist.map_or(lever, |twist| plus(lever, twist, n)));
+        let mut lever = cross(r, f);
+        if let Some(lost) = &at.lost {
+            lever = plus(lever, one, lost.pressed);
+        }
+        let mut turned = self.inverse.times(twist.map_or(lever, |twist| plus(lever, twist, n)));
+        if at.holds {
+            (turned, twists) = self.without_drilling(n, turned);
+        }
         let factor = one + dot(cross(turned, r), n);
         let free = one - dot(carried, n);
         let normal = free / factor;
@@ -167,8 +230,15 @@ impl<T: Real> StoneLaw<T> {
             force: f.map(|x| x * normal),
             free,
             room: factor - one.splat(JAMMED),
-            couple: twist.map_or(one.splat(0.0), |twist| twist * normal),
+            couple: twist.map_or(normal.mac(twists, keeps), |twist| twist * normal),
         }
+    }
+
+    /// This change of w with a couple about the vertical that keeps the drilling, and this couple.
+    fn without_drilling(&self, n: [T; 3], turn: [T; 3]) -> ([T; 3], T) {
+        let gives = self.inverse.times(n);
+        let kept = -(dot(turn, n) / dot(gives, n));
+        (plus(turn, kept, gives), kept)
     }
 
     /// The response of a stone whose contact point slips with `u`; also dt/dsigma.
@@ -197,7 +267,7 @@ impl<T: Real> StoneLaw<T> {
     /// The rate of the slip in the laboratory, along the axes of the body.
     #[inline(always)]
     pub fn slip_rate(&self, at: &Touching<T>, w: [T; 3], to: &StoneResponse<T>) -> [T; 3] {
-        let &Touching { n, r, r_rate } = at;
+        let &Touching { n, r, r_rate, .. } = at;
         let one = n[0].splat(1.0);
         let carried = cross(w, plus(r_rate, one, cross(w, r)));
         plus(plus(plus(to.force, -one, n), one, carried), one, cross(to.w, r))
@@ -205,7 +275,13 @@ impl<T: Real> StoneLaw<T> {
 
     /// The acceleration of the contact point per force `f`, along the axes of the body.
     pub fn yields(&self, at: &Touching<T>, f: [T; 3]) -> [T; 3] {
-        plus(f, f[0].splat(1.0), cross(self.inverse.times(cross(at.r, f)), at.r))
+        plus(f, f[0].splat(1.0), self.swings(at, cross(at.r, f)))
+    }
+
+    /// The acceleration of the contact point under this couple, along the axes of the body.
+    pub fn swings(&self, at: &Touching<T>, couple: [T; 3]) -> [T; 3] {
+        let turned = self.inverse.times(couple);
+        cross(if at.holds { self.without_drilling(at.n, turned).0 } else { turned }, at.r)
     }
 
     /// Kinetic and potential energy of a stone whose contact point has the velocity `u`, with heights above the table.

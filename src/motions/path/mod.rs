@@ -31,14 +31,13 @@ mod tail;
 pub(crate) mod write;
 
 pub use super::ask::FINE;
-use super::ask::{check_flow, check_times_after};
+use super::ask::{check_flow, check_patch, check_times_after};
 use super::exact;
 use super::followed::{Followed, judged};
 use super::{Ask, Motion, Start};
 pub use super::{Hit, Kind, Path, Phase, Strike};
 use crate::error::{Error, within};
 use crate::laws::body::Body;
-use crate::laws::loss::Law;
 use crate::methods::SHORT_CODE;
 pub(crate) use phases::BodyWalk;
 
@@ -127,20 +126,6 @@ fn check(body: &Body, start: &Start, ask: &Ask) -> Result<f64, Error> {
         }
     }
     if ask.table.rubs() || start.aloft.is_some() { Ok(fine) } else { without_slip(start.slip).map(|()| fine) }
-}
-
-/// Refuses what a patch of contact does not go with.
-fn check_patch(ask: &Ask) -> Result<(), Error> {
-    let patch = ask.table.friction().patch();
-    if patch > 0.0 && ask.losses.coefficients[Law::Drilling as usize] > 0.0 {
-        let expected = "0 together with drilling friction, which is the same couple";
-        return Err(Error::OutOfRange { name: "patch", value: patch, expected });
-    }
-    if patch > 0.0 && ask.restitution.is_some() {
-        let expected = "0 together with a restitution";
-        return Err(Error::OutOfRange { name: "patch", value: patch, expected });
-    }
-    Ok(())
 }
 
 /// Refuses a slip on a table without a law of friction.

@@ -9,7 +9,7 @@
 //!
 //! Error: the slip that is left out, DRILLS eps at most, and the couple times the time that DRILLS takes.
 
-use super::flow::{ALL, HOLD, STONE_MARGINS, Seen, StoneFlow, Touch, slip_of};
+use super::flow::{HOLD, STONE_MARGINS, Seen, StoneFlow, Touch, slip_of};
 use crate::laws::contact::patch;
 use crate::laws::stone::law::{laboratory, turning};
 use crate::methods::flow::{Flow, FlowPlace};
@@ -99,7 +99,7 @@ impl StoneFlow<'_> {
     }
 
     /// The slip of the creep of a stone that rolls here, in the laboratory; None if the stone hardly drills.
-    pub(super) fn creeps(&self, y: &[f64; ALL]) -> Option<[f64; 2]> {
+    pub(super) fn creeps<const N: usize>(&self, y: &[f64; N]) -> Option<[f64; 2]> {
         let radius = self.law.patch()?;
         let Seen { lab, to, .. } = Self { touch: Touch::Rolls, ..*self }.seen_at(y);
         let pushed = [0, 1].map(|i| dot(lab[i], to.force));
@@ -137,7 +137,7 @@ impl StoneFlow<'_> {
         for j in 0..STONE_REACTING {
             let dual = |i: usize| Dual { value: y[i], slope: f64::from(u8::from(i == j)) };
             let (q, w) = ([dual(0), dual(1), dual(2), dual(3)], [dual(4), dual(5), dual(6)]);
-            let Seen { lab, at, to, pace } = self.seen(&self.sloped, q, w, Some([dual(8), dual(9)]));
+            let Seen { lab, at, to, pace } = self.seen::<_, N>(&self.sloped, q, w, Some([dual(8), dual(9)]));
             let rate = self.sloped.slip_rate(&at, w, &to);
             let ([a, b, c, d], [e, f, g]) = (turning(q, w), to.w);
             let one = pace.splat(1.0);

@@ -1,14 +1,15 @@
 //! The flow of a phase of a stone: its numbers, their rates, and the margins that end the phase.
 //!
 //! ```text
-//! y = (q, w, t; u_x, u_y, heat, x, y)     N = 8 of a stone that rolls without a pose, else N = 13
-//! dt = |u|/(|u| + soft) dsigma            while a contact point slips on a dry table, else dt = dsigma
-//! margins   cos theta - cos theta_end,  N,  and (mu_s N)^2 - F^2 while it rolls, or the room of a slip
+//! y = (q, w, t; u_x, u_y, heat, x, y; lost)   N = 8 of a stone that rolls without a pose, 14 with losses, else 13
+//! dt = |u|/(|u| + soft) dsigma                while a contact point slips on a dry table, else dt = dsigma
+//! margins   cos theta - cos theta_end,  N,  (mu_s N)^2 - F^2 while it rolls, or the room of a slip,  and w.n or its hold
 //! ```
 //! The quaternion q = (w, x, y, z) turns the axes of the ellipsoid to those of the laboratory; u is the slip
 //! and (x, y) the contact point on the table. Every step ends with a quaternion of length 1.
 
 use super::known::Recorded;
+use super::loses::REST;
 use super::turns::Spot;
 use crate::laws::contact::grip;
 use crate::laws::stone::law::{StoneLaw, StoneResponse, Touching, across, laboratory, turning};
@@ -16,7 +17,7 @@ use crate::laws::stone::{StonePose, StoneState};
 use crate::methods::flow::{Flow, FlowPlace, TakenStep, looks};
 use crate::methods::{SHORT_CODE, radau, rk8};
 use crate::motions::creep::{IMPLICIT_TURNS, rests_below};
-use crate::motions::halt::{Halt, TIME};
+use crate::motions::halt::{Halt, TIME, loses};
 use crate::motions::walk::{MOMENT, slip_over};
 use crate::numbers::vector::{dot, plus};
 use crate::numbers::{Dual, Real};
@@ -24,15 +25,19 @@ use core::cell::RefCell;
 use nalgebra::Vector3;
 
 /// Number of margins of a stone.
-pub(super) const STONE_MARGINS: usize = 3;
-/// The numbers of a stone that rolls without a pose, and of any other.
+pub(super) const STONE_MARGINS: usize = 4;
+/// The numbers of a stone that rolls without a pose, of any other, and of one that loses energy.
 pub(super) const WITHOUT_POSE: usize = 8;
 pub(super) const ALL: usize = 13;
+pub(super) const LOSING: usize = 14;
 /// A minimum of a margin is recorded if it is below this many tolerances of a step, since the errors of a
 /// motion that counts as known may reach it.
 const NEAR_END: f64 = 1e7;
 /// Index of the margin of static friction, or in a slip of a unique contact force.
 pub(super) const HOLD: usize = 2;
+
+/// Index of the margin of the drilling that dry friction resists or holds.
+const DRILLING: usize = 3;
 
 /// A dry slip ends with this speed instead of 0, so that it keeps its direction.
 const ALMOST_NONE: f64 = 1e-150;
@@ -64,6 +69,8 @@ pub(super) struct StoneFlow<'a> {
     pub stride: f64,
     /// Whether events other than a landing of the edge end the flow.
     pub watch: bool,
+    /// How fast rolling resistance changes w; 0 without any.
+    pub resisted: f64,
     /// The records of reversals and ends, in the finer run.
     pub recorded: Option<&'a RefCell<Recorded>>,
 }
@@ -81,7 +88,7 @@ impl StoneFlow<'_> {
     /// The response of a stone with these numbers, over plain numbers or numbers with a slope; `slip` is None if it is
     /// not among the numbers.
     #[inline(always)]
-    pub(super) fn seen<T: Real>(
+    pub(super) fn seen<T: Real, const N: usize>(
         &self,
         law: &StoneLaw<T>,
         q: [T; 4],
@@ -89,13 +96,18 @@ impl StoneFlow<'_> {
         slip: Option<[T; 2]>,
     ) -> Seen<T> {
         let lab = laboratory(q);
-        let at = law.touching(lab[2], w);
+        let mut at = law.touching(lab[2], w);
         let zero = w[0].splat(0.0);
+        let mut even = zero.splat(1.0);
+        if loses(N) {
+            at = law.losing(at, &lab, w);
+            even = self.pace(&at, w);
+        }
         let (to, pace) = match (self.touch, slip) {
-            (Touch::Rolls, _) => (law.rolling(&at, w), zero.splat(1.0)),
-            (Touch::Held, _) => (law.resting(&at, w, !SHORT_CODE), zero.splat(1.0)),
+            (Touch::Rolls, _) => (law.rolling(&at, w), even),
+            (Touch::Held, _) => (law.resting(&at, w, !SHORT_CODE), even),
             (Touch::Slips, Some(slip)) => law.slipping(&at, w, across(&lab, slip)),
-            _ => (law.pulled(&at, w, [zero; 3]), zero.splat(1.0)),
+            _ => (law.pulled(&at, w, [zero; 3]), even),
         };
         Seen { lab, at, to, pace }
     }
@@ -103,16 +115,22 @@ impl StoneFlow<'_> {
     #[inline(always)]
     pub(super) fn seen_at<const N: usize>(&self, y: &[f64; N]) -> Seen<f64> {
         let [a, b, c, d, e, f, g] = core::array::from_fn(|i| y[i]);
-        self.seen(&self.law, [a, b, c, d], [e, f, g], (N == ALL).then(|| slip_of(y)))
+        self.seen::<_, N>(&self.law, [a, b, c, d], [e, f, g], (N >= ALL).then(|| slip_of(y)))
     }
 
     #[inline(always)]
-    fn margins_of<T: Real>(&self, seen: &Seen<T>) -> [T; STONE_MARGINS] {
+    fn margins_of<T: Real, const N: usize>(
+        &self,
+        law: &StoneLaw<T>,
+        seen: &Seen<T>,
+        w: [T; 3],
+    ) -> [T; STONE_MARGINS] {
         let one = seen.pace.splat(1.0);
         let number = |x: f64| one.splat(x);
         let edge = if self.edge < -1.0 { one } else { seen.at.n[2] - number(self.edge) };
+        let drilling = if loses(N) { Self::drilling_margin(law, seen, w) } else { one };
         if !self.watch {
-            return [edge, one, one];
+            return [edge, one, one, drilling];
         }
         let hold = if !self.rests() {
             seen.to.room
@@ -122,7 +140,7 @@ impl StoneFlow<'_> {
         } else {
             one
         };
-        [edge, seen.to.free, hold]
+        [edge, seen.to.free, hold, drilling]
     }
 
     /// Whether the contact point rests on the table.
@@ -138,8 +156,8 @@ impl StoneFlow<'_> {
 
     /// The margins at some numbers.
     pub fn margins_at<const N: usize>(&self, y: &[f64; N]) -> [f64; STONE_MARGINS] {
-        let seen = self.seen_at(y);
-        self.on_patch(self.margins_of(&seen), (&seen, [y[4], y[5], y[6]]), self.grips(y))
+        let (seen, w) = (self.seen_at(y), [y[4], y[5], y[6]]);
+        self.on_patch(self.margins_of::<_, N>(&self.law, &seen, w), (&seen, w), self.grips(y))
     }
 
     /// The sum of |d margin/dy_k| over the numbers of the state, for margin `i`.
@@ -158,10 +176,11 @@ impl StoneFlow<'_> {
 
     /// The numbers at the time `MOMENT` after the beginning of a slip along `way`, whose speed grows at the
     /// rate `growth`.
-    pub fn nudged(&self, y: &[f64; ALL], way: [f64; 2], growth: f64) -> [f64; ALL] {
+    pub fn nudged<const N: usize>(&self, y: &[f64; N], way: [f64; 2], growth: f64) -> [f64; N] {
         let ([a, b, c, d, e, f, g], mut to) = (core::array::from_fn(|i| y[i]), *y);
         let (lab, w) = (laboratory([a, b, c, d]), [e, f, g]);
-        let pulled = self.law.pulled(&self.law.touching(lab[2], w), w, across(&lab, way));
+        let at = self.law.losing(self.law.touching(lab[2], w), &lab, w);
+        let pulled = self.law.pulled(&at, w, across(&lab, way));
         let rates = turning([a, b, c, d], w).into_iter().chain(pulled.w);
         to.iter_mut().zip(rates).for_each(|(x, rate)| *x += MOMENT * rate);
         to[TIME] += MOMENT;
@@ -171,16 +190,13 @@ impl StoneFlow<'_> {
 
     /// The contact force along the axes of the laboratory. Where a dry slip only begins, with u = 0, friction
     /// acts against the direction `way` in which it begins.
-    pub fn force(&self, y: &[f64; ALL], way: [f64; 2]) -> Vector3<f64> {
-        let Seen { lab, at, mut to, .. } = self.seen_at(y);
-        if self.touch == Touch::Slips && self.law.dry && slip_of(y) == [0.0; 2] {
-            to = self.law.pulled(&at, [y[4], y[5], y[6]], across(&lab, way));
-        }
+    pub fn force<const N: usize>(&self, y: &[f64; N], way: [f64; 2]) -> Vector3<f64> {
+        let Seen { lab, to, .. } = self.seen_towards(y, way);
         lab.map(|axis| dot(axis, to.force)).into()
     }
 
     /// The orientation, the contact point and the centre of mass; `still` is the centre on a smooth table.
-    pub fn pose(&self, y: &[f64; ALL], still: [f64; 2]) -> StonePose {
+    pub fn pose<const N: usize>(&self, y: &[f64; N], still: [f64; 2]) -> StonePose {
         let Seen { lab, at, .. } = self.seen_at(y);
         let [x, y_r, z] = lab.map(|axis| -dot(axis, at.r));
         let point = if self.touch == Touch::Smooth { [still[0] - x, still[1] - y_r] } else { [y[11], y[12]] };
@@ -203,12 +219,12 @@ pub(super) fn spot<const N: usize>(y: &[f64; N], rate: &[f64; N]) -> Spot {
 /// The slip among the numbers; zero for a stone without one.
 #[inline(always)]
 pub(super) fn slip_of<const N: usize>(y: &[f64; N]) -> [f64; 2] {
-    if N == ALL { [y[8], y[9]] } else { [0.0; 2] }
+    if N >= ALL { [y[8], y[9]] } else { [0.0; 2] }
 }
 
 /// The slip in the outputs: its components in the laboratory frame in which the stone has the orientation of
 /// a start with its vertical. So the state and the slip of an output can be a start.
-pub(super) fn output_slip(y: &[f64; ALL]) -> [f64; 2] {
+pub(super) fn output_slip<const N: usize>(y: &[f64; N]) -> [f64; 2] {
     let slip = slip_of(y);
     if slip == [0.0; 2] {
         return slip;
@@ -235,7 +251,7 @@ impl Flow<STONE_MARGINS> for StoneFlow<'_> {
         let [a, b, c, d] = turning([y[0], y[1], y[2], y[3]], w);
         let [e, f, g] = to.w;
         all[..WITHOUT_POSE].copy_from_slice(&[a, b, c, d, e, f, g, 1.0]);
-        if N == ALL {
+        if N >= ALL {
             all[8..].fill(0.0);
             if self.touch == Touch::Slips {
                 let (u, rate) = (slip_of(y), self.law.slip_rate(&at, w, &to));
@@ -249,7 +265,10 @@ impl Flow<STONE_MARGINS> for StoneFlow<'_> {
                 (all[11], all[12]) = (dot(lab[0], at.r_rate), dot(lab[1], at.r_rate));
             }
         }
-        if self.touch == Touch::Slips {
+        if let Some(lost) = at.lost.filter(|_| loses(N)) {
+            all[N - 1] = -dot(lost.under(dot(to.force, at.n).max(0.0)), w);
+        }
+        if loses(N) || self.touch == Touch::Slips {
             all.iter_mut().for_each(|x| *x *= pace);
         }
     }
@@ -257,9 +276,9 @@ impl Flow<STONE_MARGINS> for StoneFlow<'_> {
     fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; STONE_MARGINS] {
         let dual = |i: usize| Dual { value: place.y[i], slope: place.rate[i] };
         let [a, b, c, d, e, f, g] = core::array::from_fn(dual);
-        let slip = (N == ALL).then(|| [dual(8), dual(9)]);
-        let seen = self.seen(&self.sloped, [a, b, c, d], [e, f, g], slip);
-        self.on_patch(self.margins_of(&seen), (&seen, [e, f, g]), self.grips(&place.y))
+        let slip = (N >= ALL).then(|| [dual(8), dual(9)]);
+        let (seen, w) = (self.seen::<_, N>(&self.sloped, [a, b, c, d], [e, f, g], slip), [e, f, g]);
+        self.on_patch(self.margins_of::<_, N>(&self.sloped, &seen, w), (&seen, w), self.grips(&place.y))
     }
 
     fn margin<const N: usize>(&self, y: &[f64; N], i: usize) -> f64 {
@@ -267,13 +286,17 @@ impl Flow<STONE_MARGINS> for StoneFlow<'_> {
     }
 
     fn end(&self, i: usize) -> Halt {
-        [Halt::Face, Halt::LiftOff, if self.rests() { Halt::Slips } else { Halt::Jam }][i]
+        [Halt::Face, Halt::LiftOff, if self.rests() { Halt::Slips } else { Halt::Jam }, Halt::Drilling][i]
     }
 
     #[inline(always)]
     fn error<const N: usize>(&self, y: &[f64; N], made: &rk8::Step<f64, N>) -> f64 {
         let per_tol = 1.0 / self.tol;
-        let per_speed = per_tol / self.fastest(y);
+        let mut per_speed = per_tol / self.fastest(y);
+        if loses(N) && self.is_paced() {
+            // Rolling and rocking vanish correctly at any tolerance.
+            per_speed = per_speed.max(1e3 / (self.rolls_at(y) + 100.0 * REST));
+        }
         // The error of a dry slip is relative to its speed, so that a vanishing slip keeps its direction.
         let [u, v] = slip_of(y);
         let dry = self.touch == Touch::Slips && self.law.dry;
@@ -303,7 +326,10 @@ impl Flow<STONE_MARGINS> for StoneFlow<'_> {
     }
 
     fn longest<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
-        let most = self.stride * self.calm(&place.y) / place.rate[TIME].min(1.0);
+        let mut most = self.stride * self.calm(&place.y) / place.rate[TIME].min(1.0);
+        if loses(N) {
+            most = most.min(self.longest_of_roots(place));
+        }
         if self.law.patch().is_none() {
             return most;
         }
@@ -314,7 +340,7 @@ impl Flow<STONE_MARGINS> for StoneFlow<'_> {
 
     #[inline(always)]
     fn is_stiff<const N: usize>(&self, place: &FlowPlace<N>) -> bool {
-        N == ALL && self.law.patch().is_some() && self.creeps_fast(place)
+        N >= ALL && self.law.patch().is_some() && self.creeps_fast(place)
     }
 
     #[inline(never)]
@@ -328,6 +354,11 @@ impl Flow<STONE_MARGINS> for StoneFlow<'_> {
 
     /// The halt of an almost vanished slip, extrapolated linearly to u = 0.
     fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
+        if loses(N)
+            && let Some(rests) = self.rolls_no_more(place)
+        {
+            return Some((Halt::Rests, rests));
+        }
         if self.touch != Touch::Slips || !self.law.dry {
             return None;
         }
@@ -352,6 +383,10 @@ impl Flow<STONE_MARGINS> for StoneFlow<'_> {
 
     fn stuck<const N: usize>(&self, _: &FlowPlace<N>, margins: &[Dual<f64>; STONE_MARGINS]) -> Option<Halt> {
         (self.touch == Touch::Slips && margins[2].value < 0.1).then_some(Halt::Jam)
+    }
+
+    fn slows<const N: usize>(&self, halt: Halt, place: &FlowPlace<N>) -> f64 {
+        if halt == Halt::Rests { self.rolling_growth(&place.y).abs() } else { f64::INFINITY }
     }
 
     fn is_extrapolated(halt: Halt) -> bool {
@@ -389,7 +424,7 @@ impl Flow<STONE_MARGINS> for StoneFlow<'_> {
         // A slip that is missed where static friction only just holds would be too short to matter.
         if let Some(recorded) = self.recorded
             && margin < NEAR_END * self.tol * self.fastest(y)
-            && !(self.rests() && self.law.dry && i == HOLD)
+            && !(self.rests() && self.law.dry && i == HOLD || i == DRILLING)
         {
             recorded.borrow_mut().grazes.push([y[TIME], margin / self.leans(y, i)]);
         }

@@ -3,6 +3,7 @@
 mod creeps;
 mod flow;
 pub(crate) mod known;
+mod loses;
 mod moving;
 mod phases;
 mod roll;
@@ -11,7 +12,7 @@ mod slow;
 pub(crate) mod turns;
 mod write;
 
-use super::ask::{check_flow, check_times_after};
+use super::ask::{check_flow, check_patch, check_times_after};
 use super::{Ask, Start};
 use crate::error::{Error, within};
 use crate::laws::stone::StoneState;
@@ -44,9 +45,8 @@ pub(crate) fn check(
         }
     }
     ask.table.check()?;
-    if let Some(value) = ask.losses.coefficients.into_iter().find(|x| *x != 0.0) {
-        return Err(Error::OutOfRange { name: "losses", value, expected: "none: a stone has no losses" });
-    }
+    ask.losses.check_for_stone()?;
+    check_patch(ask)?;
     if let Some(value) = ask.restitution {
         return Err(Error::OutOfRange {
             name: "restitution",

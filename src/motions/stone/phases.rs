@@ -1,29 +1,30 @@
 //! The phases of a stone: their beginnings, their flows and their ends.
 
-use super::flow::{ALL, HOLD, StoneFlow, Touch, WITHOUT_POSE, output_slip, spot, state};
+use super::flow::{HOLD, Seen, StoneFlow, Touch, WITHOUT_POSE, output_slip, spot, state};
 use super::known::Recorded;
+use super::loses::REST;
 use super::slow::StoneSlips;
 use super::turns::Spot;
 use super::write::write;
 use crate::error::Error;
 use crate::laws::contact::slip::Friction;
 use crate::laws::contact::standstill::{HeldContact, Onset, Standstill, towards};
-use crate::laws::loss::GRACE;
+use crate::laws::loss::{Couples, GRACE};
 use crate::laws::stone::law::{across, laboratory};
 use crate::laws::stone::{Ellipsoid, StoneState};
 use crate::methods::SHORT_CODE;
 use crate::methods::flow::{Flow, Flown, Steps};
 use crate::motions::creep::LOST_DRILLING;
-use crate::motions::halt::{Halt, TIME};
+use crate::motions::halt::{Halt, TIME, loses};
 use crate::motions::walk::slow::clear_until;
 use crate::motions::walk::{Next, Pause, Phases, SlowSeries, Walk, WalkStep, after_rest, ending};
 use crate::motions::{Ask, Ending, Kind, Start};
-use crate::numbers::vector::dot;
+use crate::numbers::vector::{dot, plus};
 use crate::numbers::{Dual, Sum};
 use core::cell::RefCell;
 
 /// The walk of a stone.
-pub(super) type StoneWalk<'a, 'n> = Walk<'a, StonePhases<'n>, ALL>;
+pub(super) type StoneWalk<'a, 'n, const N: usize> = Walk<'a, StonePhases<'n>, N>;
 
 /// The longest step of a rougher run as a share of the longest allowed one. Without this factor both
 /// runs would take the same steps where the longest step limits them, and their difference would not
@@ -36,6 +37,9 @@ const DEEP: f64 = 1e-2;
 /// all are counted.
 const DOUBTFUL: f64 = 0.9;
 
+/// A friction demand that exceeds mu N by more than this share has jumped beyond mu N.
+const JUMPED: f64 = 1e-6;
+
 /// The data of a stone's walk: the flow of the present phase.
 pub(super) struct StonePhases<'n> {
     flow: StoneFlow<'n>,
@@ -45,7 +49,7 @@ pub(super) struct StonePhases<'n> {
     still_centre: [f64; 2],
 }
 
-impl<'a, 'n> StoneWalk<'a, 'n> {
+impl<'a, 'n, const N: usize> StoneWalk<'a, 'n, N> {
     /// A walk at its start; `fine` is the requested tolerance.
     pub fn of_stone(
         (stone, start): (&Ellipsoid, &Start<StoneState>),
@@ -59,7 +63,7 @@ impl<'a, 'n> StoneWalk<'a, 'n> {
         let dry = matches!(friction, Friction::Coulomb { mu, .. } if mu > 0.0 || friction.sticks());
         let patch = friction.patch();
         let law = stone.law(friction.strength(), dry && ask.table.rubs());
-        let law = law.with_patch((patch > 0.0).then_some(patch));
+        let law = law.with_patch((patch > 0.0).then_some(patch)).with_losses(Couples::some(&ask.losses));
         let edge = if stone.theta_end < core::f64::consts::PI { stone.theta_end.cos() } else { -2.0 };
         let flow = StoneFlow {
             sloped: law.map(|x| Dual { value: x, slope: 0.0 }),
@@ -70,9 +74,10 @@ impl<'a, 'n> StoneWalk<'a, 'n> {
             tol,
             stride: if tol > fine { ROUGH_STRIDE } else { 1.0 },
             watch: true,
+            resisted: law.resisted(),
             recorded,
         };
-        let mut at = [0.0; ALL];
+        let mut at = [0.0; N];
         at[..4].copy_from_slice(&y.orientation());
         at[4..7].copy_from_slice(&y.w);
         at[8..10].copy_from_slice(&slip);
@@ -103,7 +108,7 @@ impl<'a, 'n> StoneWalk<'a, 'n> {
         let law = self.of.flow.law;
         let (lab, w) =
             (laboratory(core::array::from_fn(|i| self.at[i])), [self.at[4], self.at[5], self.at[6]]);
-        let at = law.touching(lab[2], w);
+        let at = law.losing(law.touching(lab[2], w), &lab, w);
         let free = law.pulled(&at, w, [0.0; 3]);
         let held = law.rolling(&at, w).force;
         let [along, aside, normal] = lab.map(|axis| dot(axis, held));
@@ -114,11 +119,14 @@ impl<'a, 'n> StoneWalk<'a, 'n> {
             Friction::Viscous { .. } => [0.0; 2],
         };
         let element = |i: usize, j: usize| dot(lab[i], per[j]);
-        let upright = element(2, 2);
+        // The rate of the slip per normal force, by the arm of that force and by the losses.
+        let swings = at.lost.map_or([0.0; 3], |lost| law.swings(&at, lost.pressed));
+        let pressed = |i: usize| element(i, 2) + dot(lab[i], swings);
+        let upright = pressed(2);
         let eps = [0, 1].map(|i| mu * element(2, i) / upright);
         let rate = law.slip_rate(&at, w, &free);
         let normal_free = free.free / upright;
-        let bare = [0, 1].map(|i| dot(lab[i], rate) - normal_free * element(i, 2));
+        let bare = [0, 1].map(|i| dot(lab[i], rate) - normal_free * pressed(i));
         HeldContact {
             mu: [mu, fixed],
             free: normal_free,
@@ -130,7 +138,7 @@ impl<'a, 'n> StoneWalk<'a, 'n> {
                 free: normal_free,
                 eps,
                 bare,
-                pressed: [Sum::from(element(0, 2)), Sum::from(element(1, 2))],
+                pressed: [Sum::from(pressed(0)), Sum::from(pressed(1))],
                 pulled: [element(0, 0), element(1, 1), element(0, 1)],
             },
             growth: move |alpha| {
@@ -144,11 +152,15 @@ impl<'a, 'n> StoneWalk<'a, 'n> {
     }
 
     /// Ends a phase at the numbers `y`, and chooses the next one.
-    fn phase_ends(&mut self, y: [f64; ALL], halt: Halt) {
+    fn phase_ends(&mut self, y: [f64; N], halt: Halt) {
         if self.of.flow.touch == Touch::Slips {
             self.made.path.slipping += y[TIME] - self.began;
         }
         self.at = y;
+        if self.of.flow.holds_drilling() && !matches!(halt, Halt::Time | Halt::Pause) {
+            let left = self.of.flow.removes_drilling(&mut self.at);
+            self.claims(left);
+        }
         let rubs = self.ask.table.rubs();
         match halt {
             Halt::Face => self.ends_by(0),
@@ -160,7 +172,17 @@ impl<'a, 'n> StoneWalk<'a, 'n> {
             Halt::Time | Halt::Pause => return,
             Halt::Standstill => {
                 self.stop_slip();
-                after_rest(self.rest().decides())
+                after_rest(self.rests_here())
+            }
+            Halt::Drilling if self.of.flow.seen_at(&self.at).to.room <= 0.0 => Next::Ends(Ending::Painleve),
+            Halt::Drilling | Halt::Rests if self.of.flow.touch != Touch::Slips => {
+                self.of.freed = self.of.flow.holds_drilling();
+                self.resumes_phase();
+                Next::Rolls { at_limit: false }
+            }
+            Halt::Drilling => {
+                self.of.freed = self.of.flow.holds_drilling();
+                Next::SlipsOn
             }
             Halt::Slips if let Some(slip) = self.of.flow.creeps(&self.at).filter(|_| rubs) => {
                 (self.at[8], self.at[9]) = (slip[0], slip[1]);
@@ -172,6 +194,7 @@ impl<'a, 'n> StoneWalk<'a, 'n> {
                 self.of.freed = true;
                 Next::Rolls { at_limit: false }
             }
+            Halt::Slips if rubs && loses(N) && self.jumps() => after_rest(self.rest().decides()),
             Halt::Slips if rubs => after_rest(self.rest().lets_go()),
             halt if halt != Halt::Face && self.ask.beyond && !rubs => {
                 self.records_event(ending(halt));
@@ -182,6 +205,43 @@ impl<'a, 'n> StoneWalk<'a, 'n> {
             halt => Next::Ends(ending(halt)),
         };
         self.continues_with(next);
+    }
+
+    /// Whether rolling needs more friction than there is by a jump, as where a dry couple has just turned round.
+    fn jumps(&self) -> bool {
+        let Seen { at, to, .. } = self.of.flow.seen_at(&self.at);
+        let along = plus(to.force, -to.free, at.n);
+        dot(along, along).sqrt() > self.of.flow.mu * to.free * (1.0 + JUMPED)
+    }
+
+    /// The behaviour of a contact point at rest. That of a stone which rolling resistance keeps at rest sticks.
+    fn rests_here(&self) -> Standstill {
+        let flow = StoneFlow { touch: Touch::Rolls, ..self.of.flow };
+        let still = self.at[4..7].iter().all(|w| w.abs() < REST);
+        if still && flow.resisted > 0.0 && flow.leaves(&self.at) == Standstill::Sticks {
+            return Standstill::Sticks;
+        }
+        self.rest().decides()
+    }
+
+    /// Sets what dry losses resist or hold at the present numbers. Returns the next phase if the stone stays at rest.
+    fn begins_to_lose(&mut self, toward: [f64; 2]) -> Option<Next> {
+        let freed = core::mem::take(&mut self.of.freed);
+        let left = self.of.flow.sets_ways(&mut self.at, toward, freed);
+        self.claims(left);
+        let flow = &self.of.flow;
+        if !flow.is_paced() || flow.rolls_at(&self.at) >= REST {
+            return None;
+        }
+        match flow.leaves(&self.at) {
+            Standstill::Sticks => return Some(Next::Ends(Ending::Stops)),
+            Standstill::LiftsOff => return Some(Next::Ends(Ending::LiftOff)),
+            Standstill::Undefined => return Some(Next::Ends(Ending::Painleve)),
+            Standstill::Slips { alpha, .. } => {
+                self.at = flow.rolling_along(&self.at, towards(alpha).map(|x| 2.0 * REST * x));
+            }
+        }
+        None
     }
 
     /// Records the room of an end by margin `i`: how far this margin falls below zero after the end. A margin
@@ -202,7 +262,7 @@ impl<'a, 'n> StoneWalk<'a, 'n> {
     }
 }
 
-impl<'n> Phases<ALL> for StonePhases<'n> {
+impl<'n, const N: usize> Phases<N> for StonePhases<'n> {
     type State = StoneState;
     type Slow = StoneSlips;
     const SLIP: usize = 8;
@@ -217,46 +277,54 @@ impl<'n> Phases<ALL> for StonePhases<'n> {
     fn over(&self) -> f64 {
         self.flow.over()
     }
-    fn state(walk: &StoneWalk<'_, 'n>) -> StoneState {
+    fn state(walk: &StoneWalk<'_, 'n, N>) -> StoneState {
         state(&walk.at)
     }
-    fn slip(walk: &StoneWalk<'_, 'n>) -> [f64; 2] {
+    fn slip(walk: &StoneWalk<'_, 'n, N>) -> [f64; 2] {
         output_slip(&walk.at)
     }
 
-    fn perturbs(walk: &mut StoneWalk<'_, 'n>) {
+    fn perturbs(walk: &mut StoneWalk<'_, 'n, N>) {
         if walk.perturbation > 0.0 {
             let (up, down) = (1.0 + walk.perturbation, 1.0 - walk.perturbation);
+            let y = walk.at;
             for (x, by) in walk.at.iter_mut().zip([up, down, down, up, up, down, up]) {
                 *x *= by;
             }
             walk.at = walk.of.flow.kept(walk.at);
+            if loses(N) {
+                // Rolling, rocking or drilling that is zero stays zero.
+                let (before, after) = (walk.of.flow.seen_at(&y).lab, walk.of.flow.seen_at(&walk.at).lab);
+                let [a, b, c] = before.map(|axis| dot(axis, [y[4], y[5], y[6]]));
+                let w = plus(across(&after, [a * up, b * down]), c * up, after[2]);
+                walk.at[4..7].copy_from_slice(&w);
+            }
         }
     }
 
-    fn write(walk: &mut StoneWalk<'_, 'n>, y: &[f64; ALL]) {
+    fn write(walk: &mut StoneWalk<'_, 'n, N>, y: &[f64; N]) {
         write(&mut walk.made, (&walk.of.flow, &walk.ask, walk.of.still_centre), y);
     }
-    fn write_here(walk: &mut StoneWalk<'_, 'n>) {
+    fn write_here(walk: &mut StoneWalk<'_, 'n, N>) {
         Self::write(walk, &{ walk.at });
     }
 
-    fn ends_slip(walk: &mut StoneWalk<'_, 'n>) -> Option<Halt> {
+    fn ends_slip(walk: &mut StoneWalk<'_, 'n, N>) -> Option<Halt> {
         walk.of.flow.touch = Touch::Slips;
-        let [_, lift, hold] = walk.of.flow.margins_at(&walk.at);
+        let [_, lift, hold, _] = walk.of.flow.margins_at(&walk.at);
         let jams = (hold <= 0.0).then_some(Halt::Jam);
         let lifts = (lift <= 0.0).then_some(Halt::LiftOff);
         if walk.is_down() { Some(Halt::Face) } else { jams.or(lifts) }
     }
 
-    fn lies(walk: &mut StoneWalk<'_, 'n>, _: Standstill) -> Option<Ending> {
+    fn lies(walk: &mut StoneWalk<'_, 'n, N>, _: Standstill) -> Option<Ending> {
         walk.of.flow.touch = walk.resting();
         walk.is_down().then_some(Ending::Face)
     }
 
-    fn begins_without_slip(walk: &mut StoneWalk<'_, 'n>) -> Next {
+    fn begins_without_slip(walk: &mut StoneWalk<'_, 'n, N>) -> Next {
         walk.of.flow.touch = walk.resting();
-        let [_, lift, hold] = walk.of.flow.margins_at(&walk.at);
+        let [_, lift, hold, _] = walk.of.flow.margins_at(&walk.at);
         let ending = if walk.is_down() {
             return Next::Ends(Ending::Face);
         } else if lift <= 0.0 {
@@ -274,54 +342,57 @@ impl<'n> Phases<ALL> for StonePhases<'n> {
         Next::Rolls { at_limit: false }
     }
 
-    fn rests(walk: &StoneWalk<'_, 'n>) -> Standstill {
-        walk.rest().decides()
+    fn rests(walk: &StoneWalk<'_, 'n, N>) -> Standstill {
+        walk.rests_here()
     }
-    fn lets_go(walk: &StoneWalk<'_, 'n>) -> Standstill {
+    fn lets_go(walk: &StoneWalk<'_, 'n, N>) -> Standstill {
         walk.rest().lets_go()
     }
 
-    fn no_unique_force(walk: &StoneWalk<'_, 'n>) -> Error {
+    fn no_unique_force(walk: &StoneWalk<'_, 'n, N>) -> Error {
         let (mu, theta) = (walk.of.flow.law.strength, state(&walk.at).theta());
         let Onset { eps, .. } = walk.rest().onset;
         Error::Painleve { mu, theta, limit: mu / eps[0].hypot(eps[1]) }
     }
 
-    fn gives_up(walk: &StoneWalk<'_, 'n>, count: usize) -> Result<Next, Error> {
+    fn gives_up(walk: &StoneWalk<'_, 'n, N>, count: usize) -> Result<Next, Error> {
         Err(Error::Restless { count, time: walk.t0 + walk.at[TIME] })
     }
 
-    fn slips(walk: &mut StoneWalk<'_, 'n>) -> [f64; ALL] {
+    fn slips(walk: &mut StoneWalk<'_, 'n, N>) -> [f64; N] {
         walk.of.flow.touch = Touch::Slips;
+        walk.begins_to_lose([0.0; 2]);
         walk.at
     }
-    fn slips_on(walk: &mut StoneWalk<'_, 'n>) -> [f64; ALL] {
+    fn slips_on(walk: &mut StoneWalk<'_, 'n, N>) -> [f64; N] {
+        walk.begins_to_lose([0.0; 2]);
         walk.at
     }
 
-    fn rubbing(walk: &StoneWalk<'_, 'n>) -> f64 {
+    fn rubbing(walk: &StoneWalk<'_, 'n, N>) -> f64 {
         walk.of.flow.rubs(&walk.at)
     }
-    fn begins_slowly(walk: &StoneWalk<'_, 'n>) -> bool {
+    fn begins_slowly(walk: &StoneWalk<'_, 'n, N>) -> bool {
         walk.of.flow.law.patch().is_none()
     }
 
-    fn lets_slip(walk: &mut StoneWalk<'_, 'n>, _: [f64; 2]) {
+    fn lets_slip(walk: &mut StoneWalk<'_, 'n, N>, way: [f64; 2]) {
         walk.of.flow.touch = Touch::Slips;
+        walk.begins_to_lose(way);
     }
-    fn slow(walk: &StoneWalk<'_, 'n>) -> StoneSlips {
+    fn slow(walk: &StoneWalk<'_, 'n, N>) -> StoneSlips {
         StoneSlips::of(&walk.of.flow.law, walk.of.flow.tol)
     }
 
-    fn clear_until(walk: &StoneWalk<'_, 'n>, series: &SlowSeries<ALL>) -> f64 {
+    fn clear_until(walk: &StoneWalk<'_, 'n, N>, series: &SlowSeries<N>) -> f64 {
         clear_until(series.until, |_, moment| walk.of.flow.margins_at(&series.at(moment)))
     }
 
-    fn nudged(walk: &StoneWalk<'_, 'n>, way: [f64; 2], growth: f64) -> [f64; ALL] {
+    fn nudged(walk: &StoneWalk<'_, 'n, N>, way: [f64; 2], growth: f64) -> [f64; N] {
         walk.of.flow.nudged(&walk.at, way, growth)
     }
 
-    fn passed(walk: &StoneWalk<'_, 'n>, series: &SlowSeries<ALL>, until: f64) {
+    fn passed(walk: &StoneWalk<'_, 'n, N>, series: &SlowSeries<N>, until: f64) {
         let Some(recorded) = walk.of.flow.recorded else { return };
         if let Some(turns) = &mut recorded.borrow_mut().turns {
             let at = |t: f64| {
@@ -334,37 +405,41 @@ impl<'n> Phases<ALL> for StonePhases<'n> {
     }
 
     fn rolls(
-        walk: &mut StoneWalk<'_, 'n>,
+        walk: &mut StoneWalk<'_, 'n, N>,
         at_limit: bool,
         _: &mut dyn FnMut() -> bool,
-    ) -> Result<Option<WalkStep<ALL>>, Error> {
-        walk.of.flow.touch = if walk.of.freed { Touch::Rolls } else { walk.resting() };
-        walk.of.freed = false;
+    ) -> Result<Option<WalkStep<N>>, Error> {
+        walk.of.flow.touch =
+            if walk.of.freed && walk.kind() == Kind::Rolling { Touch::Rolls } else { walk.resting() };
         if walk.of.flow.touch == Touch::Held {
             walk.claims(LOST_DRILLING * walk.of.flow.drilling(&walk.at).abs());
+        }
+        if let Some(next) = walk.begins_to_lose([0.0; 2]) {
+            walk.next = Some(next);
+            return Ok(None);
         }
         walk.of.flow.mu = walk.ask.table.mu() * if at_limit { 1.0 + GRACE } else { 1.0 };
         Ok(Some(WalkStep::Flows(walk.at)))
     }
 
-    fn first(walk: &StoneWalk<'_, 'n>, y: &[f64; ALL]) -> f64 {
+    fn first(walk: &StoneWalk<'_, 'n, N>, y: &[f64; N]) -> f64 {
         walk.of.flow.first(y)
     }
 
     fn flows(
-        walk: &mut StoneWalk<'_, 'n>,
-        y: [f64; ALL],
+        walk: &mut StoneWalk<'_, 'n, N>,
+        y: [f64; N],
         steps: Steps,
         go_on: &mut dyn FnMut() -> bool,
-    ) -> Result<Pause<ALL>, Error> {
+    ) -> Result<Pause<N>, Error> {
         let (flow, ask, still) = (walk.of.flow, walk.ask, walk.of.still_centre);
         let from = walk.made.motion.states.len();
         let (made, times) = (&mut walk.made, &walk.since[from..]);
         let whole =
             |y: &[f64; WITHOUT_POSE]| core::array::from_fn(|i| if i < WITHOUT_POSE { y[i] } else { 0.0 });
         // A stone that rolls without a pose has fewer numbers.
-        let flown = if SHORT_CODE || flow.touch == Touch::Slips || ask.pose || ask.table.rubs() {
-            let mut write = |y: &[f64; ALL]| write(made, (&flow, &ask, still), y);
+        let flown = if SHORT_CODE || loses(N) || flow.touch == Touch::Slips || ask.pose || ask.table.rubs() {
+            let mut write = |y: &[f64; N]| write(made, (&flow, &ask, still), y);
             flow.run(flow.place(y), steps, times, &mut write, go_on)
         } else {
             let mut write = |y: &[f64; WITHOUT_POSE]| write(made, (&flow, &ask, still), &whole(y));
@@ -389,12 +464,12 @@ impl<'n> Phases<ALL> for StonePhases<'n> {
         Ok(Pause::No)
     }
 
-    fn slip_halts(walk: &mut StoneWalk<'_, 'n>, y: [f64; ALL], halt: Halt) {
+    fn slip_halts(walk: &mut StoneWalk<'_, 'n, N>, y: [f64; N], halt: Halt) {
         walk.phase_ends(y, halt);
     }
 
-    fn grows(&self, halt: Halt, y: &[f64; ALL]) -> Option<f64> {
+    fn grows(&self, halt: Halt, y: &[f64; N]) -> Option<f64> {
         let ends = matches!(halt, Halt::Face | Halt::LiftOff | Halt::Slips | Halt::Jam);
-        ends.then(|| self.flow.fastest(y))
+        if halt == Halt::Rests { Some(1.0) } else { ends.then(|| self.flow.fastest(y)) }
     }
 }

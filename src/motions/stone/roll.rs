@@ -8,6 +8,7 @@
 //! compares it with references of 25 digits.
 
 use super::check;
+use super::flow::{ALL, LOSING};
 use super::known::{Recorded, Runs, settle};
 use super::phases::StoneWalk;
 use crate::error::Error;
@@ -21,7 +22,7 @@ use core::cell::RefCell;
 /// The start is a [`StoneState`], or a [`Start`] with a slip and a time; the vertical of a state is scaled to
 /// length 1. A slip has its components along the horizontal axes x and y of that laboratory frame in which
 /// the orientation of the stone is the smallest turn from upright, at the start and in all outputs. `ask` has
-/// the table, the tolerance, `beyond` and the outputs; a stone has no losses, no fixed step and no landing of
+/// the table, the losses, the tolerance, `beyond` and the outputs; a stone has no fixed step and no landing of
 /// another rim. `go_on` is called often; if it returns false, the result is `Ok(None)`. Errors: `OutOfRange`,
 /// which names the argument; `Painleve` for a start without a unique contact force; `Restless` where slipping
 /// and rolling alternate too often; `Endless` where the motion hardly advances.
@@ -72,7 +73,12 @@ pub(crate) fn followed(
     let (start, fine) = check(start, times, ask)?;
     let mut runs = |times: &[f64], recorded: Option<&RefCell<Recorded>>| -> Runs {
         let mut run = |tol: f64, recorded| {
-            Box::new(StoneWalk::of_stone((stone, &start), times, ask, (tol, fine), recorded)?).run(go_on)
+            let of = (stone, &start);
+            if ask.losses.is_none() {
+                walk::<ALL>(of, times, ask, (tol, fine), recorded)?.run(go_on)
+            } else {
+                walk::<LOSING>(of, times, ask, (tol, fine), recorded)?.run(go_on)
+            }
         };
         let Some(found) = run(fine, recorded)? else { return Ok(None) };
         Ok(run(rougher(fine), None)?.map(|rough| [found, rough]))
@@ -82,4 +88,16 @@ pub(crate) fn followed(
     let span = (start.time, times[times.len() - 1], fine);
     let settled = settle(&mut found, &mut recorded.borrow_mut(), span, &mut |times| runs(times, None))?;
     Ok(settled.then_some(found))
+}
+
+/// A walk at its start, on the heap: while it runs, threads with a small stack need theirs.
+#[inline(never)]
+fn walk<'a, 'n, const N: usize>(
+    of: (&Ellipsoid, &Start<StoneState>),
+    times: &'a [f64],
+    ask: &Ask,
+    tols: (f64, f64),
+    recorded: Option<&'n RefCell<Recorded>>,
+) -> Result<Box<StoneWalk<'a, 'n, N>>, Error> {
+    Ok(Box::new(StoneWalk::of_stone(of, times, ask, tols, recorded)?))
 }

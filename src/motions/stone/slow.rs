@@ -1,14 +1,13 @@
 //! The slow slips of a stone, as power series of all of its numbers.
 
-use super::flow::ALL;
 use crate::laws::stone::law::{StoneLaw, across, laboratory, turning};
-use crate::motions::halt::TIME;
+use crate::motions::halt::{TIME, loses};
 use crate::motions::walk::slow::{SlowRates, SlowSlips};
 use crate::motions::walk::{SlowLaw, SlowSeries};
 use crate::numbers::Series;
 use crate::numbers::vector::dot;
 
-/// The series of a stone's slow slips. Besides its numbers they have the heat and the contact point (x, y).
+/// The series of a stone's slow slips. Besides its numbers they have the heat, the contact point (x, y), and what is lost.
 pub(super) struct StoneSlips {
     slips: SlowSlips<7>,
 }
@@ -19,34 +18,33 @@ impl StoneSlips {
             let law = law.map(|x| tape.number(x));
             let (q, w) = ([a, b, c, d], [e, f, g]);
             let lab = laboratory(q);
-            let at = law.touching(lab[2], w);
+            let at = law.losing(law.touching(lab[2], w), &lab, w);
             let to = law.pulled(&at, w, across(&lab, way));
             let rate = law.slip_rate(&at, w, &to);
             let heat = -(slip[0] * dot(lab[0], to.force) + slip[1] * dot(lab[1], to.force));
             let [x, y] = [0, 1].map(|i| slip[i] + dot(lab[i], at.r_rate));
             let ([a, b, c, d], [e, f, g]) = (turning(q, w), to.w);
             let slip = [dot(lab[0], rate), dot(lab[1], rate)];
-            SlowRates { numbers: [a, b, c, d, e, f, g], slip, more: vec![heat, x, y] }
+            let mut more = vec![heat, x, y];
+            more.extend(at.lost.map(|lost| -dot(lost.under(dot(to.force, at.n)), w)));
+            SlowRates { numbers: [a, b, c, d, e, f, g], slip, more }
         });
         Self { slips }
     }
 }
 
-impl SlowLaw<ALL> for StoneSlips {
+impl<const N: usize> SlowLaw<N> for StoneSlips {
     #[inline(never)]
-    fn follow(
-        &mut self,
-        y: &[f64; ALL],
-        angle: Series,
-        growth: f64,
-        speed: f64,
-    ) -> Option<Box<SlowSeries<ALL>>> {
+    fn follow(&mut self, y: &[f64; N], angle: Series, growth: f64, speed: f64) -> Option<Box<SlowSeries<N>>> {
         let start = core::array::from_fn(|i| y[i]);
         let slow = self.slips.follow(start, (angle, growth), speed)?;
-        let mut numbers = [Series::of(1.0).integral(y[TIME]); ALL];
+        let mut numbers = [Series::of(1.0).integral(y[TIME]); N];
         numbers[..7].copy_from_slice(&slow.known);
         numbers[8..10].copy_from_slice(&slow.slip);
         (0..3).for_each(|i| numbers[10 + i] = self.slips.more(i).integral(y[10 + i]));
+        if loses(N) {
+            numbers[N - 1] = self.slips.more(3).integral(y[N - 1]);
+        }
         let (until, ends) = slow.until(&numbers[..11]);
         Some(Box::new(SlowSeries {
             numbers,

@@ -1,19 +1,20 @@
 //! The outputs of a stone: states, poses and forces from its numbers.
 
-use super::flow::{ALL, StoneFlow, Touch, output_slip, state};
+use super::flow::{StoneFlow, Touch, output_slip, state};
 use crate::laws::stone::StoneState;
 use crate::methods::flow::Flow;
 use crate::motions::Ask;
 use crate::motions::Kind;
 use crate::motions::followed::Followed;
+use crate::motions::halt::loses;
 use crate::motions::judge::doubted_of;
 use nalgebra::Vector3;
 
 /// Adds a point to the outputs.
-pub(super) fn write(
+pub(super) fn write<const N: usize>(
     made: &mut Followed<StoneState>,
     (flow, ask, still): (&StoneFlow<'_>, &Ask, [f64; 2]),
-    y: &[f64; ALL],
+    y: &[f64; N],
 ) {
     let pose = ask.pose.then(|| flow.pose(y, still));
     let way = made.path.way;
@@ -31,4 +32,7 @@ pub(super) fn write(
     });
     let kind = if flow.touch == Touch::Rolls { Kind::Rolling } else { Kind::Slipping };
     made.put(state(y), output_slip(y), y[10], kind, pose, force);
+    if loses(N) {
+        made.path.work_lost.push(y[N - 1]);
+    }
 }

@@ -328,6 +328,11 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         self.next = Some(next);
     }
 
+    /// Lets the next phase be the present one if it is of the same kind.
+    pub fn resumes_phase(&mut self) {
+        self.resumes = true;
+    }
+
     /// Records the beginning of a phase, whose first steps may crawl.
     pub fn begins_phase(&mut self, kind: Kind) {
         self.began = self.at[TIME];

@@ -27,7 +27,7 @@ use crate::motions::path::face::FLAT;
 use crate::motions::walk::{MOMENT, slip_over};
 use crate::numbers::{Dual, Real};
 use core::f64::consts::PI;
-use lossy::ways;
+pub(crate) use lossy::ways;
 
 /// The halts of the margins, in the order of the margins.
 const SLIP_ENDS: [Halt; MARGINS] =
