@@ -12,8 +12,8 @@ from spincyl._ellipsoid import Ellipsoid
 from spincyl._ellipsoid_state import EllipsoidState
 from spincyl._ending import Event
 from spincyl._input.numbers import Floats, Reals, components, made, si
-from spincyl._loss import Loss, made_law
-from spincyl._lossy import check, narrow
+from spincyl._loss import Loss
+from spincyl._lossy import check, narrow, of_stone
 from spincyl._measured import in_si, natural_time, speaking
 from spincyl._motion import ENDINGS, Motion
 from spincyl._outputs import FRICTION, Number
@@ -152,8 +152,7 @@ def roll(
     if restitution is not None:
         raise ValueError("restitution: of bodies of revolution; a stone ends where it leaves the table")
     if losses is not None:
-        made_law(losses, body)
-        narrow(losses, contact)
+        narrow(of_stone(losses, body), contact)
     scale, seconds = body.scale, t
     if scale is not None:
         fitting(contact, scale)

@@ -286,7 +286,7 @@ def made_law(losses: object, body: Body | None = None) -> Loss:
 def units(scale: "Scale | Body", weighed: bool = False) -> tuple[float, float, float]:
     """Metres, seconds and joules of the natural units; with `weighed` the mass has to be known."""
     found = scale_of(scale)
-    if weighed and found.mass == 1.0 and not isinstance(scale, Body):
+    if weighed and found.mass == 1.0 and isinstance(scale, Scale):
         message = (
             "this law needs the mass of the body, and the scale has the default of 1 kg: Scale(radius, mass)"
         )

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from spincyl import _core
 from spincyl._contact import AnyContact, Coulomb
 from spincyl._input.numbers import Floats, is_scalar, warn
 from spincyl._input.reprs import is_lazy
@@ -28,6 +29,16 @@ def check(losses: object, times: Floats, t0: float, settings: dict[str, Any]) ->
             f"t = {float(times[times < t0][0])!r}: expected times from the start on, t0 = {t0!r};"
             " what is lost does not come back"
         )
+
+
+def of_stone(losses: object, body: Any) -> Loss:
+    """Return a law of loss that acts on stones, or an error that names the law."""
+    found = made_law(losses, body)
+    for law in found.laws:
+        if law._parameter not in _core.stone_losses():
+            why = "acts along the rim of a body; on stones act air, rolling resistance and drilling"
+            raise ValueError(f"losses = {law!r}: {why}")
+    return found
 
 
 def narrow(losses: Loss, contact: AnyContact) -> None:

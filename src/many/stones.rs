@@ -2,6 +2,7 @@
 
 use super::threads::share;
 use crate::error::{Error, room};
+use crate::laws::loss::Losses;
 use crate::laws::stone::{Ellipsoid, StoneState};
 use crate::motions::Path;
 use crate::motions::followed::Followed;
@@ -25,6 +26,8 @@ pub struct StoneRow {
     /// The coefficients of sliding and of static friction and the radius of the patch, or c of viscous friction and any
     /// numbers; None for those of `ask`.
     pub coefficients: Option<[f64; 3]>,
+    /// Its own losses, if any; None for those of `ask`.
+    pub losses: Option<Losses>,
 }
 
 /// The result of one motion of many.
@@ -33,14 +36,14 @@ pub struct StoneSummary {
     /// The status: the code of an [`Ending`].
     pub status: u8,
     /// The numbers, in the order of [`NAMES`](Self::NAMES).
-    pub numbers: [f64; 13],
+    pub numbers: [f64; 14],
 }
 
 impl StoneSummary {
     /// The names of the numbers: the last vertical and angular velocity, the time of the end, the spin then,
-    /// the number of reversals of the spin, the time of the first reversal, the heat, the estimated error,
-    /// and the time up to which the motion is known.
-    pub const NAMES: [&str; 13] = [
+    /// the number of reversals of the spin, the time of the first reversal, the heat, the energy lost, the
+    /// estimated error, and the time up to which the motion is known.
+    pub const NAMES: [&str; 14] = [
         "n1",
         "n2",
         "n3",
@@ -52,12 +55,13 @@ impl StoneSummary {
         "reversals",
         "first_reversal",
         "dissipated",
+        "work_lost",
         "error",
         "known_until",
     ];
 
     const fn none(status: Ending) -> Self {
-        Self { status: status as u8, numbers: [f64::NAN; 13] }
+        Self { status: status as u8, numbers: [f64::NAN; 14] }
     }
 }
 
@@ -102,6 +106,7 @@ fn one(
     let state = StoneState { vertical: [a, b, c], w: [d, e, f] };
     let start = Start { slip: row.slip, ..Start::from(state) };
     let mut ask = *ask;
+    ask.losses = row.losses.unwrap_or(ask.losses);
     if let Some(own) = row.coefficients {
         ask.table = ask.table.with_coefficients(own);
     }
@@ -124,8 +129,8 @@ fn one(
     let count = turns.as_ref().map_or(f64::NAN, |turns| turns.len() as f64);
     let first = turns.iter().flatten().next().map_or(f64::NAN, |[t, _]| *t);
     let ([a, b, c], [d, e, f]) = (last.vertical, last.w);
-    let Followed { motion: Motion { error, .. }, path: Path { heat, known_until, .. } } = found;
+    let Followed { motion: Motion { error, .. }, path: Path { heat, lost, known_until, .. } } = found;
     let known = known_until.min(end);
-    let numbers = [a, b, c, d, e, f, end, last.spin(), count, first, heat, error, known];
+    let numbers = [a, b, c, d, e, f, end, last.spin(), count, first, heat, lost, error, known];
     StoneSummary { status: found.motion.ending() as u8, numbers }
 }

@@ -352,7 +352,7 @@ mod _core {
     #[pymodule_export]
     use super::stone::{
         check_stone, check_stones, egg, rattleback, rocking, spin_limits, stone_columns, stone_energies,
-        stone_moments, stone_names, stones, uniform_stone,
+        stone_losses, stone_moments, stone_names, stones, uniform_stone,
     };
     #[pymodule_export]
     use super::sweep::{areas, extrema, portrait};

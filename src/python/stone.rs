@@ -4,6 +4,7 @@ use super::columns::{GivenColumns, codes, numbers};
 use super::options::MotionAsked;
 use super::watch::Watch;
 use crate::Error;
+use crate::laws::loss::{COUNT, Law, Losses};
 use crate::laws::stone::{Ellipsoid, StoneState};
 use crate::many::stones::{StoneRow, StoneSummary, many};
 use crate::states::steady::MOST;
@@ -167,6 +168,13 @@ pub fn stone_energies(stone: [f64; STONE], states: Vec<[f64; 8]>, smooth: bool) 
     Ok(states.iter().map(energy).collect())
 }
 
+/// The coefficients of the laws of loss that act on stones.
+#[pyfunction]
+pub fn stone_losses() -> Vec<&'static str> {
+    let acts = |law: &Law| Losses::of(*law, 1.0).check_for_stone().is_ok();
+    Law::ALL.iter().copied().filter(acts).map(Law::parameter).collect()
+}
+
 /// Unit and description of each number of a motion among many, in the order of `StoneSummary::NAMES`.
 const STONE_LABELS: [[&str; 2]; StoneSummary::NAMES.len()] = [
     ["1", "vertical along axis 1 at the end"],
@@ -180,6 +188,7 @@ const STONE_LABELS: [[&str; 2]; StoneSummary::NAMES.len()] = [
     ["1", "how often the spin has turned back"],
     ["sqrt(a/g)", "time at which the spin first turned back"],
     ["M g a", "heat of friction"],
+    ["M g a", "energy that the losses have taken"],
     ["1", "estimated error of the worst number of the state"],
     ["sqrt(a/g)", "time up to which the motion is known"],
 ];
@@ -210,6 +219,7 @@ pub fn stones<'py>(
     let state: [&[f64]; 6] = columns.all(["n1", "n2", "n3", "w1", "w2", "w3"])?;
     let slip: [&[f64]; 2] = columns.all(["slip_x", "slip_y"])?;
     let friction = columns.some(["coefficient", "static", "patch"])?;
+    let lost = columns.some(core::array::from_fn::<_, COUNT, _>(|i| Law::ALL[i].parameter()))?;
     let mut status = codes(out, "status")?;
     let status = status.as_slice_mut()?;
     let count = status.len();
@@ -219,6 +229,7 @@ pub fn stones<'py>(
         state: state.map(|column| at(column, i)),
         slip: slip.map(|column| at(column, i)),
         coefficients: friction.map(|pair| pair.map(|column| at(column, i))),
+        losses: lost.map(|all| Losses { coefficients: all.map(|column| at(column, i)) }),
     };
     let (times, ask) = (times.as_slice()?, asked.ask()?);
     let mut watch = Watch::new(progress);

@@ -15,6 +15,12 @@ in the axes of the body, w the angular velocity there.
     body    in the axes of the body, w and n, with r = -D n/S - d, S^2 = n.D n, and the acceleration from the
             angular momentum about the contact (rolling) or from the normal force in closed form (slip)
 
+Losses are a couple m0 + N mN, and the energy that they take is the last number of a state:
+
+    air   -b w      air2  -b2 |w| w      rolling  -delta N w_h/|w_h|, w_h horizontal      drilling  -l N sgn(w.z) z
+
+The sign of w.z is that of the start; where it is held at 0 the couple has one more part along z, found with the rates.
+
 n of a start is divided by its length. The body begins with the smallest rotation that turns n to the vertical z, the
 quaternion (1 + n3, n2, -n1, 0) over its length, and for n = -e3 half a turn about the first axis, (0, 1, 0, 0).
 Quaternions are (scalar, x, y, z) and turn body into laboratory. The centre of mass begins above the origin.
@@ -52,6 +58,18 @@ def rotation(q):
     ]
 
 
+def held(matrix, z):
+    """The change of w by a couple, with one more couple along z that keeps w.z; and that couple."""
+    gives = along(matrix, z)
+    most = dot(gives, z)
+
+    def turned(couple):
+        kept = -(dot(gives, couple) / most)
+        return add(along(matrix, couple), [kept * x for x in gives]), kept
+
+    return turned
+
+
 class Stone(Formulation):
     """What both have in common: a scene, its start, and how slip and force are written."""
 
@@ -62,6 +80,7 @@ class Stone(Formulation):
         self.inertia = [[mpfr(x) for x in row] for row in scene.inertia]
         self.free = inverse(self.inertia)
         self.d, self.g = [mpfr(x) for x in scene.offset], mpfr(scene.g)
+        self.losses = {name: mpfr(x) for name, x in scene.losses.items()}
         self.edge = None if scene.theta_end is None else gmpy2.cos(mpfr(scene.theta_end))
 
     def begin(self, n, w):
@@ -76,6 +95,35 @@ class Stone(Formulation):
         """From the centre of mass to the lowest point, in the body: a start."""
         size = gmpy2.sqrt(dot(n, [a * x for a, x in zip(self.a2, n, strict=True)]))
         return [-(a * x / size) - d for a, x, d in zip(self.a2, n, self.d, strict=True)]
+
+    def lost(self, tape, w, z):
+        """The couple of the losses without the normal force, and that per unit of it."""
+        none = [tape.constant(0)] * 3
+        without, pressed = [none, none], [none, none]
+        drilling = dot(w, z)
+        for name, size in self.losses.items():
+            if name == "air":
+                without.append(scaled(-size, w))
+            elif name == "air2":
+                speed = tape.sqrt(dot(w, w))
+                without.append([-size * (speed * x) for x in w])
+            elif name == "rolling":
+                level = [a - drilling * b for a, b in zip(w, z, strict=True)]
+                speed = tape.sqrt(dot(level, level))
+                pressed.append([-size * (x / speed) for x in level])
+            elif name == "drilling" and not self.scene.held:
+                pressed.append([-size * self.scene.sign * x for x in z])
+        return add(*without), add(*pressed)
+
+    def spin(self, matrix, z):
+        """The change of w by a couple and the couple that holds w.z, from the inverse of an inertia."""
+        if self.scene.held:
+            return held(matrix, z)
+        return lambda couple: (along(matrix, couple), mpfr(0))
+
+    def started(self, y):
+        """A start, with room for the energy that is lost."""
+        return [*y, mpfr(0)] if self.losses else y
 
     def named(self, tape, kind, slip, slip_rates, rates, force, seen):
         """The phase: `seen` has n, w, q, contact, energy and what should vanish."""
@@ -104,11 +152,12 @@ class Stone(Formulation):
         force = [x.c[0] for x in phase.force]
         if phase.demand.c[0] < mpfr("-1e-25") and y[0] == 0 and self.scene.law == "coulomb":
             force = [mpfr("nan")] * 3
-        return [*seen["n"], *seen["w"], *y[:3], *seen["q"], *seen["contact"], *force]
+        lost = [y[-1]] if self.losses else []
+        return [*seen["n"], *seen["w"], *y[:3], *seen["q"], *seen["contact"], *force, *lost]
 
     def strayed(self, y, lean=None):
         _, seen = self.probe(y)
-        energy = seen["energy"][0] + y[2]
+        energy = seen["energy"][0] + y[2] + (y[-1] if self.losses else 0)
         self.first = getattr(self, "first", energy)
         return max(abs(x) for x in [*seen["vanishing"], (energy - self.first) / max(1, abs(energy))])
 
@@ -125,7 +174,8 @@ class Table(Stone):
         r = along(matrix, self.lowest(n))
         v = add([ux, uy, zero], cross(r, along(matrix, w)))
         momentum = along(matrix, along(self.inertia, w))
-        return [ux, uy, zero, zero, zero, zero, -r[2], *v, *q, *momentum, *add(r, along(matrix, self.d))]
+        p = add(r, along(matrix, self.d))
+        return self.started([ux, uy, zero, zero, zero, zero, -r[2], *v, *q, *momentum, *p])
 
     def equations(self, kind):
         tape = self.tape()
@@ -151,16 +201,19 @@ class Table(Stone):
         p_rate = [moving[0] - lag[0], moving[1] - lag[1], moving[2]]
         r_rate = add(p_rate, scaled(-1, cross(w, centre)))
 
-        known = add(cross(r, along(free, cross(w, momentum))), cross(w, r_rate))
-        known[2] = known[2] - self.g
         zero = tape.constant(0)
         units = [[mpfr(i == j) for i in range(3)] for j in range(3)]
+        without, pressed = self.lost(tape, w, units[2])
+        turned = self.spin(free, units[2])
+        bare = add(without, scaled(-1, cross(w, momentum)))
+        known = add(cross(turned(bare)[0], r), cross(w, r_rate))
+        known[2] = known[2] - self.g
 
         def response(force):
-            return add(force, cross(along(free, cross(r, force)), r))
+            return add(force, cross(turned(add(cross(r, force), [force[2] * x for x in pressed]))[0], r))
 
         if kind == "roll":
-            force = scaled(-1, along(inverse([response(unit) for unit in units]), known))
+            force = scaled(-1, along(inverse(list(zip(*map(response, units), strict=True))), known))
             slip_rates = [zero, zero]
         else:
             aim = self.aim(kind, slip)
@@ -173,7 +226,12 @@ class Table(Stone):
             *add([q[0] * x for x in w], cross(w, q[1:])),
         ]
         rates = [*velocity, force[0], force[1], force[2] - self.g, *scaled(mpfr(0.5), turning)]
-        rates += [*cross(r, force), *p_rate]
+        couple = add(without, [force[2] * x for x in pressed])
+        twist = turned(add(cross(r, force), couple, scaled(-1, cross(w, momentum))))[1]
+        rates += [*add(cross(r, force), couple, [twist * x for x in units[2]]), *p_rate]
+        if self.losses:
+            tape.state()
+            rates.append(-dot(couple, w))
 
         seen = {"n": matrix[2]}
         if not self.watching:
@@ -206,7 +264,7 @@ class Body(Stone):
     def start(self, n=None, w=None):
         n, w, q = self.begin(n or self.scene.n, w or self.scene.w)
         r = along(rotation(q), self.lowest(n))
-        return [*(mpfr(x) for x in self.scene.u), mpfr(0), mpfr(0), *n, *w, *q, r[0], r[1]]
+        return self.started([*(mpfr(x) for x in self.scene.u), mpfr(0), mpfr(0), *n, *w, *q, r[0], r[1]])
 
     def equations(self, kind):
         tape = self.tape()
@@ -226,6 +284,8 @@ class Body(Stone):
         r_rate = [(growth * a - x) / size for a, x in zip(at, dn_rate, strict=True)]
         gyroscopic = scaled(-1, cross(w, along(self.inertia, w)))
         spun = cross(w, r)
+        without, pressed = self.lost(tape, w, n)
+        torque = add(gyroscopic, without)
         if kind == "roll":
             u = [zero] * 3
             carried = add(cross(w, r_rate), cross(w, spun))
@@ -233,8 +293,12 @@ class Body(Stone):
             about = [
                 [self.inertia[i][j] - r[i] * r[j] + (rr if i == j else 0) for j in range(3)] for i in range(3)
             ]
-            torque = add(gyroscopic, scaled(-1, cross(r, carried)), scaled(self.g, cross(r, n)))
-            w_rate = along(inverse(about), torque)
+            torque = add(torque, scaled(-1, cross(r, carried)), scaled(self.g, cross(r, n)))
+            turned = self.spin(inverse(about), n)
+            w_rate, pushed = turned(torque)[0], turned(pressed)[0]
+            resting = self.g - dot(carried, n) + dot(cross(r, w_rate), n)
+            normal = resting / (1 - dot(cross(r, pushed), n))
+            w_rate = add(w_rate, [normal * x for x in pushed])
             push = add(cross(r, w_rate), scaled(-1, carried), scaled(self.g, n))
             force = along(matrix, push)
             slip_rates = [zero, zero]
@@ -243,7 +307,8 @@ class Body(Stone):
             aim = self.aim(kind, slip)
             f = turned_back(matrix, aim)
             v = add(u, scaled(-1, spun))
-            bare, more = along(self.free, gyroscopic), along(self.free, cross(r, f))
+            turned = self.spin(self.free, n)
+            bare, more = turned(torque)[0], turned(add(cross(r, f), pressed))[0]
             above = (
                 self.g
                 + dot(cross(w, v), n)
@@ -263,6 +328,9 @@ class Body(Stone):
         ]
         path = along(matrix, r_rate)
         rates = [*n_rate, *w_rate, *scaled(mpfr(0.5), turning), path[0] + ux, path[1] + uy]
+        if self.losses:
+            tape.state()
+            rates.append(-dot(add(without, [force[2] * x for x in pressed]), w))
         v = add(u, scaled(-1, spun))
         seen = {"n": n, "w": w, "q": q, "contact": tape.states[14:16]}
         seen["energy"] = [(dot(v, v) + dot(w, along(self.inertia, w))) / 2 - self.g * dot(r, n)]

@@ -1,4 +1,4 @@
-"""Writes stones.json and stones_steady.csv: ellipsoids of any inertia that roll and slip, the reference of their tests.
+"""Writes stones.json, stones_losing.json and stones_steady.csv: ellipsoids of any inertia that roll and slip, the reference of their tests.
 
     python tests/reference/stones.py [name ...]     motions whose names begin so, and "steady"; or all
 
@@ -60,7 +60,8 @@ class Scene:
     """A stone, a law of friction, a start and times."""
 
     def __init__(
-        self, name, stone, law, n, w, end, mu=0.0, static=None, u=(0, 0), theta_end=None, samples=6, g=1.0
+        self, name, stone, law, n, w, end, mu=0.0, static=None, u=(0, 0), theta_end=None, samples=6, g=1.0,
+        losses=None, held=False,
     ):
         self.name, self.law, self.g, self.theta_end = name, law, float(g), theta_end
         axes, inertia, offset = stone
@@ -69,12 +70,15 @@ class Scene:
         self.n, self.w, self.u = ([float(x) for x in v] for v in (n, w, u))
         self.mu, self.smooth = float(mu), law in ("viscous", "smooth")
         self.static = math.inf if law == "rolling" else self.mu if static is None else float(static)
+        self.losses, self.held = {name: float(x) for name, x in (losses or {}).items()}, held
+        self.sign = 1 if sum(a * b for a, b in zip(self.n, self.w, strict=True)) > 0 else -1
         self.samples = [float(end * k / samples) for k in range(1, samples + 1)]
 
     def inputs(self):
         static = self.static if math.isfinite(self.static) else None
         names = ("name", "law", "axes", "inertia", "offset", "g", "mu", "theta_end", "n", "w", "u")
-        return {name: getattr(self, name) for name in names} | {"static": static}
+        lossy = {"losses": self.losses} if self.losses else {}
+        return {name: getattr(self, name) for name in names} | {"static": static} | lossy
 
 
 def stone(axes, moments, products=(0, 0, 0), offset=(0, 0, 0)):
@@ -135,6 +139,24 @@ def scenes():
     yield Scene("half a stone slips to its edge", SMALL, "coulomb", (0.3, 0.1, 0.9), (0.1, 1.2, -0.4), 1.2, mu=0.1, u=(0.8, 0.3), theta_end=0.9)
     yield Scene("egg in a viscous film", EGG, "viscous", (1, 0, 0.05), (6, 0, 0.3), 20, mu=0.3, u=(0.1, 0))
     yield Scene("odd stone in a viscous film", ODD, "viscous", (0.3, -0.2, 0.9), (0.5, 0.7, -1), 10, mu=0.5, u=(0.5, -0.2))
+    # fmt: on
+
+
+def losing():
+    """Motions with losses, whose rows have one number more, the energy that the losses have taken."""
+    both, every = {"drilling": 0.02, "rolling": 0.01}, {"air": 0.01, "air2": 0.02, "rolling": 0.01, "drilling": 0.02}
+    # fmt: off
+    yield Scene("small stone in air", SMALL, "rolling", *spinning(-0.6, 0.02, 0.01), 12, losses={"air": 2e-3})
+    yield Scene("odd stone in fast air", ODD, "rolling", (0.3, -0.2, 0.9), (0.6, 0.4, -0.5), 8, losses={"air2": 0.05})
+    yield Scene("odd stone with resistance", ODD, "rolling", (0.3, -0.2, 0.9), (0.2, 0.1, 0.5), 5, losses={"rolling": 0.02})
+    yield Scene("odd stone that drills", ODD, "rolling", (0.3, -0.2, 0.9), (0.2, 0.1, 0.9), 4, losses={"drilling": 0.05})
+    yield Scene("odd stone with every loss", ODD, "rolling", (0.3, -0.2, 0.9), (0.2, 0.1, 0.9), 4, losses=every)
+    yield Scene("small stone whose drilling is held", SMALL, "rolling", (0.05, 0.08, 0.99), (0, 0, 0), 2, losses={"air": 1e-3, "drilling": 0.05}, held=True)
+    yield Scene("odd stone with losses on a smooth table", ODD, "smooth", (0.3, -0.2, 0.9), (0.8, 0.4, -0.4), 4, u=(0.3, -0.2), losses=every)
+    yield Scene("odd stone thrown with losses", ODD, "coulomb", (0.3, -0.2, 0.9), (0.5, 1, -2), 0.9, mu=0.3, u=(1, -0.5), losses=every)
+    yield Scene("small stone slips with losses", SMALL, "coulomb", (0.05, 0.1, 0.99), (0.5, 0, -0.3), 1, mu=0.2, losses=both)
+    yield Scene("odd stone thrown whose drilling is held", ODD, "coulomb", (0, 0.6, 0.8), (0.5, 0, 0), 0.25, mu=0.2, u=(1, -0.5), losses={"rolling": 0.02, "drilling": 0.2}, held=True)
+    yield Scene("odd stone in a film with losses", ODD, "viscous", (0.3, -0.2, 0.9), (0.5, 0.7, -1), 4, mu=0.5, u=(0.5, -0.2), losses=every)
     # fmt: on
 
 
@@ -238,6 +260,7 @@ def main():
     names = sys.argv[1:]
     precise(DIGITS)
     renew_json(HERE / "stones.json", scenes(), motion, "motions", columns=COLUMNS)
+    renew_json(HERE / "stones_losing.json", losing(), motion, "motions", columns=[*COLUMNS, "lost"])
     if not names or "steady" in names:
         (HERE / "stones_steady.csv").write_text("\n".join(steady()) + "\n")
 

@@ -163,7 +163,8 @@ def roll(
     -----
     Of stones, which have no first integrals, `t` is a number, and there are "spin" (at the end), "reversals"
     (how often the spin has turned back: to a tenth of the first spin at least, in the other direction),
-    "first_reversal" (the last zero before), "end", "dissipated" and "final" (n1, n2, n3, w1, w2, w3); each is
+    "first_reversal" (the last zero before), "end", "dissipated", with losses "work_lost", and "final" (n1,
+    n2, n3, w1, w2, w3); each is
     followed alone, on threads, twice for its error. `known_until` is the time up to which each motion is
     known, as of `EllipsoidMotion`; if reversals are wanted, they are counted up to there, and the error then
     is also at most the spin that counts. A spin of less than 1e-12 at the start has no direction.
@@ -185,11 +186,14 @@ def roll(
     if is_stone(bodies):
         from spincyl.sweep import _stones
 
-        if step is not None or beyond or restitution is not None or stop_at is not None or losses is not None:
-            raise ValueError("step, beyond, restitution, stop_at, losses: not of stones")
-        stones = _stones.question(bodies, states, t, want, contact, tol, mu)
+        if step is not None or beyond or restitution is not None or stop_at is not None:
+            raise ValueError("step, beyond, restitution, stop_at: not of stones")
+        stones = _stones.question(bodies, states, t, want, contact, tol, mu, losses)
         labels = LABELS | _stones.LABELS
-        return swept(_stones.fill, stones, labels, threads=threads, progress=progress, length="a")
+        found = swept(_stones.fill, stones, labels, threads=threads, progress=progress, length="a")
+        if losses is not None:
+            found.attrs["losses"] = repr(losses)
+        return found
     bodies, states = made("bodies", bodies, Body), made("states", states, State)
     scale, seconds, pace = bodies.scale, t, step
     if scale is not None:

@@ -13,6 +13,8 @@ from spincyl._ellipsoid_state import EllipsoidState
 from spincyl._ending import ErrorWarning
 from spincyl._input.numbers import Floats, Reals, components, made, number, si, warn, within, words
 from spincyl._input.threads import Progress
+from spincyl._loss import Loss
+from spincyl._lossy import narrow, of_stone
 from spincyl._measured import natural_time
 from spincyl.sweep._inputs import kept_contact, kept_stones
 from spincyl.sweep._labels import given_up
@@ -32,6 +34,7 @@ def question(
     contact: AnyContact,
     tol: float,
     mu: float,
+    losses: Loss | None,
 ) -> Question:
     """The arguments of `spincyl.sweep.roll` for stones, checked; an error names the argument."""
     states, scale, seconds = made("states", states, EllipsoidState), stones.scale, t
@@ -55,6 +58,10 @@ def question(
     fields |= zip((*_FINAL, *slip), (x for part in parts for x in components(part)), strict=True)
     if isinstance(contact, Coulomb | Viscous):
         fields |= zip(("coefficient", "static", "patch"), contact._numbers, strict=True)
+    if losses is not None:
+        narrow(of_stone(losses, stones), contact)
+        names_of = (name for name, _ in _core.loss_laws())
+        fields |= zip(names_of, losses._coefficients, strict=True)
     asked = Asked(np.array([end]), tol=number("tol", tol), contact=contact, mu=number("mu", mu))
     told = kept_stones(stones, states) | kept_contact(contact)
     return Question(fields, names, frozenset(), asked, wanted, scale, seconds, told)

@@ -77,13 +77,6 @@ macro_rules! laws {
                 match self { $(Self::$Law => $file::$Law::PRESSES,)+ }
             }
 
-            /// Why a stone has no such law.
-            const fn along_a_rim(self) -> &'static str {
-                match self {
-                    $(Self::$Law => concat!("none: ", stringify!($Law), " acts along a rim, which a stone has not"),)+
-                }
-            }
-
             /// Whether this law needs a flat face above the table.
             const fn needs_face(self) -> bool {
                 match self { $(Self::$Law => $file::$Law::NEEDS_FACE,)+ }
@@ -317,7 +310,7 @@ impl Losses {
         self.check()?;
         let Some((law, value)) = self.iter().find(|(law, _)| law.is_along()) else { return Ok(()) };
         let name = law.parameter();
-        Err(Error::OutOfRange { name, value, expected: law.along_a_rim() })
+        Err(Error::OutOfRange { name, value, expected: "none: its law acts along a rim" })
     }
 
     /// Whether nothing is lost.

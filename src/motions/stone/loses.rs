@@ -23,8 +23,9 @@ use crate::motions::path::slide::ways;
 use crate::numbers::vector::{dot, plus};
 use crate::numbers::{Dual, Real, Sum};
 
-/// Rolling friction that slows a vanishing speed less in the opposite direction does not stop it; `NEAR` is the step.
-const HARDLY_ROLLS: f64 = 4.0 * NEAR;
+/// A slower rolling in a slip, of which a step may change `NEAR`, is at its end if rolling resistance would stop it in the
+/// opposite direction, too.
+pub(super) const HARDLY_ROLLS: f64 = 4.0 * NEAR;
 
 /// w without the drilling.
 #[inline(always)]
@@ -185,9 +186,12 @@ impl StoneFlow<'_> {
     /// angle alpha from axis x of the laboratory.
     #[inline(never)]
     pub(super) fn leaves<const N: usize>(&self, y: &[f64; N]) -> Standstill {
-        let (law, y) = (&self.law, self.rolling_along(y, [0.0; 2]));
-        let (Seen { lab, at, .. }, w) = (self.seen_at(&y), [y[4], y[5], y[6]]);
-        let delta = law.losses.map_or(0.0, |losses| losses.coefficient(Law::RollingResistance));
+        let (mut law, mut delta, y) = (self.law, 0.0, self.rolling_along(y, [0.0; 2]));
+        if let Some(losses) = &mut law.losses {
+            delta = losses.coefficient(Law::RollingResistance);
+            losses.sets(Law::RollingResistance, 0.0);
+        }
+        let (Seen { lab, at, .. }, w) = (Self { law, ..*self }.seen_at(&y), [y[4], y[5], y[6]]);
         // The normal force and the rate of w_h under more couples, of which one is proportional to that force.
         let acts = |free: [f64; 3], pressed: [f64; 3]| {
             let more = |lost: Couple<f64>| Couple {

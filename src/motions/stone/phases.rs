@@ -2,7 +2,7 @@
 
 use super::flow::{HOLD, Seen, StoneFlow, Touch, WITHOUT_POSE, output_slip, spot, state};
 use super::known::Recorded;
-use super::loses::REST;
+use super::loses::{HARDLY_ROLLS, REST};
 use super::slow::StoneSlips;
 use super::turns::Spot;
 use super::write::write;
@@ -460,6 +460,10 @@ impl<'n, const N: usize> Phases<N> for StonePhases<'n> {
         let Some(flown) = flown else { return Ok(Pause::Interrupted) };
         walk.has_spent(flown.spent);
         walk.claims_time_error(flown.halt, flown.steep, &flown.y);
+        if flown.halt == Halt::Rests && flow.touch == Touch::Slips {
+            // The last steps of a rolling that ends in a slip do not resolve the turning of its couple.
+            walk.claims(HARDLY_ROLLS / flown.steep.min(1.0));
+        }
         walk.phase_ends(flown.y, flown.halt);
         Ok(Pause::No)
     }

@@ -30,7 +30,7 @@ pub(super) fn write<const N: usize>(
         let (force, off) = doubted_of(y, known, |y| flow.force(y, way).into());
         (Vector3::from(force), off)
     });
-    let kind = if flow.touch == Touch::Rolls { Kind::Rolling } else { Kind::Slipping };
+    let kind = if flow.rests() { Kind::Rolling } else { Kind::Slipping };
     made.put(state(y), output_slip(y), y[10], kind, pose, force);
     if loses(N) {
         made.path.work_lost.push(y[N - 1]);
