@@ -11,6 +11,7 @@ import numpy as np
 from nutating_cylinder import start as START
 
 import spincyl as sc
+from spincyl import parts
 
 CYLINDER, PIPE, DISK = sc.Body.solid(2.5), sc.Body.tube(6.0, bore=0.8), sc.Body.solid(0.375)
 CAN, COIN, RING = sc.Body.solid(1.0), sc.Body.solid(0.0852), sc.Body.tube(0.0, bore=1.0)
@@ -22,6 +23,23 @@ SMALL = sc.Ellipsoid((1.0, 0.3, 0.2), TWISTED, offset=(0.0, 0.0, -0.07))
 TOY = sc.Ellipsoid.rattleback((0.20, 0.03, 0.02), twist=np.radians(3)).in_metres(mass=0.3)
 EGG = sc.Ellipsoid.egg(0.7, 1.0)
 ACROSS = sc.Ellipsoid((0.4, 1.0, 0.3), (0.25, 0.06, 0.28), (0.05, -0.1, -0.1), 1.2)
+
+PAPER = {"density": 0.3}
+CUP = sc.assembled(
+    [
+        parts.disk(outer_diameter="50mm", **PAPER),
+        parts.wall(lower_diameter="50mm", upper_diameter="80mm", length="95mm", at=0, **PAPER),
+    ]
+)
+# a foot, a stem with a ring round it, and a bowl
+GOBLET = sc.assembled(
+    [
+        parts.cylinder(outer_diameter="60mm", length="4mm", mass="30g"),
+        parts.cylinder(outer_diameter="10mm", length="50mm", mass="10g"),
+        parts.shell(diameter="70mm", height="45mm", mass="20g"),
+        parts.ring(diameter="30mm", at="30mm", mass="5g"),
+    ]
+)
 
 STANDING = DISK.steady(np.radians(80)).kicked(0.01)
 DROPPED = sc.State(0.3, 0.0, 0.0, 0.0)
@@ -81,6 +99,8 @@ SCENES = {
     **STONES,
     "steady": lambda: sc.roll(CYLINDER, CYLINDER.steady(1.3), 5.0),
     "tippe top, at first": lambda: sc.roll(TIPPE, sc.State(0.6, 1.0, 0.0, 6.0), 2.0),
+    "cup": lambda: CUP.roll(CUP.steady(1.2), 1.0).natural,
+    "goblet": lambda: GOBLET.roll(GOBLET.natural.steady(0.7), 0.3).natural,
     "tube": lambda: sc.roll(PIPE, PIPE.steady(1.2), 20.0),
     "still symbols": lambda: sc.roll(PIPE, PIPE.steady(np.radians(89.5)), 30.0),
     "flick": lambda: sc.roll(PIPE, flicked(), 60.0, contact=sc.Coulomb(0.3)),

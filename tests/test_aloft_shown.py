@@ -11,14 +11,14 @@ import pytest
 from pages import between, clock, go, picture
 
 import spincyl as sc
-from spincyl._pages.view import _edges
+from spincyl._pages.recorded import edges
 from spincyl._studio.aloft import aloft, goes_up
 from spincyl._studio.film import reel
-from spincyl._studio.frames import _shown as prepared
 from spincyl._studio.frames import _Stage
 from spincyl._studio.poses import knots, packed, seen, span
 from spincyl._studio.shadow import MANY, caster, lamps, shadows
 from spincyl._studio.shape import lathe, profiles, rotations
+from spincyl._studio.shown import shown as prepared
 
 mpl.use("agg")
 import matplotlib.pyplot as plt
@@ -214,9 +214,9 @@ def test_the_shadow_of_a_higher_body_is_farther_away_and_softer():
 
 def test_a_still_of_a_flight_has_paper_between_the_body_and_its_shadow(tmp_path):
     view = sc.view(motion_of("rings down"))
-    what = reel(view, [_edges(m) for m in view.motions], ".mp4", None, (320, 180), 600.0)
+    what = reel(view, [edges(m) for m in view.motions], ".mp4", None, (320, 180), 600.0)
     times = np.array([0.5])
-    picture = _Stage(what, [prepared(m, times, "O") for m in what.motions], times).picture(0).astype(int)
+    picture = _Stage(what, times).picture(0).astype(int)
     colour = np.ptp(picture, axis=-1)
     column = picture[:, 150:190].sum(axis=-1)
     assert column[:60].min() < 400 and colour.max() > 20, "the coin is in the upper third"

@@ -12,9 +12,8 @@ from few import few
 from page_scenes import CYLINDER, PIPE, motion_of, page_of
 
 import spincyl as sc
-from spincyl._pages.view import _edges
+from spincyl._pages.recorded import edges
 from spincyl._studio.film import reel
-from spincyl._studio.frames import _shown as prepared
 from spincyl._studio.frames import _Stage, frames
 from spincyl._studio.shadow import LAMPS, caster, lamps, shadows
 from spincyl._studio.shape import lathe, marks, parts, profiles, rotations
@@ -25,11 +24,11 @@ FALLING = sc.State(1.3, 0.0, 0.0, 0.0)
 
 def taken(*motions, suffix=".mp4", fps=None, size=(320, 180), seconds=600.0, **how):
     view = sc.view(*motions, **how)
-    return reel(view, [_edges(m) for m in view.motions], suffix, fps, size, seconds)
+    return reel(view, [edges(m) for m in view.motions], suffix, fps, size, seconds)
 
 
 def stage(what, times):
-    return _Stage(what, [prepared(m, times, what.upper) for m in what.motions], times)
+    return _Stage(what, times)
 
 
 # the times of frames
@@ -74,7 +73,11 @@ def test_a_film_too_long_is_refused_before_anything_is_written(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "scene", few(["tube", "rounded", "Hurricane balls", "nutating", "capsule", "tippe top, at first"], 3)
+    "scene",
+    few(
+        ["tube", "rounded", "Hurricane balls", "cup", "goblet", "nutating", "capsule", "tippe top, at first"],
+        5,
+    ),
 )
 def test_each_place_shows_what_is_nearest_to_the_camera_in_its_light(scene):
     m = motion_of(scene)
@@ -109,6 +112,7 @@ def nearest(m, rotation, centre, camera, shape, rng):
         share = np.stack([1 - root, root * (1 - v), root * v], -1)[..., None]
         place = (corners[which] * share).sum(1) @ rotation.T + centre
         normal = (normals[which] * share).sum(1) @ rotation.T
+        place, normal = (x[((camera.eye - place) * normal).sum(1) > 0] for x in (place, normal))
         light = 0.52 + 0.16 * normal[:, 2] + 0.36 * np.maximum(normal @ sun / np.linalg.norm(sun), 0)
         x, y = camera(place).T
         pixel = np.floor((1 - y) * height / 2).astype(int) * width + np.floor(
@@ -213,7 +217,7 @@ def test_a_shadow_is_hard_at_the_contact_and_soft_far_from_the_body():
 def turning():
     """A tube for a tenth of a second, as a page, and the pictures of its film."""
     view = sc.view(sc.roll(PIPE, PIPE.steady(1.2), 0.1 / SCALE.seconds(1.0)), scale=SCALE, slow=10)
-    return view, list(frames(reel(view, [_edges(m) for m in view.motions], ".mp4", 20, (320, 180))))
+    return view, list(frames(reel(view, [edges(m) for m in view.motions], ".mp4", 20, (320, 180))))
 
 
 @pytest.mark.parametrize("kind", [".mp4", ".gif"])
@@ -334,7 +338,7 @@ def test_what_is_missing_for_a_film_is_named_with_what_installs_it(
 def test_films_that_no_file_can_hold_are_refused_with_what_would_be_right(tmp_path):
     view = page_of("nutating")
     for name, how, said in (
-        ("film.avi", {}, r"ends in .html, .mp4, .gif, .png or .glb"),
+        ("film.avi", {}, r"ends in .html, .mp4, .gif, .png, .svg, .pdf or .glb"),
         ("film.gif", {"fps": 30}, "hundredths of a second: 50, 25, 20 or 10"),
         ("film.mp4", {"size": (321, 180)}, "even numbers"),
         ("film.mp4", {"size": (32, 18)}, "width = 32: expected a whole number from 64"),

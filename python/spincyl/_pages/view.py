@@ -2,12 +2,10 @@
 
 import html
 import json
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from os import PathLike
 from pathlib import Path
 from typing import Any
-
-import numpy as np
 
 from spincyl._contact import named
 from spincyl._ellipsoid_motion import EllipsoidMotion
@@ -15,16 +13,15 @@ from spincyl._input.files import replaced
 from spincyl._input.numbers import one_of, path_of, within
 from spincyl._input.threads import Progress, callback
 from spincyl._motion import Motion
-from spincyl._pages.few import base64, corners, packed_part
+from spincyl._pages.few import corners, packed_part
 from spincyl._pages.joined import colours, filled, frame, line, script, style
-from spincyl._pages.slip import rubbing
-from spincyl._pages.stone import numbers, stone, turned
-from spincyl._phases import rubs
+from spincyl._pages.recorded import SLOW, edges, shown, slips_or_flies, slow_motion, turns
+from spincyl._pages.stone import stone, turned
 from spincyl._scale import Scale, scale_of
 from spincyl._studio.aloft import goes_up
 from spincyl._studio.glb import glb
-from spincyl._studio.poses import knots, packed, repeats, seen, span
-from spincyl._studio.shape import Letter, marks, profiles, reach
+from spincyl._studio.look import Look, look
+from spincyl._studio.shape import Letter, marks, profiles
 
 #: The style sheets and scripts of the page, in their order. "rounded" is used if a body has a fillet or is a
 #: stone, "stone" and "spin" if there is a stone, "forces" and "slip" if a contact has a law of friction, and
@@ -53,6 +50,9 @@ _SCRIPTS = tuple(
 )
 
 
+_STILLS = (".png", ".svg", ".pdf")
+
+
 class View:
     """One or several motions side by side; from `view`. Shows itself in a notebook.
 
@@ -70,12 +70,13 @@ class View:
         scale: Scale | None,
         slow: int | None,
         upper: Letter,
+        look: Look,
     ) -> None:
         self.motions, self.labels, self.title = tuple(motions), tuple(labels), title
-        self.scale, self.upper = scale, upper
-        shown = [_shown(m) for m in self.motions]
-        self.slow = slow or _slow(max(turns for _, turns in shown), scale)
-        self._poses = [poses for poses, _ in shown]
+        self.scale, self.upper, self.look = scale, upper, look
+        found = [shown(m, self._slips) for m in self.motions]
+        self.slow = slow or slow_motion(max(turning for _, turning in found), scale)
+        self._poses = [poses for poses, _ in found]
 
     @property
     def html(self) -> str:
@@ -109,7 +110,9 @@ class View:
         progress: "Progress | None" = None,
         t: float | None = None,
     ) -> Path:
-        """Write a page (.html), a film (.mp4, .gif), a picture (.png) or an animated scene (.glb, glTF 2.0).
+        """Write a page (.html), a film (.mp4, .gif), a picture or an animated scene (.glb, glTF 2.0).
+
+        A picture is of pixels (.png) or a vector drawing (.svg, .pdf).
 
         Parameters
         ----------
@@ -126,6 +129,7 @@ class View:
             Called with the share of a film that is done, 0 to 1, after each frame.
         t : float, optional
             The time of a picture, in seconds of the scale, or in sqrt(R/g) without one. Default: the first.
+            A long exposure begins then.
 
         Returns
         -------
@@ -153,29 +157,32 @@ class View:
         A file that is there is replaced when the new one is complete; if anything fails, it stays as it is.
 
         A film begins at the first time and runs `slow` times slower than the motion, as the page does at
-        first: a second of it shows ``1/slow`` seconds of the scale, or of sqrt(R/g) without one. It shows
-        what the page shows in daylight, without the arrows; where a motion has ended, its last picture stays
-        for a second. A scene is in metres and seconds of the scale; without one, R is a metre and sqrt(R/g)
-        a second. Its bodies stand side by side.
+        first: a second of it shows ``1/slow`` seconds of the scale, or of sqrt(R/g) without one. Films and
+        pictures look like the page in daylight; where a motion has ended, its last picture stays for a
+        second. With `exposure` each frame of a film is the photograph of the last turns: it builds up at
+        first. A vector drawing has no tint of the table, and of a long exposure only the words are vectors.
+
+        A scene is in metres and seconds of the scale; without one, R is a metre and sqrt(R/g) a second. Its
+        bodies stand side by side.
         """
         path = path_of("path", path)
         suffix = path.suffix.lower()
-        if suffix not in (".html", ".glb", ".mp4", ".gif", ".png"):
-            known = ".html, .mp4, .gif, .png or .glb"
+        if suffix not in (".html", ".glb", ".mp4", ".gif", *_STILLS):
+            known = ".html, .mp4, .gif, .png, .svg, .pdf or .glb"
             raise ValueError(f"path = {str(path)!r}: expected a name that ends in {known}")
-        if t is not None and suffix != ".png":
-            raise ValueError(f"t: of a picture, .png, and not of {suffix}")
-        if suffix == ".png" and all(x is None for x in (fps, seconds, progress)):
+        if t is not None and suffix not in _STILLS:
+            raise ValueError(f"t: of a picture, {', '.join(_STILLS)}, and not of {suffix}")
+        if suffix in _STILLS and all(x is None for x in (fps, seconds, progress)):
             from spincyl._studio.film import reel, still
 
-            still(reel(self, [_edges(m) for m in self.motions], suffix, None, size, 600.0), path, t)
+            still(reel(self, [edges(m) for m in self.motions], suffix, None, size, 600.0), path, t)
             return path
         if suffix in (".mp4", ".gif"):
             from spincyl._studio.film import film, reel
 
             seconds = None if seconds is None else within("seconds", seconds, 0.1, 600.0)
             progress = callback(progress)
-            made_of = reel(self, [_edges(m) for m in self.motions], suffix, fps, size, seconds)
+            made_of = reel(self, [edges(m) for m in self.motions], suffix, fps, size, seconds)
             film(made_of, path, progress)
             return path
         if any(x is not None for x in (fps, size, seconds, progress)):
@@ -200,7 +207,7 @@ class View:
                 shape["marks"] = [packed_part(part) for part in marks(m.body, self.upper)]
             if shape not in shapes:
                 shapes.append(shape)
-            motions.append({"label": label, "shape": shapes.index(shape)} | _edges(m) | poses)
+            motions.append({"label": label, "shape": shapes.index(shape)} | edges(m) | poses)
         return (
             {
                 "unit": 1.0 if self.scale is None else self.scale.seconds(1.0),
@@ -208,6 +215,7 @@ class View:
                 "slow": self.slow,
                 "shapes": shapes,
                 "motions": motions,
+                "look": self.look._asdict() | {"exposure": turns(self.look)},
             }
             | (self._speeds() if self._slips else {})
             | (self._rates() if any(map(stone, self.motions)) else {})
@@ -235,7 +243,9 @@ class View:
 
     @property
     def _slips(self) -> bool:
-        return any(map(_slips, self.motions))
+        """Whether the page has forces, and a camera that may follow."""
+        wanted = self.look.follow or "force" in (self.look.drawn or ())
+        return bool(wanted) or any(map(slips_or_flies, self.motions))
 
     def _speeds(self) -> dict[str, Any]:
         """The units in which the page gives the speed of slip, and the height of a flight."""
@@ -267,6 +277,10 @@ def view(
     scale: Scale | None = None,
     slow: int | None = None,
     upper: Letter = "O",
+    drawn: str | Iterable[str] | None = None,
+    above: bool = False,
+    follow: bool | None = None,
+    exposure: float | None = None,
 ) -> View:
     """A page in which motions can be watched from all sides and slowly.
 
@@ -286,11 +300,24 @@ def view(
         faster than once a second.
     upper : {"O", "X"}
         The letter on the upper end: the one that is seen.
+    drawn : str or sequence of str, optional
+        What is drawn besides the body, with a switch for each on the page: "path" of the contact point;
+        arrows of the angular velocity "omega", the angular "momentum" about the centre, the "velocity" of the
+        centre and the contact "force" (normal force N and friction F); "axis", the instantaneous axis and the
+        line P-C-O. Default: the path, and on a page the forces if there is a law of friction.
+    above : bool
+        Whether the camera is above the table, with x to the right.
+    follow : bool, optional
+        Whether the camera follows the body. Default: if there is a law of friction and the body moves far.
+    exposure : float, optional
+        The long exposure from above: for how many turns about the vertical the shutter is open, 0.01 or more,
+        or inf for the rest of the motion. The page opens with it.
 
     Returns
     -------
     View
-        Shows itself in a notebook; `save("spin.html")`, `save("spin.mp4")` or `save("spin.glb")`.
+        Shows itself in a notebook; `save("spin.html")`, `save("spin.mp4")`, `save("spin.svg", t=1.5)` or
+        `save("spin.glb")`.
 
     Raises
     ------
@@ -308,6 +335,12 @@ def view(
     With "#t=1.5" after its name the page opens paused at that time. A body whose motion has ended is grey,
     and its clock says why and when. It has poses at few times and draws a cubic between them, which meets the
     motion within 0.003 rad, and R for bodies of usual length. ω and L are computed from the drawn pose.
+
+    An arrow has the same scale in all motions: forces that of the usual normal force, others that of their
+    largest value. The line P-C-O goes from the contact point P through the centre of mass C to the point O
+    opposite to P: if the body is symmetric top to bottom, the top of its upper rim, where the still symbols
+    are. The instantaneous axis is the line of the points whose velocity is along it, or zero; while the body
+    rolls it passes through P, and if the centre rests it is the line P-C-O.
 
     Of a body that flies (`roll` with a `restitution`) the clock tells how high its lowest point is; in the
     air there is neither path nor force.
@@ -338,7 +371,7 @@ def view(
     if scale is not None and not (1e-6 <= scale.radius <= 1e6 and 1e-6 <= scale.seconds(1.0) <= 1e6):
         raise ValueError(f"scale: expected 1e-6 to 1e6 metres and seconds to sqrt(R/g), not {scale!r}")
     if slow is not None:
-        one_of("slow", slow, _SLOW)
+        one_of("slow", slow, SLOW)
     if labels is None:
         labels = [""] if len(motions) == 1 else [named(m.contact) for m in motions]
     elif isinstance(labels, str) or not isinstance(labels, Sequence):
@@ -348,72 +381,5 @@ def view(
     title, labels = line("title", title), [line(f"labels[{i}]", label) for i, label in enumerate(labels)]
     for m in motions:
         marks(m.body, upper)  # raises ValueError if `upper` is neither "O" nor "X"
-    return View([m.natural for m in motions], labels, title, scale, slow, upper)
-
-
-_SLOW = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
-
-
-def _shown(m: Motion) -> tuple[dict[str, Any], float]:
-    """The data of a motion for the page, and its largest number of turns per unit of time."""
-    first, last = sorted(span(m))
-    again = repeats(m)
-    found = knots(m) if again is None else knots(m, until=first + again.period)
-    data: dict[str, Any] = {"first": first, "last": last, "again": None}
-    if again is not None:
-        # the centre's path is rotated about a pivot, or shifted
-        pivot = again.shift / (1 - again.turn) if abs(1 - again.turn) > 1e-9 else None
-        data["again"] = {
-            "period": again.period,
-            "phi": again.phi,
-            "psi": again.psi,
-            "pivot": pivot and [pivot.real, pivot.imag],
-            "shift": [again.shift.real, again.shift.imag],
-        }
-    if isinstance(m, EllipsoidMotion):
-        data |= numbers(m, found[:, 0])
-    else:
-        data |= {"ell": m.body.ell, "i1": m.body.i1, "i3": m.body.i3}
-        if m.body.fillet > 0:
-            data |= {"fillet": m.body.fillet, "far": reach(m.body)}
-    packets = (packed(found) | (rubbing(m) if _slips(m) else {})).items()
-    data |= {name: base64(*x) if isinstance(x, tuple) else x for name, x in packets}
-    fastest = float(np.abs(found[:, 6:9]).max())
-    if isinstance(m, EllipsoidMotion) or m.body.fillet == 1 or goes_up(m):
-        # near a pole phi' and psi' are large and nearly cancel: use the angular velocity instead
-        (w,) = seen(m, found[:, 0], "w")
-        fastest = float(np.linalg.norm(w, axis=1).max())
-    return data, fastest / (2 * np.pi)
-
-
-def _slips(m: Motion) -> bool:
-    """Whether the page tells of slip and contact forces."""
-    return rubs(m.contact) or goes_up(m)
-
-
-def _edges(m: Motion) -> dict[str, Any]:
-    """The notes for times before and after those shown, and for the end of the motion."""
-    start, last = span(m)
-    first, until = sorted((start, last))
-    edges = {
-        "before": {"said": "shown from ", "at": first, "t": first, "event": False},
-        "after": {"said": "shown until ", "at": until, "t": until, "event": False},
-    }
-    if m.event is not None:
-        # `at` is the time from which the page shows the note, `t` the time in its text
-        beyond = m._asked.beyond and abs(m.event.time - start) < abs(last - start)
-        said = ("beyond the model: " if beyond else "ended: ") + m.message.split(" at t =")[0] + ", "
-        at = m.event.time if beyond else last
-        edges["before" if last < start else "after"] = {
-            "said": said,
-            "at": at,
-            "t": m.event.time,
-            "event": True,
-        }
-    return edges
-
-
-def _slow(turns: float, scale: Scale | None) -> int:
-    """The slow-motion factor with which nothing turns much faster than once a second."""
-    second = 1.0 if scale is None else float(scale.seconds(1.0))
-    return next((x for x in _SLOW if turns / second <= 1.5 * x), _SLOW[-1])
+    how = look(drawn, above, follow, exposure)
+    return View([m.natural for m in motions], labels, title, scale, slow, upper, how)

@@ -93,7 +93,25 @@ def exposure(
     width = frame(motion, seconds, scale) if width is None else width
     motion = motion.natural
 
-    ink = marks(motion.body, upper)
+    return light(
+        motion, marks(motion.body, upper), (first, last), None, width / metre / size, (size, size), samples
+    )
+
+
+def light(
+    m: Motion,
+    ink: list[Part],
+    open_: tuple[float, float],
+    middle: Floats | None,
+    pixel: float,
+    shape: tuple[int, int],
+    samples: float,
+) -> Floats:
+    """The picture (rows, columns) of these marks while the shutter is open; `exposure` tells of its light.
+
+    Times and lengths are natural. The middle of the picture is that of the centre's path by default.
+    """
+    first, last = open_
     area = sum(_area(part) for part in ink)
     # Motion is smooth and a mark at rest counts often: so more times than places, in several sets of places.
     places = max(16, int(np.sqrt(samples) / 8))
@@ -101,20 +119,20 @@ def exposure(
     place, normal = _sampled(ink, places * _SETS)
     # a random time in each interval: equal steps could be in step with the precession
     steps = (np.arange(times) + np.random.default_rng(0).random(times)) / times
-    centre, orientation = seen(motion, first + (last - first) * steps, "centre", "orientation")
+    centre, orientation = seen(m, first + (last - first) * steps, "centre", "orientation")
     plan = centre[:, :2]
-    middle = (plan.min(axis=0) + plan.max(axis=0)) / 2
-    pixel = width / metre / size
+    middle = (plan.min(axis=0) + plan.max(axis=0)) / 2 if middle is None else middle
+    rows, columns = shape
     rotation = rotations(orientation)
-    upper_ball = [0.0, 0.0, float(motion.body.ell)] if kind(motion.body) == "balls" else None
-    image = np.zeros(size * size)
+    upper_ball = [0.0, 0.0, float(m.body.ell)] if kind(m.body) == "balls" else None
+    image = np.zeros(rows * columns)
     block = _SETS * max(1, 1_000_000 // places)
     for start in range(0, times, block):
         for k in range(_SETS):
             now = slice(start + k, start + block, _SETS)
             turned, spot = rotation[now], slice(k, None, _SETS)
-            light = turned[:, 2] @ normal[spot].T
-            up = light > 0
+            shown = turned[:, 2] @ normal[spot].T
+            up = shown > 0
             if upper_ball:
                 # seen from above, the upper ball hides the lower one
                 aside = [turned[:, i] @ (place[spot] - upper_ball).T for i in (0, 1)]
@@ -123,14 +141,14 @@ def exposure(
                 (turned[:, axis] @ place[spot].T + (plan[now, axis] - middle[axis])[:, np.newaxis])[up]
                 for axis in (0, 1)
             )
-            column = np.floor(size / 2 + x / pixel).astype(np.intp)
-            row = np.floor(size / 2 - y / pixel).astype(np.intp)
-            within = (column >= 0) & (column < size) & (row >= 0) & (row < size)
-            spots = (row * size + column)[within]
-            image += np.bincount(spots, weights=light[up][within], minlength=size * size)
+            column = np.floor(columns / 2 + x / pixel).astype(np.intp)
+            row = np.floor(rows / 2 - y / pixel).astype(np.intp)
+            within = (column >= 0) & (column < columns) & (row >= 0) & (row < rows)
+            spots = (row * columns + column)[within]
+            image += np.bincount(spots, weights=shown[up][within], minlength=rows * columns)
     # each place stands for an equal share of the area of the ink, seen foreshortened
     image *= area / (places * times * pixel**2)
-    return image.reshape(size, size)
+    return image.reshape(shape)
 
 
 def frame(motion: Motion, seconds: float | None = None, scale: Scale | None = None) -> float:

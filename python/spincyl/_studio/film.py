@@ -14,7 +14,7 @@ import numpy as np
 from spincyl._input.files import replaced
 from spincyl._input.numbers import extra, whole, within
 from spincyl._input.threads import Progress
-from spincyl._studio.frames import Reel, frames, pictures
+from spincyl._studio.frames import Reel, frames, pictures, vector
 from spincyl._studio.poses import span
 
 _LONG = 10.0  # seconds, the default length of a film
@@ -50,7 +50,15 @@ def reel(
         if lasts > _LONG * (1 + 1e-9):
             told = f"the film shows the first {_LONG:g} of {lasts:.3g} seconds; seconds= says how many"
             warnings.warn(told, UserWarning, stacklevel=3)
-    return Reel(view.motions, view.labels, edges, *how, _LONG if seconds is None else seconds, view._colours)
+    return Reel(
+        view.motions,
+        view.labels,
+        edges,
+        *how,
+        _LONG if seconds is None else seconds,
+        view._colours,
+        view.look,
+    )
 
 
 def film(what: Reel, path: Path, progress: Progress | None = None) -> None:
@@ -82,9 +90,14 @@ def still(what: Reel, path: Path, t: float | None) -> None:
     spans = [sorted(span(m)) for m in what.motions]
     first, last = (of(x) * what.unit for of, x in zip((min, max), zip(*spans, strict=True), strict=True))
     t = first if t is None else within("t", t, first, last)
-    (picture,) = pictures(what._replace(slow=1), np.array([t / what.unit]))
+    what, kind = what._replace(slow=1), path.suffix.lower()[1:]
+    if kind == "png":
+        (picture,) = pictures(what, np.array([t / what.unit]), still=True)
     with replaced(path) as part:
-        Image.fromarray(picture).save(part, "PNG")
+        if kind == "png":
+            Image.fromarray(picture).save(part, "PNG")
+        else:
+            vector(what, t / what.unit, part, kind)
 
 
 def _program() -> str:

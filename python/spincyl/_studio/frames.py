@@ -1,8 +1,7 @@
 """The picture of the page for each frame of a film, drawn without a browser.
 
-Bodies, marks, camera, light and colours are those of the page. Agg (matplotlib) fills the triangles at twice
-the resolution of the film, which is then averaged. Pieces of a body are drawn in painter's order: along the
-axis from far to near, inner surfaces before outer ones, marks last.
+Bodies, marks, arrows, cameras, light and colours are those of the page. Agg (matplotlib) fills the triangles
+at twice the resolution of the film, which is then averaged. A still can be a vector drawing as well.
 """
 
 import math
@@ -11,22 +10,23 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from spincyl._ellipsoid import Ellipsoid
 from spincyl._input.numbers import Floats, extra
 from spincyl._motion import Motion
 from spincyl._phases import rubs
-from spincyl._studio.aloft import FLIES, SLIPS, aloft, goes_up, tops
-from spincyl._studio.poses import seen, span
-from spincyl._studio.shadow import LAMPS, MANY, Caster, caster, lamps, layer, outline, shadows
-from spincyl._studio.shape import Letter, Part, lathe, marks, profiles, rotations, size
-from spincyl._studio.shape import reach as farthest
+from spincyl._studio.aloft import goes_up
+from spincyl._studio.arrows import Tip, drawings
+from spincyl._studio.exposure import light
+from spincyl._studio.look import Camera, Look, camera, held, opened
+from spincyl._studio.painted import Painted, ordered, painted
+from spincyl._studio.poses import span
+from spincyl._studio.shadow import LAMPS, MANY, lamps, layer, outline, shadows
+from spincyl._studio.shape import Letter, size
+from spincyl._studio.shown import Shown, shown
 
 _MOST = 20_000  # frames
 _FINE = 2  # pixels of Agg for one pixel of the film, along each side
-_PATH = 6000  # points of the contact's path
-_AZIMUTH, _ELEVATION = -1.1, 0.55  # direction of the page's first view
-_SPREAD = math.tan(0.3)  # tangent of half the angle of view
-_SUN = np.array([-0.45, -0.5, 0.75]) / math.sqrt(0.45**2 + 0.5**2 + 0.75**2)
+_LIGHT = 1e6, 8e6  # samples of a photograph in a film and of a still, for each of the two marks
+_DARK, _CHALK = (0.0, 0.0, 0.0), (0.87, 0.87, 0.87)  # paper and ink of a photograph
 
 
 class Reel(NamedTuple):
@@ -44,6 +44,12 @@ class Reel(NamedTuple):
     size: tuple[int, int]
     seconds: float  #: longest duration of the film
     colours: Mapping[str, tuple[float, float, float]]  #: those of the page in daylight, by name
+    look: Look
+
+    @property
+    def drawn(self) -> tuple[str, ...]:
+        """What is drawn besides the body."""
+        return ("path",) if self.look.drawn is None else self.look.drawn
 
     @property
     def times(self) -> Floats:
@@ -66,190 +72,98 @@ class Reel(NamedTuple):
         return np.append(times, np.full(self.fps if ended else 0, last))
 
 
-class _Piece(NamedTuple):
-    """A part of the surface and its range of heights along the axis."""
-
-    part: Part
-    low: float
-    high: float
-    inside: bool
-
-
-def _pieces(m: Motion, upper: Letter) -> list[_Piece]:
-    """The pieces of the surface, each followed by the marks on it."""
-    found = []
-    for profile in profiles(m.body):
-        part = lathe(profile)
-        heights = part.vertices[:, 2]
-        outward = profile.name not in ("bore",)
-        found.append(_Piece(part, float(heights.min()), float(heights.max()), not outward))
-    low, high = min(p.low for p in found), max(p.high for p in found)
-    several = any(p.part.name in ("lower ball", "stem") for p in found)
-    if not several:
-        found = [p._replace(low=low, high=high) for p in found]
-    for part in marks(m.body, upper):
-        z = part.vertices[:, 2].mean()
-        on = next((p for p in found if p.low <= z <= p.high and not p.inside), found[0])
-        found.append(_Piece(part, on.low, on.high, False))
-    return found
-
-
-class _Camera(NamedTuple):
-    """The page's camera: the middle of its view, its distance, and its three directions."""
-
-    at: Floats
-    far: float
-    high: float
-    rows: Floats  #: right, up, back
-
-    @property
-    def eye(self) -> Floats:
-        """Position of the camera."""
-        found: Floats = self.at + self.far * self.rows[2]
-        return found
-
-    def __call__(self, places: Floats) -> Floats:
-        """Positions of points (..., 3) in the picture, whose half height is 1."""
-        x, y, back = np.moveaxis((places - self.at) @ self.rows.T, -1, 0)
-        found: Floats = self.far / self.high * np.stack([x, y], -1) / (self.far - back)[..., np.newaxis]
-        return found
-
-
-def _camera(at: Floats, reach: float, half: float, aspect: float) -> _Camera:
-    ce, se = math.cos(_ELEVATION), math.sin(_ELEVATION)
-    ca, sa = math.cos(_AZIMUTH), math.sin(_AZIMUTH)
-    back, right = np.array([ce * ca, ce * sa, se]), np.array([-sa, ca, 0.0])
-    high = max(half, 1.12 * reach / aspect)
-    return _Camera(at, high / _SPREAD, high, np.stack([right, np.cross(back, right), back]))
-
-
-class _Shown(NamedTuple):
-    """A motion, evaluated at the times of the frames."""
-
-    centre: Floats  #: (n, 3)
-    rotation: Floats  #: (n, 3, 3)
-    theta: Floats
-    spin: Floats | None  #: of a stone
-    path: Floats  #: (k, 3) of the contact point
-    along: Floats  #: (k,) times of these
-    slips: np.ndarray  #: (k,) whether the contact slips there
-    gaps: np.ndarray  #: (k,) whether there is no path: in the air, and where another rim takes over
-    pieces: list[_Piece]
-    caster: Caster
-    middle: Floats
-    reach: float
-    half: float
-
-
-def _shown(m: Motion, times: Floats, upper: Letter) -> _Shown:
-    first, last = sorted(span(m))
-    centre, orientation, theta = seen(m, np.clip(times, first, last), "centre", "orientation", "theta")
-    spin = None
-    if isinstance(m.body, Ellipsoid):
-        (spin,) = seen(m, np.clip(times, first, last), "spin")
-    along = np.linspace(first, last, _PATH)
-    contact, way = seen(m, along, "contact_point", "centre")
-    slips = seen(m, along, "phase")[0] == 1 if rubs(m.contact) else np.zeros(along.size, bool)
-    gaps, up = np.zeros(along.size, bool), goes_up(m)
-    if up:
-        (phase,), other = seen(m, along, "phase"), aloft(m, first, last).on_other(along)
-        slips = np.isin(phase, SLIPS)
-        gaps = (phase == FLIES) | np.append(False, other[1:] != other[:-1])
-    low, high = way[:, :2].min(axis=0), way[:, :2].max(axis=0)
-    body = max(size(m.body), farthest(m.body))
-    reach, top = math.hypot(*(high - low)) / 2 + body, 2 * float(way[:, 2].max())
-    if up:
-        top = float(tops(seen(m, along, "theta")[0], way[:, 2], body).max())
-    return _Shown(
-        centre=centre,
-        rotation=rotations(orientation),
-        theta=theta,
-        spin=spin,
-        path=np.column_stack([contact, np.zeros(along.size)]),
-        along=along,
-        slips=slips,
-        gaps=gaps,
-        pieces=_pieces(m, upper),
-        caster=caster([lathe(profile) for profile in profiles(m.body)]),
-        middle=np.array([*((low + high) / 2), 0.45 * top]),
-        reach=reach,
-        half=_held(reach, top),
-    )
-
-
-def _held(reach: float, top: float) -> float:
-    """Half the height that the camera has to show."""
-    return 1.06 * max((0.52 + 0.26) * reach + 0.38 * top, 0.44 * reach + 0.57 * top)
-
-
 def frames(what: Reel, which_of: np.ndarray | None = None) -> Iterator[np.ndarray]:
     """The pictures, (height, width, 3) of 8 bits: all, or those with the given indices."""
     yield from pictures(what, what.times if which_of is None else what.times[which_of])
 
 
-def pictures(what: Reel, times: Floats) -> Iterator[np.ndarray]:
-    """The pictures at these times."""
-    panels = [_shown(m, times, what.upper) for m in what.motions]
-    stage = _Stage(what, panels, times)
+def pictures(what: Reel, times: Floats, *, still: bool = False) -> Iterator[np.ndarray]:
+    """The pictures at these times: of a film, or a still each."""
+    stage = _Stage(what, times, still=still)
     for k in range(times.size):
         yield stage.picture(k)
+
+
+def vector(what: Reel, t: float, file: Any, kind: str) -> None:
+    """Write a still as a vector drawing, "svg" or "pdf"."""
+    stage = _Stage(what, np.array([t]), still=True, vector=True)
+    for index in range(len(stage.panels)):
+        stage.draw(index, 0)
+    stage.figure.savefig(file, format=kind)
 
 
 class _Stage:
     """A matplotlib figure on which each frame is drawn."""
 
-    def __init__(self, what: Reel, panels: list[_Shown], times: Floats) -> None:
+    def __init__(self, what: Reel, times: Floats, *, still: bool = False, vector: bool = False) -> None:
         from matplotlib.figure import Figure
 
         agg: Any = extra("matplotlib.backends.backend_agg", "film")
-        self.what, self.panels, self.times = what, panels, times
-        self.colour = what.colours
+        self.what, self.times, self.opens, self.vector = what, times, still, vector
+        self.panels = panels = [shown(m, times, what.upper, what.drawn) for m in what.motions]
+        self.exposes, look = what.look.exposure is not None, what.look
+        self.colour = {**what.colours, **({"paper": _DARK, "ink": _CHALK} if self.exposes else {})}
         width, height = what.size
-        self.figure = Figure((width / 100, height / 100), dpi=100 * _FINE, facecolor=self.colour["paper"])
+        fine = 1 if vector else _FINE
+        self.figure = Figure((width / 100, height / 100), dpi=100 * fine, facecolor=self.colour["paper"])
         self.canvas = agg.FigureCanvasAgg(self.figure)
         alone = max(size(m.body) for m in what.motions)
         reach = max(p.reach for p in panels)
-        self.follows = reach > 2.5 * alone and any(rubs(m.contact) or goes_up(m) for m in what.motions)
+        far = reach > 2.5 * alone and any(rubs(m.contact) or goes_up(m) for m in what.motions)
+        self.follows = far if look.follow is None else look.follow
         self.lamp = lamps(MANY if any(map(goes_up, what.motions)) else LAMPS)
         half = max(p.half for p in panels)
         if self.follows:
-            reach, half = alone, max(_held(alone, p.middle[2] / 0.45) for p in panels)
+            reach, half = (
+                (1.5 if self.exposes else 1.0) * alone,
+                max(held(alone, p.middle[2] / 0.45) for p in panels),
+            )
+        self.half = half
+        self.sizes = {name: max(p.sizes[name] for p in panels) for name in panels[0].sizes}
         columns, rows = _columns(len(panels), width / height)
         self.axes: list[Any] = []
         self.moving: list[_Moving] = []
-        self.cameras: list[_Camera] = []
-        letters = max(0.0225 * min(height / rows, 0.75 * width / columns), 9.0) * 72 / 100
+        self.cameras: list[Camera] = []
+        self.letters = letters = max(0.0225 * min(height / rows, 0.75 * width / columns), 9.0) * 72 / 100
+        aspect = width / columns / (height / rows)
+        self.shape = round(height / rows), round(width / columns)  # pixels of a photograph
         for k, (panel, label) in enumerate(zip(panels, what.labels, strict=True)):
             place = (k % columns / columns, 1 - (k // columns + 1) / rows, 1 / columns, 1 / rows)
-            aspect = width / columns / (height / rows)
             ax: Any = self.figure.add_axes(place)
             ax.set(xlim=(-aspect, aspect), ylim=(-1, 1))
             ax.axis("off")
-            self.cameras.append(_camera(panel.middle, reach, half, aspect))
+            self.cameras.append(camera(panel.middle, reach, half, aspect, look.above or self.exposes))
             around: dict[str, Any] = {"color": self.colour["ink"], "transform": ax.transAxes, "zorder": 9}
             ax.text(
                 0.02, 0.97, label, size=1.2 * letters, weight="bold", va="top", parse_math=False, **around
             )
             clock = ax.text(0.02, 0.03, "", size=1.2 * letters, va="bottom", linespacing=1.4, **around)
             self.axes.append(ax)
-            self._ground(ax, k, reach, aspect)
+            if not self.exposes:
+                self._ground(ax, k, reach, aspect)
             self.moving.append(self._moving(ax, clock))
         if what.slow > 1:
             told = f"{what.slow} times slower"
             ink = self.colour["ink"]
             self.figure.text(0.985, 0.03, told, size=letters, color=ink, ha="right", va="bottom")
         whole = what.times
-        shown = float(whole[-1] - whole[0]) * what.unit
-        self.digits = max(2, 4 - math.floor(math.log10(max(1e-9, shown))))
+        lasts = float(whole[-1] - whole[0]) * what.unit
+        self.digits = max(2, 4 - math.floor(math.log10(max(1e-9, lasts))))
+        if not still:  # two frames do not show the same time
+            self.digits = max(2, min(self.digits, math.ceil(math.log10(what.fps * what.slow))))
+        self.gain = [self._gain(index) for index in range(len(panels))] if self.exposes else []
         # draw everything once that no frame changes
-        self.canvas.draw()
-        self.still = self.canvas.copy_from_bbox(self.figure.bbox)
+        if not vector:
+            self.canvas.draw()
+            self.still = self.canvas.copy_from_bbox(self.figure.bbox)
 
     def picture(self, k: int) -> np.ndarray:
         """Frame number k."""
         self.canvas.restore_region(self.still)
-        for index, panel in enumerate(self.panels):
-            self._draw(index, panel, k)
+        for index in range(len(self.panels)):
+            self.draw(index, k)
+        for word in self.figure.texts if self.exposes else ():
+            self.figure.draw_artist(word)
         image = np.asarray(self.canvas.buffer_rgba())[..., :3]
         height, width = image.shape[0] // _FINE * _FINE, image.shape[1] // _FINE * _FINE
         total = np.full((height // _FINE, width // _FINE, 3), _FINE * _FINE // 2, np.uint16)
@@ -264,6 +178,16 @@ class _Stage:
 
         camera = self.cameras[index]
         cell, far = (5.0 if reach > 12 else 1.0), 4 * reach
+        if not self.vector:
+            self._tint(ax, camera, far, aspect)
+        ax.set(xlim=(-aspect, aspect), ylim=(-1, 1))
+        ax.grid_lines = LineCollection([], linewidths=0.6, zorder=2, animated=self.follows)
+        ax.add_collection(ax.grid_lines, autolim=False)
+        ax.cell, ax.far = cell, far
+        self._rule(ax, camera)
+
+    def _tint(self, ax: Any, camera: Camera, far: float, aspect: float) -> None:
+        """Draw the colour of the table, which fades into that of the paper."""
         # the point of the table behind each point of the picture
         x, y = np.meshgrid(np.linspace(-aspect, aspect, 160), np.linspace(-1, 1, 90))
         share = camera.high / camera.far
@@ -279,32 +203,30 @@ class _Stage:
             aspect="auto",
             zorder=0,
         )
-        ax.set(xlim=(-aspect, aspect), ylim=(-1, 1))
-        ax.grid_lines = LineCollection([], linewidths=0.6, zorder=2, animated=self.follows)
-        ax.add_collection(ax.grid_lines, autolim=False)
-        ax.cell, ax.far = cell, far
-        self._rule(ax, camera)
 
     def _moving(self, ax: Any, clock: Any) -> "_Moving":
         """The artists that each frame changes."""
         from matplotlib.patches import PathPatch
         from matplotlib.path import Path as Outline
 
-        how: dict[str, Any] = {"solid_joinstyle": "round", "lw": 1.4, "animated": True}
+        how: dict[str, Any] = {"solid_joinstyle": "round", "lw": 1.4, "animated": True, "zorder": 3}
         colours = (self.colour[name] for name in ("trace", "friction"))
         rolled, slipped = (ax.plot([], [], color=colour, **how)[0] for colour in colours)
-        nothing: dict[str, Any] = {"color": "black", "alpha": layer(len(self.lamp)), "lw": 0}
+        nothing: dict[str, Any] = {"color": "black", "alpha": layer(len(self.lamp)), "lw": 0, "zorder": 4}
         shades = [PathPatch(Outline(np.zeros((1, 2))), animated=True, **nothing) for _ in self.lamp]
         for shade in shades:
             ax.add_patch(shade)
-        surface = _surface(ax)
+        photo = None
+        if self.exposes:
+            extent = (*ax.get_xlim(), *ax.get_ylim())
+            photo = ax.imshow(np.zeros((1, 1, 3)), extent=extent, aspect="auto", animated=True, zorder=5)
         clock.set_animated(True)
-        return _Moving(rolled, slipped, shades, surface, clock)
+        return _Moving(rolled, slipped, shades, _surface(ax, self.vector), photo, clock, [])
 
-    def _rule(self, ax: Any, camera: _Camera) -> None:
+    def _rule(self, ax: Any, camera: Camera) -> None:
         """Set the lines of the table that this camera sees."""
         steps = np.arange(-math.ceil(ax.far / ax.cell), math.ceil(ax.far / ax.cell) + 1)
-        pieces = np.linspace(-ax.far, ax.far, 81)
+        pieces = np.linspace(-ax.far, ax.far, 25 if self.vector else 81)
         sets = []
         for axis in (0, 1):
             across = ax.cell * (np.round(camera.at[axis] / ax.cell) + steps)
@@ -320,32 +242,111 @@ class _Stage:
         ax.grid_lines.set_segments(camera(segments[seen_]))
         ax.grid_lines.set_color([(*self.colour["grid"], a) for a in there[seen_]])
 
-    def _draw(self, index: int, panel: _Shown, k: int) -> None:
+    def draw(self, index: int, k: int) -> None:
         """Draw a motion at frame k."""
-        ax, camera, t = self.axes[index], self.cameras[index], float(self.times[k])
-        if self.follows:
-            camera = camera._replace(at=np.array([*panel.centre[k, :2], panel.middle[2]]))
-            self._rule(ax, camera)
-        count = int(np.searchsorted(panel.along, t, "right"))
-        way = np.where(panel.gaps[:count, np.newaxis], np.nan, camera(panel.path[:count]))
-        slips = panel.slips[:count, np.newaxis]
+        ax, panel, camera, t = self.axes[index], self.panels[index], self.cameras[index], float(self.times[k])
         moving = self.moving[index]
-        moving.rolled.set_data(*np.where(slips, np.nan, way).T)
-        moving.slipped.set_data(*np.where(slips, way, np.nan).T)
-        thrown = shadows(panel.caster, panel.rotation[k], panel.centre[k], self.lamp)
-        for shade, lines in zip(moving.shades, thrown, strict=True):
-            shade.set_path(outline([camera(line) for line in lines]))
+        rolled, slipped, shades, surface, photo, clock, words = moving
         note = self._note(index, t)
-        moving.surface.put(*_triangles(panel, k, camera, note is not None))
         told = f"{note[0]}{self._clock(note[1])}" if note else self._clock(t)
         spin = "" if panel.spin is None else "\n" + self._spin(float(panel.spin[k]))
-        moving.clock.set_text(f"{told}\nθ = {math.degrees(panel.theta[k]):.1f}°{spin}")
-        rolled, slipped, shades, surface, clock = moving
-        for artist in (*([ax.grid_lines] if self.follows else []), rolled, slipped, *shades, surface, clock):
-            ax.draw_artist(artist)
+        clock.set_text(f"{told}\nθ = {math.degrees(panel.theta[k]):.1f}°{spin}{self._open}")
+        if self.exposes:
+            photo.set_data(self._developed(index, t))
+            artists = [photo, *ax.texts]
+        else:
+            if self.follows:
+                camera = camera._replace(at=np.array([*panel.centre[k, :2], panel.middle[2]]))
+                self._rule(ax, camera)
+            if "path" in self.what.drawn:
+                count = int(np.searchsorted(panel.along, t, "right"))
+                way = np.where(panel.gaps[:count, np.newaxis], np.nan, camera(panel.path[:count]))
+                slips = panel.slips[:count, np.newaxis]
+                rolled.set_data(*np.where(slips, np.nan, way).T)
+                slipped.set_data(*np.where(slips, way, np.nan).T)
+            thrown = shadows(panel.caster, panel.rotation[k], panel.centre[k], self.lamp)
+            for shade, lines in zip(shades, thrown, strict=True):
+                shade.set_path(outline([camera(line) for line in lines]))
+            found, tips = self._besides(panel, k, camera)
+            surface.put([*_body(panel, k, camera, note is not None), *found])
+            self._named(ax, words, tips)
+            artists = [*([ax.grid_lines] if self.follows else []), rolled, slipped, *shades, surface, clock]
+        if not self.vector:
+            for artist in (*artists, *words):
+                ax.draw_artist(artist)
+
+    def _besides(self, panel: Shown, k: int, camera: Camera) -> tuple[list[Painted], list[Tip]]:
+        """Arrows and axis at frame k, and their letters."""
+        if panel.vectors is None:
+            return [], []
+        return drawings(panel.vectors.at(k), self.what.drawn, self.sizes, self.half, camera, self.colour)
+
+    def _named(self, ax: Any, words: list[Any], tips: list[Tip]) -> None:
+        """Write the letters, each beside its arrow on the side away from the one before."""
+        from matplotlib.patheffects import withStroke
+
+        around = [withStroke(linewidth=3, foreground=self.colour["paper"])]
+        how: dict[str, Any] = {"ha": "center", "va": "center", "path_effects": around, "zorder": 8}
+        how |= {"family": "serif", "style": "italic", "weight": "bold", "size": 1.6 * self.letters}
+        while len(words) < len(tips):
+            words.append(ax.text(0, 0, "", animated=True, **how))
+        away = 0.045 * self.letters / 10
+        for k, (word, tip) in enumerate(zip(words, tips, strict=False)):
+            along = tip.at - tip.root
+            long = float(np.hypot(*along))
+            side = np.array([along[1], -along[0]]) / long if long > 1e-3 else np.array([1.0, -0.4])
+            word.set(text=tip.letter, color=self.colour[tip.name])
+            word.set_position(tip.at + away * side * (-1 if long > 1e-3 and k % 2 else 1))
+        for word in words[len(tips) :]:
+            word.set_text("")
+
+    @property
+    def _open(self) -> str:
+        """For how long the shutter is open, in words."""
+        turns = self.what.look.exposure
+        if turns is None:
+            return ""
+        told = "to the end" if math.isinf(turns) else "1 turn" if turns == 1 else f"{turns:g} turns"
+        return f"\nexposure: {told}"
+
+    def _light(self, index: int, t: float, *, before: bool) -> tuple[np.ndarray, float]:
+        """The light (rows, columns, 3) of a photograph before or after this time, and how long it took."""
+        panel, turns, camera = self.panels[index], self.what.look.exposure, self.cameras[index]
+        assert turns is not None
+        open_ = opened(t, turns, panel.along, panel.turned, before=before)
+        rows, columns = self.shape
+        if not open_[1] > open_[0]:
+            return np.zeros((rows, columns, 3)), 0.0
+        how = (
+            None if self.follows else panel.middle[:2],
+            2 * camera.high / rows,
+            (rows, columns),
+            _LIGHT[self.opens],
+        )
+        # marks glow, as on the page
+        glow = [np.minimum(1.15 * np.array(part.colour) + 0.12, 1.0) for part in panel.ink]
+        found = [light(panel.motion, [part], open_, *how) for part in panel.ink]
+        return np.stack(found, -1) @ np.array(glow), open_[1] - open_[0]
+
+    def _gain(self, index: int) -> float:
+        """The gain with which the brightest places of a whole exposure are nearly white."""
+        along = self.panels[index].along
+        t = float(self.times[0] if self.opens else min(self.times[-1], along[-1]))
+        found, long = self._light(index, t, before=not self.opens)
+        if not long:
+            raise ValueError(f"t = {t * self.what.unit:.6g}: an exposure begins at the end of the motion")
+        most = found.max(axis=-1)
+        return 2 / (float(np.percentile(most[most > 0], 99.7)) * long) if most.any() else 0.0
+
+    def _developed(self, index: int, t: float) -> np.ndarray:
+        """The photograph at a time: of a still from then on, of a film the one that closes there."""
+        found, long = self._light(index, t, before=not self.opens)
+        developed: np.ndarray = -np.expm1(-self.gain[index] * long * found)
+        return developed
 
     def _clock(self, t: float) -> str:
-        return f"t = {t * self.what.unit:.{self.digits}f} {self.what.symbol}"
+        told = f"{t * self.what.unit:.{self.digits}f}"
+        return f"t = {told.rstrip('0').rstrip('.') if self.opens else told} {self.what.symbol}"
 
     def _spin(self, spin: float) -> str:
         """The spin of a stone about the vertical, in words."""
@@ -369,32 +370,9 @@ class _Moving(NamedTuple):
     slipped: Any  #: path of the contact while it slips
     shades: list[Any]  #: the shadow from each point of the lamp
     surface: Any
+    photo: Any  #: a long exposure, or None
     clock: Any
-
-
-def _triangles(panel: _Shown, k: int, camera: _Camera, over: bool) -> tuple[Floats, Floats]:
-    """Corners (n, 3, 2) in the picture and colours (n, 3, 4) of triangles, in the order of drawing."""
-    rotation, centre = panel.rotation[k], panel.centre[k]
-    eye = (camera.eye - centre) @ rotation  # position of the eye in the axes of the body
-    height = float(eye[2])
-    # painter's order: pieces beyond a plane across the axis come before those on the eye's side
-    away = [max(p.low - height, height - p.high, 0.0) for p in panel.pieces]
-    order = sorted(range(len(away)), key=lambda i: (-away[i], not panel.pieces[i].inside, i))
-    places, colours = [], []
-    for i in order:
-        part = panel.pieces[i].part
-        corners, normals = part.vertices[part.triangles], part.normals[part.triangles]
-        flat = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        facing = ((eye - corners[:, 0]) * flat).sum(axis=-1) > 0
-        turned = normals[facing] @ rotation.T
-        light = 0.52 + 0.16 * turned[..., 2] + 0.36 * np.maximum(turned @ _SUN, 0.0)
-        colour = np.array(part.colour)
-        if over:  # after the end of a motion the colour loses most of its hue
-            colour = 0.06 * colour + 0.94 * (0.42 + 0.3 * colour @ [0.3, 0.59, 0.11])
-        lit = np.clip(light[..., np.newaxis] * colour, 0.0, 1.0)
-        places.append(camera(corners[facing] @ rotation.T + centre))
-        colours.append(np.concatenate([lit, np.ones((*lit.shape[:2], 1))], -1))
-    return np.concatenate(places), np.concatenate(colours)
+    words: list[Any]  #: letters of arrows
 
 
 def _fades(share: Floats) -> Floats:
@@ -415,22 +393,38 @@ def _columns(count: int, aspect: float) -> tuple[int, int]:
     return best, math.ceil(count / best)
 
 
-def _surface(ax: Any) -> Any:
-    """An artist in the axes that draws triangles in their order, each corner with its colour."""
+def _body(panel: Shown, k: int, camera: Camera, over: bool) -> list[Painted]:
+    """The triangles of a body at frame k, in the order of drawing."""
+    rotation, centre = panel.rotation[k], panel.centre[k]
+    height = float((camera.eye - centre) @ rotation[:, 2])
+    return [painted(piece, rotation, centre, camera, over=over) for piece in ordered(panel.pieces, height)]
+
+
+def _surface(ax: Any, vector: bool) -> Any:
+    """An artist that draws triangles in their order, shaded, or as a vector drawing in one colour each."""
     from matplotlib.artist import Artist
+    from matplotlib.collections import PolyCollection
 
     class Surface(Artist):
         """Gouraud triangles for Agg."""
 
-        def put(self, corners: Floats, colours: Floats) -> None:
-            self.corners, self.colours = corners, np.ascontiguousarray(colours)
+        def put(self, found: list[Painted]) -> None:
+            self.corners, colours = (np.concatenate(x) for x in zip(*found, strict=True))
+            self.colours = np.concatenate([colours, np.ones((*colours.shape[:2], 1))], -1)
 
         def draw(self, renderer: Any) -> None:
             graphics = renderer.new_gc()
             renderer.draw_gouraud_triangles(graphics, self.corners, self.colours, ax.transData.frozen())
             graphics.restore()
 
-    surface = Surface()
-    surface.set_animated(True)
+    class Polygons(PolyCollection):
+        """Polygons, whose edges close the gaps between them."""
+
+        def put(self, found: list[Painted]) -> None:
+            corners, colours = (np.concatenate(x) for x in zip(*found, strict=True))
+            self.set(verts=corners, color=colours.mean(axis=1), linewidth=0.3)
+
+    surface: Any = Polygons([]) if vector else Surface()
+    surface.set(animated=True, zorder=6)
     ax.add_artist(surface)
     return surface

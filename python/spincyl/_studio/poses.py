@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from spincyl._asked import Want
 from spincyl._contact import Contact, Coulomb, Viscous
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._input.numbers import Floats
@@ -62,13 +63,14 @@ def span(m: "Motion") -> tuple[float, float]:
 
 
 def seen(m: "Motion", t: Floats, *names: str) -> list[Floats]:
-    """Attributes of the motion, such as "phi" or "centre", at times in any order, computed with the pose.
+    """Attributes of the motion, such as "phi" or "contact_force", at times in any order.
 
     Steps to other times may end the motion a little earlier: its last state then fills the rest.
     """
     times, back = np.unique(t, return_inverse=True)
     backward = -1 if m._asked.times[-1] < m._asked.t0 else 1
-    there = m.wanting("pose", t=times[::backward])
+    want: tuple[Want, ...] = ("pose", "force") if "contact_force" in names else ("pose",)
+    there = m.wanting(*want, t=times[::backward])
     if there.t.size == 0:
         raise ValueError(f"there is nothing to show at t = {times[::backward][0]:.6g}: {there.message}")
     rows = np.minimum(np.arange(times.size), there.t.size - 1)[::backward]

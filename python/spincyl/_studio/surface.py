@@ -51,14 +51,15 @@ class Part(NamedTuple):
     triangles: np.ndarray  #: (m, 3) indices, counter-clockwise from outside
 
 
-def lathe(profile: Profile) -> Part:
+def lathe(profile: Profile, around: int = _AROUND) -> Part:
     """The surface that a profile makes when it is turned and, for a stone, stretched."""
-    return _turned(profile) if profile.stretch is None else profile.stretch(_turned(profile))
+    turned = _turned(profile, around)
+    return turned if profile.stretch is None else profile.stretch(turned)
 
 
-def _turned(profile: Profile) -> Part:
+def _turned(profile: Profile, around: int) -> Part:
     """The surface of revolution of a profile."""
-    angle = np.linspace(0, 2 * np.pi, _AROUND + 1)
+    angle = np.linspace(0, 2 * np.pi, around + 1)
     circle = np.stack([np.cos(angle), np.sin(angle)], -1)
     pieces = []
     if profile.normals is not None:

@@ -107,15 +107,15 @@ function arrowOf(p, v) {
 
 // the contact point, the centre, and the point opposite to the contact point
 const POINTS = ["P", "C", "O"], opposite = p => [p.contact, p.centre, along([2, p.centre], [-1, p.contact])];
-// rods with colour, root, direction, width and length: the line through these points, with a bead at each, and
+// rods with colour, root, direction, width, length and shape: the line through these points, with a bead at each, and
 // the axis about which the body turns now, a little longer; its points move along it, or rest
 function rods(p) {
   if (!$("axis").checked) return [];
   const places = opposite(p), way = along([1, p.centre], [-1, p.contact]), long = Math.hypot(...way), square = dot(p.omega, p.omega), line = way.map(x => x / long), thick = 0.006 * half;
-  const found = [["ink", p.contact, line, thick, 2 * long], ...places.map(place => ["ink", along([1, place], [-2 * thick, line]), line, 2.4 * thick, 4 * thick])];
+  const found = [["ink", p.contact, line, thick, 2 * long, rod], ...places.map(place => ["ink", place, line, 2.4 * thick, 2.4 * thick, bead])];
   if (square > 1e-18) {
     const on = along([1, p.centre], [1 / square, cross(p.omega, p.velocity)]), turns = p.omega.map(x => x / (dot(p.omega, way) < 0 ? -1 : 1) / Math.sqrt(square));
-    found.push(["omega", along([1, on], [dot(along([1, p.contact], [-1, on]), turns) - 0.35 * long, turns]), turns, 0.6 * thick, 2.7 * long]);
+    found.push(["omega", along([1, on], [dot(along([1, p.contact], [-1, on]), turns) - 0.35 * long, turns]), turns, 0.6 * thick, 2.7 * long, rod]);
   }
   return found;
 }
@@ -192,7 +192,7 @@ function draw(m, t, aspect) {
     const any = Math.abs(e3[2]) < 0.9 ? [0, 0, 1] : [1, 0, 0], e1 = cross(any, e3), n = wide / Math.hypot(...e1), e2 = cross(e3, e1);
     return [...e1.map(x => x * n), 0, ...e2.map(x => x * n), 0, ...e3.map(x => x * length), 0, ...root, 1];
   };
-  for (const [colour, ...at] of rods(p)) fill(rod, placed(...at), paint[colour], MATT);
+  for (const [colour, root, way, wide, long, shape] of rods(p)) fill(shape, placed(root, way, wide, long), paint[colour], MATT);
   for (const v of ARROWS) {
     const a = arrowOf(p, v);
     if (!a) continue;

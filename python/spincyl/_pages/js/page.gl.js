@@ -104,6 +104,6 @@ function surfaces(turned) {
 }
 // an arrow of length 1 along z, shaft and head; and its halo, slightly larger
 const [arrow, halo] = [0, 0.011].map(d => lathe([[0, -d], [0.016 + d, -d], [0.016 + d, 0.86 - d], [0.045 + 1.7 * d, 0.86 - d], [0, 1 + 3 * d]], 48));
-// a rod of length and radius 1 along z
-const rod = lathe([[0, 0], [1, 0], [1, 1], [0, 1]], 24);
+// a rod of length and radius 1 along z, and a bead
+const [rod, bead] = [[[0, 0], [1, 0], [1, 1], [0, 1]], [[0, -1], [0.7, -0.7], [1, 0], [0.7, 0.7], [0, 1]]].map(corners => lathe(corners, 24));
 const quad = mesh([-1, -1, 0, 1, -1, 0, -1, 1, 0, 1, 1, 0]);

@@ -126,10 +126,20 @@ addEventListener("keydown", e => {
 dusk.onchange = show;
 new ResizeObserver(show).observe(stage);
 
+// what is set at first
+const { drawn, above, exposure } = data.look, switched = { omega: "omega", momentum: "momentum", velocity: "velocity", force: "forces", path: "path", axis: "axis" };
+if (drawn) for (const name in switched) if ($(switched[name])) $(switched[name]).checked = drawn.includes(name);
+$("above").checked = above;
+if (exposure !== "0") {
+  if (![...$("shutter").options].some(o => o.value === exposure)) $("shutter").add(new Option(exposure + " turns", exposure));
+  $("shutter").value = exposure;
+  shuttered();
+}
+
 const wish = new URLSearchParams(location.hash.slice(1));
 const wished = Number(wish.get("t") ?? NaN) / data.unit;
 if (Number.isFinite(wished)) go(wished);
-else if (!matchMedia("(prefers-reduced-motion: reduce)").matches) play(true);
+else if (exposure === "0" && !matchMedia("(prefers-reduced-motion: reduce)").matches) play(true);
 show();
 // for tests: a pose, the time, and the position of a body's centre on the stage
 window.spincyl = {

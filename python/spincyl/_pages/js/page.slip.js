@@ -2,7 +2,7 @@
 // time line, and a camera that can follow. Pages without friction omit this file. It comes before the drawing
 // and replaces some of its functions.
 
-for (const m of motions) if (m.phases) {
+for (const m of motions) if (m.forces) {
   const whole = new Uint16Array(bytes(m.forces)), n = whole.length / 5;
   const read = (i, k) => m.lows[k] + (m.highs[k] - m.lows[k]) * (whole[5 * i + k] / 0xffff);
   // slip and friction along and across the lean, and normal force, interpolated between equally spaced times
@@ -12,14 +12,14 @@ for (const m of motions) if (m.phases) {
   };
   const presses = Array.from({ length: n }, (_, i) => read(i, 4)).sort((a, b) => a - b);
   m.press = Math.max(1e-9, presses[n >> 1]); // the median of N
-  m.slips = t => m.phases.findLast(([begin], i) => begin <= t || i === 0)[1] === 1;
-  m.runs = times => m.phases.map(([t, kind]) => [t > m.first ? knot(t, times) : 0, kind ? "friction" : "trace"]);
+  m.slips = t => m.phases?.findLast(([begin], i) => begin <= t || i === 0)[1] === 1;
+  if (m.phases) m.runs = times => m.phases.map(([t, kind]) => [t > m.first ? knot(t, times) : 0, kind ? "friction" : "trace"]);
 }
 
 const withoutForces = pose;
 pose = (m, t) => {
   const p = withoutForces(m, t);
-  if (!m.phases) return Object.assign(p, { normal: [0, 0, 0], friction: [0, 0, 0] });
+  if (!m.forces) return Object.assign(p, { normal: [0, 0, 0], friction: [0, 0, 0] });
   const [u, v, f, g, n] = m.rubs(t), [c, s] = [Math.cos(p.phi), Math.sin(p.phi)], slips = m.slips(t);
   return Object.assign(p, { normal: [0, 0, n], friction: [c * f - s * g, s * f + c * g, 0], usual: m.press, slips, speed: Math.hypot(u, v) });
 };
@@ -36,7 +36,8 @@ for (const [id, text, before] of [["forces", '<i class="normal">N</i> <i class="
 document.querySelector("details p").append(" Where a body slips its path is red, and so is the line under the slider; N is the normal force on it and F the friction, on one scale. Follow keeps the bodies in the middle.");
 $("forces").ariaLabel = "normal force and friction";
 $("forces").checked = true;
-let asPlanned = false;
+let asPlanned = data.look.follow !== null;
+$("follow").checked = !!data.look.follow;
 // centre of the view: the body, or for a photograph the middle of its path while the shutter is open
 aim = (m, p) => {
   const alone = Math.max(...motions.map(m => Math.hypot(1, m.ell))), all = Math.max(...motions.map(m => m.reach));

@@ -1,0 +1,92 @@
+"""What a view shows besides the body, and from where; its page, its films and its stills look alike."""
+
+import math
+from collections.abc import Iterable
+from typing import NamedTuple
+
+import numpy as np
+
+from spincyl._input.numbers import Floats, flag, number, words
+
+_AZIMUTH, _ELEVATION = -1.1, 0.55  # direction of the page's first view
+_SPREAD = math.tan(0.3)  # tangent of half the angle of view
+_FLAT = 1e6  # distance of a camera above the table, over half the height that it shows
+#: What can be drawn besides the body.
+DRAWN = ("path", "omega", "momentum", "velocity", "force", "axis")
+
+
+class Look(NamedTuple):
+    """The look of a view."""
+
+    drawn: (
+        tuple[str, ...] | None
+    )  #: of `DRAWN`; None: the path, and on a page the forces where there is friction
+    above: bool  #: whether the camera is above the table
+    follow: bool | None  #: whether the camera follows the body; None: if it moves far
+    exposure: float | None  #: turns about the vertical for which the shutter is open
+
+
+def look(drawn: str | Iterable[str] | None, above: bool, follow: bool | None, exposure: float | None) -> Look:
+    """The look of a view from its arguments, or an error naming one."""
+    drawn = None if drawn is None else words("drawn", drawn, DRAWN)
+    follow = None if follow is None else flag("follow", follow)
+    if exposure is not None:
+        exposure = math.inf if exposure == math.inf else number("exposure", exposure)
+        if not exposure >= 0.01:
+            raise ValueError(f"exposure = {exposure!r}: expected 0.01 turns or more, or inf: to the end")
+    return Look(drawn, flag("above", above), follow, exposure)
+
+
+class Camera(NamedTuple):
+    """A camera: the middle of its view, its distance, and its three directions."""
+
+    at: Floats
+    far: float
+    high: float
+    rows: Floats  #: right, up, back
+
+    @property
+    def eye(self) -> Floats:
+        """Position of the camera."""
+        found: Floats = self.at + self.far * self.rows[2]
+        return found
+
+    def __call__(self, places: Floats) -> Floats:
+        """Positions of points (..., 3) in the picture, whose half height is 1."""
+        x, y, back = np.moveaxis((places - self.at) @ self.rows.T, -1, 0)
+        found: Floats = self.far / self.high * np.stack([x, y], -1) / (self.far - back)[..., np.newaxis]
+        return found
+
+
+def camera(at: Floats, reach: float, half: float, aspect: float, above: bool) -> Camera:
+    """The camera of the page, as it is at first or from above: then x runs to the right and y upwards."""
+    azimuth, elevation = (-math.pi / 2, math.pi / 2) if above else (_AZIMUTH, _ELEVATION)
+    ce, se = math.cos(elevation), math.sin(elevation)
+    ca, sa = math.cos(azimuth), math.sin(azimuth)
+    back, right = np.array([ce * ca, ce * sa, se]), np.array([-sa, ca, 0.0])
+    high = max(1.08 * reach if above else half, 1.12 * reach / aspect)
+    far = _FLAT * high if above else high / _SPREAD
+    return Camera(at, far, high, np.stack([right, np.cross(back, right), back]))
+
+
+def held(reach: float, top: float) -> float:
+    """Half the height that the camera has to show."""
+    return 1.06 * max((0.52 + 0.26) * reach + 0.38 * top, 0.44 * reach + 0.57 * top)
+
+
+def opened(t: float, turns: float, along: Floats, turned: Floats, *, before: bool) -> tuple[float, float]:
+    """When the shutter opens and closes, so many turns after `t`, or before it.
+
+    `turned` is the number of turns about the vertical at the times `along`. At most until the motion ends, or
+    from its beginning.
+    """
+    if before:
+        first, last = opened(-t, turns, -along[::-1], -turned[::-1], before=False)
+        return -last, -first
+    over = np.abs(turned - np.interp(t, along, turned)) - turns
+    there = np.flatnonzero((along > t) & (over >= 0))
+    if not there.size:
+        return t, float(along[-1])
+    k = int(there[0])
+    began, was = (along[k - 1], over[k - 1]) if k and along[k - 1] > t else (t, -turns)
+    return t, float(began + (along[k] - began) * was / (was - over[k]))
