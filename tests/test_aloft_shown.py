@@ -322,8 +322,8 @@ def test_where_another_rim_takes_over_the_curves_have_gaps_and_no_leaps():
     start = sc.dropped(measured, "20mm", 1.2, w2=100.0, w1=30.0)
     tilt, path, _ = sc.plot.motion(sc.roll(measured, start, 0.5, contact=TABLE, restitution=0.5))
     right = tilt.figure.axes[-1]
-    assert right.get_ylabel() == "height of its lowest point (m)"
-    assert right.lines[0].get_ydata()[0] == pytest.approx(0.02)
+    assert right.get_ylabel() == "height of its lowest point (mm)"
+    assert right.lines[0].get_ydata()[0] == pytest.approx(20)
 
 
 def test_a_map_of_flicks_hatches_those_that_hop_before():

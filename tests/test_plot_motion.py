@@ -1,6 +1,7 @@
 """Figures of motions: content, times, ends, and sizes of text."""
 
 import warnings
+from dataclasses import replace
 
 import matplotlib as mpl
 import numpy as np
@@ -216,6 +217,55 @@ def test_the_motion_of_a_stone_shows_its_spin_beside_its_tilt(measured, contact)
     assert right.get_ylabel() == f"spin about the vertical ({unit})"
     assert force.get_ylabel() == ("force (N)" if measured else "force ($Mg$)")
     plt.close(tilt.figure)
+
+
+def test_a_rattleback_rocks_between_the_envelopes_that_its_eigenvalue_foretells():
+    stone = sc.Ellipsoid.rattleback((0.07, 0.014, 0.012), twist=np.radians(2)).in_metres()
+    second, push = stone.scale.seconds(1.0), np.radians(0.02)
+    m = sc.roll(stone, stone.spinning(5 * second, pitch=push, roll=push), 6.0)
+    tilt, *_ = m.plot()
+    assert [text.get_text() for text in tilt.get_legend().get_texts()] == [
+        "rocking end to end",
+        "rocking side to side",
+    ]
+    ends, sides = (line.get_data() for line in tilt.lines[1:])
+    # spun counterclockwise, the slow rocking from side to side grows
+    growth = stone.rocking(5 * second).growth[0] / second
+    grown = (sides[0] > 2) & (sides[0] < 5)
+    assert np.polyfit(sides[0][grown], np.log(sides[1][grown]), 1)[0] == pytest.approx(growth, rel=0.02)
+    for (t, most), axis in ((ends, 0), (sides, 1)):
+        fine = sc.roll(stone, m.start, np.linspace(1, 6, 20_001), t0=0.0)
+        rocked = np.abs(90 - np.degrees(fine.inclinations[:, axis]))
+        above = np.interp(fine.t, t, most)
+        assert (rocked < 1.01 * above + 2e-3).all()
+        # in every half second it comes up to it
+        assert (rocked > 0.99 * above)[:-1].reshape(10, -1).any(axis=1).all()
+    # an egg that lies does not rock about the upright
+    egg = sc.Ellipsoid.egg(0.7, 1.0)
+    m = sc.roll(egg, sc.EllipsoidState([0.8, 0.0, 0.6], [0.0, 1.7, 0.2]), 5.0)
+    assert len(m.plot()[0].lines) == 1 and m.plot()[0].get_legend() is None
+    plt.close("all")
+
+
+def test_the_distance_of_a_straight_roll_is_the_radius_times_the_angle():
+    ball = sc.Body.ball(0.0, 0.4, 0.4, diameter="57mm", mass="170g")
+    state = sc.State(np.pi / 2, 0.0, 0.0, -1.5)
+    m = ball.roll(state, 2.0, want="pose")
+    tilt, path, _ = m.plot()
+    t, distance = tilt.lines[0].get_data()
+    psi = m.at(t).psi
+    assert tilt.get_ylabel() == "distance of the centre (mm)" and path.get_xlabel() == "$x$ (mm)"
+    assert np.allclose(distance, 28.5 * np.abs(psi - psi[0]), rtol=1e-9, atol=1e-9) and distance[-1] > 100
+    # a hoop with backspin comes back; its closed form: v = v0 - mu g t until the rim is at rest
+    hoop = replace(sc.Body.tube(0.0, bore=0.97), scale=sc.Scale(radius=0.45, mass=0.3))
+    m = hoop.roll(sc.thrown(hoop, 3.0, "14rad/s"), 1.0, contact=sc.Coulomb(0.4))
+    t, distance = (tilt := m.plot()[0]).lines[0].get_data()
+    assert np.allclose(distance, 3 * t - 0.4 * sc.Scale.gravity * t**2 / 2, atol=1e-6)
+    assert tilt.get_ylabel() == "distance of the centre (m)"
+    # a body that stands still, or leans over, has an inclination
+    for state in (sc.State(np.pi / 2, 0.0, 0.0, 0.0), sc.State(1.0, 0.3, 0.0, -1.5)):
+        assert "inclination" in ball.roll(state, 1.0).plot()[0].get_ylabel()
+    plt.close("all")
 
 
 def test_a_drift_draws_inclination_and_precession_up_to_its_end():

@@ -72,6 +72,8 @@ def height(
     times = second * np.array([x.time for x in m.impacts])
     (marks,) = right.plot(times, 0 * times, "v", color=BLACK, ms=6, clip_on=False, label="impact", zorder=4)
     right.set_ylim(0, 1.1 * float(high.max()) or 1.0)
+    if not high.any():
+        right.set_axis_off()  # it only rolls on its side
     right.set_ylabel(f"height of its lowest point ({said})", color=ORANGE)
     patch: Any = extra("matplotlib.patches", "plot").Patch
     there = dict.fromkeys(filter(None, map(_shade, m.phases)))

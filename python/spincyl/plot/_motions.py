@@ -7,7 +7,7 @@ import numpy as np
 
 from spincyl._contact import Coulomb, Viscous, named
 from spincyl._ellipsoid_motion import EllipsoidMotion
-from spincyl._input.numbers import extra, made, number, within
+from spincyl._input.numbers import Floats, extra, made, number, within
 from spincyl._loss import titled
 from spincyl._motion import Motion
 from spincyl._phases import rubs
@@ -19,7 +19,7 @@ from spincyl._studio.poses import pace, span
 from spincyl._studio.shape import steepest
 from spincyl._told import ends
 from spincyl.plot import _aloft
-from spincyl.plot._style import BLACK, BLUE, HERTZ, ORANGE, RED, new_axes, own_ticks, sized
+from spincyl.plot._style import BLACK, BLUE, GREEN, ORANGE, RED, new_axes, own_ticks, sized
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -30,13 +30,16 @@ if TYPE_CHECKING:
 
 @sized
 def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
-    """Draw a motion: inclination and tilting, the contact path on the table, the contact force.
+    """Draw a motion: inclination, or distance of a straight roll, contact path on the table, contact force.
 
     A motion that ended is grey from there to the last time asked for. With a law of friction the path is red
     where the body slips, and the time tinted. With a `restitution` the height of its lowest point stands
     beside the inclination, impacts are marked, and flights and rests on both rims are tinted as well. Units
-    are natural; of a measured body seconds, metres and newtons, or weights if its mass is not known. Of a
-    stone the spin about the vertical stands beside the inclination, and the largest semi-axis for R.
+    are natural; of a measured body seconds, newtons (or weights if its mass is not known) and millimetres,
+    from R = 0.1 m on metres. A body that runs straight on at a constant inclination shows how far its centre
+    has moved in place of the inclination. Of a stone the spin about the vertical stands beside the
+    inclination, and the largest semi-axis for R; if it stays within 60 degrees of upright, its two rockings
+    are shown by their envelopes: the largest tilts of its longer and of its shorter axis.
 
     Parameters
     ----------
@@ -80,14 +83,27 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
     tilt, path, force = axes
     thick: dict[str, Any] = {"lw": 1.8} if close else {"ls": "", "marker": ".", "ms": 1}
     thin = thick | {"lw": 1.4} if close else thick
+    below: dict[str, Any] = {
+        "loc": "upper center",
+        "bbox_to_anchor": (0.5, -0.17),
+        "ncols": 2,
+        "markerscale": 1 if close else 8,
+    }
     jumps = _aloft.breaks(m) if up else np.zeros(m.t.size, bool)
-    tilt.plot(*_aloft.parted(jumps, t, np.degrees(m.theta)), color=BLUE, **thick)
-    tilt.set_ylabel(r"inclination  $\theta$ (degrees)")
+    far = _straight(m)
+    if far is None:
+        tilt.plot(*_aloft.parted(jumps, t, np.degrees(m.theta)), color=BLUE, **thick)
+        tilt.set_ylabel(r"inclination  $\theta$ (degrees)")
+    else:
+        tilt.plot(t, _in(scale, "centre", far), color=BLUE, **thick)
+        tilt.set_ylabel(f"distance of the centre ({_said('centre', scale)})")
     how = {"rolling": "rolling", "smooth": "smooth table"}.get(named(m.contact)) or _law(m)
     if m.losses is not None:
         how = f"{how}, {titled(m.losses, scale)}"
     if isinstance(m, EllipsoidMotion):
         _spin(tilt, m, t, scale, thick)
+        if float(m.theta.max()) < np.pi / 3:
+            _rockings(tilt, m, t, below)
         tilt.set_title(how)
     else:
         fillet = rf", $\rho = {m.body.fillet:.4g}$" if m.body.fillet else ""
@@ -98,7 +114,7 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
         tilt.yaxis.label.set_color(BLUE)
     # at least one radian high, so that a constant theta does not show rounding
     low, high = tilt.get_ylim()
-    if high - low < 1e-3:
+    if high - low < 1e-3 and far is None:
         tilt.set_ylim(low - 0.5, high + 0.5)
 
     if rubs(m.contact) or up:
@@ -122,12 +138,6 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
     path.set_xlabel(rf"$x$ ({_said('centre', scale)})")
     path.set_ylabel(rf"$y$ ({_said('centre', scale)})")
     path.set_title("on the table, from dot to square")
-    below: dict[str, Any] = {
-        "loc": "upper center",
-        "bbox_to_anchor": (0.5, -0.17),
-        "ncols": 2,
-        "markerscale": 1 if close else 8,
-    }
     path.legend(**below)
 
     force.plot(t, normal, color=BLUE, label=r"normal force $N$", **thick)
@@ -163,6 +173,32 @@ def _spin(ax: "Axes", m: EllipsoidMotion, t: Any, scale: "Scale | None", style: 
     right.axhline(0.0, color="#888888", lw=0.8, ls=":")
     right.set_ylabel(f"spin about the vertical ({_said('w', scale)})", color=ORANGE)
     ax.yaxis.label.set_color(BLUE)
+
+
+def _rockings(ax: "Axes", m: EllipsoidMotion, t: Any, legend: dict[str, Any]) -> None:
+    """Draw the envelopes of both rockings over the inclination, through the largest tilts of each axis."""
+    ax.lines[0].set_alpha(0.25)
+    tilts = np.abs(90 - np.degrees(m.inclinations))
+    longer = int(np.argmax(np.asarray(m.body.axes)[:2]))
+    for axis, name, colour in ((longer, "end to end", BLUE), (1 - longer, "side to side", GREEN)):
+        x = tilts[:, axis]
+        most = 1 + np.flatnonzero((x[1:-1] >= x[:-2]) & (x[1:-1] > x[2:]))
+        ax.plot(t[most], x[most], color=colour, lw=1.8, label=f"rocking {name}")
+    ax.legend(**legend)
+
+
+def _straight(m: "Motion") -> "Floats | None":
+    """How far the centre of a body has moved that runs straight on at a constant inclination, else None."""
+    if isinstance(m, EllipsoidMotion) or np.ptp(m.theta) > 1e-6 or np.ptp(m.phi) > 1e-6:
+        return None
+    plan = m.centre[:, :2] - m.centre[0, :2]
+    away = np.hypot(*plan.T)
+    if away.max() < 1e-6:
+        return None
+    # in the direction in which it sets out
+    first = plan[np.argmax(away > 1e-3 * away.max())]
+    found: Floats = plan @ (first / np.hypot(*first))
+    return found
 
 
 _MOST = 100_000
@@ -206,13 +242,20 @@ def _close(m: "Motion") -> "tuple[Motion, bool]":
 
 def _in(scale: "Scale | None", name: str, values: Any) -> Any:
     """Convert an output of a motion to the units of the plot."""
-    factor, _ = unit_of(name, scale)
+    factor, _ = _unit(name, scale)
     return values if factor is None else values * factor
+
+
+def _unit(name: str, scale: "Scale | None") -> tuple[float | None, str]:
+    """The factor and the unit of an output in a plot: lengths of a thing on a table are in millimetres."""
+    factor, said = unit_of(name, scale)
+    small = factor is not None and said == "m" and factor < 0.1
+    return (1e3 * factor, "mm") if factor is not None and small else (factor, said)
 
 
 def _said(name: str, scale: "Scale | None") -> str:
     """The unit of an output, for a label."""
-    said = unit_of(name, scale)[1]
+    said = _unit(name, scale)[1]
     known = {"sqrt(R/g)": r"$\sqrt{R/g}$", "sqrt(g/R)": r"$\sqrt{g/R}$", "R": "$R$", "M g": "$Mg$"}
     return known.get(said, said)
 
@@ -243,7 +286,7 @@ def _mark_the_end(ax: "Axes", m: "Motion") -> None:
     ax.axvspan(end, last, color="#DDDDDD", lw=0, zorder=0)
     ax.axvline(end, color="#888888", lw=1)
     unit = "" if m.scale is None else " s"
-    ax.set_title(f"{ax.get_title()}\nended: it {ends(m)}, $t = {end:.2f}${unit}")
+    ax.set_title(f"{ax.get_title()}\nended: it {ends(m)}, $t = {end:.4g}${unit}")
 
 
 @sized
@@ -270,7 +313,8 @@ def exposure(
     Returns
     -------
     Axes
-        In R, of a measured body in metres, about the middle of the centre's path.
+        In R, of a measured body in millimetres (from R = 0.1 m in metres), about the middle of the centre's
+        path.
 
     Raises
     ------
@@ -285,6 +329,7 @@ def exposure(
     light = photograph(m, seconds, width=2 * half, **how)
     ax = new_axes(ax)
     brightest = np.percentile(light[light > 0], 99.7) if light.any() else 1.0
+    half *= float(_in(m.scale, "centre", 1.0)) / (1.0 if m.scale is None else m.scale.radius)
     ax.imshow(
         np.clip(light / brightest, 0, 1) ** gamma,
         cmap="gray",
