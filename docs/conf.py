@@ -107,7 +107,9 @@ def pages(folder: Path) -> None:
     folder.mkdir(exist_ok=True)
     pipe, disk = sc.Body.tube(6.0, bore=0.8), sc.Body.solid(0.375)
     state = pipe.steady(np.radians(89.5))
-    sc.view(sc.roll(pipe, state, 60.0), title="The paper's tube", slow=2).save(folder / "tube.html")
+    sc.view(sc.roll(pipe, state, 60.0), title="The paper's tube", slow=2, exposure=1).save(
+        folder / "tube.html"
+    )
     standing = disk.steady(np.radians(80)).kicked(-0.01)
     held = [sc.roll(disk, standing, 20.0, contact=c) for c in ("rolling", "smooth")]
     sc.view(*held, labels=["on rubber", "on ice"], title="A disk on edge").save(folder / "friction.html")

@@ -37,8 +37,8 @@ def centre_speed(motion: sc.Motion) -> Floats:
     return speed
 
 
-def letters(motion: sc.Motion) -> Floats:
-    """Number of letters that stand still in a turn, of each state."""
+def still_symbols(motion: sc.Motion) -> Floats:
+    """Number of still symbols a turn, of each state."""
     number: Floats = np.asarray(motion.states.contact_radius)
     return number
 
@@ -91,8 +91,9 @@ if __name__ == "__main__":
     print(f"It slips for {scale.seconds(rolls.time):.2f} s and then rolls.")
     print(f"Its centre leaves the finger at {speed[0]:.2f} m/s, and in the end moves")
     print(f"at {speed[late].min() * 1e3:.0f} to {speed[late].max() * 1e3:.0f} mm/s.")
-    seen = letters(motion)[late]
-    print(f"Each turn shows {seen.min():.2f} to {seen.max():.2f} letters,", end=" ")
+    seen = still_symbols(motion)[late]
+    low, high = seen.min(), seen.max()
+    print(f"Each turn shows {low:.2f} to {high:.2f} still symbols,", end=" ")
     print(f"{seen.mean():.1f} on average.")
     print(f"{scale.joules(motion.dissipated[-1]) * 1e3:.1f} mJ became heat.")
     for impulse in (6.0, 7.0, 8.0, 10.0, 12.0):

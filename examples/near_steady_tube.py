@@ -1,4 +1,4 @@
-"""A tube that spins almost on its side shows about six letters that stand still."""
+"""A tube that spins almost on its side shows about six still symbols."""
 
 import matplotlib.pyplot as plt
 import numpy as np

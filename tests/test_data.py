@@ -1,5 +1,6 @@
 """Measured data: exports of Tracker are read, and the inertia ratio is fitted with its uncertainty."""
 
+import math
 import time
 
 import numpy as np
@@ -331,3 +332,17 @@ def test_the_plot_has_error_bars_and_both_curves():
     assert len(ax.containers) == 1 and ax.containers[0].has_xerr and ax.containers[0].has_yerr
     assert [t.get_text() for t in ax.get_legend().get_texts()][2] == "measured"
     plt.close("all")
+
+
+def test_a_number_has_the_decimals_that_its_error_leaves():
+    from spincyl.data._report import with_error
+
+    for value, error, said in (
+        (4.71434, 0.0172, "4.714 +- 0.017"),
+        (0.1 + 0.2, 0.3, "0.30 +- 0.30"),
+        (82.983, 12.4, "83 +- 12"),
+        (6.2, 1e-15, "6.2 +- 1.0e-15"),
+        (1.5, math.nan, "1.5 +- nan"),
+        (1.5e-9, 1e-11, "1.5e-09 +- 1.0e-11"),
+    ):
+        assert with_error(value, error) == said

@@ -1,4 +1,4 @@
-"""The photograph from above of a spinning tube: the symbols that stand still."""
+"""The photograph from above of a spinning tube: the still symbols."""
 
 import numpy as np
 import pytest

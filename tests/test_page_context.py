@@ -82,7 +82,7 @@ def test_it_opens_on_the_tube_of_the_paper_with_both_letters_and_its_shutter_a_t
     assert state(page)["ell"] == pytest.approx(6) and state(page)["radius"] == pytest.approx(7.9375e-3)
     image = picture_of(page)
     assert near(image, BLUE, 0.2) > 4e-4 and near(image, ORANGE, 0.2) > 4e-4
-    page.get_by_role("button", name="see letters stand still").click()
+    page.get_by_role("button", name="see the still symbols").click()
     page.wait_for_function("() => document.documentElement.dataset.exposed > 4")
 
 

@@ -100,7 +100,7 @@ def test_the_centre_of_a_flicked_tube_comes_nearly_to_rest_by_itself():
 def test_a_flicked_tube_shows_six_letters_in_the_end():
     m = slid(flicked_tube, want="pose")
     late = m.t >= m.phases[-1].time
-    seen = flicked_tube.letters(m)[late]
+    seen = flicked_tube.still_symbols(m)[late]
     assert (np.round(seen) == 6).all()
     psi, phi = m.psi[late], m.phi[late]
     assert (psi[-1] - psi[0]) / (phi[-1] - phi[0]) == pytest.approx(6, abs=0.02)

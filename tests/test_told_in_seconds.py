@@ -108,3 +108,13 @@ def test_on_the_command_line_it_is_told_as_the_time_was_given(capsys):
     assert re.search(
         r"step = 0\.7 is too large at t = \S+, .* a step of \S+ would do", capsys.readouterr().err
     )
+
+
+def test_a_message_has_the_digits_of_a_time_that_its_error_leaves():
+    can, dropped = sc.Body.solid(1.0), sc.State(0.3, 0.0, 0.0, 0.0)
+    for how in ({}, {"tol": 1e-6}, {"tol": 1e-3, "contact": sc.Coulomb(0.3)}):
+        m = sc.roll(can, dropped, 5.0, **how)
+        told = re.search(r"at t = ([0-9.]+)", m.message)[1]
+        shown = len(told.replace(".", "").lstrip("0"))
+        assert shown <= max(2, min(12, 2 + math.log10(m.event.time / m.error))), (how, m.message)
+        assert abs(float(told) - m.event.time) <= max(m.error, 1e-11)

@@ -178,7 +178,7 @@ def launches():
         "mu": MU,
         "speed_unit": PIPE_SCALE.metres(1.0) / PIPE_SCALE.seconds(1.0),
         "v_first_si": v[0] * PIPE_SCALE.metres(1.0) / PIPE_SCALE.seconds(1.0),
-        "letters": float(motion.phases[-1].state.contact_radius),
+        "still_symbols": float(motion.phases[-1].state.contact_radius),
     }
     found["left"] = 100 * found["v_last"] / v[0]
     bodies = [sc.Body.tube(ell, bore=q) for ell in (1.0, 6.0) for q in (0.0, 1.0)]

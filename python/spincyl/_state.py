@@ -147,7 +147,7 @@ class State:
         """Radius of the contact point's circle on the table, over that of its circle on the body.
 
         The latter is R of a sharp rim, so that it is the radius in R. Where the centre rests it is also the
-        number of symbols that stand still per turn.
+        number of still symbols a turn.
         """
         return _core.contact_radius(*self._numbers)
 

@@ -215,9 +215,9 @@ class View:
                 "slow": self.slow,
                 "shapes": shapes,
                 "motions": motions,
-                "look": self.look._asdict() | {"exposure": turns(self.look)},
+                "look": {"drawn": self.look.drawn, "above": self.look.above, "exposure": turns(self.look)},
             }
-            | (self._speeds() if self._slips else {})
+            | (self._speeds() | {"follow": self.look.follow} if self._slips else {})
             | (self._rates() if any(map(stone, self.motions)) else {})
         )
 

@@ -173,7 +173,7 @@ def _all() -> Iterator[tuple[str, dict[str, Any]]]:
     def free(body: Body, state: State, contact: AnyContact, **more: Any) -> dict[str, Any]:
         return words_of_body(body) | words_of_state(state) | words_of_table(contact) | more
 
-    yield "the paper's tube: six letters", steady(tube, 89.5, slow=20)
+    yield "the paper's tube: six still symbols", steady(tube, 89.5, slow=20)
     flicked = pressed(tube.natural, 7.0, np.radians(80), finger=0.3)
     yield "the tube, flicked", free(tube, flicked, Coulomb(0.3), until=150, slow=10)
     hard = free(

@@ -18,7 +18,7 @@ from spincyl._input.equality import compared
 from spincyl._input.numbers import Floats, is_scalar, number, reals
 from spincyl._scale import Scale, scale_of
 from spincyl.data._columns import Columns
-from spincyl.data._report import counted, section, variables
+from spincyl.data._report import counted, section, variables, with_error
 from spincyl.data._tracker import read_tracker
 
 _METRES = {"": 1.0, "m": 1.0, "cm": 1e-2, "mm": 1e-3, "in": 0.0254, "inch": 0.0254, "ft": 0.3048}
@@ -78,8 +78,8 @@ class Filmed(NamedTuple):
     def __repr__(self) -> str:
         theta, theta_err, predicted = map(math.degrees, (self.theta, self.theta_err, self.predicted))
         return (
-            f"<Filmed: {self.hertz:.4g} +- {self.hertz_err:.2g} turns a second,"
-            f" {theta:.3g} +- {theta_err:.2g} degrees, steady at {predicted:.3g}; {self.t.size} frames>"
+            f"<Filmed: {with_error(self.hertz, self.hertz_err)} turns a second,"
+            f" {with_error(theta, theta_err)} degrees, steady at {predicted:.3g}; {self.t.size} frames>"
         )
 
 
@@ -145,7 +145,7 @@ def from_above(
     >>> inch = 25.4e-3
     >>> tube = sc.Body.from_metres(outer_diameter=0.625 * inch, inner_diameter=0.5 * inch, length=3.75 * inch)
     >>> sc.data.from_above(sc.data.example("tube_from_above"), tube)
-    <Filmed: 7.294 +- 0.0018 turns a second, 83 +- 0.3 degrees, steady at 83.4; 32 frames>
+    <Filmed: 7.2938 +- 0.0018 turns a second, 82.98 +- 0.30 degrees, steady at 83.4; 32 frames>
     """
     body, scale = with_size("tube", tube, scale)
     ruler = number("ruler", ruler)

@@ -14,7 +14,7 @@ from spincyl._single import one_body
 from spincyl._upward import above
 from spincyl.data._above import with_size
 from spincyl.data._balance import Balance, Fit, with_ratio
-from spincyl.data._report import counted, section, student, variables, written
+from spincyl.data._report import counted, section, variables, with_error, written
 from spincyl.data._spindown import leaning
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ class Comparison(NamedTuple):
 
     def __repr__(self) -> str:
         return (
-            f"<Comparison: I1/I3 = {self.ratio:.6g} +- {self.ratio_err:.2g}, built {self.expected:.6g};"
+            f"<Comparison: I1/I3 = {with_error(self.ratio, self.ratio_err)}, built {self.expected:.4g};"
             f" {len(self.theta)} points, chi2 {self.chi2:.3g}>"
         )
 
@@ -65,8 +65,8 @@ class Comparison(NamedTuple):
 
         rows = [
             ("body", repr(self.body)),
-            ("points", f"{len(self.theta)}, θ from {span(self.theta)}{self._rates()}"),
-            ("I₁/I₃ that fits", f"{self.ratio:.6g} ± {self.ratio_err:.2g}"),
+            ("points", f"{len(self.theta)}, θ from {span(self.theta)}"),
+            ("I₁/I₃ that fits", with_error(self.ratio, self.ratio_err, "±")),
             ("I₁/I₃ as built", f"{self.expected:.6g}"),
             ("χ² per degree of freedom", f"{self.chi2:.3g}"),
         ]

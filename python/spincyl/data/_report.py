@@ -28,16 +28,20 @@ def variables(rows: Sequence[tuple[str, float, float, str]]) -> list[str]:
     """Lines of the section "Variables": name, value, standard error and note."""
     told = []
     for name, value, error, note in rows:
-        said = written(value)
-        if error > 0 and math.isfinite(error):
-            share = f" ({100 * abs(error / value):.2g}%)" if value else ""
-            digits = max(0, 1 - math.floor(math.log10(error)))
-            plain = 1e-4 <= abs(value) < 1e6 and digits <= 12
-            known = 1 + digits + math.floor(math.log10(abs(value))) if value else 1
-            said = f"{value:.{digits}f}" if plain else f"{value:.{max(known, 2)}g}"
-            said = f"{said} +/- {error:.2g}{share}"
+        said = with_error(value, error, "+/-") if error > 0 and math.isfinite(error) else written(value)
+        if value and "+/-" in said:
+            said += f" ({100 * abs(error / value):.2g}%)"
         told.append((f"{name}:", f"{said} {note}" if note else said))
     return section("Variables", told, "  ")
+
+
+def with_error(value: float, error: float, joint: str = "+-") -> str:
+    """A number with the decimals that its standard error leaves, and the error with two digits."""
+    if not (error > 0 and math.isfinite(error)):
+        return f"{value:.6g} {joint} {error:.2g}"
+    digits = max(0, 1 - math.floor(math.log10(error)))
+    plain = 1e-4 <= abs(value) < 1e6 and digits <= 12
+    return f"{f'{value:.{digits}f}' if plain else f'{value:.6g}'} {joint} {error:#.2g}".rstrip(".")
 
 
 def written(value: float) -> str:

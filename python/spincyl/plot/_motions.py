@@ -363,12 +363,13 @@ def comparison(found: "Comparison", ax: "Axes | None" = None) -> "Axes":
         If `found` is no Comparison, or `ax` no Axes.
     """
     from spincyl.data import Comparison
+    from spincyl.data._report import with_error
 
     made("found", found, Comparison)
-    ax = new_axes(ax)
+    ax, ratio = new_axes(ax), with_error(found.ratio, found.ratio_err, r"\pm")
     curves = (
         (found.body, BLUE, "-", f"$I_1/I_3 = {found.expected:.4g}$, as built"),
-        (found.fitted, ORANGE, "--", rf"$I_1/I_3 = {found.ratio:.4g} \pm {found.ratio_err:.1g}$, fitted"),
+        (found.fitted, ORANGE, "--", f"$I_1/I_3 = {ratio}$, fitted"),
     )
     most, unit = steepest(found.body), 1.0 if np.isnan(found.unit) else found.unit
     wide = np.linspace(0, most, 4001)[1:]

@@ -36,8 +36,8 @@ for (const [id, text, before] of [["forces", '<i class="normal">N</i> <i class="
 document.querySelector("details p").append(" Where a body slips its path is red, and so is the line under the slider; N is the normal force on it and F the friction, on one scale. Follow keeps the bodies in the middle.");
 $("forces").ariaLabel = "normal force and friction";
 $("forces").checked = true;
-let asPlanned = data.look.follow !== null;
-$("follow").checked = !!data.look.follow;
+let asPlanned = data.follow !== null;
+$("follow").checked = !!data.follow;
 // centre of the view: the body, or for a photograph the middle of its path while the shutter is open
 aim = (m, p) => {
   const alone = Math.max(...motions.map(m => Math.hypot(1, m.ell))), all = Math.max(...motions.map(m => m.reach));

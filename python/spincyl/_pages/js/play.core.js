@@ -16,7 +16,7 @@ const rowsOf = (name, wide, ...numbers) => {
 };
 
 const OF_BODY = ["ell", "i1", "i3", "fillet", "theta0", "limit", "most", "standing", "folds", "excess"];
-const OF_STEADY = ["region", "rate", "rolling", "smooth", "energy", "w1", "w2", "w3", "precession", "spin", "letters", "demand", "normal", "circle"];
+const OF_STEADY = ["region", "rate", "rolling", "smooth", "energy", "w1", "w2", "w3", "precession", "spin", "symbols", "demand", "normal", "circle"];
 const OF_START = ["integrated", "ending", "ends", "period", "low", "high", "phi", "psi", "error", "poseError", "evaluations", "phases", "slipTime", "heat", "lost", "lasts", "impacts", "knocked"];
 const OF_ROW = { t: 0, theta: 1, phi: 5, psi: 6, x: 7, y: 8, normal: 9, demand: 10, along: 11, across: 12, energy: 13, kind: 14, lost: 15, height: 16, turned: 17 }, WIDE = 18;
 // kinds of a phase in the order of the core, in words; with a law of friction a contact rubs in some of them

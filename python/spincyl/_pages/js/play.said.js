@@ -56,7 +56,7 @@ function details() {
   if (!here.code && !s.w) {
     if (Number.isFinite(here.rate)) told.push(`rate ${rated(here.rate)}`);
     else if (sized()) told.push(`goes round ${decimal(hertz(here.precession))} times a second`);
-    if (here.letters < 1e3) told.push(`${decimal(here.letters, 2)} letters stand still`);
+    if (here.symbols < 1e3) told.push(`${decimal(here.symbols, 2)} still symbols`);
   }
   if (Number.isFinite(head.period) && head.high - head.low > 1e-4 && !(head.ending && head.ends < head.period)) told.push(`nods between ${degrees(head.low, d)} and ${degrees(head.high, d)}, once in ${timed(head.period)}`);
   if (s.contact === "rolling" && need > 5e-3 && need < 1e3) told.push(`needs friction μ ≥ ${decimal(need)}`);
@@ -83,7 +83,7 @@ function say(on) {
   const button = (textContent, title, onclick) => Object.assign(document.createElement("button"), { type: "button", textContent, title, onclick });
   $("others").replaceChildren(...ghosts.map((theta, i) => button(`also at ${others[i]}`, "the same rate at another inclination", () => change({ theta }))));
   // the still symbols of the paper, with one click
-  if (known() && !s.w && !without && here.letters > 1.5 && here.letters < 40) $("others").append(button("see letters stand still", "open the shutter for one turn", () => { $("shutter").value = "1"; $("shutter").onchange(); }));
+  if (known() && !s.w && !without && here.symbols > 1.5 && here.symbols < 40) $("others").append(button("see the still symbols", "open the shutter for one turn", () => { $("shutter").value = "1"; $("shutter").onchange(); }));
   clearTimeout(say.later); // screen readers get the text when the user pauses
   say.later = setTimeout(() => { $("said").textContent = `${$("what").textContent}. ${$("because").textContent} Aspect ratio ${decimal(s.ell)}, inclination ${degrees(s.theta)}. ${$("details").textContent}`; }, 700);
 }
