@@ -1,5 +1,6 @@
 """Errors of the core about a measured body speak of seconds, or name the unit of their numbers."""
 
+import math
 import re
 from pathlib import Path
 

@@ -25,7 +25,8 @@ from spincyl._studio.shown import Shown, shown
 
 _MOST = 20_000  # frames
 _FINE = 2  # pixels of Agg for one pixel of the film, along each side
-_LIGHT = 1e6, 8e6  # samples of a photograph in a film and of a still, for each of the two marks
+# samples of a photograph for each of the two marks: of a still, and of a film at least, and for each pixel
+_LIGHT, _LEAST, _EACH = 8e6, 2e5, 2.0
 _DARK, _CHALK = (0.0, 0.0, 0.0), (0.87, 0.87, 0.87)  # paper and ink of a photograph
 
 
@@ -317,15 +318,12 @@ class _Stage:
         rows, columns = self.shape
         if not open_[1] > open_[0]:
             return np.zeros((rows, columns, 3)), 0.0
-        how = (
-            None if self.follows else panel.middle[:2],
-            2 * camera.high / rows,
-            (rows, columns),
-            _LIGHT[self.opens],
-        )
+        many = _LIGHT if self.opens else max(_LEAST, _EACH * rows * columns)
+        middle = None if self.follows else panel.middle[:2]
+        how = open_, middle, 2 * camera.high / rows, self.shape, many
         # marks glow, as on the page
         glow = [np.minimum(1.15 * np.array(part.colour) + 0.12, 1.0) for part in panel.ink]
-        found = [light(panel.motion, [part], open_, *how) for part in panel.ink]
+        found = [light(panel.motion, [part], *how) for part in panel.ink]
         return np.stack(found, -1) @ np.array(glow), open_[1] - open_[0]
 
     def _gain(self, index: int) -> float:
@@ -341,8 +339,7 @@ class _Stage:
     def _developed(self, index: int, t: float) -> np.ndarray:
         """The photograph at a time: of a still from then on, of a film the one that closes there."""
         found, long = self._light(index, t, before=not self.opens)
-        developed: np.ndarray = -np.expm1(-self.gain[index] * long * found)
-        return developed
+        return np.asarray(np.round(-255 * np.expm1(-self.gain[index] * long * found)), np.uint8)
 
     def _clock(self, t: float) -> str:
         told = f"{t * self.what.unit:.{self.digits}f}"
