@@ -19,6 +19,8 @@ def message(m: "Motion") -> str:
         why = "the other rim does not rise"
     if m.event:
         why += f": the body {ends(m)} at t = {m.event.time:.{_digits(m.event.time, m.error)}g}{_second(m)}"
+        if m.status == Ending.SIDE and m.event.time == m._asked.t0 and m._asked.restitution is None:
+            why += ", and with restitution=0.0 it goes on"
     pose = "" if np.isnan(m.pose_error) else f", of the pose {m.pose_error:.1e}"
     force = "" if np.isnan(m.force_error) else f", of the forces {m.force_error:.1e}"
     errors = f"error about {m.error:.1e}{pose}{force}"
@@ -33,6 +35,14 @@ def _digits(time: float, error: float) -> int:
     if not 0 < error < np.inf or time == 0:
         return 12
     return int(np.clip(2 + np.floor(np.log10(abs(time) / error)), 2, 12))
+
+
+def shortened(m: "Motion") -> "Motion":
+    """The same motion; if it ended early, its arrays say so to whom plots them against all times."""
+    if m.event and m.t.size < m._asked.times.size:
+        why = f"the body {ends(m)} at t = {m.event.time:.6g}{_second(m)}: plot against m.t, up to there"
+        m.__dict__.update({name: short(getattr(m, name), why) for name in ("t", "theta", "w")})
+    return m
 
 
 def ends(m: "Motion") -> str:

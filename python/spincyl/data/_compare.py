@@ -14,7 +14,7 @@ from spincyl._single import one_body
 from spincyl._upward import above
 from spincyl.data._above import with_size
 from spincyl.data._balance import Balance, Fit, with_ratio
-from spincyl.data._report import counted, section, variables, with_error, written
+from spincyl.data._report import counted, section, student, variables, with_error, written
 from spincyl.data._spindown import leaning
 
 if TYPE_CHECKING:
@@ -65,7 +65,7 @@ class Comparison(NamedTuple):
 
         rows = [
             ("body", repr(self.body)),
-            ("points", f"{len(self.theta)}, θ from {span(self.theta)}"),
+            ("points", f"{len(self.theta)}, θ from {span(self.theta)}{self._rates()}"),
             ("I₁/I₃ that fits", with_error(self.ratio, self.ratio_err, "±")),
             ("I₁/I₃ as built", f"{self.expected:.6g}"),
             ("χ² per degree of freedom", f"{self.chi2:.3g}"),

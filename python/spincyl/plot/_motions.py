@@ -19,7 +19,7 @@ from spincyl._studio.poses import pace, span
 from spincyl._studio.shape import steepest
 from spincyl._told import ends
 from spincyl.plot import _aloft
-from spincyl.plot._style import BLACK, BLUE, GREEN, ORANGE, RED, new_axes, own_ticks, sized
+from spincyl.plot._style import BLACK, BLUE, GREEN, HERTZ, ORANGE, RED, new_axes, own_ticks, sized
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
