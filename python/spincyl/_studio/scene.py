@@ -4,6 +4,7 @@ import json
 import math
 from contextlib import ExitStack
 from dataclasses import dataclass
+from functools import cached_property
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -69,7 +70,7 @@ class Scene:
     def __init__(self, motion: Motion, scale: Scale) -> None:
         self.motion, self.scale = motion, scale
 
-    @property
+    @cached_property
     def data(self) -> dict[str, Any]:
         """Body, table, start and known answer: numbers, lists and text, None for what is not finite."""
         found: dict[str, Any] = plain(scene_data(self.motion, self.scale, self._began))
