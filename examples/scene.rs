@@ -83,7 +83,6 @@ pub fn scene(tube: &Tube, mu: f64, restitution: f64, motion: &MeasuredMotion) ->
             "angular_velocity": column(&all, |now| json!(now.angular_velocity)),
             "theta": column(&all, |now| now.theta),
             "energy": column(&all, |now| now.energy),
-            // NaN, in the air, becomes null.
             "contact_force": column(&all, |now| json!(now.force)),
             "contact_point": column(&all, |now| json!(now.contact_point)),
             "phases": phases,

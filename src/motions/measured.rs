@@ -84,7 +84,7 @@ pub struct Reading {
     pub angular_velocity: Vector3<f64>,
     /// The contact point in metres, or the lowest point of the rim in the air; one of them of a body that lies on both rims.
     pub contact_point: Point3<f64>,
-    /// The force of the table in newtons, on both rims together; NaN in the air.
+    /// The force of the table in newtons, on both rims together; zero in the air.
     pub force: Vector3<f64>,
     /// Kinetic and potential energy in joules.
     pub energy: f64,

@@ -107,7 +107,7 @@ impl Sample {
     }
 
     /// The force of the table along the axes of the laboratory, in weights, if poses and forces were requested: that on both
-    /// rims of a body that lies on both, and NaN in the air.
+    /// rims of a body that lies on both, and zero in the air.
     pub fn force_in_laboratory(&self) -> Option<Vector3<f64>> {
         let other = self.other_rim.map_or([0.0; 3], |[_, _, force @ ..]| force);
         self.pose.zip(self.force).map(|(pose, Force { normal, along, across })| {

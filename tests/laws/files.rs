@@ -221,7 +221,7 @@ fn the_scene_of_the_example_obeys_newton() {
         let by = |x: [f64; 3]| (x[0] + 4.0 * x[1] + x[2]) / 6.0 * (to - from); // Simpson
         let speeds = [i - 1, i, i + 1].map(|i| v[i][2].unwrap());
         match [i - 1, i, i + 1].map(|i| force[i][2]) {
-            [None, None, None] => {
+            [Some(0.0), Some(0.0), Some(0.0)] => {
                 assert!(gained.abs() < 1e-13 && (moved - by(speeds)).abs() < 1e-14);
                 flies += 1;
             }
