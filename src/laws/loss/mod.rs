@@ -163,24 +163,26 @@ macro_rules! laws {
 // The table: a law, its number, and the file in which the type of the same name implements it. CONTRIBUTING.md says how a
 // law is added.
 laws! {
-    /// A law of loss. The number of a law is its index among the coefficients, which are in natural units: delta and length
-    /// are in R, so that an arm in metres is divided by the radius.
+    /// A law of loss. The number of a law is its index among the coefficients, which are in natural units;
+    /// [`Scale::coefficient`](crate::Scale::coefficient) converts them from SI.
     pub enum Law {
-        /// Dry friction along the contour of the rim, with the power eps N A |psi'|.
+        /// Dry friction along the contour of the rim, with the power eps N A |psi'|. Unit of eps: R, in SI metres.
         DryContour = 0 in dry_contour,
-        /// Viscous friction along the contour of the rim, with the power c (A psi')^2.
+        /// Viscous friction along the contour of the rim, with the power c (A psi')^2. Unit of c: M R sqrt(g R), in SI N m s.
         ViscousContour = 1 in viscous_contour,
-        /// Rolling resistance, with the power delta N sqrt(w_h^2 + w2^2).
+        /// Rolling resistance, with the power delta N sqrt(w_h^2 + w2^2). Unit of delta: R, in SI metres.
         RollingResistance = 2 in rolling_resistance,
-        /// Drilling friction, with the power length N |w_z|.
+        /// Drilling friction, with the power length N |w_z|. Unit of length: R, in SI metres.
         Drilling = 3 in drilling,
-        /// Resistance of the air linear in w, with the power b w.w.
+        /// Resistance of the air linear in w, with the power b w.w. Unit of b: M R sqrt(g R), in SI N m s.
         AirLinear = 4 in air_linear,
-        /// Resistance of the air quadratic in w, with the power b2 |w|^3.
+        /// Resistance of the air quadratic in w, with the power b2 |w|^3. Unit of b2: M R^2, in SI N m s^2.
         AirQuadratic = 5 in air_quadratic,
-        /// A viscous film of air under the face, with the power (pi/4) viscosity psi'^2/s.
+        /// A viscous film of air under the face, with the power (pi/4) viscosity psi'^2/s. Unit: M g^(1/2)/R^(3/2), in
+        /// SI Pa s.
         AirFilm = 6 in air_film,
-        /// Boundary layers of the air under the face, with the power k |psi'|^(5/2).
+        /// Boundary layers of the air under the face, with the power k |psi'|^(5/2). Unit of k: M g^(1/4) R^(7/4),
+        /// in SI N m s^(3/2).
         BoundaryLayer = 7 in boundary_layer,
     }
 }

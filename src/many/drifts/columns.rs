@@ -38,7 +38,7 @@ pub const NO_DRIFT: u8 = 255;
 /// The arrays for the results.
 #[derive(Debug)]
 pub struct DriftOutput<'a> {
-    /// The time of the end: infinite if the drift never ends, NaN for a start without a drift.
+    /// The time of the end, in sqrt(R/g): infinite if the drift never ends, NaN for a start without a drift.
     pub stops_at: &'a mut [f64],
     /// The inclination at the end.
     pub ends_at_theta: &'a mut [f64],

@@ -96,11 +96,11 @@ pub fn single(starts: &DriftStarts<'_>, i: usize) -> Result<Drift, Error> {
 /// A question about a drift.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Question {
-    /// The time at which the drift reaches an inclination: one number.
+    /// The time, in sqrt(R/g), at which the drift reaches an inclination: one number.
     Time,
     /// The state at a time: theta, w1, w3, Omega, and the coefficient of friction that is needed.
     At,
-    /// The time until which rolling is stable: one number.
+    /// The time, in sqrt(R/g), until which rolling is stable: one number.
     Stable,
 }
 

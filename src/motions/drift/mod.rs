@@ -31,7 +31,7 @@ use course::DriftCourse;
 pub use ends::End;
 use rest::Rest;
 
-/// A drift that begins at the time 0.
+/// A drift that begins at the time 0. Times are in sqrt(R/g), angles in radians, rates in sqrt(g/R).
 #[derive(Debug, Clone)]
 pub struct Drift {
     kept: Kept,
@@ -86,7 +86,7 @@ impl Drift {
         }
     }
 
-    /// The time of the end; infinite if the drift never ends.
+    /// The time of the end, in sqrt(R/g); infinite if the drift never ends.
     pub fn stops_at(&self) -> f64 {
         self.end().2
     }
@@ -101,7 +101,7 @@ impl Drift {
         self.end().1
     }
 
-    /// The time from which on the states are unstable in rolling: 0 if the first state is unstable, infinite if none
+    /// The time, in sqrt(R/g), from which on the states are unstable in rolling: 0 if the first state is unstable, infinite if none
     /// is.
     pub fn stable_until(&self) -> f64 {
         match &self.kept {
@@ -111,7 +111,7 @@ impl Drift {
         }
     }
 
-    /// The first time at which the drift reaches an inclination; NaN if the drift never does.
+    /// The first time, in sqrt(R/g), at which the drift reaches an inclination; NaN if the drift never does.
     pub fn time(&self, theta: f64) -> f64 {
         match &self.kept {
             Kept::Rest(rest) => rest.time(theta),
