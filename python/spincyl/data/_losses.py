@@ -44,7 +44,7 @@ def fit_losses(
         `theta`, `precession` or both; what was not measured at a time is NaN.
     body : Body
         A single one. Of a measured one all times and precessions, given and found, are in seconds and rad/s;
-        coefficients have no unit.
+        coefficients are the natural ones of the laws, and `coefficients_si` has them in SI.
     laws : sequence, optional
         Classes of `spincyl.loss`; a tuple or list of two stands for their sum. Default: all eight.
     centre : {"rest", "rolling"}, optional
