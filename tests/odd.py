@@ -385,6 +385,7 @@ def measurements():
     t, sound = heard()
     tube, tracks = filmed()
     time = np.linspace(0.0, 0.9 * drift().stops_at, 12)
+    sized = sc.measured(outer_diameter=0.02, length=0.002)  # the disk of that drift
     fits = {
         "t": time, "theta": drift().theta(time), "precession": None, "body": DISK, "laws": [sc.loss.ViscousContour], "centre": "rest",
         "t_err": None, "theta_err": None, "precession_err": None, "start": None,
@@ -401,6 +402,11 @@ def measurements():
             sc.data.compare, {"body": body, "theta": theta, "rate": body.rate(theta), "theta_err": 0.01, "rate_err": 0.01},
         ),
         "data.fit_losses": (sc.data.fit_losses, fits),
+        "data.fit_losses in hertz": (
+            sc.data.fit_losses,
+            fits | {"theta": None, "hertz": sized.scale.turns(drift().precession(time)), "body": sized, "hertz_err": 0.1}
+            | {"t": sized.scale.seconds(time)},
+        ),
         "data.fit_losses of the precession": (sc.data.fit_losses, fits | {"precession": drift().precession(time), "theta": None}),
         "data.from_above": (
             sc.data.from_above, {"tracks": tracks, "tube": tube, "scale": None, "ends": None, "ruler": 0.0},

@@ -152,3 +152,22 @@ def test_a_fitted_coefficient_and_its_error_are_there_in_si():
     assert "N m s" not in bare.table()
     with pytest.raises(TypeError, match="scale"):
         bare.best.coefficients_si
+
+
+def test_a_spin_down_in_turns_a_second_is_that_in_radians_a_second():
+    disk = sc.measured(outer_diameter="75.1mm", length="12.8mm", mass=0.44)
+    drift = sc.drift(disk, 0.3, sc.loss.ViscousContour.from_si("1.5e-6 N m s", scale=disk))
+    t = np.linspace(0.0, 0.9 * drift.stops_at, 30)
+    hertz = disk.scale.turns(drift.precession(t) * disk.scale.seconds(1.0))
+    how = {"body": disk, "laws": [sc.loss.ViscousContour], "centre": "rest"}
+    one = sc.data.fit_losses(t, hertz=hertz, hertz_err=0.1, **how)
+    two = sc.data.fit_losses(t, precession=2 * np.pi * hertz, precession_err=2 * np.pi * 0.1, **how)
+    assert one == two and one.best.coefficients_si == pytest.approx(1.5e-6, rel=1e-6)
+    for more, error, told in (
+        ({"precession": hertz, "hertz": hertz}, TypeError, "^precession, hertz: give one of them"),
+        ({"precession": hertz, "hertz_err": 0.1}, TypeError, "^precession, hertz: give one of them"),
+        ({"hertz": hertz, "body": disk.natural}, ValueError, "^hertz: needs a measured body"),
+        ({"hertz": "fast"}, TypeError, "^hertz: "),
+    ):
+        with pytest.raises(error, match=told):
+            sc.data.fit_losses(t, **how | more)

@@ -8,7 +8,8 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 
 from spincyl._body import Body
-from spincyl._input.numbers import Floats, Reals, extra
+from spincyl._input.numbers import Floats, Reals, extra, reals, turns_per_second
+from spincyl._single import one_body
 from spincyl.data._curve import Curve
 from spincyl.data._line import line
 from spincyl.data._lossfit import FittedLoss, LossFit, Refused, called, in_si
@@ -24,11 +25,13 @@ def fit_losses(
     precession: Reals | None = None,
     *,
     body: Body,
+    hertz: Reals | None = None,
     laws: Sequence[Any] | None = None,
     centre: Literal["rest", "rolling"] | None = None,
     t_err: Reals | None = None,
     theta_err: Reals | None = None,
     precession_err: Reals | None = None,
+    hertz_err: Reals | None = None,
     start: float | None = None,
 ) -> LossFit:
     """Which laws of loss explain a measured spin-down, with which coefficients and stopping times.
@@ -40,11 +43,13 @@ def fit_losses(
     theta : array_like, optional
         Inclinations in radians.
     precession : array_like, optional
-        Precession phi' in sqrt(g/R); of a measured body in rad/s, 2 pi times the turns in a second. Give
-        `theta`, `precession` or both; what was not measured at a time is NaN.
+        Precession phi' in sqrt(g/R); of a measured body in rad/s. Give `theta`, `precession` (or `hertz`) or
+        both; what was not measured at a time is NaN.
     body : Body
         A single one. Of a measured one all times and precessions, given and found, are in seconds and rad/s;
         coefficients are the natural ones of the laws, and `coefficients_si` has them in SI.
+    hertz : array_like, optional
+        Or the precession in turns per second, of a measured body.
     laws : sequence, optional
         Classes of `spincyl.loss`; a tuple or list of two stands for their sum. Default: all eight.
     centre : {"rest", "rolling"}, optional
@@ -52,7 +57,7 @@ def fit_losses(
         Default: both, each law by either.
     t_err : array_like, optional
         Standard errors of the times. Default: none, all scatter is that of `theta` and `precession`.
-    theta_err, precession_err : array_like, optional
+    theta_err, precession_err or hertz_err : array_like, optional
         Standard errors. Default: every value errs by the same share of itself, which the scatter about the
         best law gives.
     start : float, optional
@@ -101,6 +106,15 @@ def fit_losses(
     ('DryContour', 0.001)
     """
     odrpack = extra("odrpack", "lab")
+    if hertz is not None or hertz_err is not None:
+        if precession is not None or precession_err is not None:
+            raise TypeError("precession, hertz: give one of them, with the error of the same name")
+        if one_body(body).scale is None:
+            raise ValueError("hertz: needs a measured body; of any other give precession=")
+        precession, precession_err = (
+            None if x is None else 2 * np.pi * reals(name, turns_per_second(name, x))
+            for name, x in (("hertz", hertz), ("hertz_err", hertz_err))
+        )
     kept, sums = centres(centre), asked(laws)
     columns = t, theta, precession, t_err, theta_err, precession_err
     found, refused = [], []
