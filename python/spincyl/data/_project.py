@@ -17,7 +17,7 @@ from spincyl.data._encoding import UTF_16, as_told, found_out, legible
 _HOME = "org.opensourcephysics."
 _PANEL, _POINT = _HOME + "cabrillo.tracker.TrackerPanel", _HOME + "cabrillo.tracker.PointMass"
 _DECLARED = re.compile(rb"""\s*<\?xml[^>]{0,200}?encoding\s*=\s*["']([\w.:-]{1,40})["']""")
-_MOST, _DEEPEST = 1_000_000, 100  #: Elements of a project, and how deep they nest.
+_MOST = 1_000_000  #: Elements of a project.
 #: Undecoded bytes, which XML may not hold, and characters for private use that stand for them in between.
 _BARE = dict(zip(range(0xDC80, 0xDD00), range(0xF780, 0xF800), strict=True))
 _BACK = {private: bare for bare, private in _BARE.items()}
@@ -26,20 +26,16 @@ _BACK = {private: bare for bare, private in _BARE.items()}
 class _Builder(ElementTree.TreeBuilder):
     """Builds the tree of a project; a document type, where entities are defined, is refused unread."""
 
-    _count = _depth = 0
+    _count = 0
 
     def doctype(self, name: str, pubid: str | None, system: str | None) -> None:
         raise ValueError("it has a document type, which Tracker does not write")
 
     def start(self, tag: Any, attrs: Any, /) -> Any:
-        self._count, self._depth = self._count + 1, self._depth + 1
-        if self._count > _MOST or self._depth > _DEEPEST:
-            raise ValueError(f"more than {_MOST:,} elements, or more than {_DEEPEST} in one another")
+        self._count += 1
+        if self._count > _MOST:
+            raise ValueError(f"it has more than {_MOST:,} elements")
         return super().start(tag, attrs)
-
-    def end(self, tag: str, /) -> Any:
-        self._depth -= 1
-        return super().end(tag)
 
 
 def project(raw: bytes, name: str, encoding: str | None) -> dict[str, Columns] | None:
