@@ -31,13 +31,13 @@ CUP = sc.assembled(
         parts.wall(lower_diameter="50mm", upper_diameter="80mm", length="95mm", at=0, **PAPER),
     ]
 )
-# a foot, a stem with a ring round it, and a bowl
+# a foot, a stem with a collar round it, and a bowl
 GOBLET = sc.assembled(
     [
         parts.cylinder(outer_diameter="60mm", length="4mm", mass="30g"),
-        parts.cylinder(outer_diameter="10mm", length="50mm", mass="10g"),
+        parts.cylinder(outer_diameter="24mm", length="50mm", mass="10g"),
         parts.shell(diameter="70mm", height="45mm", mass="20g"),
-        parts.ring(diameter="30mm", at="30mm", mass="5g"),
+        parts.cylinder(outer_diameter="52mm", inner_diameter="24mm", length="16mm", at="22mm", mass="5g"),
     ]
 )
 
@@ -100,7 +100,7 @@ SCENES = {
     "steady": lambda: sc.roll(CYLINDER, CYLINDER.steady(1.3), 5.0),
     "tippe top, at first": lambda: sc.roll(TIPPE, sc.State(0.6, 1.0, 0.0, 6.0), 2.0),
     "cup": lambda: CUP.roll(CUP.steady(1.2), 1.0).natural,
-    "goblet": lambda: GOBLET.roll(GOBLET.natural.steady(0.7), 0.3).natural,
+    "goblet": lambda: GOBLET.roll(GOBLET.natural.steady(0.5), 0.3).natural,
     "tube": lambda: sc.roll(PIPE, PIPE.steady(1.2), 20.0),
     "still symbols": lambda: sc.roll(PIPE, PIPE.steady(np.radians(89.5)), 30.0),
     "flick": lambda: sc.roll(PIPE, flicked(), 60.0, contact=sc.Coulomb(0.3)),

@@ -12,7 +12,7 @@ from playing import settled
 from test_film import stage, taken
 
 import spincyl as sc
-from spincyl._studio.arrows import drawings, vectors
+from spincyl._studio.arrows import _rods, drawings, vectors
 from spincyl._studio.frames import frames
 from spincyl._studio.look import opened
 from spincyl._studio.poses import seen, span
@@ -62,20 +62,15 @@ def test_the_arrows_are_the_vectors_of_newton_and_euler_and_the_axis_passes_thro
     # the body's own axis of its drawing agrees with e3
     assert np.abs(rotations(there.orientation)[..., 2] - e3).max() < 1e-12
     for k in range(t.size):
-        away = np.cross(of["omega"][k], off_axis(of, k) + arm[k])
-        assert np.linalg.norm(away) < 1e-5 * fast**2 * np.linalg.norm(arm[k])
+        *_, (_, name, root, way, _, _) = _rods(vectors(m, t, ()).at(k), 1.0)
+        off = there.centre[k] - arm[k] - root
+        assert name == "omega" and np.linalg.norm(np.cross(off, way)) < 1e-5 * np.linalg.norm(arm[k])
     # at the ends by one-sided differences
     ends = np.array(span(m))
     (w,) = seen(m, ends, "w")
     assert np.allclose(
         np.linalg.norm(vectors(m, ends, ()).of["omega"], axis=1), np.linalg.norm(w, axis=1), rtol=1e-4
     )
-
-
-def off_axis(of, k):
-    """From the centre to the nearest point of the instantaneous axis."""
-    omega = of["omega"][k]
-    return np.cross(omega, of["velocity"][k]) / (omega @ omega)
 
 
 def test_where_the_centre_rests_the_axis_is_the_line_from_the_contact_through_the_centre_to_o():
@@ -108,16 +103,13 @@ def test_an_arrow_of_a_stone_is_its_angular_velocity_in_the_laboratory():
 
 
 def test_from_above_the_camera_is_that_of_the_page(shown):
-    m = motion_of("nutating")
-    page = shown(sc.view(m, above=True), "#t=3")
-    assert page.locator("#above").is_checked()
-    width, height = page.evaluate(
-        "[...document.querySelectorAll('#stage')].flatMap(e => [e.clientWidth, e.clientHeight])"
-    )
-    camera = stage(taken(m, size=(2 * (width // 2), 2 * (height // 2)), above=True), np.array([0.0])).cameras[
-        0
-    ]
-    for t in (0.0, 3.0, 7.5):
+    m = motion_of("flick")
+    page = shown(sc.view(m, above=True, follow=False), "#t=3")
+    assert page.locator("#above").is_checked() and not page.locator("#follow").is_checked()
+    width, height = page.evaluate("[stage.clientWidth, stage.clientHeight]")
+    what = taken(m, size=(2 * (width // 2), 2 * (height // 2)), above=True, follow=False)
+    camera = stage(what, np.array([0.0])).cameras[0]
+    for t in (0.0, 3.0, 57.5):
         centre = m.wanting("pose", t=[t]).centre[0]
         x, y = camera(centre)
         left, top = page.evaluate("t => window.spincyl.on(0, t)", t)

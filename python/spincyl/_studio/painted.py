@@ -92,13 +92,7 @@ def _cut(piece: Piece, height: float) -> Piece:
 
 def ordered(found: list[Piece], height: float) -> list[Piece]:
     """The pieces in the order of drawing for an eye at this height on the axis."""
-
-    def key(piece: Piece) -> tuple[float, float, tuple[int, float]]:
-        away = max(piece.low - height, height - piece.high, 0.0)
-        # of two that begin at one plane the flat one is on the side of the eye
-        return -away, piece.low - piece.high, piece.rank
-
-    return sorted(found, key=key)
+    return sorted(found, key=lambda x: (-max(x.low - height, height - x.high, 0.0), x.rank))
 
 
 def painted(
