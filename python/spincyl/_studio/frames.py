@@ -101,7 +101,7 @@ class _Stage:
 
         agg: Any = extra("matplotlib.backends.backend_agg", "film")
         self.what, self.times, self.opens, self.vector = what, times, still, vector
-        self.panels = panels = [shown(m, times, what.upper, what.drawn) for m in what.motions]
+        self.panels = panels = [shown(m, times, what.upper, what.drawn, coarse=vector) for m in what.motions]
         self.exposes, look = what.look.exposure is not None, what.look
         self.colour = {**what.colours, **({"paper": _DARK, "ink": _CHALK} if self.exposes else {})}
         width, height = what.size
@@ -419,7 +419,7 @@ def _surface(ax: Any, vector: bool) -> Any:
 
         def put(self, found: list[Painted]) -> None:
             corners, colours = (np.concatenate(x) for x in zip(*found, strict=True))
-            self.set(verts=corners, color=colours.mean(axis=1), linewidth=0.3)
+            self.set(verts=corners, color=colours.mean(axis=1), linewidth=0.8)
 
     surface: Any = Polygons([]) if vector else Surface()
     surface.set(animated=True, zorder=6)

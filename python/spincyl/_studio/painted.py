@@ -14,7 +14,7 @@ from spincyl._ellipsoid import Ellipsoid
 from spincyl._input.numbers import Floats
 from spincyl._motion import Motion
 from spincyl._studio.look import Camera
-from spincyl._studio.shape import Letter, Part, lathe, marks, profiles
+from spincyl._studio.shape import Letter, Part, Profile, lathe, marks, profiles
 
 _SUN = np.array([-0.45, -0.5, 0.75]) / math.sqrt(0.45**2 + 0.5**2 + 0.75**2)
 _SAME = 1e-9  # heights closer than this, in R, are one
@@ -38,9 +38,17 @@ def whole(part: Part) -> Piece:
     return Piece(part.colour, part.vertices[part.triangles], part.normals[part.triangles])
 
 
-def pieces(m: Motion, upper: Letter) -> list[Piece]:
+def _coarse(profile: Profile) -> Part:
+    """The surface of a profile with a quarter of the triangles where it is curved along the axis, too."""
+    if profile.normals is None:
+        return lathe(profile)
+    corners, normals = ([*x[:-1:2], x[-1]] for x in (profile.corners, profile.normals))
+    return lathe(profile._replace(corners=corners, normals=normals), 64)
+
+
+def pieces(m: Motion, upper: Letter, *, coarse: bool = False) -> list[Piece]:
     """The pieces of a body and of its marks."""
-    surfaces = [whole(lathe(profile)) for profile in profiles(m.body)]
+    surfaces = [whole((_coarse if coarse else lathe)(profile)) for profile in profiles(m.body)]
     found = [*surfaces, *map(whole, marks(m.body, upper))]
     if isinstance(m.body, Ellipsoid):  # convex: only its marks have to be last
         return [piece._replace(rank=(0, float(k))) for k, piece in enumerate(found)]

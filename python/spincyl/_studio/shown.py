@@ -44,7 +44,9 @@ class Shown(NamedTuple):
     half: float
 
 
-def shown(m: Motion, times: Floats, upper: Letter, drawn: tuple[str, ...] = ()) -> Shown:
+def shown(
+    m: Motion, times: Floats, upper: Letter, drawn: tuple[str, ...] = (), *, coarse: bool = False
+) -> Shown:
     """The motion at the times of frames, with what is drawn besides the body."""
     first, last = sorted(span(m))
     arrows = bool({*drawn} - {"path"})
@@ -79,7 +81,7 @@ def shown(m: Motion, times: Floats, upper: Letter, drawn: tuple[str, ...] = ()) 
         turned=turned,
         vectors=vectors(m, times, drawn) if arrows else None,
         sizes=usual(m, drawn) if arrows else {},
-        pieces=pieces(m, upper),
+        pieces=pieces(m, upper, coarse=coarse),
         ink=marks(m.body, upper),
         caster=caster([lathe(profile) for profile in profiles(m.body)]),
         middle=np.array([*((low + high) / 2), 0.45 * top]),
