@@ -139,7 +139,9 @@ def test_a_first_motion_that_takes_long_counts_as_one_of_the_sample():
 def test_a_block_is_no_larger_than_dask_wants_its_chunks():
     with dask.config.set({"array.chunk-size": "40 kB"}):
         size = sc.sweep.block_size(job, np.arange(100.0), seconds=1e6)
-    assert size == 500, "of 74 bytes each: four numbers of a state, an end, an error, two codes, and three numbers of a start"
+    assert size == 500, (
+        "of 74 bytes each: four numbers of a state, an end, an error, two codes, and three numbers of a start"
+    )
 
 
 def test_a_sweep_that_has_begun_keeps_its_blocks(tmp_path):

@@ -72,7 +72,7 @@ _SCRIPTS = (
 )
 #: The scripts of a page without friction, which has no stones.
 _LEAN = tuple(name for name in _SCRIPTS if "stone" not in name)
-_BODY = ("ell", "bore", "fillet", "i1", "i3", "end", "radius", "mass", "gravity")
+_BODY = ("parts", "ell", "bore", "fillet", "i1", "i3", "end", "radius", "mass", "gravity")
 #: The core without friction and losses, and the one with them.
 CORES = "core.wasm.gz", "core.friction.wasm.gz"
 #: Permissions and style of the frame in a notebook.
@@ -95,19 +95,21 @@ class Play:
         Whether the page knows friction and losses.
     """
 
-    def __init__(self, told: dict[str, Any], title: str, friction: bool) -> None:
-        self.title, self.friction, self._told = title, friction, told
+    def __init__(self, told: dict[str, Any], title: str, friction: bool, body: Body) -> None:
+        self.title, self.friction, self._told, self._body = title, friction, told, body
         self._widget: Any = None
 
     @property
     def body(self) -> Body:
         """The body; another may be set, whose state is then that at the same inclination."""
         self._of_revolution()
-        return body_of(self._told)
+        found = body_of(self._told)
+        return self._body if found == self._body else found  # the same one knows its parts
 
     @body.setter
     def body(self, body: Body) -> None:
         self._set(words_of_body(body), gone=(*_BODY, "w", "precession", "stone"))
+        self._body = body
 
     @property
     def theta(self) -> float:
@@ -216,6 +218,7 @@ class Play:
     def address(self) -> str:
         """What follows the name of the page in its address, as in "#ell=2.5&theta=1.3"."""
         words = {k: ",".join(map(repr, v)) if isinstance(v, list) else v for k, v in self._told.items()}
+        words.pop("parts", None)  # an address has no room for surfaces
         return "#" + "&".join(f"{name}={word}" for name, word in words.items())
 
     def save(self, path: str | PathLike[str]) -> Path:
@@ -349,7 +352,7 @@ def play(
     told |= words_of_table(contact) | words_of_restitution(restitution) | words_of_loss(losses)
     _needed(friction, contact, losses, body)
     _bouncing(friction, contact, restitution)
-    return Play(told, line("title", title), friction)
+    return Play(told, line("title", title), friction, body)
 
 
 def _rattling(words: dict[str, Any]) -> EllipsoidMotion:

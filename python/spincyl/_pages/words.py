@@ -16,6 +16,8 @@ from spincyl._loss import Law, Loss, sized
 from spincyl._measured import measured
 from spincyl._scale import Scale
 from spincyl._state import State
+from spincyl._studio import parts_shape
+from spincyl._studio.surface import SHADE
 from spincyl._throw import pressed, thrown
 
 
@@ -33,8 +35,22 @@ def words_of_body(body: Body) -> dict[str, Any]:
     size = _words_of_scale(body.scale)
     if not np.isnan(bore):
         return {"ell": ell + fillet, "bore": bore, "fillet": fillet} | size
-    told = {"ell": ell, "i1": i1, "i3": i3, "fillet": fillet} | size
+    told = {"ell": ell, "i1": i1, "i3": i3, "fillet": fillet} | size | _words_of_parts(body)
     return told if np.isnan(most) else told | {"end": most}
+
+
+def _words_of_parts(body: Body) -> dict[str, Any]:
+    """Words for the surfaces of a body put together from parts: shade, stripes, and corners with normals."""
+    if not body._parts:
+        return {}
+    surfaces = parts_shape.profiles(body)
+    wide = list(map(id, parts_shape.striped(surfaces)))
+    told = []
+    for part in surfaces:
+        pairs = zip(part.corners, part.normals, strict=True) if part.normals else zip(part.corners)
+        corners = [[round(x, 6) for point in pair for x in point] for pair in pairs]
+        told.append([int(part.colour == SHADE), int(id(part) in wide), corners])
+    return {"parts": told}
 
 
 def _words_of_scale(scale: Scale | None) -> dict[str, float]:

@@ -70,13 +70,17 @@ def _bore(b: float, c: float, low: float, high: float) -> list[tuple[_Corners, N
     return [([(c, high), (b, low)], None)] if max(b, c) > 0 else []
 
 
+def striped(surfaces: list[Profile]) -> list[Profile]:
+    """The surfaces of the widest part, which has the stripes; no ring if there is another part."""
+    broad = [surface for surface in surfaces if surface.name != "ring"] or surfaces
+    name = max(broad, key=lambda surface: max(r for r, _ in surface.corners)).name
+    return [surface for surface in surfaces if surface.name == name]
+
+
 def marks(body: Body, upper: str) -> list[Part]:
     """Two stripes on opposite sides of the widest part; the first in the colour of `upper`."""
     surfaces = profiles(body)
     most = max(r for surface in surfaces for r, _ in surface.corners)
-    # a ring shows no stripe if there is another part
-    broad = [surface for surface in surfaces if surface.name != "ring"] or surfaces
-    name = max(broad, key=lambda surface: max(r for r, _ in surface.corners)).name
     colours = (BLUE, ORANGE) if upper == "O" else (ORANGE, BLUE)
     return [
         joined(
@@ -84,8 +88,7 @@ def marks(body: Body, upper: str) -> list[Part]:
             colour,
             [
                 piece
-                for surface in surfaces
-                if surface.name == name
+                for surface in striped(surfaces)
                 for piece in _stripe(np.array(surface.corners), azimuth, most)
             ],
         )

@@ -8,6 +8,7 @@ const show = () => { if (!asked) { asked = true; requestAnimationFrame(frame); }
 function change(part, more = {}) {
   const tilts = ["theta", "ell", "bore", "fillet", "i1", "i3", "precession"].some(name => name in part && !Object.is(part[name], s[name]));
   if (tilts && !("w" in part)) s.w = null; // a given state belonged to the previous body
+  if (["ell", "fillet"].some(name => name in part)) s.parts = null; // and so did these
   for (const [name, value] of Object.entries(part)) {
     const [low, high] = RANGE[name] || [];
     s[name] = typeof value === "number" && Number.isFinite(value) && low !== undefined ? Math.min(high, Math.max(low, value)) : value;

@@ -91,6 +91,24 @@ function mark(b, letter, end) {
   }
   return { colour: letter === "O" ? BLUE : ORANGE, places, normals, triangles };
 }
-const lookOf = b => ({ turned: profiles(b), marks: [mark(b, "O", 1), mark(b, "X", -1)] });
+// surfaces of parts as Python tells them, with two stripes along the widest
+function parted(parts) {
+  const most = Math.max(...parts.flatMap(([, , corners]) => corners.map(c => c[0])));
+  const stripe = (colour, side) => {
+    const places = [], normals = [], triangles = [];
+    for (const [, wide, corners] of parts) if (wide) corners.slice(1).forEach(([c, d], k) => {
+      const [a, b] = corners[k], long = Math.hypot(c - a, d - b), out = (d - b) / long, up = (a - c) / long, base = places.length / 3;
+      if (long) for (let i = 0; i < 18; i++) {
+        const [r, z] = i < 9 ? [a, b] : [c, d], at = r && Math.min(0.08 * most, r / 2) / r * (i % 9 - 4) / 4, x = side * Math.cos(at), y = side * Math.sin(at), far = r + 0.004 * most * out;
+        places.push(far * x, far * y, z + 0.004 * most * up);
+        normals.push(out * x, out * y, up);
+        if (i % 9 && i > 9) triangles.push(base + i - 10, base + i - 9, base + i, base + i - 10, base + i, base + i - 1);
+      }
+    });
+    return { colour, places, normals, triangles };
+  };
+  return { turned: parts.map(([shade, , corners]) => ({ colour: shade ? SHADE : IVORY, corners })), marks: [stripe(BLUE, 1), stripe(ORANGE, -1)] };
+}
+const lookOf = b => b.parts ? parted(b.parts) : ({ turned: profiles(b), marks: [mark(b, "O", 1), mark(b, "X", -1)] });
 // largest distance of the surface from the centre of mass
 const farOf = turned => Math.max(...turned.flatMap(p => p.corners.map(([r, z]) => Math.hypot(r, z))));

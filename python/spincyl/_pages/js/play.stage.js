@@ -32,11 +32,11 @@ function pose(m, t) {
 // makes the surface anew if the body has changed
 let drawnBody = "";
 function dress() {
-  const b = { ...body, bore: isTube() ? s.bore : NaN }, key = [b.ell, b.bore, b.fillet, b.most].join();
+  const b = { ...body, bore: isTube() ? s.bore : NaN, parts: s.parts }, key = [b.ell, b.bore, b.fillet, b.most, b.parts].join();
   if (key === drawnBody) return;
   drawnBody = key;
   const turned = clothe(lookOf(b));
-  Object.assign(live, { i1: b.i1, i3: b.i3, fillet: b.fillet, depth: b.ell, ell: b.fillet ? Math.sqrt(Math.max(0, farOf(turned) ** 2 - 1)) : b.ell });
+  Object.assign(live, { i1: b.i1, i3: b.i3, fillet: b.fillet, depth: b.ell, ell: b.fillet || b.parts ? Math.sqrt(Math.max(0, farOf(turned) ** 2 - 1)) : b.ell });
 }
 function clothe({ turned, marks }) {
   const made = [

@@ -12,8 +12,8 @@ const LAWS = { none: "none", "dry-contour": "dry contour", "viscous-contour": "v
 // i1 and i3 belong to a body that is no tube, end is the inclination at which it lands, w is a state that is
 // not steady: w1, w2, w3 and the slip. radius, mass and gravity belong to a measured body, in metres,
 // kilograms and m/s^2. patch is the radius of the contact, in R. Without a restitution a motion ends where the body leaves the table. stone has the semi-axes of a rattleback in metres, twist is in radians and spin in
-// radians per second.
-const BLANK = { ell: 2.5, bore: 0, fillet: 0, i1: NaN, i3: NaN, end: NaN, theta: 1.3, kick: 0, precession: NaN, contact: "rolling", mu: 0.3, patch: 0, c: 0.3, restitution: NaN, law: "none", loss: 1e-3, w: null, until: 60, slow: 20, radius: NaN, mass: NaN, gravity: 9.80665, stone: null, twist: 2 * Math.PI / 180, spin: -5 };
+// radians per second. parts are the surfaces of a body that was put together, from Python; an address that has the same body keeps them.
+const BLANK = { ell: 2.5, bore: 0, fillet: 0, i1: NaN, i3: NaN, end: NaN, theta: 1.3, kick: 0, precession: NaN, contact: "rolling", mu: 0.3, patch: 0, c: 0.3, restitution: NaN, law: "none", loss: 1e-3, w: null, until: 60, slow: 20, radius: NaN, mass: NaN, gravity: 9.80665, parts: null, stone: null, twist: 2 * Math.PI / 180, spin: -5 };
 const s = { ...BLANK, ...given };
 
 // a figure in a page of text shows the body, and the map or the tracks beside it
@@ -26,6 +26,7 @@ function address() {
   const words = [];
   for (const [name, value] of Object.entries(s)) {
     const ofStone = ["stone", "twist", "spin"].includes(name);
+    if (name === "parts") continue;
     if (s.stone ? !ofStone && (Object.is(value, BLANK[name]) || !["slow", "gravity"].includes(name)) : ofStone) continue;
     if (!ofStone && (name === "w" ? !value : name === "contact" || name === "law" ? value === BLANK[name] : Object.is(value, BLANK[name]) && !["ell", "theta"].includes(name))) continue;
     if (["mu", "patch"].includes(name) && s.contact !== "coulomb" || name === "c" && s.contact !== "viscous" || name === "restitution" && !rubbing() || name === "loss" && s.law === "none") continue;
@@ -59,6 +60,7 @@ function parsed(hash) {
   // addresses have few digits: an inclination next to a right angle becomes one
   for (const name of ["theta", "end"]) if (Math.abs(found[name] - Math.PI / 2) < 1e-6) found[name] = Math.PI / 2;
   if (found.stone) found.slow ??= 1; // a stone is shown in real time
+  if (given.parts && ["ell", "i1", "i3", "fillet", "end"].every(name => short(found[name] ?? NaN) === short(given[name] || NaN))) found.parts = given.parts;
   return found;
 }
 const isTube = () => !Number.isFinite(s.i1);
