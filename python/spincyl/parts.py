@@ -182,7 +182,7 @@ def assembled(parts: Iterable[Part], *, gravity: float = Scale.gravity) -> Body:
     -------
     Body
         With its moments, its `scale` (R is the outer radius of its rim, and the mass that of all parts) and
-        `theta_end`; `natural` is the same in natural units. Pictures and pages of its motions show its parts.
+        `theta_end`; `natural` is the same in natural units. Pictures, films and pages show its parts.
         It stands on its lowest edge or ball, of edges at the same height on the widest, and `theta_end` is
         where another one touches the table. A body whose other rim is as wide and as far from its centre of
         mass has two equal rims, and may lie on both. Error: a few roundings.
