@@ -14,6 +14,20 @@ from tempfile import gettempdir
 from uuid import uuid4
 
 
+def path_of(name: str, value: str | os.PathLike[str]) -> Path:
+    """The path of a file, or an error naming the argument."""
+    try:
+        found = Path(value)
+    except TypeError:
+        raise TypeError(f"{name}: expected the path of a file, not {type(value).__name__}") from None
+    try:
+        with suppress(OSError):  # opening the file will report this
+            os.stat(found)
+    except ValueError as e:  # a null character, or half of a surrogate pair
+        raise ValueError(f"{name} = {str(found)!r}: no file can have this name ({e})") from None
+    return found
+
+
 @contextmanager
 def replaced(path: str | os.PathLike[str]) -> Iterator[Path]:
     """An empty file to write to, which replaces `path` at the end, or is removed if anything fails.

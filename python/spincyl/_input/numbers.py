@@ -1,16 +1,12 @@
 """Checks of arguments: numbers or arrays of real numbers; errors begin with the name of the argument."""
 
 import math
-import os
 import sys
 import warnings
 from collections.abc import Callable, Iterable, Sequence
-from contextlib import suppress
 from functools import wraps
 from inspect import signature
 from numbers import Real
-from os import PathLike
-from pathlib import Path
 from types import ModuleType
 from typing import Any, ParamSpec, TypeAlias, TypeVar
 
@@ -404,20 +400,6 @@ def flag(name: str, value: object) -> bool:
     if not isinstance(value, bool | np.bool_):
         raise TypeError(f"{name}: expected True or False, not {type(value).__name__}")
     return bool(value)
-
-
-def path_of(name: str, value: str | PathLike[str]) -> Path:
-    """The path of a file, or an error naming the argument."""
-    try:
-        found = Path(value)
-    except TypeError:
-        raise TypeError(f"{name}: expected the path of a file, not {type(value).__name__}") from None
-    try:
-        with suppress(OSError):  # opening the file will report this
-            os.stat(found)
-    except ValueError as e:  # a null character, or half of a surrogate pair
-        raise ValueError(f"{name} = {str(found)!r}: no file can have this name ({e})") from None
-    return found
 
 
 def several(most: int, *values: Reals, name: str = "root") -> tuple[Reals, ...]:

@@ -17,8 +17,8 @@ from spincyl._body import Body
 from spincyl._contact import AnyContact, fitting, has_patch, named
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._ellipsoid_motion import EllipsoidMotion
-from spincyl._input.files import replaced
-from spincyl._input.numbers import flag, made, path_of, si, within
+from spincyl._input.files import path_of, replaced
+from spincyl._input.numbers import flag, made, si, within
 from spincyl._loss import Loss, made_law
 from spincyl._motion import Motion
 from spincyl._pages.deflated import packed

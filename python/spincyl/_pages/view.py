@@ -9,8 +9,8 @@ from typing import Any
 
 from spincyl._contact import named
 from spincyl._ellipsoid_motion import EllipsoidMotion
-from spincyl._input.files import replaced
-from spincyl._input.numbers import one_of, path_of, within
+from spincyl._input.files import path_of, replaced
+from spincyl._input.numbers import one_of, within
 from spincyl._input.threads import Progress, callback
 from spincyl._motion import Motion
 from spincyl._pages.few import corners, packed_part

@@ -13,8 +13,8 @@ import numpy as np
 
 from spincyl._body import Body
 from spincyl._input.equality import compared
-from spincyl._input.files import replaced
-from spincyl._input.numbers import Floats, Reals, flag, floats, made, number, path_of, plain, reals, si, warn
+from spincyl._input.files import path_of, replaced
+from spincyl._input.numbers import Floats, Reals, flag, floats, made, number, plain, reals, si, warn
 from spincyl._motion import Motion
 from spincyl._scale import Scale, scale_of
 from spincyl._state import State

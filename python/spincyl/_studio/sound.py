@@ -21,8 +21,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from spincyl._ellipsoid_motion import EllipsoidMotion
-from spincyl._input.files import replaced
-from spincyl._input.numbers import Floats, number, path_of, si, whole
+from spincyl._input.files import path_of, replaced
+from spincyl._input.numbers import Floats, number, si, whole
 from spincyl._scale import Scale, scale_of
 from spincyl._studio.aloft import FLIES, goes_up
 from spincyl._studio.poses import seen, span

@@ -7,7 +7,7 @@ from os import PathLike
 from pathlib import PurePosixPath
 from typing import IO
 
-from spincyl._input.numbers import path_of
+from spincyl._input.files import path_of
 
 #: Largest size of a file, and of all the contents of a zip file together; more is refused.
 MOST_BYTES = 100_000_000

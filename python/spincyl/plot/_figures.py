@@ -8,7 +8,8 @@ import numpy as np
 
 from spincyl._body import Body
 from spincyl._contact import Contact, Coulomb, Viscous
-from spincyl._input.numbers import extra, flag, one_of, path_of
+from spincyl._input.files import path_of
+from spincyl._input.numbers import extra, flag, one_of
 from spincyl._input.threads import callback
 from spincyl._roll import roll
 from spincyl._state import State

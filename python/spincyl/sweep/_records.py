@@ -14,8 +14,7 @@ from hashlib import blake2b
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from spincyl._input.files import replaced
-from spincyl._input.numbers import path_of
+from spincyl._input.files import path_of, replaced
 
 #: Name of the record in each array's folder, where zarr ignores it; and of its copy in the folder of marks.
 RECORD, BESIDE = "spincyl.json", "job.json"
