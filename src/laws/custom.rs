@@ -120,7 +120,7 @@ fn check_couple(law: &dyn CoupleLaw, body: &Body) -> Result<(), Error> {
             return refuse(power, "a couple that takes energy, m.w <= 0");
         }
         let mut jump = size(at(speed * NEARLY).0) / size(m).max(f64::MIN_POSITIVE);
-        if i as usize % LINES == 0
+        if (i as usize).is_multiple_of(LINES)
             && let Some(State { theta, w1, w2, w3 }) = before.replace(y)
         {
             let between = |a: f64, b: f64, x: f64| a + x * (b - a);
