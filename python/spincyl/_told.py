@@ -20,7 +20,7 @@ def message(m: "Motion") -> str:
     if m.event:
         why += f": the body {ends(m)} at t = {m.event.time:.{_digits(m.event.time, m.error)}g}{_second(m)}"
         if m.status == Ending.SIDE and m.event.time == m._asked.t0 and m._asked.restitution is None:
-            why += ", and with restitution=0.0 it goes on"
+            why += "; with restitution=0.0 it goes on"
     pose = "" if np.isnan(m.pose_error) else f", of the pose {m.pose_error:.1e}"
     force = "" if np.isnan(m.force_error) else f", of the forces {m.force_error:.1e}"
     errors = f"error about {m.error:.1e}{pose}{force}"
