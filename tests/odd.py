@@ -136,7 +136,7 @@ def stones():
         "Ellipsoid": (
             sc.Ellipsoid, {"axes": axes, "inertia": inertia, "offset": (0, 0, 0), "theta_end": 1.5, "scale": None},
         ),
-        "Ellipsoid.uniform": (sc.Ellipsoid.uniform, {"axes": axes, "mass": 200.0}),
+        "Ellipsoid.uniform": (sc.Ellipsoid.uniform, {"axes": axes, "mass": None}),
         "Ellipsoid.rattleback": (
             sc.Ellipsoid.rattleback, {"axes": axes, "twist": 0.1, "moments": (0.02, 0.2, 0.21), "offset": (0, 0, 0)},
         ),

@@ -8,6 +8,7 @@ from decimal import Decimal
 import numpy as np
 import odd
 import pytest
+import xarray as xr
 
 import spincyl as sc
 from spincyl._input import units
@@ -43,7 +44,8 @@ def more():
 
 def numeric(value):
     """Whether a value is a number, or numbers, that can be replaced."""
-    if value is None or isinstance(value, str | bool | sc.State) or np.size(value) == 0:
+    plain = not isinstance(value, str | bool | sc.State | xr.Dataset)
+    if value is None or not plain or np.size(value) == 0:
         return False
     try:
         return np.asarray(value, np.float64).ndim < 3
