@@ -98,7 +98,7 @@ proptest! {
                 Law::AirQuadratic => x * w.norm().powi(3),
                 Law::AirFilm => FRAC_PI_4 * x * r.powi(3) * spin * spin / s,
                 Law::BoundaryLayer => x * spin.abs().powf(2.5),
-                _ => panic!("{law:?} has no power in this test"),
+                _ => panic!("{law:?}: its power in SI is not in tests/laws/units.rs"),
             };
             let losses = Losses::of(law, scale.coefficient(law, x));
             let found = scale.watts(losses.power(&body, &y, 1.0));
