@@ -45,7 +45,7 @@ def test_a_bare_rate_of_a_measured_body_is_none():
         with pytest.raises(TypeError, match="^rate: of a measured body give hertz=, or rate="):
             ask(9.0)
         for given in ({}, {"rate": 1.0, "hertz": 1.0}):
-            with pytest.raises(TypeError, match="^rate and hertz: give one of them"):
+            with pytest.raises(TypeError, match="^rate, hertz: give one of them"):
                 ask(**given)
     assert TUBE.count(rate=1.2) == TUBE.natural.count(1.2) == TUBE.natural.count(rate=1.2) == 2
     assert TUBE.count(hertz=1.2 * TUBE.critical_hertz) == 2
@@ -95,7 +95,7 @@ def test_balls_are_measured_by_the_diameter_of_one_and_the_mass_of_both():
         sc.Body.balls(diameter=25.0)
     with pytest.warns(UserWarning, match="are these metres and kilograms"):
         sc.Body.balls(diameter=0.0254, mass=130.0)
-    with pytest.raises(ValueError, match="^mass: of balls that are measured, diameter="):
+    with pytest.raises(ValueError, match="^mass = .*: give the diameter of the balls"):
         sc.Body.balls(mass=0.13)
     with pytest.raises(ValueError, match="^diameter = -1.0"):
         sc.Body.balls(diameter=-1.0)

@@ -147,7 +147,7 @@ def test_balls_and_stones_take_their_sizes_as_tubes_do():
     i = 0.4
     ball = sc.Body.ball(-0.2, i, i, diameter="30mm", mass="6g")
     assert ball.scale == sc.Scale(0.015, 0.006) and ball.natural == sc.Body.ball(-0.2, i, i)
-    with pytest.raises(ValueError, match="mass: of balls that are measured"):
+    with pytest.raises(ValueError, match="mass = .*: give the diameter of the balls"):
         sc.Body.ball(-0.2, i, i, mass=1.0)
     with pytest.warns(UserWarning, match="ball"):
         sc.Body.ball(-0.2, i, i, diameter=30)

@@ -46,15 +46,14 @@ _rate_of_one, _float64 = _core.rate_of_one, np.float64
 class Body(Laws, Sized, metaclass=Named):
     """A rigid body of revolution that touches the table with its lower rim.
 
-    Fields may be arrays that broadcast: then this is a family of bodies, and every method
-    broadcasts over it. In a family, what cannot be a body gives NaN and `Region.INVALID`.
+    With arrays as fields, which broadcast, this is a family of bodies, and every method broadcasts over it.
+    Impossible bodies of a family give NaN and `Region.INVALID`.
 
     Parameters
     ----------
     ell : array_like
-        Height of the centre of mass above the circle of the lower rim, in R: the aspect ratio of a sharp
-        tube; 0 to 1e150. Of a ball (`fillet=1`), above -1: how high the centre of mass lies above that of
-        the ball.
+        Height of the centre of mass above the circle of the lower rim, in R, 0 to 1e150: half the length of
+        a sharp tube. For a ball (`fillet=1`) height above the centre of the ball, greater than -1.
     i1, i3 : array_like
         Transverse and axial moment of inertia about the centre of mass, in M R^2. A real body has
         0 < i3 <= 2 i1.
@@ -62,22 +61,21 @@ class Body(Laws, Sized, metaclass=Named):
         Inner over outer radius of a uniform tube, NaN for a general body. Set by `solid`, `tube`
         and `from_metres`; the moments then follow from it.
     fillet : array_like, optional
-        Radius of the fillet of the rim, 0 to 1 in units of the outer radius R, which stays the unit of
-        length: the circle of the rim has the radius 1 - fillet. 0 is a sharp rim, 1 a ball.
+        Radius of the fillet of the rim, 0 (sharp) to 1 (a ball), in units of the outer radius R. The circle
+        of the rim has the radius 1 - fillet.
     theta_end : array_like, optional
-        Inclination in (0, pi], radians, at which something else than the rim lands: a stem, a cap, a
-        shoulder. NaN: pi/2 of a body with ell > 0, which is taken to be as long on its other side, but of a
-        ball, which goes round.
+        Inclination in (0, pi], radians, at which another part lands: a stem, a cap, a shoulder. NaN: pi/2
+        if ell > 0, since the body is taken to have an equal rim at its other end; none for a ball.
     scale : Scale, optional
-        Its size: then it is a measured body, as `measured` makes them, and its motions are in SI. The fields
-        above, the methods and every `State` stay in natural units; what is in SI has its unit in the name.
+        Size, mass and gravity: this makes a measured body (see `measured`), whose motions are in SI. Fields,
+        methods and every `State` stay in natural units, unless the name has a unit.
 
     Raises
     ------
     ValueError
-        If a single body is none, naming the value and the inequality.
+        If a single body is impossible; the message names the value and the inequality.
     TypeError
-        Naming the argument that holds no real numbers.
+        If an argument has no real numbers; the message names it.
 
     Examples
     --------
@@ -121,23 +119,23 @@ class Body(Laws, Sized, metaclass=Named):
 
     @classmethod
     def solid(cls, ell: Reals, fillet: Reals = 0.0) -> Self:
-        """Solid cylinder of half length `ell` over its radius; 0 is a disk. `fillet` rounds its edges."""
+        """Solid cylinder of half length `ell`, in R; 0 is a thin disk. `fillet` rounds the edges."""
         return cls.tube(ell, bore=0.0, fillet=fillet)
 
     @classmethod
     @elementwise
     def tube(cls, ell: Reals, bore: Reals, fillet: Reals = 0.0) -> Self:
-        """Uniform tube of half length `ell` over the outer radius.
+        """Uniform tube.
 
         Parameters
         ----------
         ell : array_like
-            Half the length over the outer radius. The field `ell` of the body is that less the fillet.
+            Half the length over the outer radius. The field `ell` of the body is this minus `fillet`.
         bore : array_like
             Inner over outer radius, 0 (solid) to 1 (a thin wall).
         fillet : array_like
-            Radius of the rounded outer edges, in units of the outer radius: at most half the length, and at
-            most the wall that the bore leaves. With bore 0, fillet 1 is a capsule, or for ell = 1 a ball.
+            Radius of the rounded outer edges, in units of the outer radius: at most half the length and the
+            thickness of the wall. With bore 0, fillet 1 is a capsule, or for ell = 1 a ball.
         """
         ell, bore, fillet = reals("ell", ell), reals("bore", bore), reals("fillet", fillet)
         if is_scalar(ell, bore, fillet):
@@ -154,14 +152,14 @@ class Body(Laws, Sized, metaclass=Named):
     def balls(
         cls, separation: float = 1.0, *, diameter: float | None = None, mass: float | None = None
     ) -> Self:
-        """Two equal solid balls, one on the other: Hurricane balls.
+        """Two equal solid balls fixed to each other: Hurricane balls.
 
         Parameters
         ----------
         separation : float
             Distance of their centres over their diameter: 1 (touching), or more on a light rod.
-        diameter : float, optional
-            Of each ball in metres: then they are `measured`, with the `mass` of both in kilograms.
+        diameter, mass : float, optional
+            Diameter of each ball in metres, mass of both in kilograms, for a measured body.
 
         Notes
         -----
@@ -175,10 +173,10 @@ class Body(Laws, Sized, metaclass=Named):
     def ball(
         cls, offset: float, i1: float, i3: float, *, diameter: float | None = None, mass: float | None = None
     ) -> Self:
-        """A ball whose centre of mass lies `offset` radii above its centre: negative in a tippe top.
+        """Ball whose centre of mass lies `offset` radii above its centre; negative for a tippe top.
 
-        `i1` and `i3` are the moments about the centre of mass, across the line of the two centres and along
-        it. The ball goes through both poles, theta = 0 and pi. With a `diameter` (metres) it is `measured`.
+        `i1` and `i3` are the transverse and axial moments of inertia about the centre of mass, in M R^2. The
+        ball may pass theta = 0 and pi. A `diameter` in metres, with a `mass`, makes a measured body.
         """
         numbers = number("offset", offset), number("i1", i1), number("i3", i3)
         _core.check_ball(*numbers)
@@ -188,9 +186,9 @@ class Body(Laws, Sized, metaclass=Named):
     def from_metres(
         cls, *, outer_diameter: float, length: float, inner_diameter: float = 0.0, fillet: float = 0.0
     ) -> Self:
-        """Uniform tube from its measures (`fillet` is the radius of its outer edges).
+        """Uniform tube from its dimensions (`fillet` is the radius of its rounded outer edges).
 
-        All are in metres, all in any one unit, or texts like "60 mm"; single numbers.
+        Single numbers, in metres or in any common unit, or texts such as "60 mm".
         """
         measures = {"outer_diameter": outer_diameter, "inner_diameter": inner_diameter, "length": length}
         if not (type(fillet) is float and fillet == 0):
@@ -208,10 +206,10 @@ class Body(Laws, Sized, metaclass=Named):
     @staticmethod
     @elementwise
     def critical_aspect(bore: Reals = 0.0, fillet: Reals = 0.0) -> Result:
-        """Half length over outer radius at which theta_balance = theta_limit.
+        """Half length over outer radius of the tube with theta_balance = theta_limit (I1 = I3).
 
         With sharp edges it is (sqrt(3)/2) sqrt(1 + bore^2).
-        A bore or a fillet that no tube can have is a ValueError, in an array NaN. Relative error below 4 ulp
+        An impossible bore or fillet raises ValueError, in an array it gives NaN. Relative error below 4 ulp
         (2^-53).
         """
         bore, fillet = reals("bore", bore), reals("fillet", fillet)
@@ -222,28 +220,28 @@ class Body(Laws, Sized, metaclass=Named):
 
     @property
     def critical_hertz(self) -> Result:
-        """The critical rate in turns per second: where Omega~ = 1, which every body lying on its side has.
+        """Precession rate of the body lying on its side, Omega~ = 1, in turns per second.
 
-        A rate in hertz over it is the reduced rate Omega~. Needs a measured body.
+        A rate in hertz divided by it is the reduced rate Omega~. Needs a measured body.
         """
         return self._sized("critical_hertz").hertz(self, 1.0)
 
     @elementwise
     def hertz(self, at: Reals | State) -> Result:
-        """Turns per second of the precession; needs a measured body.
+        """Precession rate in turns per second; needs a measured body.
 
         Parameters
         ----------
         at : array_like or State
-            An inclination in (0, pi/2] (radians), meaning the steady state with the centre at rest, NaN where
-            there is none; or any state.
+            Inclination in (0, pi/2], radians, of the steady state with the centre at rest (NaN where there is
+            none); or any state.
         """
         scale = self._sized("hertz")
         at = at if isinstance(at, State) else radians("at", at, self._leans)
         return scale.turns(at.precession if isinstance(at, State) else self.angular_rate(self.rate(at)))
 
     def roll(self, state: State, t: Reals, **how: Any) -> "Motion":
-        """How it moves on from a state: `spincyl.roll` of this body, in seconds if it is measured."""
+        """Compute the motion of this body from an initial state; see `spincyl.roll`."""
         found: Motion = above("Body.roll")(self, state, t, **how)
         return found
 
@@ -255,23 +253,23 @@ class Body(Laws, Sized, metaclass=Named):
     @overload
     def rate(self, theta: Reals, **ufunc: Any) -> Result: ...
     def rate(self, theta: Reals, **ufunc: Any) -> Result:
-        """Reduced rotation rate Omega~ = Omega sqrt(I3) of the steady state at an inclination.
+        """Reduced rate Omega~ = Omega sqrt(I3) of the steady state at an inclination, the centre at rest.
 
         Parameters
         ----------
         theta : array_like
-            Inclination in radians, in (0, pi/2]; of a rounded rim up to `theta_end`.
+            Inclination in radians, in (0, pi/2]; with a rounded rim up to `theta_end`.
         **ufunc
             `out=`, `where=` and the other keywords of NumPy's ufuncs.
 
         Returns
         -------
         float or array
-            Of the broadcast shape of `theta` and the body. NaN where there is no steady state;
-            `region` says why. Error at most 2 (1 + kappa_c) 2^-53 relative, where kappa_c is
-            ``|dlog rate/dlog theta|``; of a rounded rim 2^-100 n/m besides, which is less unless a body
-            is made so that m = n + (I1/I3 - 1) A cos, A = 1 - fillet + fillet sin, is 2^-47 of
-            n = (1 - fillet) cos - ell sin.
+            Broadcast shape of `theta` and the body. NaN where there is no steady state; `region` gives
+            the reason. Relative error at most 2 (1 + kappa_c) 2^-53, where kappa_c is
+            ``|dlog rate/dlog theta|``. A rounded rim adds 2^-100 n/m, where n = (1 - fillet) cos - ell sin,
+            m = n + (I1/I3 - 1) A cos, A = 1 - fillet + fillet sin; this is less than the first term unless
+            m is below 2^-47 n.
 
         Notes
         -----
@@ -290,41 +288,41 @@ class Body(Laws, Sized, metaclass=Named):
 
     @elementwise
     def region(self, theta: Reals, **ufunc: Any) -> Result:
-        """Code of the `Region` (uint8) at an inclination: why a rate is NaN, or what is stable."""
+        """`Region` code (uint8) of each inclination: stable, unstable, forbidden, or outside the domain."""
         return _core.region(
             radians("theta", theta, self._leans), *self._numbers, **keywords(_core.region, ufunc)
         )
 
     @elementwise
     def inclinations(self, of: Reals = None, /, *, rate: Reals = None, hertz: Reals = None) -> Result:
-        """Every steady inclination of a rate, with the centre at rest.
+        """All inclinations at which the body is steady at a given rate, with the centre at rest.
 
         Parameters
         ----------
         of, rate : array_like
-            Reduced rotation rate Omega~ >= 0. Of a measured body it needs its name, ``rate=``.
+            Reduced rate Omega~ >= 0. A measured body needs the keyword, ``rate=``.
         hertz : array_like
-            Instead of it, of a measured body: turns per second.
+            Precession rate of a measured body in turns per second; replaces `rate`.
 
         Returns
         -------
         array
-            Broadcast shape and a last axis of 3, of rounded rims 5 (xarray: dimension "root"): angles in
-            (0, pi/2), of rounded rims up to `theta_end`, ascending, padded with NaN. Lying on the side,
-            which every body does at rate 1, is not among them. All NaN where the question makes no sense
-            (`count` is NaN there, too): rate negative or NaN, rate^2 times the larger of I1/I3 and ell above
-            1e300. ``|rate(theta) - rate| <= 8 (1 + kappa_c) 2^-53 rate``, so at a fold, where kappa_c
-            vanishes, 8 ulp; where kappa_c exceeds 2^45, theta is within 3 ulp of the exact root. A pandas
+            Broadcast shape with a last axis of 3, for rounded rims 5 (xarray: dimension "root"): angles in
+            (0, pi/2), for rounded rims up to `theta_end`, ascending, padded with NaN. The body lying on its
+            side, which is steady at rate 1, is not included. All NaN, as is `count`, if the rate is negative
+            or NaN, or if rate^2 times the larger of I1/I3 and ell exceeds 1e300. Error:
+            ``|rate(theta) - rate| <= 8 (1 + kappa_c) 2^-53 rate``, which is 8 ulp at a fold, where kappa_c
+            vanishes; where kappa_c exceeds 2^45, theta is within 3 ulp of the exact root. A pandas
             Series gives an array.
         """
         return _core.inclination(*several(self._most, self._reduced(of, rate, hertz), *self._numbers))
 
     @elementwise
     def states(self, of: Reals = None, /, *, rate: Reals = None, hertz: Reals = None) -> State:
-        """The steady states of a rate, told as of `inclinations`, in its order and shape.
+        """Steady states at a given rate; parameters, order and shape as in `inclinations`.
 
-        Near theta_limit, and at the critical aspect, a rate says more about a state than theta can:
-        there prefer these to `steady(inclinations(rate))`.
+        More accurate than `steady(inclinations(rate))` near theta_limit and at the critical aspect, where
+        the rate determines the state better than theta does.
         """
         inputs = several(self._most, self._reduced(of, rate, hertz), *self._numbers)
         theta, w1, w3 = (law(*inputs) for law in (_core.inclination, _core.states_w1, _core.states_w3))
@@ -332,17 +330,17 @@ class Body(Laws, Sized, metaclass=Named):
 
     @elementwise
     def count(self, of: Reals = None, /, *, rate: Reals = None, hertz: Reals = None) -> Result:
-        """How many `inclinations` a rate has: 0 to 5, NaN for no such question."""
+        """Number of `inclinations` at a given rate: 0 to 5; NaN where the rate is out of range."""
         return _core.count(self._reduced(of, rate, hertz), *self._numbers)
 
     @elementwise
     def steady(self, theta: Reals) -> State:
-        """The steady state with the centre at rest at an inclination in (0, pi/2], radians.
+        """Steady state with the centre at rest at an inclination in (0, pi/2], radians.
 
         Raises
         ------
         ValueError
-            If a single inclination has none (arrays hold NaN there), naming the forbidden band.
+            If there is none at a single inclination, with the forbidden band; arrays have NaN there.
         """
         theta = radians("theta", theta, self._leans)
         numbers = self._numbers
@@ -354,24 +352,24 @@ class Body(Laws, Sized, metaclass=Named):
     def circular(
         self, theta: Reals, precession: Reals = None, *, radius: Reals = None, w3: Reals = None
     ) -> State:
-        """The steady state whose centre runs on a circle while it rolls; give one of three numbers.
+        """Steady state of rolling with the centre on a circle; give one of the three optional numbers.
 
         Parameters
         ----------
         theta : array_like
             Inclination in (0, pi/2], radians.
         precession : array_like, optional
-            phi' in sqrt(g/R), 1e-100 to 1e100 in size. With `rate / sqrt(i3)` the centre rests.
+            phi' in sqrt(g/R), of absolute value 1e-100 to 1e100. The centre rests at `rate / sqrt(i3)`.
         radius : array_like, optional
-            Of the circle of the centre, in R: above 0 of a coin that leans inward, below 0 where the centre
-            runs the other way. The state precesses counterclockwise.
+            Radius of the circle of the centre, in R: positive for a coin that leans inward, negative if the
+            centre moves the other way. The state returned precesses counterclockwise.
         w3 : array_like, optional
-            Spin about the axis, sqrt(g/R). Gives both states, the slower first, in a last axis ("root").
+            Angular velocity about the axis, sqrt(g/R). Gives two states, slower first, on a last axis "root".
 
         Raises
         ------
         ValueError
-            For a single state that is none; arrays hold NaN there, and for a `radius` or `w3` without one.
+            If a single state does not exist; arrays have NaN there.
         """
         return _circular(self, theta, precession, radius, w3)
 
@@ -385,14 +383,14 @@ class Body(Laws, Sized, metaclass=Named):
         if self.scale is not None:
             return self.scale.radius
         if not self._measured:
-            raise TypeError("radius: the body does not know its size: give its outer radius, in metres")
+            raise TypeError("radius: expected the outer radius in metres; the body has no size yet")
         return self._measured["outer_diameter"] / 2
 
     def _across(self, diameter: float | None, mass: float | None) -> Self:
-        """A ball, or two, measured if they have a diameter."""
+        """The body of one ball or two, measured if a diameter is given."""
         if diameter is None:
             if mass is not None:
-                raise ValueError("mass: of balls that are measured, diameter= in metres")
+                raise ValueError(f"mass = {mass!r}: give the diameter of the balls as well, in metres")
             return self
         across = within("diameter", metres({"diameter": diameter})["diameter"], 2e-100, 2e100, "metres")
         return self.in_metres(mass, radius=across / 2)
@@ -418,14 +416,14 @@ class Body(Laws, Sized, metaclass=Named):
         return found
 
     def _reduced(self, of: Reals, rate: Reals, hertz: Reals) -> Reals:
-        """The reduced rate, given directly or in turns per second."""
+        """The reduced rate, from a reduced rate or from turns per second."""
         if sum(x is not None for x in (of, rate, hertz)) != 1:
-            raise TypeError("rate and hertz: give one of them, hertz= of a measured body")
+            raise TypeError("rate, hertz: give one of them; hertz= needs a measured body")
         if hertz is None and (of is None or self.scale is None):
             return reals("rate", rate if of is None else of)
         scale = self._sized("hertz")
         if hertz is None:
-            raise TypeError("rate: of a measured body give hertz=, or rate= for the reduced rate, by name")
+            raise TypeError("rate: a measured body needs a keyword, hertz= or rate= (the reduced rate)")
         return reals("hertz", turns_per_second("hertz", hertz)) / scale.hertz(self, 1.0)
 
     @property
@@ -441,10 +439,10 @@ class Body(Laws, Sized, metaclass=Named):
 
     @property
     def _is_sharp(self) -> bool:
-        """Whether no body of the family has a fillet; False if a lazy array would have to be computed."""
+        """Whether no body of the family has a fillet; False for lazy arrays, which are not computed."""
         return not is_lazy(self.fillet) and not np.any(np.asarray(self.fillet) != 0)
 
     @property
     def _most(self) -> int:
-        """Largest number of inclinations of one rate: the length of the axis "root"."""
+        """Largest number of steady inclinations at one rate: the length of the axis "root"."""
         return 3 if self._is_sharp else 5

@@ -25,11 +25,11 @@ if TYPE_CHECKING:
 
 
 class StepWarning(UserWarning):
-    """A fixed step is so large that it takes a part of the nutation away, or blurs the precession."""
+    """The fixed step is too large: RK4 damps the nutation, or gives the precession inaccurately."""
 
 
 def is_stone(body: object) -> TypeGuard["Ellipsoid"]:
-    """Whether the body is a stone. The module of stones is imported only if it may be one."""
+    """Whether the body is a stone; the module of stones is imported only if `body` is no `Body`."""
     if type(body) is Body:
         return False
     from spincyl._ellipsoid import Ellipsoid
@@ -84,88 +84,94 @@ def roll(
     restitution: float | None = None,
     losses: "Loss | None" = None,
 ) -> Motion:
-    """How a body moves on from a state.
+    """Compute the motion of a body from an initial state.
 
     Parameters
     ----------
     body : Body or Ellipsoid
-        A single one, ell at most 1e6, moments 1e-6 to 1e12; or a stone, with an `EllipsoidState`.
+        Single body with ell at most 1e6 and moments of inertia from 1e-6 to 1e12, or a single stone.
     state : State or EllipsoidState
-        Where it starts, in natural units: theta in [1e-8, pi - 1e-8], speeds up to 1e6 sqrt(g/R).
+        Initial state, in natural units, also for a measured body: theta in [1e-8, pi - 1e-8], speeds up to
+        1e6 sqrt(g/R). A stone needs an `EllipsoidState`.
     t : array_like, 1-D, or a number
-        Times, in sqrt(R/g), at which it is wanted, in order; backward in time if they fall. Of a measured
-        body in seconds, as are `t0` and `step`, or quantities of pint's; the state is in natural units.
+        Times at which the motion is returned, in sqrt(R/g), in ascending order, or descending to go backward
+        in time. For a measured body `t`, `t0` and `step` are in seconds, or quantities of pint.
     t0 : float, optional
-        Time of the start. Default: the first of `t` (an only one has to be 0); 0 if `t` is a number.
+        Time of the initial state. Default: `t[0]` if `t` is an array of two or more times, else 0. An array
+        of one time other than 0 needs `t0`.
     step : float, optional
-        By RK4 with this fixed step, of either sign backward in time.
+        Fixed step of RK4, in sqrt(R/g). Backward in time it may have either sign.
     tol : float, optional
         Tolerance of each step of an eighth-order method (absolute, 1e-14 to 0.1); `Motion.error` estimates
         the error of the result. With friction only slipping is integrated, with losses the whole motion;
         there the default is 1e-14.
     method : {"exact", "rk4"}, optional
-        Default: RK4 if `step` is given; else the first integrals, which give the state at any time for the
-        same cost, unless `tol` is given. Where the first integrals lose all their digits, steps within
-        1e-12 replace them, and `method` and `message` say so.
+        Default: RK4 if `step` is given, steps of eighth order if `tol` is given, else "exact": the first
+        integrals, which give the state at any time for the same cost. Where the first integrals lose all
+        their digits, steps of eighth order with a tolerance of 1e-12 replace them; `Motion.method` says so.
     contact : {"rolling", "smooth"}, Coulomb or Viscous
-        Rolling without slipping, a frictionless table, or a law of friction: then the body slips from the
-        `slip` of the state, or rolls if it has none, and passes from one to the other where the law says so.
+        Rolling without slipping, a frictionless table, or a law of friction. With a law of friction the body
+        starts with the `slip` of the state, or rolling if there is none. The law decides when slipping turns
+        into rolling and back.
     mu : float
-        Of "rolling": where it needs a larger coefficient of friction, it ends (`Ending.SLIP`). To let it slip
-        from there on give `contact=Coulomb(mu)` instead.
+        Largest coefficient of friction that rolling may need. The motion ends with `Ending.SLIP` where
+        rolling needs more. Only for `contact="rolling"`; with `contact=Coulomb(mu)` the body slips instead.
     want : str or iterable of str
-        "pose" (phi, psi, contact_point, centre, orientation), "force" (normal, friction,
-        friction_coefficient), both (contact_force). What is not asked for is not computed.
+        Optional outputs to compute: "pose" (phi, psi, contact_point, centre, orientation), "force" (normal,
+        friction, friction_coefficient), or both, which also gives contact_force.
     beyond : bool
-        Whether to go on beyond an event, where the model is no longer that of the body. The event is
-        reported all the same. Beyond a landing of the face there is nothing.
+        If true, continue the solution past the event, although it no longer describes the real body.
+        `Motion.event` is still set. The solution cannot continue past a landing of the face.
     restitution : float, optional
-        Of impacts, 0 to 1: the share of the work of compression that comes back is its square (Stronge).
-        Default: the motion ends where the body leaves the table or its other rim lands. With a restitution it
-        goes on there: it flies, bounces, lies on both rims, rises again. Needed by a start in the air
-        (`dropped`). Where the other rim carries the body, theta is told from that rim, and phi turns by pi.
-        With "rolling" a body that lands on both rims ends there (`Ending.SIDE`) unless it only rocks.
+        Coefficient of restitution of impacts, 0 to 1: its square is the share of the work of compression that
+        an impact returns (Stronge). Default: the motion ends where the body leaves the table or its other rim
+        lands. With a restitution the motion continues: the body flies, bounces, lies on both rims and rises
+        again. An initial state in the air (`dropped`) needs one. While the other rim carries the body, theta
+        refers to that rim, and phi is turned by pi. With `contact="rolling"` a landing on both rims ends the
+        motion (`Ending.SIDE`), unless the body only rocks from one rim to the other.
     losses : Loss, optional
-        What takes energy: a law of `spincyl.loss`, or several, added with `+`. The motion is then found by
-        steps, forward in time, and may end where the contact point stops (`Ending.STOPS`).
+        Law of `spincyl.loss` that takes energy, or several added with `+`. The motion is then integrated
+        with steps of eighth order, forward in time only. It may end where the contact point stops
+        (`Ending.STOPS`).
 
     Returns
     -------
     Motion
-        At the times up to the first event: the face or the other rim lands, lift-off, slip (with a
-        restitution: the face lands, or what comes next is not determined). If `t` is one
-        time and the motion ends before, there is none: `status`, `event` and `message` tell why. Of a
-        measured body it is in SI.
+        States at the times `t` up to the first event: a landing of the face or of the other rim, lift-off, or
+        slip. With a restitution the events are a landing of the face and an undetermined continuation. If
+        `t` is a number and the motion ends before, the arrays are empty; `status`, `event` and `message`
+        give the reason. For a measured body, in SI.
 
     Raises
     ------
     ValueError
-        Before any work: for a body, state, time, step, tolerance or mu out of range, by name; for a
-        step at which fast precession or nutation would come out wrong unnoticed, with one that would do.
+        If the body, the state, a time, the step, the tolerance or `mu` is out of range; the message names it.
+        Also if the step is so large that fast precession or nutation would come out wrong without notice; the
+        message proposes a step.
     TypeError
-        Naming an argument that is no real number.
+        If an argument is not a real number; the message names it.
     KeyboardInterrupt
         Within 0.1 s of Ctrl-C.
 
     Warns
     -----
     RuntimeWarning
-        For a motion that is given up on the way (`Ending.BOUNDED`) and returned up to there: with friction
-        or losses, where slipping, rolling and the ways of dry losses change over 20 times in each unit of
-        time (at least 5,000, at most 10,000 times), where 600,000 steps hardly advance, since something
-        changes ever faster, and where 8 million evaluations are not enough (of times beyond 200: 40,000 for
-        each unit).
+        If the computation gives up (`Ending.BOUNDED`); the motion is returned up to that time. This happens
+        only with friction or losses: if slipping, rolling and the sticking of dry losses alternate more than
+        20 times per unit of time (at least 5,000, at most 10,000 times in all), if 600,000 steps hardly
+        advance the time, or after 8 million evaluations (40,000 per unit of time if the time exceeds 200).
     StepWarning
-        If the step takes more than a thousandth of the nutation away, or turns by more than 0.3 rad.
+        If RK4 damps the nutation by more than a thousandth of its amplitude, or if the precession advances by
+        more than 0.3 rad or the nutation by more than 0.5 rad in a step.
     ErrorWarning
-        If a stone is not known to the end of its motion, with the time up to which it is:
-        `EllipsoidMotion.known_until`.
+        If the estimated error of the motion of a stone becomes too large before its end; the message gives
+        the time at which it does, `EllipsoidMotion.known_until`.
 
     Notes
     -----
-    Chaplygin, Appell and Korteweg found the integrals; docs/physics.md has the equations. Error of the
-    exact motion: 1e-14 times its conditioning, estimated for this motion by `Motion.error`, which in the
-    tests is never below a tenth of the true error.
+    Chaplygin, Appell and Korteweg found the first integrals; docs/physics.md has the equations. The error of
+    the exact motion is 1e-14 times its conditioning. `Motion.error` estimates it for each motion; in the
+    tests the estimate is never below a tenth of the true error.
 
     Examples
     --------
@@ -176,13 +182,13 @@ def roll(
     >>> float(m.theta.max().round(4)), m.status.name
     (1.3389, 'DONE')
 
-    A hoop that is thrown with backspin slides until it rolls:
+    A hoop thrown with backspin slips until it rolls:
 
     >>> hoop, thrown = sc.Body.tube(0.0, bore=1.0), sc.State(np.pi / 2, 0.0, 0.0, -3.0, slip=(0.0, 5.0))
     >>> sc.roll(hoop, thrown, 20.0, contact=sc.Coulomb(0.25)).phases
     ((0, 'slipping'), (10, 'rolling'))
 
-    A ball that falls bounces until the sum of its bounces is over:
+    A dropped ball bounces ever lower, and rolls from the time at which the bounces have ended:
 
     >>> ball = sc.Body.ball(0.0, i1=0.4, i3=0.4)
     >>> m = sc.roll(ball, sc.dropped(ball, 0.5, 1.0), 10.0, contact=sc.Coulomb(0.3), restitution=0.5)
@@ -203,8 +209,8 @@ def roll(
         given |= {"want": want, "beyond": beyond, "restitution": restitution, "losses": losses}
         found = stones.roll(body, state, t, **given)  # type: ignore[arg-type]  # it refuses another state
         if found._doubt:
-            why = f"beyond, its estimated error comes to {found.error:.2g}"
-            warn(f"the motion is {found._doubt} (known_until): {why}", ErrorWarning)
+            why = f"after that its estimated error reaches {found.error:.2g}"
+            warn(f"the motion is {found._doubt} (known_until); {why}", ErrorWarning)
         return found
     # `single` raises for other types
     one: Body = body  # type: ignore[assignment]
@@ -232,11 +238,11 @@ def roll(
         m = in_si(m, one, times_of(seconds), step)
     if m.status == Ending.BOUNDED:
         at = f"t = {m.event.time:.6g}" + (" s" if scale is not None else "") if m.event else "its start"
-        told = f"given up at {at}: the motion slips and rolls by turns too often, or hardly advances"
+        told = f"given up at {at}: slipping and rolling alternate too often, or the motion hardly advances"
         warn(f"{told}; the result ends there (Ending.BOUNDED)", RuntimeWarning)
     if m.coarse:
-        why = f"RK4 takes {100 * m.step_loss:.3g} % of the nutation's amplitude away"
+        why = f"RK4 damps the nutation by {100 * m.step_loss:.3g} % of its amplitude"
         if m.step_loss <= 1e-3:
-            why = "more than 0.3 rad of precession or 0.5 rad of nutation in a step"
-        warn(f"step = {step!r}: {why}; {m.advice:.2e} would do, or tol=", StepWarning)
+            why = "a step has more than 0.3 rad of precession or 0.5 rad of nutation"
+        warn(f"step = {step!r}: {why}; take step={m.advice:.2e}, or tol=", StepWarning)
     return shortened(m)
