@@ -222,7 +222,7 @@ def test_a_step_that_would_lie_is_refused_and_a_doubtful_one_warned_of():
         ValueError, match=r"step = 0.01 is too large at t = 1.46.*a step of .* would do, or tol="
     ):
         sc.roll(can, nearly_flat, 2.9, step=0.01)
-    with pytest.warns(sc.StepWarning, match="would do, or tol="):
+    with pytest.warns(sc.StepWarning, match="take step=.*, or tol="):
         m = sc.roll(CYLINDER, START, 20, step=0.4)
     assert m.error > 1e-6
     # the proposed step causes no warning
@@ -394,7 +394,7 @@ def test_the_command_line_writes_what_it_says(tmp_path, capsys):
         assert np.array_equal(data["theta"], exact.theta)
     assert cli.main([*base, "--radius", "0.01", "--step", "0.4", "-o", str(tmp_path / "a.csv")]) == 0
     said = capsys.readouterr()
-    assert "would do, or tol=" in said.err
+    assert ", or tol=" in said.err
     assert "seconds" in (tmp_path / "a.csv").read_text().splitlines()[0]
     assert cli.main([*base, "-o", "roll.txt"]) == 2
     assert "expected a name that ends in .csv, .npz, .nc" in capsys.readouterr().err
