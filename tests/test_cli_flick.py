@@ -216,8 +216,8 @@ def test_a_hoop_is_thrown_with_backspin_by_roll(capsys):
 @pytest.mark.parametrize(
     ("words", "match"),
     [
-        ([], "state: slips, slip = (0.0, 5.0): contact='rolling' has no law for that"),
-        (["--contact", "smooth"], "state: slips, slip = (0.0, 5.0): contact='smooth' has no law for that"),
+        ([], "state: slips, slip = (0.0, 5.0): contact='rolling' has no law of friction"),
+        (["--contact", "smooth"], "state: slips, slip = (0.0, 5.0): contact='smooth' has no law of friction"),
         (["--contact", "coulomb"], "--contact coulomb needs --mu"),
         (["--contact", "viscous"], "--contact viscous needs --viscosity"),
         (["--contact", "viscous", "--viscosity", "-1"], "--viscosity -1.0: expected 0 <= c"),

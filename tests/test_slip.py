@@ -109,7 +109,7 @@ def test_a_law_or_a_slip_that_makes_no_sense_is_refused_by_name(make, error, mat
         (
             {"mu": 0.3},
             ValueError,
-            r"^mu = 0.3 does not go with contact=Coulomb\(0.3\): the contact has the co",
+            r"^mu = 0.3 does not go with contact=Coulomb\(0.3\): give the coefficient to the co",
         ),
         ({"step": 1e-3}, ValueError, "^step = 0.001 does not go with contact=Coulomb"),
         ({"method": "exact"}, ValueError, "^method = 'exact' does not go with contact=Coulomb"),

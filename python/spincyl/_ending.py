@@ -1,4 +1,4 @@
-"""How a motion ends."""
+"""Endings of a motion."""
 
 from enum import IntEnum
 from typing import NamedTuple
@@ -9,21 +9,21 @@ from spincyl._state import State
 class Ending(IntEnum):
     """How a motion ended: the status of a `Motion`."""
 
-    DONE = 0  #: it reached the last time asked for
+    DONE = 0  #: the last time was reached
     FACE = 1  #: the face landed on the table, theta = 0 or pi
-    SIDE = 2  #: the other rim landed, theta = pi/2 (not of a coin, ell = 0)
+    SIDE = 2  #: the other rim landed, theta = pi/2 (not for a thin disk, ell = 0)
     LIFT_OFF = 3  #: the normal force vanished
     SLIP = 4  #: rolling needed more friction than mu N
     PAINLEVE = 6  #: no contact force, or more than one, obeys the law of friction
-    STOPS = 7  #: with losses: the contact point stops; the body may still spin about the vertical
+    STOPS = 7  #: with losses: the contact point stopped; the body may still spin about the vertical
     LANDING = 9  #: a landing on both rims has no outcome, or more than one, that obeys the law of friction
-    BOUNDED = 8  #: given up: it slips and rolls by turns too often, or hardly advances; the result ends there
+    BOUNDED = 8  #: given up: slipping and rolling alternate too often, or the motion hardly advances
 
     def __str__(self) -> str:
         return self.name
 
 
-#: Why the motion ended, and what the body does then.
+#: The reason of each ending, and what the body does then.
 MESSAGES = {
     Ending.DONE: ("the last time was reached", ""),
     Ending.FACE: ("the face landed on the table", "lies flat"),
@@ -38,11 +38,14 @@ MESSAGES = {
 
 
 class ErrorWarning(UserWarning):
-    """A motion is known only up to a time before its end: then its estimated error is too large."""
+    """From a time before the end of the motion on, the estimated error is too large."""
 
 
 class Event(NamedTuple):
-    """Where a motion left what the model covers."""
+    """The event that ended a motion: its ending, its time, and the state at that time.
+
+    The time is in sqrt(R/g), in seconds for a measured body; the state is in natural units.
+    """
 
     ending: Ending
     time: float

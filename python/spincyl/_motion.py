@@ -1,4 +1,4 @@
-"""Motion: the rolling, sliding or slipping of a body from an initial state."""
+"""The motion of a body from an initial state."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -43,42 +43,44 @@ _Four: TypeAlias = tuple[float, float, float, float]
 @compared
 @dataclass(frozen=True, eq=False, repr=False)
 class Motion:
-    """Times and states of a body, and how its motion ended; from `roll`.
+    """Motion of a body: times, states, and how the motion ended; the result of `roll`.
 
-    Shaped as the result of SciPy's `solve_ivp`; n is the number of times reached. Units are natural, as named
-    below; but if the body is `measured`, everything here is in SI: t, and the times of `event`, `phases` and
-    `at`, in s, w in rad/s, lengths in m, `slip` in m/s, forces in N, energies in J. A `State` is in natural
-    units always: `start`, `states`, and those of `event` and `phases`. `natural` has all of it in these.
+    Similar to the result of SciPy's `solve_ivp`; n is the number of times reached. Units are the natural ones
+    named below. For a measured body everything here is in SI: times in s, w in rad/s, lengths in m, `slip` in
+    m/s, forces in N, energies in J. Each `State` is in natural units even then: `start`, `states`, and those
+    of `event` and `phases`. `natural` is the whole motion in natural units.
 
-    Numbers at each time that were not asked for are not there: an AttributeError says how to ask for them.
+    Optional outputs that were not computed raise AttributeError; the message says how to get them.
 
     Attributes
     ----------
     body, start, contact : Body, State, str or Coulomb or Viscous
-        What `roll` was given.
+        Arguments of `roll`; `start` is the initial state.
     t, theta, w : ndarray
-        Times (n,), inclination (n,), angular velocity along the axes that follow the tilt (n, 3).
+        Times (n,), inclination (n,), angular velocity along e1, e2, e3 of `State` (n, 3).
     status : Ending
-        How it ended, 0 (`Ending.DONE`) if the last time was reached; `success` is that as a bool.
+        How the motion ended: 0 (`Ending.DONE`) if the last time was reached; see also `success`.
     event : Event or None
-        The first thing that the model does not cover: its `ending`, `time` and `state`.
+        The event that ended the motion: its `ending`, `time` and `state`.
     method : str
-        "exact", "rk4" (a fixed step) or "dop853" (steps of eighth order within a tolerance; friction and
-        losses always need them).
+        "exact", "rk4" (a fixed step) or "dop853" (steps of eighth order within a tolerance, always with
+        friction or losses).
     error : float
         Estimated absolute error: the largest of theta, w1, w2, w3 at any time, and of the event.
     pose_error : float
-        The same of phi and psi (radians) and of the contact point (R); NaN if no pose was wanted.
+        Estimated error of phi and psi (radians) and of the contact point (R); NaN without want="pose".
     force_error : float
-        The same of the normal force and of the components of the friction, in their unit, to first order in
-        the errors of the state; NaN if no force was wanted. Directions in space are `pose_error` off as well.
-    step_loss, advice : float
-        Of a fixed step: the share of the nutation's amplitude that it takes away, as predicted beforehand;
-        and a step that loses less than a thousandth and needs no warning, infinite unless a step was given.
+        Estimated error of the normal force and of the components of the friction, in their unit, to first
+        order in the errors of the state; NaN without want="force". `pose_error` is the error of the direction
+        in the laboratory.
+    step_loss : float
+        Share of the nutation's amplitude that a fixed step is predicted to damp.
+    advice : float
+        Step that damps less than a thousandth and needs no warning; infinite unless `step` was given.
     nfev : int
-        Evaluations of the equations of motion; 0 of an exact motion.
+        Evaluations of the equations of motion; 0 for an exact motion.
     coarse : bool
-        Whether a fixed step takes more than a thousandth, or turns so far, that it was warned of.
+        Whether a fixed step is so large that `StepWarning` was issued.
     """
 
     body: Body
@@ -107,7 +109,7 @@ class Motion:
 
     @property
     def scale(self) -> Scale | None:
-        """The scale of a measured body: the motion is in SI; None: in natural units."""
+        """Scale of the measured body, whose motion is in SI; None if the motion is in natural units."""
         return self.body.scale
 
     @property
@@ -117,12 +119,12 @@ class Motion:
 
     @property
     def y(self) -> Floats:
-        """(4, n): theta, w1, w2, w3."""
+        """(4, n) array with the rows theta, w1, w2, w3."""
         return np.vstack([self.theta, self.w.T])
 
     @property
     def states(self) -> State:
-        """The states as one `State` of arrays, in natural units."""
+        """All states as one `State` of arrays, in natural units."""
         if self._natural is not None:
             return self._natural.states
         slip = self._extra.get("slip")
@@ -132,14 +134,17 @@ class Motion:
 
     @property
     def energy(self) -> Floats:
-        """(n,), M g R; constant with `dissipated`, `lost_in_impacts` and `work_lost` added."""
+        """(n,) energy in M g R (measured: J).
+
+        The sum with `dissipated`, `lost_in_impacts` and `work_lost` is constant.
+        """
         free = self.contact == "smooth" and self._phases is not None
         energy: Floats = self.body.energy(self.states, Coulomb(0.0) if free else self.contact)
         return self._told("energy", energy)
 
     @property
     def height(self) -> Floats:
-        """(n,) height of the lowest point of the body, in R (measured: m). Needs `restitution=`."""
+        """(n,) height of the lowest point of the body above the table, R or m. Needs `restitution=`."""
         rim = output(self.natural, "height", ALOFT)
         return self._told("height", lowest(self.body, self.theta, rim))
 
@@ -150,35 +155,35 @@ class Motion:
 
     @property
     def message(self) -> str:
-        """How it ended and how it was got, in words."""
+        """How the motion ended, how it was computed, and its estimated errors, in words."""
         return message(self)
 
     @property
     def phi(self) -> Floats:
-        """(n,) precession angle since the start, radians. Needs want="pose"."""
+        """(n,) precession angle from the initial state on, radians. Needs want="pose"."""
         return self._angle("phi")
 
     @property
     def psi(self) -> Floats:
-        """(n,) spin angle since the start, radians. Needs want="pose"."""
+        """(n,) spin angle from the initial state on, radians. Needs want="pose"."""
         return self._angle("psi")
 
     @property
     def turns(self) -> tuple[Floats, Floats]:
-        """(n, 2) each: whole turns and rest (radians) of phi, of psi. Needs want="pose".
+        """Phi and psi, each (n, 2): whole turns, and the remaining angle in radians. Needs want="pose".
 
-        The rest keeps its digits however many turns there were.
+        The remaining angle keeps its digits after any number of turns.
         """
         return output(self, "phi", POSE), output(self, "psi", POSE)
 
     contact_point = Number(
         POSE,
-        '(n, 2) place of the contact on the table in R (measured: m), from the origin on. Needs want="pose".',
+        '(n, 2) position of the contact point on the table, R or m; initially (0, 0). Needs want="pose".',
     )
-    centre = Number(POSE, '(n, 3) place of the centre of mass, in R (measured: m). Needs want="pose".')
+    centre = Number(POSE, '(n, 3) position of the centre of mass, in R (measured: m). Needs want="pose".')
     orientation = Number(
         POSE,
-        """(n, 4) rotation from the body's axes (e3 the third) to the laboratory's. Needs want="pose".
+        """(n, 4) rotation from axes fixed in the body (e3 third) to the laboratory. Needs want="pose".
 
         Unit quaternions (x, y, z, w), as `scipy.spatial.transform.Rotation.from_quat` takes them.
         """,
@@ -186,7 +191,7 @@ class Motion:
     normal = Number(FORCE, '(n,) normal force N in M g (measured: N). Needs want="force".')
     friction = Number(
         FORCE,
-        '(n,) friction demand: size of the horizontal force in M g (measured: N). Needs want="force".',
+        '(n,) magnitude of the horizontal force of the table, M g or N. Needs want="force".',
     )
     friction_coefficient = Number(
         FORCE,
@@ -194,69 +199,69 @@ class Motion:
     )
     contact_force = Number(
         BOTH,
-        '(n, 3) force of the table along the laboratory axes, M g or N. Needs want=("pose", "force").',
+        '(n, 3) force of the table along the axes of the laboratory, M g or N. Needs want=("pose", "force").',
     )
     slip = Number(
         FRICTION,
-        """(n, 2) velocity of the lowest point over the table in sqrt(g R) (measured: m/s).
+        """(n, 2) velocity of the contact point over the table, sqrt(g R) or m/s. Needs a law of friction.
 
-        Needs a law of friction.
-
-        Along the lean and across it, as in `State`.
+        Along e_h and along e2, as in `State`.
         """,
     )
     dissipated = Number(
-        FRICTION, "(n,) heat since the start, in M g R (measured: J). Needs a law of friction."
+        FRICTION, "(n,) heat of friction since the initial state, M g R or J. Needs a law of friction."
     )
     phase = Number(
         FRICTION,
-        """(n,) code of what it does: its place in the list below. Needs a law of friction or `restitution=`.
+        """(n,) code of the phase at each time. Needs a law of friction or `restitution=`.
 
-        0 it rolls, 1 slips, 2 flies; on both rims 3 it lies and slips, 4 pivots, 5 rolls on its side.
+        0 rolling, 1 slipping, 2 flying; on both rims 3 lying and slipping, 4 pivoting, 5 rolling on its side.
         """,
     )
-    drilling = Number(PATCH, "(n,) spin about the vertical, sqrt(g/R) or rad/s. Needs a patch of contact.")
+    drilling = Number(
+        PATCH, "(n,) angular velocity about the vertical, sqrt(g/R) or rad/s. Needs a patch of contact."
+    )
     creep = Number(
-        PATCH, "(n,) slip over the radius of the patch times `drilling`; 0 where it rolls. Needs a patch."
+        PATCH, "(n,) slip over `drilling` times the radius of the patch; 0 in rolling. Needs a patch."
     )
     couple = Number(
         COUPLE,
         """(n,) couple of the patch about the vertical, M g R or J. Needs a patch and want="force".
 
-        NaN where it rolls: friction then holds the drilling.
+        NaN in rolling, where static friction holds the drilling.
         """,
     )
     lift = Number(
-        ALOFT, "(n,) how fast the lowest point of its rim rises, sqrt(g R) or m/s. Needs `restitution=`."
+        ALOFT, "(n,) upward velocity of the lowest point of the rim, sqrt(g R) or m/s. Needs `restitution=`."
     )
     slip_other = Number(
-        ALOFT, "(n, 2) `slip` of the other rim; NaN unless it lies on both. Needs `restitution=`."
+        ALOFT, "(n, 2) `slip` of the other rim; NaN unless both rims touch. Needs `restitution=`."
     )
     normal_other = Number(ALOFT, '(n,) `normal` of the other rim. Needs `restitution=` and want="force".')
     friction_other = Number(ALOFT, '(n,) `friction` of the other rim. Needs `restitution=` and want="force".')
     work_lost = Number(
-        LOSSES, "(n,) what the losses have taken since the start, in M g R (measured: J). Needs `losses=`."
+        LOSSES, "(n,) energy that `losses` have taken since the initial state, M g R or J. Needs `losses=`."
     )
 
     @property
     def impacts(self) -> tuple[Impact, ...]:
-        """Every impact of a rim on the table; bounces that are summed are one. Needs `restitution=`."""
+        """All impacts of a rim on the table; a summed sequence of bounces is one. Needs `restitution=`."""
         if self._impacts is None:
             raise AttributeError(ALOFT.format("impacts", ""))
         return self._impacts
 
     @property
     def lost_in_impacts(self) -> Floats:
-        """(n,) energy lost in impacts since the start, in M g R (measured: J). Needs `restitution=`."""
+        """(n,) energy lost in impacts since the initial state, M g R or J. Needs `restitution=`."""
         of = self.natural.impacts
         times, lost = np.array([x.time for x in of]), np.array([0.0, *(x.lost for x in of)])
         return self._told("energy", np.cumsum(lost)[np.searchsorted(times, self.natural.t)])
 
     @property
     def phases(self) -> tuple[Phase, ...]:
-        """When it slips, when it rolls: `Phase(time, kind, state)` of each begin. Needs a law of friction.
+        """Phases of the motion: time, kind and state at the beginning of each. Needs a law of friction.
 
-        There are none if the motion ends where it starts: a body on its side that stays lying, or leaps.
+        Empty if the motion ends at its initial state: a body on its side that stays lying, or leaps.
         """
         if self._phases is None:
             raise AttributeError(FRICTION.format("phases", named(self.contact)))
@@ -264,24 +269,24 @@ class Motion:
 
     @property
     def losses(self) -> "Loss | None":
-        """What takes energy from it, besides friction of a contact that slips; None if nothing does."""
+        """The `losses` given to `roll`, or None. The friction of slipping is not among them."""
         return self._asked.losses
 
     def to_xarray(self) -> "xarray.Dataset":
-        """Everything that was wanted, labelled, with units; needs spincyl[sweep]."""
+        """All computed outputs as a labelled dataset with units; needs spincyl[sweep]."""
         return labelled(self)
 
     def to_dataframe(self) -> "pandas.DataFrame":
-        """Everything that was wanted as a table by times, a column for each number; needs spincyl[sweep].
+        """All computed outputs as a table indexed by time, a column per component; needs spincyl[sweep].
 
         ``attrs["units"]`` has the unit of each column and of the index.
         """
         return frame(self)
 
     def wanting(self, *want: Want | Iterable[Want], t: Reals | None = None) -> "Motion":
-        """The same motion with more of it, or at other times `t`, computed anew if it has to be.
+        """The same motion with further outputs, or at other times `t`; computed again if necessary.
 
-        `want` is that of `roll`, in one or several arguments.
+        `want` names outputs as in `roll`, in one or several arguments; those of this motion are kept.
         """
         more = chosen(want)
         if self._natural is not None:
@@ -299,23 +304,23 @@ class Motion:
         return rolled(self.body, self.start, asked)  # warnings were issued for the first computation
 
     def at(self, t: Reals) -> "Motion":
-        """The same motion at other times: of the same start, found in the same way, with the same extras.
+        """The same motion at other times, with the same initial state, method and optional outputs.
 
         Parameters
         ----------
         t : array_like, 1-D, or a number
-            Times in sqrt(R/g), of a measured body in seconds, in order, on the clock of this motion, whose
-            start keeps its time.
+            Times as in `roll`, in sqrt(R/g), or in seconds for a measured body. The initial state keeps its
+            time.
 
         Returns
         -------
         Motion
-            At these times, up to the first event.
+            States at these times, up to the first event.
 
         Raises
         ------
         ValueError, TypeError
-            As `roll` does, naming `t`.
+            As `roll` for `t`.
 
         Examples
         --------
@@ -328,7 +333,7 @@ class Motion:
         return self.wanting(t=times_of(t if self._natural is None else si("t", t, "second")))
 
     def plot(self, axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
-        """Draw inclination, path and contact force: see `spincyl.plot.motion`."""
+        """Draw inclination, path and contact force; see `spincyl.plot.motion`."""
         drawn: list[Axes] = above("Motion.plot")(self, axes)
         return drawn
 
@@ -340,30 +345,31 @@ class Motion:
         scale: Scale | None = None,
         rate: int = 44_100,
     ) -> Path:
-        """Write what one hears as a WAV file: impacts, and a ring that beats at each turn of the contact.
+        """Write the sound of the motion as a WAV file: impacts, and a ring that beats with the precession.
 
         Parameters
         ----------
         path : path-like
-            Ends in .wav: one channel of 16 bits.
+            Name of the file, which ends in .wav: one channel of 16 bits.
         seconds : float, optional
-            How long, from the motion's first time on. Default: all of it, at most 180.
+            Duration, from the first time of the motion on. Default: the whole motion, at most 180 s.
         scale : Scale, optional
-            Makes seconds of its times; a measured body has one.
+            Converts times to seconds; a measured body has its own.
         rate : int
-            Samples a second.
+            Samples per second.
 
         Returns
         -------
         Path
-            That of the file. The beat, phi'/(2 pi), is that of the motion; the pitch of the ring is made up.
+            Path of the file. The beat has the frequency phi'/(2 pi) of the motion; the pitch of the ring is
+            invented.
 
         Raises
         ------
         ValueError
-            If there is nothing to hear: a contact that does not move along the body, or no time at all.
+            If there is nothing to hear: the contact point does not move along the body, or the duration is 0.
         OSError
-            If it cannot be written. A file that is there stays until the new one is complete.
+            If the file cannot be written. An existing file stays until the new one is complete.
         """
         written: Path = above("Motion.sound")(self, path, seconds, scale, rate)
         return written

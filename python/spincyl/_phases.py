@@ -1,4 +1,4 @@
-"""Phases of a motion with friction or restitution, and its impacts: slipping, rolling, flying, lying."""
+"""Phases (slipping, rolling, flying, lying) and impacts of a motion with friction or restitution."""
 
 from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
@@ -17,39 +17,39 @@ Kind: TypeAlias = Literal["rolling", "slipping", "flying", "lying", "pivoting", 
 #: Kind of phase for each code in `Motion.phase`.
 KINDS: tuple[Kind, ...] = ("rolling", "slipping", "flying", "lying", "pivoting", "rolling on its side")
 Hit: TypeAlias = Literal["slips", "sticks", "slips on", "smooth", "both rims"]
-#: What the contact point does in an impact, for each code of the core.
+#: Behaviour of the contact point in an impact, for each code of the core.
 HITS: tuple[Hit, ...] = ("slips", "sticks", "slips on", "smooth", "both rims")
 
 
 class Phase(NamedTuple):
-    """A part of a motion in which the body does one thing, told by its begin."""
+    """A phase of a motion, such as slipping or rolling: the time, kind and state with which it begins."""
 
-    time: float  #: when it begins
+    time: float  #: sqrt(R/g), in seconds for a measured body
     kind: Kind  #: "slipping", "rolling", "flying"; on both rims "lying", "pivoting", "rolling on its side"
-    state: State  #: where it begins, with the slip
+    state: State  #: with its slip, in natural units
 
     def __repr__(self) -> str:
         return f"({self.time:.12g}, {self.kind!r})"
 
 
 class Impact(NamedTuple):
-    """An impact of a rim on the table. Of a measured body, time, impulse and energy are in SI."""
+    """An impact of a rim on the table; for a measured body time, impulse and energy are in SI."""
 
-    time: float
-    rim: Literal["first", "other"]  #: the rim from which the start was told, or the other one
-    #: whether the contact point slips to the end, sticks, stops and slips on, or has no friction; or
-    #: "both rims": the other rim lands without a bounce
+    time: float  #: sqrt(R/g), or seconds
+    rim: Literal["first", "other"]  #: the rim to which theta of the initial state refers, or the other rim
+    #: motion of the contact point: "slips" to the end, "sticks", stops and "slips on", "smooth" (without
+    #: friction); or "both rims": the other rim lands without a bounce
     kind: Hit
-    #: along the lean, across it, upwards, in M sqrt(g R); of both rims together
+    #: along e_h, along e2, upward, in M sqrt(g R) or N s; of both rims together
     impulse: tuple[float, float, float]
-    lost: float  #: energy, in M g R
-    before: State  #: as seen from the rim that lands, with its slip, and `lift` < 0
-    after: State
-    stays: bool  #: whether it is the last of a sequence of bounces, which are over within a moment
+    lost: float  #: energy lost, in M g R or J
+    before: State  #: state before, whose theta refers to the rim that lands, with its slip and `lift` < 0
+    after: State  #: state after
+    stays: bool  #: whether it ends a sequence of ever smaller bounces, after which the rim stays on the table
 
 
 def impacts(found: Iterable[tuple[Any, ...]]) -> tuple[Impact, ...]:
-    """Impacts from the numbers of the core."""
+    """Make impacts from the numbers of the core."""
 
     def state(four: Sequence[float], u: Sequence[float]) -> State:
         return State(*four, slip=(u[0], u[1]), height=0.0, lift=u[2])
@@ -69,17 +69,17 @@ def rubs(contact: object) -> bool:
 
 
 def check(state: State, contact: AnyContact, restitution: object, settings: dict[str, Any]) -> None:
-    """Refuse arguments that the contact excludes: a slip without friction, settings of other methods.
+    """Raise ValueError for arguments that the contact excludes, such as a slip without friction.
 
     `settings` are the settings of rolling that were given, by name.
     """
     if restitution is None:
-        landed(state, "give restitution=0.0, or how much of its velocity an impact gives back")
+        landed(state, "give restitution=, the coefficient of restitution of impacts, 0 to 1")
     elif not 0 <= number("restitution", restitution) <= 1:
         raise ValueError(f"restitution = {restitution!r}: expected None, or 0 <= restitution <= 1")
     if not isinstance(contact, Coulomb | Viscous):
         if restitution is None or state.height is None:
-            gripping(state, f"contact={contact!r} has no law for that; give contact=sc.Coulomb(mu)")
+            gripping(state, f"contact={contact!r} has no law of friction; give contact=sc.Coulomb(mu)")
         if restitution is None:
             return
         for name in filter(settings.__contains__, ("step", "method", "beyond")):
@@ -90,10 +90,10 @@ def check(state: State, contact: AnyContact, restitution: object, settings: dict
 
 
 _WHY = {
-    "step": "slipping has steps of its own, tol= is their error",
-    "method": "slipping has one of its own, and phases that roll are exact",
-    "mu": "the contact has the coefficient, as in contact=sc.Coulomb(0.3)",
-    "beyond": "there is nothing beyond an end",
+    "step": "give tol=, the tolerance of the steps of slipping",
+    "method": "slipping is integrated with steps of eighth order, and rolling is exact",
+    "mu": "give the coefficient to the contact, as in contact=sc.Coulomb(0.3)",
+    "beyond": "the solution cannot continue past the end of such a motion",
 }
 
 
@@ -105,12 +105,12 @@ def slipping(four: Sequence[float], slip: Sequence[float] | None) -> State:
 def phases(
     found: Iterable[tuple[float, int, Sequence[float], Sequence[float]]], state: Callable[..., Any] = slipping
 ) -> tuple[Phase, ...]:
-    """Phases from the numbers of the core; `state` makes a state of numbers and slip."""
+    """Make phases from the numbers of the core; `state` makes a state from numbers and slip."""
     return tuple(Phase(time, KINDS[kind], state(numbers, slip)) for time, kind, numbers, slip in found)
 
 
 def told(phases: Sequence[Phase], unit: str = "") -> str:
-    """Phases in words, "slipping from t = 0, rolling from t = 28.3"; of many, the first two and the last."""
+    """Phases in words, "slipping from t = 0, rolling from t = 28.3"; if many, the first two and the last."""
     words = [f"{phase.kind} from t = {phase.time:.6g}{unit}" for phase in phases]
     if len(words) > 4:
         words[2:-1] = [f"... ({len(words)} phases)"]
@@ -120,7 +120,7 @@ def told(phases: Sequence[Phase], unit: str = "") -> str:
 def how_found(phases: Sequence[Phase], within: float) -> str:
     """The methods that computed the phases, in words."""
     how = {
-        "slipping": f"slip found by steps within {within:g}",
+        "slipping": f"slipping by steps within {within:g}",
         "rolling": "rolling by first integrals",
         "flying": "flight in closed form",
     }
@@ -141,6 +141,6 @@ def two_rims(body: "Body") -> bool:
 
 
 def lowest(body: "Body", theta: Floats, rim: Floats) -> Floats:
-    """(n,) height of the lowest place of a body, from that of its rim: in the air the other may be lower."""
+    """(n,) height of the lowest point of a body, from that of one rim; in the air the other may be lower."""
     found: Floats = np.maximum(rim + _core.lower_rim(theta, *body._numbers), 0.0)
     return found

@@ -1,4 +1,4 @@
-"""The state of a body that rolls or slips: four numbers, or six, or arrays of them."""
+"""The state of a body: four numbers, six with a slip, or arrays of them."""
 
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
@@ -31,10 +31,10 @@ if TYPE_CHECKING:
 @compared
 @dataclass(frozen=True, eq=False, repr=False)
 class State:
-    """Inclination and angular velocity along the axes that follow the tilt, not the spin.
+    """Inclination and angular velocity of a body, in natural units, also for a measured body.
 
-    e3 is the symmetry axis, e2 is horizontal, z = sin(theta) e1 + cos(theta) e3. Fields may be
-    arrays that broadcast. In natural units, also where the body is measured. Source: Jackson et al., Am. J.
+    The axes follow the inclination, not the spin: e3 is the symmetry axis, e2 is horizontal, and the vertical
+    is z = sin(theta) e1 + cos(theta) e3. Fields may be arrays that broadcast. Source: Jackson et al., Am. J.
     Phys. 87, 85 (2019), Sec. II.
 
     Parameters
@@ -44,17 +44,17 @@ class State:
     w1, w2, w3 : array_like
         Angular velocity in sqrt(g/R): phi' sin(theta), -theta', phi' cos(theta) + psi'.
     slip : pair of array_like, optional
-        Velocity of the body's lowest point over the table, in sqrt(g R): along e_h, the horizontal
-        direction of the lean, cos(theta) e1 - sin(theta) e3, and across it, along e2. Default: none, the
-        body rolls. `Body.with_centre_velocity` gives the slip of a moving centre.
+        Velocity of the contact point over the table, in sqrt(g R): along the horizontal vector
+        e_h = cos(theta) e1 - sin(theta) e3, and across it, along e2. Default: none, the body rolls.
+        `Body.with_centre_velocity` computes the slip from the velocity of the centre.
     height, lift : array_like, optional
-        Of a body in the air: how high the lowest point of its rim is over the table, in R, and how fast that
-        point rises, in sqrt(g R). One of them alone: the other is 0. `dropped` makes such states.
+        For a body in the air: height of the lowest point of its rim above the table, in R, and the upward
+        velocity of that point, in sqrt(g R). If only one is given, the other is 0. `dropped` computes both.
 
     Raises
     ------
     TypeError
-        Naming the field that holds no real numbers, and for a slip that is no pair.
+        If a field has no real numbers, or the slip is not a pair; the message names the field.
     """
 
     theta: Reals
@@ -80,7 +80,7 @@ class State:
         pair = isinstance(self.slip, tuple | list) or (isinstance(self.slip, np.ndarray) and self.slip.ndim)
         if not pair or len(self.slip) != 2:
             what = type(self.slip).__name__
-            raise TypeError(f"slip: expected a pair (along the lean, across), not {what} {self.slip!r}")
+            raise TypeError(f"slip: expected a pair (along e_h, along e2), not {what} {self.slip!r}")
         along, across = self.slip
         object.__setattr__(self, "slip", (kept(reals("slip[0]", along)), kept(reals("slip[1]", across))))
         fields = dict(zip(("theta", "w1", "w2", "w3"), self._numbers, strict=True))
@@ -99,7 +99,7 @@ class State:
         slip: tuple[Reals, Reals] | None = None,
         scale: "Scale | Body",
     ) -> "State":
-        """A state of angular velocities in rad/s, and a slip in m/s; `scale` may be a measured body."""
+        """State from angular velocities in rad/s and a slip in m/s; `scale` may be a measured body."""
         metre, second, *_ = scale_of(scale)._units
         given = (("w1", w1), ("w2", w2), ("w3", w3))
         w = (reals(name, radians_per_second(name, x)) * second for name, x in given)
@@ -111,7 +111,7 @@ class State:
 
     @elementwise
     def in_si(self, scale: "Scale | Body") -> dict[str, Any]:
-        """What `from_si` takes: theta, w1, w2, w3 in rad/s, and the slip in m/s if there is one."""
+        """Arguments of `from_si` as a dict: theta (rad), w1, w2, w3 (rad/s), and the slip (m/s), if any."""
         metre, second, *_ = scale_of(scale)._units
         found = {name: getattr(self, name) / second for name in ("w1", "w2", "w3")}
         slip = None if self.slip is None else tuple(x * (metre / second) for x in self.slip)
@@ -119,17 +119,17 @@ class State:
 
     @elementwise
     def kicked(self, thetadot: Reals) -> "State":
-        """The same state with its tilting rate theta' changed by `thetadot` (sqrt(g/R)); its slip remains."""
+        """The state with `thetadot` (sqrt(g/R)) added to its rate theta'; the slip stays the same."""
         return replace(self, w2=self.w2 - reals("thetadot", thetadot))
 
     @property
     def precession(self) -> Result:
-        """phi': turning rate about the vertical, in sqrt(g/R)."""
+        """Precession phi': rate of rotation about the vertical, in sqrt(g/R)."""
         return _core.precession(*self._numbers)
 
     @property
     def spin(self) -> Result:
-        """psi': turning rate about the axis, in sqrt(g/R); the contact point runs at psi' R."""
+        """Spin psi': rate of rotation about the body's own axis, in sqrt(g/R)."""
         return _core.spin(*self._numbers)
 
     @property
@@ -144,10 +144,10 @@ class State:
 
     @property
     def contact_radius(self) -> Result:
-        """Radius of the contact point's circle on the table, over that of its circle on the body.
+        """Radius of the contact point's circle on the table over the radius of its circle on the body.
 
-        The latter is R of a sharp rim, so that it is the radius in R. Where the centre rests it is also the
-        number of still symbols a turn.
+        With a sharp rim, whose circle has the radius R, this is the radius in R. If the centre rests, it is
+        also the number of still symbols in one turn.
         """
         return _core.contact_radius(*self._numbers)
 
@@ -179,7 +179,7 @@ def numbers(state: object) -> tuple[Reals, Reals, Reals, Reals]:
 
 
 def landed(state: State, remedy: str) -> None:
-    """Refuse a state in the air, with a remedy."""
+    """Raise ValueError with a remedy for a state in the air."""
     if state.height is not None:
         raise ValueError(f"state: in the air, height = {text(state.height)}: {remedy}")
 
@@ -190,5 +190,5 @@ def gripping(state: object, why: str) -> tuple[Reals, Reals, Reals, Reals]:
     if isinstance(state, State) and state._slips:
         raise ValueError(f"state: slips, slip = {text(state._slip)}: {why}")
     if isinstance(state, State):
-        landed(state, "this is a number of a body on the table")
+        landed(state, "expected a body on the table")
     return found
