@@ -72,7 +72,7 @@ def test_in_arrays_what_is_no_drift_is_nan_and_says_so():
 def test_a_single_question_without_an_answer_is_an_error_with_its_name():
     d = sc.drift(DISK, 0.3, VISCOUS)
     for theta in (0.31, -0.1, float("nan")):
-        with pytest.raises(ValueError, match=r"^theta = .* is never there"):
+        with pytest.raises(ValueError, match=r"^theta = .* expected an inclination of the drift"):
             d.time(theta)
     for t in (-1.0, 1.001 * d.stops_at, float("nan")):
         with pytest.raises(ValueError, match=r"^t = .*: expected 0 <= t <= stops_at"):
@@ -89,7 +89,7 @@ def test_a_single_question_without_an_answer_is_an_error_with_its_name():
         (lambda: sc.drift(TALL, 0.36, VISCOUS, centre="rolling"), "kappa = -"),
         (lambda: sc.drift(TALL, sc.State(1.0, 0.3, 0.0, 0.1), VISCOUS, centre="rolling"), "theta'' = "),
         (lambda: sc.drift(TALL, TALL.steady(0.2).kicked(0.1), VISCOUS, centre="rolling"), "w2 = -0.1"),
-        (lambda: sc.drift(TALL, TALL.circular(1.2, 3.0), VISCOUS), "centre='rest' takes"),
+        (lambda: sc.drift(TALL, TALL.circular(1.2, 3.0), VISCOUS), "centre='rest' needs"),
         (lambda: sc.drift(TALL, 0.2, VISCOUS, centre="slipping"), "centre = 'slipping'"),
     ],
 )
@@ -116,7 +116,7 @@ def test_dry_contour_friction_warns_where_it_has_no_meaning():
         warnings.simplefilter("error")
         d = sc.drift(COIN, 0.3, sc.loss.DryContour(1e-3))
         assert d.theta(0.5 * d.stops_at) > 1e-3 and d.theta(d.stops_at) == 0.0
-    with pytest.warns(sc.DriftWarning, match="is asked there"):
+    with pytest.warns(sc.DriftWarning, match="is evaluated there"):
         d.time(5e-4)
 
 

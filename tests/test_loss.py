@@ -309,6 +309,6 @@ def test_a_law_of_air_asks_for_the_mass_of_the_body():
 
 @pytest.mark.parametrize("law", [DryContour, RollingResistance, Drilling])
 def test_an_arm_in_millimetres_is_warned_of(law):
-    with pytest.warns(UserWarning, match="in metres"):
+    with pytest.warns(UserWarning, match="is it in metres"):
         law.from_si(0.06, scale=EULER)
     law.from_si("0.06mm", scale=EULER)

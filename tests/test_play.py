@@ -133,7 +133,7 @@ def test_the_patch_of_a_measured_body_has_its_unit_on_the_page_as_elsewhere():
     dry = sc.Coulomb.from_si(0.3, patch="0.5mm", scale=SIZED)
     page = sc.play(SIZED, contact=dry)
     assert "patch=0.02" in page.address and page.contact.patch == dry.patch and page.motion.status == 0
-    with pytest.raises(ValueError, match="the patch of a measured body has its unit"):
+    with pytest.raises(ValueError, match="expected SI for a measured body"):
         sc.play(SIZED, contact=sc.Coulomb(0.3, patch=0.02))
     with pytest.raises(ValueError, match="patch = 0.7: expected 0 to 0.5"):
         sc.play(PIPE, contact=sc.Coulomb(0.3, patch=0.7))

@@ -1,4 +1,4 @@
-"""Contacts of a body with the table: rolling, a smooth table, or a law of friction."""
+"""Contact laws: rolling, a smooth table, or a law of friction."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, TypeAlias
@@ -19,7 +19,7 @@ Contact: TypeAlias = Literal["rolling", "smooth"]
 
 #: Names and codes of the enumerations of the core.
 CODES = {name: dict(values) for name, values in _core.codes()}
-#: Code of each kind of table, including the laws of friction.
+#: Code of each kind of contact, including the laws of friction.
 TABLES = CODES["Table"]
 
 
@@ -48,27 +48,30 @@ class _Law:
 @compared
 @dataclass(frozen=True, eq=False, repr=False)
 class Coulomb(_Law):
-    """Dry friction at the rim: it slips against mu N, and holds while rolling needs at most static N.
+    """Dry friction of the contact point.
+
+    While the contact point slips, the force of friction is mu N, opposite to the slip. The body rolls as long
+    as rolling needs a force of at most static N.
 
     Parameters
     ----------
     mu : array_like
-        Coefficient of friction while it slips: 0 (a smooth table) or more.
+        Coefficient of kinetic friction, 0 (a smooth table) or more.
     static : array_like, optional
-        Coefficient up to which a body that rolls is held, at least `mu`; infinite if it is never to slip once
-        it rolls. Default: `mu`.
+        Coefficient of static friction, at least `mu`; infinite if a rolling body must never slip. Default:
+        `mu`.
     patch : array_like, optional
-        Radius of a round patch of contact, in R, below 1: slip and drilling share one friction (Contensou),
-        under the pressure of Hertz. Nothing sticks as long as the body drills. That of a measured body has a
-        unit: `from_si`. Default: 0, a point.
+        Radius of a round patch of contact, in R, below 1, with the pressure of Hertz. Slip and drilling (the
+        rotation about the vertical) then share the friction (Contensou), and the contact does not stick while
+        the body drills. Measured bodies need `from_si`. Default: 0, a contact point.
 
     Raises
     ------
     ValueError
-        For a coefficient that is negative, NaN or, of `mu`, infinite, for a `static` below `mu`, and for a
-        `patch` of 1 or more.
+        If a coefficient is negative or NaN, `mu` is infinite, `static` is less than `mu`, or `patch` is 1 or
+        more.
     TypeError
-        Naming the coefficient that is no real number.
+        If a coefficient is not a real number; the message names it.
 
     Examples
     --------
@@ -83,7 +86,7 @@ class Coulomb(_Law):
 
     @classmethod
     def from_si(cls, mu: Reals, static: Reals = None, *, patch: Reals, scale: "Scale | Body") -> Self:
-        """With a `patch` in metres, or as in "0.3mm", for a body of this scale."""
+        """Coulomb friction with a `patch` in metres, or a text such as "0.3mm", for a body of this scale."""
         of = scale_of(scale)
         return cls(mu, static, reals("patch", si("patch", patch, "metre")) / of._units[0])._known(of)
 
@@ -114,22 +117,22 @@ class Coulomb(_Law):
 @compared
 @dataclass(frozen=True, eq=False, repr=False)
 class Viscous(_Law):
-    """Friction at the rim that grows with the speed of slipping, c N u: a wet table, a tippe top's peg.
+    """Friction proportional to the slip, c N u, as on a wet table or for the peg of a tippe top.
 
-    It never holds: a body on it slips for good, if less and less.
+    It never sticks: the body slips for ever, though less and less.
 
     Parameters
     ----------
     c : array_like
-        Coefficient of friction over speed, per sqrt(g R): 0 (a smooth table) or more. That of a measured body
-        has a unit: `from_si`.
+        Coefficient of friction over speed, in 1/sqrt(g R): 0 (a smooth table) or more. Measured bodies need
+        `from_si`.
 
     Raises
     ------
     ValueError
-        For a coefficient that is negative, NaN or infinite.
+        If the coefficient is negative, NaN or infinite.
     TypeError
-        If it is no real number.
+        If the coefficient is not a real number.
 
     Examples
     --------
@@ -143,7 +146,7 @@ class Viscous(_Law):
 
     @classmethod
     def from_si(cls, c: Reals, *, scale: "Scale | Body") -> Self:
-        """Of `c` in s/m, for a body of this scale."""
+        """Viscous friction with `c` in s/m, for a body of this scale."""
         of = scale_of(scale)
         speed = of.metres_per_second(1.0)
         return cls(_coefficient("c", si("c", c, "second/metre")) * speed)._known(of)
@@ -177,7 +180,7 @@ def _coefficient(name: str, value: Reals) -> Reals:
 
 
 def code(contact: object, rubs: bool = False) -> int:
-    """Code of a contact given by a word, or ValueError; with `rubs` its message offers laws of friction."""
+    """Code of the contact "rolling" or "smooth"; with `rubs` the error also proposes laws of friction."""
     if not isinstance(contact, str) or contact not in ("rolling", "smooth"):
         last = ", 'smooth', sc.Coulomb(mu) or sc.Viscous(c)" if rubs else " or 'smooth'"
         raise ValueError(f"contact = {contact!r}: expected 'rolling'{last}")
@@ -190,14 +193,14 @@ def rolls(contact: object) -> bool:
 
 
 def table(contact: AnyContact, mu: float, own: bool = False) -> tuple[int, tuple[float, float, float]]:
-    """Code and coefficients of a table for the core; ValueError if the coefficients are arrays.
+    """Code and coefficients of a contact for the core; ValueError if the coefficients are arrays.
 
-    A law that the user wrote is refused by TypeError, unless `own`.
+    A law that the user wrote raises TypeError, unless `own`.
     """
     if isinstance(contact, str):
         return TABLES[contact], (mu, 0.0, 0.0)
     if contact._function is not None and not own:
-        raise TypeError(f"contact = {contact!r}: a law of your own moves a single body by sc.roll")
+        raise TypeError(f"contact = {contact!r}: a custom law works only in sc.roll, for a single body")
     if not is_scalar(*contact._numbers):
         raise ValueError(f"contact = {contact!r}: expected single numbers, not arrays of them")
     first, second, patch = map(float, contact._numbers)
@@ -205,24 +208,24 @@ def table(contact: AnyContact, mu: float, own: bool = False) -> tuple[int, tuple
 
 
 def kind(contact: AnyContact) -> AnyContact:
-    """The contact with coefficient 0: the coefficients of many motions stand in columns."""
+    """The same contact with coefficient 0, for many motions, whose coefficients are in columns."""
     return contact if isinstance(contact, str) else type(contact)(0.0)
 
 
 def fitting(contact: AnyContact, scale: Scale | None) -> None:
-    """Refuse a viscous coefficient of a measured body unless it was given in SI for the body's scale."""
+    """Raise ValueError for a measured body if `c` or `patch` was not given in SI for the body's scale."""
     if scale is not None and isinstance(contact, Viscous) and not contact._sized:
-        why = "a coefficient of a measured body has its unit, sc.Viscous.from_si(..., scale=body)"
-        raise ValueError(f"contact = {contact!r}: {why}; body.natural takes this one")
+        why = "expected SI for a measured body, sc.Viscous.from_si(..., scale=body)"
+        raise ValueError(f"contact = {contact!r}: {why}; or take body.natural")
     if scale is not None and has_patch(contact) and not contact._sized:  # type: ignore[union-attr]
-        why = 'the patch of a measured body has its unit, sc.Coulomb.from_si(mu, patch="0.3mm", scale=body)'
-        raise ValueError(f"contact = {contact!r}: {why}; body.natural takes this one")
+        why = 'expected SI for a measured body, sc.Coulomb.from_si(mu, patch="0.3mm", scale=body)'
+        raise ValueError(f"contact = {contact!r}: {why}; or take body.natural")
     if isinstance(contact, Viscous) or has_patch(contact):
         other(f"contact = {contact!r}", contact._sized, scale)  # type: ignore[union-attr]
 
 
 def has_patch(contact: object) -> bool:
-    """Whether a table has a patch of contact, or some of several do."""
+    """Whether a contact, or one of several contacts, has a patch."""
     if not isinstance(contact, Coulomb):
         return False
     patch = contact.patch

@@ -1,4 +1,4 @@
-"""Slow drift along steady states, to rest."""
+"""Slow drift along steady states until the body rests."""
 
 import warnings
 from dataclasses import dataclass
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _CENTRES = ("rest", "rolling")
-_ROLLS = "a drift is of a body that does not slip; dataclasses.replace(state, slip=None) rolls"
+_ROLLS = "expected a state without slip, as dataclasses.replace(state, slip=None)"
 _NOBODY = "no drift"
 
 
@@ -44,39 +44,43 @@ _NO_COUPLE = "dry contour friction has no meaning below theta = eps, and this dr
 
 
 class DriftWarning(UserWarning):
-    """A drift goes beyond what its law of loss is good for."""
+    """A drift leaves the range in which its law of loss is valid."""
 
 
 @compared
 @dataclass(frozen=True, eq=False, repr=False)
 class Drift:
-    """A slow drift from the time 0 on: what `drift` gives. Single numbers, or arrays of one shape.
+    """Slow drift of one body, or of many, from the time 0 on; the result of `drift`.
 
-    Times are in sqrt(R/g), angles in radians; of a measured body times are in seconds, `precession` in rad/s.
-    A `State` is in natural units. The methods broadcast their argument against the shape of the
-    drift: ``t[:, np.newaxis]`` asks all drifts of a row at all times. A single question that has no answer is
-    a ValueError; arrays hold NaN there.
+    Times are in sqrt(R/g), angles in radians; for a measured body times are in s, `precession` in rad/s.
+    Each `State` is in natural units. Methods broadcast their argument against the shape of the drift: with
+    ``t[:, np.newaxis]`` a row of drifts is evaluated at all times. Outside the drift, single values raise
+    ValueError, and arrays have NaN.
 
     Attributes
     ----------
     body : Body
+        Body or family.
     losses : loss.Loss
+        Laws of loss.
     centre : {"rest", "rolling"}
         Whether the centre is held at rest, or the body rolls.
     start : State
-        The state at the time 0; of arrays NaN where there is no drift.
+        State at the time 0; NaN in arrays where there is no drift.
     stops_at : float or array
-        When it ends; inf if never, NaN where there is no drift. Relative error below 1e-12 with
-        centre="rest", 1e-10 with centre="rolling"; so of a state and a precession up to 0.99 of that time,
-        however small they become, of w3 relative to the larger of w1 and w3; where theta goes as a high power
-        n of the time left, the rounding of a time, too, moves it, at 0.99 of the time by 100 n 2^-52.
+        Time at which the drift ends; inf if it never ends, NaN where there is no drift. Relative error below
+        1e-12 with centre="rest", 1e-10 with centre="rolling". States and precessions have the same relative
+        error up to 0.99 of that time (w3 relative to the larger of w1 and w3), however small they become.
+        Where theta falls as a high power n of the remaining time, rounding the time adds 100 n 2^-52 at 0.99
+        of that time.
     ends_at_theta : float or array
-        The inclination at its end, or to which it goes for ever.
+        Inclination at the end, or the limit of a drift that never ends.
     ended : str or array of str
-        "face lands", "lies down", "lowest state" (the energy is least along the branch), "balanced" (on a
-        point of the rim), "stands upright" (a ball on its pole), "no drift"; with centre="rolling" also
-        "stability lost" (kappa = 0), "contact stops" (psi' = 0 under dry contour friction or rolling
-        resistance), "drilling stops" (w_z = 0 under drilling friction).
+        How the drift ended: "face lands", "lies down", "lowest state" (the energy is least along the branch),
+        "balanced" (on a point of the rim), "stands upright" (a ball on its pole), "no drift". With
+        centre="rolling" also "stability lost" (kappa of `Body.stability` reaches 0), "contact stops"
+        (psi' = 0 with dry contour friction or rolling resistance), "drilling stops" (w_z = 0 with drilling
+        friction).
     """
 
     body: Body
@@ -90,51 +94,56 @@ class Drift:
     _shape: tuple[int, ...]
 
     def time(self, theta: Reals) -> Result:
-        """The first time at which the inclination is `theta` (radians); relative error as of `stops_at`.
+        """First time at which the inclination is `theta` (radians); relative error as for `stops_at`.
 
         Raises
         ------
         ValueError
-            If a single drift never is at a single inclination; arrays hold NaN there.
+            If a single drift never has this single inclination; arrays have NaN there.
         """
         return self._asked("theta", si("theta", theta, "radian"), 0)[0] * self.body._second
 
     def theta(self, t: Reals) -> Result:
-        """Inclination at a time, radians.
+        """Inclination at a time, in radians; relative error as for `stops_at`.
 
         Raises
         ------
         ValueError
-            If a single time is before the start or after the end; arrays hold NaN there.
+            If a single time is before 0 or after the end; arrays have NaN there.
         """
         return self._asked("t", t, 1)[0]
 
     def precession(self, t: Reals) -> Result:
-        """Omega, phi' at a time, in sqrt(g/R) or rad/s, with centre="rest" positive; errors as `theta`."""
+        """Precession phi' at a time, in sqrt(g/R) or rad/s; errors as `theta`.
+
+        With centre="rest" it is the positive rate Omega.
+        """
         return self._asked("t", t, 1)[3] / self.body._second
 
     def state(self, t: Reals) -> State:
-        """The steady state at a time; errors as `theta`."""
+        """Steady state at a time, in natural units; errors as `theta`."""
         theta, w1, w3, *_ = self._asked("t", t, 1)
         return State(theta, w1, 0.0 if is_scalar(theta) else np.zeros_like(theta), w3)
 
     def friction_coefficient(self, t: Reals) -> Result:
-        """Coefficient of friction that the state at a time needs; errors as `theta`.
+        """Coefficient of friction that the steady state at a time needs; errors as `theta`.
 
-        0 with centre="rest", ``|V|`` Omega with centre="rolling", V the speed of the centre.
+        It is 0 with centre="rest", and ``|V|`` Omega with centre="rolling", where V is the velocity of the
+        centre.
         """
         return self._asked("t", t, 1)[4]
 
     @cached_property
     def stable_until(self) -> Result:
-        """The time at which rolling becomes unstable, kappa = 0: inf if never, 0 if from the start.
+        """Time at which rolling becomes unstable, in sqrt(R/g), in seconds for a measured body.
 
-        A drift with centre="rest" goes on beyond it; one with centre="rolling" ends there.
+        There kappa of `Body.stability` is 0. inf if the drift stays stable, 0 if it begins unstable. A drift
+        with centre="rest" continues after that time; one with centre="rolling" ends there.
         """
         return self._asked("t", np.zeros(self._shape), 2)[0] * self.body._second
 
     def plot(self, ax: "Axes | None" = None) -> "Axes":
-        """Draw inclination and precession against time: see `spincyl.plot.drift`."""
+        """Draw inclination and precession against time; see `spincyl.plot.drift`."""
         drawn: Axes = above("Drift.plot")(self, ax)
         return drawn
 
@@ -146,7 +155,7 @@ class Drift:
         return f"{what}shape {self._shape}>"
 
     def _asked(self, name: str, x: Reals, question: int) -> list[Result]:
-        """The five numbers that the core returns for each x; the code `question` gives the meaning of x."""
+        """The five numbers that the core returns for each x: theta (code 0), time (1), or unused (2)."""
         if question == 1 and self.body.scale is not None:
             x = si(name, x, "second")
         x = reals(name, x)
@@ -165,13 +174,13 @@ class Drift:
         eps = eps[0] if eps.size == 1 else eps[of]
         with np.errstate(invalid="ignore"):
             if question != 2 and np.any((seen < eps) & (seen > 0.0) & ~np.isnan(out[:, 0])):
-                warnings.warn(_NO_COUPLE + "is asked there", DriftWarning, stacklevel=3)
+                warnings.warn(_NO_COUPLE + "is evaluated there", DriftWarning, stacklevel=3)
         if single:
             found = [float(value) for value in out[0]]
             if np.isnan(found[0]) and name == "theta":
                 first, last = float(np.asarray(self.start.theta)), self.ends_at_theta
                 raise ValueError(
-                    f"theta = {x!r}: the drift goes from {first!r} to {last!r} and is never there"
+                    f"theta = {x!r}: expected an inclination of the drift, from {first!r} to {last!r}"
                 )
             if np.isnan(found[0]) and question == 1:
                 raise ValueError(f"t = {x!r}: expected 0 <= t <= stops_at = {self.stops_at!r}")
@@ -182,50 +191,52 @@ class Drift:
 def drift(
     body: Body, theta: Reals | State, losses: Any, centre: str = "rest", *, threads: int | None = None
 ) -> Drift:
-    """Slow drift along steady states, first order in the losses: a body without nutation goes to rest.
+    """Compute the slow drift of a body along its steady states until it rests.
 
-    The two drifts are answers to two questions. With centre="rest" something, slip of which there is enough,
-    keeps the centre of mass where it is, and the body slides down the energy of the paper's steady states,
-    theta' = -P/E'(theta); above a ridge of the energy it goes up. With centre="rolling" it never slips: its
-    losses push it off the line on which the centre rests, onto circles, and nothing brings it back.
+    The drift is the motion to first order in the losses of a body without nutation. With centre="rest" the
+    centre of mass stays at rest, kept there by enough slip, and the energy E(theta) of the steady states
+    falls: theta' = -P/E'(theta). Above a ridge of the energy the inclination increases. With centre="rolling"
+    the body never slips: the losses move its centre from rest onto circles, and the centre does not return.
 
     Parameters
     ----------
     body : Body
-        A single body or a family; a measured one drifts in seconds.
+        Single body or family; a measured body drifts in seconds.
     theta : array_like or State
-        Inclination of the steady state with the centre at rest to begin with, radians; or a steady state,
-        with centre="rolling" also one whose centre runs on a circle.
+        Inclination in radians of the initial steady state, whose centre rests; or a steady state, with
+        centre="rolling" also one whose centre moves on a circle.
     losses : loss.Loss
-        A law of `spincyl.loss`, or several added with `+`; their coefficients may be arrays.
+        Law of `spincyl.loss`, or several added with `+`; their coefficients may be arrays.
     centre : {"rest", "rolling"}
+        Whether slip keeps the centre at rest, or the body rolls.
     threads : int, optional
-        How many threads may work; default: every core.
+        Largest number of threads; default: every core.
 
     Returns
     -------
     Drift
-        Of the broadcast shape of bodies, starts and coefficients; single numbers for single ones.
+        Broadcast shape of bodies, initial states and coefficients; single numbers for single arguments.
 
     Raises
     ------
     ValueError
-        If a single drift is none, by name: no steady state there, a forbidden inclination, a state that is
-        not steady to six digits or, with centre="rest", whose centre does not rest, with centre="rolling"
-        kappa <= 0. In arrays NaN and "no drift".
+        If a single drift is impossible: no steady state at a forbidden inclination, a state that is not
+        steady to six digits, with centre="rest" a state whose centre moves, with centre="rolling" an unstable
+        state (kappa <= 0). The message names the argument. Arrays have NaN and "no drift" there.
 
     Warns
     -----
     DriftWarning
-        If dry contour friction has to do with theta below eps, where its couple has no meaning: a start
-        there, or a question about an inclination there other than the end. If a measured body starts where no
-        film of AirFilm fills the gap (see there); of another the scale is not known.
+        If a drift with dry contour friction starts, or is evaluated before its end, at theta below eps, where
+        the couple has no meaning. If a measured body starts at an inclination at which the film of `AirFilm`
+        does not fill the gap; without a scale this is not known.
 
     Notes
     -----
-    centre="rest": Jackson et al., Am. J. Phys. 87, 85 (2019), Eq. 15, and t = -int E'/P dtheta by Gauss's
-    quadrature. centre="rolling": theta' = -(S_w1 a1 + S_w3 a3)/(J kappa), a the couple's part of (w1', w3'),
-    S = J w2' of the rolling body, by steps of eighth order on the surface of circular steady states.
+    centre="rest": Jackson et al., Am. J. Phys. 87, 85 (2019), Eq. 15, and t = -int E'/P dtheta by Gaussian
+    quadrature. centre="rolling": theta' = -(S_w1 a1 + S_w3 a3)/(J kappa) by steps of eighth order on the
+    surface of circular steady states, where S = J w2' for the rolling body, and a1, a3 are the parts of w1'
+    and w3' that are due to the couple.
 
     Examples
     --------
@@ -276,7 +287,8 @@ def drift(
         if np.any((columns["viscosity"] > 0) & (columns["theta"] > fills)):
             below = f"below theta = {np.max(fills):.2g}"
             message = (
-                f"the film of AirFilm fills the gap {below} only, and this drift starts above: BoundaryLayer"
+                f"the film of AirFilm fills the gap {below} only, and this drift starts above that: "
+                "see loss.BoundaryLayer"
             )
             warnings.warn(message, DriftWarning, stacklevel=2)
     if shape == ():
@@ -295,11 +307,11 @@ _COLUMNS: tuple[str, ...] = (
 def _resting(
     body: Body, state: State, columns: dict[str, Floats], shape: tuple[int, ...]
 ) -> dict[str, Floats]:
-    """`columns` with theta = NaN, so no start, where the state's centre does not rest to six digits."""
+    """`columns` with theta = NaN, so no drift, where the state's centre does not rest to six digits."""
     rests = np.broadcast_to(_core.rests(*state._numbers, *body._numbers) == 1, shape)
     if shape == () and not rests:
         own = body.steady(state.theta)
-        message = f"state = {state!r}: centre='rest' takes the state whose centre rests, {own!r}"
+        message = f"state = {state!r}: centre='rest' needs the state whose centre rests, {own!r}"
         raise ValueError(message)
     theta = np.where(rests.reshape(-1), columns["theta"], np.nan)
     return columns | {"theta": np.ascontiguousarray(theta, np.float64)}

@@ -1,4 +1,4 @@
-"""The base of the laws of loss: one positive coefficient, power, couple, and sums of laws."""
+"""The base of the laws of loss, each with one positive coefficient, and sums of laws."""
 
 import warnings
 from dataclasses import dataclass, fields
@@ -35,15 +35,15 @@ _EXPECTED = "expected a positive number: a loss takes energy"
 
 
 class Loss:
-    """A law of loss, or several that are added: a couple on the body, and the power that it takes."""
+    """A law of loss, or a sum of laws: a couple on the body, and the power it takes."""
 
-    __array_ufunc__ = None  # NumPy's arrays are not to be added element by element
+    __array_ufunc__ = None  # so that NumPy does not add the law to each element of an array
     #: The function of a law that a user wrote.
     _function: ClassVar[Any] = None
 
     @property
     def laws(self) -> "tuple[Law, ...]":
-        """The laws, each once, as they were added."""
+        """The laws of the sum, each once, in the order in which they were added."""
         raise NotImplementedError
 
     @property
@@ -58,31 +58,32 @@ class Loss:
 
     @elementwise
     def power(self, body: Body, state: State, normal: Reals = 1.0) -> Result:
-        """Power that is lost, in M g R sqrt(g/R): P = -m.w >= 0, so that dE/dt = -P.
+        """Power lost, in M g R sqrt(g/R): P = -m.w >= 0, so that dE/dt = -P.
 
         Parameters
         ----------
         body : Body
+            Body or family.
         state : State
-            Its slip does not matter here: what friction takes from a contact that slips is another loss.
+            State; its slip has no effect, since the friction of slipping is a separate loss.
         normal : array_like
-            The normal force N per weight, to which dry laws are proportional; 1 in every steady state, and of
-            a motion `Motion.normal`.
+            Normal force N in M g, to which dry laws are proportional: 1 in steady states, `Motion.normal`
+            in a motion.
 
         Returns
         -------
         float or array
-            Of the broadcast shape of body, state, normal force and coefficients; NaN where a body of a family
-            or a coefficient of an array is none. Error: a few roundings.
+            Broadcast shape of body, state, normal force and coefficients; NaN for impossible bodies or
+            coefficients of an array. Error: a few roundings.
         """
         return _core.loss_power(*self._given(body, state, normal))
 
     @elementwise
     def couple(self, body: Body, state: State, normal: Reals = 1.0) -> Result:
-        """The couple m on the body, in M g R, along e1, e2, e3: parameters as `power`.
+        """Couple m on the body along e1, e2, e3 of `State`, in M g R.
 
-        A last axis of 3 (xarray: dimension "axis"). Where what dry friction resists is at rest, its couple is
-        any up to a largest one; zero is given there.
+        Parameters, shape and errors are those of `power`, with a last axis of 3 (xarray: dimension "axis").
+        Dry friction of a rotation that is at rest is undetermined up to its largest value; it is 0 here.
         """
         return _core.loss_couple(*several(3, *self._given(body, state, normal), name="axis"))
 
@@ -109,21 +110,21 @@ class Loss:
 
 
 class Law(Loss):
-    """A law with its coefficient."""
+    """Base of the laws of loss that have one coefficient."""
 
     #: False for a coefficient in natural units; True, or the scale, if it was given in SI.
     _sized: "Scale | bool" = False
 
     def __init__(self, coefficient: Reals) -> None:
         raise TypeError(
-            "Law(coefficient) is none by itself: make one of the laws, such as sc.loss.DryContour(1e-3)"
+            "Law(coefficient) is only a base: expected one of the laws, such as sc.loss.DryContour(1e-3)"
         )
 
     def __post_init__(self) -> None:
         name, value = self._parameter, self.coefficient
         if isinstance(value, str):
             unit = f"{type(self).__name__}.from_si({value!r}, scale=body)"
-            raise TypeError(f"{name}: expected real numbers, not {value!r}; {unit} knows units")
+            raise TypeError(f"{name}: expected real numbers, not {value!r}; {unit} reads units")
         found = positive(name, value)
         refuse(name, found, lambda x: x > _MOST, f"expected at most {_MOST:g}")
         object.__setattr__(self, name, kept(found))
@@ -135,19 +136,19 @@ class Law(Loss):
 
     @property
     def coefficient(self) -> Reals:
-        """The coefficient, whatever its name."""
+        """The coefficient of the law."""
         return getattr(self, self._parameter)
 
     def in_si(self, scale: "Scale | Body") -> Reals:
-        """The coefficient in the unit that its `from_si` takes."""
+        """The coefficient in the unit of SI that `from_si` of this law takes."""
         small = 2.0**-40  # no law warns of so small a coefficient
         law = type(self).from_si(small, scale=scale)  # type: ignore[attr-defined]
         return self.coefficient / law.coefficient * small
 
     def _printed(self, scale: "Scale | bool | None") -> tuple[float, str]:
-        """The factor from the coefficient to what is printed, and its unit, which `from_si` reads in a text.
+        """The factor from the coefficient to the printed number, and its unit, which `from_si` reads.
 
-        In natural units where the size is not known, or the mass is not and the law needs it.
+        Natural units if the size is unknown, or if the law needs the mass and it is unknown.
         """
         unit = _PRINTED[self._parameter]
         if not isinstance(scale, Scale) or not (unit == "mm" or scale._is_weighed):
@@ -157,12 +158,12 @@ class Law(Loss):
 
     @property
     def exponent(self) -> float | None:
-        """The power of the time that is left as which theta of a thin disk falls; None if it never stops."""
+        """Exponent n: theta of a thin disk falls as the n-th power of the remaining time; None: no stop."""
         return _LAWS[self._parameter]
 
     @property
     def laws(self) -> "tuple[Law, ...]":
-        """Itself."""
+        """The law itself, as a tuple of one."""
         return (self,)
 
     def __repr__(self) -> str:
@@ -171,12 +172,12 @@ class Law(Loss):
 
 @dataclass(frozen=True, eq=False, repr=False, init=False)
 class Sum(Loss):
-    """Laws that act together: their couples add, and so do their powers. What `+` gives.
+    """Sum of laws of loss, whose couples and powers add; the result of `+`.
 
     Parameters
     ----------
     laws : iterable of Loss
-        At least one. The coefficients of what is given twice are added, which is the same law.
+        At least one law. The coefficients of a law that is given twice are added.
 
     Examples
     --------
@@ -215,7 +216,7 @@ class Sum(Loss):
 
     @property
     def laws(self) -> tuple[Law, ...]:
-        """The laws, each once, as they were added."""
+        """The laws of the sum, each once, in the order in which they were added."""
         return self._laws
 
     def __repr__(self) -> str:
@@ -229,7 +230,7 @@ def _added(laws: tuple[Law, ...]) -> Loss:
 
 
 def titled(losses: Loss, scale: Scale | None = None) -> str:
-    """Laws with their coefficients to four digits; with a scale in the units that `from_si` reads."""
+    """Laws with their coefficients to four digits; with a scale, in the units that `from_si` reads."""
     if losses._function is not None:
         return repr(losses)
     scaled = [(law, *law._printed(scale or law._sized)) for law in losses.laws]
@@ -255,7 +256,7 @@ def arm(name: str, value: Reals, scale: "Scale | Body") -> Reals:
     """Convert an arm from metres to R; warn if it exceeds R/2, since millimetres were probably meant."""
     found = over(positive(name, value, "metre"), units(scale)[0])
     if np.any(np.asarray(found) > 0.5):
-        told = f"{name}: half the radius of the body or more; it is in metres, or a text such as '0.1mm'"
+        told = f"{name}: exceeds half the radius of the body; is it in metres? Or give a text such as '0.1mm'"
         warnings.warn(told, UserWarning, stacklevel=3)
     return found
 
@@ -276,7 +277,7 @@ def made_law(losses: object, body: Body | None = None) -> Loss:
     bare = [] if body is None or body.scale is None else [law for law in losses.laws if not law._sized]
     if bare:
         made = f"sc.loss.{type(bare[0]).__name__}.from_si(..., scale=body)"
-        why = f"a coefficient of a measured body has its unit, {made}; body.natural takes this one"
+        why = f"expected SI for a measured body, {made}; or take body.natural"
         raise ValueError(f"losses = {losses!r}: {why}")
     for law in losses.laws:
         other(f"losses = {law!r}", law._sized, None if body is None else body.scale)
@@ -284,14 +285,12 @@ def made_law(losses: object, body: Body | None = None) -> Loss:
 
 
 def units(scale: "Scale | Body", weighed: bool = False) -> tuple[float, float, float]:
-    """Metres, seconds and joules of the natural units; with `weighed` the mass has to be known."""
+    """Metres, seconds and joules of the natural units; with `weighed`, an error if the mass is unknown."""
     found = scale_of(scale)
     if weighed and found.mass == 1.0 and isinstance(scale, Scale):
-        message = (
-            "this law needs the mass of the body, and the scale has the default of 1 kg: Scale(radius, mass)"
-        )
+        message = f"scale = {found!r}: the law of loss needs the mass, and 1 kg is the default; give mass="
         warnings.warn(message, UserWarning, stacklevel=4)
     if weighed:
-        found._joule("a coefficient of this loss")  # refuses an unknown mass
+        found._joule("the coefficient of this law of loss")  # raises ValueError if the mass is unknown
     metres, seconds, joules, _ = found._units
     return metres, seconds, joules

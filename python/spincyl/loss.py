@@ -1,17 +1,17 @@
-"""Laws of loss: what takes the energy of a body that spins, rolls and comes to rest.
+"""Laws of loss, which take the energy of a body that spins, rolls and comes to rest.
 
-Each law is a couple on the body with one positive coefficient; laws are added with `+`. Which of them stops a
-coin is a debate of twenty-five years: they are offered, to be fitted and compared, and none is picked.
+Each law is a couple on the body with one positive coefficient; laws are added with `+`. Which law stops a
+coin has been debated for twenty-five years; fit and compare them, since none is preferred here.
 
-With s, c the sine and cosine of theta, psi' = w3 - w1 c/s the spin along the rim, w_h = -s psi' the rolling,
-w2 the rocking, w_z = s w1 + c w3 the drilling, N the normal force, A the radius of the circle of contact (1
-of a sharp rim), h = c e1 - s e3, a law takes the power P. Last its `exponent`, how theta of a thin disk
-falls with the time that is left::
+Symbols: s and c are the sine and cosine of theta, psi' = w3 - w1 c/s the spin, w_h = -s psi' the rolling, w2
+the rocking, w_z = s w1 + c w3 the drilling, N the normal force, A the radius of the contact point's circle on
+the body (1 for a sharp rim), and h = c e1 - s e3. The table gives the power P of each law, and its
+`exponent` n: theta of a thin disk falls as the n-th power of the remaining time::
 
     DryContour(eps)           P = eps N A |psi'|                      2/3
     ViscousContour(c)         P = c (A psi')^2                        1/2
     RollingResistance(delta)  P = delta N sqrt(w_h^2 + w2^2)          2
-    Drilling(length)          P = length N |w_z|                      none: it never stops
+    Drilling(length)          P = length N |w_z|                      none: the disk never stops
     AirLinear(b)              P = b w.w                               none
     AirQuadratic(b2)          P = b2 |w|^3                            none
     AirFilm(viscosity)        P = (pi/4) viscosity psi'^2/s           1/3
@@ -69,20 +69,21 @@ _AIR, _DENSITY = 1.8e-5, 1.2  # Pa s, kg/m^3
 class DryContour(Law):
     """Dry friction along the contour of the rim: ``P = eps N A |psi'|``.
 
-    m = eps N A sgn(psi') h/s. The weight's reaction runs ahead of the contact by eps/s, which has no meaning
-    beyond the rim, at theta below eps or so. Le Saux, Leine and Glocker, J. Nonlinear Sci. 15, 27 (2005).
+    The couple is m = eps N A sgn(psi') h/s. It means that the normal force acts ahead of the contact point by
+    eps/s. This is impossible beyond the rim, at theta below about eps. Source: Le Saux, Leine and Glocker,
+    J. Nonlinear Sci. 15, 27 (2005).
 
     Parameters
     ----------
     eps : array_like
-        Positive, in R. A coin that stops after seconds has about 1e-3, Euler's disk 1e-4.
+        Coefficient in R, positive: about 1e-3 for a coin that stops after seconds, 1e-4 for Euler's disk.
     """
 
     eps: Reals
 
     @classmethod
     def from_si(cls, eps: Reals, *, scale: Scale | Body) -> Self:
-        """Of `eps` in metres."""
+        """Law with `eps` in metres, or a text such as "0.1mm", for a body of this scale."""
         return sized(cls(arm("eps", eps, scale)), scale)
 
 
@@ -90,99 +91,99 @@ class DryContour(Law):
 class ViscousContour(Law):
     """Viscous friction along the contour of the rim: P = c (A psi')^2, m = c A^2 psi' h/s.
 
-    Leine, Arch. Appl. Mech. 79, 1063 (2009); a loss that grows as the square of the rate was seen by McDonald
-    and McDonald, arXiv physics/0008227.
+    Source: Leine, Arch. Appl. Mech. 79, 1063 (2009). McDonald and McDonald, arXiv physics/0008227, observed a
+    loss that grows as the square of the rate.
 
     Parameters
     ----------
     c : array_like
-        Positive, in M R sqrt(g R).
+        Coefficient in M R sqrt(g R), positive.
     """
 
     c: Reals
 
     @classmethod
     def from_si(cls, c: Reals, *, scale: Scale | Body) -> Self:
-        """Of `c` in N m s; the scale needs the mass."""
+        """Law with `c` in N m s, for a body of this scale, which needs the mass."""
         return sized(cls(over(positive("c", c, "newton*metre*second"), _newton_metre_seconds(scale))), scale)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class RollingResistance(Law):
-    """The classical arm of rolling friction: P = delta N sqrt(w_h^2 + w2^2), w_h along h and w2 along e2.
+    """Rolling friction with the classical arm delta: P = delta N sqrt(w_h^2 + w2^2).
 
-    m = -delta N (c w_h, w2, -s w_h)/sqrt(w_h^2 + w2^2). It alone takes infinitely many turns to stop a coin,
-    in a finite time.
+    The couple is m = -delta N (c w_h, w2, -s w_h)/sqrt(w_h^2 + w2^2), since w_h is along h and w2 along e2.
+    This law alone stops a coin in a finite time, but after infinitely many turns.
 
     Parameters
     ----------
     delta : array_like
-        Positive, in R.
+        Arm in R, positive.
     """
 
     delta: Reals
 
     @classmethod
     def from_si(cls, delta: Reals, *, scale: Scale | Body) -> Self:
-        """Of `delta` in metres."""
+        """Law with `delta` in metres, or a text such as "0.1mm", for a body of this scale."""
         return sized(cls(arm("delta", delta, scale)), scale)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Drilling(Law):
-    """Friction of the patch of contact, which turns on the table: ``P = length N |w_z|``.
+    """Friction of the patch of contact as it rotates on the table: ``P = length N |w_z|``.
 
-    m = -length N sgn(w_z) z. Contensou (1963); Leine, Arch. Appl. Mech. 79, 1063 (2009). By it alone a thin
-    disk never stops, a disk of finite height does.
+    The couple is m = -length N sgn(w_z) z. Source: Contensou (1963); Leine, Arch. Appl. Mech. 79, 1063
+    (2009). This law alone never stops a thin disk; it does stop a disk of finite height.
 
     Parameters
     ----------
     length : array_like
-        Positive, in R: of even pressure two thirds of the coefficient of friction times the radius of the
-        patch.
+        Coefficient in R, positive. With uniform pressure, two thirds of the coefficient of friction times the
+        radius of the patch.
     """
 
     length: Reals
 
     @classmethod
     def from_si(cls, length: Reals, *, scale: Scale | Body) -> Self:
-        """Of `length` in metres."""
+        """Law with `length` in metres, or a text such as "0.1mm", for a body of this scale."""
         return sized(cls(arm("length", length, scale)), scale)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class AirLinear(Law):
-    """Air that resists all turning slowly, as Stokes has it: P = b w.w, m = -b w.
+    """Linear drag of the air on all rotation (Stokes): P = b w.w, m = -b w.
 
     Parameters
     ----------
     b : array_like
-        Positive, in M R sqrt(g R).
+        Coefficient in M R sqrt(g R), positive.
     """
 
     b: Reals
 
     @classmethod
     def from_si(cls, b: Reals, *, scale: Scale | Body) -> Self:
-        """Of `b` in N m s; the scale needs the mass."""
+        """Law with `b` in N m s, for a body of this scale, which needs the mass."""
         return sized(cls(over(positive("b", b, "newton*metre*second"), _newton_metre_seconds(scale))), scale)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class AirQuadratic(Law):
-    """Air that resists all turning fast, Newton's drag: ``P = b2 |w|^3, m = -b2 |w| w``.
+    """Quadratic drag of the air on all rotation (Newton): ``P = b2 |w|^3, m = -b2 |w| w``.
 
     Parameters
     ----------
     b2 : array_like
-        Positive, in M R^2. Of a long rod about (Cd/2) (density R^3/M) ell^4.
+        Coefficient in M R^2, positive: about (Cd/2) (density R^3/M) ell^4 for a long rod in air.
     """
 
     b2: Reals
 
     @classmethod
     def from_si(cls, b2: Reals, *, scale: Scale | Body) -> Self:
-        """Of `b2` in N m s^2; the scale needs the mass."""
+        """Law with `b2` in N m s^2, for a body of this scale, which needs the mass."""
         _, seconds, joules = units(scale, weighed=True)
         return sized(cls(over(positive("b2", b2, "newton*metre*second**2"), joules * seconds**2)), scale)
 
@@ -191,22 +192,24 @@ class AirQuadratic(Law):
 class AirFilm(Law):
     """A viscous film of air between a flat face and the table: P = (pi/4) viscosity psi'^2/s.
 
-    m = (pi/4) viscosity psi' h/s^2. Moffatt, Nature 404, 833 (2000). The film has to fill the gap,
-    theta^(3/4) below nu^(1/2) (R/(4 g))^(1/4)/R with nu the kinematic viscosity of air: 0.005 rad of Euler's
-    disk; above that see `BoundaryLayer`. A drift of a measured body that starts above it warns.
+    The couple is m = (pi/4) viscosity psi' h/s^2. Source: Moffatt, Nature 404, 833 (2000). The film fills the
+    gap only if theta^(3/4) is below nu^(1/2) (R/(4 g))^(1/4)/R, nu the kinematic viscosity of air: below
+    0.005 rad for Euler's disk. Above that see `BoundaryLayer`; the drift of a measured body that starts
+    there issues a warning.
 
     Parameters
     ----------
     viscosity : array_like
-        Positive, in M g^(1/2)/R^(3/2); 9.5e-8 of air under Euler's disk. The pi/4 is Moffatt's estimate; with
-        no pressure at the rim, lubrication has 1.2811: a `viscosity` larger by 1.63.
+        Viscosity in M g^(1/2)/R^(3/2), positive: 9.5e-8 for air under Euler's disk. The factor pi/4 is
+        Moffatt's estimate. Lubrication theory without pressure at the rim gives 1.2811 instead: for that,
+        multiply `viscosity` by 1.63.
     """
 
     viscosity: Reals
 
     @classmethod
     def from_si(cls, viscosity: Reals = _AIR, *, scale: Scale | Body) -> Self:
-        """Of the viscosity in Pa s (default: air); the scale needs the mass."""
+        """Law with the viscosity in Pa s (default: air), for a body of this scale, which needs the mass."""
         unit = _newton_metre_seconds(scale)
         with np.errstate(over="ignore"):
             found = positive("viscosity", viscosity, "pascal*second") * units(scale)[0] ** 3 / unit
@@ -215,15 +218,15 @@ class AirFilm(Law):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class BoundaryLayer(Law):
-    """Boundary layers of the air that is pressed out below a face: ``P = k |psi'|^(5/2)``.
+    """Boundary layers of the air that is pressed out below a flat face: ``P = k |psi'|^(5/2)``.
 
-    ``m = k |psi'|^(3/2) sgn(psi') h/s``. Bildsten, Phys. Rev. E 66, 056309 (2002): above the angle at which
-    the film of `AirFilm` fills the gap.
+    The couple is ``m = k |psi'|^(3/2) sgn(psi') h/s``. Source: Bildsten, Phys. Rev. E 66, 056309 (2002). It
+    holds at inclinations above those at which the film of `AirFilm` fills the gap.
 
     Parameters
     ----------
     k : array_like
-        Positive, C sqrt(density viscosity) R^(9/4)/(M g^(1/4)).
+        Coefficient in M g^(1/4) R^(7/4), positive: C sqrt(density viscosity) R^(9/4)/(M g^(1/4)).
     """
 
     k: Reals
@@ -232,9 +235,9 @@ class BoundaryLayer(Law):
     def from_si(
         cls, C: Reals, *, scale: Scale | Body, density: Reals = _DENSITY, viscosity: Reals = _AIR
     ) -> Self:
-        """Of the number `C`, of order 0.1, and the density and viscosity of air in kg/m^3 and Pa s.
+        """Law with the number `C`, of order 0.1, and the density and viscosity of air in kg/m^3 and Pa s.
 
-        The scale needs the mass.
+        For a body of this scale, which needs the mass.
         """
         metres, seconds, joules = units(scale, weighed=True)
         density = positive("density", density, "kilogram/metre**3")
@@ -246,7 +249,7 @@ class BoundaryLayer(Law):
 
 
 def _told(kind: type[_Kind], coefficient: Reals, names: str, scale: Scale | Body) -> _Kind:
-    """A law with this coefficient, or ValueError that names the quantities it was computed from."""
+    """A law with this coefficient; ValueError names the quantities from which it was computed."""
     try:
         return sized(kind(coefficient), scale)
     except ValueError as e:
@@ -254,9 +257,9 @@ def _told(kind: type[_Kind], coefficient: Reals, names: str, scale: Scale | Body
 
 
 def film_fills(viscosity: Reals, scale: Scale) -> Result:
-    """The inclination below which the film of `AirFilm` fills the gap under a body of this scale and mass.
+    """The inclination below which the film of `AirFilm` fills the gap, for a body of this scale and mass.
 
-    The gas is as dense as air. NaN where the mass is not known.
+    The gas has the density of air. NaN if the mass is unknown.
     """
     metres, seconds, joules = units(scale)
     kinematic = np.asarray(viscosity) * (seconds * joules / metres**3) / _DENSITY
