@@ -1,4 +1,4 @@
-"""Throwing: the state in which a body leaves the hand."""
+"""Initial states of bodies that are thrown, dropped, pressed or flicked."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -26,38 +26,39 @@ from spincyl._state import State, numbers
 
 @elementwise
 def thrown(body: Body, velocity: Reals, backspin: Reals, *, scale: Scale | None = None) -> State:
-    """The state of a body thrown on edge: a hoop, a coin, or a can on its side.
+    """Initial state of a body thrown on edge: a hoop, a coin, or a can on its side.
 
-    Its axis is horizontal, and its centre moves across that.
+    The axis is horizontal, and the centre moves at right angles to the axis.
 
     Parameters
     ----------
     body : Body
-        One, or a family. Its rim touches the table at theta = pi/2. A can or a coin touches it with both of
-        its rims: `roll` follows it with ``restitution=0.0``, to where it rolls on its side.
+        Single body or family whose rim touches the table at theta = pi/2. A can or a coin touches it with
+        both rims; `roll` then needs ``restitution=0.0`` to continue until the body rolls on its side.
     velocity : array_like
-        Of the centre, in sqrt(g R); with `scale` in m/s.
+        Velocity of the centre, in sqrt(g R); for a measured body, or with `scale`, in m/s.
     backspin : array_like
-        How fast it spins, in sqrt(g/R), positive where the top moves backwards; with `scale` in rad/s.
+        Angular velocity in sqrt(g/R), positive if the top moves backward; for a measured body, or with
+        `scale`, in rad/s.
     scale : Scale, optional
-        That velocity and backspin are in SI; a measured body has it. What is returned is in natural units.
+        Scale for arguments in SI; a measured body has its own. The result is in natural units.
 
     Returns
     -------
     State
-        With w1 = w2 = 0, w3 = -backspin and slip = (0, velocity + backspin). Broadcast shape; NaN where a
-        family has no such body. Exact to a rounding.
+        State with w1 = w2 = 0, w3 = -backspin and slip = (0, velocity + backspin). Broadcast shape; NaN for
+        bodies of a family that cannot stand on edge. Exact to a rounding.
 
     Raises
     ------
     ValueError
-        For a single throw that is none, naming the value and the range.
+        If a single throw is impossible; the message names the value and the range.
     TypeError
-        Naming the argument that holds no real numbers.
+        If an argument has no real numbers; the message names it.
 
     Examples
     --------
-    A hula-hoop comes back if its backspin, times R, exceeds its velocity.
+    A hula-hoop comes back if R times its backspin exceeds its velocity:
 
     >>> import spincyl as sc
     >>> hoop, size = sc.Body.tube(0.0, bore=0.97), sc.Scale(radius=0.4)
@@ -77,8 +78,8 @@ def thrown(body: Body, velocity: Reals, backspin: Reals, *, scale: Scale | None 
     given = velocity, backspin, *body._numbers
     if is_scalar(*given):
         if body.theta_end < np.pi / 2:
-            why = "a body that can stand on edge; on two rims, as of a cup, it runs in a circle: start it"
-            raise ValueError(f"theta_end = {body.theta_end!r}: expected at least pi/2: {why} by sc.State")
+            why = "a body that can stand on edge; for one that rolls in a circle, as a cup, give a State"
+            raise ValueError(f"theta_end = {body.theta_end!r}: expected at least pi/2, {why}")
         state, slip = _core.thrown(float(velocity), float(backspin), six(body))
         return State(*state, slip=(slip[0], slip[1]))
     w3, across = _core.thrown_w3(*given), _core.thrown_slip(*given)
@@ -97,32 +98,34 @@ def dropped(
     velocity: tuple[Reals, Reals, Reals] = (0.0, 0.0, 0.0),
     scale: Scale | None = None,
 ) -> State:
-    """The state of a body in the air, from which it falls; `roll` then needs a `restitution`.
+    """Initial state of a body in the air, from which it falls; `roll` then needs a `restitution`.
 
     Parameters
     ----------
     body : Body
-        One, or a family.
+        Single body or family.
     height : array_like
-        Of its lowest point over the table, in R; of a measured body, or with `scale`, in metres. 0 or more.
+        Height of its lowest point above the table, 0 or more, in R; for a measured body, or with `scale`, in
+        metres.
     theta : array_like
         Inclination in radians.
     w1, w2, w3 : array_like, optional
-        Angular velocity, as in `State`; of a measured body, or with `scale`, in rad/s.
+        Angular velocity as in `State`, in sqrt(g/R); for a measured body, or with `scale`, in rad/s.
     velocity : three of array_like, optional
-        Of the centre of mass: along the lean, across it, upwards, in sqrt(g R); measured, in m/s.
+        Velocity of the centre of mass along e_h and e2 of `State`, and upward, in sqrt(g R); for a measured
+        body, or with `scale`, in m/s.
     scale : Scale, optional
-        A measured body has it. What is returned is in natural units.
+        Scale for arguments in SI; a measured body has its own. The result is in natural units.
 
     Returns
     -------
     State
-        With its `slip`, `height` and `lift`. Broadcast shape. Error 4 ulp (2^-53) of the largest term.
+        State with `slip`, `height` and `lift`. Broadcast shape. Error 4 ulp (2^-53) of the largest term.
 
     Raises
     ------
     ValueError, TypeError
-        Naming the argument.
+        If an argument is invalid; the message names it.
 
     Examples
     --------
@@ -134,7 +137,7 @@ def dropped(
     """
     scale = _known(body, scale)
     if not isinstance(velocity, tuple | list) or len(velocity) != 3:
-        raise TypeError(f"velocity: expected three, along the lean, across, upwards, not {velocity!r}")
+        raise TypeError(f"velocity: expected three components (e_h, e2, upward), not {velocity!r}")
     metre, second = (1.0, 1.0) if scale is None else scale._units[:2]
     height = reals("height", height if scale is None else si("height", height, "metre"))
     refuse("height", height, lambda x: ~((x >= 0) & (x < np.inf)), "expected 0 <= height, finite")
@@ -145,7 +148,7 @@ def dropped(
     state = State(theta, *w)
     rise = upwards - _core.centre_up(*numbers(state), 0.0, 0.0, *body._numbers)
     found = body.with_centre_velocity(state, along, across)
-    # a body that leans over has its other rim below that of which theta tells
+    # beyond pi/2 the other rim is lower than the rim to which theta refers
     over = _core.lower_rim(state.theta, *body._numbers)
     return replace(found, height=height / metre - over + 0.0 * rise, lift=rise + 0.0 * height)
 
@@ -160,45 +163,47 @@ def pressed(
     table: Reals = 0.0,
     scale: Scale | None = None,
 ) -> State:
-    """The state of a body on its side that a finger presses at one end until it shoots out.
+    """Initial state of a body on its side after a finger has pressed one end until the body shot out.
 
-    The finger acts on the rim at that end, the upper one, which is the end that rises if
-    `launch_number` exceeds 1. The carrying end is the other one; its slip is given.
+    The finger acts on the upper rim at theta = pi/2, the end that rises if `launch_number` exceeds 1. The
+    other end carries the body; the slip of the state is the slip of that end.
 
     Parameters
     ----------
     body : Body
-        One, or a family, with two equal rims, sharp or rounded: ell > 0 and theta_end = pi/2.
+        Single body or family with two equal rims, sharp or rounded: ell > 0 and theta_end = pi/2.
     impulse : array_like
-        Of the finger, towards the axis, in M sqrt(g R), not negative; with `scale` in N s.
+        Impulse of the finger toward the axis, 0 or more, in M sqrt(g R); for a measured body, or with
+        `scale`, in N s.
     angle : array_like
-        In (0, pi/2], radians: where the finger presses, from the top of the rim.
+        Angle from the top of the rim to the point that the finger presses, in (0, pi/2], radians.
     finger : array_like, optional
-        Coefficient of friction of the finger, which drags the surface downwards as it slips off.
+        Coefficient of friction of the finger, which drags the surface downward as it slips off.
     table : array_like, optional
-        Coefficient of friction of the table under the end that is pressed; 0: that end slips freely.
+        Coefficient of friction of the table under the pressed end; 0: that end slips freely.
     scale : Scale, optional
-        That the impulse is in SI; a measured body has it. What is returned is in natural units.
+        Scale for an impulse in SI; a measured body has its own. The result is in natural units.
 
     Returns
     -------
     State
-        At theta = pi/2, w2 = 0, and the slip of the other end, (0, u_2). The centre moves with
-        -(I1/ell) w1 whatever the finger does: it does not start at rest. Broadcast shape; NaN where an
-        element is no press. Error 8 ulp (2^-53) of the largest term.
+        State at theta = pi/2 with w2 = 0 and the slip (0, u_2) of the carrying end. For any press, the
+        velocity of the centre is -(I1/ell) w1, so the centre does not start at rest. Broadcast shape; NaN for
+        impossible elements. Error 8 ulp (2^-53) of the largest term.
 
     Raises
     ------
     ValueError
-        For a single press that is none, naming the value and the range.
+        If a single press is impossible; the message names the value and the range.
     TypeError
-        Naming the argument that holds no real numbers.
+        If an argument has no real numbers; the message names it.
 
     Notes
     -----
-    The launch of Jackson et al., Am. J. Phys. 87, 85 (2019), as an impulse: with v_2 that of the centre,
-    v_2 = J (f cos - sin) + Q, I1 w1 = -ell v_2, I3 w3 = f J - Q, where the table drags with Q, at most
-    mu J (cos + f sin), and less if that end then rolls.
+    The launch of Jackson et al., Am. J. Phys. 87, 85 (2019), as an impulse J. With the velocity v_2 of the
+    centre, the coefficient f of the finger, and the sine and cosine of `angle`:
+    v_2 = J (f cos - sin) + Q, I1 w1 = -ell v_2, I3 w3 = f J - Q. Q is the impulse of the friction of the
+    table, at most mu J (cos + f sin), and less if the pressed end then rolls.
 
     Examples
     --------
@@ -237,36 +242,39 @@ def flicked(
     centre: Reals = None,
     scale: Scale | None = None,
 ) -> State:
-    """The state of a body on its side that leaves a finger at a rate; `pressed` takes the finger's impulse.
+    """Initial state of a body flicked on its side, from its rates; see `pressed` for the finger's impulse.
+
+    Give `hertz` or `w1`, and `launch` or `spin_hertz`.
 
     Parameters
     ----------
     body : Body
-        One, or a family, with two rims: ell > 0.
+        Single body or family with two rims: ell > 0.
     hertz : array_like
-        Turns per second about the vertical, of a measured body or with `scale`.
+        Turns per second about the vertical; needs a measured body or `scale`.
     w1 : array_like
-        Or the same as an angular velocity in sqrt(g/R).
+        Angular velocity about the vertical, in sqrt(g/R).
     launch : array_like
-        The `launch_number`: above 1 the end that was pressed rises.
+        The `launch_number`: if it exceeds 1, the end that was pressed rises.
     spin_hertz : array_like
-        Or turns per second about the axis; positive is backspin against the way in which it leaves.
+        Turns per second about the axis, positive for backspin against the direction in which the body leaves;
+        needs a measured body or `scale`.
     centre : array_like, optional
-        Velocity of the centre across the axis in sqrt(g R); of a measured body, or with `scale`, in m/s.
-        Default: as a finger leaves it, -(I1/ell) w1.
+        Velocity of the centre at right angles to the axis, in sqrt(g R); for a measured body, or with
+        `scale`, in m/s. Default: -(I1/ell) w1, as after the press of a finger.
     scale : Scale, optional
-        A measured body has it.
+        Scale for arguments in SI; a measured body has its own.
 
     Returns
     -------
     State
-        At theta = pi/2, in natural units, with its slip. Broadcast shape; where w1 = 0 no w3 has a launch
-        number, and w3 is not finite. NaN where a number given is NaN.
+        State at theta = pi/2 with its slip, in natural units. Broadcast shape; NaN for NaN arguments. With
+        `launch` and w1 = 0, w3 is not finite.
 
     Raises
     ------
     ValueError, TypeError
-        Naming the argument.
+        If an argument is invalid; the message names it.
 
     Examples
     --------
@@ -281,7 +289,7 @@ def flicked(
         raise TypeError("hertz, w1, launch, spin_hertz: give one of the first two and one of the last two")
     if scale is None and not (hertz is None and spin_hertz is None):
         raise ValueError(f"{'spin_' * (hertz is None)}hertz: needs a measured body, or scale=; w1= does not")
-    refuse("ell", body.ell, lambda x: x <= 0, "a flick needs a body with two rims, ell > 0")
+    refuse("ell", body.ell, lambda x: x <= 0, "expected a body with two rims, ell > 0")
 
     def turns(name: str, value: Reals) -> Reals:
         return reals(name, turns_per_second(name, value)) / (scale.turns(1.0) if scale else 1.0)
@@ -290,7 +298,7 @@ def flicked(
     with np.errstate(divide="ignore", invalid="ignore"):
         if spin_hertz is None:
             if is_scalar(w1) and w1 == 0:
-                raise ValueError("launch: needs a rate that is not zero")
+                raise ValueError("launch: needs w1 or hertz other than 0")
             w3 = _core.launch_spin(w1, reals("launch", launch), *body._numbers)
         else:
             w3 = turns("spin_hertz", spin_hertz)
@@ -305,21 +313,21 @@ def flicked(
 
 @elementwise
 def launch_number(body: Body, state: State) -> Result:
-    """I3 w1 w3 / ell of a body on its side, at theta = pi/2 with w2 = 0.
+    """Launch number I3 w1 w3 / ell of a body on its side, at theta = pi/2 with w2 = 0.
 
-    Where it exceeds 1 the body rises on the rim that carries it, below -1 on the other one; in between it
-    stays lying, as long as friction does not act along its axis. An array for arrays, NaN where the body is
-    not on its side; infinite or NaN where ell = 0.
+    Above 1 the body rises on the rim that carries it, below -1 on the other rim. In between it stays lying,
+    as long as no friction acts along its axis. An array for arrays; NaN where the body is not on its side,
+    infinite or NaN if ell = 0.
 
     Raises
     ------
     ValueError
-        For a single state that is not on its side.
+        If a single state is not at theta = pi/2 with w2 = 0.
     """
     made("body", body, Body)
     found = _core.launch_number(*numbers(state), *body._numbers)
     if is_scalar(found) and np.isnan(found) and body.ell != 0:
-        raise ValueError(f"state = {state!r}: a launch number is that of theta = pi/2 with w2 = 0")
+        raise ValueError(f"state = {state!r}: expected a body on its side, theta = pi/2 with w2 = 0")
     return found
 
 
