@@ -145,7 +145,7 @@ def test_the_unit_of_a_stone_stays_with_its_copies_and_a_spin_may_be_in_hertz():
     assert all(copy.in_metres().scale.radius == 0.08 for copy in copies)
     family = sc.Ellipsoid.rattleback((0.08, 0.016, 0.014), twist=[0.03, 0.05])
     assert family.in_metres().scale.radius == 0.08
-    with pytest.raises(ValueError, match="sizes"):
+    with pytest.raises(ValueError, match="stones of one size"):
         sc.Ellipsoid.egg([0.02, 0.03], [0.03, 0.04]).in_metres()
     measured = stone.in_metres(0.045)
     assert sc.roll(measured, measured.spinning(hertz=0.5), 0.0).spin[0] == pytest.approx(np.pi)
@@ -374,7 +374,7 @@ def test_a_family_of_a_constructor_marks_what_is_no_stone():
 
 def test_moments_that_mass_within_a_stone_has_not_are_warned_of():
     for moments in ((1, 2, 3), (0.01, 0.02, 0.025)):
-        with pytest.warns(UserWarning, match="times what mass within the ellipsoid has at most"):
+        with pytest.warns(UserWarning, match="times the largest of a mass within the ellipsoid"):
             stone = sc.Ellipsoid.rattleback((0.06, 0.012, 0.01), moments=moments, twist=0.05)
     with pytest.warns(UserWarning, match="inertia"):
         sc.Ellipsoid((1, 1, 1), [[0.4, 0.4, 0.4], [0.7, 0.7, 0.7]])

@@ -39,35 +39,35 @@ from spincyl._weights import weighted
 @compared
 @dataclass(frozen=True, eq=False, repr=False)
 class Ellipsoid(Sized):
-    """An ellipsoid with any inertia on a table: a rattleback, an egg, a pebble. It has no axis of symmetry.
+    """An ellipsoid with any inertia on a table, called a stone: a rattleback, an egg, a pebble.
 
-    Natural units: the mass M, gravity g and the largest semi-axis a are 1, in whatever unit the lengths were
-    given. Fields may be arrays that broadcast over their leading axes: then this is a family of stones, and
-    all fields have its shape. What cannot be a stone is NaN there, and `Status.INVALID` in a sweep. Of arrays
-    of dask the family is lazy, for a lazy sweep; other questions compute it.
+    Natural units: the mass M, gravity g and the largest semi-axis a are 1. Lengths may be given in any common
+    unit. Fields may be arrays that broadcast over their leading axes; this makes a family of stones, and all
+    fields get its shape. Impossible stones of a family are NaN, and `Status.INVALID` in a sweep. With arrays
+    of dask the family is lazy, for a lazy sweep; all other methods compute it.
 
     Parameters
     ----------
     axes : array_like, (..., 3)
-        Semi-axes, in any unit of length, of at least a millionth of the largest one: half the length and half
-        the width, and of half an ellipsoid its whole depth.
+        Semi-axes, in any unit of length: half the length, half the width, and half the depth, or for half an
+        ellipsoid its whole depth. Each is at least a millionth of the largest.
     inertia : array_like, (..., 3, 3) or (..., 3)
-        Tensor of inertia about the centre of mass, along the axes of the ellipsoid, per mass, in that unit
-        squared; of three numbers, the diagonal. An array (3, 3) is one tensor. Each principal moment is at
-        most the sum of the two others.
+        Tensor of inertia about the centre of mass, per mass, in that unit squared, along the axes of the
+        ellipsoid; or its diagonal, as three numbers. An array (3, 3) is one tensor. Each principal moment is
+        at most the sum of the two others.
     offset : array_like, (..., 3), optional
-        From the centre of the ellipsoid to the centre of mass, inside the ellipsoid. Default: none.
+        Vector from the centre of the ellipsoid to the centre of mass, inside the ellipsoid. Default: zero.
     theta_end : array_like, optional
-        Inclination of axis 3 in (0, pi], radians, at which an edge lands. NaN: there is none.
+        Inclination of axis 3 in (0, pi], radians, at which an edge lands. NaN: there is no edge.
     scale : Scale, optional
-        Its size, with the largest semi-axis as the radius: then motions are in SI. See `in_metres`.
+        Size, mass and gravity, with the largest semi-axis as radius: motions are then in SI. See `in_metres`.
 
     Raises
     ------
     ValueError
-        If a single stone is none: naming the number, or with the principal moments that no body has.
+        If a single stone is impossible; the message names the number or gives the principal moments.
     TypeError
-        Naming the argument that holds no real numbers.
+        If an argument has no real numbers; the message names it.
 
     Warns
     -----
@@ -76,7 +76,7 @@ class Ellipsoid(Sized):
 
     Notes
     -----
-    Kane and Levinson, Int. J. Non-Linear Mech. 17, 175 (1982), for the equations of rolling; docs/stones.md.
+    Equations of rolling: Kane and Levinson, Int. J. Non-Linear Mech. 17, 175 (1982); docs/stones.md.
 
     Examples
     --------
@@ -116,7 +116,7 @@ class Ellipsoid(Sized):
         *fields, unit, reach = parts(rows)
         if not self._doubted and not is_lazy(reach) and np.any(reach > 1 + 1e-9):
             object.__setattr__(self, "_doubted", True)
-            most = f"{float(np.nanmax(reach)):.3g} times what mass within the ellipsoid has at most"
+            most = f"{float(np.nanmax(reach)):.3g} times the largest of a mass within the ellipsoid"
             warn(f"inertia: {most}: is it per mass, in the unit of the semi-axes squared?")
         for name, value in zip(("axes", "inertia", "offset", "theta_end"), fields, strict=True):
             object.__setattr__(self, name, kept(value))
@@ -135,7 +135,7 @@ class Ellipsoid(Sized):
 
     @classmethod
     def uniform(cls, axes: Reals, *, mass: float | None = None) -> Self:
-        """A uniform ellipsoid with these semi-axes, (..., 3); with a `mass`, or texts, it is `measured`."""
+        """Uniform ellipsoid with semi-axes (..., 3); with a `mass` (kg), or texts such as "8cm", measured."""
         axes, told = lengths("axes", axes)
         return cls._of(_core.uniform_stone, axes=(vectors("axes", axes, 3), True))._measured(told, mass)
 
@@ -149,29 +149,28 @@ class Ellipsoid(Sized):
         offset: Reals | None = None,
         mass: float | None = None,
     ) -> Self:
-        """A rattleback: its axes of inertia are turned against those of its shape.
+        """Rattleback: an ellipsoid whose principal axes of inertia are rotated against the axes of its shape.
 
         Parameters
         ----------
         axes : array_like, (..., 3)
-            Semi-axes; it stands on the end of the third. A stone that is 16 cm long, 3.2 cm wide and 1.4 cm
-            deep has (0.08, 0.016, 0.014), or ("8cm", "16mm", "14mm"): with units it is measured.
+            Semi-axes; the stone stands on the end of the third. A stone 16 cm long, 3.2 cm wide and 1.4 cm
+            deep has (0.08, 0.016, 0.014), or ("8cm", "16mm", "14mm"), which makes a measured stone.
         twist : array_like
-            Angle about axis 3, radians, by which the principal axes of inertia are turned: counterclockwise,
-            seen from above.
+            Angle of that rotation about axis 3, radians, counterclockwise as seen from above.
         moments : array_like, (..., 3), optional
             Principal moments per mass about the centre of mass. Default: those of the lower half of a uniform
             ellipsoid, whose edge lands at an inclination of pi/2.
         offset : array_like, (..., 3), optional
-            From the centre of the ellipsoid to the centre of mass. Default: of the half, 3/8 of the third
-            semi-axis below; with `moments`, none.
+            Vector from the centre of the ellipsoid to the centre of mass. Default: zero with `moments`, else
+            that of the lower half, downward by 3/8 of the third semi-axis.
         mass : float, optional
-            In kilograms: then it is measured, as by `in_metres`.
+            Mass in kilograms, which makes a measured stone, as does `in_metres`.
 
         Raises
         ------
         ValueError, TypeError
-            As of `Ellipsoid`.
+            As `Ellipsoid`.
 
         Examples
         --------
@@ -201,9 +200,9 @@ class Ellipsoid(Sized):
     def egg(
         cls, radius: Reals, half_length: Reals, offset: Reals = 0.0, *, mass: float | None = None
     ) -> Self:
-        """A uniform spheroid, whose centre of mass lies `offset` above its centre along its axis (axis 3).
+        """Uniform spheroid about axis 3 whose centre of mass lies `offset` above the centre of the spheroid.
 
-        With a `mass`, or lengths such as "22mm", it is measured, as by `in_metres`.
+        Lengths are in any common unit. A `mass` (kg), or lengths such as "22mm", make a measured stone.
         """
         given = {"radius": radius, "half_length": half_length, "offset": offset}
         given, told = lengths("", given)
@@ -216,8 +215,9 @@ class Ellipsoid(Sized):
         Parameters
         ----------
         weights : list of (mass, (x, y, z))
-            Masses in that of the stone, at places from the centre of the ellipsoid along its axes, in the
-            largest semi-axis. Of a measured stone in kilograms and metres, or texts such as "5g" and "12mm".
+            Masses in units of the mass of the stone, and positions from the centre of the ellipsoid along its
+            axes, in units of the largest semi-axis. For a measured stone in kilograms and metres, or texts
+            such as "5g" and "12mm".
 
         Examples
         --------
@@ -230,29 +230,29 @@ class Ellipsoid(Sized):
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """That of a family; () of a single stone."""
+        """Shape of the family; () for a single stone."""
         a, i, d, end = (np.shape(x) for x in (self.axes, self.inertia, self.offset, self.theta_end))
         return np.broadcast_shapes(a[:-1], i[:-2], d[:-1], end)
 
     @property
     def moments(self) -> Floats:
-        """(..., 3) principal moments about the centre of mass, in M a^2, ascending."""
+        """(..., 3) principal moments of inertia about the centre of mass, in M a^2, ascending."""
         return self._each(lambda x: _core.stone_moments(x), 3)
 
     def spinning(
         self, spin: Reals | None = None, *, hertz: Reals | None = None, pitch: Reals = 0.0, roll: Reals = 0.0
     ) -> EllipsoidState:
-        """A state that spins about the vertical, upright but for small angles.
+        """State that spins about the vertical, upright or nearly so.
 
         Parameters
         ----------
         spin : array_like
             Angular velocity about the vertical, sqrt(g/a), counterclockwise as seen from above.
         hertz : array_like
-            Instead of it, of a measured stone: turns per second.
+            Turns per second of a measured stone; replaces `spin`.
         pitch, roll : array_like
-            Angles about axis 2, then about axis 1, radians, by which it is tilted. Without any tilt it is
-            steady and spins on for ever, also where the least push would make it rock and turn back.
+            Angles of rotation from upright, radians: first `pitch` about axis 2, then `roll` about axis 1.
+            Without both the state is steady and lasts for ever, even if it is unstable.
         """
         spin = self._spin(spin, hertz)
         pitch, roll = _tilt("pitch", pitch), _tilt("roll", roll)
@@ -262,18 +262,18 @@ class Ellipsoid(Sized):
             return EllipsoidState(n, n * spin[..., None])
 
     def with_centre_velocity(self, state: EllipsoidState, x: Reals, y: Reals) -> EllipsoidState:
-        """The state whose slip is the one that this horizontal velocity of the centre means.
+        """The state with the slip that follows from a horizontal velocity of the centre of mass.
 
         Parameters
         ----------
         state : EllipsoidState
-            Its slip, if it has one, is replaced.
+            State whose slip, if it has one, is replaced.
         x, y : array_like
-            Velocity of the centre of mass in sqrt(g a), along the axes of the laboratory of the slip.
+            Velocity of the centre of mass in sqrt(g a), along the axes x and y of `EllipsoidState.slip`.
 
         Examples
         --------
-        An egg that is spun on its side, with its centre at rest:
+        An egg spun on its side, with its centre at rest:
 
         >>> import numpy as np
         >>> import spincyl as sc
@@ -292,30 +292,30 @@ class Ellipsoid(Sized):
         return replace(state, slip=slip)
 
     def hertz(self, state: EllipsoidState) -> Result:
-        """(...) turns per second about the vertical of a state; needs a measured stone."""
+        """(...) turns per second about the vertical in a state; needs a measured stone."""
         scale = self._sized("hertz")
         return scale.turns(made("state", state, EllipsoidState).spin)
 
     def rocking(self, spin: Reals | None = None, *, hertz: Reals | None = None) -> Rocking:
-        """How it rocks when it spins upright at a rate, its contact point at rest.
+        """Rocking modes of the stone as it spins upright with its contact point at rest.
 
         Parameters
         ----------
         spin : array_like
-            In sqrt(g/a), up to 1e6; broadcasts with a family.
+            Spin about the vertical in sqrt(g/a), up to 1e6; broadcasts with a family.
         hertz : array_like
-            Instead of it, of a measured stone: turns per second.
+            Turns per second of a measured stone; replaces `spin`.
 
         Returns
         -------
         Rocking
-            Growth rates and frequencies of both modes, and the four eigenvalues, to 1e-13 of the largest one.
-            In a family, NaN for what cannot spin upright.
+            Growth rates and frequencies of both modes, and the four eigenvalues; error 1e-13 of the largest.
+            NaN for stones of a family that cannot spin upright.
 
         Raises
         ------
         ValueError
-            If axis 3 of a single stone is no principal axis, or does not lead through its centre of mass.
+            If axis 3 of a single stone is not a principal axis, or does not pass through its centre of mass.
         """
         rates = np.asarray(self._spin(spin, hertz), np.float64)
         found = self._each(_core.rocking, 12, rates)
@@ -323,11 +323,11 @@ class Ellipsoid(Sized):
         return Rocking(found[..., :2], found[..., 2:4], eigenvalues)
 
     def growth_rates(self, spin: Reals | None = None, *, hertz: Reals | None = None) -> Floats:
-        """(..., 2) how fast the slow and the fast mode of rocking grow, in sqrt(g/a); see `rocking`."""
+        """(..., 2) growth rates of the slow and the fast mode of rocking, in sqrt(g/a); see `rocking`."""
         return self.rocking(spin, hertz=hertz).growth
 
     def stable(self, spin: Reals | None = None, *, hertz: Reals | None = None) -> Any:
-        """Whether neither mode of rocking grows at this spin (...); see `rocking`."""
+        """(...) whether neither mode of rocking grows at a spin; see `rocking`."""
         return np.all(self.rocking(spin, hertz=hertz).growth <= 0, axis=-1)
 
     def _measured(self, told: bool, mass: float | None) -> Self:
@@ -341,7 +341,8 @@ class Ellipsoid(Sized):
         units = units[~np.isnan(units)]
         if units.size != 1:
             raise ValueError(
-                f"radius: stones of {units.size} sizes, and a family has one scale: measure them one by one"
+                f"radius: expected stones of one size, not {units.size}, since a family has one scale;"
+                " measure each stone by itself"
             )
         return float(units[0])
 
@@ -361,15 +362,15 @@ class Ellipsoid(Sized):
         if spin is not None:
             raise TypeError("spin, hertz: give one of them")
         if self.scale is None:
-            raise ValueError("hertz: the stone does not know its size, as of in_metres(); or give spin=")
+            raise ValueError("hertz: needs a measured stone, as from in_metres(); or give spin=")
         return doubles(reals("hertz", turns_per_second("hertz", hertz))) / self.scale._units[3]
 
     def spin_limits(self) -> Floats:
-        """The spins, sqrt(g/a), at which an upright spin becomes stable or unstable; of a single stone."""
+        """Spins in sqrt(g/a) at which upright spinning becomes stable or unstable; for a single stone."""
         return np.array(_core.spin_limits(self._numbers))
 
     def energy(self, state: EllipsoidState, contact: AnyContact = "rolling") -> Result:
-        """(...) kinetic and potential energy, in M g a, with heights above the table; of a single stone."""
+        """(...) kinetic and potential energy in M g a, heights above the table; for a single stone."""
         made("state", state, EllipsoidState)
         smooth = not isinstance(contact, Coulomb | Viscous) and code(contact) == code("smooth")
         n, w, u = (np.asarray(x) for x in (state.vertical, state.w, state._pair))
@@ -431,5 +432,5 @@ class Ellipsoid(Sized):
 
 
 def _tilt(name: str, value: Reals) -> Reals:
-    """An angle in radians; warns beyond pi/2 already, where a tilt of some degrees was probably meant."""
+    """An angle in radians; warns above pi/2, where degrees were probably meant."""
     return doubles(radians(name, value, likely=math.pi / 2))

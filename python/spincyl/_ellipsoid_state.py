@@ -22,7 +22,7 @@ def doubles(value: Reals) -> Reals:
 
 
 def vectors(name: str, value: Reals, *last: int) -> Reals:
-    """A read-only array whose last axes have the lengths `last`; an error names the argument."""
+    """A read-only array whose last axes have the lengths `last`; errors name the argument."""
     array = doubles(reals(name, value))
     array = array if is_lazy(array) else np.array(array)
     if array.shape[array.ndim - len(last) :] != last or array.ndim < len(last):
@@ -35,40 +35,41 @@ def vectors(name: str, value: Reals, *last: int) -> Reals:
 
 
 class Rocking(NamedTuple):
-    """How a stone rocks that spins upright; of its two modes the slower first. In sqrt(g/a)."""
+    """The two rocking modes of a stone that spins upright, slower mode first, in sqrt(g/a)."""
 
-    growth: Floats  #: (..., 2) how fast each mode grows; negative of one that dies
-    frequency: Floats  #: (..., 2) angular frequency; 0 of a mode that leaves without rocking
-    eigenvalues: NDArray[np.complex128]  #: (..., 4) all of them
+    growth: Floats  #: (..., 2) growth rate of each mode; negative if it decays
+    frequency: Floats  #: (..., 2) angular frequency; 0 if the mode departs from upright without rocking
+    eigenvalues: NDArray[np.complex128]  #: (..., 4) eigenvalues of the linearised motion
 
 
 @compared
 @dataclass(frozen=True, eq=False, repr=False)
 class EllipsoidState:
-    """The vertical and the angular velocity of a stone, along the axes of the ellipsoid, in natural units.
+    """State of a stone, in natural units: vertical and angular velocity along the axes of the ellipsoid.
 
-    Arrays have their components along the last axis, and broadcast; those of dask stay lazy.
+    Vectors have their components along the last axis of an array. Arrays broadcast; those of dask stay lazy.
 
     Parameters
     ----------
     vertical : array_like, (..., 3)
-        Unit vector that points upward: (0, 0, 1) where axis 3 stands upright.
+        Unit vector that points upward: (0, 0, 1) if axis 3 stands upright.
     w : array_like, (..., 3)
-        Angular velocity, sqrt(g/a), where a is the largest semi-axis.
+        Angular velocity in sqrt(g/a), where a is the largest semi-axis.
     slip : array_like, (..., 2), optional
-        Velocity of the contact point over the table, sqrt(g a): along the axes x and y of the laboratory in
-        which the stone has turned from upright by the smallest angle; upside down that is a half turn about
-        axis 1. Default: none, the stone rolls.
+        Velocity of the contact point over the table, sqrt(g a), along the axes x and y of the laboratory.
+        Axes 1 and 2 of the upright stone are along x and y; the smallest rotation takes it to this state
+        (upside down, half a turn about axis 1). Default: none, the stone rolls.
 
     Raises
     ------
     TypeError, ValueError
-        Naming the field that holds no real numbers, or too few.
+        If a field has no real numbers or the wrong shape; the message names it.
 
     Notes
     -----
-    ``State(theta, w1, w2, w3)`` is ``EllipsoidState((sin(theta), 0, cos(theta)), (w1, w2, w3))`` first;
-    later `w` differs, since the axes of a `State` follow the tilt, and these the stone.
+    Initially ``State(theta, w1, w2, w3)`` equals
+    ``EllipsoidState((sin(theta), 0, cos(theta)), (w1, w2, w3))``. Later `w` differs, since the axes of a
+    `State` follow the inclination only, and the axes of the ellipsoid turn with the stone.
     """
 
     vertical: Reals
@@ -78,7 +79,7 @@ class EllipsoidState:
 
     @classmethod
     def from_si(cls, vertical: Reals, w: Reals, *, slip: Reals | None = None, scale: Any) -> "EllipsoidState":
-        """A state with angular velocities in rad/s and a slip in m/s; `scale` may be a measured stone."""
+        """State from angular velocities in rad/s and a slip in m/s; `scale` may be a measured stone."""
         metre, second, *_ = scale_of(scale)._units
         w, slip = vector_in("radian/second", "w", w), vector_in("metre/second", "slip", slip)
         found = cls(vertical, w, slip)
@@ -87,7 +88,7 @@ class EllipsoidState:
             return cls(found.vertical, found.w * second, faster)
 
     def in_si(self, scale: Any) -> dict[str, Any]:
-        """What `from_si` takes: the vertical, w in rad/s, and the slip in m/s if there is one."""
+        """Arguments of `from_si` as a dict: the vertical, w (rad/s), and the slip (m/s), if any."""
         metre, second, *_ = scale_of(scale)._units
         slip = {} if self.slip is None else {"slip": self.slip * (metre / second)}
         return {"vertical": self.vertical, "w": self.w / second} | slip
@@ -104,12 +105,12 @@ class EllipsoidState:
 
     @property
     def spin(self) -> Result:
-        """(...) angular velocity about the vertical, in sqrt(g/a)."""
+        """(...) spin: angular velocity about the vertical, in sqrt(g/a)."""
         return _core.stone_spin(*components(self.vertical), *components(self.w))
 
     @property
     def theta(self) -> Result:
-        """(...) inclination of axis 3, in radians."""
+        """(...) inclination: angle from the vertical to axis 3, in radians."""
         found: Floats = self.inclinations[..., 2]
         return found[()]
 
