@@ -1,33 +1,33 @@
 //! The error type of the library. An error names the argument, its value and the accepted range.
 
-/// The reason why a question about a body, a state, a scale or a motion has no answer.
+/// The reason why a quantity of a body, a state, a scale or a motion cannot be computed.
 ///
-/// On a grid a point without an answer is NaN with a [`Region`](crate::states::stability::Region); only a question about a
-/// single body or state is answered by an error.
+/// Only functions of a single body or state return an error. On a grid the value is NaN, and a
+/// [`Region`](crate::states::stability::Region) gives the reason.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
     /// A number lies outside the range in which it is meaningful.
     #[error("{name} = {value:?}: expected {expected}")]
     OutOfRange {
-        /// The argument's name.
+        /// Name of the argument.
         name: &'static str,
-        /// The value that was given.
+        /// Value of the argument.
         value: f64,
         /// The accepted range.
         expected: &'static str,
     },
-    /// The moments of inertia are those of no real body.
-    #[error("i3 = {i3:?}, i1 = {i1:?}: a real body satisfies i3 <= 2 i1")]
+    /// The moments of inertia are impossible for a real body.
+    #[error("i3 = {i3:?}, i1 = {i1:?}: expected i3 <= 2 i1, as for every real body")]
     Moments {
         /// Axial moment of inertia.
         i3: f64,
         /// Transverse moment of inertia.
         i1: f64,
     },
-    /// The principal moments of inertia are those of no body.
+    /// The principal moments of inertia are impossible for a body.
     #[error(
-        "principal moments of inertia {moments:?}: each is positive, and at most the sum of the two others"
+        "principal moments of inertia {moments:?}: expected each to be positive and at most the sum of the other two"
     )]
     Inertia {
         /// The principal moments, in ascending order.
@@ -57,37 +57,37 @@ pub enum Error {
         /// The inclination at which the rate grows without bound.
         theta_limit: f64,
     },
-    /// The fixed step is too large for the motion at that time: the answer would look right and be wrong.
+    /// The fixed step is too long for the motion at that time: the result would be plausible but wrong.
     #[error(
-        "step = {step:?} is too large at t = {time:?}, theta = {theta:?}: a step of {advice:.2e} would do, or tol="
+        "step = {step:?} is too large at t = {time:?}, theta = {theta:?}: use a step of {advice:.2e}, or tol="
     )]
     Step {
         /// The given step.
         step: f64,
-        /// The time at which the step is too large.
+        /// The time at which the step is too long.
         time: f64,
         /// The inclination at that time, in radians.
         theta: f64,
-        /// A step that is small enough.
+        /// A step that is short enough.
         advice: f64,
     },
-    /// The motion cannot be followed from this state on: the equations lose all their digits.
-    #[error("theta = {theta:?}: the motion cannot be followed from here, its equations lose their digits")]
+    /// The motion cannot be computed from this state on: rounding errors outweigh the terms of the equations.
+    #[error("theta = {theta:?}: the motion cannot be computed from here on: rounding errors outweigh it")]
     Lost {
         /// The inclination, in radians.
         theta: f64,
     },
     /// No contact force, or more than one, obeys Coulomb's law in this state.
-    #[error("no unique contact force (Painleve): mu = {mu:?}, theta = {theta:?}; mu_P(theta) = {limit:?}")]
+    #[error("mu = {mu:?}: no unique contact force (Painleve) at theta = {theta:?}; mu_P(theta) = {limit:?}")]
     Painleve {
         /// The coefficient of friction.
         mu: f64,
         /// The inclination, in radians.
         theta: f64,
-        /// The smallest coefficient of friction for which this can happen at this inclination.
+        /// The smallest coefficient of friction for which this can happen at this inclination, mu_P(theta).
         limit: f64,
     },
-    /// The laws of impact and friction do not determine the motion after the other rim lands.
+    /// The laws of impact and friction do not determine a unique motion after the other rim lands.
     #[error("mu = {mu:?}: the landing of the other rim has {outcomes} consistent outcomes, not one")]
     Landing {
         /// The coefficient of friction.
@@ -95,9 +95,9 @@ pub enum Error {
         /// The number of consistent outcomes.
         outcomes: usize,
     },
-    /// The phases of the motion follow each other too often for the motion to be followed so far.
+    /// The phases of the motion alternate too often for the motion to be computed up to its last time.
     #[error(
-        "slipping, rolling and the ways that dry losses resist change {count} times up to t = {time:?}: ask for times before that"
+        "too many phases: {count} (slipping, rolling, ...) up to t = {time:?}: give only times before that"
     )]
     Restless {
         /// The number of phases.
@@ -105,18 +105,18 @@ pub enum Error {
         /// The time at which the last phase began.
         time: f64,
     },
-    /// The motion hardly advances: the forces on the body change faster and faster.
+    /// Time hardly advances, because the forces on the body change faster and faster.
     #[error(
-        "t = {time:?}, theta = {theta:?}: the motion hardly advances from here, something changes ever faster or too often: \
-         ask for times before that, for fewer or smaller losses, or for a drift"
+        "t = {time:?}, theta = {theta:?}: the motion hardly advances from here, because forces change ever faster: \
+         give only times before that, use fewer or smaller losses, or compute a drift"
     )]
     Endless {
-        /// The time at which the motion was given up.
+        /// The time at which the computation stopped.
         time: f64,
         /// The inclination at that time, in radians.
         theta: f64,
     },
-    /// The memory is too small for the request.
+    /// The memory does not suffice for the request.
     #[error("too little memory: {bytes} bytes are needed at once")]
     Memory {
         /// The number of bytes that could not be allocated.
@@ -127,13 +127,12 @@ pub enum Error {
 /// Upper bound of the bytes that small work (an exact solution, a block of work, a thread) needs at any time.
 const SPARE: usize = 8 << 20;
 
-/// Returns an error if the memory is too small for small work, whose failed allocation would abort the
-/// process.
+/// Returns an error if the memory does not suffice for small work, whose failed allocation would abort the process.
 pub(crate) fn spare() -> Result<(), Error> {
     spare_for(0)
 }
 
-/// Returns an error if the memory is too small for this many bytes and for small work beside them.
+/// Returns an error if the memory does not suffice for this many bytes together with small work.
 pub(crate) fn spare_for(bytes: usize) -> Result<(), Error> {
     let bytes = bytes.saturating_add(SPARE);
     let mut all = Vec::<u8>::new();
@@ -143,7 +142,7 @@ pub(crate) fn spare_for(bytes: usize) -> Result<(), Error> {
     found
 }
 
-/// Room for `count` elements, or an error if this allocation or a small later one would abort the process.
+/// Space for `count` elements, or an error if this allocation or a small later one would abort the process.
 pub(crate) fn room<T>(count: usize) -> Result<Vec<T>, Error> {
     let bytes = count.saturating_mul(size_of::<T>());
     let mut things = Vec::new();

@@ -7,24 +7,24 @@
 //!
 //! | layer | module | contents | an equation |
 //! | --- | --- | --- | --- |
-//! | `numbers` | | single numbers, eight in lanes, with twice the digits, with a slope; sine and cosine | |
+//! | `numbers` | | types of numbers: single, eight in lanes, double-double, dual; sine and cosine | |
 //! | `methods` | [`rk4`] | one step of the method of Runge and Kutta | y + h (k1 + 2 k2 + 2 k3 + k4)/6 |
 //! | | | steps of eighth order, or stiff ones of ninth, up to an end (`flow`), roots, quadrature | |
 //! | `laws` | [`body`] | moments of inertia, theta0, thetaInf, circle of contact | g = ell s - a c, h = a s + ell c + rho |
 //! | | [`state`] | inclination and angular velocity, and numbers derived from them | phi' = w1/s, psi' = w3 - ct w1 |
 //! | | [`scale`] | metres, kilograms and seconds | time in sqrt(R/g) |
 //! | | [`newton`] | the motion under a given force | I1 w2' = I3 w1 w3 - I1 ct w1^2 - g N - h Fh |
-//! | | [`loss`] | laws of the energy that contact and air take | P = -m.w |
-//! | | [`custom`] | laws that a user writes, and motions under them | P = -m.w >= 0, F = mu(u) N |
-//! | | [`contact`] | the force of a table: [`rolling`], [`smooth`], slip; the landing of a rim | F = v' + Wf x v + z |
+//! | | [`loss`] | losses of energy to the contact and to the air | P = -m.w |
+//! | | [`custom`] | user-defined laws, and motions under them | P = -m.w >= 0, F = mu(u) N |
+//! | | [`contact`] | the contact force: [`rolling`], [`smooth`], slip; the landing of a rim | F = v' + Wf x v + z |
 //! | | [`throw`] | the state in which a body leaves the hand | v_2 = J (f cos beta - sin beta) + Q |
 //! | | [`pose`] | the orientation, the contact path and the centre of the body | P' = A psi' e2 - rho theta' e_h |
 //! | `states` | [`steady`] | steady states, their inverse, folds and ridge | rate^2 = n A/(s (n + d A c)), n = -g |
-//! | | [`stability`] | stability of steady states: smooth table, rolling | kappa = -dtheta''/dtheta along the lines |
+//! | | [`stability`] | stability of steady states: smooth, rolling | kappa = -dtheta''/dtheta along the lines |
 //! | `motions` | [`exact`] | the solution by first integrals, at any time | dt = s^2 sqrt(J/G) dx |
 //! | | [`motion`] | a motion: times, states, and the event that ends it | N > 0, F <= mu N, theta < theta_end |
 //! | | [`measured`] | bodies with a size and a mass, and their motions in SI | I1 = i1/(M R^2) |
-//! | | [`turning`] | the spin from which a tippe top turns over, or an egg rises | J = I1 w1 s + I3 w3 (ell + c) |
+//! | | [`turning`] | least spin with which a tippe top turns over or an egg rises | J = I1 w1 s + I3 w3 (ell + c) |
 //! | | [`stone`] | ellipsoids with any inertia: rattlebacks, eggs | (I + r^2 - r r^T) w' = ... + r x n |
 //! | | [`drift`] | slow drift along steady states, to rest | theta' = -P/E'(theta) |
 //! | `many` | [`sweep`] | steady states over dense grids, on lanes and threads | |
@@ -65,15 +65,16 @@ pub mod drift {
     //! rest      theta' = -P/E'(theta),   t = -int E'/P dtheta            the centre held at rest: one line of states
     //! rolling   theta' = -F/(J kappa),   F = S_w1 a1 + S_w3 a3           no slip, no nutation: a surface of states
     //! ```
-    //! *Rest* is the landscape of Jackson et al., Am. J. Phys. 87, 85 (2019): the centre is held at rest, as
-    //! slip does below a ridge of the energy. The body moves to lower energies: below a ridge theta falls,
-    //! above it theta grows. *Rolling* is the drift of a body that never slips: its losses push the body off
-    //! the line on which the centre rests, nothing brings it back, and a ridge has no effect; the drift ends
-    //! where rolling becomes unstable, kappa = 0. Both are of first order in the losses.
+    //! *Rest* is the drift of Jackson et al., Am. J. Phys. 87, 85 (2019): the centre is held at rest, as slip does
+    //! below a ridge of the energy. The body moves to lower energies: below a ridge theta decreases, above it theta
+    //! grows. *Rolling* is the drift of a body that never slips. Its losses push the body off the line of states whose
+    //! centre is at rest, and nothing brings it back; a ridge has no effect. The drift ends where rolling becomes
+    //! unstable, at kappa = 0 ([`stability`](crate::stability)). Both drifts are of first order in the losses.
     //!
-    //! Error: 1e-12 of a time at rest and 1e-10 rolling. Up to 0.99 of the time to the end the same bounds hold for theta,
-    //! w1 and Omega, relative, and for w3 relative to |w|. Where these numbers go as a high power of the time that is left,
-    //! the rounding of the time adds to their errors. Tests of `drift` and `test_late_drifts` check these bounds.
+    //! Error: 1e-12 of a time at rest and 1e-10 rolling. Up to 0.99 of the time to the end the same bounds hold for the
+    //! relative errors of theta, w1 and Omega, and for the error of w3 relative to |w|. Where these numbers vary as a
+    //! high power of the remaining time, the rounding of the time adds to their errors. Tests of `drift` and
+    //! `test_late_drifts` check these bounds.
 
     pub use crate::many::columns::LossColumns;
     pub use crate::many::drifts::{
@@ -83,16 +84,16 @@ pub mod drift {
 }
 
 pub mod custom {
-    //! Laws of loss and of friction that a user writes, and the motions of bodies under them.
+    //! User-defined laws of loss and of friction, and the motions of bodies under them.
     //!
     //! ```text
     //! m(theta, w, N)     a couple along e1, e2, e3, in M g R, that takes the power -m.w >= 0
     //! F = mu(|u|) N      friction against a slip u; a contact point at rest holds up to mu_s N
     //! ```
-    //! A law is checked before a motion begins, at a thousand states: it is finite, gives no energy, and has no step where
-    //! the motion that it resists rests. A law with a step, like dry friction, has to be rounded: tanh(x/e) in place of
-    //! sgn(x). Such motions are slower than those of the laws in [`loss`](crate::loss), since nothing of them is
-    //! known in advance.
+    //! Each law is checked at a thousand states before a motion begins. A couple has to be finite, must not supply
+    //! energy, and must not jump where the motion that it resists is at rest. A law with a jump, such as dry friction,
+    //! has to be rounded: tanh(x/e) in place of sgn(x). Such motions are computed more slowly than those under the laws
+    //! in [`loss`](crate::loss), since nothing is known of the laws in advance.
     //!
     //! Source of the example: Armstrong-Helouvry, Dupont and Canudas de Wit, Automatica 30, 1083 (1994), for Stribeck's law.
 
@@ -101,7 +102,7 @@ pub mod custom {
 }
 
 pub mod stone {
-    //! Stones: ellipsoids with any inertia, such as a rattleback or an egg, which roll and slip without an axis of symmetry.
+    //! Stones: ellipsoids with any inertia, such as a rattleback or an egg, which roll and slip.
     //!
     //! ```text
     //! D = diag(a1^2, a2^2, a3^2),   I = (i11, i22, i33, i23, i13, i12),   d = centre of mass - centre of the ellipsoid
@@ -109,11 +110,10 @@ pub mod stone {
     //! half       the lower half of it: d = (0, 0, -3 a3/8), the moments about d, and an edge that lands at pi/2
     //! theta      the inclination of axis 3, cos theta = n3
     //! ```
-    //! Natural units: the mass, the largest semi-axis and gravity are 1. An ellipsoid is not a
-    //! [`Body`](crate::Body), which is a body of revolution with three first integrals; a stone has one, its
-    //! energy, so that its motion is always integrated. [`roll`] follows a stone through rolling and
-    //! slipping, [`rolling`] follows one that always rolls, and [`Rocking`] has the small oscillations of a
-    //! stone that spins upright.
+    //! Natural units: the mass, the largest semi-axis and gravity are 1. An ellipsoid is not a [`Body`](crate::Body),
+    //! which is a body of revolution with three first integrals. A stone has only one, the energy, so that its motion
+    //! is always integrated. [`roll`] computes rolling and slipping, [`rolling`] the motion of a stone that always
+    //! rolls, and [`Rocking`] the small oscillations of a stone that spins upright.
     //!
     //! Sources: Walker, Sci. Am. 241(4), 172 (1979); Kane and Levinson, Int. J. Non-Linear Mech. 17, 175 (1982); Moffatt and
     //! Shimomura, Nature 416, 385 (2002), for the rising egg.
@@ -130,7 +130,7 @@ pub mod stone {
 #[doc = include_str!("../README.md")]
 mod readme {}
 
-/// The matrices, vectors and quaternions of poses and forces, in the version that this crate is built with.
+/// The crate of the matrices, vectors and quaternions of poses and forces, in the version that this crate uses.
 pub use nalgebra;
 
 pub use body::Body;

@@ -63,7 +63,7 @@ def test_a1_a_single_number_that_makes_no_body_is_refused_by_name_and_range(bad)
 
 
 def test_a1_moments_of_no_body_name_the_inequality():
-    with pytest.raises(ValueError, match=r"i3 = 0.5, i1 = 0.2: a real body satisfies i3 <= 2 i1"):
+    with pytest.raises(ValueError, match=r"i3 = 0.5, i1 = 0.2: expected i3 <= 2 i1, as for every real body"):
         sc.Body(ell=1.0, i1=0.2, i3=0.5)
     with pytest.raises(ValueError, match="a tube of this bore has"):
         sc.Body(ell=1.0, i1=0.7, i3=0.5, bore=0.5)

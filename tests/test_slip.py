@@ -187,7 +187,7 @@ def test_what_a_motion_without_friction_does_not_have_says_how_to_get_it():
 def test_a_state_without_a_unique_contact_force_is_refused_with_the_limit():
     pushed = sc.State(0.7, 0.0, 0.0, 0.0, slip=(3.0, 0.0))
     with pytest.raises(
-        ValueError, match=r"^no unique contact force \(Painleve\): mu = 1.6, theta = 0.7; mu_P"
+        ValueError, match=r"^mu = 1\.6: no unique contact force \(Painleve\) at theta = 0\.7; mu_P"
     ):
         sc.roll(PENCIL, pushed, 1.0, contact=sc.Coulomb(1.6))
     # the same chalk can be dragged, or pushed with less friction
@@ -420,7 +420,7 @@ def test_any_start_gives_a_motion_that_keeps_its_energy_or_a_refusal(
         m = sc.roll(body, start, np.linspace(0, 3, 31), contact=contact, want=("pose", "force"))
     except ValueError as e:
         # a slip of 1e-130 is lost beside the rotation of the body
-        refusals = ("no unique contact force (Painleve): mu = ", "cannot be followed", "hardly advances")
+        refusals = ("no unique contact force (Painleve) at", "cannot be computed", "hardly advances")
         assert any(words in str(e) for words in refusals)
         return
     total = m.energy + m.dissipated

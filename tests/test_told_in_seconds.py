@@ -72,7 +72,7 @@ def test_a_step_that_is_advised_in_seconds_would_do():
     start = TUBE.steady(1.4).kicked(0.05)
     with pytest.raises(ValueError, match=r"^step = 0\.05 s is too large at t = \S+ s") as caught:
         sc.roll(TUBE, start, 0.1, step=0.05)
-    advice = float(re.search(r"a step of (\S+) s would do", str(caught.value))[1])
+    advice = float(re.search(r"use a step of (\S+) s, or tol=", str(caught.value))[1])
     assert sc.roll(TUBE, start, 0.1, step=advice).success
 
 
@@ -89,13 +89,13 @@ def test_it_is_so_wherever_the_core_is_asked(of, monkeypatch):
     class Refuses:
         def roll(self, *_):
             raise ValueError(
-                "slipping and rolling change 7412 times up to t = 2.5: ask for times before that"
+                "too many phases: 7412 (slipping, rolling, ...) up to t = 2.5: give only times before that"
             )
 
     monkeypatch.setattr("spincyl._motion._core", Refuses())
     monkeypatch.setattr("spincyl._ellipsoid_motion._core", Refuses())
     second = float((STONE if of == "a stone" else TUBE).scale.seconds(1.0))
-    with pytest.raises(ValueError, match=rf"up to t = {2.5 * second:.12g} s: ask for times before that$"):
+    with pytest.raises(ValueError, match=rf"up to t = {2.5 * second:.12g} s: give only times before that$"):
         asked()
 
 

@@ -1,4 +1,4 @@
-//! Laws of loss and of friction that a user of the library writes, and the check that each passes before a motion begins.
+//! User-defined laws of loss and of friction, and the check of each law before a motion begins.
 
 use super::body::Body;
 use super::state::State;
@@ -9,8 +9,8 @@ use core::f64::consts::PI;
 ///
 /// A closure `|body: &Body, y: &State, normal: f64| -> [f64; 3]` is such a law.
 pub trait CoupleLaw {
-    /// The couple along e1, e2, e3 in M g R, in a state and under a normal force in M g (never negative). It is zero where
-    /// the motion that it resists rests, and continuous there.
+    /// The couple along e1, e2, e3, in M g R, in a state and under a normal force in M g (never negative). The couple
+    /// is continuous, and zero where the motion that it resists is at rest.
     fn couple(&self, body: &Body, y: &State, normal: f64) -> [f64; 3];
 }
 
@@ -24,7 +24,7 @@ impl<F: Fn(&Body, &State, f64) -> [f64; 3]> CoupleLaw for F {
 ///
 /// A closure `|speed: f64| -> f64` is such a law.
 pub trait FrictionLaw {
-    /// The coefficient of friction mu, 0 or more, at a speed of the slip in sqrt(g R), 0 or more.
+    /// The coefficient of friction mu >= 0, at a speed of the slip >= 0 in sqrt(g R).
     fn coefficient(&self, speed: f64) -> f64;
 }
 
@@ -34,13 +34,13 @@ impl<F: Fn(f64) -> f64> FrictionLaw for F {
     }
 }
 
-/// The laws of the user's own under which a body moves; the default has none.
+/// The user-defined laws under which a body moves; by default there are none.
 #[derive(Clone, Copy, Default)]
 #[non_exhaustive]
 pub struct Custom<'a> {
     /// A couple in addition to the losses of `Ask`.
     pub couple: Option<&'a dyn CoupleLaw>,
-    /// The coefficient of sliding friction, in place of that of the table.
+    /// The coefficient of sliding friction, in place of that of the contact.
     pub friction: Option<&'a dyn FrictionLaw>,
 }
 
@@ -55,22 +55,23 @@ impl<'a> Custom<'a> {
         Self { friction: Some(friction), ..self }
     }
 
-    /// Refuses a couple that gives energy, is not finite or has a step where the motion rests, and a coefficient of
-    /// friction that is negative, not finite, above that of static friction (`fixed`) at rest, or has a step.
+    /// Returns an error for a couple that supplies energy, is not finite, or jumps where the motion is at rest; and for
+    /// a coefficient of friction that is negative, not finite, above that of static friction (`fixed`) at rest, or
+    /// jumps.
     pub fn check(&self, body: &Body, fixed: f64) -> Result<(), Error> {
         self.couple.map_or(Ok(()), |law| check_couple(law, body))?;
         self.friction.map_or(Ok(()), |law| check_friction(law, fixed))
     }
 }
 
-/// The law is asked near rest at this share of a speed.
+/// The law is evaluated near rest at this share of a speed.
 const NEARLY: f64 = 1e-9;
-/// A change of this share is a step.
+/// A change by more than this share is a jump.
 const STEP: f64 = 1e-3;
-/// A couple may give this share of its power by rounding, and static friction be less by it.
+/// A couple may supply this share of its power by rounding, and static friction may be smaller by this share.
 const ROUNDED: f64 = 1e-12;
 
-/// Every such state is joined to the next one by a line on which a step is searched for.
+/// Every state with such an index is joined to the next one by a line, on which a jump is searched for.
 const LINES: usize = 12;
 /// Number of halvings of such a line.
 const LINE_HALVINGS: u32 = 44;
@@ -79,8 +80,8 @@ fn size(m: [f64; 3]) -> f64 {
     m.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// The step of a function at one point between 0 and 1: what is left of its change where the half with the larger change
-/// is followed down to rounding.
+/// The jump of a function at one point between 0 and 1: the remaining change after repeated halving, down to rounding,
+/// towards the half with the larger change.
 fn step(f: impl Fn(f64) -> [f64; 3]) -> f64 {
     let apart = |a: [f64; 3], b: [f64; 3]| size(core::array::from_fn(|k| a[k] - b[k]));
     let (mut from, mut to) = ((0.0, f(0.0)), (1.0, f(1.0)));
@@ -134,7 +135,7 @@ fn check_couple(law: &dyn CoupleLaw, body: &Body) -> Result<(), Error> {
             jump = jump.max(found / size(m).max(f64::MIN_POSITIVE));
         }
         if jump > STEP {
-            return refuse(jump, "no step, and no couple at rest: tanh(x/e) in place of sgn(x)");
+            return refuse(jump, "no step, and no couple at rest: use tanh(x/e) for sgn(x)");
         }
     }
     Ok(())
@@ -142,8 +143,8 @@ fn check_couple(law: &dyn CoupleLaw, body: &Body) -> Result<(), Error> {
 
 fn check_friction(law: &dyn FrictionLaw, fixed: f64) -> Result<(), Error> {
     let most = law.coefficient(0.0);
-    // 0.1 + 0.2 is more than 0.3.
-    within("static", fixed, (most * (1.0 - ROUNDED), f64::INFINITY), "the coefficient at rest, or more")?;
+    // In doubles 0.1 + 0.2 exceeds 0.3.
+    within("static", fixed, (most * (1.0 - ROUNDED), f64::INFINITY), "static >= mu at rest")?;
     let speed = |i: f64| 10f64.powf(-6.0 + 9.0 * i / 1000.0);
     let mu = |i: f64| law.coefficient(if i < 0.0 { 0.0 } else { speed(i) });
     for i in -1..1000 {

@@ -1,4 +1,4 @@
-//! The laws of physics: bodies, their states, the forces of a table, and the losses of energy.
+//! The laws of physics: bodies, their states, the contact forces, and the losses of energy.
 
 pub mod body;
 pub mod contact;

@@ -12,7 +12,7 @@
 //! N is the vertical component of the contact force in units of the weight, F2 the component along e2 and Fh the
 //! component along e_h = c e1 - s e3, which is horizontal and leans to the side of e1; m is the couple along e1, e2,
 //! e3, and v is the velocity of the centre. The equations are L' = r x F + m about the centre of mass along axes that
-//! follow the tilt, as in any textbook. The module [`contact`](super::contact) gives the force that a table exerts.
+//! follow the inclination, as in any textbook. The module [`contact`](super::contact) gives the contact force.
 //!
 //! Error: 4 ulp of the largest term.
 
@@ -34,20 +34,20 @@ pub struct Force {
 }
 
 impl Force {
-    /// The friction demand, which is the size of the horizontal force.
+    /// The friction that acts, as the magnitude of the horizontal force.
     pub fn friction(&self) -> f64 {
         self.along.hypot(self.across)
     }
 
-    /// The components along the axes of the laboratory, in which e2 is y at phi = 0, and e1 leans toward x. Whole turns of
-    /// phi do not matter.
+    /// The components along the axes of the laboratory, in which e2 is y at phi = 0, and e1 leans toward x. The result
+    /// does not depend on whole turns of phi.
     pub fn in_laboratory(&self, phi: f64) -> Vector3<f64> {
         let (s, c) = phi.sin_cos();
         Vector3::new(c * self.across - s * self.along, s * self.across + c * self.along, self.normal)
     }
 
     /// The coefficient of friction that rolling needs; infinite where the normal force is not positive, and NaN in the
-    /// air, where there is no force.
+    /// air, where no force acts.
     pub fn friction_coefficient(&self) -> f64 {
         let friction = self.friction();
         if self.normal > 0.0 || friction == 0.0 && self.normal == 0.0 {
@@ -60,7 +60,7 @@ impl Force {
 
 /// The time derivative of (theta, w1, w2, w3), as a `State`, under any contact force and couple (along e1, e2, e3).
 ///
-/// Theta lies in (0, pi). The force need not be one that a table can exert.
+/// Theta lies in (0, pi). The force may be one that no table can exert.
 pub fn derivative(body: &Body, y: &State, force: &Force, couple: [f64; 3]) -> State {
     let angle = y.theta.sin_cos();
     let given = [force.normal, force.along, force.across];
@@ -104,7 +104,7 @@ pub(crate) fn normal<T: Real>(shape: &Shape<T>, angle: (T, T), w2: T, w2_rate: T
     w2.splat(1.0) + shape.rim.lever(angle) * w2_rate - shape.rim.slope(angle) * w2 * w2
 }
 
-/// Kinetic and potential energy in M g R, of a body with the velocity v of its centre; heights are above the table.
+/// Kinetic and potential energy in M g R, of a body whose centre has the velocity v; heights are above the table.
 #[inline(always)]
 pub(crate) fn energy<T: Real>(shape: &Shape<T>, angle: (T, T), [w1, w2, w3]: [T; 3], v: [T; 3]) -> T {
     let turning = shape.i1 * (w1 * w1 + w2 * w2) + shape.i3 * w3 * w3;

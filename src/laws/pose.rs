@@ -31,7 +31,7 @@ pub struct Angle {
 }
 
 impl Angle {
-    /// The turns and the remainder of an angle that is given as an unevaluated sum.
+    /// The whole turns and the remainder of an angle that is given as an unevaluated sum.
     pub(crate) fn of(angle: Sum<f64>) -> Self {
         let turns = (angle.hi / TAU).round();
         let whole = Sum::product(turns, TAU);
@@ -83,23 +83,23 @@ pub fn euler_angles(orientation: &UnitQuaternion<f64>) -> [f64; 3] {
     [near(phi), 2.0 * lean.atan2(upright), near(psi)]
 }
 
-/// Orientation and place of a body at a state.
+/// Orientation and position of a body in a state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Pose {
-    /// Precession angle since the start.
+    /// Precession angle since time 0.
     pub phi: Angle,
-    /// Spin angle since the start.
+    /// Spin angle since time 0.
     pub psi: Angle,
-    /// Contact point on the table, in R; the point below the lowest one of a rim in the air.
+    /// Contact point on the table, in R; for a body in the air, the point below the lowest point of the rim.
     pub contact_point: Point2<f64>,
-    /// Height of the lowest point of the rim over the table, in R; 0 on the table.
+    /// Height of the lowest point of the rim above the table, in R; 0 on the table.
     pub height: f64,
 }
 
 impl State {
-    /// The state of a body with this orientation, the turn from its own axes to those of the laboratory, of which the
-    /// third is the vertical, and this angular velocity along the axes of the laboratory, in sqrt(g/R). Error: a few
+    /// The state of a body from its orientation (the rotation from its own axes to those of the laboratory, of which
+    /// the third is the vertical) and its angular velocity along the axes of the laboratory, in sqrt(g/R). Error: a few
     /// roundings of the angular velocity, divided by sin theta for w1 and w2.
     pub fn from_twist(orientation: &UnitQuaternion<f64>, angular_velocity: Vector3<f64>) -> Self {
         let [phi, theta, _] = euler_angles(orientation);
@@ -109,7 +109,7 @@ impl State {
 }
 
 impl Pose {
-    /// The pose in which every motion starts.
+    /// The pose at the beginning of every motion.
     pub fn start() -> Self {
         Self { phi: Angle::default(), psi: Angle::default(), contact_point: Point2::origin(), height: 0.0 }
     }

@@ -1,16 +1,16 @@
-//! Natural units in metres, kilograms and seconds, both ways.
+//! Conversion between natural units and metres, kilograms and seconds.
 //!
 //! ```text
 //! length R,   time sqrt(R/g),   energy M g R,   angular velocity sqrt(g/R),   moment of inertia M R^2
 //! ```
-//! R is the outer radius of the body, or the largest semi-axis of a stone ([`unit`](super::stone::Ellipsoid::unit)). Every
-//! conversion is one product with its unit, or one quotient, and a unit is a few roundings off. So a number that is
-//! converted to SI and back differs by at most 2 ulp, as a test of `units` checks.
+//! R is the outer radius of the body, or the largest semi-axis of a stone ([`unit`](super::stone::Ellipsoid::unit)).
+//! Every conversion is one multiplication or division by a unit, which has a few rounding errors. A number that is
+//! converted to SI and back changes by at most 2 ulp, as a test of `units` checks.
 
 use super::loss::Law;
 use crate::error::{Error, within};
 
-/// Turns natural units into metres, kilograms and seconds, and back.
+/// Converts between natural units and metres, kilograms and seconds.
 ///
 /// ```
 /// use spincyl::{Scale, loss::Law};
@@ -91,12 +91,12 @@ impl Scale {
         Ok(Self { radius, mass, gravity })
     }
 
-    /// The coefficient of a law of loss in natural units, from SI: in the unit that the law says ([`Law`]).
+    /// The coefficient of a law of loss in natural units, from its value in SI, in the unit of that law ([`Law`]).
     pub fn coefficient(&self, law: Law, in_si: f64) -> f64 {
         in_si / self.unit_of(law)
     }
 
-    /// The coefficient of a law of loss in SI, from natural units.
+    /// The coefficient of a law of loss in SI, from its value in natural units.
     pub fn coefficient_in_si(&self, law: Law, coefficient: f64) -> f64 {
         coefficient * self.unit_of(law)
     }

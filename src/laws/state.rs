@@ -6,14 +6,14 @@
 //! v = (L w2, A w3 - L w1, -A w2)                                           velocity of the centre
 //! L = (I1 w1, I1 w2, I3 w3)                                                angular momentum
 //! ```
-//! The axes (e1, e2, e3) follow the tilt and the precession, not the spin: e3 is the symmetry axis, e2 is horizontal,
-//! z = sin theta e1 + cos theta e3. They are those of Jackson et al., Am. J. Phys. 87, 85 (2019), Sec. II. Every number
-//! here follows from these lines by a few roundings: the relative error is below 8 ulp of the largest term.
+//! The axes (e1, e2, e3) follow the inclination and the precession, not the spin: e3 is the symmetry axis, e2 is
+//! horizontal, z = sin theta e1 + cos theta e3. They are those of Jackson et al., Am. J. Phys. 87, 85 (2019), Sec. II.
+//! Every number here is computed with a few roundings: the relative error is below 8 ulp of the largest term.
 
 use super::body::Body;
 use nalgebra::Vector3;
 
-/// Inclination (radians) and angular velocity (in sqrt(g/R)) along the axes that follow the tilt.
+/// Inclination (radians) and angular velocity (in sqrt(g/R)) along axes that follow the inclination and the precession.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct State {
@@ -42,7 +42,8 @@ impl From<State> for [f64; 4] {
 }
 
 impl State {
-    /// The state with this inclination and these rates: theta', phi' (precession) and psi' (spin), in sqrt(g/R).
+    /// The state with this inclination, in radians, and these rates: theta', phi' (precession) and psi' (spin), in
+    /// sqrt(g/R).
     ///
     /// ```
     /// use spincyl::State;
@@ -55,29 +56,29 @@ impl State {
         Self { theta, w1: precession * s, w2: -thetadot, w3: precession.mul_add(c, spin) }
     }
 
-    /// The same state with its tilting rate `theta'` changed by `thetadot`.
+    /// The same state with its rate of inclination `theta'` increased by `thetadot`, in sqrt(g/R).
     #[must_use]
     pub fn kicked(self, thetadot: f64) -> Self {
         Self { w2: self.w2 - thetadot, ..self }
     }
 
-    /// Precession rate phi', at which the body turns about the vertical, in sqrt(g/R).
+    /// Precession phi', the rate at which the body turns about the vertical, in sqrt(g/R).
     pub fn precession(&self) -> f64 {
         self.w1 / self.theta.sin()
     }
 
-    /// Spin rate psi', at which the body turns about its own axis relative to the axes that precess. For a sharp rim it
-    /// is also the speed of the contact point along the table, in sqrt(g R).
+    /// Spin psi', the rate at which the body turns about its own axis relative to the axes that precess, in sqrt(g/R).
+    /// For a sharp rim it is also the speed of the contact point along the table, in sqrt(g R).
     pub fn spin(&self) -> f64 {
         self.w3 - self.w1 * (self.theta.cos() / self.theta.sin())
     }
 
-    /// Angular velocity along (e1, e2, e3).
+    /// Angular velocity along (e1, e2, e3), in sqrt(g/R).
     pub fn angular_velocity(&self) -> Vector3<f64> {
         Vector3::new(self.w1, self.w2, self.w3)
     }
 
-    /// gamma: angle from the symmetry axis to the angular velocity, in [0, pi]; 0 for a body at rest.
+    /// The angle gamma from the symmetry axis to the angular velocity, in [0, pi]; 0 for a body at rest.
     pub fn gamma(&self) -> f64 {
         // Adding 0 turns -0 into 0, so that the angle is 0 and not pi.
         self.w1.hypot(self.w2).atan2(self.w3 + 0.0)
@@ -88,39 +89,39 @@ impl State {
         Vector3::new(body.i1() * self.w1, body.i1() * self.w2, body.i3() * self.w3)
     }
 
-    /// beta: angle from the symmetry axis to the angular momentum, in [0, pi].
+    /// The angle beta from the symmetry axis to the angular momentum, in [0, pi].
     pub fn beta(&self, body: &Body) -> f64 {
         let l = self.angular_momentum(body);
         l.x.hypot(l.y).atan2(l.z + 0.0)
     }
 
-    /// Velocity of the centre of mass along (e1, e2, e3), when the rim rolls without slipping.
+    /// Velocity of the centre of mass along (e1, e2, e3), in sqrt(g R), for a rim that rolls without slipping.
     pub fn centre_velocity(&self, body: &Body) -> Vector3<f64> {
         self.point_velocity(body, Vector3::zeros())
     }
 
-    /// Speed of the point O opposite to the contact point, beyond the centre; O of a sharp tube is the
-    /// uppermost point of its upper rim. Where the centre is at rest this speed is zero, and a symbol painted
-    /// at O seems to stand still.
+    /// Speed of the point O, which lies opposite to the contact point with respect to the centre, in sqrt(g R). For a
+    /// sharp tube O is the uppermost point of its upper rim. Where the centre is at rest this speed is zero, and a
+    /// symbol painted at O seems to stand still.
     pub fn speed_o(&self, body: &Body) -> f64 {
         self.point_velocity(body, -self.contact_arm(body)).norm()
     }
 
-    /// Speed of the point X, the top of the circle of contact; the speed is 2 w1 L where the centre is at rest.
+    /// Speed of the point X, the top of the circle of contact, in sqrt(g R); it is 2 w1 L where the centre is at rest.
     pub fn speed_x(&self, body: &Body) -> f64 {
         let arm = self.contact_arm(body);
         self.point_velocity(body, Vector3::new(-arm.x, 0.0, arm.z)).norm()
     }
 
-    /// Radius |psi'/phi'| of the circle on the table along which the contact point runs, in units of the
-    /// circle of contact on the body (R for a sharp rim). Where the centre rests, this is also the number of
-    /// still symbols per turn, seen from above.
+    /// Radius |psi'/phi'| of the circle that the contact point follows on the table, in units of the radius of the
+    /// circle of contact on the body (R for a sharp rim). Where the centre is at rest, this is also the number of still
+    /// symbols, seen from above.
     pub fn contact_radius(&self) -> f64 {
         (self.spin() / self.precession()).abs()
     }
 
-    /// Radius of the circle that the centre of mass runs along, in R; 0 where the centre is at rest, and infinite where
-    /// the centre runs along a straight line.
+    /// Radius of the circle that the centre of mass follows, in R; 0 where the centre is at rest, and infinite where
+    /// the centre moves along a straight line.
     pub fn centre_radius(&self, body: &Body) -> f64 {
         let speed = self.centre_velocity(body).y.abs();
         if speed == 0.0 { 0.0 } else { speed / self.precession().abs() }
@@ -132,7 +133,7 @@ impl State {
         Vector3::new(-rim.radius(angle), 0.0, -rim.depth(angle))
     }
 
-    /// Velocity of the body's point at `p` from the centre of mass, while the contact point rests.
+    /// Velocity of the point of the body at `p` from the centre of mass, while the contact point is at rest.
     fn point_velocity(&self, body: &Body, p: Vector3<f64>) -> Vector3<f64> {
         self.angular_velocity().cross(&(p - self.contact_arm(body)))
     }

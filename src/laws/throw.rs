@@ -10,7 +10,7 @@
 //! The axis of the body is horizontal. A finger presses on the upper rim, at the angle beta from its top,
 //! with the impulse J, and drags the surface downwards with the coefficient of friction f. The table supports
 //! that end. Its horizontal impulse Q makes that end roll or, if this needs too much friction, is mu of the
-//! table times the vertical impulse, against the slip. The other end bears nothing during the push, so that
+//! table times the vertical impulse, against the slip. The other end carries no load during the push, so that
 //! every horizontal impulse acts at the end under the finger: v_2 = -(I1/ell) w1 for any push. The impulses
 //! are those of Newton's and Euler's equations; the launch is that of Jackson et al., Am. J. Phys. 87, 85
 //! (2019), Sec. I.
@@ -24,8 +24,8 @@ use core::f64::consts::{FRAC_PI_2, PI};
 
 /// The largest impulse, velocity or coefficient of friction that is accepted.
 const MOST: f64 = 1e100;
-/// Largest deviation from theta = pi/2 and from w2 = 0 that is taken for rounding; beyond it a body has no
-/// launch number.
+/// Largest deviation from theta = pi/2 and from w2 = 0 that counts as a rounding error; beyond it a body has no launch
+/// number.
 const LEVEL: f64 = 1e-9;
 
 /// The state of a body thrown on edge (a hoop, a coin, or a can on its side), and the slip of its rim along e_h and e2.
@@ -46,16 +46,22 @@ const LEVEL: f64 = 1e-9;
 pub fn thrown(body: &Body, velocity: f64, backspin: f64) -> Result<(State, [f64; 2]), Error> {
     within("velocity", velocity, (-MOST, MOST), "-1e100 <= velocity <= 1e100")?;
     within("backspin", backspin, (-MOST, MOST), "-1e100 <= backspin <= 1e100")?;
-    within("theta_end", body.theta_end(), (FRAC_PI_2, PI), "at least pi/2: a body that can stand on edge")?;
+    within(
+        "theta_end",
+        body.theta_end(),
+        (FRAC_PI_2, PI),
+        "at least pi/2, for a body that can stand on edge",
+    )?;
     let state = State { theta: FRAC_PI_2, w1: 0.0, w2: 0.0, w3: 0.0 - backspin };
     Ok((state, [0.0, velocity + backspin]))
 }
 
-/// The state of a body on its side that a finger presses at one end until it shoots out, and the slip of the other end.
+/// The state of a body on its side that a finger presses at one end until it is launched, and the slip of the other
+/// end.
 ///
 /// `impulse` is that of the finger, in M sqrt(g R), at `angle` in (0, pi/2] from the top of the rim; `finger` and
 /// `table` are the coefficients of friction of the finger on the body and of the table under the pressed end. With
-/// `table = 0` that end slips freely. The body has two equal rims, sharp or rounded, and ell > 0.
+/// `table = 0` that end slips freely. The body must have two equal rims, sharp or rounded, and ell > 0.
 ///
 /// ```
 /// use spincyl::{Body, throw::{launch_number, pressed}};
@@ -88,25 +94,26 @@ pub fn pressed(
     let (w1, w3) = (-ell * v / i1, (finger * impulse - drag) / i3);
     let slip = v + ell * w1 - w3;
     for (name, x) in [("w1", w1), ("w3", w3), ("u_2", slip)] {
-        within(name, x, (-f64::MAX, f64::MAX), "finite: a smaller impulse")?;
+        within(name, x, (-f64::MAX, f64::MAX), "a finite number: use a smaller impulse")?;
     }
     Ok((State { theta: FRAC_PI_2, w1: w1 + 0.0, w2: 0.0, w3 }, [0.0, slip]))
 }
 
-/// The spin w3 of a body on its side that turns at the rate w1 with the launch number `x`; not finite for w1 = 0.
+/// The spin w3 of a body on its side that turns at the rate w1, for the launch number `x`; not finite for w1 = 0.
 pub fn launch_spin(body: &Body, w1: f64, x: f64) -> f64 {
     x * body.ell() / (body.i3() * w1)
 }
 
-/// The velocity v_2 = -(I1/ell) w1 of the centre of a body on its side that leaves a finger at the rate w1.
+/// The velocity v_2 = -(I1/ell) w1 of the centre of a body on its side that a finger launches with the rate w1.
 pub fn recoil(body: &Body, w1: f64) -> f64 {
     -body.i1() * w1 / body.ell()
 }
 
-/// x = I3 w1 w3/ell of a body on its side, which rises on its lower rim where x > 1, and on the other where x < -1.
+/// The launch number x = I3 w1 w3/ell of a body on its side: it rises on its lower rim if x > 1, on the other if x <
+/// -1.
 ///
-/// NaN for a body that is not on its side (theta = pi/2 and w2 = 0, up to rounding). The number x leaves out
-/// friction along the axis; [`landing::launch`] includes it.
+/// NaN for a body that is not on its side (theta = pi/2 and w2 = 0, up to rounding). The number x neglects friction
+/// along the axis; [`landing::launch`] includes it.
 pub fn launch_number(body: &Body, y: &State) -> f64 {
     let lies = (y.theta - FRAC_PI_2).abs() <= LEVEL && y.w2.abs() <= LEVEL;
     if lies { body.i3() * y.w1 * y.w3 / body.ell() } else { f64::NAN }

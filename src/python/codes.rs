@@ -1,4 +1,4 @@
-//! Names and codes of the enumerations whose numbers stand in arrays.
+//! Names and codes of the enumerations whose codes appear in arrays.
 
 use crate::laws::contact::TableKind;
 use crate::laws::loss::Law;
@@ -24,8 +24,8 @@ fn constant(value: &impl Debug) -> String {
     name
 }
 
-/// Names and codes of every enumeration, in the order of the codes. Tables and the ends of drifts have their own names, and
-/// a law of loss that of its class.
+/// Names and codes of every enumeration, in the order of the codes. Tables and ends of drifts have their own names; a
+/// law of loss has the name of its class.
 #[pyfunction]
 pub fn codes() -> [(&'static str, Codes); 8] {
     let status: Codes = Ending::ALL.iter().map(|x| (constant(x), *x as u8)).collect();

@@ -1,4 +1,4 @@
-//! Laws of loss and of friction that are functions of Python.
+//! Laws of loss and of friction that are Python functions.
 
 use crate::laws::body::Body;
 use crate::laws::custom::{CoupleLaw, FrictionLaw};
@@ -8,7 +8,7 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use std::cell::RefCell;
 
-/// A function of Python as a law; the first error that it raises is kept, and its value is then NaN.
+/// A Python function as a law. The first error that it raises is kept; the value of the law is then NaN.
 pub(super) struct PythonLaw<'py> {
     function: Bound<'py, PyAny>,
     raised: RefCell<Option<PyErr>>,

@@ -21,7 +21,7 @@ fn centre_of(word: &str) -> PyResult<Centre> {
     match word {
         "rest" => Ok(Centre::Rest),
         "rolling" => Ok(Centre::Rolling),
-        _ => Err(PyValueError::new_err("no such drift")),
+        _ => Err(PyValueError::new_err(r#"centre: expected "rest" or "rolling""#)),
     }
 }
 
@@ -34,7 +34,7 @@ fn starts<'a>(given: &'a GivenColumns<'_>, centre: &str) -> PyResult<DriftStarts
     })
 }
 
-/// Checks the start of a drift: raises ValueError with the reason if there is no drift.
+/// Checks the initial state of a drift: raises ValueError with the reason if there is no drift.
 #[pyfunction]
 pub fn drift_check(body: [f64; 6], state: [f64; 4], losses: [f64; COUNT], centre: &str) -> PyResult<()> {
     let (body, y, losses) = (body_of(&body)?, State::from(state), Losses { coefficients: losses });
@@ -68,9 +68,8 @@ pub fn drift_stops<'py>(
     watch.done(py)
 }
 
-/// Answers to a question, five numbers each. Question 0 is the time at an inclination, 1 the state at a time,
-/// 2 the time until which rolling is stable. `of` has the index of each drift, and `x` the inclination or
-/// time.
+/// Evaluates drifts, with five numbers per result. Question 0 is the time at an inclination, 1 the state at a time, 2
+/// the time until which rolling is stable. `of` has the index of each drift, and `x` the inclination or time.
 #[pyfunction]
 pub fn drift_ask<'py>(
     py: Python<'py>,
@@ -87,7 +86,7 @@ pub fn drift_ask<'py>(
         0 => Question::Time,
         1 => Question::At,
         2 => Question::Stable,
-        _ => return Err(PyValueError::new_err("no such question")),
+        _ => return Err(PyValueError::new_err("question: expected 0, 1 or 2")),
     };
     let of: Vec<usize> = of.as_slice()?.iter().map(|i| *i as usize).collect();
     let x = x.as_slice()?;

@@ -13,15 +13,15 @@ use pyo3::types::PyDict;
 
 const MOTION_BODY: [&str; 5] = ["ell", "i1", "i3", "fillet", "theta_end"];
 const SLIP: [&str; 2] = ["slip_along", "slip_across"];
-/// The names of the coefficients of a table: mu or c, the static one, and the radius of the patch.
+/// The names of the coefficients of a contact: mu or c, the static coefficient, and the radius of the patch.
 const TABLE: [&str; 3] = ["coefficient", "static", "patch"];
 
 /// Name, unit and description of the columns that are not summaries.
 const LABELS: [[&str; 3]; 9] = [
     ["theta", "rad", "inclination"],
-    ["w1", "sqrt(g/R)", "w1, along the horizontal axis of the lean"],
-    ["w2", "sqrt(g/R)", "w2, of the tilting"],
-    ["w3", "sqrt(g/R)", "w3, along the axis of the body"],
+    ["w1", "sqrt(g/R)", "angular velocity along e1, phi' sin theta"],
+    ["w2", "sqrt(g/R)", "angular velocity along e2, -theta'"],
+    ["w3", "sqrt(g/R)", "angular velocity along the axis of the body"],
     ["slip_along", "sqrt(g R)", "slip along the lean"],
     ["slip_across", "sqrt(g R)", "slip across the lean"],
     ["error", "1", "estimated error of the states"],
@@ -35,8 +35,7 @@ pub fn columns() -> Vec<[&'static str; 3]> {
     Summary::ALL.iter().copied().map(Summary::label).chain(LABELS).collect()
 }
 
-/// The names of the summaries of motions on a table of this kind, with losses or without, and with restitution or
-/// without.
+/// The names of the summaries of motions with a contact of this kind, with or without losses and restitution.
 #[pyfunction]
 pub fn summaries(table: u8, loses: bool, flies: bool) -> PyResult<Vec<&'static str>> {
     let rubs = table_of(table)?.rubs();
@@ -44,10 +43,10 @@ pub fn summaries(table: u8, loses: bool, flies: bool) -> PyResult<Vec<&'static s
     Ok(of.map(|summary| summary.label()[0]).collect())
 }
 
-/// Fills the columns of `out` from those of `given`, by name; a given column has n numbers or one. These are
-/// the numbers of bodies and states and, if present, of slips, tables and losses (by their parameters). With
-/// `spread` a column of states has n times as many numbers as there are times. `threads` has the number of
-/// threads, and whether the calling thread is one of them, for which its stack must be large.
+/// Fills the columns of `out` from those of `given`, by name; a given column has n numbers or one. The given columns
+/// are the numbers of bodies and states and, if present, of slips, contacts and losses (by their parameters). With
+/// `spread` a column of states has n times as many numbers as there are times. `threads` has the number of threads,
+/// and whether the calling thread is one of them, which then needs a large stack.
 #[pyfunction]
 pub fn ensemble<'py>(
     py: Python<'py>,

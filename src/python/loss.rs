@@ -25,7 +25,8 @@ fn losses_of(x: &[f64]) -> (Losses, f64) {
     (Losses { coefficients: core::array::from_fn(|i| x[i]) }, x[COUNT])
 }
 
-/// The laws in the order of their coefficients: the coefficient's name, and the exponent of the end of a thin disk.
+/// The name of each law's coefficient, and the exponent with which a thin disk comes to its end, in the order of the
+/// laws.
 #[pyfunction]
 pub fn loss_laws() -> [(&'static str, Option<f64>); COUNT] {
     core::array::from_fn(|i| (Law::ALL[i].parameter(), Law::ALL[i].exponent()))

@@ -66,7 +66,7 @@ fn of_slip(x: &[f64], f: impl Fn(&Body, &State, [f64; 2]) -> [f64; 2]) -> [f64; 
     body_of(&x[6..]).map_or([f64::NAN; 2], |body| f(&body, &state_of(x), [x[4], x[5]]))
 }
 
-/// The inclination at which a capsule lands on its other side; NaN of a tube that is none, whose end follows from its shape.
+/// The inclination at which a capsule lands on its other side; NaN for any other tube.
 fn capsule_end(tube: &Body) -> f64 {
     if tube.is_ball() && tube.ell() > 0.0 { tube.theta_end() } else { f64::NAN }
 }
@@ -75,7 +75,7 @@ fn state_of(x: &[f64]) -> State {
     State { theta: x[0], w1: x[1], w2: x[2], w3: x[3] }
 }
 
-/// A number picked from the state and the slip of a thrown or pressed body; NaN for an error.
+/// One number, chosen by `pick`, of the state and the slip of a thrown or pressed body; NaN for an error.
 fn left(thrown: Result<(State, [f64; 2]), Error>, pick: impl Fn(&State, [f64; 2]) -> f64) -> f64 {
     or_nan(thrown.map(|(y, slip)| pick(&y, slip)))
 }
@@ -388,8 +388,8 @@ mod _core {
         Ok((body.i1(), body.i3()))
     }
 
-    /// ell, i1, i3 and theta_end (NaN if it follows from the other numbers) of a tube from half its length,
-    /// its bore and its fillet, or ValueError with the invalid value and the range.
+    /// ell, i1, i3 and theta_end (NaN if it follows from the other numbers) of a tube from half its length, its bore
+    /// and its fillet, or ValueError with the invalid value and the range.
     #[pyfunction]
     fn check_tube(half_length: f64, bore: f64, fillet: f64) -> PyResult<(f64, f64, f64, f64)> {
         let body = Body::rounded_tube(half_length, bore, fillet)?;
@@ -442,7 +442,7 @@ mod _core {
         Ok((state.into(), slip))
     }
 
-    /// Half length, bore and fillet of a tube from its measures, or ValueError.
+    /// Half length, bore and fillet of a tube from its dimensions, or ValueError.
     #[pyfunction]
     fn from_metres(
         outer_diameter: f64,

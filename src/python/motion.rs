@@ -22,7 +22,7 @@ use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// An array for Python, with its numbers row by row.
+/// A named array for Python, with its numbers row by row.
 struct NamedArray {
     pub name: &'static str,
     pub numbers: Vec<f64>,
@@ -33,7 +33,7 @@ struct NamedArray {
 /// Number of rows that are written between two calls of `go_on`.
 const ROWS: usize = 1 << 12;
 
-/// The arrays of a motion for Python, row by row, written as long as `go_on` returns true.
+/// The arrays of a motion for Python, written row by row for as long as `go_on` returns true.
 struct ToldRows<'a> {
     count: usize,
     columns: Vec<NamedArray>,
@@ -217,9 +217,9 @@ pub enum AnyState {
     Stone([f64; 6]),
 }
 
-/// The motion of a body or of a stone. `asked` may have t0, slip, table with its two coefficients, losses (of
-/// each law), step, tol, beyond, restitution, pose, force; without step and tol the motion is computed as
-/// accurately as doubles allow.
+/// The motion of a body or of a stone. `asked` may have t0, slip, table with its two coefficients, losses (of each
+/// law), step, tol, beyond, restitution, pose, force; without step and tol the motion is computed to the accuracy of
+/// double precision.
 #[pyfunction]
 pub fn roll<'py>(
     py: Python<'py>,
@@ -250,11 +250,11 @@ pub fn roll<'py>(
             let start = Start { state, slip: start.0, time: start.1, aloft: None };
             found(py, &stone, &ask, |watch| stone::roll(&stone, start, times, &ask, || watch.still()))
         }
-        _ => Err(PyValueError::new_err("state: that of another kind of body")),
+        _ => Err(PyValueError::new_err("state: expected a state of this kind of body")),
     }
 }
 
-/// The motion of a body under functions of Python, which hold the GIL.
+/// The motion of a body under Python functions, which need the GIL.
 fn custom<'py>(
     py: Python<'py>,
     body: &Body,
@@ -274,13 +274,13 @@ fn custom<'py>(
     if let Some(error) = [couple, friction].into_iter().flatten().find_map(PythonLaw::raised) {
         return Err(error);
     }
-    let m = rolled?.ok_or_else(|| PyRuntimeError::new_err("the motion was given up"))?;
+    let m = rolled?.ok_or_else(|| PyRuntimeError::new_err("the motion was interrupted"))?;
     let columns = columns(&m, body, (&ask, asked.couple.is_some() || !ask.losses.is_none()), &mut || true)?
         .unwrap_or_default();
     dictionary(py, &m, columns, rubs(&ask))
 }
 
-/// The spin from which a top turns over on a table, or ValueError.
+/// The least spin with which a top turns over, with the friction of a table, or ValueError.
 #[pyfunction]
 pub fn turning_spin(
     py: Python<'_>,
@@ -293,10 +293,10 @@ pub fn turning_spin(
     let mut watch = Watch::new(None);
     let found = py.detach(|| turning::turning_spin(&top, friction, lean, || watch.still()))?;
     watch.done(py)?;
-    found.ok_or_else(|| PyRuntimeError::new_err("the search was given up"))
+    found.ok_or_else(|| PyRuntimeError::new_err("the search was interrupted"))
 }
 
-/// The spin from which an egg that lies rises, on a table or by Jellett's number; or ValueError.
+/// The least spin with which a lying egg rises, with the friction of a table or by Jellett's number, or ValueError.
 #[pyfunction]
 pub fn rising_spin(
     py: Python<'_>,
@@ -311,7 +311,7 @@ pub fn rising_spin(
     let mut watch = Watch::new(None);
     let found = py.detach(|| turning::rising_spin(&egg, friction, lean, || watch.still()))?;
     watch.done(py)?;
-    found.ok_or_else(|| PyRuntimeError::new_err("the search was given up"))
+    found.ok_or_else(|| PyRuntimeError::new_err("the search was interrupted"))
 }
 
 /// Whether a motion has a slip and phases.
@@ -337,7 +337,7 @@ where
         Ok::<_, Error>(columns.map(|columns| (motion, columns)))
     })?;
     watch.done(py)?;
-    let Some((m, columns)) = found else { return Err(PyRuntimeError::new_err("the motion was given up")) };
+    let Some((m, columns)) = found else { return Err(PyRuntimeError::new_err("the motion was interrupted")) };
     dictionary(py, &m, columns, rubs(ask))
 }
 
@@ -353,7 +353,7 @@ fn dictionary<'py, S: Moving>(
         let rows = m.times.len();
         let to = if FIELDS.contains(&name) { &out } else { &extra };
         match width {
-            // A copy of a few numbers is faster than handing over their vector.
+            // Copying a few numbers is faster than passing the vector to NumPy.
             0 if rows <= FEW => to.set_item(name, PyArray1::from_slice(py, &numbers))?,
             0 => to.set_item(name, PyArray1::from_vec(py, numbers))?,
             _ if rows <= FEW => {
@@ -413,14 +413,14 @@ fn dictionary<'py, S: Moving>(
     Ok(out)
 }
 
-/// The arrays that go into the dictionary itself; all others go into its `_extra`.
+/// The arrays that the dictionary itself contains; all others are in its `_extra`.
 const FIELDS: [&str; 3] = ["t", "theta", "w"];
 
-/// The largest number of rows that are copied; longer arrays are handed over.
+/// The largest number of rows that are copied; longer vectors are passed to NumPy.
 const FEW: usize = 64;
 
-/// Period, least and greatest theta, phi and psi per period, drift per period and its circle's radius, error
-/// of the period. The last five are NaN for a motion without a period.
+/// Period, least and greatest theta, phi and psi per period, drift per period and the radius of its circle, error of
+/// the period. The last five are NaN for a motion without a period.
 #[pyfunction]
 pub fn swing(body: [f64; BODY], state: [f64; 4], contact: u8) -> PyResult<[f64; 8]> {
     let swing = Swing::new(&Body::of_numbers(body)?, &State::from(state), contact_of(contact)?, true)?;

@@ -11,15 +11,15 @@ pub(super) fn contact_of(code: u8) -> PyResult<Contact> {
     match table_of(code)? {
         TableKind::Rolling => Ok(Contact::Rolling),
         TableKind::Smooth => Ok(Contact::Smooth),
-        _ => Err(PyValueError::new_err("no such contact")),
+        _ => Err(PyValueError::new_err("contact: an unknown kind")),
     }
 }
 
 pub(super) fn table_of(code: u8) -> PyResult<TableKind> {
-    TableKind::from_code(code).ok_or_else(|| PyValueError::new_err("no such table"))
+    TableKind::from_code(code).ok_or_else(|| PyValueError::new_err("table: an unknown kind"))
 }
 
-/// A struct of options from a dictionary, each in one line; missing options have their defaults.
+/// A struct of options, read from a dictionary; missing options have their defaults.
 macro_rules! options {
     ($(#[$about:meta])* pub struct $Name:ident { $($(#[$doc:meta])* $name:ident: $Type:ty = $default:expr,)+ }) => {
         $(#[$about])*
@@ -55,22 +55,22 @@ options! {
         t0: f64 = 0.0,
         slip: [f64; 2] = [0.0; 2],
         table: u8 = TableKind::Rolling as u8,
-        /// Mu, or those of a law of friction.
+        /// Mu or c, the static coefficient, and the radius of the patch.
         coefficients: [f64; 3] = [f64::INFINITY, 0.0, 0.0],
         losses: Option<[f64; COUNT]> = None,
         step: Option<f64> = None,
         tol: Option<f64> = None,
         beyond: bool = false,
         restitution: Option<f64> = None,
-        /// The height and the vertical velocity of a start in the air.
+        /// The height and the vertical velocity of an initial state in the air.
         aloft: Option<[f64; 2]> = None,
         stop_at_rolling: bool = false,
         pose: bool = false,
         force: bool = false,
-        /// Functions of the user's own: a couple, and a coefficient of friction.
+        /// User-defined laws: a couple, and a coefficient of friction.
         couple: Option<Py<PyAny>> = None,
         friction: Option<Py<PyAny>> = None,
-        /// Whether the states of many motions are wanted at all times, not only at the end.
+        /// Whether the states of many motions are returned at all times, not only at the end.
         spread: bool = false,
     }
 }
@@ -84,18 +84,18 @@ pub fn motion_options() -> [&'static str; MotionAsked::NAMES.len()] {
 impl MotionAsked {
     pub fn ask(&self) -> PyResult<Ask> {
         if self.is_custom() {
-            let told = "a law of your own moves single bodies of revolution: sc.roll(body, ...)";
+            let told = "a user-defined law works only for a single body of revolution: sc.roll(body, ...)";
             return Err(PyTypeError::new_err(told));
         }
         self.ask_without_custom()
     }
 
-    /// Whether some law is a function of Python.
+    /// Whether any law is a Python function.
     pub fn is_custom(&self) -> bool {
         self.couple.is_some() || self.friction.is_some()
     }
 
-    /// The options that are no functions of Python.
+    /// The options that are not Python functions.
     pub fn ask_without_custom(&self) -> PyResult<Ask> {
         Ok(Ask {
             table: table_of(self.table)?.with(self.coefficients),

@@ -4,7 +4,7 @@ use crate::laws::body::parts::{Amount, Assembled, BodyPart, Form, assembled};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// The number of a form, its numbers, and its mass or, if so it says, its density.
+/// The code of a form, its numbers, and its mass, or its density if the last value is true.
 type Given = (u8, Vec<f64>, f64, bool);
 
 fn form(kind: u8, numbers: &[f64]) -> Option<Form> {
@@ -20,8 +20,8 @@ fn form(kind: u8, numbers: &[f64]) -> Option<Form> {
     })
 }
 
-/// The numbers of the body of these parts, ell, I1, I3, fillet and theta_end, its mass, its R, and the height of its centre of
-/// mass; or ValueError.
+/// Numbers of the body of these parts (ell, I1, I3, fillet and theta_end), its mass, its R, and the height of its
+/// centre of mass, or ValueError.
 #[pyfunction]
 #[pyo3(name = "assembled")]
 pub fn of_parts(given: Vec<Given>) -> PyResult<([f64; 5], f64, f64, f64)> {

@@ -30,7 +30,7 @@ fn first<const N: usize>(found: [f64; N]) -> [f64; MOST] {
     core::array::from_fn(|k| found.get(k).copied().unwrap_or(f64::NAN))
 }
 
-/// A function of a stone, whose numbers `x` begins with; NaN if there is no such stone.
+/// A function of a stone, for `x` that begins with the numbers of the stone; NaN if there is no such stone.
 fn of_stone<const N: usize>(x: &[f64], f: impl Fn(&Ellipsoid, &[f64]) -> [f64; N]) -> [f64; MOST] {
     let stone = x.first_chunk().map(stone_of);
     stone.and_then(Result::ok).map_or([f64::NAN; MOST], |stone| first(f(&stone, &x[STONE..])))
@@ -40,12 +40,12 @@ fn state(x: &[f64]) -> StoneState {
     StoneState { vertical: [x[0], x[1], x[2]], w: [x[3], x[4], x[5]] }
 }
 
-/// The vertical of a stone that is tilted: `x` has pitch and roll.
+/// The vertical in the axes of a tilted stone: `x` has pitch and roll.
 pub fn tilted(x: &[f64]) -> [f64; MOST] {
     first(StoneState::spinning(0.0, x[0], x[1]).vertical)
 }
 
-/// The angles from a vertical to the axes of a stone.
+/// The angles between the vertical and the axes of a stone.
 pub fn inclinations(x: &[f64]) -> [f64; MOST] {
     first(StoneState { vertical: [x[0], x[1], x[2]], w: [0.0; 3] }.inclinations())
 }
@@ -55,7 +55,7 @@ pub fn spin(x: &[f64]) -> f64 {
     state(x).spin()
 }
 
-/// From the centre of mass to the lowest point: `x` has the numbers of a stone and a vertical.
+/// The vector from the centre of mass to the lowest point: `x` has the numbers of a stone and a vertical.
 pub fn lever(x: &[f64]) -> [f64; MOST] {
     of_stone(x, |stone, y| stone.lowest_point([y[0], y[1], y[2]]))
 }
@@ -82,16 +82,15 @@ fn given_stone(numbers: &[f64; GIVEN]) -> Result<Ellipsoid, Error> {
     Ellipsoid::new([a, b, c], [[i, j, k], [l, m, n], [o, p, q]], [x, y, z])?.with_edge(end)
 }
 
-/// The numbers of a stone that is given in any unit of length, its largest semi-axis in that unit, and its
-/// `Ellipsoid::reach`.
+/// The numbers of a stone from lengths in any unit, its largest semi-axis in that unit, and its `Ellipsoid::reach`.
 #[pyfunction]
 pub fn check_stone(numbers: [f64; GIVEN]) -> PyResult<([f64; STONE], f64, f64)> {
     let stone = given_stone(&numbers)?;
     Ok((stone.numbers(), stone.unit(), stone.reach()))
 }
 
-/// As `check_stone`, for many stones, one in each row: its numbers, its largest semi-axis and its reach; NaN
-/// where the stone is invalid.
+/// Like `check_stone`, for many stones, one in each row: numbers, largest semi-axis and reach; NaN where the stone is
+/// invalid.
 #[pyfunction]
 pub fn check_stones<'py>(
     py: Python<'py>,
@@ -139,8 +138,8 @@ pub fn stone_moments(stone: [f64; STONE]) -> PyResult<[f64; 3]> {
     Ok(stone_of(&stone)?.moments())
 }
 
-/// Growth and frequency of both modes, slow and fast, then real and imaginary parts of the four eigenvalues, of a stone
-/// that spins upright.
+/// Growth and frequency of both modes, slow and fast, then real and imaginary parts of the four eigenvalues, for a
+/// stone that spins upright.
 #[pyfunction]
 pub fn rocking(stone: [f64; STONE], spin: f64) -> PyResult<[f64; 12]> {
     let found = stone_of(&stone)?.rocking(spin)?;
@@ -175,7 +174,7 @@ pub fn stone_losses() -> Vec<&'static str> {
     Law::ALL.iter().copied().filter(acts).map(Law::parameter).collect()
 }
 
-/// Unit and description of each number of a motion among many, in the order of `StoneSummary::NAMES`.
+/// Unit and description of each output of many motions of stones, in the order of `StoneSummary::NAMES`.
 const STONE_LABELS: [[&str; 2]; StoneSummary::NAMES.len()] = [
     ["1", "vertical along axis 1 at the end"],
     ["1", "vertical along axis 2 at the end"],
@@ -185,15 +184,15 @@ const STONE_LABELS: [[&str; 2]; StoneSummary::NAMES.len()] = [
     ["sqrt(g/a)", "angular velocity along axis 3 at the end"],
     ["sqrt(a/g)", "time of the end"],
     ["sqrt(g/a)", "angular velocity about the vertical at the end"],
-    ["1", "how often the spin has turned back"],
-    ["sqrt(a/g)", "time at which the spin first turned back"],
+    ["1", "number of reversals of the spin"],
+    ["sqrt(a/g)", "time of the first reversal of the spin"],
     ["M g a", "heat of friction"],
-    ["M g a", "energy that the losses have taken"],
-    ["1", "estimated error of the worst number of the state"],
-    ["sqrt(a/g)", "time up to which the motion is known"],
+    ["M g a", "energy lost to the losses"],
+    ["1", "largest estimated error among the numbers of the state"],
+    ["sqrt(a/g)", "time up to which the motion is computed"],
 ];
 
-/// Name, unit and description of every number of a motion among many.
+/// Name, unit and description of each output of many motions of stones.
 #[pyfunction]
 pub fn stone_columns() -> Vec<[&'static str; 3]> {
     StoneSummary::NAMES
@@ -203,7 +202,8 @@ pub fn stone_columns() -> Vec<[&'static str; 3]> {
         .collect()
 }
 
-/// Follows many stones from many starts to the last of the times, and writes the wanted columns.
+/// Computes the motions of many stones from many initial states to the last of the times, and writes the wanted
+/// columns.
 #[pyfunction]
 pub fn stones<'py>(
     py: Python<'py>,

@@ -13,7 +13,7 @@ use super::watch::Watch;
 /// The names of the inputs of a map.
 const AXES: [&str; 4] = ["theta", "ell", "bore", "fillet"];
 
-/// The array of this name in `out`, to be filled; None if there is none.
+/// The array of this name in `out`, to be filled; None if `out` has no such array.
 fn filled<'py, T: Element>(
     out: &Bound<'py, PyDict>,
     name: &str,
@@ -43,7 +43,7 @@ fn with_portrait<F: Element + Cell>(
     })
 }
 
-/// The tubes of a map, None for a tube with invalid numbers; None for the whole map after Ctrl-C.
+/// The tubes of a map, each None if its numbers are invalid; None for the whole map after Ctrl-C.
 fn tubes(of: [&[f64]; 3], watch: &mut Watch) -> Result<Option<Vec<Option<Body>>>, Error> {
     let [half, bore, fillet] = of;
     let mut tubes = room(half.len())?;
@@ -92,8 +92,8 @@ pub fn portrait<'py>(
     run(py, given.all(AXES)?, &out, scattered, threads, Watch::new(progress))
 }
 
-/// The number of inclinations in each region, and the sum of their weights, as an array with the axes body,
-/// number or sum, code of the region.
+/// The number of inclinations in each region, and the sum of their weights, as an array with the axes body, number or
+/// sum, code of the region.
 #[pyfunction]
 pub fn areas<'py>(
     py: Python<'py>,
@@ -115,8 +115,8 @@ pub fn areas<'py>(
     Ok(PyArray1::from_vec(py, found.unwrap_or_default().into_flattened().into_flattened()))
 }
 
-/// Minimum and maximum, each as (value, index of theta, index of the body), of those of the squared rate,
-/// both kappas and the energy that are `wanted`.
+/// Minimum and maximum of those of the squared rate, both kappas and the energy that are `wanted`, each as (value,
+/// index of theta, index of the body).
 #[pyfunction]
 pub fn extrema<'py>(
     py: Python<'py>,

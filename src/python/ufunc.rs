@@ -1,7 +1,8 @@
 //! NumPy ufuncs made of elementwise functions: NumPy then supplies `out=`, `where=`, broadcasting, xarray and dask.
 //!
 //! The loops are those of NumPy 2 (`PyArrayMethod_Spec` in its `dtype_api.h`): NumPy calls them with or without the
-//! GIL, and they may return an error, here that of Ctrl-C. Numbers of other types than double are promoted to doubles.
+//! GIL, and they may return an error, here that of Ctrl-C. Numbers of any type other than double are promoted to
+//! double.
 //!
 //! This file is the only one with `unsafe`: NumPy gives its inner loops raw pointers, strides and counts, and keeps the
 //! data that `make` registers for the life of the process.

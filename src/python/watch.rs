@@ -1,4 +1,4 @@
-//! Long work checks for Ctrl-C, and reports its progress, about fifty times a second.
+//! Checks for Ctrl-C during long work, and reports the progress, about fifty times a second.
 
 use pyo3::prelude::*;
 use std::cell::Cell;

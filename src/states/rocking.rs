@@ -12,11 +12,11 @@
 //! height of the centre of mass h = a3 + d3, radii of curvature at the bottom r1 = a1^2/a3 and r2 = a2^2/a3,
 //! all from the semi-axes a1, a2 and a3
 //! ```
-//! The two equations for w are Newton's and Euler's law of a stone that rolls, to first order in w1, w2, n1
-//! and n2; A is computed with twice the digits. The terms of a twisted stone that are odd in W change their
-//! sign with the spin: of its two modes of rocking one grows and the other decays, and with the opposite spin
-//! they change places. The faster growth belongs to the higher frequency, so that one direction turns back
-//! much sooner (Bondi, Proc. R. Soc. A 405, 265 (1986)).
+//! The two equations for w are Newton's and Euler's law for a stone that rolls, to first order in w1, w2, n1 and n2; A
+//! is computed with twice the digits. The terms of a twisted stone that are odd in W change their sign with the spin:
+//! one of its two modes of rocking grows and the other decays, and with the opposite spin they change places. The mode
+//! with the higher frequency grows faster, so that one direction of spin reverses much sooner (Bondi, Proc. R. Soc. A
+//! 405, 265 (1986)).
 //!
 //! Error: 1e-13 of the largest eigenvalue. `tests/test_stone_reference.py` compares the eigenvalues with 60
 //! digits from another model.
@@ -28,8 +28,8 @@ use core::ops::{Add, Mul, Sub};
 
 type Long = Sum<f64>;
 
-/// Relative sizes below which these count as zero: a leading coefficient, the last change of a root, and the
-/// imaginary part of a root, which then is real.
+/// Relative sizes below which a leading coefficient, the last change of a root, and the imaginary part of a root count
+/// as zero.
 const ZEROS: [f64; 3] = [1e-28, 1e-26, 1e-24];
 
 /// The two modes of rocking of a stone that spins upright, the slower one first.
@@ -111,8 +111,8 @@ impl Ellipsoid {
     /// Computes the rocking of a stone that spins upright at the rate `spin`, with axis 3 up and the contact
     /// point at rest.
     ///
-    /// Errors: `OutOfRange` for a spin beyond 1e6, and for a stone that cannot spin upright, since axis 3 is
-    /// no principal axis or does not lead through the centre of mass.
+    /// Errors: `OutOfRange` for a spin beyond 1e6, and for a stone that cannot spin upright, because axis 3 is not a
+    /// principal axis or does not pass through the centre of mass.
     pub fn rocking(&self, spin: f64) -> Result<Rocking, Error> {
         self.is_upright()?;
         within("spin", spin, (-1e6, 1e6), "|spin| <= 1e6 sqrt(g/a)")?;
@@ -179,16 +179,21 @@ impl Ellipsoid {
         Ok(limits)
     }
 
-    /// Refuses a stone that cannot spin upright about axis 3.
+    /// Returns an error for a stone that cannot spin upright about axis 3.
     fn is_upright(&self) -> Result<(), Error> {
         let [.., d, e, _] = self.inertia.0;
-        within("inertia", d.abs().max(e.abs()), (0.0, 0.0), "axis 3 a principal axis, for a steady spin")?;
+        within(
+            "inertia",
+            d.abs().max(e.abs()),
+            (0.0, 0.0),
+            "axis 3 to be a principal axis, for a steady spin",
+        )?;
         let [x, y, _] = self.offset;
         within("offset", x.abs().max(y.abs()), (0.0, 0.0), "a centre of mass on axis 3, for a steady spin")?;
         Ok(())
     }
 
-    /// Whether nothing distinguishes the two directions of spin.
+    /// Whether both directions of spin are equivalent.
     fn is_even(&self) -> bool {
         self.inertia.0[5] == 0.0 || self.axes[0] == self.axes[1]
     }

@@ -264,7 +264,7 @@ fn what_cannot_be_a_rounded_body_is_refused_by_name() {
     assert_eq!(text(Body::rounded(-0.1, 0.5, 0.5, 0.5)), "ell = -0.1: expected 0 <= ell <= 1e150");
     assert_eq!(
         text(Body::rounded(1.0, 0.2, 0.5, 0.5)),
-        "i3 = 0.5, i1 = 0.2: a real body satisfies i3 <= 2 i1"
+        "i3 = 0.5, i1 = 0.2: expected i3 <= 2 i1, as for every real body"
     );
     assert_eq!(
         text(Body::rounded(-1.0, 0.5, 0.5, 1.0)),

@@ -1,11 +1,11 @@
-//! A body in a file: its numbers, which make a body again only if they are those of one.
+//! A body in a file, by its numbers, which are checked when the file is read.
 
 use super::Body;
 use crate::error::{Error, within};
 use crate::numbers::Sum;
 use serde::{Deserialize, Serialize};
 
-/// The numbers of a body. Without the last two they follow from the others.
+/// The numbers of a body. The last two may be missing and then follow from the others.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct BodyFile {
@@ -15,7 +15,7 @@ pub(super) struct BodyFile {
     #[serde(default)]
     fillet: f64,
     theta_end: Option<f64>,
-    /// The inertia excess of a tube is known better than its moments are.
+    /// The inertia excess of a tube is known to more digits than its moments.
     excess: Option<[f64; 2]>,
 }
 

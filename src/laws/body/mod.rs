@@ -10,9 +10,9 @@
 //! uniform tubes. Sources: Jackson et al., Am. J. Phys. 87, 85 (2019), Sec. II, for the sharp rim; Jackson, Mertens,
 //! Pearson, Am. J. Phys. 83, 959 (2015), for two balls.
 //!
-//! The constructors refuse numbers that no body can have; no later code checks them again. The inertia excess is kept
-//! as an unevaluated sum of two doubles, because the steady states of a body near the critical shape depend on the last
-//! digits of the excess; `body::tube` gives its error.
+//! The constructors return an error for numbers that no body can have; no later code checks them again. The inertia
+//! excess is kept as an unevaluated sum of two doubles, because the steady states of a body near the critical shape
+//! depend on the last digits of the excess; `body::tube` gives its error.
 
 #[cfg(feature = "serde")]
 mod file;
@@ -28,7 +28,7 @@ pub(crate) use rim::{Rim, Shape};
 pub(crate) use tube::{Wall, rounded_tube, tube, tube_or_nan};
 
 const ELL: (f64, f64) = (0.0, 1e150);
-/// A smaller moment is that of a body whose mass lies within 3 % of R of its centre; moments in kg m^2 are as small.
+/// A smaller moment would need a mass within 3 % of R of the centre; such a number usually is a moment in kg m^2.
 const I1: (f64, f64) = (1e-3, 1e300);
 const I3: (f64, f64) = (1e-150, 1e150);
 const FILLET: (f64, f64) = (0.0, 1.0);
@@ -97,9 +97,9 @@ impl Body {
     /// Any axisymmetric body on a sharp rim, such as a bottle or a can, given by the height `ell` of its centre of mass
     /// above the plane of the rim (in R) and by its moments about the centre of mass (in M R^2).
     ///
-    /// A real body has `0 < i3 <= 2 i1`; equality holds for a flat body. An `i1` below 1e-3 is refused, as of a body whose
-    /// mass lies within 3 % of R of its centre: the moments in kg m^2 of most bodies that a hand can hold are as small,
-    /// and [`Measured::with_moments`](crate::Measured::with_moments) takes those.
+    /// A real body has `0 < i3 <= 2 i1`; equality holds for a flat body. An `i1` below 1e-3 is an error: such a body
+    /// would have its mass within 3 % of R of its centre, and the moments of most hand-held bodies in kg m^2 are as
+    /// small. Use [`Measured::with_moments`](crate::Measured::with_moments) for moments in SI.
     pub fn new(ell: f64, i1: f64, i3: f64) -> Result<Self, Error> {
         Self::rounded(ell, i1, i3, 0.0)
     }
@@ -108,8 +108,9 @@ impl Body {
     /// whose radius is `1 - fillet`. With `fillet = 1` the body is a ball, and `ell`, above -1, is the height of the
     /// centre of mass above the centre of the ball.
     ///
-    /// A body with `ell > 0` is taken to be as long on the other side and to land on its other rim at pi/2, except for
-    /// a ball, which has no other rim; [`with_theta_end`](Self::with_theta_end) sets another inclination.
+    /// A body with `ell > 0` is assumed to be equally long on both sides of its centre and to land on its other rim at
+    /// pi/2, except for a ball, which has no other rim; [`with_theta_end`](Self::with_theta_end) sets another
+    /// inclination.
     pub fn rounded(ell: f64, i1: f64, i3: f64, fillet: f64) -> Result<Self, Error> {
         within("fillet", fillet, FILLET, "0 <= fillet <= 1")?;
         let (low, expected) = if fillet == 1.0 {
@@ -142,21 +143,22 @@ impl Body {
         body.with_theta_end(FRAC_PI_2)
     }
 
-    /// A ball whose centre of mass lies `offset`, above -1, over its centre; the offset of a tippe top at rest is
-    /// negative. The moments are about the centre of mass. The motion of the ball can pass through both poles.
+    /// A ball whose centre of mass lies `offset` above its centre, with `offset` > -1; the offset of a tippe top at
+    /// rest is negative. The moments are about the centre of mass. The motion of the ball can pass through both poles.
     pub fn ball(offset: f64, i1: f64, i3: f64) -> Result<Self, Error> {
         within("offset", offset, ((-1f64).next_up(), ELL.1), "-1 < offset <= 1e150")?;
         Self::rounded(offset, i1, i3, 1.0)
     }
 
-    /// The same body with another end of its motion: the inclination `theta_end` in (0, pi], radians, at which a stem,
-    /// a cap or the shoulder of a bottle lands.
+    /// The same body with another end of its motion: the inclination `theta_end` in (0, pi], in radians, at which a
+    /// stem, a cap or the shoulder of a bottle lands.
     pub fn with_theta_end(self, theta_end: f64) -> Result<Self, Error> {
         within("theta_end", theta_end, (1e-6, PI), "1e-6 <= theta_end <= pi (radians)")?;
         Ok(Self { theta_end, ..self })
     }
 
-    /// Uniform tube with these measures in metres (or all in any one unit); `fillet` is the radius of its outer edges.
+    /// Uniform tube with these dimensions in metres (or in any other common unit); `fillet` is the radius of its outer
+    /// edges.
     pub fn from_metres(
         outer_diameter: f64,
         inner_diameter: f64,
@@ -247,7 +249,7 @@ impl Body {
         self.rim.hi
     }
 
-    /// The inclination, in radians, at which another part of the body than its rim lands; pi if no other part lands.
+    /// The inclination, in radians, at which a part of the body other than its rim lands; pi if no other part lands.
     pub fn theta_end(&self) -> f64 {
         self.theta_end
     }
@@ -290,7 +292,7 @@ impl Body {
         search::crossing(left, 0.0, FRAC_PI_2, pull.hi, -ell)
     }
 
-    /// Whether only the rims can land, of which there are two equal ones, or one.
+    /// Whether the body can land only on its rim, or on the other of two equal rims.
     pub(crate) fn lands_on_rims(&self) -> bool {
         // Two equal balls are a body with the fillet 1 that ends at a right angle.
         self.theta_end == beyond(self.ell, self.fillet) || self.ell > 0.0 && self.theta_end == FRAC_PI_2
@@ -336,7 +338,7 @@ impl Body {
     }
 }
 
-/// The inclination at which a body is taken to land on its other rim: pi/2 if ell > 0 and it is no ball, otherwise pi.
+/// The inclination at which a body is assumed to land on its other rim: pi/2 for ell > 0 unless it is a ball, else pi.
 #[inline(always)]
 pub(crate) fn beyond<T: Real>(ell: T, fillet: T) -> T {
     let (zero, one, level, round) = (ell.splat(0.0), ell.splat(1.0), ell.splat(FRAC_PI_2), ell.splat(PI));
@@ -409,7 +411,10 @@ mod tests {
         assert_eq!(text(Body::solid(f64::NAN)), "ell = NaN: expected 0 <= ell <= 1e150");
         assert_eq!(text(Body::solid(1e160)), "ell = 1e160: expected 0 <= ell <= 1e150");
         assert_eq!(text(Body::tube(1.0, 1.1)), "bore = 1.1: expected 0 <= bore <= 1");
-        assert_eq!(text(Body::new(1.0, 0.2, 0.5)), "i3 = 0.5, i1 = 0.2: a real body satisfies i3 <= 2 i1");
+        assert_eq!(
+            text(Body::new(1.0, 0.2, 0.5)),
+            "i3 = 0.5, i1 = 0.2: expected i3 <= 2 i1, as for every real body"
+        );
         assert!(Body::new(1.0, 0.25, 0.5).is_ok(), "a flat body is the limit, and allowed");
         assert!(Body::new(1.0, 0.0, 0.0).is_err() && Body::new(1.0, 0.5, 0.0).is_err());
         assert!(Body::new(1.0, 1e300, 1e-150).is_err(), "the ratio of the moments is bounded too");

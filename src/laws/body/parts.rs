@@ -5,18 +5,18 @@
 //! I3 = sum of r^2 dm,   I1 = I3/2 + sum of (z - z0)^2 dm,   z0 = sum of z dm / M
 //! d(theta) = r s - z c + rho     the depth of an edge of the radius r, rounded by rho, below a point of the axis
 //! ```
-//! The squares of all radii are polynomials of z, of at most the second degree, so that Gauss's rule with four nodes is exact.
-//! The body stands on the edge, or the ball, that is lowest where the axis is upright, and theta_end is where another one
-//! becomes lower.
+//! The squared radii of all parts are polynomials of z, of at most the second degree, so that Gauss's rule with four
+//! nodes is exact. The body stands on the edge, or the ball, that is lowest where the axis is upright; theta_end is the
+//! inclination at which another one becomes lower.
 //!
-//! Error: a few roundings of the moments about a point within the body; of theta_end as many, and 1e-8 where a ball touches at
-//! its own edge.
+//! Error: a few roundings of the moments about a point within the body. Theta_end has as many, and 1e-8 where a ball
+//! touches the table at its own edge.
 
 use super::Body;
 use crate::error::{Error, within};
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// How much of a part there is.
+/// The amount of matter in a part.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Amount {
@@ -26,7 +26,7 @@ pub enum Amount {
     Density(f64),
 }
 
-/// The form of a part. Lengths are in one unit, and heights are counted upward from one point of the axis.
+/// The form of a part. All lengths are in one unit, and heights are measured upward from one point of the axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Form {
@@ -42,7 +42,8 @@ pub enum Form {
         /// Radius of the fillets.
         fillet: f64,
     },
-    /// A ball, hollow or not, or its part between two heights: outer and inner radius, the height of the centre.
+    /// A ball, solid or hollow, or its part between two heights: outer and inner radius, height of the centre, both
+    /// heights.
     Ball {
         /// Outer radius.
         radius: f64,
@@ -50,7 +51,7 @@ pub enum Form {
         hollow: f64,
         /// Height of the centre.
         centre: f64,
-        /// Heights between which it lies.
+        /// Heights between which the part lies.
         ends: [f64; 2],
     },
     /// A thin wall in the form of a cylinder, a cone, a frustum or a disk.
@@ -66,7 +67,7 @@ pub enum Form {
         radius: f64,
         /// Height of its centre.
         centre: f64,
-        /// Heights between which it lies.
+        /// Heights between which the part lies.
         ends: [f64; 2],
     },
     /// A thin ring; a point on the axis if its radius is zero.
@@ -88,7 +89,7 @@ pub struct BodyPart {
     pub amount: Amount,
 }
 
-/// A body that has been put together.
+/// A body assembled from parts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Assembled {
     /// The body, in natural units.
@@ -97,7 +98,7 @@ pub struct Assembled {
     pub mass: f64,
     /// The unit of length R, the outer radius of the rim, in the unit of the parts.
     pub radius: f64,
-    /// The height of the centre of mass.
+    /// The height of the centre of mass, in the unit of the parts.
     pub centre: f64,
 }
 
@@ -128,9 +129,10 @@ const NODES: [[f64; 2]; 4] = [
     [0.669_990_521_792_428_1, 0.326_072_577_431_273_07],
     [0.930_568_155_797_026_3, 0.173_927_422_568_726_93],
 ];
-/// Edges at the same place to this share of R are one.
+/// Edges that are closer to each other than this share of R count as one.
 const SAME_EDGE: f64 = 1e-12;
-/// Largest height of a part over the largest radius; rounding would spoil those of a body that is farther away.
+/// Largest height of a part over the largest radius; for a body farther from the origin rounding would spoil the
+/// heights.
 const FARTHEST: f64 = 1e5;
 /// Allowed lengths, masses and densities.
 const SIZE: (f64, f64) = (0.0, 1e100);
@@ -264,7 +266,7 @@ fn squared(radius: f64, z: f64) -> f64 {
 }
 
 impl Mass {
-    /// Of slices between two heights, each with its mass per height and mean square of the radius.
+    /// The mass of slices between two heights, each with its mass per height and mean squared radius.
     fn between(ends: [f64; 2], slice: &dyn Fn(f64) -> [f64; 2]) -> Self {
         let length = ends[1] - ends[0];
         Self::along(ends, &|x| {
@@ -273,7 +275,7 @@ impl Mass {
         })
     }
 
-    /// Of slices along a line between two heights, each with its mass per share of the line.
+    /// The mass of slices along a line between two heights, each with its mass per share of the line.
     fn along(ends: [f64; 2], slice: &dyn Fn(f64) -> [f64; 2]) -> Self {
         let sum = |of: &dyn Fn(f64, f64) -> f64| -> f64 {
             NODES
@@ -294,7 +296,7 @@ impl Mass {
         }
     }
 
-    /// Without a part of it.
+    /// This mass without a part of it.
     fn without(self, inner: Self) -> Self {
         let whole = self.whole - inner.whole;
         let height = (self.whole * self.height - inner.whole * inner.height) / whole;
@@ -309,12 +311,12 @@ impl Mass {
 }
 
 impl Edge {
-    /// How deep it is below the origin.
+    /// Depth of the edge below the origin.
     fn depth(&self, theta: f64) -> f64 {
         self.r * theta.sin() - self.z * theta.cos() + self.rho
     }
 
-    /// The inclinations at which another edge is as deep, in (0, pi).
+    /// The inclinations in (0, pi) at which another edge is as deep as this one.
     fn meets(&self, other: &Self) -> [Option<f64>; 2] {
         // a sin theta - b cos theta = e is sin(theta - turn) = e/far.
         let (a, b, e) = (other.r - self.r, other.z - self.z, self.rho - other.rho);
@@ -331,7 +333,8 @@ impl Edge {
         [inside(turn + by), inside(turn + PI - by)]
     }
 
-    /// Whether another edge that is as deep here becomes deeper, as a ball does beyond the circle at which it is cut.
+    /// Whether another edge, as deep as this one here, becomes deeper: for example a ball beyond the circle at which it
+    /// is cut.
     fn gives_way(&self, other: &Self, theta: f64) -> bool {
         let (s, c) = theta.sin_cos();
         let (r, z) = (other.r - self.r, other.z - self.z);
@@ -340,18 +343,19 @@ impl Edge {
     }
 }
 
-/// Puts a body together from parts on one axis.
+/// Assembles a body from parts on one axis.
 ///
-/// It stands on the lowest edge or ball, and of edges at the same height on the widest. Inside a concave outline nothing
-/// touches. A body whose other rim is as wide, and as far from the centre of mass, has two equal rims.
+/// The body stands on its lowest edge or ball, and on the widest of several edges at one height. Parts inside a concave
+/// outline do not touch the table. A body has two equal rims if its other rim is as wide and as far from the centre of
+/// mass.
 ///
-/// Errors: `OutOfRange`, which names the number of a part, "parts" for a body without a mass or without an extent, and what
-/// [`Body::rounded`] refuses.
+/// Errors: `OutOfRange` with the number of a part that is out of range, or with "parts" for a body without mass or
+/// extent; and the errors of [`Body::rounded`].
 pub fn assembled(parts: &[BodyPart]) -> Result<Assembled, Error> {
     let none = |value| Error::OutOfRange {
         name: "parts",
         value,
-        expected: "parts with a mass, and a rim or a ball on which they stand",
+        expected: "parts with a mass, and a rim or a ball on which the body stands",
     };
     let (mut masses, mut edges) = (Vec::new(), Vec::new());
     for BodyPart { form, amount } in parts {
@@ -383,7 +387,7 @@ pub fn assembled(parts: &[BodyPart]) -> Result<Assembled, Error> {
     let radius = rim.r + rim.rho;
     let far = edges.iter().map(|edge| edge.z.abs()).fold(0.0, f64::max);
     let wide = edges.iter().map(|edge| edge.r + edge.rho).fold(0.0, f64::max);
-    within("height", far, (0.0, FARTHEST * wide), "heights from a point of the axis that is near the body")?;
+    within("height", far, (0.0, FARTHEST * wide), "heights measured from a point of the axis near the body")?;
     let per = 1.0 / (whole * radius * radius);
     let (ell, fillet) = ((centre - rim.z) / radius, rim.rho / radius);
     let body = Body::rounded(ell, (0.5 * axial + along) * per, axial * per, fillet)?;
@@ -401,13 +405,13 @@ pub fn assembled(parts: &[BodyPart]) -> Result<Assembled, Error> {
     Ok(Assembled { body: body.with_theta_end(theta_end)?, mass: whole, radius, centre })
 }
 
-/// The edge on which the body stands, and the inclination at which another one becomes deeper.
+/// The edge on which the body stands, and the inclination at which another edge becomes deeper.
 fn stands(edges: &[Edge]) -> Option<(Edge, f64)> {
     let lowest = |edge: &Edge| edge.depth(0.0);
     let wide = edges.iter().map(|edge| edge.r + edge.rho).fold(0.0, f64::max);
     let down = edges.iter().filter(|edge| edge.from == 0.0);
     let deepest = down.clone().map(lowest).fold(f64::NEG_INFINITY, f64::max);
-    // The ball touches before the point at which it ends.
+    // The ball touches the table before its own edge does.
     let rim = down
         .filter(|edge| lowest(edge) >= deepest - SAME_EDGE * wide)
         .max_by(|a, b| (a.r + a.rho).total_cmp(&(b.r + b.rho)))

@@ -12,8 +12,8 @@
 //! fillet does not enter g and g'. The formulas of the ball are in Routh, Advanced Rigid Dynamics (1884), Art. 244;
 //! those of the torus are elementary.
 //!
-//! These formulas stand only here, but for exceptions that a test of `test_house` lists. Error: 3 ulp of the largest
-//! term.
+//! Only this file contains these formulas, with the exceptions that a test of `test_house` lists. Error: 3 ulp of the
+//! largest term.
 
 use crate::numbers::Real;
 
@@ -59,7 +59,7 @@ impl<T: Real> Rim<T> {
         self.ell * c + self.a * s
     }
 
-    /// Height of the lowest point of the upper rim, of two equal ones, over that of the lower rim.
+    /// Height of the lowest point of the upper rim above that of the lower rim, for two equal rims.
     #[inline(always)]
     pub fn between(&self, (_, c): (T, T)) -> T {
         (self.ell + self.ell) * c

@@ -1,4 +1,4 @@
-//! Impact of a rim on the table: the impulses at one point, and how much of the normal velocity comes back.
+//! Impact of a rim on the table: the impulses at one point, and the share of the normal velocity that is restored.
 //!
 //! ```text
 //! M = [[a_h, 0, b], [0, a_2, 0], [b, 0, a_n]]        change of the contact point's velocity (e_h, e2, z) per impulse
@@ -27,9 +27,9 @@ use crate::numbers::Dual;
 use crate::numbers::codes::coded;
 
 coded! {
-    /// What the contact point does in an impact.
+    /// The motion of the contact point in an impact.
     pub enum Hit {
-        /// It slips to the end.
+        /// It slips until the impact ends.
         Slips = 0,
         /// Its slip stops, and it sticks.
         Sticks = 1,
@@ -37,7 +37,7 @@ coded! {
         SlipsOn = 2,
         /// Without friction.
         Smooth = 3,
-        /// The other rim lands without a bounce, and the impulse is that of both rims together.
+        /// The other rim lands without a bounce, and the impulse is the sum over both rims.
         BothRims = 4,
     }
 }
@@ -50,7 +50,8 @@ pub(crate) struct RimImpact {
     pub lift: f64,
     /// a_h, a_2, a_n and b.
     pub light: [f64; 4],
-    /// Tolerance of a step along an impact whose slip turns, at least 3e-14, and how much longer the first one is.
+    /// Tolerance of a step along an impact whose slip turns, at least 3e-14, and the factor by which the first step is
+    /// longer.
     pub tol: f64,
     pub longer: f64,
 }
@@ -94,13 +95,13 @@ pub(crate) fn turned(
     ]
 }
 
-/// A slip slower than this share of the speed, or of the normal velocity, counts as none.
+/// A slip slower than this share of the speed, or of the normal velocity, counts as zero.
 const STOPPED: f64 = 1e-15;
-/// A slip whose sine is below this runs along the lean, but for the square of it; and below this, where the sine grows as
-/// the slip dies out.
+/// Below this sine, a slip runs along the lean up to the square of the sine; and the lower limit where the sine grows
+/// as the slip dies out.
 const STRAIGHT: f64 = 1e-8;
 const STRAIGHT_ON: f64 = 1e-14;
-/// The error of a slip across the lean is this share of it, or smaller, so that it dies out where the slip lasts long.
+/// The error of a slip across the lean is at most this share of the slip, so that a slip that lasts long can die out.
 const DIES: f64 = 1e-6;
 /// The first step along an impact.
 const FIRST: f64 = 0.3;
@@ -120,7 +121,7 @@ struct ImpactCourse {
 }
 
 impl ImpactCourse {
-    /// Goes on in a direction that stays, in which the normal velocity grows at the rate `k`, for at most the normal
+    /// Continues in a constant direction, in which the normal velocity grows at the rate `k`, for at most the normal
     /// impulse `most`. Returns whether the impact ends.
     fn straight(&mut self, k: f64, [p_h, p_2]: [f64; 2], most: f64) -> bool {
         let (mut p, mut done) = (most, false);
@@ -150,8 +151,8 @@ impl ImpactCourse {
 }
 
 impl RimImpact {
-    /// The impact under the law of this table with the restitution `e`. None where a rolling table has no answer:
-    /// its friction would lift the body before the slip has stopped, or would exceed mu times the normal impulse; and
+    /// The impact under this law of contact with the restitution `e`. None for a rolling contact without a solution,
+    /// whose friction would lift the body before the slip has stopped or would exceed mu times the normal impulse, and
     /// after too many steps.
     pub fn on(&self, table: &Table, e: f64) -> Option<Struck> {
         let [a_h, a_2, a_n, b] = self.light;
@@ -227,7 +228,7 @@ impl RimImpact {
             let most = if slow < 0.0 { -speed / slow } else { f64::INFINITY };
             course.straight(a_n - mu * b * way[0], way.map(|x| -mu * x), most)
         };
-        // Along the lean, or where the contact is alike in all directions, the direction of the slip stays.
+        // Along the lean, or where the contact is isotropic, the direction of the slip stays.
         if slip[1] == 0.0 || b.abs() + turns.abs() < STOPPED {
             return Some(straight(course, slip.map(|u| u / speed), speed));
         }
@@ -267,10 +268,10 @@ impl RimImpact {
                 (core::array::from_fn::<f64, 7, _>(|i| place[i] + made.change[i]), made)
             };
             let (there, made) = part(h);
-            // The error of a slip is relative to a fast one, and so small beside a slow one that its direction stays.
+            // The error is relative to a fast slip, and so small for a slow slip that its direction stays.
             let per_slip =
                 if sigma > 1.0 { 1.0 / (self.tol * sigma) } else { (1.0 / self.tol).max(1e3 / sigma) };
-            // A jam makes impulses that are large beside the fall.
+            // A jam makes impulses that are large compared with the fall.
             let per = |i: usize| match i {
                 0 => per_slip,
                 1 => per_slip.max(1.0 / (DIES * place[1].abs())),
@@ -296,7 +297,7 @@ impl RimImpact {
             }
             while end.is_none() && margin(&there, compressed) <= 0.0 {
                 let (now, wide) = (compressed, h - from);
-                // Where the search has looked last, and the state and its rates there.
+                // The last point of the search, with the state and its rates.
                 let (mut looked, mut at, mut fast) = (1.0, there, last);
                 let mut on = |x: f64| {
                     (looked, at) = (x, part(from + x * wide).0);
@@ -307,7 +308,7 @@ impl RimImpact {
                 let known = [begin, wide * slope(&first.1, now), stop, wide * slope(&last, now)];
                 let x = only_zero(&mut on, known)
                     .unwrap_or_else(|| crossing(|x| on(x).value, 0.0, 1.0, begin, stop));
-                // The last move of the search is so short that it is straight.
+                // The last move of the search is short enough for a linear step.
                 let at = core::array::from_fn(|i| at[i] + wide * (x - looked) * fast[i]);
                 rates(&at, &mut fast);
                 (from, first) = (from + x * wide, (at, fast));
@@ -335,7 +336,7 @@ impl RimImpact {
         }
         let way = [u_h.signum(), 0.0];
         let ended = straight(course, way, sigma);
-        // What is left across the lean falls as a power of the slip.
+        // The remaining slip across the lean falls as a power of the slip.
         let (slow, long) = (-slows(way), (course.impulse[2] - p) / sigma);
         let log = if slow * long == 0.0 { -long } else { (-slow * long).max(-1.0).ln_1p() / slow };
         course.impulse[1] += u_2 * (mu * a_2 * log).exp_m1() / a_2;

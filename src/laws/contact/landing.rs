@@ -42,7 +42,7 @@ pub enum Outcome {
 pub struct Landed {
     /// The kind of motion that follows.
     pub outcome: Outcome,
-    /// The state as seen from the rim that carries the body: from the old rim where the body lies on both.
+    /// The state as seen from the rim that carries the body; from the old rim if the body lies on both.
     pub state: State,
     /// The slip of the rim from which `state` is seen, along e_h and along e2.
     pub slip: [f64; 2],
@@ -50,17 +50,22 @@ pub struct Landed {
     pub lost: f64,
 }
 
-/// Refuses a body unless it has two equal rims to lie on: ell > 0 and theta_end = pi/2.
+/// Returns an error unless the body has two equal rims to lie on: ell > 0 and theta_end = pi/2.
 pub(crate) fn two_rims(body: &Body) -> Result<(), Error> {
-    within("ell", body.ell(), (f64::MIN_POSITIVE, f64::MAX), "ell > 0: a body that can lie on two rims")?;
-    within("theta_end", body.theta_end(), (FRAC_PI_2, FRAC_PI_2), "pi/2: a body that can lie on two rims")?;
+    within("ell", body.ell(), (f64::MIN_POSITIVE, f64::MAX), "ell > 0, for a body that can lie on two rims")?;
+    within(
+        "theta_end",
+        body.theta_end(),
+        (FRAC_PI_2, FRAC_PI_2),
+        "pi/2, for a body that can lie on two rims",
+    )?;
     Ok(())
 }
 
 /// The launch number with friction, (I3 w1 w3 - Fh)/ell, of a body at theta = pi/2 and w2 = 0; above 1 the body rises.
 ///
-/// Fh is the friction at the lower rim if this rim alone bears the body. At a rim at rest Fh is the friction that
-/// rolling demands, at most `mu`, which then is the static coefficient.
+/// Fh is the friction at the lower rim if this rim alone carries the body. At a rim at rest Fh is the friction that
+/// rolling needs, at most `mu`, which then is the static coefficient.
 pub fn launch(body: &Body, y: &State, slip: [f64; 2], mu: f64) -> f64 {
     let speed = slip[0].hypot(slip[1]);
     let along = if speed > 0.0 {
@@ -79,7 +84,8 @@ pub fn rises(body: &Body, y: &State, slip: [f64; 2], mu: f64) -> bool {
     launch(body, y, slip, mu) > 1.0
 }
 
-/// The normal forces N_low and N_up on a body that lies on its side while both rims slip; negative where an end rises.
+/// The normal forces N_low and N_up on a body that lies on its side while both rims slip; a force is negative where
+/// that end rises.
 ///
 /// The forces are NaN where a rim does not slip, since its friction is not known from the state alone.
 pub fn normals(body: &Body, y: &State, slip: [f64; 2], mu: f64) -> [f64; 2] {
@@ -101,8 +107,9 @@ pub fn land(body: &Body, y: &State, slip: [f64; 2], mu: f64) -> Result<Landed, E
     land_at(body, y, (slip, 0.0), &Friction::coulomb(mu))
 }
 
-/// The plastic landing with any law of friction, also of a body whose lower rim comes down with it, at the velocity
-/// `lift` <= 0. A viscous film takes the impulse c P u, with the slip u after the impact, as dry friction does.
+/// The plastic landing with any law of friction, also for a body whose lower rim comes down at the same time, at the
+/// velocity `lift` <= 0. A viscous film takes the impulse c P u, with the slip u after the impact, as dry friction
+/// does.
 pub(crate) fn land_at(
     body: &Body,
     y: &State,
@@ -110,8 +117,8 @@ pub(crate) fn land_at(
     friction: &Friction,
 ) -> Result<Landed, Error> {
     let most = 1e100;
-    within("theta", y.theta, (FRAC_PI_2, FRAC_PI_2), "pi/2: the other rim lands there")?;
-    within("w2", y.w2, (-most, 0.0), "-1e100 <= w2 <= 0: the other rim comes down")?;
+    within("theta", y.theta, (FRAC_PI_2, FRAC_PI_2), "pi/2, where the other rim lands")?;
+    within("w2", y.w2, (-most, 0.0), "-1e100 <= w2 <= 0, for a rim that comes down")?;
     for (name, x) in [("w1", y.w1), ("w3", y.w3), ("u_h", slip[0]), ("u_2", slip[1])] {
         within(name, x, (-most, most), "-1e100 to 1e100")?;
     }
@@ -161,8 +168,8 @@ pub(crate) fn land_at(
     }
 }
 
-/// The state and the slip after the last of a rattle on both rims, whose rim comes down or rises at `lift`: all that is
-/// left of w2 and of the vertical velocity is taken by impulses of either sign, each with the friction of its slip.
+/// The state and the slip after the last impact of a rattle on both rims, whose rim comes down or rises at `lift`.
+/// Impulses of either sign, each with the friction of its slip, take the rest of w2 and of the vertical velocity.
 ///
 /// Error: the square of those velocities, or the velocities themselves at a rim that sticks.
 pub(crate) fn settled(

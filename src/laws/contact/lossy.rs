@@ -78,8 +78,8 @@ impl<T: Real> Lossy<T> {
         angle.0.splat(DAMPED) / self.stiffness(angle, self.losses.slope(angle.0.abs(), radius, spin))
     }
 
-    /// dt/dsigma where rolling and rocking together have this speed. Rolling resistance takes about delta/J
-    /// from the speed in a unit of time; in sigma the speed vanishes as exp(-sigma).
+    /// dt/dsigma where rolling and rocking together have this speed. Rolling resistance reduces the speed by about
+    /// delta/J in a unit of time; in sigma the speed vanishes as exp(-sigma).
     #[inline(always)]
     pub fn pace(&self, angle: (T, T), speed: T) -> T {
         let inertia = self.rates.reduced().inertia(

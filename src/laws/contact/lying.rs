@@ -36,7 +36,7 @@ pub(crate) struct Lying<T> {
 /// Forces and accelerations on both rims.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Lain<T> {
-    /// N, F_2 and F_h at the rim from which the state is told, and at the other one.
+    /// N, F_2 and F_h at the rim from which the state is seen, and at the other rim.
     pub force: [[T; 3]; 2],
     /// w1' and w3'.
     pub w: [T; 2],
@@ -119,7 +119,8 @@ impl<T: Real> Lying<T> {
         Lain { force, w: [d1, d3], u, couple: [m1, m3] }
     }
 
-    /// Both rims slip, with the friction per normal force and its sign reversed as given; `ways` as for the losses.
+    /// Motion with both rims slipping, for the given friction per normal force (sign reversed); `ways` as for the
+    /// losses.
     pub fn slipping_along(&self, y: Flat<T>, [low, up]: [[T; 2]; 2], ways: [f64; 2]) -> Lain<T> {
         let [w1, w3, ..] = y;
         let (ell, zero) = (self.shape.rim.ell, w1.splat(0.0));
@@ -130,13 +131,14 @@ impl<T: Real> Lying<T> {
         self.under(y, force, self.couple([w1, w3], ways))
     }
 
-    /// Both rims slip.
+    /// Motion with both rims slipping.
     pub fn slipping(&self, y: Flat<T>, ways: [f64; 2]) -> Lain<T> {
         let drags = [self.drag([y[2], y[3]]), self.drag(self.other_slip(y))];
         self.slipping_along(y, drags, ways)
     }
 
-    /// The rim from which the state is told sticks, and the other one slips across the axis; `turn` is the sign of w1.
+    /// Motion where the rim from which the state is seen sticks, and the other slips across the axis; `turn` is the
+    /// sign of w1.
     fn pivots_here(&self, y: Flat<T>, turn: f64, ways: [f64; 2]) -> Lain<T> {
         let [w1, w3, ..] = y;
         let Shape { rim, i1, i3 } = self.shape;
@@ -153,7 +155,7 @@ impl<T: Real> Lying<T> {
         self.under([w1, w3, zero, zero], [[n, low, along], [m, up, zero]], [m1, m3])
     }
 
-    /// One rim sticks: the other one if `other`.
+    /// Motion where one rim sticks: the other rim if `other`.
     pub fn pivots(&self, y: Flat<T>, other: bool, turn: f64, ways: [f64; 2]) -> Lain<T> {
         if !other {
             return self.pivots_here(y, turn, ways);
@@ -169,7 +171,7 @@ impl<T: Real> Lying<T> {
         Lain { force, w: [d1, zero - d3], u, couple: [m1, zero - m3] }
     }
 
-    /// Both rims stick, and the body rolls straight on.
+    /// Motion where both rims stick, and the body rolls straight on.
     pub fn rolls(&self, [_, w3, ..]: Flat<T>, ways: [f64; 2]) -> Lain<T> {
         let (one, zero) = (w3.splat(1.0), w3.splat(0.0));
         let half = w3.splat(0.5);

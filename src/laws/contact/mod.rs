@@ -4,12 +4,11 @@
 //! rolling   the contact point rests            smooth   the force is vertical
 //! friction demand   |F_horizontal| = hypot(F2, Fh),   coefficient needed   |F_horizontal|/N
 //! ```
-//! [`rolling`] and [`smooth`] give the force of each table from its own condition; `reduced` has the
-//! equations of motion without the contact force, and [`newton`](super::newton) those under any force.
-//! Rolling holds while N > 0 and |F_horizontal| <= mu N: the friction demand is only compared with mu N,
-//! never limited to it.
+//! [`rolling`] and [`smooth`] give the contact force from the condition of each contact; `reduced` has the equations of
+//! motion without the contact force, and [`newton`](super::newton) those under any force. Rolling holds while N > 0 and
+//! |F_horizontal| <= mu N: the friction that rolling needs is only compared with mu N, never limited to it.
 //!
-//! Error: 64 ulp of the largest term, by comparison with the three-dimensional model (a test of `laws` runs it).
+//! Error: 64 ulp of the largest term, by comparison with a three-dimensional model in a test of `laws`.
 
 pub(crate) mod impact;
 pub mod landing;
@@ -43,8 +42,7 @@ pub enum Contact {
     Smooth = 1,
 }
 
-/// A slip whose factor 1 - eps of the normal force is closer to 0 than this is refused: the force counts as
-/// infinite.
+/// A slip whose factor 1 - eps of the normal force is closer to 0 than this is an error: the force counts as infinite.
 pub(crate) const JAMMED: f64 = 1e-6;
 /// A face has landed if its angle to the table is below this, in radians: the gap is then smaller than an
 /// atom.
@@ -57,13 +55,13 @@ impl Contact {
         self.derivative_at(body, y, y.theta.sin_cos())
     }
 
-    /// The time derivative of (theta, w1, w2, w3), where sine and cosine of theta are known already.
+    /// The time derivative of (theta, w1, w2, w3), for given sine and cosine of theta.
     #[inline(always)]
     pub(crate) fn derivative_at(self, body: &Body, y: &State, (s, c): (f64, f64)) -> State {
         self.rates(body).derivative(y, (s, c))
     }
 
-    /// The equations of motion of a body on this table, with all constant terms computed beforehand.
+    /// The equations of motion of a body with this contact, with all constant terms computed beforehand.
     #[inline(always)]
     pub(crate) fn rates(self, body: &Body) -> Rates<f64> {
         Rates::of(self, &body.shape(), !body.is_sharp())
@@ -77,7 +75,7 @@ impl Contact {
         }
     }
 
-    /// The equations of motion of a body on this table without the contact force.
+    /// The equations of motion of a body with this contact, without the contact force.
     #[inline(always)]
     pub(crate) fn reduced(self, body: &Body) -> Reduced<f64> {
         Reduced::of(self, &body.shape(), !body.is_sharp())
@@ -92,7 +90,7 @@ pub fn force(contact: Contact, body: &Body, y: &State) -> Force {
     force_at(rates.reduced(), y, &rates.derivative(y, angle), angle)
 }
 
-/// The contact force, where the state's derivative and sine and cosine of theta are known already.
+/// The contact force, for given derivative of the state and sine and cosine of theta.
 #[inline(always)]
 pub(crate) fn force_at(of: &Reduced<f64>, y: &State, dy: &State, angle: (f64, f64)) -> Force {
     let (w, dw) = ([y.w1, y.w2, y.w3], [dy.w1, dy.w2, dy.w3]);
@@ -102,8 +100,8 @@ pub(crate) fn force_at(of: &Reduced<f64>, y: &State, dy: &State, angle: (f64, f6
 
 /// The margin of static friction, mu N |mu N| - F^2, from N and F^2.
 ///
-/// It keeps falling where N turns negative, so that a step across the lift-off does not find a contact that
-/// holds again. The last term keeps it positive where mu and F both vanish.
+/// The margin keeps falling where N turns negative, so that a step across the lift-off does not find a contact that
+/// holds again. The last term keeps the margin positive where mu and F both vanish.
 #[inline(always)]
 pub(crate) fn grip<T: Real>(mu: T, normal: T, square: T) -> T {
     let most = mu * normal;

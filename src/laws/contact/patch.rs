@@ -44,7 +44,7 @@ const COUPLE: [f64; 22] = [
 fn shares<T: Real>(slip: T, turn: T) -> [T; 2] {
     let number = |x: f64| slip.splat(x);
     let one = number(1.0);
-    // Each side is computed with arguments that suit it, where it is not needed, too.
+    // Both sides are always computed, each with arguments that are valid for it.
     let (small, wide) = (slip.min(turn), turn.max(number(f64::MIN_POSITIVE)));
     let square = (small / wide) * (small / wide);
     let within = [
@@ -59,8 +59,8 @@ fn shares<T: Real>(slip: T, turn: T) -> [T; 2] {
     [0, 1].map(|i| turn.select_lt(slip, outside[i], within[i]))
 }
 
-/// The friction of a patch of this radius that slips and drills: f/S, the couple over mu N, and S + R, which is how fast it
-/// rubs. The couple acts against the drilling.
+/// The friction of a patch of this radius that slips and drills: f/S, the couple over mu N, and the rubbing speed S +
+/// R. The couple acts against the drilling.
 #[inline(always)]
 pub(crate) fn rubs<T: Real>(slip: T, drilling: T, radius: T) -> [T; 3] {
     let turn = radius * drilling.abs();
@@ -78,8 +78,8 @@ pub fn of(k: f64) -> [f64; 2] {
     [k * force, couple]
 }
 
-/// The k at which f(k) is this share of mu N, 0 or more and at most 1, where it is infinite: by the cubic inside, and by
-/// a search outside.
+/// The k at which f(k) equals this share of mu N, which is from 0 to 1; k is infinite for 1. Inside, a cubic gives k;
+/// outside, a search.
 pub fn slip_for(share: f64) -> f64 {
     if share <= 9.0 * PI / 32.0 {
         let third = (2.0 * 3f64.sqrt() * share / PI).min(1.0).asin() / 3.0;

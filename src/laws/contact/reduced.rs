@@ -36,7 +36,7 @@ pub(crate) struct Coefficients<T> {
     pub per_d: T,
 }
 
-/// The equations of motion of a body on its table, without the contact force.
+/// The equations of motion of a body with its contact, without the contact force.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Reduced<T> {
     pub contact: Contact,
@@ -215,7 +215,7 @@ impl<T: Real> Rates<T> {
 }
 
 impl Rates<f64> {
-    /// The time derivative of (theta, w1, w2, w3), where sine and cosine of theta are known already.
+    /// The time derivative of (theta, w1, w2, w3), for given sine and cosine of theta.
     #[inline(always)]
     pub fn derivative(&self, y: &State, (s, c): (f64, f64)) -> State {
         let [w1, w2, w3] = self.at(s, c, [y.w1, y.w2, y.w3]);

@@ -61,17 +61,17 @@ impl Friction {
         Self::Coulomb { mu, fixed: mu, patch: 0.0 }
     }
 
-    /// Refuses coefficients outside their range; the error names the coefficient.
+    /// Returns an error for coefficients outside their range; the error names the coefficient.
     pub fn check(&self) -> Result<(), Error> {
         let finite = (0.0, f64::MAX);
         match *self {
             Self::Coulomb { mu, fixed, patch } => {
-                within("mu", mu, finite, "0 <= mu, finite")?;
-                within("static", fixed, (mu, f64::INFINITY), "mu <= static")?;
+                within("mu", mu, finite, "a finite mu >= 0")?;
+                within("static", fixed, (mu, f64::INFINITY), "static >= mu")?;
                 within("patch", patch, (0.0, 1.0 - f64::EPSILON), "0 <= patch < 1, in R")?;
             }
             Self::Viscous { c } => {
-                within("c", c, finite, "0 <= c, finite")?;
+                within("c", c, finite, "a finite c >= 0")?;
             }
         }
         Ok(())
@@ -85,7 +85,7 @@ impl Friction {
         }
     }
 
-    /// The radius of the patch of contact; 0 for a point, and for a patch that differs from a point by rounding.
+    /// The radius of the patch of contact; 0 for a point, and for a patch that differs from a point only by rounding.
     pub(crate) fn patch(&self) -> f64 {
         match *self {
             Self::Coulomb { mu, patch, .. } if mu > 0.0 && patch > POINT => patch,
@@ -111,7 +111,7 @@ pub(crate) struct Slipping<T> {
     pub soft: T,
     /// Whether the friction is Coulomb's, whose force has a direction even where u vanishes.
     pub dry: bool,
-    /// The losses beside friction; None if the body has none.
+    /// The losses in addition to friction; None if the body has none.
     pub losses: Option<Couples<T>>,
     /// The radius of the patch of contact; None for a point.
     radius: Option<T>,
@@ -161,15 +161,15 @@ impl<T: Real> Slipping<T> {
         Self { losses, ..self }
     }
 
-    /// The response with a couple `push` h/s along the contour that makes psi' change at this rate; also
-    /// dt/dsigma and `push`. Neither the normal force nor friction depends on this couple.
+    /// The response with a couple `push` h/s along the contour that makes psi' change at this rate, with dt/dsigma and
+    /// `push`. Neither the normal force nor friction depends on this couple.
     pub fn settled(&self, (s, c): (T, T), w: [T; 3], u: [T; 2], rate: T) -> (SlipResponse<T>, T, T) {
         let &Shape { rim, i1, i3 } = &self.shape;
         let (mut at, pace) = self.at((s, c), w, u);
         let [d1, _, d3] = at.w;
         let off = s * (s * d3 - c * d1 - w[0] / s * w[1] - s * rate);
         let (push, more1, more3) = if self.losses.as_ref().is_some_and(Couples::holds_drilling) {
-            // To keep the drilling at rest takes one more couple, about the vertical.
+            // One more couple, about the vertical, keeps the drilling at rest.
             let (more1, more3) = (c / s * off, -off);
             let twist = s * i1 * more1 + c * i3 * more3;
             at.held[0] = at.held[0] + twist;
@@ -183,7 +183,7 @@ impl<T: Real> Slipping<T> {
         (at, pace, push)
     }
 
-    /// The response to the friction force F = -strength N pull/size, where `size` is the size of `pull`; also
+    /// The response to the friction force F = -strength N pull/size, where `size` is the magnitude of `pull`, with
     /// dt/dsigma, which is size/sum. One division serves all quotients.
     #[inline(always)]
     pub fn with(
@@ -372,13 +372,13 @@ impl Slipping<f64> {
     }
 }
 
-/// mu_P(theta) of a body: from this coefficient of friction on, some slip leaves no unique contact force.
+/// mu_P(theta) of a body: from this coefficient of friction on, some direction of slip leaves no unique contact force.
 pub fn painleve(body: &Body, theta: f64) -> f64 {
     Slipping::of(&body.shape(), 1.0, true).painleve(theta.sin_cos())
 }
 
-/// Horizontal velocity of the centre of a body that slips with u = (along the lean, across), along the same directions.
-/// With u = 0 it is that of a contact point at rest.
+/// Horizontal velocity of the centre of a body that slips with u = (along the lean, across), in the same directions.
+/// With u = 0 the contact point is at rest.
 pub fn centre_velocity(body: &Body, y: &State, slip: [f64; 2]) -> [f64; 2] {
     Slipping::of(&body.shape(), 1.0, true).centre(y.theta.sin_cos(), [y.w1, y.w2, y.w3], slip)
 }
@@ -395,7 +395,7 @@ pub fn energy(body: &Body, y: &State, slip: [f64; 2]) -> f64 {
 
 /// Time derivative of (theta, w1, w2, w3) and of the slip, and the contact force, of a body that slips.
 ///
-/// The slip must not be zero under Coulomb friction. The formulas give a value even where no unique force exists.
+/// The slip must not be zero under Coulomb friction. The formulas give a value even where there is no unique force.
 pub fn derivative(
     body: &Body,
     y: &State,

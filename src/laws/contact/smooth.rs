@@ -33,7 +33,7 @@ pub fn energy(body: &Body, y: &State) -> f64 {
     newton::energy(&shape, angle, w, centre_velocity(&shape, angle, w))
 }
 
-/// The velocity of the centre, which is vertical; the first component holds it, since only its size is used.
+/// The velocity of the centre, which is vertical. The first component holds it, since only its magnitude is used.
 #[inline(always)]
 pub(crate) fn centre_velocity<T: Real>(shape: &Shape<T>, angle: (T, T), [_, w2, _]: [T; 3]) -> [T; 3] {
     let zero = w2.splat(0.0);

@@ -1,4 +1,4 @@
-//! A contact point with zero slip: whether it sticks, slips off or lifts off, or whether that is not unique.
+//! A contact point with zero slip: whether it sticks, slips or lifts off, or whether its behaviour is not unique.
 //!
 //! ```text
 //! sticks     N_roll > 0 and |F_roll| <= mu_s N_roll
@@ -40,7 +40,7 @@ pub(crate) enum Standstill {
 
 /// From this fraction of mu_P on, more than one behaviour may be consistent, and all are counted.
 const DOUBTFUL: f64 = 0.9;
-/// A growth rate of the speed below this counts as zero, since it is a rounding error.
+/// A slip whose speed grows more slowly than this counts as not growing, since that is a rounding error.
 const STILL: f64 = 1e-11;
 /// The same limit where static friction has just ceased to hold, at a time that is rounded.
 const JUST: f64 = 1e-8;

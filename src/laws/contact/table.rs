@@ -1,15 +1,15 @@
-//! Tables on which a body stands: the law of a table for one motion, and its code for many motions.
+//! Laws of contact with the table: the law of one motion, and its code for many motions.
 
 use super::Contact;
 use super::slip::Friction;
 use crate::error::{Error, within};
 use crate::numbers::codes::coded;
 
-/// The law of the contact between a table and a body.
+/// A law of the contact between body and table.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Table {
-    /// The contact point rests. The motion ends where rolling needs more friction than mu N; mu may be infinite.
+    /// The contact point is at rest. The motion ends where rolling needs more friction than mu N; mu may be infinite.
     Rolling {
         /// Coefficient of friction.
         #[cfg_attr(feature = "serde", serde(with = "crate::numbers::file"))]
@@ -17,7 +17,7 @@ pub enum Table {
     },
     /// The table is frictionless.
     Smooth,
-    /// A law of friction decides whether the contact point slips.
+    /// A law of friction, which decides whether the contact point slips.
     Rubs(Friction),
 }
 
@@ -34,14 +34,14 @@ impl From<Friction> for Table {
 }
 
 impl From<Contact> for Table {
-    /// Rolling with an infinite coefficient of friction, or a smooth table.
+    /// Rolling with an infinite coefficient of friction, or smooth.
     fn from(contact: Contact) -> Self {
         Self::of(contact, f64::INFINITY)
     }
 }
 
 impl Table {
-    /// Rolling with this coefficient of friction, or a smooth table, which ignores the coefficient.
+    /// Rolling with this coefficient of friction; or smooth, where the coefficient is ignored.
     pub fn of(contact: Contact, mu: f64) -> Self {
         match contact {
             Contact::Rolling => Self::Rolling { mu },
@@ -49,17 +49,17 @@ impl Table {
         }
     }
 
-    /// Whether a law of friction decides if the contact point slips or rests.
+    /// Whether a law of friction decides if the contact point slips or is at rest.
     pub fn rubs(&self) -> bool {
         matches!(self, Self::Rubs(_))
     }
 
-    /// The contact while no law of friction lets the contact point slip: smooth on a smooth table, otherwise rolling.
+    /// The contact as long as no law of friction lets the contact point slip: smooth, or else rolling.
     pub fn contact(&self) -> Contact {
         if *self == Self::Smooth { Contact::Smooth } else { Contact::Rolling }
     }
 
-    /// The largest ratio of friction to normal force at which the contact point rests; infinite without a limit.
+    /// The largest ratio of friction to normal force at which the contact point is at rest; infinite without a limit.
     pub(crate) fn mu(&self) -> f64 {
         match *self {
             Self::Rolling { mu } | Self::Rubs(Friction::Coulomb { fixed: mu, .. }) => mu,
@@ -67,7 +67,7 @@ impl Table {
         }
     }
 
-    /// The law of friction under which the contact point moves once it slips.
+    /// The law of friction under which the contact point moves while it slips.
     pub(crate) fn friction(&self) -> Friction {
         match *self {
             Self::Rubs(friction) => friction,
@@ -87,7 +87,7 @@ impl Table {
         kind.with(coefficients)
     }
 
-    /// Refuses coefficients outside their range; the error names the coefficient.
+    /// Returns an error for coefficients outside their range; the error names the coefficient.
     pub(crate) fn check(&self) -> Result<(), Error> {
         match self {
             Self::Rolling { mu } => within("mu", *mu, (0.0, f64::INFINITY), "0 <= mu").map(|_| ()),
@@ -98,13 +98,13 @@ impl Table {
 }
 
 coded! {
-    /// The kind of a table. The number is the code of the kind in arrays.
+    /// The kind of a law of contact. The number is the code of the kind in arrays.
     #[derive(Default)]
     pub enum TableKind {
-        /// The contact point rests. The coefficient is mu, infinite where friction has no limit.
+        /// The contact point is at rest. The coefficient is mu, infinite where friction has no limit.
         #[default]
         Rolling = 0,
-        /// The table is frictionless and has no coefficient.
+        /// The table is frictionless; there is no coefficient.
         Smooth = 1,
         /// Coulomb's law of friction with the coefficient mu and the static coefficient.
         Coulomb = 2,
@@ -133,7 +133,7 @@ impl TableKind {
         }
     }
 
-    /// The table of this kind with these coefficients; coefficients that the kind does not have are ignored.
+    /// The law of this kind with these coefficients; coefficients that the kind does not have are ignored.
     pub fn with(self, [a, b, patch]: [f64; 3]) -> Table {
         match self {
             Self::Rolling => Table::Rolling { mu: a },
@@ -143,12 +143,12 @@ impl TableKind {
         }
     }
 
-    /// Whether a law of friction decides if the contact point slips or rests.
+    /// Whether a law of friction decides if the contact point slips or is at rest.
     pub fn rubs(self) -> bool {
         matches!(self, Self::Coulomb | Self::Viscous)
     }
 
-    /// The contact while no law of friction lets the contact point slip: smooth on a smooth table, otherwise rolling.
+    /// The contact as long as no law of friction lets the contact point slip: smooth, or else rolling.
     pub fn contact(self) -> Contact {
         if self == Self::Smooth { Contact::Smooth } else { Contact::Rolling }
     }

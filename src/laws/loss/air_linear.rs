@@ -3,7 +3,7 @@
 //! ```text
 //! P = b w.w,   m = -b w          b in M R sqrt(g R)
 //! ```
-//! The law is Stokes's law of a body that turns. A thin disk never stops: sin theta falls as exp(-2 b t/(3 I1)).
+//! The law is Stokes's law for a rotating body. A thin disk never stops: sin theta falls as exp(-2 b t/(3 I1)).
 
 use super::{EndPowers, Kinematics, LossLaw, Resists};
 use crate::numbers::Real;

@@ -1,4 +1,4 @@
-//! Boundary layers of the air that is pressed out between a flat face and the table.
+//! Boundary layers of the air that flows between a flat face and the table.
 //!
 //! ```text
 //! P = k |psi'|^(5/2),   m = k |psi'|^(3/2) sgn(psi') h/s          k = C sqrt(density viscosity) R^(9/4)/(M g^(1/4))

@@ -4,7 +4,7 @@
 //! m = m0 + N mN,   P = P0 + N PN          of the laws that are present
 //! ```
 //! The ways are the signs of psi', of the drilling, and of the rocking of a body that only rocks. A caller can hold
-//! them fixed within a step, so that every step is smooth. The error is that of the laws.
+//! these signs fixed within a step, so that every step is smooth. The error is that of the laws.
 
 use super::{COUNT, Law, Losses, Speed};
 use crate::laws::body::{Body, Rim};
@@ -98,9 +98,9 @@ impl<T: Real> Couple<T> {
 pub(crate) struct Ways<T = f64> {
     pub contour: T,
     pub drilling: T,
-    /// The sign of w2 of a body that only rocks, otherwise 0; in lanes no body only rocks.
+    /// The sign of w2 for a body that only rocks, otherwise 0; in lanes no body only rocks.
     pub rocking: f64,
-    /// Whether dry friction holds the drilling, by the couple about the vertical that this needs.
+    /// Whether dry friction holds the drilling, by a couple about the vertical.
     pub holds_drilling: bool,
 }
 
@@ -110,13 +110,13 @@ impl Ways {
         Self { drilling: 0.0, holds_drilling: true, ..self }
     }
 
-    /// These signs with a drilling that begins where the body is pushed, from the couple that would hold it.
+    /// These signs with a drilling that begins in the direction of the push, given by the couple that would hold it.
     pub fn drilling_from(self, push: f64) -> Self {
         Self { drilling: -push.signum(), holds_drilling: false, ..self }
     }
 
-    /// These signs where the drilling has stopped: dry friction holds it if its limit suffices, otherwise it begins
-    /// anew. `needs` has the couple that holds the drilling, and the limit of friction.
+    /// These signs where the drilling has stopped: dry friction holds the drilling if its limit suffices; otherwise the
+    /// drilling begins anew. `needs` has the couple that holds the drilling, and the limit of friction.
     pub fn drilling_stopped(self, needs: [f64; 2]) -> Self {
         if holds(needs) { self.holding_drilling() } else { self.drilling_from(needs[0]) }
     }
@@ -129,19 +129,19 @@ pub(crate) struct Couples<T> {
     pub(super) present: [bool; COUNT],
     /// The signs of the motions that dry friction resists, where a caller holds them fixed within a step.
     pub ways: Option<Ways<T>>,
-    /// The couple of a law of the user's own, at the numbers for which these losses are made.
+    /// The couple of a user-defined law, in the state for which these losses are made.
     pub given: Option<Couple<T>>,
 }
 
-/// A step may change a speed at whose zero a law is not smooth by this fraction of it, or by `NEAR` if that is more.
+/// A step may change a speed by this share, or by `NEAR` if that is more, where a law is not smooth at zero speed.
 const NEARER: f64 = 0.5;
 pub(crate) const NEAR: f64 = 1e-9;
 /// A change of sign counts only for a speed beyond this, since near rest rounding may give either sign.
 pub(crate) const SLACK: f64 = 4e-15;
 
 impl<T: Real> Couples<Dual<T>> {
-    /// The longest step that these laws allow, since their roots are not smooth where they vanish. `paced` says that in
-    /// the variable of the flow rolling resistance is smooth nevertheless.
+    /// The longest step that these laws allow, since their roots are not smooth where they vanish. `paced` means that
+    /// rolling resistance is smooth nevertheless in the variable of the flow.
     #[inline(always)]
     pub fn longest(&self, seen: &Kinematics<Dual<T>>, paced: bool) -> T {
         let number = |x: f64| seen.spin.value.splat(x);
@@ -157,7 +157,7 @@ impl<T: Real> Couples<Dual<T>> {
     }
 }
 
-/// Dry friction holds up to its limit increased by this share, so that a released motion moves away from the limit.
+/// Dry friction holds up to its limit times 1 plus this, so that a released motion moves away from the limit.
 pub(crate) const GRACE: f64 = 1e-11;
 
 /// Whether dry friction can exert the couple that holds a motion, from this couple and the limit of friction.
@@ -165,12 +165,13 @@ pub(crate) fn holds([push, limit]: [f64; 2]) -> bool {
     push.abs() <= limit * (1.0 + GRACE)
 }
 
-/// The speed below which a motion that was held is at rest: rounding may have given it as much.
+/// The speed below which a motion that was held counts as at rest, since rounding errors are of this size.
 pub(crate) fn rounded(s: f64, w: [f64; 3]) -> f64 {
     if w == [0.0; 3] { 0.0 } else { 10.0 * SLACK * (1.0 + (w[0] / s).abs()) }
 }
 
-/// Distance of a velocity from its change of sign, where its way is 1 or -1; without a way (0) the distance is one.
+/// Distance of a velocity from its change of sign, in the direction `way` of 1 or -1; without a direction (0) it is
+/// one.
 #[inline(always)]
 pub(crate) fn going<T: Real>(way: T, x: T, slack: T) -> T {
     let one = x.splat(1.0);
@@ -200,7 +201,7 @@ impl Couples<f64> {
         self
     }
 
-    /// These losses with a couple of the user's own.
+    /// These losses with a user-defined couple.
     pub fn with_given(self, given: Couple<f64>) -> Self {
         Self { given: Some(given), ..self }
     }

@@ -1,11 +1,11 @@
-//! What a law of loss says of itself: its coefficient, its couple and its power, and what else depends on the law.
+//! The properties of a law of loss: its coefficient, its couple, its power, and all else that depends on the law.
 //!
 //! ```text
 //! m = C u,   P = C p = -m.w          the couple u and the power p of a unit coefficient C, and of N = 1
 //! ```
 //! A law is one type that implements [`LossLaw`], in a file of its own, and one line of the table in `loss`. The
-//! defaults are those of a law that is smooth and does not depend on the normal force; the rest follows from what a law
-//! says here. What it says is compared with its couple and its power in the tests at the end.
+//! defaults are those of a smooth law that does not depend on the normal force. The tests at the end compare the stated
+//! properties with the couple and the power.
 
 use super::Kinematics;
 use crate::numbers::Real;
@@ -55,8 +55,9 @@ pub(crate) trait LossLaw {
     const RESISTS: Resists;
     /// How the power goes near the ends of a drift.
     const POWERS: EndPowers;
-    /// Whether the law is dry: proportional to the normal force, and to the sign of a motion. Where that motion comes to
-    /// rest, dry friction may hold it. `path::lossy` and `path::slide` know which couple then acts, for each dry law.
+    /// Whether the law is dry: proportional to the normal force, and to the sign of a motion. Where that motion comes
+    /// to rest, dry friction may hold it. `path::lossy` and `path::slide` give the couple that then acts, for each dry
+    /// law.
     const PRESSES: bool = false;
     /// Whether the law needs a flat face above the table.
     const NEEDS_FACE: bool = false;
@@ -116,7 +117,7 @@ mod tests {
                 Resists::Drilling => !tilts && !across,
                 Resists::All => tilts && vertical && across,
             };
-            assert!(found, "{law:?}: its couple is not one that RESISTS names: {m:?}");
+            assert!(found, "{law:?}: its couple does not agree with RESISTS: {m:?}");
         }
     }
 
@@ -124,7 +125,7 @@ mod tests {
     fn a_law_is_dry_or_has_a_root_or_is_smooth_as_it_says() {
         for (law, place) in Law::ALL.iter().copied().flat_map(|law| PLACES.map(|place| (law, place))) {
             let [one, two] = [1e-6, 2e-6].map(|faster| largest(law.couple(&seen(place, faster))));
-            // The couple turns round with the motion, so that it is smooth at rest if it goes as an odd power.
+            // The couple reverses with the motion, so that it is smooth at rest if it goes as an odd power.
             let power = (two / one).log2();
             assert_eq!(
                 law.presses(),

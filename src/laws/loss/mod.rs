@@ -7,13 +7,13 @@
 //! P = Lam |psi'|:   m = Lam sgn(psi') h/s, the one couple that gives this power for every w
 //! ```
 //! A law that acts through the speed A |psi'| of the contact moves the normal force ahead of the contact along its
-//! path, by Lam/(N s). A distance beyond A has no meaning, so that dry contour friction ends at theta ~ eps. Every law
-//! is linear in its one coefficient, and laws add: any set of laws is one coefficient for each, with 0 for an absent law.
-//! Which law takes a coin's energy is debated (Moffatt 2000, van den Engh 2000, Bildsten 2002, Leine 2009), and no law
-//! is preferred here.
+//! path, by Lam/(N s). A distance beyond A has no meaning, so that dry contour friction is valid down to theta ~ eps.
+//! Every law is linear in its one coefficient, and laws add: a set of laws is one coefficient for each law, with 0 for
+//! an absent law. Which law takes a coin's energy is debated (Moffatt 2000, van den Engh 2000, Bildsten 2002, Leine
+//! 2009), and no law is preferred here.
 //!
-//! Where the motion that dry friction resists comes to rest, its law only gives the largest couple. The couple here is
-//! then zero, and the module `motion` finds the couple that acts.
+//! Where the motion that dry friction resists comes to rest, a dry law only gives the largest couple. The couple here
+//! is then zero, and the module `motion` computes the couple that acts.
 //!
 //! Error: a few roundings of the terms written in each law; a property of `losses` says P = -m.w.
 
@@ -41,7 +41,7 @@ pub(crate) use couples::{
 };
 pub(crate) use law::{EndPowers, LossLaw, Resists, Speed};
 
-/// The enumeration of the laws from the table below, and the way from a law to the type that implements it. The laws are
+/// The enumeration of the laws from the table below, and the call of the type that implements each law. The laws are
 /// called by `match`, so that they are inlined in lanes.
 macro_rules! laws {
     ($(#[$about:meta])* pub enum $Laws:ident {
@@ -53,8 +53,8 @@ macro_rules! laws {
         }
 
         impl $Laws {
-            /// Calls `f` for each law in turn. The calls stand one after the other, without a loop that the compiler may
-            /// leave as it is, so that what depends on the law alone is known to it.
+            /// Calls `f` for each law in turn. The calls are written one after the other, without a loop that the
+            /// compiler may keep, so that the law is known at compile time.
             #[inline(always)]
             fn each(mut f: impl FnMut(Self)) {
                 $(f(Self::$Law);)+
@@ -160,8 +160,8 @@ macro_rules! laws {
     };
 }
 
-// The table: a law, its number, and the file in which the type of the same name implements it. CONTRIBUTING.md says how a
-// law is added.
+// The table: a law, its number, and the file in which the type of the same name implements it. CONTRIBUTING.md explains
+// how to add a law.
 laws! {
     /// A law of loss. The number of a law is its index among the coefficients, which are in natural units;
     /// [`Scale::coefficient`](crate::Scale::coefficient) converts them from SI.
@@ -200,7 +200,7 @@ const _: () = {
 };
 
 impl Law {
-    /// The exponent q in theta ~ tau^q of a thin disk, with tau the time that is left; None if the disk never stops.
+    /// The exponent q in theta ~ tau^q of a thin disk, with tau the remaining time; None if the disk never stops.
     pub fn exponent(self) -> Option<f64> {
         // The energy of a thin disk falls as theta, so that tau ~ theta^(1 - p) with P ~ theta^p.
         let [thin, _] = self.powers().face;
@@ -237,7 +237,7 @@ impl Law {
     }
 }
 
-/// The coefficients of all laws of loss together; the coefficient of an absent law is 0.
+/// The coefficients of all laws of loss; the coefficient of an absent law is 0.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(
     feature = "serde",
@@ -282,7 +282,7 @@ impl Losses {
         Law::ALL.iter().copied().zip(self.coefficients).filter(|(_, coefficient)| *coefficient != 0.0)
     }
 
-    /// Refuses coefficients outside their range, from 0 to 1e6; the error names the coefficient.
+    /// Returns an error for coefficients outside their range, from 0 to 1e6; the error names the coefficient.
     pub fn check(&self) -> Result<(), Error> {
         for &law in Law::ALL {
             let value = self.coefficient(law);
@@ -290,13 +290,13 @@ impl Losses {
                 law.parameter(),
                 value,
                 (0.0, 1e6),
-                "a loss takes energy: a positive number, at most 1e6",
+                "a positive number of at most 1e6: a loss takes energy",
             )?;
         }
         Ok(())
     }
 
-    /// Refuses coefficients outside their range, and the air laws of a face for a ball, which has no face.
+    /// Returns an error for coefficients outside their range, and for a ball under a law that needs a flat face.
     pub fn check_for(&self, body: &Body) -> Result<(), Error> {
         self.check()?;
         let face = Law::ALL.iter().any(|law| law.needs_face() && self.coefficients[*law as usize] != 0.0);
@@ -307,12 +307,17 @@ impl Losses {
         Ok(())
     }
 
-    /// Refuses coefficients outside their range, and laws that act along a rim, which a stone has not.
+    /// Returns an error for coefficients outside their range, and for laws that act along a rim, which a stone does not
+    /// have.
     pub fn check_for_stone(&self) -> Result<(), Error> {
         self.check()?;
         let Some((law, value)) = self.iter().find(|(law, _)| law.is_along()) else { return Ok(()) };
         let name = law.parameter();
-        Err(Error::OutOfRange { name, value, expected: "none: its law acts along a rim" })
+        Err(Error::OutOfRange {
+            name,
+            value,
+            expected: "0: this law acts along a rim, which a stone does not have",
+        })
     }
 
     /// Whether nothing is lost.
@@ -320,7 +325,7 @@ impl Losses {
         self.coefficients == [0.0; COUNT]
     }
 
-    /// Whether a face comes down by infinitely many turns: if some law does so and none along the contour stops the
+    /// Whether a face comes down by infinitely many turns: some law causes this, and no law along the contour stops the
     /// contact.
     pub(crate) fn turn_endlessly(&self) -> bool {
         let any = |of: fn(Law) -> bool| {

@@ -1,4 +1,4 @@
-//! Kappa, rate and energy of the steady state with the centre at rest in closed form, for speed; for any state
+//! Kappa, rate and energy of the steady state with the centre at rest in closed form, which is fast. For any state
 //! `stability` computes kappa with dual numbers.
 //!
 //! ```text

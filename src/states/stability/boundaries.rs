@@ -1,5 +1,4 @@
-//! Inclinations where the stability of the steady state with the centre at rest changes: the
-//! boundaries on the map.
+//! Inclinations where the stability of the steady state with the centre at rest changes: the boundaries on the map.
 //!
 //! ```text
 //! smooth:   n Y = I1 I3 s m A g',   Y = I1^2 A^2 + (2 c I1 A - I3 L s)(c I1 A - I3 L s)

@@ -1,7 +1,7 @@
 //! The regions of a map, computed without an evaluation of most of its points.
 //!
-//! For a sharp rim the changes of sign along the inclinations are found by bisection, as in `runs`; where a sign is in
-//! doubt, and for a rounded rim, every inclination is evaluated. The codes equal those of [`region`](super::region()):
+//! For a sharp rim bisection finds the changes of sign along the inclinations, as in `runs`. Every inclination is
+//! evaluated where a sign is uncertain, and for a rounded rim. The codes equal those of [`region`](super::region()):
 //! two tests of `sweep` check it.
 
 use super::{Region, regions, runs};

@@ -6,15 +6,14 @@ use crate::numbers::{LANES, Narrow, Real};
 
 /// Eight bodies, stored as arrays of numbers.
 pub(crate) trait Stored: Sync {
-    /// As many of these bodies as a number has lanes.
+    /// As many of these bodies as the number type has lanes.
     type Of<T: Narrow>: AtRest<T>;
 
-    /// The bodies from number `k` on.
+    /// The bodies from index `k` on.
     fn load<T: Narrow>(&self, like: T, k: usize) -> Self::Of<T>;
 }
 
-/// A number with the values of `eight` from `k` on in its lanes; one with eight lanes or more has all of
-/// them.
+/// A number with the values of `eight` from `k` on in its lanes; a number with eight lanes or more has all of them.
 #[inline(always)]
 fn part<T: Narrow>(like: T, eight: &[f64; LANES], k: usize) -> T {
     like.load(if T::COUNT < LANES { &eight[k..] } else { eight })
@@ -81,7 +80,7 @@ impl<T: Narrow> Column<T> {
         }
         let Some(of) = &self.round else { return a };
         let b = of.found(theta, &Rounded::angle(theta), wanted);
-        // Each lane is taken from its own kind of rim; `ell` is NaN where the rim is not sharp.
+        // Each lane has the values of its own kind of rim; `ell` is NaN where the rim is not sharp.
         let none = theta.splat(f64::NEG_INFINITY);
         a.with(
             b,

@@ -1,4 +1,4 @@
-//! Stability of a steady state, by two criteria: on a smooth table, and when rolling.
+//! Stability of a steady state, by two criteria: smooth and rolling.
 //!
 //! ```text
 //! kappa = -d/dtheta [tilting(theta, w1(theta), w3(theta))]/J        tilting, J and the lines w1, w3: `contact::reduced`
@@ -56,19 +56,19 @@ pub fn at_rest(body: &Body, theta: f64, contact: Contact) -> f64 {
     }
 }
 
-/// Tolerance for a steady state: for the sum of its tilting terms over the largest one, and for |w2|.
+/// Tolerance for a steady state: for the sum of the terms of theta'' over the largest term, and for |w2|.
 const STEADY: f64 = 1e-6;
 
 /// Squared nutation frequency, in g/R, of any steady state on a frictionless table: the energy at fixed Lz and L3 is
 /// stationary in such a state, as with the centre at rest.
 ///
-/// The result is NaN for a state that is not steady on a smooth table to six digits: a centre that circles needs
-/// friction. The error is 64 ulp of the largest term, for theta above 1e-100.
+/// The result is NaN for a state that is not steady on a smooth table to six digits; a centre that moves along a circle
+/// needs friction. The error is 64 ulp of the largest term, for theta above 1e-100.
 pub fn smooth(body: &Body, y: &State) -> f64 {
     of_state(Contact::Smooth, body, y)
 }
 
-/// Squared nutation frequency, in g/R, of a rolling steady state, with its centre at rest or running along a circle.
+/// Squared nutation frequency, in g/R, of a rolling steady state, whose centre is at rest or moves along a circle.
 ///
 /// The result is NaN for a state that is not steady to six digits. The error is 64 ulp of the largest term, for theta
 /// above 1e-100.
@@ -76,8 +76,8 @@ pub fn rolling(body: &Body, y: &State) -> f64 {
     of_state(Contact::Rolling, body, y)
 }
 
-/// Returns kappa if the state is steady: theta lies within the body's range, w2 vanishes, and the terms of the tilting
-/// acceleration cancel. Otherwise it returns NaN.
+/// Returns kappa if the state is steady: theta lies within the body's range, w2 vanishes, and the terms of theta''
+/// cancel. Otherwise it returns NaN.
 fn of_state(contact: Contact, body: &Body, y: &State) -> f64 {
     let (law, angle) = (contact.reduced(body), y.theta.sin_cos());
     let (of, rim, ct) = (law.at(angle), law.shape.rim, angle.1 / angle.0);
@@ -102,20 +102,20 @@ fn of_state(contact: Contact, body: &Body, y: &State) -> f64 {
     Some(stiffness(contact, body, y)).filter(|kappa| kappa.is_finite()).unwrap_or(f64::NAN)
 }
 
-/// The squared frequency of the nutation about any state, steady or not: minus the derivative of the tilting torque
-/// along the lines w1(theta) and w3(theta), over J. The change of J is left out.
+/// The squared frequency of the nutation about any state, steady or not: minus the derivative of J theta'' along the
+/// lines w1(theta) and w3(theta), over J. The change of J is left out.
 pub(crate) fn stiffness(contact: Contact, body: &Body, y: &State) -> f64 {
     let (law, angle) = (contact.reduced(body), y.theta.sin_cos());
     let tilting = law.tilting_along(angle, y.w1, y.w3);
     -tilting.slope / law.inertia(|| angle)
 }
 
-/// The least spin w3, in sqrt(g/R), with which a ball stands upright (theta = 0) on its pole, like a sleeping top.
+/// The least spin w3, in sqrt(g/R), with which a ball is stable upright (theta = 0) on its pole, like a sleeping top.
 ///
 /// ```text
 /// rolling   n^2 = 4 ell (I1 + H^2)/(I3 + rho H)^2,   H = ell + rho         smooth   n^2 = 4 ell I1/I3^2
 /// ```
-/// The result is 0 for a ball that stands without spin (`ell <= 0`), and NaN for other bodies, which stand on
+/// The result is 0 for a ball that is stable without spin (`ell <= 0`), and NaN for other bodies, which stand on
 /// a face. Error: 4 ulp. The horizontal part zeta of the axis obeys zeta'' = 2 i k n zeta' + (ell/J0) zeta
 /// with J0 = I1 + H^2 and k = (I3 + rho H)/(2 J0), with 0 in place of H on a smooth table; see Routh,
 /// Advanced Rigid Dynamics.

@@ -10,7 +10,7 @@ use crate::numbers::codes::coded;
 coded! {
     /// The region of a point of the theta-ell map. The number is its code on a grid.
     pub enum Region {
-        /// Theta is outside (0, pi/2], or the body does not exist.
+        /// Theta is outside (0, pi/2], or the body is impossible.
         Invalid = 0,
         /// Theta lies between theta0 and thetaInf, where no steady state with the centre at rest exists.
         Forbidden = 1,

@@ -4,10 +4,10 @@
 //! n = 1 - ell T,   m = a - ell T,   T = tan theta,   a = I1/I3,   both over cos theta
 //! sign kappa = (sign of m) (sign of the cubic in T of `boundaries`)
 //! ```
-//! A linear function changes its sign once, and a cubic at most once between two of its extrema, so that
-//! bisection in double precision locates the change among the inclinations. A value below 2^-44 of the sum of
-//! its terms' sizes (some sixty times its rounding error, here or in `kappa`) is in doubt, and the caller
-//! then has to evaluate every inclination of that body.
+//! A linear function changes its sign once, and a cubic at most once between two of its extrema, so that bisection in
+//! double precision locates the change among the inclinations. The sign of a value below 2^-44 of the sum of the sizes
+//! of its terms (some sixty times its rounding error, here or in `kappa`) is uncertain; the caller then has to evaluate
+//! every inclination of that body.
 
 use super::boundaries::cubic;
 use super::region::Region;
@@ -17,7 +17,7 @@ use crate::methods::roots::{Coefficient, Cubic};
 use crate::numbers::Sum;
 use crate::states::steady;
 
-/// The sign of a value below this share of its terms' sizes is in doubt. A smaller share could accept a sign
+/// The sign of a value below this share of the sizes of its terms is uncertain. A smaller share could accept a sign
 /// that rounding errors cause; a larger one leaves more bodies to the caller.
 const VALUE_DOUBT: f64 = 1.0 / (1_u64 << 44) as f64;
 
@@ -56,7 +56,7 @@ impl From<Cubic<Terms>> for Curve {
 }
 
 impl Curve {
-    /// Whether the cubic is negative at `t`; None if its sign is in doubt.
+    /// Whether the cubic is negative at `t`; None if its sign is uncertain.
     #[inline(always)]
     fn negative(&self, t: f64) -> Option<bool> {
         let at = |p: &[f64; 4]| ((p[3] * t + p[2]) * t + p[1]) * t + p[0];
@@ -73,9 +73,8 @@ impl Curve {
         if one < other { [one, other] } else { [other, one] }
     }
 
-    /// Adds to `changes` the indices in `tangents` (ascending, not empty) from which on the cubic has
-    /// another sign than before. Returns whether the cubic is negative at the first tangent; None if any
-    /// sign is in doubt.
+    /// Adds to `changes` the indices in `tangents` (ascending, not empty) from which on the cubic has another sign than
+    /// before. Returns whether the cubic is negative at the first tangent; None if any sign is uncertain.
     fn signs(&self, tangents: &[f64], changes: &mut Changes, which: u8) -> Option<bool> {
         let start = self.negative(tangents[0])?;
         let [one, other] = if self.sizes[2] == 0.0 && self.sizes[3] == 0.0 {
@@ -107,8 +106,8 @@ impl Curve {
     }
 }
 
-/// The index of each change of sign, in ascending order, and the bit of its curve. Each of four curves
-/// changes its sign at most five times.
+/// The index of each change of sign, in ascending order, and the bit of its curve. Each of the four curves changes its
+/// sign at most five times.
 struct Changes {
     all: [(usize, u8); 20],
     count: usize,
@@ -127,9 +126,9 @@ impl Changes {
     }
 }
 
-/// Calls `report` with the [`Region`], the first index and the end of each run, and returns true. The body has
-/// a sharp rim and the range (0, pi/2]; `tangents` are those of ascending inclinations. If a sign is in
-/// doubt, there is no call, and false is returned.
+/// Calls `report` with the [`Region`], the first index and the end of each run, and returns true. The body has a sharp
+/// rim and the range (0, pi/2]; `tangents` are those of ascending inclinations. If a sign is uncertain, the function
+/// returns false without a call.
 pub(crate) fn runs(body: &Body, tangents: &[f64], mut report: impl FnMut(Region, usize, usize)) -> bool {
     if tangents.is_empty() {
         return true;

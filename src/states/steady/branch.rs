@@ -29,7 +29,7 @@ pub(crate) fn shared<C: Coefficient>(body: &Body) -> Cubic<C> {
 }
 
 /// Inclinations in (0, pi/2) of the folds, ascending, NaN after the last. At a fold the rate is stationary along the
-/// branch, and two steady states of one rate meet and vanish.
+/// branch, where two steady states with the same rate merge.
 ///
 /// All are NaN for `ell` above 1e30 or I1/I3 above 1e60. The error is 16 ulp times the conditioning.
 pub fn folds(body: &Body) -> [f64; MOST] {
@@ -99,8 +99,8 @@ fn rounded_ridge(body: &Body) -> [f64; MOST] {
     if body.ell() == 0.0 { with_side(body, found) } else { steady_ones(body, found) }
 }
 
-/// Adds pi/2 to the inclinations `found` if the body can lean beyond pi/2 and has a steady state there: where
-/// ell = 0 or d = 0 the rate is even about pi/2, so that it is stationary there.
+/// Adds pi/2 to the inclinations `found` if the body can be inclined beyond pi/2 and has a steady state there: where
+/// ell = 0 or d = 0 the rate is even about pi/2, and so is stationary there.
 fn with_side(body: &Body, mut found: Vec<f64>) -> [f64; MOST] {
     const SIDE: f64 = core::f64::consts::FRAC_PI_2;
     if body.range() > SIDE {

@@ -28,14 +28,14 @@ use core::f64::consts::{FRAC_PI_2, PI};
 /// Largest r rate^2 and ell rate^2 for which no coefficient overflows.
 const LARGEST: f64 = 1e300;
 
-/// The inclinations in (0, pi/2) of all steady states with the centre at rest that turn at the reduced rotation rate
-/// `rate` >= 0: ascending, NaN after the last. Lying on the side (pi/2) is not counted, although every body does so at
-/// `rate = 1`. Where [`theta_end`](Body::theta_end) of a rounded rim is beyond pi/2, all inclinations up to `theta_end`
-/// are counted, pi/2 included.
+/// The inclinations in (0, pi/2) of all steady states with the centre at rest that have the reduced rate `rate` >= 0:
+/// ascending, NaN after the last. The state on the side (pi/2) is not counted, although every body has it at `rate =
+/// 1`. Where [`theta_end`](Body::theta_end) of a rounded rim is beyond pi/2, all inclinations up to `theta_end` are
+/// counted, pi/2 included.
 ///
-/// All are NaN for a rate without an answer (see [`count`]). The rate at each inclination is within 8 (1 + kappa_c) ulp
-/// (2^-53) of `rate`, and within 8 ulp at a fold, where kappa_c = |dlog rate/dlog theta| vanishes; where kappa_c
-/// exceeds 2^45, it is theta that is within 3 ulp.
+/// All are NaN where [`count`] is `None`. The rate at each inclination is within 8 (1 + kappa_c) ulp (2^-53) of `rate`,
+/// and within 8 ulp at a fold, where kappa_c = |dlog rate/dlog theta| vanishes. Where kappa_c exceeds 2^45, theta
+/// itself is within 3 ulp.
 pub fn inclinations(body: &Body, rate: f64) -> [f64; MOST] {
     solve(body, rate).unwrap_or([f64::NAN; MOST])
 }
@@ -46,8 +46,8 @@ pub fn count(body: &Body, rate: f64) -> Option<usize> {
     Some(solve(body, rate)?.iter().filter(|theta| !theta.is_nan()).count())
 }
 
-/// The steady states with the centre at rest that turn at the reduced rate `rate`, in the order of
-/// [`inclinations`]; NaN after the last.
+/// The steady states with the centre at rest that have the reduced rate `rate`, in the order of [`inclinations`]; NaN
+/// after the last.
 ///
 /// Near thetaInf, and at the critical shape, the rate determines the state better than a double theta does: w1 and w3
 /// are computed from the rate, with a relative error below 8 ulp.
@@ -80,7 +80,7 @@ fn rounded(body: &Body, speed: f64) -> Option<[f64; MOST]> {
     let bend = d * rho * w;
     let k = a * (w + d * w - rho);
     let square = a * a;
-    // `far` says whether the body can lean beyond pi/2; only then the state at pi/2 is counted.
+    // `far` says whether theta can exceed pi/2; only then the state at pi/2 is counted.
     let far = body.range() > FRAC_PI_2;
     let found = if body.is_ball() {
         if d.hi == 0.0 {

@@ -1,4 +1,4 @@
-//! Steady states: with the centre at rest, or with the centre running along a circle.
+//! Steady states: with the centre at rest, or with the centre moving along a circle.
 //!
 //! ```text
 //! centre at rest:   rate^2 = n / ((n + d cos theta) sin theta),   n = cos theta - ell sin theta,   d = I1/I3 - 1
@@ -7,14 +7,14 @@
 //! ```
 //! `rate` is the reduced rotation rate Omega~ = Omega sqrt(I3) of Jackson et al., Am. J. Phys. 87, 85 (2019), Eq. 15,
 //! with theta in (0, pi/2]. The tangents in that equation have a pole at pi/2 and lose nine digits where theta0 and
-//! thetaInf meet; here numerator and denominator share `n`, whose error cancels in the quotient. No integration is
-//! needed to find a steady state.
+//! thetaInf meet. Here numerator and denominator share `n`, whose error cancels in the quotient. Steady states are
+//! computed without integration.
 //!
 //! The module `quick` computes the rate of a sharp rim in few operations; the functions here compute it with more
-//! digits where a sign is in doubt. `single` computes it in single precision. Error of `rate`: at most
-//! 2 (1 + kappa_c) ulp of 2^-53, kappa_c = |dlog rate/dlog theta|, for every body and every double theta in (0, pi/2],
-//! subnormal ones too. The bound also holds next to folds, where n of a sharp rim is at most 1/(1 - sqrt(-d)) = 3.4
-//! times n + d cos theta. The module `rounded` has that of a rounded rim. Tests of `hard_cases` and `laws` check it.
+//! digits where a sign is uncertain. `single` computes it in single precision. Error of `rate`: at most 2 (1 + kappa_c)
+//! ulp of 2^-53, kappa_c = |dlog rate/dlog theta|, for every body and every double theta in (0, pi/2], subnormal ones
+//! too. The bound also holds next to folds, where n of a sharp rim is at most 1/(1 - sqrt(-d)) = 3.4 times n + d cos
+//! theta. The module `rounded` gives the error for a rounded rim. Tests of `hard_cases` and `laws` check it.
 
 mod branch;
 #[cfg(test)]
@@ -44,7 +44,7 @@ pub const MOST: usize = 5;
 
 const HALF_PI: f64 = core::f64::consts::FRAC_PI_2;
 
-/// Relative to the terms that were subtracted, the sign of `n` or of `m` is not known below this bound: the errors of
+/// The sign of `n` or of `m` is unknown below this bound, relative to the terms that were subtracted: the errors of
 /// sine and cosine together.
 const UNSURE: f64 = 1.0 / (1_u64 << 55) as f64;
 
@@ -70,9 +70,9 @@ fn numerator<T: Real>(angle: &SinCos<T>, ell: T) -> Sum<T> {
 }
 
 /// Reduced rotation rate at an inclination, NaN where no steady state exists. The quick terms give the rate; the terms
-/// with more digits are computed only where a sign is in doubt.
+/// with more digits are computed only where a sign is uncertain.
 ///
-/// The closure for doubtful lanes owns its inputs: borrowed inputs would be kept in memory at every point.
+/// The closure for uncertain lanes owns its inputs: borrowed inputs would be kept in memory at every point.
 #[inline(always)]
 pub(crate) fn rate_lanes<T: Lane>(theta: T, angle: &Short<T>, ell: T, excess: Sum<T>) -> T {
     let of = quick_terms(angle, ell, excess);
@@ -116,12 +116,12 @@ pub(crate) fn square_lanes<T: Lane>(theta: T, angle: &Short<T>, ell: T, excess: 
 /// in (0, pi/2].
 ///
 /// The result is NaN outside that interval, in the forbidden band between theta0 and thetaInf, and within a few last
-/// bits of the edges of the band; [`region`](super::stability::region) tells these cases apart. The error is at most
-/// 2 (1 + kappa_c) ulp (2^-53), where kappa_c = |dlog rate/dlog theta|; a rounded rim adds 2^-100 n/m, which is less
-/// unless m = n + d A cos is below 2^-47 n.
+/// bits of the limits of the band; [`region`](super::stability::region) distinguishes these cases. The error is at most
+/// 2 (1 + kappa_c) ulp (2^-53), where kappa_c = |dlog rate/dlog theta|. A rounded rim adds 2^-100 n/m, which is smaller
+/// than that unless m = n + d A cos is below 2^-47 n.
 ///
-/// Two kinds of bodies have more steady states than a function of theta can give: a critical body (I1 = I3) turns at
-/// any rate at theta0, and a thin disk (`ell = 0`) turns at any rate at exactly pi/2, which is not a double.
+/// Two kinds of bodies have more steady states than a function of theta can give: a critical body (I1 = I3) is steady
+/// at any rate at theta0, and a thin disk (`ell = 0`) at any rate at exactly pi/2, which is not a double.
 pub fn rate(body: &Body, theta: f64) -> f64 {
     if !body.is_plain() {
         return terms_of(body, theta).rate(theta, body.range());
@@ -149,11 +149,11 @@ fn terms_of(body: &Body, theta: f64) -> RateTerms<f64> {
 /// [`theta_end`](Body::theta_end).
 ///
 /// Errors: `OutOfRange` outside that interval, `Forbidden` between theta0 and thetaInf, `Undetermined` within a few
-/// last bits of their edges. The relative error of w1 and w3 is that of [`rate`] plus 4 ulp.
+/// last bits of these limits. The relative error of w1 and w3 is that of [`rate`] plus 4 ulp.
 pub fn state(body: &Body, theta: f64) -> Result<State, Error> {
     let theta = check(body, theta)?;
     if body.is_ball() && body.ell() == 0.0 {
-        let expected = "a ball whose centre of mass is off its centre: a centred one is steady at any rate";
+        let expected = "a ball whose centre of mass is not at its centre: else every rate is steady";
         return Err(Error::OutOfRange { name: "ell", value: 0.0, expected });
     }
     let rate = rate(body, theta);
@@ -169,8 +169,8 @@ pub fn state(body: &Body, theta: f64) -> Result<State, Error> {
     Ok(turning(body, theta, rate))
 }
 
-/// Whether a state is the steady one with the centre at rest at its inclination, in either sense of turning: to six digits
-/// of |w1| + |w3|. False where there is none.
+/// Whether a state is the steady state with the centre at rest at its inclination, in either direction of rotation, to
+/// six digits of |w1| + |w3|. False at an inclination without such a state.
 pub fn rests(body: &Body, y: &State) -> bool {
     state(body, y.theta).is_ok_and(|own| {
         let way = if y.w1 * own.w1 < 0.0 { -1.0 } else { 1.0 };
@@ -202,13 +202,12 @@ fn check(body: &Body, theta: f64) -> Result<f64, Error> {
     within("theta", theta, (f64::from_bits(1), body.range()), expected)
 }
 
-/// The steady state at inclination `theta` in (0, pi/2] that precesses at `precession` (phi', in
-/// sqrt(g/R), not 0) while its centre runs along a circle of radius
-/// [`centre_radius`](State::centre_radius).
+/// The steady state at inclination `theta` in (0, pi/2] with the precession phi' = `precession`, in sqrt(g/R) and not
+/// 0, whose centre moves along a circle of radius [`centre_radius`](State::centre_radius).
 ///
 /// With `precession = rate / sqrt(I3)` that radius is 0 up to rounding, and the state is that of [`state`]. Errors:
-/// `OutOfRange` for another angle, for |precession| outside [1e-100, 1e100], and where w3 would overflow. The error of
-/// w3 is 8 ulp of its largest term, `cos(theta)/precession` included.
+/// `OutOfRange` for an inclination outside (0, pi/2], for |precession| outside [1e-100, 1e100], and where w3 would
+/// overflow. The error of w3 is 8 ulp of its largest term, `cos(theta)/precession` included.
 pub fn circular(body: &Body, theta: f64, precession: f64) -> Result<State, Error> {
     let theta = check(body, theta)?;
     if !(1e-100..=1e100).contains(&precession.abs()) {
@@ -217,16 +216,17 @@ pub fn circular(body: &Body, theta: f64, precession: f64) -> Result<State, Error
     }
     let CircularBalance { lever, n, k, s } = CircularBalance::of(body, theta);
     let w3 = (lever * precession - n / precession) / k;
-    within("w3", w3, (-f64::MAX, f64::MAX), "a slower precession, or a body of fewer than 1e100 radii")?;
+    within("w3", w3, (-f64::MAX, f64::MAX), "a finite number: use a slower precession, or ell < 1e100")?;
     Ok(State { theta, w1: precession * s, w2: 0.0, w3 })
 }
 
-/// The positive precession phi' with which the centre of mass runs along a circle of this radius, in R; NaN where none is
-/// steady. The radius is positive where the centre runs against e2, as that of a coin that rolls round a wide circle and leans
-/// inward, and negative where it runs the other way.
+/// The positive precession phi' for which the centre of mass moves along a circle of this radius, in R; NaN without
+/// such a steady state. The radius is positive where the centre moves against e2, as for a coin that rolls round a wide
+/// circle and leans inward, and negative where the centre moves along e2.
 ///
-/// The circular state is that of [`circular`]. Errors: `OutOfRange` for another angle, and for |radius| above 1e100. Error:
-/// 8 ulp, times the share of the largest of the terms lever, k depth/radius and k radius in their sum.
+/// The circular state is that of [`circular`]. Errors: `OutOfRange` for an inclination outside (0, pi/2], and for
+/// |radius| above 1e100. Error: 8 ulp, times the share of the largest of the terms lever, k depth/radius and k radius
+/// in their sum.
 pub fn precession_of_radius(body: &Body, theta: f64, radius: f64) -> Result<f64, Error> {
     let theta = check(body, theta)?;
     within("radius", radius, (-1e100, 1e100), "|radius| <= 1e100")?;
@@ -237,11 +237,12 @@ pub fn precession_of_radius(body: &Body, theta: f64, radius: f64) -> Result<f64,
     Ok((n / (lever - k * share)).sqrt())
 }
 
-/// Both precessions phi' of a circular steady state with this spin w3 about the axis, the slower one first; NaN where there
-/// is none, and for a spin of 0 two opposite ones.
+/// Both precessions phi' of circular steady states with this spin w3 about the axis, the slower one first; NaN without
+/// such a state. For w3 = 0 the two are opposite.
 ///
-/// The circular state is that of [`circular`]. Errors: `OutOfRange` for another angle, and for |w3| above 1e100. Error: 8
-/// ulp of the larger one, of the slower one times how much the digits of k^2 w3^2 and of 4 lever n cancel.
+/// The circular state is that of [`circular`]. Errors: `OutOfRange` for an inclination outside (0, pi/2], and for |w3|
+/// above 1e100. Error: 8 ulp for the faster precession; for the slower one this is multiplied by the cancellation
+/// between k^2 w3^2 and 4 lever n.
 pub fn precessions_of_spin(body: &Body, theta: f64, w3: f64) -> Result<[f64; 2], Error> {
     let theta = check(body, theta)?;
     within("w3", w3, (-1e100, 1e100), "|w3| <= 1e100")?;

@@ -1,10 +1,10 @@
-//! The squared rate of a sharp rim by few operations, where the signs of numerator and denominator are beyond doubt.
+//! The squared rate of a sharp rim by few operations, where the signs of numerator and denominator are certain.
 //!
 //! ```text
 //! rate^2 = n / (m s),   n = cos theta - ell s,   m = n + d cos theta,   s = sin theta
 //! ```
 //! Each term is a double and its rounding error: the low parts of sine and cosine are the rounding errors of their last
-//! addition, and a fused product replaces an exact sum. One division serves quotient and remainder. A lane is in doubt
+//! addition, and a fused product replaces an exact sum. One division serves quotient and remainder. A lane is uncertain
 //! where |n| or |m| is below 2^-50 of the terms that were subtracted, and where theta is tiny or outside (0, pi/2]; the
 //! caller then uses `terms` for that lane.
 //!
@@ -13,10 +13,10 @@
 
 use crate::numbers::{Lane, Real, Short, Sum, short_sincos};
 
-/// Relative to the terms that were subtracted, n or m is in doubt below this bound.
+/// Relative to the terms that were subtracted, n or m is uncertain below this bound.
 const DOUBT: f64 = 1.0 / (1_u64 << 50) as f64;
 
-/// A theta below this bound is in doubt, because products with its sine would lose digits.
+/// A theta below this bound is uncertain, because products with its sine would lose digits.
 pub(crate) const TINY: f64 = f64::from_bits(0x20B0_0000_0000_0000); // 2^-500
 
 /// Sine and cosine of an inclination, for [`quick_terms`].
@@ -25,7 +25,7 @@ pub(crate) fn quick_angle<T: Real>(theta: T) -> Short<T> {
     short_sincos(theta, TINY)
 }
 
-/// Numerator and denominator as sums, and the size below which their signs are in doubt. The low part of the
+/// Numerator and denominator as sums, and the size below which their signs are uncertain. The low part of the
 /// denominator does not contain the rounding error of its own last addition.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct QuickTerms<T> {
@@ -50,7 +50,7 @@ pub(crate) fn quick_terms<T: Real>(angle: &Short<T>, ell: T, excess: Sum<T>) -> 
 }
 
 impl<T: Lane> QuickTerms<T> {
-    /// Whether any lane is in doubt.
+    /// Whether any lane is uncertain.
     #[inline(always)]
     pub fn in_doubt(&self) -> bool {
         self.n.hi.abs().any_lt(self.limit) | self.m.hi.abs().any_lt(self.limit)
@@ -58,7 +58,7 @@ impl<T: Lane> QuickTerms<T> {
 }
 
 impl<T: Real> QuickTerms<T> {
-    /// Returns `careful` in the lanes that are in doubt, `quick` elsewhere.
+    /// Returns `careful` in the lanes that are uncertain, `quick` elsewhere.
     #[inline(always)]
     pub fn pick(&self, careful: T, quick: T) -> T {
         let first = self.m.hi.abs().select_lt(self.limit, careful, quick);

@@ -98,7 +98,7 @@ impl<T: Real> RoundedParts<T> {
         (self.sure(terms, angle, bend), terms.m.hi.abs() * bend.splat(BENT) - bend)
     }
 
-    /// The terms, also where their signs are in doubt, and |d rho s c|, for a ball divided by the sine.
+    /// The terms, also where their signs are uncertain, and |d rho s c|, for a ball divided by the sine.
     #[inline(always)]
     fn unsure(&self, angle: &SinCos<T>) -> (RateTerms<T>, T) {
         let Self { ell, rho, a, excess } = *self;
