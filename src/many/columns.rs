@@ -1,5 +1,5 @@
-//! Columns: those that are read have the length n each, or are a single number for all rows; those that are
-//! filled fall into blocks of rows.
+//! Columns of numbers. An input column has the length n, or is a single number for all rows; output columns are divided
+//! into blocks of rows.
 
 use crate::error::{Error, room};
 use crate::laws::loss::{COUNT, Law, Losses};
@@ -32,10 +32,10 @@ pub(crate) fn at(column: &[f64], row: usize) -> f64 {
 pub struct LossColumns<'a>(pub(crate) [&'a [f64]; COUNT]);
 
 impl<'a> LossColumns<'a> {
-    /// Nothing is lost.
+    /// No losses.
     pub const NONE: Self = Self([&[0.0]; COUNT]);
 
-    /// The same columns with this one for a law.
+    /// The same columns with this column for a law.
     #[must_use]
     pub fn with(mut self, law: Law, column: &'a [f64]) -> Self {
         self.0[law as usize] = column;
@@ -48,9 +48,9 @@ impl<'a> LossColumns<'a> {
     }
 }
 
-/// Columns to be filled, which can be parted at a row.
+/// Output columns that can be split at a row.
 pub(crate) trait Split: Sized {
-    /// The first `rows` rows, and the others.
+    /// The first `rows` rows, and the remaining rows.
     fn split(self, rows: usize) -> (Self, Self);
 }
 

@@ -1,26 +1,25 @@
 //! Work in blocks, shared among threads. The module knows nothing about the work.
 //!
-//! The threads live as long as a call does (a pool would hang in a forked child). Chance decides which thread takes
-//! which block, so the result of a block must not depend on its thread.
+//! The threads end with the call (a pool would hang in a forked child). It is random which thread takes which block, so
+//! the result of a block must not depend on its thread.
 
 use crate::error::spare_for;
 use crate::methods::beat::{Beat, EVERY};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-/// The bytes that a thread may reserve at its first small allocation, its stack included. If they are
-/// missing, no thread is started, since code that cannot return an error would fail.
+/// The bytes that a thread may reserve at its first small allocation, its stack included. Without this much memory no
+/// thread is started, since code that cannot return an error would fail.
 const ARENA: usize = 80 << 20;
 
 /// The stack of a thread of this module. The stack of the caller may be as small as 64 KiB, which does not
 /// hold the frames of lanes of many motions.
 const STACK: usize = 2 << 20;
 
-/// Calls `work` with every block, on `threads` workers, one of which is the calling thread. The calling
-/// thread calls `go_on`, with the share of blocks done, about fifty times a second; `work` may call its
-/// second argument in between to learn whether to go on. Returns whether all blocks are done. Fewer threads
-/// are used where the system does not give so many; if one panics, all stop, and the panic passes on to the
-/// caller.
+/// Calls `work` with every block, on `threads` threads, one of which is the calling thread. The calling thread calls
+/// `go_on`, with the finished share of the blocks, about fifty times a second; `work` may call its second argument in
+/// between to learn whether to go on. Returns whether all blocks are done. Fewer threads are used where the system does
+/// not provide so many. If one panics, all stop, and the panic is passed on to the caller.
 pub(crate) fn share<B: Send>(
     blocks: Vec<B>,
     threads: usize,
@@ -30,9 +29,8 @@ pub(crate) fn share<B: Send>(
     among(blocks, (threads, true), go_on, work)
 }
 
-/// [`share`] for work that needs a large stack: the calling thread only calls `go_on`, unless its stack is
-/// `roomy` too, or no other thread can be started. Threads take longer to start than a few hundred motions
-/// take.
+/// [`share`] for work that needs a large stack: the calling thread only calls `go_on`, unless its stack is large as
+/// well (`roomy`), or no other thread can be started. Starting threads takes longer than a few hundred motions.
 pub(crate) fn share_aside<B: Send>(
     blocks: Vec<B>,
     (threads, roomy): (usize, bool),
@@ -82,7 +80,7 @@ fn among<B: Send>(
         if joins || others.is_empty() {
             run(&mut ask);
         }
-        // The other threads may have blocks to finish, during which the caller may still refuse to go on.
+        // The other threads may have blocks to finish, during which the caller may still stop the work.
         while done.load(Ordering::Relaxed) < count && !stop.load(Ordering::Relaxed) {
             if !ask() {
                 stop.store(true, Ordering::Relaxed);
@@ -98,8 +96,8 @@ fn among<B: Send>(
     !stop.into_inner()
 }
 
-/// Wakes the calling thread when the thread that holds it ends. If that thread panics, all threads stop,
-/// since no other one would do the lost block.
+/// Wakes the calling thread when the thread that holds this ends. If that thread panics, all threads stop, since no
+/// other thread would compute the lost block.
 struct Alarm<'a>(&'a AtomicBool, &'a std::thread::Thread);
 
 impl Drop for Alarm<'_> {

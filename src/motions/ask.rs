@@ -1,4 +1,4 @@
-//! The options of a motion, and the checks that refuse values out of range.
+//! The options of a motion, and their checks.
 
 use crate::error::{Error, within};
 use crate::laws::body::Body;
@@ -12,26 +12,26 @@ use nalgebra::{UnitQuaternion, Vector3};
 /// The default tolerance of a step of a motion with friction or losses.
 pub const FINE: f64 = 1e-14;
 
-/// Share of the velocities below which a vertical velocity of the lowest point is taken for rounding of what was given.
+/// Share of the velocities below which a vertical velocity of the lowest point counts as a rounding error of the input.
 const NO_RISE: f64 = 1e-9;
-/// Share of the velocities below which a slip is taken for none: 16 ulp.
+/// Share of the velocities below which a slip counts as zero: 16 ulp.
 const NO_SLIP: f64 = 16.0 * f64::EPSILON;
 
 /// The method that computes a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Method {
-    /// The first integrals, or an integrator within a tolerance where these lose all their digits. A motion
-    /// that slips or loses energy is integrated as accurately as doubles allow.
+    /// The first integrals, or an integrator within a tolerance where these lose all their digits. A motion that slips
+    /// or loses energy is integrated to the accuracy of double precision.
     #[default]
     Exact,
-    /// RK4 with this fixed step; it is refused for a motion that slips or loses energy.
+    /// RK4 with this fixed step; an error for a motion that slips or loses energy.
     Step(f64),
     /// Steps of eighth order whose errors are below this tolerance.
     Tolerance(f64),
 }
 
-/// The options of a motion, on any table and with any losses. Each has a method `with_` and its name.
+/// The options of a motion, with any contact and any losses. Each option has a method `with_` and its name.
 ///
 /// ```
 /// use spincyl::{contact::Friction, loss::{Law, Losses}, motion::Ask};
@@ -47,19 +47,18 @@ pub enum Method {
 )]
 #[non_exhaustive]
 pub struct Ask {
-    /// The table.
+    /// The law of the contact with the table.
     pub table: Table,
-    /// The laws that take energy besides the friction of a slip.
+    /// The laws of loss, in addition to the friction of a slip.
     pub losses: Losses,
     /// The method that computes the motion.
     pub method: Method,
-    /// Whether the motion goes on beyond events other than a landing of the face; with a law of friction
-    /// it never does.
+    /// Whether the motion continues past events other than a landing of the face; with a law of friction it never does.
     pub beyond: bool,
     /// The coefficient of restitution of impacts, from 0 to 1. With `None` the motion ends where the body leaves the
-    /// table or its other rim lands; otherwise it goes on in the air, on the other rim and on both rims.
+    /// table or its other rim lands; otherwise the motion continues in the air, on the other rim and on both rims.
     pub restitution: Option<f64>,
-    /// Whether the motion ends where the body begins to roll, on a table with a law of friction.
+    /// Whether the motion ends where the body begins to roll; only with a law of friction.
     pub stop_at_rolling: bool,
     /// Whether poses are computed.
     pub pose: bool,
@@ -68,12 +67,12 @@ pub struct Ask {
 }
 
 impl Ask {
-    /// The options of an exact motion on this table up to its first event, without losses, poses and forces.
+    /// The options of an exact motion with this contact up to its first event, without losses, poses and forces.
     pub fn on(table: impl Into<Table>) -> Self {
         Self::default().with_table(table)
     }
 
-    /// The same options on another table.
+    /// The same options with another contact.
     pub fn with_table(self, table: impl Into<Table>) -> Self {
         Self { table: table.into(), ..self }
     }
@@ -88,7 +87,7 @@ impl Ask {
         Self { method, ..self }
     }
 
-    /// The same options, to go on beyond events or not.
+    /// The same options, with or without a continuation past events.
     pub fn with_beyond(self, beyond: bool) -> Self {
         Self { beyond, ..self }
     }
@@ -98,7 +97,7 @@ impl Ask {
         Self { restitution: restitution.into(), ..self }
     }
 
-    /// The same options, to stop at rolling or not.
+    /// The same options, with or without an end at rolling.
     pub fn with_stop_at_rolling(self, stop_at_rolling: bool) -> Self {
         Self { stop_at_rolling, ..self }
     }
@@ -120,27 +119,27 @@ impl Ask {
     }
 }
 
-/// The start of a motion: `Start::from` a state, and what it has besides.
+/// The initial conditions of a motion: a state (`Start::from`), and optionally slip, time and height.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
 pub struct Start<S = State> {
-    /// The state at the start.
+    /// The initial state.
     pub state: S,
-    /// The slip of the contact point along the lean and across it; of a stone along x and y
+    /// The initial slip of the contact point along the lean and across it, in sqrt(g R); for a stone along x and y
     /// ([`stone::roll`](super::stone::roll)).
     #[cfg_attr(feature = "serde", serde(default))]
     pub slip: [f64; 2],
-    /// The time of the start.
+    /// The initial time.
     #[cfg_attr(feature = "serde", serde(default))]
     pub time: f64,
-    /// The height of the rim's lowest point over the table and its vertical velocity, for a body that starts in the
-    /// air; it needs a restitution.
+    /// The height of the lowest point of the rim above the table and its vertical velocity, for a body that starts in
+    /// the air; this needs a restitution.
     pub aloft: Option<[f64; 2]>,
 }
 
 impl<S> From<S> for Start<S> {
-    /// The start at time 0 on the table, without a slip.
+    /// The state at time 0 on the table, without a slip.
     fn from(state: S) -> Self {
         Self { state, slip: [0.0; 2], time: 0.0, aloft: None }
     }
@@ -164,14 +163,14 @@ impl<S> Start<S> {
 }
 
 impl Start {
-    /// The start of a body with this orientation, angular velocity and velocity of its centre of mass: the turn from its
-    /// own axes to those of the laboratory, of which the third is the vertical, and vectors along the latter, in
-    /// sqrt(g/R) and sqrt(g R). `height` is that of the centre above the table, of a body in the air; with `None` the body
-    /// is on the table. A motion counts phi and psi from this orientation on, whose own are
-    /// [`euler_angles`](crate::laws::pose::euler_angles).
+    /// The initial conditions of a body from its orientation, its angular velocity and the velocity of its centre of
+    /// mass. The orientation is the rotation from the axes of the body to those of the laboratory, of which the third
+    /// is the vertical; the vectors are along the axes of the laboratory, in sqrt(g/R) and sqrt(g R). `height` is that
+    /// of the centre above the table, for a body in the air; with `None` the body is on the table. The motion counts
+    /// phi and psi from this orientation, which has the angles [`euler_angles`](crate::laws::pose::euler_angles).
     ///
-    /// Errors: `OutOfRange` for a velocity that is not finite or, on the table, would move the lowest point up or down.
-    /// Error of the slip: 16 ulp of the velocities, divided by sin theta; a slip below 16 ulp is taken for none.
+    /// Errors: `OutOfRange` for a velocity that is not finite or that, on the table, would move the lowest point up or
+    /// down. Error of the slip: 16 ulp of the velocities, divided by sin theta; a slip below 16 ulp counts as zero.
     ///
     /// ```
     /// use spincyl::nalgebra::{UnitQuaternion, Vector3};
@@ -196,7 +195,7 @@ impl Start {
         let (rim, angle) = (body.shape().rim, state.theta.sin_cos());
         let fastest = velocity.amax() + angular_velocity.amax() * (1.0 + rim.ell.abs());
         let most = if height.is_some() { f64::MAX } else { NO_RISE * fastest };
-        let expected = "a velocity of the centre that keeps the lowest point on the table, or a height";
+        let expected = "a velocity of the centre that keeps the lowest point on the table; or give a height";
         let rise = within("velocity", v.z - centre_rise(body, &state), (-most, most), expected)?;
         let [along, across] = centre_velocity(body, &state, [0.0; 2]);
         let slip = [v.x - along, v.y - across].map(|u| if u.abs() <= NO_SLIP * fastest { 0.0 } else { u });
@@ -211,8 +210,7 @@ impl From<&State> for Start {
     }
 }
 
-/// Checks the options of a motion that conserves energy. Returns the signed span from the start to
-/// the last time.
+/// Checks the options of a motion that conserves energy. Returns the signed span from the initial to the last time.
 pub(crate) fn check(ask: &Ask, t0: f64, times: &[f64]) -> Result<f64, Error> {
     ask.table.check()?;
     check_stop_at_rolling(ask)?;
@@ -221,19 +219,19 @@ pub(crate) fn check(ask: &Ask, t0: f64, times: &[f64]) -> Result<f64, Error> {
     Ok(span)
 }
 
-/// Refuses to stop at rolling on a table without a law of friction.
+/// Returns an error for `stop_at_rolling` without a law of friction.
 fn check_stop_at_rolling(ask: &Ask) -> Result<(), Error> {
     if ask.stop_at_rolling && !ask.table.rubs() {
-        let expected = "no end where it begins to roll, on a table without a law of friction";
+        let expected = "false without a law of friction, where no slip turns into rolling";
         return Err(Error::OutOfRange { name: "stop_at_rolling", value: 1.0, expected });
     }
     Ok(())
 }
 
-/// Checks the times. Returns the signed span from the start to the last time.
+/// Checks the times. Returns the signed span from the initial to the last time.
 fn check_times(t0: f64, times: &[f64]) -> Result<f64, Error> {
     within("t0", t0, (-1e15, 1e15), "|t0| <= 1e15")?;
-    let expected = "at least one time, in order, on one side of the start, |t| <= 1e15";
+    let expected = "at least one time, in order, all before or all after t0, |t| <= 1e15";
     let &last = times.last().ok_or(Error::OutOfRange { name: "t", value: f64::NAN, expected })?;
     let way = if last < t0 { -1.0 } else { 1.0 };
     let mut before = 0.0;
@@ -247,10 +245,10 @@ fn check_times(t0: f64, times: &[f64]) -> Result<f64, Error> {
     Ok(last - t0)
 }
 
-/// Refuses times before the start of a motion with friction or losses.
+/// Returns an error for times before the initial time of a motion with friction or losses.
 pub(crate) fn check_times_after(t0: f64, times: &[f64]) -> Result<(), Error> {
     if check_times(t0, times)? < 0.0 {
-        let expected = "times after the start: friction does not say where a body came from";
+        let expected = "times after t0: with friction or losses the past is not determined";
         return Err(Error::OutOfRange { name: "t", value: times[times.len() - 1], expected });
     }
     Ok(())
@@ -264,17 +262,17 @@ pub(crate) fn check_flow(ask: &Ask) -> Result<f64, Error> {
         Method::Exact => Ok(FINE),
         Method::Tolerance(tol) => within("tol", tol, (FINE, 1e-1), "1e-14 <= tol <= 0.1"),
         Method::Step(value) => {
-            let expected = "none, where friction or losses choose the steps: a tolerance instead";
+            let expected = "no fixed step with friction or losses: give a tolerance";
             Err(Error::OutOfRange { name: "step", value, expected })
         }
     }
 }
 
-/// Refuses what a patch of contact does not go with.
+/// Returns an error for options that a patch of contact does not allow.
 pub(crate) fn check_patch(ask: &Ask) -> Result<(), Error> {
     let patch = ask.table.friction().patch();
     if patch > 0.0 && ask.losses.coefficients[Law::Drilling as usize] > 0.0 {
-        let expected = "0 together with drilling friction, which is the same couple";
+        let expected = "0 together with drilling friction, which gives the same couple";
         return Err(Error::OutOfRange { name: "patch", value: patch, expected });
     }
     if patch > 0.0 && ask.restitution.is_some() {
@@ -287,7 +285,7 @@ pub(crate) fn check_patch(ask: &Ask) -> Result<(), Error> {
 fn check_method(method: Method, span: f64) -> Result<(), Error> {
     match method {
         Method::Step(step) => {
-            let expected = "a step of the sign of time, |step| >= 1e-15 of the span and 1e-12 or more";
+            let expected = "a step with the sign of time, at least 1e-12 and 1e-15 of the span";
             let named = |ok: bool| {
                 if ok { Ok(()) } else { Err(Error::OutOfRange { name: "step", value: step, expected }) }
             };

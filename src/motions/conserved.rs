@@ -1,4 +1,4 @@
-//! Motions that conserve energy, by the first integrals, or by an integrator whose error they show.
+//! Motions that conserve energy, by the first integrals, or by an integrator, whose error the first integrals show.
 
 use super::ask::check;
 use super::course::Course;

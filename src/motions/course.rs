@@ -1,16 +1,15 @@
-//! The input of a motion that conserves energy, for any method: its start, its times and its
-//! direction in time.
+//! The input of a motion that conserves energy, for any method: its initial state, its times and its direction in time.
 
 use super::Start;
 use crate::laws::body::Body;
 use crate::laws::state::State;
 
-/// The start and the times of a motion that conserves energy.
+/// The initial state and the times of a motion that conserves energy.
 #[derive(Clone, Copy)]
 pub(crate) struct Course<'a> {
     pub body: &'a Body,
     pub start: &'a State,
-    /// The time of the start, and the time from there to the last output, which is negative backward in time.
+    /// The initial time, and the time from there to the last output, which is negative backward in time.
     pub t0: f64,
     pub span: f64,
     pub times: &'a [f64],

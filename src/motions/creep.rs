@@ -1,5 +1,5 @@
-//! A patch of contact along a motion: when it counts as at rest, how fast it creeps, and which steps it needs. Bodies and
-//! stones share this.
+//! A patch of contact along a motion: when it counts as at rest, how fast it creeps, and the steps that it needs.
+//! Bodies and stones share this module.
 //!
 //! ```text
 //! S = |u|,   R = eps |w_z|                        the patch rests if S + R <= eps DRILLS, and no longer grows
@@ -8,28 +8,28 @@
 //! ```
 //! [`radau`](crate::methods::radau) takes the steps where u is that fast; at k = 1 the steps are short.
 //!
-//! Error: the drilling that is left out, `LOST_DRILLING` times what is left of it.
+//! Error: `LOST_DRILLING` times the drilling that is left out.
 
 use crate::laws::contact::patch;
 use crate::numbers::{Dual, Real};
 
 /// A patch that drills faster than this, in sqrt(g/R), creeps.
 pub(crate) const DRILLS: f64 = 1e-10;
-/// A contact point that is let go begins to creep with at most this share of the friction of a slip.
+/// A contact point that friction has released begins to creep with at most this share of the friction of a slip.
 const MOST_CREEP: f64 = 0.999;
 /// Steps are implicit where the body turns by less than this angle in a unit of sigma, which is about the longest stable
 /// explicit step.
 const STIFF: f64 = 0.2;
 /// An implicit step may be this many times longer than an explicit one, since it amplifies no rounding.
 pub(crate) const IMPLICIT_TURNS: f64 = 8.0;
-/// Relative error that rounding of w gives the drilling. The slip need not be known better.
+/// Relative error of the drilling due to rounding of w. The slip need not be known more precisely.
 const ROUNDED_DRILLING: f64 = 4e-15;
-/// What is left to rest is followed along a straight line if it takes less than this time, in sqrt(R/g).
+/// The remaining way to rest is a straight line if it takes less than this time, in sqrt(R/g).
 const REST_IS_NEAR: f64 = 1e-6;
-/// The drilling with which a patch comes to be held, or with which a creep begins, has no friction on its way from or to
-/// zero, and this many times as much is claimed as an error.
+/// The drilling at which a patch begins to be held, or at which a creep begins, has no friction while it changes from
+/// or to zero; the estimated error includes this many times that drilling.
 pub(crate) const LOST_DRILLING: f64 = 4.0;
-/// A step takes at most this share of what is left to k = 1.
+/// A step takes at most this share of the distance to k = 1.
 const NEARER_K: f64 = 0.5;
 
 /// The speed below which a patch of this radius counts as at rest.
@@ -37,7 +37,7 @@ pub(crate) fn rests_below(radius: f64) -> f64 {
     radius * DRILLS
 }
 
-/// How fast a patch rubs: its slip S, and the speed R of its rim by the drilling.
+/// The rubbing speeds of a patch: its slip S, and the speed R of its rim by the drilling.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Rubbing<T> {
     pub slip: T,
@@ -57,14 +57,14 @@ impl<T: Real> Rubbing<T> {
 }
 
 impl Rubbing<Dual<f64>> {
-    /// Whether a patch of this radius comes to rest. A slip that begins is as slow, but grows.
+    /// Whether a patch of this radius comes to rest. A slip that begins is as slow, but it grows.
     pub fn comes_to_rest(&self, radius: f64) -> bool {
         let speed = self.speed();
         speed.value <= rests_below(radius) && (speed.slope <= 0.0 || speed.value == 0.0)
     }
 
-    /// How far the variable of the slopes is from rest, by the last slope; 0 if that takes longer than `REST_IS_NEAR` at the pace
-    /// dt/dsigma, so that a straight line is no longer exact.
+    /// Distance from rest in the variable of the slopes, by the last slope; 0 if that takes longer than `REST_IS_NEAR`
+    /// at the pace dt/dsigma, so that a straight line is no longer exact.
     pub fn left(&self, pace: f64) -> f64 {
         let left = self.speed().value / -self.speed().slope;
         if left * pace <= REST_IS_NEAR { left.max(0.0) } else { 0.0 }

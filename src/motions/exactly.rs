@@ -1,4 +1,4 @@
-//! Motions by their first integrals: a quick method where nothing ends a motion, and a method that watches for ends.
+//! Motions by their first integrals: a quick method for motions without an event, and a method that finds the ends.
 
 use super::course::Course;
 use super::exact::Swing;
@@ -10,13 +10,13 @@ use crate::error::{Error, copied, room};
 use crate::laws::body::Body;
 use crate::laws::state::State;
 
-/// Largest estimated errors of a state and of a pose with which the quick method counts as good as the other.
+/// Largest estimated errors of a state and of a pose for which the quick method is as good as the other.
 const QUICK: f64 = 2e-12;
 const QUICK_POSE: f64 = 3e-11;
 /// Motions with more times than this use the other method, which the caller can interrupt.
 const UNINTERRUPTED: usize = 1 << 16;
 
-/// The exact motion by the quick method, if the swing is narrow and nothing ends the motion: a tenth of the work.
+/// The exact motion by the quick method, if the swing is narrow and has no event; this takes a tenth of the work.
 pub(crate) fn quickly(
     body: &Body,
     start: &State,

@@ -1,4 +1,4 @@
-//! The extremes of a motion: those of the inclination, of the normal force and of the friction needed.
+//! The extremes of a motion: of the inclination, the normal force and the coefficient of friction that rolling needs.
 
 use super::exact::Swing;
 use crate::laws::body::Body;
@@ -6,8 +6,7 @@ use crate::laws::contact::{Contact, force};
 use crate::laws::state::State;
 use crate::methods::search;
 
-/// Least and greatest theta, least N, and greatest coefficient of friction needed, from the start
-/// to time `end`.
+/// Least and greatest theta, least N, and greatest coefficient of friction that rolling needs, from time 0 to `end`.
 pub(crate) fn extremes(swing: &Swing, body: &Body, end: f64) -> [f64; 4] {
     let [from, to] = swing.passed(end);
     let mut nodes: Vec<f64> =
@@ -27,7 +26,7 @@ pub(crate) fn extremes(swing: &Swing, body: &Body, end: f64) -> [f64; 4] {
     [low, high, normal, friction]
 }
 
-/// Least and greatest theta, least N, and greatest coefficient of friction needed among the states.
+/// Least and greatest theta, least N, and greatest coefficient of friction that rolling needs, among the states.
 pub(crate) fn extremes_of<'a>(
     states: impl Iterator<Item = &'a State>,
     body: &Body,

@@ -1,8 +1,8 @@
 //! A motion through phases, and its error from a second run with a larger tolerance.
 //!
-//! The second run has a tolerance up to ten thousand times as large, and takes about a third of the time of
-//! the first. The claimed error is the difference of the two runs, scaled by the ratio of the tolerances,
-//! times [`Moving::SAFETY`].
+//! The second run has a tolerance up to ten thousand times as large, and takes about a third of the time of the first.
+//! The estimated error is the difference of the two runs, scaled by the ratio of the tolerances, times
+//! [`Moving::SAFETY`].
 
 use super::{Ending, Kind, Motion, Moving, Path, Phase};
 use crate::error::Error;
@@ -21,8 +21,8 @@ pub(crate) struct Followed<S: Moving = State> {
 const ROUGHER: f64 = 1e4;
 const BARELY: f64 = 32.0;
 const ROUGH: f64 = 1e-7;
-/// Where only one of the two runs has an end, this end may be this far from the last time, and the difference
-/// is claimed as an error. Farther from it the runs disagree, and the error is infinite.
+/// Where only one of the two runs has an end, this end may be this far from the last time, and the estimated error is
+/// the difference. If the end is farther away the runs disagree, and the error is infinite.
 const LATE: f64 = 1e-6;
 /// Two phases of the two runs correspond to each other if the times of their beginnings differ by less than
 /// this share of the length of the shorter one.
@@ -30,9 +30,9 @@ const TOGETHER: f64 = 0.3;
 /// A second run with more than this share of the evaluations of the first has made almost the same steps, so
 /// that the difference of the runs hides the errors of these steps.
 const ALIKE: f64 = 0.7;
-/// Share of the sum of all step errors that is claimed in any case, since two runs may agree by chance.
+/// The estimated error is at least this share of the sum of all step errors, since two runs may agree by chance.
 const CHANCE: f64 = 0.1;
-/// Runs that differ by this share of the largest speed have parted, and their whole difference is claimed.
+/// Runs that differ by this share of the largest speed have parted, and the error is their whole difference.
 const PARTED: f64 = 0.3;
 
 /// The tolerance of the second run, which shows the error of a path with the tolerance `tol`.
@@ -48,7 +48,7 @@ pub(crate) fn judged<S: Moving>(
     mut run: impl FnMut(f64, &[f64]) -> Result<Option<Followed<S>>, Error>,
 ) -> Result<Option<Followed<S>>, Error> {
     let Some(mut found) = run(fine, times)? else { return Ok(None) };
-    // If the motion is given up, only its outputs up to that time are compared.
+    // If the computation stopped early, only its outputs up to that time are compared.
     let judged = if found.is_given_up() { found.motion.states.len() } else { times.len() };
     let Some(rough) = run(rougher(fine), &times[..judged])? else { return Ok(None) };
     found.judge(&rough, fine);
@@ -116,7 +116,7 @@ impl Followed {
 }
 
 impl<S: Moving> Followed<S> {
-    /// Whether the motion was given up before its last time.
+    /// Whether the computation stopped before the last time of the motion.
     pub(super) fn is_given_up(&self) -> bool {
         self.motion.event.is_some_and(|event| event.ending == Ending::Bounded)
     }
@@ -199,17 +199,17 @@ impl<S: Moving> Followed<S> {
             });
         let rounding = 8.0 * f64::EPSILON * fastest;
         let motion = &mut self.motion;
-        // Two runs with the same steps do not show the error of these steps, so that at least one
-        // tolerance is claimed.
+        // Two runs with the same steps do not show the error of these steps, so that the estimated error is at least
+        // one tolerance.
         let mut least =
             if self.path.slipping > 0.0 || motion.evaluations > 0 { rounding.max(tol) } else { rounding };
         // The error of a step grows as the eighth power of its length: hardly longer steps have hardly
         // larger errors.
         let ratio = rough.motion.evaluations as f64 / motion.evaluations.max(1) as f64;
         let alike = ratio > ALIKE.min(1.5 * (tol / rougher(tol)).powf(0.125));
-        // Step errors grow along the motion, by the same factor in both runs: in the rougher run from their
-        // sum to the difference of the runs. Steps that are not alike show their errors in that difference;
-        // as it may be small by chance, a share of their sum is claimed in addition.
+        // Step errors grow along the motion, by the same factor in both runs: in the rougher run from their sum to the
+        // difference of the runs. Steps that are not alike show their errors in that difference; as it may be small by
+        // chance, the estimated error also includes a share of their sum.
         let grows = if rough.path.erred > 0.0 { (off / rough.path.erred).max(1.0) } else { 1.0 };
         least += self.path.erred * if alike { grows } else { CHANCE };
         least += alone;

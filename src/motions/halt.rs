@@ -10,7 +10,7 @@
 pub(crate) enum Halt {
     /// The flow has reached the last time.
     Time,
-    /// The flow has made the largest number of steps that its caller allows.
+    /// The flow has taken the largest number of steps that its caller allows.
     Pause,
     /// The contact point comes to rest on the table.
     Standstill,
@@ -29,9 +29,9 @@ pub(crate) enum Halt {
     Rocking,
     /// A couple that grows with psi' has almost stopped the contact point (see `path::settled`).
     Settles,
-    /// The body neither rolls nor rocks any more; it may drill.
+    /// The body no longer rolls or rocks; it may drill.
     Rests,
-    /// The other rim of a lying body rises, or the one from which the state is told.
+    /// One rim of a lying body rises: the other rim, or the rim from which the state is seen.
     Rises,
     Changes,
     /// The slip of the other rim of a lying body comes to rest.
@@ -44,7 +44,7 @@ pub(crate) enum Halt {
 
 /// Number of margins of a motion.
 pub(crate) const MARGINS: usize = 6;
-/// The time among the numbers of a motion.
+/// The index of the time among the numbers of a motion.
 pub(crate) const TIME: usize = 7;
 
 /// Whether the lost energy is the last of the numbers.

@@ -1,4 +1,4 @@
-//! Errors of an integrated motion, from the exact motion where it exists, else from another run.
+//! Errors of an integrated motion, from the exact motion where there is one, else from another run.
 
 use super::exact::Swing;
 use super::{Event, Motion, Moving};
@@ -20,8 +20,8 @@ pub(crate) fn pose_distance(a: &Pose, b: &Pose) -> f64 {
 /// Relative error of a number of a state from a few roundings.
 const ROUNDINGS: f64 = 4.0 * f64::EPSILON;
 
-/// The force `at` a state whose theta and w have the given errors, and the largest error of the numbers of
-/// that force: it comes from the given errors and from a few roundings of every number.
+/// The force `at` a state whose theta and w have the given errors, and the largest error of the numbers of that force,
+/// from the given errors and from a few roundings of every number.
 pub(crate) fn doubted(y: &State, [theta, w]: [f64; 2], at: impl Fn(&State) -> Force) -> (Force, f64) {
     let numbers = |y: &[f64; 4]| {
         let force = at(&State::from(*y));
@@ -31,8 +31,7 @@ pub(crate) fn doubted(y: &State, [theta, w]: [f64; 2], at: impl Fn(&State) -> Fo
     (Force { normal, along, across }, off)
 }
 
-/// The numbers of a force `at` the numbers of a state with the errors `known`, and the largest error
-/// of that force.
+/// The numbers of a force `at` the numbers of a state with the errors `known`, and the largest error of that force.
 pub(crate) fn doubted_of<const K: usize>(
     of: &[f64; K],
     known: [f64; K],
@@ -58,8 +57,8 @@ pub(crate) fn force_distance(a: &Force, b: &Force) -> f64 {
     normal.abs().max(along.abs()).max(across.abs())
 }
 
-/// Sets the error of an integrated motion from the exact motion at some of its times; at all if they are
-/// fewer than 256.
+/// Sets the error of an integrated motion from the exact motion at some of its times, or at all if they are fewer than
+/// 256.
 pub(crate) fn judge(motion: &mut Motion, swing: &Swing, exact: Option<Event>, t0: f64) {
     let count = motion.times.len();
     let every = (count / 128).max(1);
@@ -90,8 +89,8 @@ pub(crate) fn judge(motion: &mut Motion, swing: &Swing, exact: Option<Event>, t0
     }
 }
 
-/// Sets the error of an integrated motion to its difference from another run with the same end,
-/// else to infinity.
+/// Sets the error of an integrated motion to its difference from another run with the same end; without the same end to
+/// infinity.
 pub(crate) fn compare(motion: &mut Motion, other: &Motion) {
     for (i, (a, b)) in motion.states.iter().zip(&other.states).enumerate() {
         motion.error = motion.error.max(a.distance(b));

@@ -3,9 +3,9 @@
 //! ```text
 //! theta > 0,   theta < theta_end,   N > 0,   mu N - |F_horizontal| > 0
 //! ```
-//! Along one motion all of these are functions of the inclination alone, so that they have the same values on
-//! the way up and on the way down. So the nearest places below and above the start at which an assumption
-//! fails are computed, and the event is at the one that the motion reaches first.
+//! Along one motion all of these are functions of the inclination alone, so that they have the same values on the way
+//! up and on the way down. The nearest places below and above the initial one at which an assumption fails are
+//! computed, and the event is at the place that the motion reaches first.
 
 use super::exact::Swing;
 use super::{Ending, Event};
@@ -17,11 +17,11 @@ use crate::laws::state::State;
 use crate::methods::search;
 use core::f64::consts::PI;
 
-/// Allowance for rounding in the margin of slip, relative to the terms of which the friction demand is a
-/// difference. With a smaller one, rolling that needs mu N exactly could end by rounding alone.
+/// Allowance for rounding in the margin of slip, relative to the terms whose difference is the required friction. With
+/// a smaller allowance, rolling that needs exactly mu N could end by rounding alone.
 const GRIP: f64 = 16.0 * f64::EPSILON;
 
-/// A body on a table, and the margins of its motion that must stay positive.
+/// A body with its contact, and the margins of its motion that must stay positive.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Limits {
     pub body: Body,
@@ -67,8 +67,7 @@ impl Limits {
         self.plain_grip(y, &self.rates.derivative(y, angle), angle)
     }
 
-    /// Margin of theta below theta_end, where the other rim or another part of the body lands; 1
-    /// without a theta_end.
+    /// Margin of theta below theta_end, where the other rim or another part of the body lands; 1 without a theta_end.
     pub fn side(&self, y: &State) -> f64 {
         if self.body.theta_end() < PI { self.body.theta_end() - y.theta } else { 1.0 }
     }
@@ -92,9 +91,8 @@ impl Limits {
 
     /// Error of the time and the state of an event, from the rounding of the state.
     ///
-    /// Let d be the change of the margin m for an ulp of each of the four numbers. The time at which m
-    /// vanishes has the error d/|m'|, or the square root of 2 d/|m''| where m only grazes zero. An event at
-    /// the start is exact.
+    /// Let d be the change of the margin m for an ulp of each of the four numbers. The time at which m vanishes has the
+    /// error d/|m'|, or the square root of 2 d/|m''| where m only touches zero. An event at time 0 is exact.
     pub fn doubt(&self, event: &Event) -> f64 {
         let y = event.state;
         if event.time == 0.0 {
@@ -128,13 +126,13 @@ impl Limits {
         if time.is_finite() { time * (1.0 + fastest) } else { 0.0 }
     }
 
-    /// The ending of a motion that is over at its start, if it is.
+    /// The ending of a motion that is over at once, if it is.
     pub fn at_start(&self, y: &State, way: f64) -> Option<Ending> {
         let angle = y.theta.sin_cos();
         self.at_start_of(y, &self.rates.derivative(y, angle), angle, way)
     }
 
-    /// The ending at the start, from a known derivative of the state and known sine and cosine of theta.
+    /// The ending of a motion that is over at once, for known derivative of the state and sine and cosine of theta.
     pub fn at_start_of(&self, y: &State, dy: &State, angle: (f64, f64), way: f64) -> Option<Ending> {
         let [lift, slip] = self.grip(y, dy, angle);
         let turns_away = way * y.w2 > 0.0 || (y.w2 == 0.0 && dy.w2 > 0.0);
@@ -151,7 +149,7 @@ impl Limits {
     }
 }
 
-/// The first event of an exact motion, with its time measured from the start.
+/// The first event of an exact motion, with its time since the initial state.
 pub(crate) fn first_event(swing: &Swing, limits: &Limits, way: f64) -> Option<Event> {
     let start = swing.start();
     if let Some(ending) = limits.at_start(start, way) {
@@ -183,12 +181,11 @@ pub(crate) fn first_event(swing: &Swing, limits: &Limits, way: f64) -> Option<Ev
     first.map(|e| Event { time: way * e.time, ..e })
 }
 
-/// The nearest places below and above the start at which a margin of the half swing turns negative.
+/// The nearest places below and above the initial one at which a margin of the half swing turns negative.
 ///
-/// The zero of the margin `plain`, which has no allowance for rounding, gives the place where `plain`
-/// changes its sign. The margin is evaluated at the nodes of the swing, which resolve the motion, and at
-/// `between` places between each two of them: the friction demand, with its quotient and square root, bends
-/// faster than the motion.
+/// The zero of the margin `plain`, which has no allowance for rounding, gives the place where `plain` changes its sign.
+/// The margin is evaluated at the nodes of the swing, which resolve the motion, and at `between` places between each
+/// two of them: the required friction, with its quotient and square root, varies faster than the motion.
 fn violations(
     swing: &Swing,
     margin: impl Fn(f64) -> f64,

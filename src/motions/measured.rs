@@ -3,9 +3,10 @@
 //! ```text
 //! ell = height/R,   I1 = i1/(M R^2),   I3 = i3/(M R^2),   R = outer_diameter/2 of a tube
 //! ```
-//! A motion is computed in natural units like any other; its times come from seconds, and [`Reading`]s of it are in SI,
-//! along the axes of the laboratory: z is up, the table is z = 0, and the body leans from +x at the start. States, slips
-//! and coefficients stay natural; [`Scale`] converts them. Error: that of the motion, and a few roundings.
+//! A motion is computed in natural units like any other motion. Its times are given in seconds, and each [`Reading`] is
+//! in SI, along the axes of the laboratory: z is up, the table is z = 0, and the body is inclined from +x at time 0.
+//! States, slips and coefficients stay in natural units; [`Scale`] converts them. Error: that of the motion, and a few
+//! roundings.
 
 use super::{Ask, Ending, Kind, Motion, Start, motion};
 use crate::error::{Error, within};
@@ -13,7 +14,7 @@ use crate::laws::body::Body;
 use crate::laws::scale::Scale;
 use nalgebra::{Point3, UnitQuaternion, Vector3};
 
-/// The measures of a uniform tube. A solid cylinder has no inner diameter, and a sharp rim no fillet.
+/// The dimensions of a uniform tube. A solid cylinder has `inner_diameter` 0, and a sharp rim `fillet` 0.
 ///
 /// ```
 /// use spincyl::measured::{Measured, Tube};
@@ -29,22 +30,22 @@ use nalgebra::{Point3, UnitQuaternion, Vector3};
     serde(default, deny_unknown_fields)
 )]
 pub struct Tube {
-    /// In metres.
+    /// Outer diameter, in metres.
     pub outer_diameter: f64,
-    /// In metres.
+    /// Inner diameter, in metres.
     pub inner_diameter: f64,
-    /// In metres.
+    /// Length, in metres.
     pub length: f64,
     /// Radius of the outer edges, in metres.
     pub fillet: f64,
-    /// In kilograms.
+    /// Mass, in kilograms.
     pub mass: f64,
-    /// In m/s^2.
+    /// Acceleration of gravity, in m/s^2.
     pub gravity: f64,
 }
 
 impl Default for Tube {
-    /// No tube yet: only gravity is set, to the standard 9.80665 m/s^2.
+    /// All dimensions are 0, and gravity is the standard 9.80665 m/s^2.
     fn default() -> Self {
         Self {
             outer_diameter: 0.0,
@@ -57,7 +58,7 @@ impl Default for Tube {
     }
 }
 
-/// A body that knows its size and its mass.
+/// A body with a size and a mass.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Measured {
@@ -65,7 +66,7 @@ pub struct Measured {
     scale: Scale,
 }
 
-/// What a body does at one time, in SI along the axes of the laboratory.
+/// The state of a body at one time, in SI along the axes of the laboratory.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -76,19 +77,20 @@ pub struct Reading {
     pub theta: f64,
     /// The centre of mass in metres.
     pub position: Point3<f64>,
-    /// The turn from the body's axes, of which the third is that of symmetry, to those of the laboratory.
+    /// The rotation from the axes of the body, of which the third is the symmetry axis, to those of the laboratory.
     pub orientation: UnitQuaternion<f64>,
     /// The velocity of the centre of mass in m/s.
     pub velocity: Vector3<f64>,
     /// The angular velocity in rad/s.
     pub angular_velocity: Vector3<f64>,
-    /// The contact point in metres, or the lowest point of the rim in the air; one of them of a body that lies on both rims.
+    /// The contact point in metres; in the air, the lowest point of the rim; for a body on both rims, one of the two
+    /// points.
     pub contact_point: Point3<f64>,
     /// The force of the table in newtons, on both rims together; zero in the air.
     pub force: Vector3<f64>,
     /// Kinetic and potential energy in joules.
     pub energy: f64,
-    /// What the contact point does, with a law of friction, losses or a restitution.
+    /// The kind of the phase, with a law of friction, losses or a restitution.
     pub kind: Option<Kind>,
 }
 
@@ -105,7 +107,7 @@ pub struct MeasuredMotion {
 }
 
 impl Measured {
-    /// A body whose natural units are these.
+    /// A body with these natural units.
     pub fn new(body: Body, scale: Scale) -> Self {
         Self { body, scale }
     }
@@ -119,8 +121,8 @@ impl Measured {
     /// Any axisymmetric body of this size, from the height of its centre of mass above the circle of the rim and the
     /// fillet of the rim, both in metres, and its moments I1 and I3 about the centre of mass, in kg m^2.
     ///
-    /// Errors: those of [`Body::rounded`], and `OutOfRange` for moments so small or large for its mass and radius that
-    /// they are in another unit.
+    /// Errors: those of [`Body::rounded`], and `OutOfRange` for moments that are so small or large for this mass and
+    /// radius that they must be in another unit.
     ///
     /// ```
     /// use spincyl::{Body, Scale, measured::Measured};
@@ -150,8 +152,9 @@ impl Measured {
         &self.scale
     }
 
-    /// The motion from a start, at these times in seconds; poses and forces are always computed. The start and the options
-    /// are in natural units. Errors and `go_on`: those of [`roll_with`](motion::roll_with), whose times are natural.
+    /// The motion from a start, at these times in seconds; poses and forces are always computed. The start and the
+    /// options are in natural units. Errors and `go_on`: as for [`roll_with`](motion::roll_with), whose times are in
+    /// natural units.
     ///
     /// ```
     /// use spincyl::{measured::{Measured, Tube}, motion::Ask, steady};
@@ -201,8 +204,8 @@ impl MeasuredMotion {
         })
     }
 
-    /// Estimated errors, the largest over all times: of theta, the angular velocity and the time of the end (radians, rad/s,
-    /// seconds), of places (metres), of forces (newtons).
+    /// Estimated errors, the largest over all times: of theta, the angular velocity and the time of the end (radians,
+    /// rad/s, seconds), of positions (metres), of forces (newtons).
     pub fn error(&self) -> [f64; 3] {
         let (m, scale) = (&self.natural, &self.of.scale);
         let states = m.error * scale.radians_per_second(1.0).max(scale.seconds(1.0)).max(1.0);

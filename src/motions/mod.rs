@@ -1,5 +1,5 @@
-//! Motions of bodies and stones from a start: by the first integrals, by steps, or as a slow drift along
-//! steady states.
+//! Motions of bodies and stones from an initial state: by first integrals, by steps, or as a slow drift along steady
+//! states.
 
 pub(crate) mod ask;
 mod conserved;

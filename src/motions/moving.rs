@@ -8,13 +8,13 @@ use core::fmt::Debug;
 
 /// A state of a moving body, as a few numbers, with the types of its pose and of its contact force.
 pub trait Moving: Copy + Debug + PartialEq {
-    /// Safety factor of the error that is claimed from the scaled difference of two runs.
+    /// Safety factor in the estimated error, which multiplies the scaled difference of two runs.
     const SAFETY: f64 = 30.0;
     /// The numbers of the state.
     type Numbers: AsRef<[f64]>;
-    /// The place and the orientation of the body.
+    /// The position and the orientation of the body.
     type Pose: Copy + Debug + PartialEq;
-    /// The force of the table.
+    /// The contact force.
     type Force: Copy + Debug + PartialEq;
 
     /// The numbers of the state.

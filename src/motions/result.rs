@@ -9,12 +9,12 @@ use crate::laws::state::State;
 use crate::numbers::codes::coded;
 
 coded! {
-    /// The end of a motion. Its number is the status of a result.
+    /// The way in which a motion ended. Its number is the status of a result.
     pub enum Ending {
         /// The motion reached the last requested time.
         Done = 0,
-        /// The face landed on the table (theta = 0 or pi). The body may still spin on its face, with the last
-        /// w3; that spin is not followed.
+        /// The face landed on the table (theta = 0 or pi). The body may still spin on its face, with the last w3; that
+        /// spin is not computed.
         Face = 1,
         /// The other rim landed: the body lies on its side (theta = pi/2, ell > 0).
         Side = 2,
@@ -22,22 +22,21 @@ coded! {
         LiftOff = 3,
         /// Rolling needed more friction than mu N.
         Slip = 4,
-        /// There is no such body, state or table, or the step is too large for it. Only a row of many motions has this
-        /// status, with NaN in place of numbers; a single motion is refused by an error.
+        /// The body, state or contact is invalid, or the step is too long. Only a row of many motions has this status,
+        /// with NaN in place of numbers; a single motion returns an error.
         Invalid = 5,
         /// No contact force, or more than one, obeys the law of friction.
         Painleve = 6,
         /// The contact point stops, held by dry friction along the rim or by rolling resistance.
         Stops = 7,
-        /// The motion was given up at this time: slipping and rolling alternate too often, or it
-        /// hardly advances.
+        /// The computation stopped at this time: slipping and rolling alternate too often, or time hardly advances.
         Bounded = 8,
-        /// A landing on both rims has no outcome, or more than one, that obeys the law of friction.
+        /// A landing on both rims has no outcome, or more than one, under the law of friction.
         Landing = 9,
     }
 }
 
-/// The point at which a motion leaves the model.
+/// The event at which a motion leaves the range of the model.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -51,8 +50,7 @@ pub struct Event<S = State> {
 }
 
 impl<S> Event<S> {
-    /// Whether the event ends the motion. A motion that continues `beyond` events ends only with a
-    /// landing of the face.
+    /// Whether the event ends the motion. A motion that continues `beyond` events ends only where the face lands.
     pub(crate) fn ends(&self, beyond: bool) -> bool {
         !beyond || self.ending == Ending::Face
     }
@@ -93,23 +91,23 @@ pub struct Motion<S: Moving = State> {
     /// without forces.
     #[cfg_attr(feature = "serde", serde(with = "crate::numbers::file"))]
     pub force_error: f64,
-    /// Predicted share of the nutation's amplitude that a fixed step takes away; 0 with the other methods.
+    /// Predicted share of the amplitude of the nutation that a fixed step takes away; 0 with the other methods.
     pub step_loss: f64,
-    /// A fixed step that takes away less than a thousandth of the amplitude; infinite with the other methods.
+    /// A fixed step that takes away less than a thousandth of this amplitude; infinite with the other methods.
     #[cfg_attr(feature = "serde", serde(with = "crate::numbers::file"))]
     pub advice: f64,
     /// Whether the loss of amplitude, the nutation or the precession makes the fixed step questionable.
     pub coarse: bool,
     /// Number of evaluations of the equations of motion.
     pub evaluations: u64,
-    /// Slip, phases and lost energy, on a table with a law of friction or for a body with losses.
+    /// Slip, phases and lost energy, with a law of friction or for a body with losses.
     pub path: Option<Box<Path<S>>>,
     /// Whether the table is smooth, so that the centre moves only up and down.
     pub(super) smooth: bool,
 }
 
 impl<S: Moving> Motion<S> {
-    /// An empty motion with room for `count` outputs.
+    /// An empty motion with space for `count` outputs.
     pub(crate) fn empty(count: usize, pose: bool) -> Result<Self, Error> {
         Ok(Self {
             times: Vec::new(),
@@ -130,7 +128,7 @@ impl<S: Moving> Motion<S> {
         })
     }
 
-    /// Drops the outputs at times farther than `limit` from the start.
+    /// Removes the outputs at times farther than `limit` from the initial time.
     pub(super) fn keep(&mut self, t0: f64, limit: f64) {
         let kept = self.times.partition_point(|t| (t - t0).abs() <= limit);
         self.times.truncate(kept);
@@ -149,7 +147,7 @@ impl<S: Moving> Motion<S> {
 coded! {
     /// The kind of a phase.
     pub enum Kind {
-        /// The contact point rests.
+        /// The contact point is at rest.
         Rolling = 0,
         /// The contact point slips.
         Slipping = 1,
@@ -159,12 +157,12 @@ coded! {
         Lying = 3,
         /// The body lies on both rims, and one of them sticks.
         Pivoting = 4,
-        /// The body lies on both rims, and rolls straight on.
+        /// The body lies on both rims and rolls straight on.
         RollingOnItsSide = 5,
     }
 }
 
-/// A part of a motion in which the body does one thing all the time.
+/// A part of a motion of one kind, such as rolling or slipping.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -186,16 +184,16 @@ pub struct Phase<S = State> {
 pub struct Strike {
     /// The time of the impact.
     pub time: f64,
-    /// Whether the rim that lands is another one than that from which the start was told.
+    /// Whether the rim that lands is not the one from which the initial state was seen.
     pub other: bool,
-    /// What the contact point does in the impact.
+    /// The motion of the contact point in the impact.
     pub hit: Hit,
     /// The state before and after the impact, as seen from the rim that lands.
     pub states: [State; 2],
     /// The velocity of the lowest point of that rim before and after: along the lean, across it, and upwards.
     pub velocities: [[f64; 3]; 2],
-    /// The impulses along the lean, across it, and upwards, in M sqrt(g R); of both rims together if both are
-    /// pushed.
+    /// The impulses along the lean, across it, and upwards, in M sqrt(g R), summed over both rims if both receive an
+    /// impulse.
     pub impulse: [f64; 3],
     /// The energy lost, in M g R.
     pub lost: f64,
@@ -203,9 +201,8 @@ pub struct Strike {
     pub stays: bool,
 }
 
-/// The slip, the phases and the losses of a motion. The motion's estimated error also covers the slips,
-/// and the times and states of the phases and of the end; the error of the heat is that error times the
-/// largest speed.
+/// The slip, the phases and the losses of a motion. The estimated error of the motion also covers the slips, and the
+/// times and states of the phases and of the end; the error of the heat is that error times the largest speed.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -214,50 +211,50 @@ pub struct Path<S = State> {
     pub slip: Vec<[f64; 2]>,
     /// The heat of friction up to each time, in M g R.
     pub dissipated: Vec<f64>,
-    /// The energy that the losses have taken up to each time, in M g R; empty if there are none.
+    /// The energy lost to the losses up to each time, in M g R; empty without losses.
     pub work_lost: Vec<f64>,
-    /// Whether the contact point rests or slips at each time.
+    /// Whether the contact point is at rest or slips at each time.
     pub kinds: Vec<Kind>,
-    /// The phases, beginning with that of the start.
+    /// The phases, from the initial one on.
     pub phases: Vec<Phase<S>>,
-    /// The total heat of friction up to the last time or the end.
+    /// The total heat of friction up to the last time or the end, in M g R.
     pub heat: f64,
-    /// The total energy that the losses have taken.
+    /// The total energy lost to the losses, in M g R.
     pub lost: f64,
     /// The total time of slipping.
     pub slipping: f64,
-    /// The height of the lowest point of the rim and its vertical velocity at each time; empty if the motion ends
-    /// where it leaves the table.
+    /// The height of the lowest point of the rim and its vertical velocity at each time; empty if the motion ends where
+    /// the body leaves the table.
     pub aloft: Vec<[f64; 2]>,
     /// The impacts.
     pub impacts: Vec<Strike>,
     /// Slip and force (N, across the lean, along it) of the other rim at each time, NaN unless the body lies on both;
-    /// empty if the motion ends where the body comes to lie.
+    /// empty if the motion ends where the body comes to lie on its side.
     #[cfg_attr(feature = "serde", serde(with = "crate::numbers::file::rows"))]
     pub other_rim: Vec<[f64; 5]>,
     /// The slip at the event that ended the motion.
     pub last_slip: [f64; 2],
-    /// For a stone, the time up to which the claimed error is at most 1 % of the largest speed (at most 0.01
-    /// for slow motions); infinite if this holds up to the end.
+    /// For a stone, the time up to which the estimated error is at most 1 % of the largest speed (at most 0.01 for slow
+    /// motions); infinite if this holds up to the end.
     #[cfg_attr(feature = "serde", serde(with = "crate::numbers::file"))]
     pub known_until: f64,
-    /// Whether the motion goes on in the air and on both rims.
+    /// Whether the motion continues in the air and on both rims.
     pub(crate) goes_on: bool,
     /// Whether the body stands on its other rim, now and, if poses were requested, at each time.
     pub(super) upside_down: bool,
     pub(super) turned: Vec<bool>,
     /// Whether the computation stopped where the body began to roll.
     pub(crate) rolls_on: bool,
-    /// Whether the last turns of a whirr were left out, since its end was known before them.
+    /// Whether the last turns of a whirr were left out, because its end is known without them.
     pub(crate) leaves_turns: bool,
     /// The sum of the estimated errors of all steps.
     pub(crate) erred: f64,
-    /// The direction in which the present slip began from rest.
+    /// The direction in which the current slip began from rest.
     pub(super) way: [f64; 2],
 }
 
 impl<S> Path<S> {
-    /// A path with room for `count` outputs, and for as many numbers of lost energy.
+    /// A path with space for `count` outputs, and for `losing` numbers of lost energy.
     pub(crate) fn empty(count: usize, losing: usize) -> Result<Self, Error> {
         Ok(Self {
             slip: room(count)?,

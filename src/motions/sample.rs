@@ -1,4 +1,4 @@
-//! A motion, one time after the other.
+//! The outputs of a motion, one time after the other.
 //!
 //! ```text
 //! v = (u_h + h w2) e_h + (u_2 - L w1 + A w3) e2 + (g w2 + lift) z      u the slip, lift the rise of the lowest point
@@ -34,15 +34,15 @@ pub struct Sample<S: Moving = State> {
     pub pose: Option<S::Pose>,
     /// The contact force, if forces were requested.
     pub force: Option<S::Force>,
-    /// The slip of the contact point, along the lean and across it, with a law of friction; of a stone along x and y.
+    /// The slip of the contact point, along the lean and across it, with a law of friction; for a stone along x and y.
     pub slip: Option<[f64; 2]>,
-    /// What the contact point does, with a law of friction, losses or a restitution.
+    /// The kind of the phase, with a law of friction, losses or a restitution.
     pub kind: Option<Kind>,
     /// The height of the lowest point and its vertical velocity.
     pub aloft: [f64; 2],
     /// Slip and force (N, across the lean, along it) of the other rim of a body that lies on both.
     pub other_rim: Option<[f64; 5]>,
-    /// Whether the body stands on the rim that was the upper one at the start, from which state and pose are then told.
+    /// Whether the body stands on its initially upper rim, from which state and pose are then seen.
     pub turned: bool,
     smooth: bool,
 }
@@ -81,15 +81,16 @@ impl<S: Moving> Motion<S> {
 }
 
 impl Motion {
-    /// The orientation at each time, if poses were requested. It is that of the body's axes at the start,
-    /// whichever rim touches the table.
+    /// The orientation at each time, if poses were requested. It refers to the axes of the body at the start, whichever
+    /// rim touches the table.
     pub fn orientations(&self) -> impl Iterator<Item = UnitQuaternion<f64>> {
         self.samples().filter_map(|now| now.orientation())
     }
 }
 
 impl Sample {
-    /// The turn from the body's axes to those of the laboratory, if poses were requested; see [`Motion::orientations`].
+    /// The rotation from the axes of the body to those of the laboratory, if poses were requested; see
+    /// [`Motion::orientations`].
     pub fn orientation(&self) -> Option<UnitQuaternion<f64>> {
         // A pose on the other rim describes the body after a half turn about its own first axis.
         let over = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), if self.turned { PI } else { 0.0 });
@@ -106,8 +107,8 @@ impl Sample {
         self.pose.map(|Pose { phi, .. }| axes(phi.rest, self.state.theta) * self.state.angular_velocity())
     }
 
-    /// The force of the table along the axes of the laboratory, in weights, if poses and forces were requested: that on both
-    /// rims of a body that lies on both, and zero in the air.
+    /// The force of the table along the axes of the laboratory, in weights, if poses and forces were requested: for a body
+    /// that lies on both rims the sum of both forces, and zero in the air.
     pub fn force_in_laboratory(&self) -> Option<Vector3<f64>> {
         let other = self.other_rim.map_or([0.0; 3], |[_, _, force @ ..]| force);
         self.pose.zip(self.force).map(|(pose, Force { normal, along, across })| {

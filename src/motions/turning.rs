@@ -1,4 +1,4 @@
-//! The spin from which a tippe top turns over, and the one from which an egg that lies rises.
+//! The least spin with which a tippe top turns over, and with which a lying egg rises.
 //!
 //! ```text
 //! J = I3 n (1 - l)        at the start, upright;  l = |ell|, the centre of mass below the middle of the ball
@@ -8,11 +8,12 @@
 //! J = w (I1 s^2 + I3 c^2) h                       of an egg that lies, with the height h of its centre of mass
 //! J^2 > I3^2 h^4 (h - rho)/(rho (I3 h - I1))      of one on its end, for its end's radius of curvature rho and I1 -> I1 rho
 //! ```
-//! Friction at a point keeps J (Jellett 1872; Ebenfeld and Scheck, Ann. Phys. 243, 195 (1995)), so that this is the least spin
-//! on any table. On a patch the couple of drilling takes some of J: in creep both the rise and that loss are in proportion to
-//! the radius of the patch, so that a top needs more spin on the smallest patch, too. That spin comes from motions.
+//! Friction at a point conserves J (Jellett 1872; Ebenfeld and Scheck, Ann. Phys. 243, 195 (1995)), so that this is the
+//! least spin for any coefficient of friction. On a patch the couple of drilling reduces J. In creep both the rise and
+//! that loss are proportional to the radius of the patch, so that a top needs more spin on the smallest patch, too.
+//! That spin is computed from motions.
 //!
-//! Error: of the search, 1e-3 of the spin.
+//! Error of the search: 1e-3 of the spin.
 
 use super::motion::roll_with;
 use super::{Ask, Method, Motion, Start, stone};
@@ -24,23 +25,23 @@ use crate::laws::stone::{Ellipsoid, StoneState};
 use crate::numbers::vector::Symmetric;
 use core::f64::consts::PI;
 
-/// A top has turned over where its axis is this close to the vertical, in radians.
+/// A top has turned over when its axis is this close to the vertical, in radians.
 const UPSIDE_DOWN: f64 = 0.14;
-/// An egg stands on an end where its axis is this close to the vertical, in radians.
+/// An egg stands on an end when its axis is this close to the vertical, in radians.
 const ON_END: f64 = 0.2;
 /// The search ends at this relative width.
 const SPIN_KNOWN: f64 = 1e-3;
 /// The spins of the first search grow by this factor, up to `MOST_SPIN` times that of Jellett's number.
 const SPIN_STEP: f64 = 1.15;
 const MOST_SPIN: f64 = 10.0;
-/// A top that drills slows down within 1/(mu eps) units of time at a spin of about 1, and is followed for as many; on a
-/// point, and on a film, for the shorter time `LEAST_TIME`.
+/// A top that drills slows down within 1/(mu eps) units of time at a spin of about 1, and its motion is computed for
+/// that time; at a point, and on a film, for the shorter time `LEAST_TIME`.
 const LEAST_TIME: f64 = 400.0;
 
-/// The spin w3 of a top that stands nearly upright, from which it turns over if friction keeps Jellett's number; infinite
-/// if it is unstable upside down with any spin.
+/// The least spin w3, in sqrt(g/R), with which a nearly upright top turns over if friction conserves Jellett's number;
+/// infinite if the top is unstable upside down with any spin.
 ///
-/// Error: a few roundings. Errors: `OutOfRange` for a body that is no ball with its centre of mass below its middle.
+/// Error: a few roundings. Errors: `OutOfRange` unless the body is a ball with its centre of mass below its middle.
 ///
 /// ```
 /// use spincyl::{Body, turning};
@@ -55,14 +56,14 @@ pub fn jellett_spin(top: &Body) -> Result<f64, Error> {
         return Err(Error::OutOfRange {
             name: "fillet",
             value: top.fillet(),
-            expected: "1: a tippe top is a ball",
+            expected: "1, since a tippe top is a ball",
         });
     }
     within(
         "ell",
         top.ell(),
         (-1.0, -f64::MIN_POSITIVE),
-        "below 0: a tippe top has its centre of mass below its middle",
+        "below 0: the centre of mass of a tippe top is below its middle",
     )?;
     let stiff = top.i3() * (1.0 + low) - top.i1();
     Ok(if stiff > 0.0 {
@@ -72,13 +73,14 @@ pub fn jellett_spin(top: &Body) -> Result<f64, Error> {
     })
 }
 
-/// The spin w3 from which a top that leans by `lean`, with its centre at rest, turns over on a table; infinite if it does
-/// not with ten times the spin of [`jellett_spin`].
+/// The least spin w3, in sqrt(g/R), with which a top at the inclination `lean`, with its centre at rest, turns over
+/// under this friction; infinite if it does not turn over with ten times the spin of [`jellett_spin`].
 ///
-/// It has turned over where its axis comes within 0.14 of the vertical. A motion that ends before, as by a hop, counts as
-/// one that does not. Error: 1e-3 of the spin; on rough tables a little more spin may fail where less does not, and the
-/// result is one point of such a border. Never less than half of the estimate. Errors: those of [`jellett_spin`], and `OutOfRange` for a lean outside
-/// (0, 1) or coefficients out of range; those of [`roll_with`](super::motion::roll_with).
+/// The top has turned over when its axis comes within 0.14 rad of the vertical. A motion that ends earlier, for example
+/// by a hop, counts as one without turning over. Error: 1e-3 of the spin. On rough tables a larger spin may fail where
+/// a smaller one does not, and the result is one limit of several. The result is never less than half of the estimate.
+/// Errors: those of [`jellett_spin`]; `OutOfRange` for a `lean` outside [1e-6, 1] or coefficients out of range; those
+/// of [`roll_with`](super::motion::roll_with).
 pub fn turning_spin(
     top: &Body,
     friction: Friction,
@@ -89,12 +91,12 @@ pub fn turning_spin(
     searched(jellett_spin(top)?, (friction, lean), turns)
 }
 
-/// The spin about the vertical of an egg that lies, from which it rises to an end if friction keeps Jellett's number;
-/// infinite if it is unstable on both ends with any spin.
+/// The least spin about the vertical, in sqrt(g/a), with which a lying egg rises to an end if friction conserves
+/// Jellett's number; infinite if the egg is unstable on both ends with any spin.
 ///
-/// An egg is a spheroid whose third semi-axis is the long one, with a mass that is symmetric about it. Error: a few
-/// roundings. Errors: `OutOfRange` for another body, and for an egg that stands on an end without any spin, or that cannot
-/// lie.
+/// An egg is a spheroid whose third semi-axis is the longest, with a mass that is symmetric about that axis. Error: a
+/// few roundings. Errors: `OutOfRange` for another body, for an egg that stands on an end without spin, and for one
+/// that cannot lie.
 pub fn jellett_rising_spin(egg: &Ellipsoid) -> Result<f64, Error> {
     let LyingEgg { height, moment, .. } = LyingEgg::of(egg)?;
     let ([b, _, a], [_, _, d], [i1, _, i3, ..]) = (egg.axes(), egg.offset(), egg.inertia.0);
@@ -107,10 +109,10 @@ pub fn jellett_rising_spin(egg: &Ellipsoid) -> Result<f64, Error> {
     Ok(one.min(other))
 }
 
-/// The spin about the vertical from which an egg rises to an end, if it lies with its axis raised by `lean` and its centre
-/// is at rest; infinite if it does not with ten times the spin of [`jellett_rising_spin`].
+/// The least spin about the vertical, in sqrt(g/a), with which an egg rises to an end, if it lies with its axis raised
+/// by `lean` and its centre at rest; infinite if it does not rise with ten times the spin of [`jellett_rising_spin`].
 ///
-/// It has risen where its axis comes within 0.2 of the vertical. The rest is as for [`turning_spin`].
+/// The egg has risen when its axis comes within 0.2 rad of the vertical. Error and errors are as for [`turning_spin`].
 pub fn rising_spin(
     egg: &Ellipsoid,
     friction: Friction,
@@ -121,7 +123,7 @@ pub fn rising_spin(
     searched(jellett_rising_spin(egg)?, (friction, lean), rises)
 }
 
-/// The least spin that `turns` a body, between half and ten times an estimate; None if the search is interrupted.
+/// The least spin for which `turns` is true, from half to ten times an estimate; None if the search is interrupted.
 fn searched(
     least: f64,
     (friction, lean): (Friction, f64),
@@ -132,7 +134,7 @@ fn searched(
     if !least.is_finite() {
         return Ok(Some(f64::INFINITY));
     }
-    // A film may turn a top over that leans from the start, with less.
+    // On a film, an inclined top may turn over with less spin.
     let [mut low, mut high] = [0.5 * least, 0.5 * least];
     while high < MOST_SPIN * least {
         let Some(enough) = turns(high)? else { return Ok(None) };
@@ -184,11 +186,11 @@ fn rises(
     Ok(motion.map(|m| m.states.iter().any(|y| y.vertical[2].abs() > ON_END.cos())))
 }
 
-/// The times at which a body is seen, and the request for its motion.
+/// The times at which the state is computed, and the options of the motion.
 fn watched(friction: Friction) -> (Vec<f64>, Ask) {
     let slows = friction.strength() * friction.patch();
     let until = LEAST_TIME.max(if slows > 0.0 { 1.0 / slows } else { 0.0 });
-    // A body that has turned stands for long, so that one of the times sees it.
+    // A body that has turned stands for a long time, so that it stands at one of these times.
     let times = (1..=400).map(|k| until / 400.0 * f64::from(k)).collect();
     (times, Ask { method: Method::Tolerance(1e-8), ..Ask::on(friction) })
 }
@@ -202,7 +204,7 @@ struct LyingEgg {
 }
 
 impl LyingEgg {
-    /// The egg on its side, or an error that names what is no egg.
+    /// The egg on its side, or an error that names the property that no egg has.
     fn of(egg: &Ellipsoid) -> Result<Self, Error> {
         let ([b, c, a], [x, y, d]) = (egg.axes(), egg.offset());
         let Symmetric([i1, i2, i3, one, two, three]) = egg.inertia;

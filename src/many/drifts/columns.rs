@@ -1,4 +1,4 @@
-//! The starts of many drifts and the arrays for their results, as columns.
+//! The initial states of many drifts and the arrays for their results, as columns.
 
 use crate::error::Error;
 use crate::laws::body::Body;
@@ -12,27 +12,28 @@ use crate::motions::drift::{Drift, End, check};
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Centre {
-    /// The centre stays at rest.
+    /// The centre is held at rest.
     Rest = 0,
     /// The body rolls without slipping.
     Rolling = 1,
 }
 
-/// Bodies, starts and losses as columns of numbers: each column has the length n, or is a single number for all.
+/// Bodies, initial states and losses as columns of numbers: each column has the length n, or is a single number for
+/// all.
 #[derive(Debug, Clone, Copy)]
 pub struct DriftStarts<'a> {
     /// The motion of the centre.
     pub centre: Centre,
-    /// Columns of ell, i1, i3, bore (NaN for a body that is no tube), fillet and theta_end (NaN for the default of the
+    /// Columns of ell, i1, i3, bore (NaN unless the body is a tube), fillet and theta_end (NaN for the default of the
     /// body).
     pub bodies: [&'a [f64]; 6],
-    /// Columns of theta, w1, w2 and w3; for a centre at rest only theta counts.
+    /// Columns of theta, w1, w2 and w3; only theta matters for a centre at rest.
     pub states: [&'a [f64]; 4],
     /// Columns of the coefficients of the laws.
     pub losses: LossColumns<'a>,
 }
 
-/// The code of a start without a drift; the codes of [`End`] are smaller.
+/// The code of an initial state without a drift; the codes of [`End`] are smaller.
 pub const NO_DRIFT: u8 = 255;
 
 /// The arrays for the results.
@@ -61,13 +62,13 @@ impl DriftOutput<'_> {
         (self.stops_at[i], self.ends_at_theta[i], self.ended[i]) = (time, theta, end as u8);
     }
 
-    /// Writes NaN and [`NO_DRIFT`] for start `i`, which has no drift.
+    /// Writes NaN and [`NO_DRIFT`] for row `i`, which has no drift.
     pub(crate) fn refuse(&mut self, i: usize) {
         (self.stops_at[i], self.ends_at_theta[i], self.ended[i]) = (f64::NAN, f64::NAN, NO_DRIFT);
     }
 }
 
-/// A body, its start and its losses.
+/// A body, its initial state and its losses.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct DriftRow {
     pub body: [f64; 6],
@@ -97,12 +98,12 @@ impl DriftRow {
 }
 
 impl DriftStarts<'_> {
-    /// The number of starts.
+    /// The number of initial states.
     pub fn len(&self) -> usize {
         rows(self.columns())
     }
 
-    /// Whether the columns contain no start.
+    /// Whether there are no initial states.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

@@ -1,8 +1,8 @@
-//! Many drifts at once: every body has its own start and its own losses, and lanes and threads share the work.
+//! Many drifts at once: every body has its own initial state and losses, and lanes and threads share the work.
 //!
-//! The results are the times and the kinds of the ends. A drift that the lanes cannot compute is computed
-//! alone, as `Drift` does. This choice depends on the drift alone, so that the result has the same bits for
-//! any number of threads and for any other drifts in the call.
+//! The results are the times and the kinds of the ends. A drift that the lanes cannot compute is computed alone, as by
+//! `Drift`. This choice depends on the drift alone, so that the result has the same bits for any number of threads and
+//! for any other drifts in the call.
 //!
 //! Error: that of a single drift; a property of `drift` compares the two.
 
@@ -21,9 +21,9 @@ use crate::numbers::{LANES, level};
 /// Number of drifts in a block, the work that a thread takes at a time.
 const DRIFTS_PER_BLOCK: usize = 4096;
 
-/// Fills `out` on `threads` workers, of which the calling thread is one. The calling thread calls `go_on`
-/// about fifty times a second with the fraction of the work that is done. Returns whether all drifts are
-/// done; if not, the contents are unspecified. The error is `Memory`.
+/// Computes the ends of all drifts and fills `out`, on `threads` threads, of which the calling thread is one. The
+/// calling thread calls `go_on` about fifty times a second with the finished share of the work, and stops if it returns
+/// false. Returns whether all drifts are done; if not, the contents are unspecified. The error is `Memory`.
 ///
 /// # Panics
 /// The function panics if columns differ in length (apart from single numbers), or if an array of `out` does not fit
@@ -88,12 +88,12 @@ fn at_rest(starts: &DriftStarts<'_>, eight: &[usize], round: bool, first: usize,
     }
 }
 
-/// The drift of one start.
+/// The drift of row `i`.
 pub fn single(starts: &DriftStarts<'_>, i: usize) -> Result<Drift, Error> {
     starts.row(i).drift(starts.centre)
 }
 
-/// A question about a drift.
+/// A quantity of a drift that [`ask`] computes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Question {
     /// The time, in sqrt(R/g), at which the drift reaches an inclination: one number.
@@ -104,14 +104,16 @@ pub enum Question {
     Stable,
 }
 
-/// Number of values of the answer to a question.
+/// Number of values that [`ask`] writes for each element.
 pub const WIDTH: usize = 5;
 
-/// Answers the question with the value `x[k]` for the drift with the index `of[k]`, for all k: [`WIDTH`] numbers each,
-/// NaN where a number has no value. Questions about one drift should follow one another: then it is computed only once.
+/// Computes a quantity of drifts: for each k, of the drift `of[k]` at the inclination or time `x[k]`. Writes [`WIDTH`]
+/// numbers for each k; those without a value are NaN. Elements with the same drift should follow one another, so that
+/// the drift is computed only once.
 ///
 /// # Panics
-/// The function panics if the arrays do not fit.
+/// The function panics if `of` and `x` differ in length, if `out` does not have [`WIDTH`] numbers for each, or if
+/// columns differ in length.
 pub fn ask(
     starts: &DriftStarts<'_>,
     question: Question,

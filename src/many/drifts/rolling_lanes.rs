@@ -1,7 +1,7 @@
-//! Drifts of rolling bodies in SIMD lanes; a lane whose drift has left it takes the next one.
+//! Drifts of rolling bodies in SIMD lanes; a lane whose drift has ended takes the next drift.
 //!
-//! A lane follows its drift up to the step in which the drift may end. That step is taken outside the lanes,
-//! as for a single drift, and finds the end. A drift that does not end there enters a lane again.
+//! A lane computes its drift up to the step in which the drift may end. That step is taken outside the lanes, as for a
+//! single drift, and finds the end. A drift that does not end there enters a lane again.
 
 use super::columns::{DriftOutput, DriftRow, DriftStarts};
 use crate::error::Error;
@@ -152,7 +152,7 @@ impl Drifts<'_, '_, '_> {
         }
     }
 
-    /// Follows a drift for some steps without lanes; a drift without an end after these waits for a lane again.
+    /// Computes a drift for some steps without lanes; a drift without an end after these waits for a lane again.
     fn alone(&mut self, mut task: DriftTask, most: u64) {
         let i = task.i - self.first;
         match task.of.follow(task.y, Some(task.step), most.min(task.left)) {

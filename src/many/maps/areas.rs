@@ -11,11 +11,10 @@ use core::f64::consts::FRAC_PI_2;
 /// The sums of the weights of the inclinations at which each body is in each [`Region`], for each set of weights
 /// (weights of 1 give a count). The result is row-major (body, set, code), with eight codes.
 ///
-/// `theta` ascends. The map itself is not computed. For a sharp rim bisection finds the changes of sign, and
-/// every inclination is evaluated if a sign is in doubt; for a rounded rim the curves between the regions are
-/// solved for, and single inclinations are evaluated only around them. The sums equal those of the map; two
-/// tests of `sweep` check it. `threads`, `go_on` and the error are as for [`portrait`](super::portrait); None
-/// if the work is not finished.
+/// `theta` ascends. The map itself is not computed. For a sharp rim bisection finds the changes of sign, and every
+/// inclination is evaluated if a sign is uncertain; for a rounded rim the curves between the regions are computed, and
+/// single inclinations are evaluated only around them. The sums equal those of the map; two tests of `sweep` check it.
+/// `threads`, `go_on` and the error are as for [`portrait`](super::portrait); None if the work is not finished.
 ///
 /// # Panics
 /// Panics if theta and weights differ in length, or theta does not ascend.

@@ -2,8 +2,8 @@
 
 use crate::numbers::side_by_side::SideBySide;
 
-/// Minimum and maximum of a quantity of a map, each as (value, inclination's index, body's index); None if there is no
-/// steady state at all.
+/// Minimum and maximum of a quantity of a map, each as (value, index of the inclination, index of the body); None
+/// without any steady state.
 pub type Extrema = Option<[(f64, usize, usize); 2]>;
 
 /// The minimum of x and of -x in each lane, each with its place: the index of the group of lanes, counted row

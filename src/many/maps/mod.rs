@@ -1,6 +1,6 @@
 //! Dense maps of the steady states of every body at every inclination, computed in SIMD lanes and on threads.
 //!
-//! The module has no formula of its own: each point comes from [`steady`](crate::states::steady) and
+//! The module has no formulas: each point is computed by [`steady`](crate::states::steady) and
 //! [`stability`](crate::states::stability) in eight lanes, with the same bits as the single call, for any thread count,
 //! position and SIMD width. Only wanted quantities are computed. In single precision the root of the rate of a sharp
 //! rim is taken in that precision, and every other quantity is rounded once.
@@ -26,8 +26,7 @@ pub use areas::areas;
 pub use best::Extrema;
 pub use survey::extrema;
 
-/// Number of points in a block: a thread takes one block at a time, and between blocks the caller decides
-/// whether to go on.
+/// Number of points in a block: a thread takes one block at a time, and the caller can stop the work between blocks.
 const POINTS_PER_BLOCK: usize = 1 << 16;
 
 /// A number in which a map can be stored: in double precision, or in single precision, where the relative
@@ -61,7 +60,7 @@ mod sealed {
 /// for each point; a quantity that is `None` is not computed.
 #[derive(Debug)]
 pub struct Portrait<'a, F = f64> {
-    /// Reduced rotation rate, NaN where there is no steady state.
+    /// Reduced rotation rate, NaN without a steady state.
     pub rate: Option<&'a mut [F]>,
     /// Squared nutation frequency when rolling, negative where unstable.
     pub kappa_rolling: Option<&'a mut [F]>,
@@ -82,8 +81,9 @@ impl<F> Default for Portrait<'_, F> {
 /// Fills the map of the steady states with the centre at rest: `theta.len()` rows of
 /// `bodies.len()` points. A body that is `None` gives NaN and `Region::Invalid`.
 ///
-/// The caller is one of `threads` workers; it calls `go_on` with the finished share about fifty times a second. Returns
-/// whether the map is finished; if not, the contents are unspecified. The error is `Memory`.
+/// The caller is one of `threads` threads. It calls `go_on` with the finished share about fifty times a second, and
+/// stops if it returns false. Returns whether the map is finished; if not, the contents are unspecified. The error is
+/// `Memory`.
 ///
 /// # Panics
 /// Panics if an array of `out` does not hold `theta.len() * bodies.len()` numbers.

@@ -1,4 +1,4 @@
-//! The starts of an ensemble and the arrays for its results, as columns.
+//! The initial states of an ensemble and the arrays for its results, as columns.
 
 use super::Answer;
 use crate::error::Error;
@@ -9,8 +9,8 @@ use crate::many::columns::{LossColumns, Split, at, fit, rows};
 use crate::motions::{Ending, Start};
 use crate::numbers::codes::coded;
 
-/// Bodies, states, slips, tables and losses as columns of numbers: each column has the length n, or is a single number
-/// for all.
+/// Bodies, initial states, slips, contacts and losses as columns of numbers: each column has the length n, or is a
+/// single number for all.
 #[derive(Debug, Clone, Copy)]
 #[non_exhaustive]
 pub struct MotionStarts<'a> {
@@ -18,17 +18,17 @@ pub struct MotionStarts<'a> {
     pub bodies: [&'a [f64]; 5],
     /// Columns of theta, w1, w2 and w3.
     pub states: [&'a [f64]; 4],
-    /// The slip along the lean and across it; `None` means that nothing slips.
+    /// The slip along the lean and across it, in sqrt(g R); `None` means that there is no slip.
     pub slips: Option<[&'a [f64]; 2]>,
-    /// The coefficients of the table of each motion, and the radius of its patch; `None` means those of the job.
+    /// The coefficients of the contact of each motion, and the radius of its patch; `None` means those of the job.
     pub coefficients: Option<[&'a [f64]; 3]>,
-    /// The coefficients of the losses; `None` means that nothing is lost.
+    /// The coefficients of the losses; `None` means no losses.
     pub losses: Option<LossColumns<'a>>,
     /// Height and vertical velocity of the lowest point of motions that start in the air.
     pub aloft: Option<[&'a [f64]; 2]>,
 }
 
-/// The columns of bodies and their states, which come in pairs.
+/// The columns of bodies and their initial states, in pairs.
 ///
 /// ```
 /// use spincyl::ensemble::MotionColumns;
@@ -63,7 +63,7 @@ impl FromIterator<(Body, State)> for MotionColumns {
 }
 
 impl MotionColumns {
-    /// The starts of these motions, without slip and without losses, on the table of the job.
+    /// The initial conditions of these motions, without slip and without losses, with the contact of the job.
     pub fn starts(&self) -> MotionStarts<'_> {
         MotionStarts::new(
             self.bodies.each_ref().map(Vec::as_slice),
@@ -73,7 +73,7 @@ impl MotionColumns {
 }
 
 impl<'a> MotionStarts<'a> {
-    /// Bodies and states without slip and without losses, on the table of the job.
+    /// Bodies and states without slip and without losses, with the contact of the job.
     pub fn new(bodies: [&'a [f64]; 5], states: [&'a [f64]; 4]) -> Self {
         Self { bodies, states, slips: None, coefficients: None, losses: None, aloft: None }
     }
@@ -85,12 +85,12 @@ impl<'a> MotionStarts<'a> {
         self.bodies.into_iter().chain(self.states).chain(pairs).chain(laws)
     }
 
-    /// The number of starts.
+    /// The number of initial states.
     pub fn len(&self) -> usize {
         rows(self.columns())
     }
 
-    /// Whether the columns contain no start.
+    /// Whether there are no initial states.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -133,7 +133,7 @@ impl<'a> MotionStarts<'a> {
 }
 
 coded! {
-    /// A number that sums up a motion, from its start to its end or the last time.
+    /// A summary of a motion in one number, from time 0 to the end or the last time.
     pub enum Summary {
         /// Least inclination.
         ThetaMin = 0,
@@ -147,17 +147,18 @@ coded! {
         Period = 4,
         /// Precession in a period of the nutation, in radians; NaN for a motion without a period.
         PrecessionPerPeriod = 5,
-        /// Time of the end: that of the event, or the last time.
+        /// Time of the end: that of the event, or else the last time.
         End = 6,
         /// Total time of slipping.
         SlipTime = 7,
         /// The heat made by friction, in M g R.
         Dissipated = 8,
-        /// The energy that the losses have taken, in M g R.
+        /// The energy lost to the losses, in M g R.
         WorkLost = 9,
         /// Number of phases.
         Phases = 10,
-        /// Time at which the last phase of rolling begins; NaN if no phase rolls, as are the next four numbers.
+        /// Time at which the last phase of rolling begins; this and the next four numbers are NaN if the body never
+        /// rolls.
         RollingTime = 11,
         /// The inclination at the time `RollingTime`.
         RollingTheta = 12,
@@ -169,7 +170,7 @@ coded! {
         RollingW3 = 15,
         /// Number of impacts.
         Impacts = 16,
-        /// Number of times at which the body comes down to stay on the table for a while.
+        /// Number of times at which the body lands and stays on the table for a while.
         Landings = 17,
         /// Time in the air.
         AirTime = 18,
@@ -200,7 +201,7 @@ impl Summary {
             Self::End => ["end", "sqrt(R/g)", "time of the end"],
             Self::SlipTime => ["slip_time", "sqrt(R/g)", "time of slipping"],
             Self::Dissipated => ["dissipated", "M g R", "heat made by friction"],
-            Self::WorkLost => ["work_lost", "M g R", "energy taken by the losses"],
+            Self::WorkLost => ["work_lost", "M g R", "energy lost to the losses"],
             Self::Phases => ["phases", "1", "number of phases of slipping and rolling"],
             Self::RollingTime => ["rolling_time", "sqrt(R/g)", "time when the last rolling begins"],
             Self::RollingTheta => ["rolling_theta", "rad", "inclination at which the last rolling begins"],
@@ -208,15 +209,15 @@ impl Summary {
             Self::RollingW2 => ["rolling_w2", "sqrt(g/R)", "w2 when the last rolling begins"],
             Self::RollingW3 => ["rolling_w3", "sqrt(g/R)", "w3 when the last rolling begins"],
             Self::Impacts => ["impacts", "1", "number of impacts"],
-            Self::Landings => ["landings", "1", "how often it comes down and stays"],
+            Self::Landings => ["landings", "1", "number of landings after which the body stays"],
             Self::AirTime => ["air_time", "sqrt(R/g)", "time in the air"],
             Self::LostInImpacts => ["lost_in_impacts", "M g R", "energy lost in impacts"],
             Self::LastPhase => ["last_phase", "1", "code of the last phase"],
         }
     }
 
-    /// Whether motions have this number; `rubs` says whether a law of friction lets them slip, `loses` whether they
-    /// lose energy, `flies` whether they go on in the air and on both rims.
+    /// Whether motions have this number; `rubs` means a law of friction, `loses` losses of energy, and `flies` motions
+    /// that continue in the air and on both rims.
     pub fn is_of(self, rubs: bool, loses: bool, flies: bool) -> bool {
         match self {
             Self::End => true,
@@ -247,10 +248,10 @@ pub struct MotionOutput<'a> {
     pub last: Option<[&'a mut [f64]; 4]>,
     /// The slips at the last time, or at the end.
     pub last_slip: Option<[&'a mut [f64]; 2]>,
-    /// The summary numbers, indexed by [`Summary`].
+    /// The summaries, indexed by [`Summary`].
     pub summary: [Option<&'a mut [f64]>; SUMMARIES],
-    /// Estimated error of the states of a motion, the largest of any number at any time, and of the period and the
-    /// precession in a period, if they are wanted and exist; with friction or losses also that of the slips, the phases
+    /// Estimated error of the states of a motion, the largest over all numbers and times, and over the period and the
+    /// precession in a period, if these are wanted and exist; with friction or losses also over the slips, the phases
     /// and the end.
     pub error: &'a mut [f64],
     /// Code of the [`Answer`].
@@ -292,7 +293,7 @@ impl Split for TimedOutput<'_> {
 }
 
 impl<'a> MotionOutput<'a> {
-    /// Output of errors, methods and status codes alone.
+    /// Only the arrays of errors, methods and status codes.
     pub fn new(error: &'a mut [f64], method: &'a mut [u8], status: &'a mut [u8]) -> Self {
         let summary = [const { None }; SUMMARIES];
         Self { states: None, slips: None, last: None, last_slip: None, summary, error, method, status }
@@ -345,7 +346,7 @@ impl<'a> MotionOutput<'a> {
         self.tell(i, Answer::None, ending as u8, f64::NAN);
     }
 
-    /// Writes NaN for motion `i`, whose body or start is invalid.
+    /// Writes NaN for motion `i`, whose body or initial state is invalid.
     pub(super) fn refuse(&mut self, i: usize, times: usize) {
         self.blank(i, times, Ending::Invalid);
     }

@@ -5,8 +5,8 @@
 //!                             twice: with tol and with 1e4 tol
 //! all other phases            one at a time: changes of phase, contacts that are held, rolling by the first integrals
 //! ```
-//! A slip with additional losses is followed alone. A lane whose phase ends takes up the next phase at once. The steps
-//! of a motion do not depend on the other lanes, so that the result has the same bits for any number of threads and any
+//! A slip with additional losses is computed alone. A lane whose phase ends takes the next phase at once. The steps of
+//! a motion do not depend on the other lanes, so that the result has the same bits for any number of threads and any
 //! SIMD width. [`motion::path`](crate::motions::path) has the law and the estimate of the error.
 
 use super::lossy_lanes::LossyLanes;
@@ -63,7 +63,7 @@ fn put(out: &mut MotionOutput<'_>, i: usize, found: &Followed, times: &[f64]) {
     out.put(Summary::RollingW3, i, w3);
 }
 
-/// Bound in bytes of the small allocations for a block of `count` motions, each followed twice, which are too small to
+/// Bound in bytes of the small allocations for a block of `count` motions, each computed twice. They are too small to
 /// be checked one by one: the walks, the numbers at their times, their phases and the tasks that wait for a lane.
 pub(super) fn size_of_block(count: usize, times: usize) -> usize {
     const PHASES: usize = 2048;
@@ -135,7 +135,7 @@ impl<'a> MotionBlock<'a> {
         Ok(())
     }
 
-    /// Follows all tasks of a queue side by side in lanes.
+    /// Computes all tasks of a queue side by side in lanes.
     fn side_by_side<T: SideBySide, const N: usize>(
         &self,
         like: T,

@@ -14,7 +14,7 @@ use core::f64::consts::PI;
 use fearless_simd::Level;
 use std::sync::LazyLock;
 
-/// The midpoints that the series need besides a motion.
+/// The midpoints that the series need.
 struct Tools {
     short: (Midpoints<6>, Midpoints<8>, Midpoints<16>),
     long: [Midpoints<MOST_PARTS>; 3],
@@ -26,12 +26,11 @@ static TOOLS: LazyLock<Tools> = LazyLock::new(|| Tools {
     long: [28, 40, MOST_PARTS].map(Midpoints::new),
 });
 
-/// Numbers of terms of the series. Each of the first three has compiled code of its own, and the others share one code.
+/// Numbers of terms of the series. Each of the first three is compiled separately, and the others share one code.
 const TERMS: [usize; 6] = [8, 12, 20, 36, 52, 72];
 const MOST_PARTS: usize = 56;
 
-/// Number of series that are tried for a motion that may end: a march to its end costs less than the longer
-/// series.
+/// Number of series that are tried for a motion that may end: a march to its end is faster than the longer series.
 const SHORT: usize = 3;
 
 /// The index in `TERMS` of the shortest series that may have an error below `tol` for a swing of this width
@@ -176,9 +175,9 @@ impl MotionBlock<'_> {
         (kernels, refused)
     }
 
-    /// Writes the results of the motions for which the series is precise enough. A motion with too large an
-    /// error goes to `next`, the motions of the next longer series, if there is one. The other motions, those
-    /// that may leave the model, go to `left`, since a longer series does not find out whether they do.
+    /// Writes the results of the motions for which the series is precise enough. A motion with too large an error goes
+    /// to `next`, the motions of the next longer series, if there is one. The other motions, which may leave the model,
+    /// go to `left`, since a longer series does not decide whether they do.
     fn take<T: SideBySide>(
         &self,
         swings: &dyn Swung<T>,
@@ -271,8 +270,8 @@ impl MotionBlock<'_> {
         Some(worst)
     }
 
-    /// Writes the periods and the precessions that are wanted. Their errors count as those of the states:
-    /// `worst` keeps the greatest error of each lane, NaN where the series is not precise enough.
+    /// Writes the periods and the precessions that are wanted. Their errors are treated as those of the states: `worst`
+    /// keeps the greatest error of each lane, NaN where the series is not precise enough.
     fn write_periods<T: SideBySide>(
         &self,
         swings: &dyn Swung<T>,
@@ -343,7 +342,7 @@ impl MotionBlock<'_> {
     }
 }
 
-/// Greatest error above the tolerance that is accepted of a series, if at least half of it is rounding.
+/// Greatest error above the tolerance that is accepted of a series, if at least half of the error is rounding.
 const PROMISE: f64 = 1e-9;
 
 /// The error of a series if it is small enough, else NaN. Where rounding, `least`, is most of the error, no

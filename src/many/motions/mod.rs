@@ -1,4 +1,4 @@
-//! Many motions at once: every body starts from its own state, and lanes and threads share the work.
+//! Many motions at once: every body has its own initial state, and lanes and threads share the work.
 //!
 //! ```text
 //! near     one series about the start, of 8 to 72 terms, as the width of the swing requires
@@ -6,12 +6,11 @@
 //! alone    `motion::roll`, one motion at a time
 //! flows    motions with friction or losses, each with its own steps (`flows`)
 //! ```
-//! Motions without friction and losses are solved by first integrals, eight at a time, where the estimated
-//! error stays below the tolerance. A swing without an end takes one series; all other motions take a march
-//! (`ends`), which goes no farther than the end. A motion for which neither is precise enough is computed
-//! alone: one random start in a thousand. The method is chosen for each motion by itself, so that the result
-//! has the same bits for any number of threads, any SIMD width and any other motions in the call. RK4 at a
-//! fixed step is used on request (`steps`).
+//! Motions without friction and losses are solved by first integrals, eight at a time, where the estimated error stays
+//! below the tolerance. A swing without an end takes one series; all other motions take a march (`ends`), which goes no
+//! farther than the end. A motion for which neither is precise enough is computed alone: one random initial state in a
+//! thousand. The method is chosen for each motion separately, so that the result has the same bits for any number of
+//! threads, any SIMD width and any other motions in the call. RK4 with a fixed step is used on request (`steps`).
 
 mod columns;
 mod ends;
@@ -44,18 +43,18 @@ use std::sync::OnceLock;
 /// The options that are the same for all motions of a call.
 #[derive(Debug, Clone, Copy)]
 pub struct Job<'a> {
-    /// The kind of table of all motions.
+    /// The kind of contact of all motions.
     pub table: TableKind,
-    /// Coefficient of friction of all tables without coefficients of their own, finite where bodies may slip; if it is
-    /// infinite, rolling never ends by slip.
+    /// Coefficient of friction of all contacts without coefficients of their own, finite where bodies may slip; if it
+    /// is infinite, rolling never ends by slip.
     pub mu: f64,
     /// Times of the states, in order and on one side of 0; with friction or losses none is negative.
     pub times: &'a [f64],
-    /// The allowed error of a motion; with friction or losses the allowed error of a step.
+    /// The allowed error of a motion; with friction or losses, the tolerance of a step.
     pub tol: f64,
     /// The fixed step of RK4, which then replaces the first integrals.
     pub step: Option<f64>,
-    /// Whether a motion goes on beyond an event; a landing of the face always ends the motion.
+    /// Whether a motion continues past an event; a landing of the face always ends the motion.
     pub beyond: bool,
     /// The coefficient of restitution, as in [`Ask`].
     pub restitution: Option<f64>,
@@ -64,7 +63,7 @@ pub struct Job<'a> {
 }
 
 impl<'a> Job<'a> {
-    /// A job of rolling by first integrals with the error 1e-10, in which the first event ends a motion.
+    /// A job of rolling by first integrals with the tolerance 1e-10, in which the first event ends a motion.
     pub fn new(times: &'a [f64]) -> Self {
         Self {
             table: TableKind::Rolling,
@@ -86,7 +85,7 @@ impl<'a> Job<'a> {
         self.table.contact()
     }
 
-    /// The options of one motion, with its own coefficients of the table if it has any.
+    /// The options of one motion, with its own coefficients of friction if it has any.
     fn ask(&self, coefficients: Option<[f64; 3]>, losses: Losses) -> Ask {
         Ask {
             table: self.table.with(coefficients.unwrap_or([self.mu, self.mu, 0.0])),
@@ -116,9 +115,9 @@ impl<'a> Job<'a> {
 }
 
 coded! {
-    /// The method of an answer: the code in [`MotionOutput::method`].
+    /// The method that computed a motion: the code in [`MotionOutput::method`].
     pub enum Answer {
-        /// No method: the body or the state is refused, or the step is too large.
+        /// None, because the body or the state is invalid, or the step is too long.
         None = 0,
         /// The first integrals, in lanes.
         Lanes = 1,
@@ -133,21 +132,20 @@ coded! {
     }
 }
 
-/// Number of motions in a block: small enough that the caller is asked often whether to go on, and that a
-/// block needs little memory.
+/// Number of motions in a block: small enough for frequent calls of `go_on` and for little memory.
 const MOTIONS_PER_BLOCK: usize = 2048;
 /// Number of motions with friction or losses in a block: each needs more memory, but a block should keep the lanes
 /// filled.
 const FLOWS: usize = 1024;
 
-/// Computes all motions and fills `out`, on `threads` threads of their own, whose stacks are large enough. The calling thread
-/// asks `go_on` about fifty times a second with the fraction of the work that is done. Returns whether all motions are
-/// done; if not, the contents of `out` are unspecified.
+/// Computes all motions and fills `out`, on `threads` threads with stacks that are large enough. The calling thread
+/// calls `go_on` about fifty times a second with the finished share of the work, and stops if it returns false. Returns
+/// whether all motions are done; if not, the contents of `out` are unspecified.
 ///
-/// A motion whose body, state, table or loss is out of the range of [`roll_with`](crate::motion::roll_with) gets NaN and the status of
-/// [`Ending::Invalid`](crate::motion::Ending::Invalid); a start without a unique contact force gets the status of
-/// [`Ending::Painleve`](crate::motion::Ending::Painleve). Errors, before any work: `OutOfRange` for times, a tolerance, a step
-/// or a mu that make no sense; at any time `Memory`.
+/// A motion gets NaN and the status of [`Ending::Invalid`](crate::motion::Ending::Invalid) if its body, state, contact
+/// or loss is out of the range of [`roll_with`](crate::motion::roll_with), and the status of
+/// [`Ending::Painleve`](crate::motion::Ending::Painleve) if its initial state has no unique contact force. Errors:
+/// `OutOfRange`, before any work, for invalid times, tolerance, step or mu; `Memory` at any time.
 ///
 /// # Panics
 /// The function panics if columns differ in length (apart from single numbers), or if an array of `out` does not fit
@@ -162,7 +160,7 @@ pub fn roll(
     roll_among(starts, job, out, (threads, false), &mut go_on)
 }
 
-/// The function [`roll`], where the calling thread is one of the workers if its stack is `roomy`: some MiB.
+/// The function [`roll`] where the calling thread also computes, if its stack is large enough (`roomy`: some MiB).
 pub(crate) fn roll_among(
     starts: &MotionStarts<'_>,
     job: &Job<'_>,

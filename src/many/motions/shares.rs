@@ -1,5 +1,5 @@
-//! How many motions one series, the marches and single motions compute. These counts are the same on every
-//! machine, and they show a change that hands motions to a slower method.
+//! Numbers of motions that one series, the marches and single motions compute. These counts are the same on every
+//! machine; they show whether a change moves motions to a slower method.
 
 use super::{Job, MotionBlock, MotionOutput, MotionStarts};
 use crate::laws::body::Body;

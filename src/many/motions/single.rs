@@ -1,4 +1,4 @@
-//! Single motions with their ends, for the starts for which the lanes have no result.
+//! Single motions with their ends, for the initial states for which the lanes have no result.
 
 use super::{Answer, Job, MotionBlock, MotionOutput, Summary};
 use crate::error::{Error, room};
@@ -24,8 +24,8 @@ struct SingleMotion {
     answer: Answer,
 }
 
-/// The motion by the first integrals for a job that goes on beyond events, so that only a landing of the face
-/// ends it. None if the error is not finite, or if `go_on` returns false.
+/// The motion by the first integrals for a job that continues past events, so that only a landing of the face ends it.
+/// None if the error is not finite, or if `go_on` returns false.
 fn unwatched(
     swing: &Swing,
     start: &State,
@@ -66,7 +66,7 @@ fn watched(
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Option<SingleMotion>, Error> {
     let Some(motion) = followed(body, start, job.times, job, go_on)? else { return Ok(None) };
-    // A job that goes on beyond events ends a motion only at a landing of the face.
+    // A job that continues past events ends a motion only where the face lands.
     let event = motion.event.filter(|e| !job.beyond || e.ending == Ending::Face);
     Ok(Some(SingleMotion {
         last: event.map_or(motion.states.last().copied().unwrap_or(*start), |e| e.state),
@@ -82,7 +82,7 @@ fn watched(
     }))
 }
 
-/// The motion at these times; None if the start has no motion. The error is `Memory`.
+/// The motion at these times; None if the initial state has no motion. The error is `Memory`.
 fn followed(
     body: &Body,
     start: &State,

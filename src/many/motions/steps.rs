@@ -1,10 +1,10 @@
-//! RK4 in SIMD lanes at a fixed step, which is used on request.
+//! RK4 in SIMD lanes with a fixed step, which is used on request.
 //!
 //! ```text
 //! (s, c, w1, w2, w3):   s' = -c w2,   c' = s w2          sine and cosine of theta are integrated, too
 //! ```
-//! The steps compute no sine, and theta is an arc tangent at the times that are asked for. The sums are not
-//! compensated: the rounding error of n steps is n^0.5 ulp. [`rk4`](crate::methods::rk4) has the method.
+//! The steps compute no sine, and theta is an arc tangent at the requested times. The sums are not compensated: the
+//! rounding error of n steps is n^0.5 ulp. [`rk4`](crate::methods::rk4) has the method.
 
 use super::Job;
 use super::rows::StartLanes;
@@ -53,8 +53,8 @@ impl<T: Real> FixedSteps<T> {
         Self { rates: Rates::of(job.contact(), &row.shape, row.round), y: [s, c, w1, w2, w3], step, made: 0 }
     }
 
-    /// The states at a time that is not before the last time asked for; between two whole steps a shortened step
-    /// follows the earlier one. None if `go_on` says no.
+    /// The states at a time that is not before the last requested time; between two whole steps a shortened step
+    /// follows the earlier one. None if `go_on` returns false.
     #[inline(always)]
     pub fn to(&mut self, t: f64, go_on: &mut dyn FnMut() -> bool) -> Option<[T; 4]> {
         let whole = (t / self.step).floor() as u64;

@@ -1,16 +1,16 @@
-//! The results of a series for motions in lanes, as a trait object: the code that uses them is compiled once,
-//! and not once for each number of terms.
+//! The results of a series for motions in lanes, as a trait object: the code that uses them is compiled once instead of
+//! once for each number of terms.
 
 use crate::motions::exact::lanes::{Grip, Midpoints, Swings};
 use crate::numbers::side_by_side::{SideBySide, apart};
 
-/// Motions between their turning points; [`Swings`] has the meaning of each method.
+/// Motions between their turning points; [`Swings`] documents each method.
 pub(super) trait Swung<T> {
     fn state(&self, t: T) -> ([T; 4], T, T);
     fn fastest_turn(&self) -> T;
     fn inclinations(&self, t: T) -> [T; 2];
     fn least(&self, grip: Grip, t: T, roughly: bool) -> T;
-    /// The period, its error, and the part of that which is rounding.
+    /// The period, its error, and the rounding part of that error.
     fn period(&self) -> [T; 3];
     fn precession_per_period(&self) -> [T; 3];
 }

@@ -1,8 +1,7 @@
 //! Walks side by side, and the queues in which their flows wait for SIMD lanes.
 //!
-//! A walk follows one motion through its phases; a flow is a phase that is integrated by steps. Each kind of
-//! flow has its own queue. Steps that a lane cannot take, a few or all to the end, are taken outside the
-//! lanes.
+//! A walk computes one motion through its phases; a flow is a phase that is integrated by steps. Each kind of flow has
+//! its own queue. Steps that a lane cannot take, a few or all to the end, are taken outside the lanes.
 
 use super::lossy_lanes::LossyKind;
 use crate::error::Error;
@@ -42,15 +41,15 @@ pub(super) enum Among {
 /// The flows of one kind that wait for lanes.
 pub(super) type Queue<const N: usize> = (Among, VecDeque<FlowTask<N>>);
 
-/// The walks of a block: two for each motion, the second one with a rougher tolerance.
+/// The walks of a block: two for each motion, the second one with a larger tolerance.
 pub(super) struct Walks<'a, const N: usize> {
     pub walks: Vec<Result<BodyWalk<'a, N>, Error>>,
     pub queues: Vec<Queue<N>>,
-    /// Whether this processor has SIMD lanes; without lanes every walk flows alone.
+    /// Whether this processor has SIMD lanes; without lanes every walk is computed alone.
     pub lanes: bool,
 }
 
-/// The kind of the flow of a walk, and the numbers that a lane needs; None for a walk that flows alone.
+/// The kind of the flow of a walk, and the numbers that a lane needs; None for a walk that is computed alone.
 fn place<const N: usize>(walk: &BodyWalk<'_, N>) -> Option<(Among, [f64; NUMBERS])> {
     let (body, mut numbers) = (&walk.of.body, [0.0; NUMBERS]);
     numbers[..4].copy_from_slice(&[body.ell(), body.i1(), body.i3(), body.fillet()]);
@@ -129,7 +128,7 @@ impl<const N: usize> Walks<'_, N> {
     }
 }
 
-/// The flows of one queue, with those that are in lanes.
+/// The flows of one queue, including those in lanes.
 struct Queued<'a, 'b, const N: usize> {
     all: &'a mut Walks<'b, N>,
     queue: usize,
@@ -160,7 +159,7 @@ impl<const N: usize, const K: usize, const M: usize> Waiting<K, M> for Queued<'_
     }
 }
 
-/// Follows all flows of a queue side by side, each until its lane stops running.
+/// Computes all flows of a queue side by side, each until its lane stops running.
 pub(super) fn lanes<T: SideBySide, L: Flows<T, K, M>, const K: usize, const M: usize, const N: usize>(
     like: T,
     queue: usize,

@@ -1,9 +1,10 @@
-//! One phase of a body under a user's laws: its equations, and the ends of the phase.
+//! One phase of a body under user-defined laws: its equations, and the ends of the phase.
 //!
 //! ```text
 //! N from m(N)     secants of the couple, until N no longer changes
 //! ```
-//! The equations are those of the library's laws. Slopes of margins are differences, since a user's law has no derivative.
+//! The equations are those of the library's laws. Slopes of margins are differences, since a user-defined law has no
+//! derivative.
 
 use crate::laws::body::{Body, landing_angle};
 use crate::laws::contact::lossy::{Acted, Held, Lossy};
@@ -28,11 +29,11 @@ use nalgebra::SMatrix;
 
 /// Number of margins: face, other rim, normal force, and room or grip.
 const CUSTOM_MARGINS: usize = 4;
-/// The number of numbers that react to each other: sine, cosine, w and u.
+/// The number of coupled numbers: sine, cosine, w and u.
 const REACTING: usize = 7;
 /// Largest number of secants for the normal force.
 const SECANTS: usize = 40;
-/// Part of the longest step, or of a number, over which a slope is taken.
+/// Share of the longest step, or of a number, over which a slope is computed.
 const ASIDE: f64 = 1e-5;
 
 /// One phase: its body, its laws, and whether the contact point slips.
@@ -195,7 +196,7 @@ impl<'a> CustomFlow<'a> {
         standstill_under(self.body, y, &self.friction(0.0), couples)
     }
 
-    /// The end of a phase that is over at its start.
+    /// The end of a phase that is over at once.
     pub(super) fn at_start<const N: usize>(&self, y: &[f64; N], at: &Answer) -> Option<Ending> {
         let (end, theta) = (self.body.theta_end(), state(y).theta);
         let rises = y[3] > 0.0 || y[3] == 0.0 && at.w[1] > 0.0;
@@ -221,7 +222,7 @@ impl Flow<CUSTOM_MARGINS> for CustomFlow<'_> {
         self.writes(y, &self.answer(y), all);
     }
 
-    /// A slip that begins follows its slow direction ever faster, the slower it is.
+    /// A slip that begins approaches its slow direction faster, the smaller the slip is.
     fn is_stiff<const N: usize>(&self, place: &FlowPlace<N>) -> bool {
         let grows = place.y[5] * place.rate[5] + place.y[6] * place.rate[6] > 0.0;
         grows && is_fast(place.rate[TIME], self.calm(&place.y))

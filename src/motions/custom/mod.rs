@@ -1,12 +1,12 @@
-//! A body under laws of loss and of friction that a user writes ([`custom`](crate::custom)).
+//! A body under user-defined laws of loss and of friction ([`custom`](crate::custom)).
 //!
 //! ```text
 //! slips   until u = 0: then it rolls if |F_roll| <= mu_s N, else it slips in another direction
 //! rolls   until |F_roll| = mu_s N: then it slips                  both are integrated
 //! N       from m(N): secants of the couple until N no longer changes
 //! ```
-//! The equations of motion are those of the laws that the library has; the numbers of a slip, and the ends of a phase,
-//! too. Error: as for any motion that is integrated, from a second, rougher run.
+//! The equations of motion are those of the library's own laws, with the same numbers of a slip and the same ends of a
+//! phase. Error: as for any motion that is integrated, from a second run with a larger tolerance.
 
 mod flow;
 
@@ -29,19 +29,20 @@ use crate::laws::state::State;
 use crate::methods::flow::{Flow, PATIENCE, Steps, TOIL};
 use flow::CustomFlow;
 
-/// The tolerance of a step where none is given: a user's law may be slow.
+/// The default tolerance of a step, since a user-defined law may be slow.
 const FAIR: f64 = 1e-10;
 /// The numbers of such a motion: those of a slip, with the pose and the lost energy.
 const NUMBERS: usize = 14;
-/// For this time a slip keeps its direction after static friction has ceased to hold. The error is its cube.
+/// For this time a slip keeps its direction after static friction has ceased to hold. The error is the cube of this
+/// time.
 const LATER: f64 = 1e-5;
 
-/// The motion of a body from a start at the `times` under laws of the user's own, up to the event that ends it.
+/// The motion of a body from a start at the `times` under user-defined laws, up to the event that ends it.
 ///
-/// `ask` gives the table, smooth losses, poses and forces; a motion in the air, beyond events or on a patch of contact is
-/// refused, as are dry losses. Without a tolerance each step errs by at most 1e-10. With `custom.friction` the table needs
-/// Coulomb's friction, of which only the static coefficient acts. Errors as for
-/// [`motion::roll_with`](super::motion::roll_with), those of [`Custom::check`], and `Lost` where a law is not finite.
+/// `ask` gives the contact, smooth losses, poses and forces. A motion in the air, beyond events or on a patch of
+/// contact is an error, and so are dry losses. The default tolerance of a step is 1e-10. With `custom.friction` the
+/// contact has to be Coulomb's friction, of which only the static coefficient is used. Errors: those of
+/// [`motion::roll_with`](super::motion::roll_with) and of [`Custom::check`], and `Lost` where a law is not finite.
 ///
 /// ```
 /// use spincyl::{Body, State, contact::Friction, custom::{self, Custom}, motion::{Ask, Start}};
@@ -74,14 +75,14 @@ pub fn roll_with(
     Ok(judged(tol, times, run)?.map(Motion::from))
 }
 
-/// Refuses what such a motion cannot have. Returns the tolerance of its steps.
+/// Checks the options of such a motion. Returns the tolerance of its steps.
 fn check(body: &Body, start: &Start, ask: &Ask, custom: &Custom<'_>) -> Result<f64, Error> {
     exact::check(body, &start.state)?;
     ask.table.check()?;
     ask.losses.check_for(body)?;
     let tol = check_flow(ask)?;
     let refuse = |name: &'static str, value: f64| {
-        Err(Error::OutOfRange { name, value, expected: "none together with a law of the user's own" })
+        Err(Error::OutOfRange { name, value, expected: "none together with a user-defined law" })
     };
     if let Some((law, value)) = ask.losses.iter().find(|(law, value)| law.presses() && *value > 0.0) {
         return refuse(law.parameter(), value);
@@ -99,7 +100,7 @@ fn check(body: &Body, start: &Start, ask: &Ask, custom: &Custom<'_>) -> Result<f
         without_slip(start.slip)?;
     }
     if custom.friction.is_some() && !matches!(ask.table, Table::Rubs(Friction::Coulomb { .. })) {
-        let expected = "a table with Coulomb's friction for a law of friction of the user's own";
+        let expected = "Coulomb friction as the contact of a user-defined law of friction";
         return Err(Error::OutOfRange { name: "contact", value: f64::NAN, expected });
     }
     custom.check(body, ask.table.mu())?;
@@ -123,14 +124,14 @@ enum Beginning {
     Ends(Ending),
 }
 
-/// One run of a motion: its present phase, its numbers, and what it has found.
+/// One run of a motion: its current phase, its numbers, and its results so far.
 struct CustomRun<'a> {
     flow: CustomFlow<'a>,
     start: &'a Start,
     times: &'a [f64],
     since: Vec<f64>,
     at: [f64; NUMBERS],
-    /// The direction in which the present slip began from rest.
+    /// The direction in which the current slip began from rest.
     way: [f64; 2],
     made: Followed,
     patience: u64,
@@ -164,7 +165,7 @@ impl<'a> CustomRun<'a> {
         }
     }
 
-    /// What follows where the contact point is at rest; `let_go` says that it has just ceased to be held.
+    /// The next phase where the contact point is at rest; `let_go` means that friction has just ceased to hold it.
     fn rests(&mut self, let_go: bool) -> Beginning {
         (self.at[5], self.at[6]) = (0.0, 0.0);
         // At the limit itself a slip does not grow; later it does.
@@ -181,7 +182,7 @@ impl<'a> CustomRun<'a> {
         }
     }
 
-    /// Begins a phase; the end of the motion if it is over at once.
+    /// Begins a phase; returns the ending of the motion if the motion is over at once.
     fn begins(&mut self, next: Beginning) -> Option<Ending> {
         let (angle, w) = ((self.at[0], self.at[1]), [self.at[2], self.at[3], self.at[4]]);
         self.flow.slips = !matches!(next, Beginning::Rolls);
@@ -212,7 +213,7 @@ impl<'a> CustomRun<'a> {
         None
     }
 
-    /// The numbers at the time `lasts` after a slip has begun, by the rates in the middle of that time.
+    /// The numbers at the time `lasts` after a slip has begun, by the rates at the middle of that time.
     fn slipped(&self, from: &[f64; NUMBERS], lasts: f64) -> [f64; NUMBERS] {
         let half = moved(from, &self.flow.rates_along(from, self.way), 0.5 * lasts);
         let mut all = moved(from, &self.flow.rates_along(&half, self.way), lasts);
@@ -226,7 +227,7 @@ impl<'a> CustomRun<'a> {
         self.since.get(self.made.motion.states.len()).copied().filter(|t| *t <= until)
     }
 
-    /// Writes the present numbers.
+    /// Writes the current numbers.
     fn writes(&mut self) {
         self.made.written(&self.flow, (&self.start.state, &self.at), self.way);
     }
@@ -263,7 +264,7 @@ impl<'a> CustomRun<'a> {
         Ok(Some(self.made))
     }
 
-    /// Follows the present phase to its halt.
+    /// Computes the current phase up to its halt.
     fn flows(&mut self, go_on: &mut dyn FnMut() -> bool) -> Result<Option<Halt>, Error> {
         let (flow, start, began) = (self.flow, &self.start.state, self.at[TIME]);
         let toil = TOIL.saturating_sub(self.made.motion.evaluations);

@@ -9,14 +9,12 @@
 //! V = A w3 - L w1,   V' = rho (c w3 + s w1) + A f3 - L f1
 //! dx = dt R/(J kappa),   R^2 = (F/s)^2 + (J kappa Omega'/Omega)^2 + (J kappa w3')^2/(w1^2 + w3^2)
 //! ```
-//! The motion is of first order in the losses: these change w1 and w3, and theta changes so that the tilting
-//! acceleration stays zero. The equations themselves keep the state on the surface, S' = 0. Solving S = 0 for
-//! w3 instead would divide by I3 s + A h, which vanishes for a thin disk as theta -> 0, and for a displaced
-//! ball where h = -I3. In x, the length of the path in ln theta, ln Omega and w3, the equations are regular
-//! where theta turns, and where kappa vanishes, which is the end of the drift. Beyond the side the
-//! inclination is counted from pi, so that it keeps all its digits. The letters s, c, rho, A, L, h and g are
-//! those of `body::rim`.
-//! rho, A, L, h and g are those of `body::rim`.
+//! The motion is of first order in the losses: these change w1 and w3, and theta changes so that theta'' stays zero.
+//! The equations themselves keep the state on the surface, S' = 0. Solving S = 0 for w3 instead would divide by I3 s +
+//! A h, which vanishes for a thin disk as theta -> 0, and for a displaced ball where h = -I3. In x, the length of the
+//! path in ln theta, ln Omega and w3, the equations are regular where theta turns, and where kappa vanishes, which is
+//! the end of the drift. Above pi/2 the inclination is counted from pi, so that it keeps all its digits. The letters s,
+//! c, rho, A, L, h and g are those of `body::rim`.
 //!
 //! Error: a few roundings of the terms written above; tests of `drift` compare kappa with that of `stability`, and the
 //! whole drift with 40 digits.
@@ -32,7 +30,7 @@ use crate::numbers::{Real, sin_cos};
 pub(crate) struct Circular<T> {
     of: Reduced<T>,
     losses: Couples<T>,
-    /// The signs of psi' and w_z at the start, 1 or -1: the directions in which the contact runs and drills.
+    /// The initial signs of psi' and w_z, 1 or -1: the directions in which the contact runs and drills.
     pub signs: [T; 2],
 }
 
@@ -46,7 +44,7 @@ pub(crate) struct CirclePoint<T> {
     pub rates: Numbers<T>,
     /// J kappa.
     pub stiffness: T,
-    /// psi' and w_z, times their signs at the start.
+    /// psi' and w_z, times their initial signs.
     pub going: [T; 2],
     pub w1: T,
     /// |V|, the speed of the centre.

@@ -25,11 +25,11 @@ coded! {
         Face = 0,
         /// The other rim or a cap lands: theta = theta_end.
         Side = 1,
-        /// The energy along the branch is least, so that the drift goes no further.
+        /// The energy along the branch has a minimum, where the drift stops.
         Lowest = 2,
         /// The body is balanced on a point of its rim: theta = theta0.
         Balanced = 3,
-        /// Rolling becomes unstable, kappa = 0: from here on the body nods, and the slow drift is over.
+        /// Rolling becomes unstable, kappa = 0: the body begins to nod, and the slow drift is over.
         StabilityLost = 4,
         /// A ball stands upright on its pole.
         Upright = 5,
@@ -56,7 +56,7 @@ impl End {
     }
 }
 
-/// The end towards which a drift goes.
+/// The end that a drift approaches.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Goal {
     pub end: End,

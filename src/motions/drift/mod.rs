@@ -4,15 +4,16 @@
 //! rest      theta' = -P/E'(theta),   t = -int E'/P dtheta            the centre held at rest: one line of states
 //! rolling   theta' = -F/(J kappa),   F = S_w1 a1 + S_w3 a3           no slip, no nutation: a surface of states
 //! ```
-//! *Rest* is the landscape of Jackson et al., Am. J. Phys. 87, 85 (2019): the centre is held at rest, as slip does
-//! below a ridge of the energy, and the body moves to lower energies, above a ridge upwards. *Rolling* is the drift of
-//! a body that never slips: its losses push the body off the line on which the centre rests, nothing brings it back,
-//! and a ridge has no effect; the drift ends where rolling becomes unstable, kappa = 0. Both are of first order in the
-//! losses.
+//! *Rest* is the drift of Jackson et al., Am. J. Phys. 87, 85 (2019): the centre is held at rest, as slip does below a
+//! ridge of the energy, and the body moves to lower energies; above a ridge theta grows. *Rolling* is the drift of a
+//! body that never slips: its losses push the body off the line of states whose centre is at rest, nothing brings it
+//! back, and a ridge has no effect; the drift ends where rolling becomes unstable, kappa = 0. Both are of first order
+//! in the losses.
 //!
-//! Error: 1e-12 of a time at rest and 1e-10 rolling. Up to 0.99 of the time to the end the same bounds hold for theta,
-//! w1 and Omega, relative, and for w3 relative to |w|. Where these numbers go as a high power of the time that is left,
-//! the rounding of the time adds to their errors. Tests of `drift` and `test_late_drifts` check these bounds.
+//! Error: 1e-12 of a time at rest and 1e-10 rolling. Up to 0.99 of the time to the end the same bounds hold for the
+//! relative errors of theta, w1 and Omega, and for the error of w3 relative to |w|. Where these numbers vary as a high
+//! power of the remaining time, the rounding of the time adds to their errors. Tests of `drift` and `test_late_drifts`
+//! check these bounds.
 
 pub(crate) mod branch;
 pub(crate) mod circular;
@@ -47,11 +48,11 @@ enum Kept {
 const SLACK: f64 = 1e-9;
 
 impl Drift {
-    /// The drift of a body whose centre is kept at rest, from the inclination `theta`. A body that rolls drifts otherwise,
-    /// as [`Drift::rolling`] has it.
+    /// The drift of a body whose centre is kept at rest, from the inclination `theta`. [`Drift::rolling`] is the drift
+    /// of a body that rolls.
     ///
-    /// Errors: those of [`steady::state`](crate::states::steady::state) and of [`Losses::check`], and `OutOfRange` without any
-    /// loss, for ell above 1e6 and for moments outside 1e-12 to 1e12.
+    /// Errors: those of [`steady::state`](crate::states::steady::state) and of [`Losses::check`]; `OutOfRange` without
+    /// losses, for ell above 1e6 and for moments outside 1e-12 to 1e12.
     ///
     /// ```
     /// use spincyl::drift::{Drift, End};
@@ -70,7 +71,7 @@ impl Drift {
         Ok(Self { kept: Kept::Rest(Box::new(Rest::new(body, theta, losses)?)) })
     }
 
-    /// The drift of a body that rolls, from a steady state whose centre rests or runs on a circle.
+    /// The drift of a body that rolls, from a steady state whose centre is at rest or moves along a circle.
     ///
     /// Errors: as for [`at_rest`](Self::at_rest), and `OutOfRange` for a state that is not steady to six digits and for
     /// a state that is unstable in rolling, kappa <= 0.
@@ -91,7 +92,7 @@ impl Drift {
         self.end().2
     }
 
-    /// The end that the drift reaches, or approaches for ever.
+    /// The end that the drift reaches, or approaches without ever reaching it.
     pub fn ended(&self) -> End {
         self.end().0
     }
@@ -101,8 +102,7 @@ impl Drift {
         self.end().1
     }
 
-    /// The time, in sqrt(R/g), from which on the states are unstable in rolling: 0 if the first state is unstable, infinite if none
-    /// is.
+    /// The time in sqrt(R/g) until which rolling is stable: 0 if the first state is unstable, infinite if all states are stable.
     pub fn stable_until(&self) -> f64 {
         match &self.kept {
             Kept::Rest(rest) => rest.stable_until(),
@@ -119,7 +119,7 @@ impl Drift {
         }
     }
 
-    /// The inclination at a time; NaN before the start and after the end.
+    /// The inclination at a time; NaN before time 0 and after the end.
     pub fn theta(&self, t: f64) -> f64 {
         self.at(t).map_or(f64::NAN, |there| there.state.theta)
     }
@@ -134,7 +134,7 @@ impl Drift {
         self.at(t).map(|there| there.state)
     }
 
-    /// The coefficient of friction that is needed at a time, |V| Omega: 0 where the centre rests.
+    /// The coefficient of friction that is needed at a time, |V| Omega: 0 where the centre is at rest.
     pub fn friction_coefficient(&self, t: f64) -> f64 {
         self.at(t).map_or(f64::NAN, |there| there.friction_coefficient)
     }
@@ -160,11 +160,11 @@ pub(crate) struct DriftState {
 pub(crate) fn check(body: &Body, losses: &Losses) -> Result<(), Error> {
     losses.check_for(body)?;
     if losses.is_none() {
-        let expected = "at least one law with a positive coefficient: nothing is lost, and nothing drifts";
+        let expected = "at least one law with a positive coefficient: without losses there is no drift";
         return Err(Error::OutOfRange { name: "losses", value: 0.0, expected });
     }
-    within("ell", body.ell(), (-1.0, 1e6), "at most 1e6 of a body that drifts")?;
-    within("i1", body.i1(), (1e-12, 1e12), "1e-12 to 1e12 of a body that drifts")?;
-    within("i3", body.i3(), (1e-12, 1e12), "1e-12 to 1e12 of a body that drifts")?;
+    within("ell", body.ell(), (-1.0, 1e6), "ell <= 1e6 for a drift")?;
+    within("i1", body.i1(), (1e-12, 1e12), "1e-12 <= i1 <= 1e12 for a drift")?;
+    within("i3", body.i3(), (1e-12, 1e12), "1e-12 <= i3 <= 1e12 for a drift")?;
     Ok(())
 }

@@ -3,11 +3,11 @@
 //! ```text
 //! theta' = -P/E'(theta),   t = -int E'/P dtheta        E and P along the branch of `branch`
 //! ```
-//! The energy along the branch is the landscape of Jackson et al., Am. J. Phys. 87, 85 (2019), and a drift goes
-//! downhill in it; above a ridge of the energy the inclination grows. Slip is assumed to hold the centre at rest. The
-//! inclinations of the possible ends are roots of polynomials (`ends`), and the time is a quadrature (`clock`).
+//! The energy along the branch is that of Jackson et al., Am. J. Phys. 87, 85 (2019), and a drift decreases it; above a
+//! ridge of the energy the inclination grows. Slip is assumed to hold the centre at rest. The inclinations of the
+//! possible ends are roots of polynomials (`ends`), and the time is a quadrature (`clock`).
 //!
-//! Error: 1e-13 of the time, relative, also for a start next to thetaInf and for an end next to a ridge. A test of
+//! Error: 1e-13 of the time, also for an initial state next to thetaInf and for an end next to a ridge. A test of
 //! `drift` checks this bound.
 
 use super::DriftState;
@@ -72,7 +72,7 @@ impl Rest {
         Ok(rest)
     }
 
-    /// The drift without `stable_until`, which takes a search for the limits of stability.
+    /// The drift without `stable_until`, which needs a search for the limits of stability.
     pub fn unwatched(body: &Body, theta: f64, losses: &Losses) -> Result<Self, Error> {
         steady::state(body, theta)?;
         let most = losses.coefficients.iter().fold(0f64, |most, x| most.max(*x));

@@ -115,7 +115,7 @@ pub(crate) enum DriftHalt {
     Over,
 }
 
-/// A step of a drift: its start, its length in x, the numbers at its end, and from where the inclination is counted.
+/// A step of a drift: its first numbers, its length in x, its last numbers, and the end from which theta is counted.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct DriftStep {
     pub from: FlowPlace<4>,
@@ -146,14 +146,14 @@ impl Rolling<'_> {
         let refused = |name, value, expected| Err(Error::OutOfRange { name, value, expected });
         let rate = y.precession();
         if kappa.is_nan() && y.w2 != 0.0 {
-            return refused("w2", y.w2, "0: a steady state does not tilt, and a drift does not nod");
+            return refused("w2", y.w2, "0, since theta is constant in a steady state");
         }
         if kappa.is_nan() || rate == 0.0 {
             let tilting = crate::rolling::derivative(body, y).w2;
-            return refused("theta''", -tilting, "a steady state of rolling: no tilting, and a precession");
+            return refused("theta''", -tilting, "a steady state of rolling: theta'' = 0, phi' not 0");
         }
         if kappa <= 0.0 {
-            return refused("kappa", kappa, "kappa > 0: a state that is stable by rolling");
+            return refused("kappa", kappa, "kappa > 0, for a state that is stable in rolling");
         }
         let mut of = Circular::new(&body.shape(), !body.is_sharp(), Couples::of(losses, |x| x));
         // A body that precesses backwards drifts as its mirror image does.
@@ -171,7 +171,7 @@ impl Rolling<'_> {
         Ok((Self { of, sloped, margins, start, far, ball, steps }, start))
     }
 
-    /// The same drift, which keeps its steps.
+    /// The same drift, with its steps stored.
     pub fn watched<'a>(self, steps: &'a RefCell<Vec<DriftStep>>) -> Rolling<'a>
     where
         Self: 'a,
@@ -184,7 +184,7 @@ impl Rolling<'_> {
         Self { far, ..self }
     }
 
-    /// Follows the drift from these numbers for at most `most` steps.
+    /// Computes the drift from these numbers for at most `most` steps.
     pub fn follow(
         &mut self,
         mut y: Numbers<f64>,
@@ -226,7 +226,7 @@ impl Rolling<'_> {
         counted(theta, self.far)
     }
 
-    /// The numbers that a lane needs beside the body and its losses.
+    /// The numbers that a lane needs in addition to the body and its losses.
     pub fn numbers(&self) -> [f64; DRIFT_NUMBERS] {
         let ([runs, drills], [theta, rate, w3, _]) = (self.of.signs, self.start);
         [runs, drills, theta, rate, w3, self.far, self.margins.side]
@@ -290,7 +290,7 @@ impl Flow<DRIFT_MARGINS> for Rolling<'_> {
         STEPS[0]
     }
 
-    /// A drift has no turns and no nutation that its steps have to follow.
+    /// A drift has no turns or nutation to be resolved by its steps.
     fn calm<const N: usize>(&self, _: &[f64; N]) -> f64 {
         f64::INFINITY
     }
@@ -390,8 +390,8 @@ impl<T: Real> Margins<T> {
         }
     }
 
-    /// A number that is positive until drilling friction would stop the precession within a time below
-    /// rounding. So ends the drift of a coin that comes upright and rolls straight on.
+    /// A number that is positive until drilling friction would stop the precession within a time below rounding. This
+    /// is the end of the drift of a coin that comes upright and rolls straight on.
     #[inline(always)]
     pub fn turns_on<const N: usize>(&self, y: &[T; N], rate: &[T; N]) -> T {
         let [zero, one] = [0.0, 1.0].map(|x| y[0].splat(x));

@@ -1,12 +1,12 @@
-//! The start of a motion in twice the digits, and the motion carried from there to other places.
+//! The initial state of a motion in twice the digits, and the motion computed from there at other places.
 //!
 //! ```text
 //! G = s^2 (2 E - al w1^2 - b n^2 + 2 k w1 n - 2 h),   G' = 2 s^2 (c G/s^2 + s tilting)
 //! ```
 //! Near an unstable steady state these are differences of numbers of order one, and the time for which the motion
-//! lingers depends on their logarithm. So sine and cosine of the start, the coefficients, the energy and the power
-//! series that lead from one place to another are summed in twice the digits. No double is exactly a steady state: e^(i
-//! theta) is transcendental (Lindemann), so that the tilting, a polynomial in it, is never 0.
+//! lingers depends on their logarithm. Therefore the initial sine and cosine, the coefficients, the energy and the
+//! power series from one place to another are summed in twice the digits. No double is exactly a steady state: e^(i
+//! theta) is transcendental (Lindemann), so that J theta'', a polynomial in it, is never 0.
 //!
 //! Error: 2^-100 of the terms, including the steps of half the reach.
 
@@ -26,11 +26,11 @@ const CARRIED: usize = 44;
 pub(super) struct Carried {
     /// s, c, P and n.
     pub at: [Sum<f64>; 4],
-    /// Twice the energy of the tilting, J w2^2.
+    /// Twice the energy of the rotation w2, J w2^2.
     tilting: Sum<f64>,
 }
 
-/// The start of a motion, with the numbers that its continuation needs.
+/// The initial state of a motion, with the numbers that its continuation needs.
 #[derive(Debug, Clone)]
 pub(super) struct Origin {
     law: Reduced<Sum<f64>>,

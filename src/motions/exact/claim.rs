@@ -5,9 +5,9 @@
 //! doubt of the time = uncertainty summed along the way from the start to now
 //! ```
 //! The rounding error of G is propagated into the time by the same quadrature as the time itself. Where the motion
-//! lingers, most of this error cancels between the start and a time close to it; the rest grows by the same factor as
-//! the motion departs. Where the rest is so large that the motion may have gone the other way, the error is the
-//! greatest possible difference of states.
+//! lingers, most of this error cancels between time 0 and a time close to it; the rest grows by the same factor as the
+//! motion departs. Where the rest is so large that the motion may have gone the other way, the error is the greatest
+//! possible difference of states.
 
 use super::{LegPoint, Swing, SwingPhase};
 

@@ -25,11 +25,11 @@ const REFINED: f64 = 1e-12;
 /// Relative rounding error of the width that ends this computation.
 const ENDS_REFINING: f64 = 1e-6;
 
-/// Number of places on one side that are computed again at most, so that the search ends where rounding keeps showing a
-/// place that was passed.
+/// Largest number of places on one side that are computed again, so that the search ends even where rounding repeatedly
+/// shows a place that has been passed.
 const TRIES: u32 = 3;
 
-/// Inclination below which a ball is taken to pass exactly through its pole; the change is a rounding error.
+/// Inclination below which a ball is assumed to pass exactly through its pole; the change is a rounding error.
 const POLE: f64 = 1e-13;
 
 #[derive(Debug, Clone)]
@@ -102,7 +102,7 @@ enum Settled {
 }
 
 impl Lines {
-    /// Returns None if the numbers leave the range in which the motion can be followed.
+    /// Returns None if the numbers leave the range in which the motion can be computed.
     pub fn new(body: &Body, contact: Contact, y: &State) -> Option<Self> {
         let from = Origin::new(body, contact, y);
         let tangent = (0.5 * y.theta).tan();
@@ -153,7 +153,7 @@ impl Lines {
         crate::numbers::in_registers!(Panel::new(&self.law, centre, reach, start))
     }
 
-    /// Follows the motion to its end at lower x (`way` = -1) or at higher x (`way` = 1).
+    /// Computes the motion to its end at lower x (`way` = -1) or at higher x (`way` = 1).
     fn end(&mut self, from: &Origin, way: f64) -> Option<SwingEnd> {
         let face = way * -(0.5 * self.flat()).ln() - self.origin;
         let (mut panel, mut y) = (0, 0.0);

@@ -1,20 +1,19 @@
-//! The exact solution by first integrals; integrators are judged against it.
+//! The exact solution by first integrals, which is the reference for the integrators.
 //!
 //! ```text
 //! G(x) = J s^2 theta'^2,   dt/dx = s^2 sqrt(J/G)
 //! dphi/dx = P sqrt(J/G),   dpsi/dx = (n s^2 - P c) sqrt(J/G)
 //! d(x + i y)/dx = e^(i phi) (i A dpsi/dx - rho s)      contact point: round the rim and its fillet
 //! ```
-//! The module `lines` gives P = w1 s, n = w3 and G as functions of x = ln tan(theta/2), and the turning
-//! points. The module `stretch` gives a variable v in which these are smooth: one for the whole swing, or
-//! several where the motion lingers. `antiderivative` gives the integrals over half a swing, and the state at
-//! any time takes one inversion of t(v). After one period theta, w1, w2 and w3 are the same, phi and psi have
-//! grown by constants, and the contact path is turned by the constant of phi, so that whole periods are
-//! summed in closed form.
+//! The module `lines` gives P = w1 s, n = w3 and G as functions of x = ln tan(theta/2), and the turning points. The
+//! module `stretch` gives a variable v in which these are smooth: one for the whole swing, or several where the motion
+//! lingers. `antiderivative` gives the integrals over half a swing, and one inversion of t(v) gives the state at any
+//! time. After one period theta, w1, w2 and w3 are the same, phi and psi have grown by constants, and the contact path
+//! is rotated by the constant of phi, so that whole periods are summed in closed form.
 //!
 //! Error: the rounding error of G is propagated through the integrals, so that [`Swing::error`] is an estimate for this
 //! motion at that time, conditioning included. In the tests of `exact` the estimate is never below a tenth of the true
-//! error against the three-dimensional model at 40 digits. The numbers given are taken as exact: a change of them by
+//! error against the three-dimensional model at 40 digits. The inputs are taken as exact: a change of the inputs by
 //! half an ulp moves a motion that lingers by more than the estimate.
 
 mod carry;
@@ -35,7 +34,7 @@ use core::f64::consts::{FRAC_PI_2, PI, TAU};
 use lines::Lines;
 use stretch::{Stretch, StretchPoint};
 
-/// A motion between its turning points, known at all times.
+/// The whole motion between its turning points, which can be evaluated at any time.
 #[derive(Debug, Clone)]
 pub struct Swing {
     body: Body,
@@ -46,8 +45,7 @@ pub struct Swing {
     legs: Vec<Leg>,
     /// The integrals from the lower end to the upper one, half a nutation.
     whole: Sums,
-    /// Time of the start since the lower turning point, negative before it; `at_start` is the place of the
-    /// start.
+    /// Initial time since the lower turning point, negative before it; `at_start` is the place of the initial state.
     phase: f64,
     at_start: LegPoint,
     /// Squared nutation frequency of a steady state.
@@ -159,10 +157,11 @@ pub(crate) fn check(body: &Body, y: &State) -> Result<(), Error> {
 }
 
 impl Swing {
-    /// The motion that passes through a state at time 0; `pose` also prepares angles and contact path.
+    /// The motion that passes through a state at time 0; with `pose` the angles and the contact path are prepared as
+    /// well.
     ///
-    /// Errors: `OutOfRange` for theta outside [1e-8, pi - 1e-8], speeds above 1e6, bodies with
-    /// ell above 1e6 or moments outside [1e-6, 1e12]; `Lost` where the integrals lose all their digits.
+    /// Errors: `OutOfRange` for theta outside [1e-8, pi - 1e-8], for speeds above 1e6, and for bodies with ell above
+    /// 1e6 or moments outside [1e-6, 1e12]; `Lost` where the integrals lose all their digits.
     pub fn new(body: &Body, start: &State, contact: Contact, pose: bool) -> Result<Self, Error> {
         check(body, start)?;
         let lost = Error::Lost { theta: start.theta };
@@ -297,13 +296,13 @@ impl Swing {
         LegPoint { leg, v: stretch.top * if stretch.way > 0.0 { part } else { 1.0 - part } }
     }
 
-    /// Whether only the angles change, since the swing is narrower than rounding. An unstable steady state is assumed
-    /// to stay; its [`error`](Self::error) grows with time.
+    /// Whether only the angles change, because the swing is smaller than rounding. An unstable steady state is assumed
+    /// to last; its [`error`](Self::error) grows with time.
     pub fn is_steady(&self) -> bool {
         self.legs.is_empty()
     }
 
-    /// Period of the nutation, in sqrt(R/g); infinite where the face lands or an unstable state stays.
+    /// Period of the nutation, in sqrt(R/g); infinite where the face lands or an unstable state lasts.
     pub fn period(&self) -> f64 {
         if self.lines.lands() != [false; 2] {
             f64::INFINITY
@@ -316,7 +315,7 @@ impl Swing {
         }
     }
 
-    /// Angular frequency of the nutation, 2 pi over the period.
+    /// Angular frequency of the nutation, 2 pi over the period, in sqrt(g/R).
     pub fn nutation(&self) -> f64 {
         TAU / self.period()
     }
@@ -348,7 +347,7 @@ impl Swing {
         SwingPhase { periods, time, spot: LegPoint { leg, v } }
     }
 
-    /// The state at time `t`, of either sign; after a [`landing`](Self::landing) the state of the landing.
+    /// The state at time `t`, which may be negative; after a [`landing`](Self::landing) the state of the landing.
     pub fn state(&self, t: f64) -> State {
         if t == 0.0 || self.is_steady() {
             return self.start;
@@ -363,7 +362,7 @@ impl Swing {
         self.at_pole(&phase).unwrap_or_else(|| self.state_at(phase.spot, rising))
     }
 
-    /// Whether a ball goes through its lower pole, and through its upper one.
+    /// Whether a ball passes through its lower pole, and through its upper one.
     pub(super) fn through_pole(&self) -> [bool; 2] {
         let lands = self.lines.lands();
         core::array::from_fn(|i| self.lines.reaches_pole()[i] && !lands[i])
@@ -407,15 +406,15 @@ impl Swing {
         }
     }
 
-    /// Time until the face lands, and the state then; `way` = -1 goes backward in time, where the time is
-    /// positive, too.
+    /// Time until the face lands, and the state then. With `way` = -1 the motion goes backward in time, and the time is
+    /// positive as well.
     pub fn landing(&self, way: f64) -> Option<(f64, State)> {
         let lands = self.lines.lands();
         if self.is_steady() || lands == [false; 2] {
             return None;
         }
         let half = self.whole.time;
-        // In reversed time the motion is the same with the tilting reversed.
+        // In reversed time the motion is the same with theta' reversed.
         let phase = if way < 0.0 { -self.phase } else { self.phase };
         let (upper, time) = match lands {
             [true, _] if phase < 0.0 => (false, -phase),

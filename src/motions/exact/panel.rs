@@ -9,14 +9,13 @@
 //!          D n' = A (I1 a P + (I3 L - I1 rho c) m)
 //!          G = K s^2 - I1 P^2 - (A m - L P)^2,   K = 2 (E - h) - I3 n^2
 //! ```
-//! K is twice the energy less that of the height and of the spin about the axis. Where the axis is nearly
-//! vertical, K is a small difference of these large numbers, which hardly change. So the value of K at the
-//! centre is given, and the further terms of its series are those of n^2 and h alone, which are as small as
-//! the change. These functions are analytic for |Im x| < pi/2, except at the zeros of D that a rounded rim
-//! may bring inside. The step to the next possible zero of G uses a bound on G'', so that no zero is stepped
-//! over.
+//! K is twice the energy less that of the height and of the spin about the axis. Where the axis is nearly vertical, K
+//! is a small difference of these large numbers, which hardly change. Therefore the value of K at the centre is given,
+//! and the further terms of its series are those of n^2 and h alone, which are as small as the change. These functions
+//! are analytic for |Im x| < pi/2, except at the zeros of D that a rounded rim may bring inside. The step to the next
+//! possible zero of G uses a bound on G'', so that no zero is stepped over.
 //!
-//! Error: the rounding error of G is at most [`Panel::rounding`]; the tests of `exact` hold the motions to this.
+//! Error: the rounding error of G is at most [`Panel::rounding`]; the tests of `exact` check this on motions.
 
 use crate::laws::body::Rim;
 use crate::laws::contact::reduced::Reduced;
@@ -285,7 +284,7 @@ impl Panel {
         self.size + self.growth * (y / self.reach).abs().min(1.0)
     }
 
-    /// The same panel with better values of G and its slope at the centre.
+    /// The same panel with more accurate values of G and its slope at the centre.
     pub fn knowing(mut self, [g, slope]: [f64; 2], known: Certainty) -> Self {
         (self.g[0], self.g[1], self.known) = (g, slope, known);
         self
@@ -352,8 +351,8 @@ impl Panel {
         Some(y)
     }
 
-    /// The least value of G between two places where its slope has different signs. A rough place is enough, for it
-    /// only tells where the motion is slow.
+    /// The least value of G between two places where its slope has different signs. An approximate place is enough,
+    /// since it only tells where the motion is slow.
     fn dip(&self, slope: &PanelTerms, falling: f64, rising: f64) -> Option<Dip> {
         let (mut a, mut b) = (falling, rising);
         let sign = (rising - falling).signum();

@@ -1,8 +1,8 @@
 //! The places that a swing passes between its turning points, and the times of the passages.
 //!
 //! A place is a number that grows with the inclination: the index of the leg, counted from the lower end, plus the part
-//! of its variable that lies below. Time is a smooth function of the place. Whatever depends on the state alone happens
-//! at the same places on the way up and on the way down.
+//! of its variable that lies below. Time is a smooth function of the place. An event that depends on the state alone
+//! happens at the same places on the way up and on the way down.
 
 use super::{Leg, LegPoint, Swing};
 use crate::laws::body::Body;

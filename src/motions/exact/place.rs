@@ -64,7 +64,7 @@ impl Swing {
         };
         let contact = match (place(self.at_start, self.phase), place(now.spot, now.time)) {
             (Some(from), Some(to)) => {
-                // After m periods the path is the first one turned by m times the angle of a period. Whole turns of
+                // After m periods the path is the first one rotated by m times the angle of a period. Whole turns of
                 // this angle are removed first, which keeps its digits.
                 let turn = Angle::of(Sum::from(2.0 * self.whole.turns[0])).rest;
                 let whole = Angle::of(Sum::product(now.periods, turn)).rest;

@@ -1,5 +1,4 @@
-//! The swing from one turning point to the other in stretches, each with a variable v in which the time grows
-//! evenly.
+//! The swing from one turning point to the other in stretches, each with a variable v in which the time grows evenly.
 //!
 //! ```text
 //! whole   x = mid - amp cos u,                G = (x - xa)(xb - x) H       dx/du/sqrt(G) = 1/sqrt(H)

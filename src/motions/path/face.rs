@@ -6,22 +6,21 @@ use crate::numbers::Real;
 /// infinitely many turns.
 pub(crate) const FLAT: f64 = 1e-12;
 const ENDLESS: f64 = 1e-22;
-/// A face that approaches the table exponentially, with w2 ~ s, is followed down to this sine of theta. The
-/// time from there to `FLAT` follows from that law.
+/// A face that approaches the table exponentially, with w2 ~ s, is computed down to this sine of theta. The time from
+/// there to `FLAT` follows from that law.
 const NEARS: f64 = 1e-10;
 
-/// The share I1 w1^2/(I1 w1^2 + w2^2 + s) of turning in the energy of an almost flat face; one
-/// half in a whirr.
+/// The share I1 w1^2/(I1 w1^2 + w2^2 + s) of the rotation w1 in the energy of an almost flat face; 1/2 in a whirr.
 #[inline(always)]
 pub(crate) fn turning_share<T: Real>(i1: T, s: T, w1: T, w2: T) -> T {
     let turning = i1 * w1 * w1;
     turning / (w2.mac(w2, turning) + s.abs())
 }
 
-/// The sine of theta at which a face lands; `faster` is w2'. Where a law lets a whirr last for infinitely
-/// many turns (`endless`), it is followed down to `ENDLESS`, and so is a face that falls more and more slowly
-/// but lands. A face that drops lands at `FLAT`, and one that approaches exponentially, with w2 ~ s, is
-/// followed down to `NEARS`.
+/// The sine of theta at which a face lands; `faster` is w2'. Where a law lets a whirr last for infinitely many turns
+/// (`endless`), the motion is computed down to `ENDLESS`, and so is that of a face that falls more and more slowly but
+/// lands. A face that drops lands at `FLAT`, and one that approaches exponentially, with w2 ~ s, is computed down to
+/// `NEARS`.
 #[inline(always)]
 pub(crate) fn lands_at<T: Real>(i1: T, (s, c): (T, T), [w1, w2]: [T; 2], faster: T, endless: bool) -> T {
     let number = |x: f64| s.splat(x);

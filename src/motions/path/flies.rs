@@ -1,4 +1,4 @@
-//! A body in the air: where it leaves the table, its flight and its landing.
+//! A body in the air: the point at which it leaves the table, its flight and its landing.
 //!
 //! ```text
 //! leaves the table    a slip as t^3 where N0 = 0 falls;  a contact at rest with N0 < 0 as t^2;  a bounce as t
@@ -22,13 +22,13 @@ impl<const N: usize> BodyWalk<'_, N> {
         self.of.body.ell() > 0.0 && self.of.body.theta_end() == FRAC_PI_2
     }
 
-    /// Whether both rims touch, of which both or one may carry the body.
+    /// Whether both rims touch the table; both or one of them may carry the body.
     pub(super) fn is_level(&self) -> bool {
         let State { theta, w2, .. } = self.of.state;
         self.ask.restitution.is_some() && self.has_two_rims() && theta == FRAC_PI_2 && w2 == 0.0
     }
 
-    /// The present numbers, with those of a flight.
+    /// The current numbers, with those of a flight.
     pub(super) fn aloft(&self) -> Aloft {
         let [s, c, w1, w2, w3, u, v] = core::array::from_fn(|i| self.at[i]);
         let pose = if poses(N) { core::array::from_fn(|i| self.at[9 + i]) } else { [0.0; 4] };
@@ -50,7 +50,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         (self.of.takeoff.height, self.of.takeoff.lift) = (to.height, to.lift);
     }
 
-    /// Passes to the view from the other rim.
+    /// Changes to the view from the other rim.
     pub(super) fn turns_over(&mut self) {
         let from = self.aloft();
         let pose = self.pose_on_other_rim(from.pose);
@@ -58,7 +58,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         self.sets(&Aloft { pose, ..from.on_other_rim(&self.of.slide.law.shape) });
     }
 
-    /// The pose as told from the other rim; told twice it is the same again.
+    /// The pose as seen from the other rim; applied twice it returns the same pose.
     pub(super) fn pose_on_other_rim(&self, pose: [f64; 4]) -> [f64; 4] {
         let mut other = Aloft { pose, ..self.aloft() }.on_other_rim(&self.of.slide.law.shape).pose;
         if self.made.path.upside_down {
@@ -88,7 +88,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         [at.force[0], size]
     }
 
-    /// The phase after an ending, from which a motion with restitution goes on.
+    /// The phase after an ending past which a motion with restitution continues.
     #[inline(never)]
     pub(super) fn continues_after(&mut self, ending: Ending) -> Next {
         let Some(e) = self.ask.restitution else { return Next::Ends(ending) };
@@ -112,7 +112,7 @@ impl<const N: usize> BodyWalk<'_, N> {
                 if down == 0.0 {
                     return self.settles_on_side();
                 }
-                // An output at the time of the start shows the body before it lands, as those at other landings do.
+                // An output at the initial time shows the body before it lands, as outputs at other landings do.
                 while self.until().is_some_and(|t| t <= self.at[TIME]) {
                     BodyPhases::write_here(self);
                 }
@@ -129,7 +129,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         }
     }
 
-    /// Follows a flight to its end, which sets the next phase.
+    /// Computes a flight to its end, which sets the next phase.
     #[inline(never)]
     pub(super) fn flies(&mut self) {
         let shape = self.of.slide.law.shape;
@@ -168,7 +168,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         self.continues_with(next);
     }
 
-    /// The body at a time of its flight. The energy that the air has taken until then is added to the energy lost `before`.
+    /// The body at a time of its flight. The energy lost to the air until then is added to the energy lost `before`.
     fn flown(&mut self, course: &dyn Flies, t: f64, before: f64) -> Aloft {
         let (at, lost) = course.at(t);
         if loses(N) {
@@ -184,7 +184,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         self.first_phase().unwrap_or(Next::Ends(Ending::Painleve))
     }
 
-    /// Writes a point to the outputs whose forces all have the value `force`.
+    /// Writes a point to the outputs, with all force components set to `force`.
     pub(super) fn writes_with(&mut self, at: &Aloft, kind: Kind, force: f64) {
         let force = self.ask.force.then_some((Force { normal: force, along: force, across: force }, 0.0));
         let pose = poses(N).then(|| at.pose());

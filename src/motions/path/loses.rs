@@ -38,7 +38,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         }
     }
 
-    /// Follows a phase that loses energy without a slip from the numbers `y`, within the limits `steps`.
+    /// Computes a phase that loses energy without a slip from the numbers `y`, within the limits `steps`.
     pub(super) fn loses(
         &mut self,
         flow: &LossyFlow,
@@ -74,7 +74,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         let Some(mut phase) = self.of.lossy.take() else { return Ok(None) };
         let (body, ask) = (self.of.body, self.ask);
         let goes_on = ask.beyond && !matches!(ask.table, Table::Rubs(_));
-        // With a restitution a body whose contact point has stopped rocks on, and comes to lie on its side.
+        // With a restitution a body whose contact point has stopped keeps rocking and comes to lie on its side.
         let rocks_on = found == Halt::Contour && (goes_on || ask.restitution.is_some());
         if phase.flow.holds_drilling() && !matches!(found, Halt::Time | Halt::Pause) {
             self.removes_drilling();

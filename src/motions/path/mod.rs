@@ -1,17 +1,17 @@
-//! The path of a body on a table with friction, through phases of slipping and of rolling.
+//! The path of a body under friction, through phases of slipping and of rolling.
 //!
 //! ```text
 //! slip    until u = 0: then it rolls if |F_roll| <= mu_s N, else it slips in another direction
 //! roll    until |F_roll| = mu_s N: then it slips
 //! both    until N = 0, or a face or the other rim lands: the end
 //! ```
-//! A slipping phase is integrated (`path::slide`). A rolling phase without losses is the exact solution, so
-//! that its cost does not depend on its length. Where no contact force, or more than one, obeys the law of
-//! friction (Painleve), a start is an error and a motion ends.
+//! A slipping phase is integrated (`path::slide`). A rolling phase without losses is the exact solution, so that its
+//! cost does not depend on its length. Where no contact force, or more than one, obeys the law of friction (Painleve),
+//! an initial state is an error and a motion ends.
 //!
-//! Error: the path is computed twice, the second time with a tolerance up to ten thousand times as large, in
-//! about a third of the time. The claimed error is thirty times the difference of the two paths, scaled by
-//! the ratio of the tolerances.
+//! Error: the path is computed twice, the second time with a tolerance up to ten thousand times as large, in about a
+//! third of the time. The estimated error is thirty times the difference of the two paths, scaled by the ratio of the
+//! tolerances.
 
 pub(crate) mod face;
 mod flies;
@@ -42,11 +42,10 @@ use crate::methods::SHORT_CODE;
 pub(crate) use phases::BodyWalk;
 
 /// The motion of a body that slips or loses energy, for [`roll_with`](super::motion::roll_with).
-/// A web page that needs no other motion calls this function directly, so that its program
-/// contains no other code. A motion that hardly advances, or in which slipping and rolling
-/// alternate more than 20 times in each unit of time (at least 5,000 and at most 10,000 times),
-/// ends there with [`Ending::Bounded`](super::Ending::Bounded). Error at any time: `Lost` where
-/// the equations lose their digits.
+/// A web page that needs no other motion calls this function directly, so that its program contains no other code. A
+/// motion whose time hardly advances, or in which slipping and rolling alternate more than 20 times in each unit of
+/// time (at least 5,000 and at most 10,000 times), ends there with [`Ending::Bounded`](super::Ending::Bounded). Error
+/// at any time: `Lost` where the equations lose their digits.
 pub fn follow(
     body: &Body,
     start: &Start,
@@ -60,9 +59,8 @@ pub fn follow(
     Ok(judged(fine, times, run)?.map(Motion::from))
 }
 
-/// One run of a body's walk, with the tolerance `tol` of its steps. Its numbers include a pose and the lost
-/// energy only if `ask` needs them. `integrates` says that a phase without a slip is integrated although
-/// nothing is lost.
+/// One run of a body's walk, with the tolerance `tol` of its steps. Its numbers include a pose and the lost energy only
+/// if `ask` needs them. With `integrates` a phase without a slip is integrated although no energy is lost.
 pub(super) fn walked(
     (body, start): (&Body, &Start),
     ask: &Ask,
@@ -80,7 +78,7 @@ pub(super) fn walked(
     }
 }
 
-/// A walk at its start, on the heap: while it runs, threads with a small stack need theirs.
+/// A walk from its initial state, on the heap, since the walk runs on threads with a small stack.
 #[inline(never)]
 fn walk<'a, const N: usize>(
     (body, start): (&Body, &Start),
@@ -93,7 +91,7 @@ fn walk<'a, const N: usize>(
     Ok(walk)
 }
 
-/// Refuses a body, a start or options out of range. Returns the tolerance of the steps.
+/// Returns the tolerance of the steps, or an error for a body, an initial state or options out of range.
 fn check(body: &Body, start: &Start, ask: &Ask) -> Result<f64, Error> {
     exact::check(body, &start.state)?;
     ask.table.check()?;
@@ -107,12 +105,11 @@ fn check(body: &Body, start: &Start, ask: &Ask) -> Result<f64, Error> {
         within("height", height, (0.0, 1e6), "0 to 1e6 R")?;
         within("lift", lift, (-1e6, 1e6), "at most 1e6 sqrt(g R)")?;
         if ask.restitution.is_none() {
-            let expected = "None: a motion that starts in the air needs a restitution";
+            let expected = "None without a restitution, which a motion that starts in the air needs";
             return Err(Error::OutOfRange { name: "height", value: height, expected });
         }
         if !body.lands_on_rims() {
-            let expected =
-                "none: a part of the body other than its rims has no known shape, and may land first";
+            let expected = "none for a body of which another part than a rim may land: its shape is unknown";
             return Err(Error::OutOfRange { name: "theta_end", value: body.theta_end(), expected });
         }
         if body.ell() > 0.0 && body.theta_end() == core::f64::consts::FRAC_PI_2 {
@@ -128,11 +125,11 @@ fn check(body: &Body, start: &Start, ask: &Ask) -> Result<f64, Error> {
     if ask.table.rubs() || start.aloft.is_some() { Ok(fine) } else { without_slip(start.slip).map(|()| fine) }
 }
 
-/// Refuses a slip on a table without a law of friction.
+/// Returns an error for a slip without a law of friction.
 pub(super) fn without_slip([along, across]: [f64; 2]) -> Result<(), Error> {
     let value = if along == 0.0 { across } else { along };
     if value == 0.0 {
         return Ok(());
     }
-    Err(Error::OutOfRange { name: "slip", value, expected: "no slip on this table" })
+    Err(Error::OutOfRange { name: "slip", value, expected: "0 without a law of friction" })
 }

@@ -26,8 +26,8 @@ use core::f64::consts::{FRAC_PI_2, PI};
 /// The walk of a body of revolution.
 pub(crate) type BodyWalk<'a, const N: usize> = Walk<'a, BodyPhases, N>;
 
-/// Sine of theta below which a falling face has landed if slipping and sticking alternate without an
-/// advance of time.
+/// Sine of theta below which a falling face counts as landed if slipping and sticking alternate without an advance of
+/// time.
 const ALL_BUT_FLAT: f64 = 1e-6;
 /// The first step of a rougher run is this many times as long as that of the finer run, so that
 /// their steps differ.
@@ -36,27 +36,27 @@ pub(super) const LONGER: f64 = 3.0;
 /// Size of cos theta below which a rougher run perturbs this number and not theta.
 const LEVEL: f64 = 1e-3;
 
-/// The data of a body's walk: its equations, and the present phase.
+/// The data of a body's walk: its equations, and the current phase.
 pub(crate) struct BodyPhases {
     pub body: Body,
     pub slide: Slide,
-    /// The state where the present phase begins or has ended, and that of the start.
+    /// The state where the current phase begins or has ended, and the initial state.
     pub(super) state: State,
     pub(super) start: State,
-    /// Whether a phase without a slip is integrated: the first integrals give it where nothing is lost.
+    /// Whether a phase without a slip is integrated; otherwise the first integrals solve it, as long as no energy is
+    /// lost.
     pub(super) integrates: bool,
     /// The losses of a body that does not slip, with the drilling friction of a patch of contact.
     pub(super) rolling_losses: Losses,
-    /// The present phase, if it loses energy without a slip.
+    /// The current phase, if it loses energy without a slip.
     pub(super) lossy: Option<LossyPhase>,
-    /// The present phase, if the body lies on both rims.
+    /// The current phase, if the body lies on both rims.
     pub(crate) lying: Option<Box<LyingPhase>>,
-    /// The start of the next flight, or the height and the vertical velocity of a body in the air.
+    /// The beginning of the next flight, or the height and the vertical velocity of a body in the air.
     pub(super) takeoff: Takeoff,
-    /// Whether the body only tilts, so that rounding must not make the body turn.
+    /// Whether only theta changes, so that rounding must not make the body turn.
     pub(super) planar: bool,
-    /// Estimates of the end of a slipping whirr; None if the losses do not let a whirr last for
-    /// infinitely many turns.
+    /// Estimates of the end of a slipping whirr; None if the losses do not let a whirr last for infinitely many turns.
     pub(super) tail: Option<LastTurns>,
 }
 
@@ -80,13 +80,14 @@ impl BodyPhases {
 }
 
 impl<'a, const N: usize> BodyWalk<'a, N> {
-    /// A walk at the start, with steps of the tolerance `tol`, which is the requested one or a larger one.
+    /// A walk from its initial state, with steps of the tolerance `tol`, which is the requested tolerance or a larger
+    /// one.
     pub fn of_body(body: &Body, ask: &Ask, tol: f64, times: &'a [f64], start: &Start) -> Result<Self, Error> {
         let fine = check(body, start, ask)?;
         let &Start { state: start, mut slip, time, aloft } = start;
         let mut ask = *ask;
         if ask.table == Table::Smooth && ask.restitution.is_some() {
-            // On a smooth table the centre stands still until an impact; the body then slips without friction.
+            // On a smooth table the centre is at rest until an impact; then the body slips without friction.
             ask.table = Friction::coulomb(0.0).into();
             if aloft.is_none() {
                 let [v_h, v_2] = centre_velocity(body, &start, [0.0; 2]);
@@ -122,7 +123,7 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
         Ok(walk)
     }
 
-    /// The flow of the present phase, if the body loses energy without a slip.
+    /// The flow of the current phase, if the body loses energy without a slip.
     pub fn lossy(&self) -> Option<&LossyFlow> {
         self.of.lossy.as_ref().map(|phase| &phase.flow)
     }
@@ -131,8 +132,8 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
         self.ask.table.contact()
     }
 
-    /// All numbers of a flow of which a lane has computed only the first ones. The missing energy has become
-    /// heat, or is lost.
+    /// All numbers of a flow of which a lane has computed only the first ones. The missing energy has become heat, or
+    /// is lost to the losses.
     pub fn followed(&self, from: &[f64; N], y: [f64; N]) -> [f64; N] {
         let mut all = y;
         all[8..].copy_from_slice(&from[8..]);
@@ -146,9 +147,8 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
         all
     }
 
-    /// Moves the walk to the numbers at which a flow has halted. The axis of a ball may have passed the
-    /// vertical, where s is negative: then the ball leans to the other side, so that its lean, w1, w2 and the
-    /// slip change their signs.
+    /// Moves the walk to the numbers at which a flow has halted. The axis of a ball may have passed the vertical, where
+    /// s is negative: then the ball leans to the other side, so that s, w1, w2 and the slip change their signs.
     pub(super) fn arrives(&mut self, at: [f64; N]) {
         self.at = at;
         if self.at[0] < 0.0 {
@@ -213,8 +213,8 @@ impl<const N: usize> Phases<N> for BodyPhases {
         }
         let (down, up) = (1.0 - walk.perturbation, 1.0 + walk.perturbation);
         let State { theta, w1, w2, w3 } = walk.of.state;
-        // Drilling w_z, rolling w_h and rocking w2 change by shares of themselves: one that is
-        // zero stays zero.
+        // Drilling w_z, rolling w_h and rocking w2 are each changed by a share of themselves: a motion that is zero
+        // stays zero.
         let (s, c) = theta.sin_cos();
         let (drilling, rolling) = ((s * w1 + c * w3) * up, (c * w1 - s * w3) * up);
         // Near its other rim the height of the body is known from cos theta, not from theta.
@@ -265,7 +265,7 @@ impl<const N: usize> Phases<N> for BodyPhases {
         lies.then_some(Ending::Side)
     }
 
-    /// A phase without a slip checks its margins at its start itself.
+    /// A phase without a slip checks its own margins when it begins.
     fn begins_without_slip(_: &mut BodyWalk<'_, N>) -> Next {
         Next::Rolls { at_limit: false }
     }
@@ -295,7 +295,7 @@ impl<const N: usize> Phases<N> for BodyPhases {
     fn is_over(walk: &mut BodyWalk<'_, N>, next: &Next) -> bool {
         let fall = walk.at[1] * walk.at[3];
         if loses(N) && walk.still > STILL && walk.at[0] < ALL_BUT_FLAT && fall > 0.0 {
-            // Whether the face slips or sticks no longer matters, since it is all but on the table.
+            // Whether the face slips or sticks no longer matters, since it is almost on the table.
             let left = walk.at[0] / fall;
             walk.lies_flat([walk.at[7] + left, left]);
             return true;
@@ -372,8 +372,7 @@ impl<const N: usize> Phases<N> for BodyPhases {
             let moved = series.at(moment);
             let place = FlowPlace { y: moved, carry: [0.0; N], rate: [0.0; N] };
             let mut all = slide.margins(&place).map(|margin| margin.value);
-            // The margins of a face and of the other rim do not depend on the slip, and are those at
-            // the time itself.
+            // The margins of a face and of the other rim do not depend on the slip, and are those at the time itself.
             let y = series.at(t);
             (0..2).filter(|i| slide.watches(*i)).for_each(|i| all[i] = slide.margin(&y, i));
             // The margin of a jam is proportional to the speed of a dry slip, and that speed may dip.
@@ -397,8 +396,8 @@ impl<const N: usize> Phases<N> for BodyPhases {
         walk.rolls_on(at_limit, go_on)
     }
 
-    /// The first step of a rougher run is longer. Two runs with the same steps would have the same errors,
-    /// whose growth from an unstable start their difference would not show.
+    /// The first step of a rougher run is longer. Two runs with the same steps would have the same errors, and their
+    /// difference would not show the growth of these errors from an unstable initial state.
     fn first(walk: &BodyWalk<'_, N>, y: &[f64; N]) -> f64 {
         let first = match (&walk.of.lying, walk.lossy()) {
             (Some(phase), _) => phase.flow.first(y),

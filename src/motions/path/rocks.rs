@@ -4,7 +4,8 @@
 //! a hop lasts 2 w/gamma, gamma = -w2' on one rim at theta = pi/2;   a landing turns w into r w
 //! the rest = the change in one cycle of two hops and two landings, over 1 - r r'
 //! ```
-//! The block of Housner, Bull. Seismol. Soc. Am. 53, 403 (1963). Error: the square of the time that is summed.
+//! The model is the block of Housner, Bull. Seismol. Soc. Am. 53, 403 (1963). Error: the square of the time that is
+//! summed.
 
 use super::phases::BodyWalk;
 use crate::laws::contact::landing::{Outcome, land_at};
@@ -17,7 +18,8 @@ use core::f64::consts::FRAC_PI_2;
 const SOON_OVER: f64 = 1e-6;
 
 impl<const N: usize> BodyWalk<'_, N> {
-    /// The numbers at the end of a rocking that has just begun another hop at theta = pi/2; None if it is not over soon.
+    /// The numbers at the end of a rocking that has just begun another hop at theta = pi/2; None if the end is not
+    /// near.
     pub(super) fn rocks_out(&mut self) -> Option<[f64; N]> {
         let (begin, state, takeoff) = (self.at, self.of.state, self.of.takeoff);
         let upside_down = self.made.path.upside_down;

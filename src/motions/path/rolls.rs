@@ -19,12 +19,11 @@ use nalgebra::Point2;
 /// A face nearer to the table than this angle has landed, since the first integrals lose their digits there.
 const LEAST: f64 = 1e-8;
 
-/// A hop that rises by less than this is integrated, and slower than this.
+/// A hop counts as low, and is integrated, if both its height and its speed are below this.
 const LOW_HOP: f64 = 0.1;
 
 impl<const N: usize> BodyWalk<'_, N> {
-    /// Follows a rolling phase by the first integrals to its end, or begins its flow if the
-    /// body loses energy.
+    /// Computes a rolling phase by the first integrals to its end, or begins its flow if the body loses energy.
     pub(super) fn rolls_on(
         &mut self,
         at_limit: bool,
@@ -45,7 +44,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         let ask = Ask { pose: self.ask.pose, beyond, ..Ask::on(Table::Rolling { mu }) };
         let from = Start { time: self.at[7], ..y.into() };
         if y.theta.min(PI - y.theta) < LEAST {
-            // A face this near to the table lands before any other event.
+            // A face this close to the table lands before any other event.
             let lost = Error::Lost { theta: y.theta };
             self.next = Some(if body.is_ball() { return Err(lost) } else { Next::Ends(Ending::Face) });
             return Ok(None);
@@ -94,7 +93,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         Ok(None)
     }
 
-    /// Whether the body comes back to its other rim so soon that the first integrals would lose the digits of the height:
+    /// Whether the body returns to its other rim so soon that the first integrals would lose the digits of the height:
     /// theta is known to 1e-16, and the hop is low.
     fn hops_low(&self) -> bool {
         let [c, rises] = [self.at[1], self.at[3]];
@@ -105,7 +104,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         if rises > 0.0 { rises * rises < LOW_HOP * falls } else { rises * rises + falls * c > 0.0 }
     }
 
-    /// A pose of a rolling phase, counted from the start of the motion.
+    /// A pose of a rolling phase, relative to the beginning of the motion.
     fn moved(&self, pose: &Pose) -> Pose {
         let [phi, psi, x, y] = core::array::from_fn(|i| self.at[9 + i]);
         let turned = |by: f64, angle: Angle| {

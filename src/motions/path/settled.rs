@@ -1,5 +1,5 @@
-//! A settled contact: psi' follows a balance of couples, since a couple that grows with a power of psi' stops
-//! the contact point ever faster while the face falls.
+//! A settled contact: psi' follows a balance of couples, since a couple that grows with a power of psi' stops the
+//! contact point faster and faster while the face falls.
 //!
 //! ```text
 //! psi'   balances the couple along the contour with the couple that turns the contact, psi'' included
@@ -15,7 +15,7 @@
 use crate::laws::loss::{Couples, Law};
 use core::f64::consts::FRAC_PI_4;
 
-/// Number of times that psi'' is corrected from the balance of the sweep before.
+/// Number of times that psi'' is corrected from the balance of the previous sweep.
 const SWEEPS: u32 = 3;
 /// The contact of a falling face settles only where sin(theta) is below `CLOSE`, and s psi' below `SLOWER`
 /// times the speed of fall.
@@ -37,9 +37,9 @@ pub(crate) const EFFORT: u64 = 30;
 const FAST: f64 = 40.0;
 const SMALL: f64 = 0.01;
 
-/// The largest distance of s psi' from its balance at which a contact settles, in units of the tolerance.
-/// None if the contact, which stops at the rate `rate`, does not stop fast enough in comparison with the fall
-/// of its face. `turns` is s psi' in units of the tolerance.
+/// The largest distance of s psi' from its balance at which a contact settles, in units of the tolerance. None if the
+/// contact, which stops at the rate `rate`, does not stop fast enough in comparison with the fall of its face. `turns`
+/// is s psi' in units of the tolerance.
 pub(crate) fn settles_within(
     losses: &Couples<f64>,
     (s, fall): (f64, f64),

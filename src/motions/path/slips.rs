@@ -14,7 +14,7 @@ use crate::motions::walk::{Next, Pause, Phases, after_rest, ending};
 const STEPS_PER_LOOK: u64 = 64;
 
 impl<const N: usize> BodyWalk<'_, N> {
-    /// Follows a slip from `place`, within the limits `steps`.
+    /// Computes a slip from `place`, within the limits `steps`.
     pub(super) fn slides(
         &mut self,
         place: FlowPlace<N>,
@@ -50,8 +50,8 @@ impl<const N: usize> BodyWalk<'_, N> {
     /// Ends a slip at the numbers `y`, and chooses the next phase.
     pub(super) fn slip_ends(&mut self, y: [f64; N], halt: Halt) {
         if self.of.slide.settled && loses(N) {
-            // A change of the sum of energy, heat and lost energy while the contact is settled is an error
-            // of the numbers.
+            // A change of the sum of energy, heat and lost energy while the contact is settled is an error of the
+            // numbers.
             let sum = |y: &[f64; N]| self.of.slide.energy(y) + y[8] + y[N - 1];
             self.claims((sum(&y) - sum(&self.at)).abs());
         }
@@ -103,7 +103,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         tail.known(at[0], until)
     }
 
-    /// Ends the walk where the face lands, at a time with an error.
+    /// Ends the walk where the face lands, at a time with its error.
     pub(super) fn lies_flat(&mut self, [time, doubt]: [f64; 2]) {
         (self.at[0], self.at[7]) = (0.0, time);
         self.of.state = state(&self.at);

@@ -14,7 +14,7 @@ pub(crate) struct BodySlips {
     lost: Option<usize>,
 }
 
-/// The law of a slip on one rim, or on two, of which the other one slips already, with the signs of its dry losses.
+/// The law of a slip on one rim, or on two rims of which the other already slips, with the signs of its dry losses.
 pub(crate) enum Slippery {
     One(Slipping<f64>),
     Two(Lying<f64>, [f64; 2]),

@@ -1,4 +1,4 @@
-//! The impacts of a body, one by one and in sequences, and what follows them.
+//! The impacts of a body, one by one and in sequences, and the phases that follow.
 //!
 //! ```text
 //! bounces             last 2 u_n/(G (1 - q)) in all,  G = a_n N0,  q the ratio of the next bounce to this one
@@ -21,12 +21,12 @@ use crate::motions::walk::Next;
 use crate::motions::{Ending, Kind, Method, Moving, Strike};
 use core::f64::consts::FRAC_PI_2;
 
-/// Share of the state that the bounces which are summed may change: this part of the tolerance of a sweep, but at least
-/// and at most these.
+/// Share of the state that the summed bounces may change: this part of the tolerance of a sweep, within these two
+/// limits.
 const TAIL_SHARE: f64 = 0.1;
 const TAIL: f64 = 1e-13;
 const LONGEST_TAIL: f64 = 1e-10;
-/// The same of a body with losses, as a share: they act on a contact, and not on a body that bounces.
+/// The same share for a body with losses, which act at a contact, but not on a body that bounces.
 const LOSSY_TAIL: f64 = 1e-8;
 /// The tolerance of a step along an impact.
 const IMPACT_TOL: f64 = 3e-14;
@@ -36,13 +36,13 @@ pub(super) const RATTLED: f64 = 1e-7;
 const SUMMED: f64 = 1e2;
 /// Time of the rest of a rattle, in units of its velocities.
 const LASTS: f64 = 10.0;
-/// A rocking with a larger w2 is followed hop by hop.
+/// A rocking with a larger w2 is computed hop by hop.
 const ROCKED: f64 = 1e-5;
 /// A smaller w2 after a landing is a rounding error.
 const ROCKED_OUT: f64 = 1e-15;
 /// Both rims land together if |cos theta| is below this.
 const BOTH_AT_ONCE: f64 = 1e-14;
-/// Impacts of both rims are over where no rim comes down faster than this share of the first velocity.
+/// Impacts of both rims are over when no rim comes down faster than this share of the first velocity.
 const RATTLE_OVER: f64 = 1e-9;
 /// Share of its terms below which N0 is a rounding error.
 pub(super) const ROUNDED: f64 = 1e-12;
@@ -52,7 +52,7 @@ const JAM_TAKES: f64 = 1e-9;
 const MOST_IN_TURN: u32 = 10_000;
 
 impl<const N: usize> BodyWalk<'_, N> {
-    /// The phase after the impact by which a slip that presses the rim into the table stops. None where the rim could
+    /// The phase after the impact that stops a slip which presses the rim into the table. None where the rim could
     /// leave the table as well.
     pub(super) fn jams(&mut self, e: f64) -> Option<Next> {
         self.of.takeoff = Takeoff::default();
@@ -95,7 +95,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         let shape = self.of.slide.law.shape;
         let there = from.on_other_rim(&shape);
         let both = self.has_two_rims() && from.angle.1.abs() < BOTH_AT_ONCE;
-        // After two flights of no length the rims land in turn at the same time.
+        // After two flights of zero length the rims land in turn at the same time.
         if both && (there.lift < 0.0 || e > 0.0 && self.still > 2) {
             self.claims(from.angle.1.abs());
             return if e == 0.0 { self.lands_on_both() } else { self.rattles(e) };
@@ -119,13 +119,13 @@ impl<const N: usize> BodyWalk<'_, N> {
         self.leaves_impact(&after)
     }
 
-    /// The impact at these numbers; None where a rolling table has no answer.
+    /// The impact at these numbers; None for a rolling contact without a solution.
     fn impact(&self, from: &Aloft, e: f64) -> Option<Struck> {
         let light = lightness(&self.of.slide.law.shape, from.angle);
         self.rim_impact(from.slip, from.lift, light).on(&self.ask.table, e)
     }
 
-    /// The impact of a rim. A rougher run begins it with a longer step, lest both runs take the same steps.
+    /// The impact of a rim. A rougher run begins it with a longer step, so that the two runs take different steps.
     fn rim_impact(&self, slip: [f64; 2], lift: f64, light: [f64; 4]) -> RimImpact {
         let (longer, rougher) = if self.perturbation > 0.0 {
             (LONGER, self.perturbation * State::SAFETY / f64::EPSILON)
@@ -135,7 +135,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         RimImpact { slip, lift, light, tol: IMPACT_TOL * rougher, longer }
     }
 
-    /// A bound of what the losses change in a unit of time, for each unit of the normal force.
+    /// A bound of the change by the losses in a unit of time, per unit of the normal force.
     fn couples(&self, at: &Aloft) -> f64 {
         let (body, sum) = (&self.of.body, self.ask.losses.coefficients.iter().sum::<f64>());
         sum * at.w.into_iter().fold(1.0, |most: f64, w| most.max(w.abs())) / body.i1().min(body.i3())
@@ -146,7 +146,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         let law = &self.of.slide.law;
         let light @ [.., a_n, b] = lightness(&law.shape, from.angle);
         let (fall, w) = (a_n * force, turned(&law.shape, from.angle, from.w, struck.impulse));
-        // The tolerance of a sweep is that of both of its runs, which so end their bounces together.
+        // Both runs of a sweep have its tolerance, so that they end their bounces together.
         let tail = match self.ask.method {
             Method::Tolerance(tol) => (TAIL_SHARE * tol).clamp(TAIL, LONGEST_TAIL),
             _ => TAIL,
@@ -157,7 +157,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         }
         let mut ratio = e;
         if struck.hit == Hit::Sticks {
-            // Each bounce meets the slip that the flight before has made.
+            // Each bounce has the slip that the previous flight has caused.
             let [along, across] = law.towards(from.angle, w, [0.0; 2], [0.0; 2]).u;
             let slip = [along - b * force, across].map(|rate| 2.0 * rate / fall);
             ratio = self.rim_impact(slip, -1.0, light).on(&self.ask.table, e).map_or(1.0, |next| next.lift);
@@ -166,7 +166,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         (ratio < 1.0 && left * struck.lift < tail).then_some(left)
     }
 
-    /// The numbers after an impact, which is recorded.
+    /// The numbers after an impact, which is also recorded.
     fn struck(&mut self, from: &Aloft, struck: &Struck, (other, stays): (bool, bool)) -> Aloft {
         let w = turned(&self.of.slide.law.shape, from.angle, from.w, struck.impulse);
         let after = Aloft { w, slip: struck.slip, lift: struck.lift, ..*from };
@@ -188,7 +188,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         self.made.path.impacts.push(Strike { time, other, hit, states, velocities, impulse, lost, stays });
     }
 
-    /// Both rims land in turn, the faster one first, until none comes down.
+    /// Computes the impacts of both rims in turn, the faster rim first, until no rim comes down.
     #[inline(never)]
     pub(super) fn rattles(&mut self, e: f64) -> Next {
         (self.at[0], self.at[1]) = (1.0, 0.0);
@@ -266,7 +266,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         self.lands_as(&landed);
         let here = self.aloft();
         let there = if other == self.made.path.upside_down { here } else { here.on_other_rim(&shape) };
-        // The impulses of both rims together are what the centre of mass has gained.
+        // The impulses of both rims together are the momentum that the centre of mass has gained.
         let [old, new] = [&from, &there].map(|at| {
             let ([w1, w2, w3], [along, across]) = (at.w, at.slip);
             [along + w2, across - shape.rim.ell * w1 + w3, at.lift + shape.rim.ell * w2]

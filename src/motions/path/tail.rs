@@ -1,5 +1,5 @@
-//! The end of a whirr that slips: a face that comes down by infinitely many turns, of which only the
-//! first are followed.
+//! The end of a whirr that slips: a face that comes down by infinitely many turns, of which only the first are
+//! computed.
 //!
 //! ```text
 //! p = w1 s ~ tau^3    p^(1/3) falls in a straight line to the end, tau = 0
@@ -9,10 +9,10 @@
 //! turn and every slip is a smaller copy of the one before. The vertical momentum p hardly nods with the
 //! body, which is why its values and not those of theta give the end. Two values far apart give one estimate.
 //!
-//! Error: twice the sum of all further moves of the estimate, extrapolated from the last three estimates.
+//! Error: twice the sum of all further changes of the estimate, extrapolated from the last three estimates.
 
-/// Sine of theta below which the turns of a whirr are nearly smaller copies of each other. Estimates begin
-/// here; at larger angles they would be wrong.
+/// Sine of theta below which the turns of a whirr are nearly smaller copies of each other. Estimates begin here; at
+/// larger inclinations they would be wrong.
 const ALIKE_BELOW: f64 = 1e-4;
 /// The two values of p^(1/3) in an estimate differ at least by this factor. Closer ones would give a
 /// less accurate end.
@@ -21,7 +21,7 @@ const APART: f64 = 1.25;
 const END_KNOWN: f64 = 1e-9;
 /// Sine of theta below which any estimate of the end is accepted, and slips are no longer computed.
 const GONE: f64 = 1e-13;
-/// Assumed number of further moves of the estimate where these do not become smaller.
+/// Assumed number of further changes of the estimate where these do not become smaller.
 const LEFT: f64 = 64.0;
 
 /// The estimates of the end of a whirr.
@@ -45,7 +45,7 @@ impl LastTurns {
             Some([before, far]) if far >= APART * root => {
                 let end = t + (t - before) / (far / root - 1.0);
                 let moved = self.end.map_or(f64::INFINITY, |[other, ..]| (end - other).abs());
-                // If each move is the same share of the one before, all further moves are a geometric series.
+                // If each change is the same share of the previous one, all further changes are a geometric series.
                 let share = self.end.map_or(1.0, |[_, other, _]| moved / other);
                 let doubt = 2.0 * moved * if share < 1.0 - 1.0 / LEFT { 1.0 / (1.0 - share) } else { LEFT };
                 (self.last, self.end) = (Some([t, root]), Some([end, moved, doubt]));
@@ -58,7 +58,7 @@ impl LastTurns {
 
     /// The time of the end and its error, after two estimates.
     pub fn end(&self) -> Option<[f64; 2]> {
-        // The error cannot exceed the time that is left until the estimated end.
+        // The error cannot exceed the remaining time until the estimated end.
         let left = |end: f64| self.last.map_or(f64::INFINITY, |[t, _]| end - t);
         self.end.map(|[end, _, doubt]| [end, doubt.min(left(end))]).filter(|[_, doubt]| doubt.is_finite())
     }

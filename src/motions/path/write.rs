@@ -26,7 +26,7 @@ pub(crate) fn pose<const N: usize>(y: &[f64; N]) -> Pose {
     posed([y[9] + turn, y[10] - turn, y[11], y[12]], 0.0)
 }
 
-/// The pose with these angles, the contact point at this place, and the lowest point at this height.
+/// The pose with these angles, the contact point at this position, and the lowest point at this height.
 pub(super) fn posed([phi, psi, x, y]: [f64; 4], height: f64) -> Pose {
     let angle = |angle: f64| {
         let turns = (angle / TAU).round();
@@ -49,7 +49,7 @@ impl Followed {
         let side = if y[0] < 0.0 { -1.0 } else { 1.0 };
         let slip = [side * y[5], side * y[6]];
         let pose = poses(N).then(|| pose(y));
-        // Where a dry slip only begins, with u = 0, friction acts against the direction in which it begins.
+        // Where a dry slip just begins, with u = 0, friction acts against the direction in which it begins.
         let towards = if slip == [0.0, 0.0] && slide.law.dry { self.path.way } else { slip };
         let force =
             ask.force.then(|| doubted(&now, state_errors(&now, slide.tol), |y| slide.law.force(y, towards)));

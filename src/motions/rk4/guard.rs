@@ -1,14 +1,13 @@
-//! The check of a fixed step against the exact motion, before any step is made.
+//! The check of a fixed step against the exact motion, before the first step.
 //!
 //! ```text
 //! loss   = (span/h) mean((h w)^6)/144     share of the nutation's amplitude that RK4 takes away, w^2 = kappa
 //! warn   loss > 1e-3, h w > 0.5 or h |phi'| > 0.3          refuse   h w > 2.5 or h |phi'| > 1
 //! ```
-//! In one step RK4 multiplies the amplitude of an oscillation by |1 - z^2/2 + z^4/24 + i (z - z^3/6)| with z
-//! = h w, which is 1 - z^6/144 to leading order, and amplifies it for z > 2.83. The energy hardly shows this,
-//! since the nutation's share of the energy is small. In a near-flat passage phi' and w are large for a
-//! moment only, and a fixed step jumps over that moment: its result is then wrong by hundreds of degrees,
-//! with the energy right to 0.2 %.
+//! In one step RK4 multiplies the amplitude of an oscillation by |1 - z^2/2 + z^4/24 + i (z - z^3/6)| with z = h w,
+//! which is 1 - z^6/144 to leading order, and amplifies it for z > 2.83. The energy hardly shows this, since the
+//! nutation's share of the energy is small. In a near-flat passage phi' and w are large only for a moment, which a
+//! fixed step may jump over: its result is then wrong by hundreds of degrees, with the energy right to 0.2 %.
 
 use crate::error::Error;
 use crate::laws::state::State;
@@ -17,7 +16,7 @@ use crate::motions::exact::Swing;
 use crate::motions::limits::{Limits, first_event};
 use crate::states::stability::stiffness;
 
-/// How much a fixed step damps the nutation, and a step that would do.
+/// How much a fixed step damps the nutation, and a step that is short enough.
 pub(crate) struct Guard {
     pub loss: f64,
     /// The largest step, to three digits, that damps the nutation by less than a thousandth and

@@ -10,12 +10,12 @@ use crate::motions::limits::Limits;
 use crate::motions::within::{Known, within};
 use crate::motions::{Ask, Motion};
 
-/// Tolerance of the run with which a fixed step is compared where no exact solution is accurate enough. The
-/// error of that run is added to the claimed error.
+/// Tolerance of the run with which a fixed step is compared where no exact solution is accurate enough. The error of
+/// that run is added to the estimated error.
 const BETTER: f64 = 1e-12;
 
-/// The motion by steps of length `step`, up to the end of the more accurate solution. `swing` is the exact
-/// solution, if it exists. A step that is too long to reach that end is an error.
+/// The motion by steps of length `step`, up to the end of the more accurate solution. `swing` is the exact solution, if
+/// there is one. A step that is too long to reach that end is an error.
 pub(crate) fn stepped(
     course: &Course<'_>,
     swing: Option<&Swing>,

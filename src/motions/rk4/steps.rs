@@ -3,9 +3,9 @@
 //! ```text
 //! t_i = t0 + i h;   an output between two of these times takes a shortened step from the earlier one
 //! ```
-//! The end is that of a more accurate solution of the same motion, and the steps go on up to it. Where the
-//! axis of a ball passes through the vertical (its pole), a step ends at the edge of the pole, and the next
-//! one begins at the opposite edge.
+//! The end is that of a more accurate solution of the same motion, and the steps continue up to it. Where the axis of a
+//! ball passes through the vertical (its pole), a step ends at the edge of the pole, and the next one begins at the
+//! opposite edge.
 
 use crate::error::{Error, copied};
 use crate::laws::contact::reduced::Rates;
@@ -21,9 +21,9 @@ use crate::motions::{Method, Motion};
 use core::f64::consts::PI;
 use nalgebra::Point2;
 
-/// Integrates theta, w1, w2 and w3, and with a pose also phi, psi, x and y, by steps of length `h`, at the
-/// first `count` of the times. `unguarded`: no exact motion has checked the step, so that each step is
-/// checked against the precession at its start.
+/// Integrates theta, w1, w2 and w3, and with a pose also phi, psi, x and y, by steps of length `h`, at the first
+/// `count` of the times. `unguarded` means that no exact motion has checked the step, so that each step is checked
+/// against the precession at its beginning.
 pub(crate) fn run(
     course: &Course<'_>,
     limits: &Limits,
@@ -47,7 +47,7 @@ pub(crate) fn run(
     }
 }
 
-/// A point of a motion: time since the start, numbers, their derivative, and whole turns of phi and psi.
+/// A point of a motion: time, numbers, their derivative, and whole turns of phi and psi.
 #[derive(Clone, Copy)]
 struct Stage<const N: usize> {
     t: f64,
@@ -64,7 +64,7 @@ impl<const N: usize> Stage<N> {
     }
 }
 
-/// One integration. `ROUND`: the rim is rounded, and the body rolls.
+/// One integration. `ROUND` means that the rim is rounded and the body rolls.
 struct Runner<'a, const N: usize, const ROUND: bool> {
     course: &'a Course<'a>,
     rates: Rates<f64>,
@@ -229,7 +229,7 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
         y[2] = -y[2];
         if N == 8 {
             let (sin, cos) = y[4].sin_cos();
-            // Across the pole the contact point runs straight on.
+            // Across the pole the contact point moves straight on.
             let path = if self.contact == Contact::Rolling { 2.0 * off } else { 0.0 };
             let path = if low { path } else { -path };
             (y[6], y[7]) = (y[6] + path * cos, y[7] + path * sin);

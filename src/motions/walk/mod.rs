@@ -1,5 +1,5 @@
-//! The walk of a body or of a stone through the phases of its motion: how each phase begins, and
-//! which one follows.
+//! The walk of a body or of a stone through the phases of its motion: the beginning of each phase, and the choice of
+//! the next.
 //!
 //! ```text
 //! start    slips, sticks, or ends at once
@@ -28,21 +28,21 @@ use crate::methods::flow::{PATIENCE, Spent, Steps, toil_of};
 pub(crate) use phases::Phases;
 pub(crate) use slips::{SlowLaw, SlowSeries};
 
-/// Largest number of phases: `PHASES_PER_TIME` for each unit of time, but within these two limits. A motion
-/// with more is given up: some motions slip for a moment in each nutation for ever.
+/// Largest number of phases: `PHASES_PER_TIME` for each unit of time, but within these two limits. A motion with more
+/// phases stops there: some motions slip for a moment in each nutation for ever.
 const FEWEST_PHASES: usize = 5_000;
 const MOST_PHASES: usize = 10_000;
 const PHASES_PER_TIME: f64 = 20.0;
-/// Largest number of impacts, after each of which a flight costs little.
+/// Largest number of impacts; the flight after each is fast to compute.
 const MOST_IMPACTS: usize = 30_000;
-/// Largest number of phases in succession without an advance of time; a motion with more is given up.
+/// Largest number of consecutive phases without an advance of time; a motion with more stops there.
 pub(crate) const STILL: u32 = 6;
-/// A body that loses energy is given up after more than `CHATTER` phases in succession that are shorter than
-/// `SHORT`: then two laws of dry friction alternate without end.
+/// The computation of a body that loses energy stops after more than `CHATTER` consecutive phases shorter than `SHORT`:
+/// then two laws of dry friction alternate without end.
 const SHORT: f64 = 1e-9;
 const CHATTER: u32 = 200;
-/// Number of additional crawling steps that each change of the motion allows, since short steps after a
-/// change do not mean that the motion hardly advances.
+/// Number of additional crawling steps that each change of the motion allows, since short steps after a change do not
+/// mean that time hardly advances.
 const RENEWED: u64 = 1000;
 
 /// Length of the first step of a slip that has no series, in a straight line: its square is below rounding.
@@ -56,15 +56,15 @@ pub(crate) fn slip_over(dry: bool, strength: f64) -> f64 {
     if dry { OVER * strength.min(1.0) } else { 0.0 }
 }
 
-/// The largest number of phases up to the last of the times. Also the largest number of times at which,
-/// within a phase, a motion that dry losses resist stops or begins.
+/// The largest number of phases up to the last of the times. Also the largest number of times at which, within a phase,
+/// a motion that dry losses resist stops or begins.
 pub(crate) fn most_phases(times: &[f64]) -> usize {
     times.last().map_or(FEWEST_PHASES, |t| ((PHASES_PER_TIME * t) as usize).clamp(FEWEST_PHASES, MOST_PHASES))
 }
 
 /// The next phase of a walk.
 pub(crate) enum Next {
-    /// A slip with the velocity that is among the numbers.
+    /// A slip with the current velocity.
     Slips,
     /// The same slip continues, after a motion that dry losses resist has stopped or begun, or after the
     /// contact has settled.
@@ -74,12 +74,12 @@ pub(crate) enum Next {
         alpha: f64,
         growth: f64,
     },
-    /// Rolling, or free sliding on a smooth table. With `at_limit` static friction may exceed its limit by the
-    /// share `GRACE`, for rolling that needs exactly the limit.
+    /// Rolling, or free sliding on a smooth table. With `at_limit` static friction may exceed its limit by the share
+    /// `GRACE`, for rolling that needs exactly the limit.
     Rolls {
         at_limit: bool,
     },
-    /// A phase of the body's own: in the air, or on both rims.
+    /// A phase that only a body has: in the air, or on both rims.
     Own(Kind),
     Ends(Ending),
 }
@@ -106,24 +106,24 @@ pub(crate) enum Pause<const N: usize> {
 
 /// The computation of a motion, phase by phase.
 pub(crate) struct Walk<'a, P: Phases<N>, const N: usize> {
-    /// The equations of the body or of the stone, and the data of the present phase.
+    /// The equations of the body or of the stone, and the data of the current phase.
     pub of: P,
     pub ask: Ask,
     pub t0: f64,
-    /// The requested times, counted from the start.
+    /// The requested times, relative to the initial time.
     pub since: Vec<f64>,
     times: &'a [f64],
     pub made: Followed<P::State>,
-    /// The numbers at the beginning of the present phase, or at its end once it has ended.
+    /// The numbers at the beginning of the current phase, or at its end once it has ended.
     pub at: [f64; N],
     pub next: Option<Next>,
-    /// The time at which the present phase began.
+    /// The time at which the current phase began.
     pub began: f64,
-    /// Whether a phase before this moment goes on.
+    /// Whether an earlier phase continues.
     resumes: bool,
-    /// Number of phases in succession that began at the same time as the phase before.
+    /// Number of consecutive phases that began at the same time as the phase before.
     pub still: u32,
-    /// Number of phases in succession that began at most `SHORT` later than the phase before.
+    /// Number of consecutive phases that began at most `SHORT` later than the phase before.
     short: u32,
     /// The share by which a rougher run perturbs the state at each end of a phase; 0 in the finer run. Where
     /// the motion is unstable, the difference of the two runs then shows the instability.
@@ -135,8 +135,8 @@ pub(crate) struct Walk<'a, P: Phases<N>, const N: usize> {
 }
 
 impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
-    /// A walk at its start, whose first phase is not chosen yet. The tolerance of its steps is that of `of`,
-    /// which exceeds the requested one, `fine`, in a rougher run.
+    /// A walk from its initial state, whose first phase is not chosen yet. The tolerance of its steps is that of `of`,
+    /// which exceeds the requested tolerance `fine` in a rougher run.
     pub fn new(
         of: P,
         at: [f64; N],
@@ -156,8 +156,8 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         let mut path = Path::empty(count, if ask.losses.is_none() { 0 } else { count })?;
         path.goes_on = ask.restitution.is_some();
         Ok(Self {
-            // The claimed error is SAFETY fine/tol times the difference of the runs, to which this share
-            // adds one rounding.
+            // The estimated error is SAFETY fine/tol times the difference of the runs, to which this share adds one
+            // rounding.
             perturbation: if tol > fine { f64::EPSILON * tol / (fine * P::State::SAFETY) } else { 0.0 },
             of,
             ask: *ask,
@@ -200,7 +200,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         }
     }
 
-    /// Goes through the phases up to one that is integrated, or to the end.
+    /// Continues through the phases up to one that is integrated, or to the end.
     pub fn advance(&mut self, go_on: &mut dyn FnMut() -> bool) -> Result<WalkStep<N>, Error> {
         while let Some(next) = self.next.take() {
             let next = self.goes_on(next);
@@ -258,7 +258,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         Ok(WalkStep::Done)
     }
 
-    /// The phase after an ending from which the motion goes on. One ending may follow another at the same time.
+    /// The phase after an ending past which the motion continues. One ending may follow another at the same time.
     fn goes_on(&mut self, mut next: Next) -> Next {
         for _ in 0..STILL {
             let Next::Ends(ending) = next else { break };
@@ -270,8 +270,8 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         next
     }
 
-    /// Follows the flow of a phase from the numbers `y`, for at most `most` steps; `first` is the first step
-    /// if it is known.
+    /// Computes the flow of a phase from the numbers `y`, for at most `most` steps; `first` is the first step if it is
+    /// known.
     pub fn flows(
         &mut self,
         y: [f64; N],
@@ -286,8 +286,8 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         P::flows(self, y, steps, go_on)
     }
 
-    /// The phase that begins at the present numbers, at the start or after a landing. An error if no unique
-    /// contact force exists.
+    /// The phase that begins at the current numbers, initially or after a landing. An error if no unique contact force
+    /// exists.
     pub fn first_phase(&mut self) -> Result<Next, Error> {
         if !self.ask.table.rubs() {
             return Ok(P::begins_without_slip(self));
@@ -317,8 +317,8 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         (self.at[P::SLIP], self.at[P::SLIP + 1]) = (0.0, 0.0);
     }
 
-    /// Sets the next phase, and removes a rolling phase of no length from the list: its contact point began
-    /// to slip at once, since rolling needed all of the static friction.
+    /// Sets the next phase, and removes a rolling phase of zero length from the list: its contact point began to slip
+    /// at once, since rolling needed all of the static friction.
     pub fn continues_with(&mut self, next: Next) {
         if !matches!(next, Next::Ends(_)) {
             let now = self.t0 + self.at[TIME];
@@ -328,7 +328,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         self.next = Some(next);
     }
 
-    /// Lets the next phase be the present one if it is of the same kind.
+    /// Continues the current phase if the next phase is of the same kind.
     pub fn resumes_phase(&mut self) {
         self.resumes = true;
     }
@@ -350,15 +350,13 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         self.spent.patience = (self.spent.patience + RENEWED).min(PATIENCE);
     }
 
-    /// Records an event that the model does not cover, at the present numbers, unless an earlier
-    /// one is recorded.
+    /// Records an event outside the model, at the current numbers, unless an earlier event is recorded.
     pub fn records_event(&mut self, ending: Ending) {
         let event = Event { ending, time: self.t0 + self.at[TIME], state: P::state(self) };
         self.made.motion.event.get_or_insert(event);
     }
 
-    /// Writes the outputs up to the present time that no flow has written, as for a motion that
-    /// ends at its start.
+    /// Writes the outputs up to the current time that no flow has written, as for a motion that is over at once.
     pub fn writes_up_to_now(&mut self) {
         while self.until().is_some_and(|t| t <= self.at[TIME]) {
             P::write_here(self);
@@ -376,7 +374,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         Ok(self.made)
     }
 
-    /// The next requested time, counted from the start.
+    /// The next requested time, relative to the initial time.
     pub fn until(&self) -> Option<f64> {
         self.since.get(self.made.motion.states.len()).copied()
     }
@@ -390,18 +388,18 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         self.ask.table.friction()
     }
 
-    /// Raises the claimed error of the motion to at least this error.
+    /// Raises the estimated error of the motion to at least this error.
     pub fn claims(&mut self, error: f64) {
         self.made.motion.error = self.made.motion.error.max(error);
     }
 
-    /// Claims the error of the time of an end at `y`: the errors of the steps, divided by the rate at which
-    /// the margin, or the speed of a body that comes to rest, fell.
+    /// Includes the error of the time of an end at `y` in the estimated error: the errors of the steps, divided by the
+    /// rate at which the margin, or the speed of a body that comes to rest, fell.
     pub fn claims_time_error(&mut self, halt: Halt, steep: f64, y: &[f64; N]) {
         if let Some(grows) = self.of.grows(halt, y) {
             let erred = grows * (self.spent.erred * self.of.tol() + 8.0 * f64::EPSILON);
-            // A margin that only touches zero does so with zero slope: the error of the time is
-            // a square root. A hop from a margin of exactly zero is as long as its own speed says.
+            // A margin that only touches zero does so with zero slope: the error of the time is a square root. The
+            // length of a hop from a margin of exactly zero is proportional to its speed.
             let hop = if P::leaves_margin(self, halt) { y[TIME] - self.began } else { f64::INFINITY };
             self.claims((erred / steep).min(erred.sqrt()).min(erred * hop));
         }
@@ -414,7 +412,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         self.spent.patience = patience;
     }
 
-    /// Adds the cost of a flow that a lane has followed, in which `given` steps were allowed to crawl.
+    /// Adds the cost of a flow that a lane has computed, in which `given` steps were allowed to crawl.
     pub fn has_spent_elsewhere(&mut self, spent: Spent, given: u64) {
         let crawled = given - spent.patience.min(given);
         self.tired = spent.patience == 0;

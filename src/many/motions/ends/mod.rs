@@ -3,10 +3,9 @@
 //! ```text
 //! N = 32 terms, 16 nodes   ->   56 terms, 64 nodes   ->   56 terms, 320 nodes   ->   one at a time
 //! ```
-//! [`exact::lanes::march`](crate::motions::exact::lanes) has the panels. A march whose estimated error
-//! exceeds the tolerance is repeated with more terms and more nodes; one motion in a few hundred remains
-//! after that and is computed alone. A motion that is over at its start is found by the check of the start,
-//! and needs no march.
+//! [`exact::lanes::march`](crate::motions::exact::lanes) has the panels. A march whose estimated error exceeds the
+//! tolerance is repeated with more terms and more nodes; one motion in a few hundred is still not precise enough after
+//! that and is computed alone. A motion that is over at once needs no march.
 
 mod march;
 mod run;
@@ -29,8 +28,8 @@ use set::{FEW, MANY, MarchKind};
 use std::sync::LazyLock;
 use summed::Summed;
 
-/// The finest rule may have this error under any tolerance: it is a rounding error, as large as that of a
-/// motion that is computed alone.
+/// The finest rule may have this error under any tolerance, because it is a rounding error, as large as for a motion
+/// that is computed alone.
 const FINEST: f64 = 4e-12;
 
 /// The quadrature rules of the three marches.
@@ -39,7 +38,7 @@ static RULES: LazyLock<[Rule; 3]> = LazyLock::new(|| [16, 64, 320].map(Rule::new
 /// The cosine of the double next to pi/2.
 const RIGHT_ANGLE_COSINE: f64 = 6.123_233_995_736_766e-17;
 
-/// Coefficient of friction below which lanes do not compute a motion that may slip: its margin is a rounding
+/// Coefficient of friction below which lanes do not compute a motion that may slip, because its margin is a rounding
 /// error.
 const LEAST_GRIP: f64 = 1e-9;
 
@@ -56,12 +55,12 @@ fn side_of(theta_end: f64) -> [f64; 2] {
     if theta_end == FRAC_PI_2 { [1.0, RIGHT_ANGLE_COSINE] } else { theta_end.sin_cos().into() }
 }
 
-/// A motion of a block after its march, with its end if it has one.
+/// A motion of a block after its march, with its end if any.
 struct SolvedRun {
     task: MarchTask,
     free: FreeMotion,
     end: Option<EventState>,
-    /// The index of the march that solved the motion; the marches before were not precise enough.
+    /// The index of the march that solved the motion; the earlier marches were not precise enough.
     rung: usize,
     /// Least and greatest inclination of the motion.
     passed: Cell<[f64; 2]>,
@@ -298,7 +297,7 @@ fn ending(comes: Comes) -> Ending {
     }
 }
 
-/// The event of an ending at the start.
+/// The event for an ending at time 0.
 fn comes(ending: Ending) -> Comes {
     match ending {
         Ending::Side => Comes::Side,
@@ -307,7 +306,7 @@ fn comes(ending: Ending) -> Comes {
     }
 }
 
-/// A state with its tilting reversed if time runs backwards, `way` = -1.
+/// A state with w2 reversed if time runs backwards, `way` = -1.
 fn turned(y: State, way: f64) -> State {
     State { w2: way * y.w2, ..y }
 }

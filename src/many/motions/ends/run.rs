@@ -1,13 +1,13 @@
-//! The march of one motion to its end, or to a time: how far it has come, and its next panel.
+//! The march of one motion to its end, or to a time: its progress, and its next panel.
 //!
 //! ```text
 //! start -> first turning point (t1) -> back at the start (2 t1)
 //!       -> second turning point (2 t1 + t2) -> period 2 (t1 + t2)
 //! ```
 //! An event depends on the inclination alone, so that it has the same place on the way to a turning point and on the
-//! way back, and the way back need not be marched. A motion without an event before its first turning point goes on
-//! from its start in the other direction, at the time 2 t1; a motion without an event before its second turning point
-//! never ends.
+//! way back, and the way back need not be computed. A motion without an event before its first turning point continues
+//! from its initial state in the other direction, at the time 2 t1; a motion without an event before its second turning
+//! point never ends.
 
 use crate::laws::contact::FLAT;
 use crate::laws::state::State;
@@ -40,7 +40,7 @@ pub(super) struct MarchTask {
 /// A time at which the state of a motion is computed.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Target {
-    /// An index by which the caller recognizes the target.
+    /// An index by which the caller identifies the target.
     pub slot: usize,
     /// The time of a march from the start to the place of the motion at that time, and whether the motion
     /// returns through this place from a turning point.
@@ -103,7 +103,7 @@ pub(super) struct EventState {
     pub before: FreeMotion,
 }
 
-/// A motion that goes on: the times from its start to its turning points, as far as they are known.
+/// A motion without an end: the times from time 0 to its turning points, as far as they are known.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct FreeMotion {
     pub first: Option<f64>,
@@ -199,14 +199,14 @@ impl Run {
         run
     }
 
-    /// Goes on to the next panel; returns whether the march has taken too many panels.
+    /// Continues with the next panel; returns whether the march has taken too many panels.
     pub fn passes(&mut self, knot: Knot<f64>) -> bool {
         self.panels += 1;
         self.knot = knot;
         self.panels > MOST
     }
 
-    /// Goes on after a panel, up to the time `span`, or to the target if `span` is None.
+    /// Continues after a panel, up to the time `span`, or to the target if `span` is None.
     pub fn advance(&mut self, met: &PanelOutcome, span: Option<f64>) -> RunOutcome {
         self.panels += 1;
         if self.panels > MOST || met.comes == Comes::Unknown {

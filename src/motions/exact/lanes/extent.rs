@@ -9,8 +9,8 @@ use core::f64::consts::PI;
 use fearless_simd::{ExtractToken, Simd, SimdBase, f64x8};
 
 impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
-    /// Precession of a whole nutation in radians, by the midpoint rule, which converges as fast as the period; its
-    /// estimated error, and the part of that which is rounding.
+    /// Precession in a whole nutation, in radians, by the midpoint rule, which converges as fast as the period; its
+    /// estimated error, and the rounding part of that error.
     #[inline(always)]
     pub fn precession_per_period(&self, points: &Midpoints<K>) -> [T; 3] {
         let number = |x: f64| self.theta.splat(x);

@@ -17,10 +17,10 @@
 //! twice as fast.
 //!
 //! The code has no branches, so that the result in a lane does not depend on the other lanes. Where one panel is too
-//! short, a face lands, or no turning point is found, the error comes out too large to be accepted, or NaN;
-//! [`exact::Swing`](super::Swing) serves those motions. The error is the sum of the truncation of the two series
-//! (judged by their last terms), the misfit of the turning points and of the time, and the rounding error of F; in the
-//! tests of `ensemble` it is never below the true error.
+//! short, a face lands, or no turning point is found, the error becomes too large to be accepted, or NaN;
+//! [`exact::Swing`](super::Swing) computes those motions. The error is the sum of the truncation of the two series
+//! (from their last terms), the misfit of the turning points and of the time, and the rounding error of F; in the tests
+//! of `ensemble` it is never below the true error.
 
 mod extent;
 pub(crate) mod march;
@@ -291,7 +291,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         self.rate[0] * self.theta.splat(TAU)
     }
 
-    /// Estimated error of the period, and the part of it that is rounding.
+    /// Estimated error of the period, and the rounding part of it.
     #[inline(always)]
     pub fn period_error(&self) -> [T; 2] {
         [self.doubt.per_time, self.doubt.noise].map(|x| self.period() * x)
@@ -343,8 +343,8 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         (y, [s, c, horner(&self.w1[..n], y), tilt, horner(&self.w3[..n], y)])
     }
 
-    /// (theta, w1, w2, w3) at time `t`, the largest of their estimated errors, and the part of it that is rounding,
-    /// which more terms would not reduce.
+    /// (theta, w1, w2, w3) at time `t`, the largest of their estimated errors, and the rounding part of it, which more
+    /// terms would not reduce.
     #[inline(always)]
     pub fn state(&self, t: T) -> ([T; 4], T, T) {
         self.state_at(t, &self.place(t))

@@ -1,4 +1,4 @@
-//! One motion at eight times side by side: the fast method for narrow swings that nothing ends.
+//! One motion at eight times side by side: the fast method for narrow swings without an event.
 
 use super::turns::{PeriodPoint, Turns};
 use super::{Grip, Midpoints, Swings};

@@ -11,8 +11,8 @@
 //! arc. On a smooth table there is no path to sum.
 //!
 //! Error: the error of the rates times the time; the error of the time times the rates; the truncation of the series,
-//! judged by their last terms; and the error of the angles times the extent of the path. In the tests of `poses` the
-//! sum is never below the true error.
+//! from their last terms; and the error of the angles times the extent of the path. In the tests of `poses` the sum is
+//! never below the true error.
 
 use super::{Midpoints, Swings};
 use crate::laws::contact::Contact;

@@ -4,10 +4,10 @@
 //! y = (quaternion of the body's axes, w along them, heights of both rims, lost, time)
 //! q' = q (0, w)/2,   I1 wx' = (I1 - I3) wy wz + mx,   I1 wy' = (I3 - I1) wx wz + my,   I3 wz' = mz
 //! ```
-//! The centre keeps its parabola: a drag on it is not modelled. Only the laws that resist all rotation act in the air; the
-//! others need a contact or a gap under the face. In these axes the poles are ordinary points. The landing is that of
-//! [`lands`](super::lands), step by step, with K = (|l| + a) (|L|^2/I1^2 + |m|/I1) - 1 at the start, since the air slows
-//! the body down. Error: the tolerance of the steps.
+//! The centre moves along its parabola: drag on the centre is not modelled. Only the laws that resist all rotation act
+//! in the air; the others need a contact or a gap under the face. In these axes the poles are ordinary points. The
+//! landing is computed as in [`lands`](super::lands), step by step, with the initial K = (|l| + a) (|L|^2/I1^2 +
+//! |m|/I1) - 1, since the air slows the body down. Error: the tolerance of the steps.
 
 use super::lands::{Falling, Leaves, TOUCH, TooMany};
 use super::{Aloft, Flies, Flight};
@@ -40,7 +40,7 @@ pub(crate) struct AirFlight {
     tol: f64,
 }
 
-/// The laws that act on a body in the air; None if there are none.
+/// The laws that act on a body in the air; None if no law does.
 pub(crate) fn in_air(losses: &Losses) -> Option<Couples<f64>> {
     let mut left = *losses;
     for law in Law::ALL.iter().copied().filter(|law| !law.acts_in_air()) {
@@ -61,7 +61,7 @@ fn axes([w, x, y, z]: [f64; 4]) -> [[f64; 3]; 3] {
 impl AirFlight {
     pub fn new(shape: &Shape<f64>, from: &Aloft, losses: Couples<f64>, tol: f64) -> Self {
         let free = Flight::new(shape, from);
-        // The axes of the body are those of the tilt at the start, which lean toward x.
+        // The axes of the body are e1, e2 and e3 at the start, which lean toward x.
         let half = 0.5 * from.angle.0.atan2(from.angle.1);
         let other = from.on_other_rim(shape).height;
         let [w1, w2, w3] = from.w;

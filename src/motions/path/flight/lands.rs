@@ -1,4 +1,4 @@
-//! The first landing of a rim in a flight; none is missed.
+//! The first landing of a rim in a flight; no landing is missed.
 //!
 //! ```text
 //! height of a rim   h = z - (side l c + a s + rho)     side = 1 for the rim that was down last, -1 for the other one
@@ -11,15 +11,15 @@
 //! rim that touches at the start leaves as t^k, k = 1 after a bounce, 2 where a contact at rest loses its normal force,
 //! 3 where the normal force of a slip vanishes; a power series with the known zeros taken out carries it away from there.
 //!
-//! Error: that of h divided by the normal velocity; a rim that only grazes touches where h is a rounding error.
+//! Error: that of h divided by the normal velocity; a rim that only grazes the table lands where h is a rounding error.
 
 use super::{Aloft, Flies, Flight};
 use crate::laws::body::Shape;
 
 /// Number of terms of the series at the start.
 const RIM_TERMS: usize = 30;
-/// Within `near` the terms of the series fall by this factor; a landing before this share of it is sought with fewer terms,
-/// of which the last one is below exp(-DIGITS).
+/// Within `near` the terms of the series fall by this factor; a landing before this share of `near` is sought with
+/// fewer terms, of which the last is below exp(-DIGITS).
 const NARROWS: f64 = 3.0;
 const EARLY: f64 = 0.5;
 const DIGITS: f64 = 36.0;
@@ -29,7 +29,7 @@ pub(super) const TOUCH: f64 = 1e-15;
 /// Largest number of evaluations of the height.
 const HEIGHTS: u32 = 1_000_000;
 
-/// How a rim begins a flight: high above the table, or on it and leaving as t^k.
+/// The beginning of a rim's flight: above the table, or on the table with a height that grows as t^k.
 pub(crate) type Leaves = Option<usize>;
 
 /// A function of time with its derivative, whose second derivative is at most `bend`.
@@ -101,8 +101,8 @@ impl<F: FnMut(f64) -> [f64; 2]> Falling<F> {
 pub(crate) struct TooMany;
 
 impl Flight {
-    /// Height and vertical velocity of the lowest point of a rim. The height is that of the start and its change, which
-    /// keeps the digits of a small one.
+    /// Height and vertical velocity of the lowest point of a rim. The height is the sum of the initial height and its
+    /// change, which keeps the digits of a small change.
     fn rim(&self, side: f64, t: f64) -> [f64; 2] {
         let ([cosine, cosine_rate], (s0, c0), rim) = (self.cosine(t), self.from.angle, self.shape.rim);
         let (s, c) = self.angle_of(t, cosine);
@@ -164,7 +164,7 @@ impl Flight {
             1.0 / (1.0 + self.rate)
         };
         let near = near.min(end);
-        // A bounce that is over long before needs few terms, up to twice the time that the first two say.
+        // A bounce that is over much earlier needs few terms, up to twice the time that the first two give.
         let first = self.series(side, near, order + 2);
         let early = -(2.0 * first[order] / first[order + 1]);
         if early > 0.0 && early < EARLY {

@@ -7,9 +7,9 @@
 //! W = hypot(w1, w2) stays;   phi = phi0 - [X - Y],   psi = psi0 + sig t - [X + Y]       Napier's analogies
 //! tan X = cos((a-b)/2)/cos((a+b)/2) tan D,   tan Y = sin((a-b)/2)/sin((a+b)/2) tan D,   D = (pi - C)/2
 //! ```
-//! theta may pass pi/2 or come near a pole; nothing happens there. Near the poles sums are written so that no digits
-//! are lost. The symmetric top without a couple is Poinsot's and Euler's; Napier's analogies are those of spherical
-//! trigonometry. [`lands`] has the landing.
+//! theta may pass pi/2 or come near a pole, where nothing special happens. Near the poles sums are written so that no
+//! digits are lost. The symmetric top without a couple is Poinsot's and Euler's; Napier's analogies are those of
+//! spherical trigonometry. [`lands`] computes the landing.
 //!
 //! Error: a few roundings times 1 + Lam t, and of w1, w2, phi and psi over sin(theta).
 
@@ -63,28 +63,28 @@ impl Aloft {
     }
 }
 
-/// The start of a flight.
+/// The beginning of a flight.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Takeoff {
     /// The height of the lowest point of the rim, and its vertical velocity.
     pub height: f64,
     pub lift: f64,
-    /// How the rim leaves the table, as a power of time; None for a start above the table.
+    /// The power of time with which the rim leaves the table; None for a start above the table.
     pub leaves: Leaves,
 }
 
-/// A flight, with losses in the air or without.
+/// A flight, with or without losses in the air.
 pub(crate) trait Flies {
-    /// The first time after the start at which a rim lands, and whether it is the other rim of a body that has two;
-    /// None if none lands up to the time `until`. `leaves` says how both rims begin.
+    /// The first time after the start at which a rim lands, and whether it is the other rim of a body with two rims;
+    /// None if no rim lands up to the time `until`. `leaves` is the beginning of both rims' flights.
     fn lands(&mut self, leaves: [Leaves; 2], two: bool, until: f64) -> Result<Option<(f64, bool)>, TooMany>;
-    /// The body at a time since the start, as seen from the same rim, and the energy that the air has taken.
+    /// The body at a time since the start, as seen from the same rim, and the energy lost to the air.
     fn at(&self, t: f64) -> (Aloft, f64);
     /// The flight without losses.
     fn free(&self) -> &Flight;
 }
 
-/// Beyond this size of cos theta its small complement is computed.
+/// For |cos theta| above this its small complement is computed.
 const FAR: f64 = 0.9;
 
 /// A flight from its start.
@@ -225,8 +225,8 @@ impl Flight {
         self.placed(t, angle, [w1, w2, self.from.w[2]], turned)
     }
 
-    /// The body at a time since the start, where its orientation and its rotation are known; `turned` are the angles by
-    /// which phi and psi have grown.
+    /// The body at a time since the start, from known orientation and rotation; `turned` are the angles by which phi
+    /// and psi have grown.
     fn placed(&self, t: f64, angle: (f64, f64), [w1, w2, w3]: [f64; 3], turned: [f64; 2]) -> Aloft {
         let (rim, from) = (self.shape.rim, &self.from);
         let (phi, psi) = (from.pose[0] + turned[0], from.pose[1] + turned[1]);
@@ -251,13 +251,13 @@ impl Flight {
         }
     }
 
-    /// The error that rounding may leave in the height of a rim at a time.
+    /// The error of the height of a rim at a time, due to rounding.
     pub fn doubt_of_height(&self, t: f64) -> f64 {
         let reach = self.shape.rim.ell.abs() + 1.0;
         4.0 * f64::EPSILON * (self.from.height + t * (1.0 + self.velocity[2].abs() + self.rate * reach))
     }
 
-    /// The error that rounding may leave in the numbers at a time.
+    /// The error of the numbers at a time, due to rounding.
     pub fn doubt(&self, t: f64, at: &Aloft) -> f64 {
         let fastest = at.w.iter().fold(1.0, |most: f64, w| most.max(w.abs()));
         4.0 * f64::EPSILON * (1.0 + self.rate * t) * fastest / at.angle.0.clamp(1e-300, 1.0)

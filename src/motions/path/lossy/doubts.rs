@@ -7,8 +7,8 @@ use crate::laws::state::State;
 use crate::motions::path::settled::lag;
 
 impl LossyFlow {
-    /// Error of the time at which the contact point stops, from the sum `erred` of the errors of all steps.
-    /// The slower psi' changes, the more an error of psi' moves that time.
+    /// Error of the time at which the contact point stops, from the sum `erred` of the errors of all steps. The more
+    /// slowly psi' changes, the larger is the effect of an error of psi' on that time.
     pub fn doubt(&self, y: &State, erred: f64) -> f64 {
         let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
         let (s, c) = angle;

@@ -6,9 +6,9 @@
 //! dt = v/(v + delta/J) dsigma with v^2 = w_h^2 + w2^2 under rolling resistance, else dt = dsigma
 //! margins of a lane    distances from landing and settling, side, N, (mu N)^2 - F^2, |psi'|, |w_z|, v
 //! ```
-//! The direction of the couple of rolling resistance turns with that of rolling and rocking, the faster the
-//! slower these are. In sigma the motion is smooth up to the point where both vanish, which is reached as
-//! exp(-sigma). Single motions and lanes of eight share this code.
+//! The direction of the couple of rolling resistance turns with that of rolling and rocking, faster the slower these
+//! are. In sigma the motion is smooth up to the point where both vanish, which is approached as exp(-sigma). Single
+//! motions and lanes of eight share this code.
 
 use super::{Hold, LOSSY_NUMBERS, LossyFlow, REST};
 use crate::laws::body::{Shape, landing_angle};
@@ -21,7 +21,7 @@ use crate::motions::path::face::lands_at;
 use crate::motions::path::settled::{CLOSE, SLOWER};
 use crate::numbers::{Dual, Real, here};
 
-/// A body that loses energy while no motion is held, with its table and its losses.
+/// A body that loses energy while no motion is held, with its contact and its losses.
 #[derive(Clone, Copy)]
 pub(crate) struct LossyUnheld<T> {
     pub law: Lossy<T>,
@@ -45,7 +45,7 @@ pub(crate) fn pace_of<T: Real>((s, c): (T, T), precession: T, [_, w2, w3]: [T; 3
     rolling.mac(rolling, w2 * w2).sqrt()
 }
 
-/// phi' and w where no motion is held.
+/// phi' and w while no motion is held.
 #[inline(always)]
 pub(crate) fn turning<T: Real>([s, _, p, w2, w3]: [T; 5]) -> (T, [T; 3]) {
     let per = s.splat(1.0) / s;
@@ -59,9 +59,9 @@ pub(crate) fn fastest_of<T: Real>(w: [T; 3]) -> T {
     w[0].splat(1.0).max(w[0].abs()).max(w[1].abs()).max(w[2].abs())
 }
 
-/// The error of a step in units of `tol`: relative to s for s, relative to the largest speed for speeds, and
-/// for p as an error of w1. If rolling resistance stops the body, `paced` is its speed of rolling and
-/// rocking, and speeds may err by at most a thousandth of it, so that it vanishes correctly at any tolerance.
+/// The error of a step in units of `tol`: relative to s for s, relative to the largest speed for speeds, and for p as
+/// an error of w1. If rolling resistance stops the body, `paced` is its speed of rolling and rocking, and the error of
+/// a speed is at most a thousandth of it, so that it vanishes correctly at any tolerance.
 #[inline(always)]
 pub(crate) fn error<T: Real, const N: usize>(
     tol: T,
@@ -88,7 +88,7 @@ pub(crate) fn error<T: Real, const N: usize>(
     made.error(per, N as f64) * made.strictness(tol, 5, if N == 6 { 5 } else { TIME })
 }
 
-/// The time of three radians of the fastest turning, tilting or nutation; at most 3.
+/// The time in which the fastest of rotation, theta' and nutation turns by three radians; at most 3.
 #[inline(always)]
 pub(crate) fn three_radians<T: Real>(shape: &Shape<T>, precession: T, [w1, w2, w3]: [T; 3]) -> T {
     let one = precession.splat(1.0);
@@ -112,10 +112,9 @@ impl<T: Real> LossyUnheld<T> {
         acted
     }
 
-    /// The margins, which are all positive where a lane may take a step without a search for events: the
-    /// distance of the face from landing and settling, that of the other rim, N, the margin of friction,
-    /// those of the motions that dry losses resist, and that of the joint speed which rolling resistance
-    /// brings to rest.
+    /// The margins, which are all positive where a lane may take a step without a search for events: the distances of
+    /// the face from landing and settling, that of the other rim, N, the margin of friction, those of the motions that
+    /// dry losses resist, and that of the joint speed that rolling resistance brings to rest.
     #[inline(always)]
     pub fn margins(&self, y: &[T; 6], acted: &Acted<T>) -> [T; 7] {
         let [s, c, p, w2, w3, _] = *y;
@@ -146,7 +145,7 @@ impl<T: Real> LossyUnheld<T> {
         [far, from_side(self.side, (s, c)), acted.force[0], held, contour, drilling, moves]
     }
 
-    /// The error of a step, where 1 is allowed.
+    /// The error of a step, in units of the allowed error.
     #[inline(always)]
     pub fn error(&self, tol: T, y: &[T; 6], made: &rk8::Step<T, 6>) -> T {
         let [s, c, p, w2, w3, _] = *y;
@@ -165,14 +164,14 @@ impl<T: Real> LossyUnheld<T> {
         fastest_of(turning([y[0], y[1], y[2], y[3], y[4]]).1)
     }
 
-    /// The longest time step that turning and nutation allow.
+    /// The longest time step that rotation and nutation allow.
     #[inline(always)]
     pub fn calm(&self, y: &[T; 6]) -> T {
         let (precession, w) = turning([y[0], y[1], y[2], y[3], y[4]]);
         three_radians(&self.law.rates.reduced().shape, precession, w)
     }
 
-    /// The longest step in sigma.
+    /// The longest step of the integrator, in its variable sigma.
     #[inline(always)]
     pub fn longest(&self, y: &[T; 6], rate: &[T; 6]) -> T {
         let mut most = self.calm(y);
@@ -200,7 +199,7 @@ impl<T: Real> LossyUnheld<T> {
 }
 
 impl LossyFlow {
-    /// Whether lanes can follow this flow: no motion is held, all events end it, and the body is not a ball.
+    /// Whether lanes can compute this flow: no motion is held, all events end it, and the body is not a ball.
     pub fn is_free(&self) -> bool {
         self.hold == Hold::No && !self.ways.holds_drilling && self.watch && !self.ball && !self.is_patch()
     }
@@ -225,7 +224,7 @@ impl LossyFlow {
 }
 
 impl<T: Real> LossyUnheld<T> {
-    /// A body from the equations `rates` of its table and rim, and the numbers of [`LossyFlow::numbers`].
+    /// A body from the equations `rates` of its contact and rim, and the numbers of [`LossyFlow::numbers`].
     #[inline(always)]
     pub fn of(
         rates: crate::laws::contact::reduced::Rates<T>,

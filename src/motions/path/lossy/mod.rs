@@ -1,18 +1,17 @@
-//! A body that loses energy while it rolls or slides freely, followed to its last turn.
+//! A body that loses energy while it rolls or slides freely, computed to its last turn.
 //!
 //! ```text
 //! y = (s, c, p, w2, w3, 0, 0, t, 0; phi, psi, x, y; lost)       p = w1 s = phi' s^2, in time
 //! held   y = (s, c, q, w2, -, ...),   w1 = s (q - c psi'),   w3 = c q + s^2 psi',   q = w_z
 //! margins   s,  theta_end - theta,  N,  (mu N)^2 - F^2,  |psi'| or its hold,  |w_z| or its hold or |w2|
 //! ```
-//! Near the table p is almost conserved, while w1 = p/s is not; so a whirr is computed to its end with
-//! bounded numbers. Dry friction can hold a motion that it has stopped
-//! ([`lossy`](crate::laws::contact::lossy)). A couple that grows with a power of psi' stops the contact of
-//! a falling face ever faster. Where this stop is thousands of times faster than the fall, psi' follows
-//! from the balance of that couple with the couple that turns the contact, the term of psi'' included
-//! (Tikhonov 1952).
+//! Near the table p is almost conserved, while w1 = p/s is not; so a whirr is computed to its end with bounded numbers.
+//! Dry friction can hold a motion that it has stopped ([`lossy`](crate::laws::contact::lossy)). A couple that grows
+//! with a power of psi' stops the contact of a falling face faster and faster. Where this stop is thousands of times
+//! faster than the fall, psi' follows from the balance of that couple with the couple that turns the contact, the term
+//! of psi'' included (Tikhonov 1952).
 //!
-//! Error: the tolerance of the steps; `test_losses_reference` has motions of 25 digits from another model.
+//! Error: the tolerance of the steps; `test_losses_reference` has motions to 25 digits from another model.
 
 mod doubts;
 mod free;
@@ -39,7 +38,7 @@ pub(crate) use steps::at_rest;
 enum Hold {
     /// The contact point moves.
     No,
-    /// The body only rocks, since nothing turns it.
+    /// The body only rocks, since no couple turns it.
     Planar,
     /// Dry friction holds the contact point.
     Dry,
@@ -47,10 +46,10 @@ enum Hold {
     Settled,
 }
 
-/// A friction demand that exceeds mu N by more than this share has jumped beyond mu N, as at a reversal of a
-/// dry couple, and has not crossed mu N continuously.
+/// If the required friction exceeds mu N by more than this share, it has jumped beyond mu N, as at a reversal of a dry
+/// couple, and has not crossed mu N continuously.
 const JUMP: f64 = 1e-6;
-/// Speed given to a motion that has just reversed and slips at once, so that its new direction is definite.
+/// Speed of a motion that has just reversed and slips at once, so that its new direction is definite.
 const NUDGE: f64 = 1e-13;
 /// A body with a smaller joint speed of rolling and rocking is at rest for the law of rolling resistance.
 pub(crate) const REST: f64 = 1e-13;
@@ -69,7 +68,7 @@ struct Resisted {
 /// Length of [`LossyFlow::numbers`].
 pub(crate) const LOSSY_NUMBERS: usize = 4 + COUNT + 2;
 
-/// A body, its table and its losses, and the motions that are held at rest.
+/// A body, its contact and its losses, and the motions that are held at rest.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LossyFlow {
     law: Lossy<f64>,
@@ -79,8 +78,7 @@ pub(crate) struct LossyFlow {
     hold: Hold,
     /// Whether the flow starts from a state in which w_z vanishes exactly.
     starts_still: bool,
-    /// Allowances for the rounding of psi', and of w_z (of w2 if the body only rocks), where these
-    /// begin at rest.
+    /// Allowances for the rounding of psi', and of w_z (of w2 if the body only rocks), where these start from zero.
     slack: [f64; 2],
     ways: Ways,
     /// The sign of psi' of a settled contact.
@@ -97,7 +95,7 @@ pub(crate) struct LossyFlow {
 }
 
 impl LossyFlow {
-    /// The flow of a body from a state on; it rolls with friction up to mu N, or slides on a smooth table.
+    /// The flow of a body from a state; the body rolls with friction up to mu N, or slides on a smooth table.
     pub fn new((body, contact): (&Body, Contact), mu: f64, losses: &Losses, tol: f64, y: &State) -> Self {
         let law = Lossy::of(contact, body, losses);
         let dual = |value: f64| Dual { value, slope: 0.0 };
@@ -133,7 +131,7 @@ impl LossyFlow {
         self.ways.holds_drilling
     }
 
-    /// From now on only a landing of the face ends the flow.
+    /// Makes a landing of the face the only event that ends the flow.
     pub fn go_beyond(&mut self) {
         self.watch = false;
     }
@@ -164,8 +162,7 @@ impl LossyFlow {
         self.sets_slack(y);
     }
 
-    /// Sets the allowances for motions that begin at rest against a dry loss, where rounding may
-    /// give either sign.
+    /// Sets the allowances for motions that start from rest against a dry loss, where rounding may give either sign.
     fn sets_slack(&mut self, y: &State) {
         let size = SLACK * (1.0 + y.precession().abs());
         let (s, c) = y.theta.sin_cos();
@@ -187,8 +184,8 @@ impl LossyFlow {
         self.law.at(angle, precession, w, held)
     }
 
-    /// Lets dry friction hold the contact point if its limit suffices, or always if `surely`; else the
-    /// push moves it.
+    /// Makes dry friction hold the contact point if its limit suffices, or always if `surely`; else the push moves the
+    /// contact point.
     fn stop_contour(&mut self, angle: (f64, f64), w: [f64; 3], surely: bool) {
         self.turn(Ways { contour: 0.0, ..self.ways });
         let needs = self.response(angle, w[0] / angle.0, w, Held::Contour(0.0)).held;
@@ -200,7 +197,7 @@ impl LossyFlow {
         }
     }
 
-    /// Lets the body only rock, since nothing turns it any more.
+    /// Makes the body only rock, since no couple turns it any more.
     fn only_rocks(&mut self, angle: (f64, f64), w2: f64) {
         self.hold = Hold::Planar;
         self.turn(Ways::default());
@@ -209,14 +206,14 @@ impl LossyFlow {
         self.turn(Ways { rocking, ..Ways::default() });
     }
 
-    /// Lets dry friction hold the drilling, or lets the drilling begin anew.
+    /// Makes dry friction hold the drilling, or makes the drilling begin anew.
     fn stop_drilling(&mut self, angle: (f64, f64), w: [f64; 3]) {
         self.turn(self.ways.holding_drilling());
         let needs = self.response(angle, w[0] / angle.0, w, Held::Drilling).held;
         self.turn(self.ways.drilling_stopped(needs));
     }
 
-    /// Whether the friction demand has jumped beyond mu N, as happens where a dry couple has just reversed.
+    /// Whether the required friction has jumped beyond mu N, as where a dry couple has just reversed.
     pub fn jumps(&self, y: &State) -> bool {
         self.force(y).friction_coefficient() > self.mu * (1.0 + JUMP)
     }
@@ -267,7 +264,7 @@ impl LossyFlow {
                 let push = self.response(angle, w[0] / angle.0, w, Held::Drilling).held[0];
                 self.turn(self.ways.drilling_from(push));
             }
-            // A body that neither runs along its rim nor drills does not turn at all.
+            // A body that neither rolls along its rim nor drills does not turn at all.
             Halt::Drilling if self.hold != Hold::No => self.only_rocks(angle, w[1]),
             Halt::Drilling => self.stop_drilling(angle, w),
             Halt::Rocking => return !self.rocks_back(angle),
@@ -282,8 +279,7 @@ impl LossyFlow {
         false
     }
 
-    /// Whether a body that only rocks, and has come to rest, rocks back; otherwise rolling resistance
-    /// holds the body.
+    /// Whether a body that only rocks, and has come to rest, rocks back; otherwise rolling resistance holds the body.
     fn rocks_back(&mut self, angle: (f64, f64)) -> bool {
         self.turn(Ways::default());
         let acted = self.response(angle, 0.0, [0.0; 3], Held::Nothing);
@@ -335,8 +331,7 @@ impl LossyFlow {
         self.has(Law::RollingResistance) && self.hold != Hold::Planar
     }
 
-    /// Gives a body that neither rolls nor rocks, but is not held, a small speed in the
-    /// direction of the push.
+    /// Gives a body that neither rolls nor rocks, but is not held, a small speed in the direction of the push.
     fn pushed_off<const N: usize>(&self, y: &mut [f64; N]) {
         let ([s, c, w1, w2, w3], held) = (core::array::from_fn(|i| y[i]), self.hold != Hold::No);
         if !self.is_paced() || pace_of((s, c), w1 / s, [w1, w2, w3]) >= REST {

@@ -1,12 +1,12 @@
-//! Rolling on a patch of contact: drilling friction whose length depends on the force, and the way back to a slip.
+//! Rolling on a patch of contact: drilling friction whose length depends on the force, and the return to a slip.
 //!
 //! ```text
 //! length = mu eps g(k),   f(k) = |F|/(mu N)        a fixed point, since the force depends little on the length
 //! w_z -> 0      rolls through it, or is held while |nu| <= length N
 //! |w_z| = 2 DRILLS, or |F| = mu N                  slips, with u = -eps |w_z| k F/|F|
 //! ```
-//! As long as a patch drills its contact point creeps, and the slip has this size ([`patch`]). Where the drilling
-//! vanishes the slip does, too, ever faster, so that the body rolls through that moment.
+//! As long as a patch drills, its contact point creeps, and the slip has this size ([`patch`]). Where the drilling
+//! vanishes, the slip also vanishes, faster and faster, so that the body rolls through that moment.
 //!
 //! Error: the slip that is left out, which is DRILLS eps at most.
 
@@ -54,7 +54,7 @@ impl LossyFlow {
         self.law.losses.coefficient(Law::Drilling) / (self.slides * patch::of(0.0)[1])
     }
 
-    /// The response on a patch, and the law with the length that goes with its force.
+    /// The response on a patch, and the law with the length that belongs to its force.
     #[inline(never)]
     pub(super) fn acts_on_patch(
         &self,
@@ -77,7 +77,7 @@ impl LossyFlow {
         }
     }
 
-    /// The law with the length that goes with the force at these numbers.
+    /// The law with the length that belongs to the force at these numbers.
     fn fitted(&self, y: [f64; 5]) -> Lossy<f64> {
         let (precession, w) = self.turning(y);
         self.acts_on_patch(&self.law, (y[0], y[1]), precession, (w, self.held(0.0))).1
@@ -88,7 +88,7 @@ impl LossyFlow {
         ends_where_it_drills(self, self.margins_of(&self.fitted(y), y), y)[i]
     }
 
-    /// The margins with their slopes, which leave out that the length changes.
+    /// The margins with their slopes, which neglect the change of the length.
     #[inline(never)]
     pub(super) fn margins_on_patch(&self, y: [Dual<f64>; 5]) -> [Dual<f64>; MARGINS] {
         let length = self.fitted(y.map(|x| x.value)).losses.coefficient(Law::Drilling);
@@ -120,7 +120,7 @@ impl LossyFlow {
     }
 }
 
-/// The margins, of which that of a slip fails where the patch drills, too.
+/// The margins; that of a slip also fails where the patch drills.
 fn ends_where_it_drills<T: Real>(flow: &LossyFlow, mut margins: [T; MARGINS], y: [T; 5]) -> [T; MARGINS] {
     let (_, w) = flow.turning(y);
     let drilling = (y[0] * w[0] + y[1] * w[2]).abs();

@@ -17,8 +17,8 @@ use core::f64::consts::PI;
 const ROLLING_ENDS: [Halt; MARGINS] =
     [Halt::Face, Halt::Side, Halt::LiftOff, Halt::Slips, Halt::Contour, Halt::Drilling];
 
-/// The numbers where the body only drills, extrapolated linearly by `left` in sigma; `drills` returns the
-/// three numbers of its angular velocity from the extrapolated ones.
+/// The numbers where the body only drills, extrapolated linearly by `left` in sigma; `drills` computes the three
+/// numbers of its angular velocity from the extrapolated numbers.
 pub(crate) fn at_rest<const N: usize>(
     place: &FlowPlace<N>,
     left: f64,
@@ -49,8 +49,7 @@ impl LossyFlow {
         (precession, w, Acted { power: acted.power + push * spin, ..acted }, spin)
     }
 
-    /// The error of s psi' that steps leave where the contact point stops so fast that stability
-    /// limits the steps.
+    /// The error of s psi' due to steps where the contact point stops so fast that stability limits the steps.
     fn noise(&self, w: [f64; 3]) -> f64 {
         100.0 * self.tol * w.iter().fold(1.0, |most: f64, x| most.max(x.abs()))
     }
@@ -66,7 +65,7 @@ impl LossyFlow {
 
     /// The end, by linear extrapolation, of rolling and rocking that rolling resistance has almost stopped.
     fn comes_to_rest<const N: usize>(&self, place: &FlowPlace<N>) -> Option<[f64; N]> {
-        // A whirr rolls as slowly before its face lands, and does not rest.
+        // A whirr rolls as slowly before its face lands, but is not at rest.
         if !self.is_paced() || place.y[0].abs() < FLAT {
             return None;
         }

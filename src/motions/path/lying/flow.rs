@@ -19,12 +19,12 @@ use crate::motions::walk::MOMENT;
 use crate::numbers::{Dual, Real};
 use core::f64::consts::FRAC_PI_2;
 
-/// What the rims of a lying body do.
+/// The motion of the rims of a lying body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Stance {
     /// Both slip.
     Slips,
-    /// One sticks: the one from which the state is told, or the other one.
+    /// One rim sticks: the one from which the state is seen, or the other one.
     Pivots { other: bool },
     /// Both stick.
     Rolls,
@@ -47,7 +47,7 @@ const LYING_ENDS: [Halt; MARGINS] =
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LyingPhase {
     pub flow: LyingFlow,
-    /// The number of changes of what dry losses hold, in succession at the same time, and the time of the last one.
+    /// The number of consecutive changes of the held motions at the same time, and the time of the last change.
     pub still: u32,
     pub since: f64,
     pub count: usize,
@@ -156,7 +156,8 @@ impl LyingFlow {
         here.max(there).max(y[2].abs()).max(y[4].abs()).max(1.0)
     }
 
-    /// The numbers at the time `MOMENT` after the beginning of a slip of the told rim along `way`.
+    /// The numbers at the time `MOMENT` after the beginning of a slip along `way`, of the rim from which the state is
+    /// seen.
     pub fn nudged<const N: usize>(&self, start: &[f64; N], way: [f64; 2], growth: f64) -> [f64; N] {
         let mut y = *start;
         (y[5], y[6]) = (MOMENT * growth * way[0], MOMENT * growth * way[1]);

@@ -1,4 +1,4 @@
-//! A body that lies on both rims: which phase begins, and how each of them ends.
+//! A body that lies on both rims: the choice of its phases, and the end of each.
 //!
 //! ```text
 //! both slip     to u = 0 of a rim: it sticks, or slips on in another direction;  both together: rolls straight
@@ -6,7 +6,7 @@
 //! both of these to N = 0 of a rim: the other one carries the body alone, with w2 = w2' = 0, and theta leaves as t^3
 //! rolls straight at constant speed, or until dry losses stop it
 //! ```
-//! The rim from which the state is told changes only where the other rim carries the body alone, or slips off first.
+//! The rim from which the state is seen changes only where the other rim carries the body alone, or slips off first.
 //!
 //! Error: the tolerance of the steps; rolling straight without losses is exact.
 
@@ -30,7 +30,7 @@ use crate::motions::{Ending, Kind};
 use core::f64::consts::{FRAC_PI_2, PI};
 use flow::{LyingFlow, LyingPhase, Stance};
 
-/// A slip slower than this, in units of the largest speed, is none where a phase begins.
+/// A slip slower than this, in units of the largest speed, counts as zero where a phase begins.
 const STILL_SLIP: f64 = 1e-12;
 /// The slip with which both rims begin to slip together.
 const NUDGED: f64 = 1e-12;
@@ -40,7 +40,7 @@ const DIRECTIONS: usize = 240;
 const SLIPS_FASTER: f64 = 1e-11;
 
 impl<const N: usize> BodyWalk<'_, N> {
-    /// The laws of the body on both rims; None on a rolling table, on which it cannot turn.
+    /// The laws of the body on both rims; None for a rolling contact, with which the body cannot turn.
     fn flat(&self) -> Option<LyingFlow> {
         let friction = match self.ask.table {
             Table::Rubs(friction) => friction,
@@ -59,7 +59,7 @@ impl<const N: usize> BodyWalk<'_, N> {
 
     /// The phase of a body at theta = pi/2 with w2 = 0: on both rims, or on one of them that rises.
     ///
-    /// The state on both rims is told from the first one, whatever came before.
+    /// The state on both rims is seen from the first one, whatever came before.
     #[inline(never)]
     pub(super) fn settles_on_side(&mut self) -> Next {
         if self.made.path.upside_down {
@@ -155,7 +155,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         Next::Own(stance.kind())
     }
 
-    /// The phase in which one rim alone carries the body, the one from which the state is told if `here`.
+    /// The phase in which one rim alone carries the body: the rim from which the state is seen if `here`.
     fn rises_on(&mut self, here: bool) -> Next {
         if !here {
             self.turns_over();
@@ -166,7 +166,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         if slips { Next::Slips } else { after_rest(Phases::rests(self)) }
     }
 
-    /// The phase of a body of which one rim is at rest while the other one slips: the other one rests if `other`.
+    /// The phase of a body with one rim at rest while the other slips; the other rim is at rest if `other`.
     #[inline(never)]
     fn rests_on_one(&mut self, mut flow: LyingFlow, other: bool) -> Next {
         let ways = flow.ways;
@@ -205,7 +205,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         self.slips_off_two(flow, other, None)
     }
 
-    /// Whether the other rim rises while this one, which rests, carries the body alone.
+    /// Whether the other rim rises while this rim, which is at rest, carries the body alone.
     fn lifts(&self, state: &State, found: Standstill) -> bool {
         let law = &self.of.slide.law;
         let w = [state.w1, 0.0, state.w3];
@@ -221,8 +221,8 @@ impl<const N: usize> BodyWalk<'_, N> {
         }
     }
 
-    /// A slip of the rim at rest, which the state is told from hereafter, while the other one slips, too. `against` is the
-    /// direction of a slip that begins continuously.
+    /// A slip of the rim at rest, from which the state is seen from now on, while the other rim slips as well.
+    /// `against` is the direction of a slip that begins continuously.
     #[inline(never)]
     fn slips_off_two(&mut self, mut flow: LyingFlow, other: bool, against: Option<f64>) -> Next {
         if other {
@@ -263,7 +263,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         Next::SlipsOff { alpha, growth }
     }
 
-    /// Follows a phase on both rims, or begins its flow.
+    /// Computes a phase on both rims, or begins its flow.
     #[inline(never)]
     pub(super) fn lies(&mut self) -> Option<WalkStep<N>> {
         let flow = self.of.lying.as_ref()?.flow;
@@ -285,7 +285,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         Some(WalkStep::Flows(self.at))
     }
 
-    /// Follows the flow of a phase on both rims.
+    /// Computes the flow of a phase on both rims.
     #[inline(never)]
     pub(super) fn lies_on(
         &mut self,
@@ -304,7 +304,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             self.writes_lying(&flow, point);
         }
         self.has_spent(flown.spent);
-        // Where a dry loss stops w1 or w3, the acceleration changes at a time that is as uncertain as that of an end.
+        // Where a dry loss stops w1 or w3, the acceleration changes at a time as uncertain as that of an end.
         let stops = matches!(flown.halt, Halt::Drilling | Halt::Contour);
         let halt = if stops { Halt::Turned } else { flown.halt };
         self.claims_time_error(halt, flown.steep, &flown.y);
@@ -379,14 +379,14 @@ impl<const N: usize> BodyWalk<'_, N> {
         None
     }
 
-    /// The state and the slip: of a body on both rims as told from the first one.
+    /// The state and the slip; for a body on both rims as seen from the first rim.
     pub(super) fn told(&self) -> (State, [f64; 2]) {
         let (y, slip) = (self.of.state, [self.at[5], self.at[6]]);
         let over = self.of.lying.is_some() && self.made.path.upside_down;
         if over { mirrored(&self.of.body, &y, slip) } else { (y, slip) }
     }
 
-    /// Writes a body on both rims to the outputs, as told from the first rim.
+    /// Writes a body on both rims to the outputs, as seen from the first rim.
     pub(super) fn writes_lying(&mut self, flow: &LyingFlow, y: &[f64; N]) {
         let over = self.made.path.upside_down;
         let mut slips = [[y[5], y[6]], flow.law.other_slip([y[2], y[4], y[5], y[6]])];
@@ -417,7 +417,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         }
     }
 
-    /// The kind of a slip from rest: on both rims if the body lies.
+    /// The kind of a slip from rest; for a body that lies, the kind with both rims slipping.
     pub(super) fn kind_of_slip(&self) -> Kind {
         if self.of.lying.is_some() { Kind::Lying } else { Kind::Slipping }
     }

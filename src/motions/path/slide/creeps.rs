@@ -19,7 +19,7 @@ use nalgebra::SMatrix;
 /// The number of numbers that react to each other: sine, cosine, w and u.
 const REACTING: usize = 7;
 impl Slide {
-    /// Writes the rates of the numbers on a patch of contact, the couple of which makes heat, too.
+    /// Writes the rates of the numbers on a patch of contact, whose couple also produces heat.
     #[inline(never)]
     pub(super) fn patched<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) -> SlipResponse<f64> {
         let (at, pace, heat) = self.law.answers((y[0], y[1]), [y[2], y[3], y[4]], [y[5], y[6]]);
@@ -41,14 +41,14 @@ impl Slide {
         self.law.patch().is_some() && self.rubs(y) > self.over()
     }
 
-    /// How fast the patch rubs, with slopes in sigma; None for a point.
+    /// The rubbing speeds of the patch, with slopes in sigma; None for a point.
     fn rubbing<const N: usize>(&self, place: &FlowPlace<N>) -> Option<Rubbing<Dual<f64>>> {
         let [s, c, w1, _, w3, u_h, u_2] =
             core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
         self.sloped.patch().map(|patch| Rubbing::of([u_h, u_2], s * w1 + c * w3, patch))
     }
 
-    /// The halt of a patch that neither slips nor drills any more.
+    /// The halt of a patch that no longer slips or drills.
     #[inline(never)]
     pub(super) fn hardly_rubs<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
         let (radius, rubbing) = (self.law.patch()?, self.rubbing(place)?);

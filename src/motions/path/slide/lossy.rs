@@ -49,7 +49,7 @@ impl Slide {
         }
     }
 
-    /// Lets dry friction hold the drilling, or lets the drilling begin anew.
+    /// Makes dry friction hold the drilling, or makes the drilling begin anew.
     fn stop_drilling(&mut self, angle: (f64, f64), w: [f64; 3], slip: [f64; 2], toward: [f64; 2]) {
         let ways = self.law.losses.and_then(|losses| losses.ways).unwrap_or_default();
         self.turn(ways.holding_drilling());
@@ -69,15 +69,15 @@ impl Slide {
         }
     }
 
-    /// Reverses the sign of the rocking where a ball now leans to the other side, so that its direction
-    /// in space stays.
+    /// Reverses the sign of the rocking where a ball now leans to the other side, so that its direction in space stays
+    /// the same.
     pub fn leans_over(&mut self) {
         if let Some(ways) = self.law.losses.and_then(|losses| losses.ways) {
             self.turn(Ways { rocking: -ways.rocking, ..ways });
         }
     }
 
-    /// The response in a slip, or where one begins in the direction `toward`.
+    /// The response in a slip, or where a slip begins in the direction `toward`.
     fn response(
         &self,
         angle: (f64, f64),

@@ -1,4 +1,4 @@
-//! A body that slips, from a start or from rest, to the end of its slip.
+//! A body that slips, from an initial slip or from rest, to the end of its slip.
 //!
 //! ```text
 //! y = (s, c, w1, w2, w3, u_h, u_2, t, heat; phi, psi, x, y)        in sigma, dt = |u|/(|u| + soft) dsigma
@@ -9,7 +9,7 @@
 //! end, is located on parts of the step; states at requested times are computed on such parts, too.
 //! [`contact::slip`](crate::laws::contact::slip) has the equations.
 //!
-//! Error: 1e-11 in states and 1e-12 in times; a test of `test_slip_reference` has 25 motions of 25 digits.
+//! Error: 1e-11 in states and 1e-12 in times; a test of `test_slip_reference` has 25 motions to 25 digits.
 
 mod creeps;
 mod lossy;
@@ -225,7 +225,7 @@ impl Flow<MARGINS> for Slide {
             (w1, w3) = (s * w1, c * w1);
         }
         let (angle, w, u) = ((s, c), [w1, w2, w3], [u_h, u_2]);
-        // Only these three are needed, and of a contact point no others are computed.
+        // Only these three are needed, and for a contact point no others are computed.
         let needed = |at: SlipResponse<_>| (at.free, at.room, at.held);
         let (free, room, held) = match self.sloped.patch() {
             Some(patch) => needed(self.sloped_on(angle, w, u, patch).0),
@@ -402,8 +402,7 @@ pub(crate) fn first<const N: usize>(y: &[f64; N]) -> f64 {
     0.02 / (1.0 + fastest.max(y[4].abs()).max((fastest / y[0].abs()).min(FASTEST)))
 }
 
-/// The longest step that does not amplify rounding: three radians of the turning or of the free
-/// nutation I3 w3/I1.
+/// The longest step that does not amplify rounding: three radians of the rotation or of the free nutation I3 w3/I1.
 #[inline(always)]
 pub(crate) fn longest<T: Real, const N: usize>(y: &[T; N], shape: &Shape<T>) -> T {
     let one = y[0].splat(1.0);

@@ -32,7 +32,7 @@ pub(super) struct PanelClock<'a, T, const N: usize> {
     left: [T; 2],
 }
 
-/// The place where a sought time is reached.
+/// The place that is reached at a given time.
 pub(super) struct SoughtTime<T> {
     pub time: T,
     pub at: T,
@@ -181,8 +181,8 @@ impl<'a, T: Lane, const N: usize> PanelClock<'a, T, N> {
         [sum * width, from.splat(100.0) * width.abs() * tail * tail / size]
     }
 
-    /// The place that is reached at the time `target`, if `stop` is reached at the time `whole`. Newton's
-    /// method starts with an integral from `start` and adds short ones from step to step.
+    /// The place that is reached at the time `target`, if `stop` is reached at the time `whole`. Newton's method starts
+    /// with an integral from `start` and adds a short integral at each step.
     #[inline(always)]
     pub fn sought(&self, rule: &Rule, [start, stop]: [T; 2], (target, whole): (T, T)) -> SoughtTime<T> {
         let number = here(

@@ -50,7 +50,7 @@ impl<T: Lane> March<T> {
         let (sin, cos) = unit(angle(s, c, y, q));
         let jay = law.inertia(|| (sin, cos));
         let force = is(code, Comes::Turn, zero, clock.force(out, apart).max(zero));
-        // The fall from here to the face adds to the tilting when the face lands.
+        // The fall from here to the face increases w2 when the face lands.
         let left = number(2.0 * FLAT) * law.shape.rim.lever((sin, cos)).abs();
         let lies = law.inertia(|| (zero, cos.select_lt(zero, number(-1.0), one)));
         let tilt = is(code, Comes::Face, (force + left) / lies, force / jay).sqrt();
@@ -102,7 +102,7 @@ impl<T: Lane> March<T> {
             size = size.fma(out, zero.select_lt(which, of.grip[k], of.press[k]).abs());
         }
         let left = zero.select_lt(which, ending(&of.grip, out), ending(&of.press, out));
-        // An error of F at the knot is an error of the forces, too.
+        // An error of F at the knot is also an error of the forces.
         let blur = press::blur(law, angle, noise) * is(code, Comes::Slip, two * (one + self.mu_square), one);
         let vanishing = (number(16.0 * f64::EPSILON) * size + left + blur) / steep + miss;
         let on_side = number(4.0 * f64::EPSILON);

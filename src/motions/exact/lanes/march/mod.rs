@@ -7,9 +7,9 @@
 //! ```
 //! The head of [`lanes`](super) defines y and its series. The module [`press`] has X and Z, which are power series like
 //! F, so that their zeros need no square root and no angular velocity. The module [`signs`] finds the first zero of a
-//! series and tells whether one may have been overlooked; [`clock`] computes the time. A motion that ends is marched
-//! panel by panel to its end; a motion that does not end is marched to both its turning points, which determine it for
-//! all times.
+//! series and tells whether one may have been missed; [`clock`] computes the time. A motion that ends is marched panel
+//! by panel to its end; a motion that does not end is marched to both its turning points, which determine it for all
+//! times.
 //!
 //! Error: the sum of the quadrature error of the clock, the truncation of the series, and the rounding errors of F and
 //! of the series that vanishes. An event that is not certain gets the code of an unknown one.
@@ -54,7 +54,7 @@ pub(crate) struct Knot<T> {
 /// The outputs of each panel of a march, the same in all lanes.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Sought {
-    /// Whether the end of the motion is sought; if not, the state at a given time is.
+    /// Whether the end of the motion is sought; otherwise the state at a given time is sought.
     pub ends: bool,
     /// Whether slip counts as an end.
     pub slips: bool,
@@ -307,8 +307,8 @@ impl<T: Lane> March<T> {
                 let hit = at.select_lt(next.at, one, zero);
                 next.miss = zero.select_lt(hit, found.miss, next.miss);
                 next.steep = zero.select_lt(hit, found.steep, next.steep);
-                // Slip comes before lift-off, so that a lift-off without a slip before it means that the slip was
-                // overlooked.
+                // Slip comes before lift-off, so that a lift-off without an earlier slip means that the slip was
+                // missed.
                 let code = if sought.slips && what == Comes::LiftOff { never } else { number(what.code()) };
                 next.meets(at, code);
                 next.meets(zero.select_lt(lifted, never, found.doubt), never);
@@ -338,7 +338,8 @@ fn turning<T: Lane, const N: usize>(force: &[T; N]) -> Between<T> {
 }
 
 impl<T: Lane> Reached<T> {
-    /// In each lane where the time that is sought comes before the event, replaces the event by the arrival at that time.
+    /// In each lane where the time that is sought comes before the event, replaces the event by the arrival at that
+    /// time.
     #[inline(always)]
     fn at_time<const N: usize>(
         &mut self,

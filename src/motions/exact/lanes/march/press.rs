@@ -1,4 +1,4 @@
-//! Power series in y of quantities that stay positive while a body presses on the table and does not slip.
+//! Power series in y of quantities that stay positive while normal force and friction hold the body on the table.
 //!
 //! ```text
 //! C = c0 (1 + y^2) - 2 y,   S = s0 (1 - y^2),   c = C/Q,   s = S/Q,   G = Q g,   G2 = Q g',   F' = dF/dy

@@ -1,4 +1,4 @@
-//! The first zero of a series, and whether a zero may have been overlooked.
+//! The first zero of a series, and whether a zero may have been missed.
 //!
 //! ```text
 //! between two nodes a series differs from the cubic of its values and slopes there by at most |X''''| h^4/384
@@ -31,7 +31,7 @@ pub(super) struct FirstZero<T> {
     /// The error of the zero from Newton's method, and the slope of the series there.
     pub miss: T,
     pub steep: T,
-    /// The place from which on a zero may have been overlooked; 9 if there is no such place.
+    /// The place from which on a zero may have been missed; 9 if there is no such place.
     pub doubt: T,
 }
 
