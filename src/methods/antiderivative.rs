@@ -10,15 +10,14 @@
 use std::sync::OnceLock;
 
 const NODES: usize = 24;
-/// A series is complete if its last terms are below this, relative to its scale. The terms of its integral
-/// are 48 times smaller, so that the integral is accurate to 1e-16. Below the rounding errors the halving
-/// would not end.
+/// A series is complete if its last terms are below this, relative to its scale. The terms of its integral are 48 times
+/// smaller, so that the integral is accurate to 1e-16. With a limit below the rounding errors the halving would never
+/// end.
 const COMPLETE: f64 = 4e-15;
-/// The integral is given up beyond this number of pieces; the slowest passage of an unstable steady state
-/// needs fewer.
+/// Largest number of pieces of an integral; the slowest passage of an unstable steady state needs fewer.
 const PIECES: usize = 1000;
-/// Largest relative noise that loosens the test of completeness: with more, the series of a noisy function
-/// would count as complete unresolved.
+/// Largest relative noise that relaxes the test of completeness: with more noise, the unresolved series of a noisy
+/// function would count as complete.
 const NOISE: f64 = 1e-2;
 
 #[derive(Debug, Clone)]
@@ -76,7 +75,7 @@ impl<const M: usize> Piece<M> {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Sample<const M: usize> {
     pub value: [f64; M],
-    /// The largest of the terms of which each function is a sum, as the scale of its rounding error.
+    /// The largest of the terms whose sum each function is, as the scale of its rounding error.
     pub scale: [f64; M],
     /// The relative uncertainty of the functions.
     pub noise: f64,
@@ -149,7 +148,7 @@ impl<const M: usize> Antiderivative<M> {
                 *rate *= if k == 0 { 1.0 } else { 2.0 } / NODES as f64;
             }
             let last = rate[NODES - 4..].iter().fold(0f64, |a, c| a.max(c.abs()));
-            // A value that is not finite passes this comparison and is refused in `new`.
+            // A value that is not finite passes this comparison and is an error in `new`.
             if last > scale[i] * COMPLETE + 2.0 * noise[i] {
                 return None;
             }

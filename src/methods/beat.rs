@@ -1,4 +1,4 @@
-//! Limits how often long computations ask their caller whether to go on.
+//! A timer for the calls by which long computations let their caller stop them.
 
 use std::time::Duration;
 #[cfg(not(all(target_arch = "wasm32", target_os = "unknown")))]

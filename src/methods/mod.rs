@@ -1,6 +1,6 @@
 //! Numerical methods, without any physics.
 
-/// Whether the code is to be short rather than fast, as in a page: what exists in several copies for speed exists once.
+/// Whether the code has to be short rather than fast, as for a page: code with several copies for speed then has one.
 pub(crate) const SHORT_CODE: bool = cfg!(short_code);
 
 pub(crate) mod antiderivative;

@@ -6,9 +6,9 @@
 //! (1 - (h/g_k) J) dW_k = (T^-1 (h A f - Z))_k,   dZ = T dW                   Newton's iteration, A^-1 = T diag(g) T^-1
 //! error = 3e-6 x^2 |(d5, x d4)|,   x^2 = 0.8 |d5|/|d3|                          d_n: divided differences of y of order n
 //! ```
-//! The method is stable for any h (Hairer and Wanner, Solving Ordinary Differential Equations II (1996), IV.5 and IV.8). Only
-//! the first M of the N numbers react to each other; the others are integrals. J is exact at the start of the step. Of an
-//! oscillation d5 and d3 vanish together and d4 does not, so that the error does not depend on its phase.
+//! The method is stable for any h (Hairer and Wanner, Solving Ordinary Differential Equations II (1996), IV.5 and
+//! IV.8). Only the first M of the N numbers affect each other; the others are integrals. J is exact at the start of the
+//! step. For an oscillation d5 and d3 vanish together but d4 does not, so that the error does not depend on its phase.
 //!
 //! Error: that of a pendulum goes as h^9; the tests at the end run it, a stiff equation, and the estimate of the error.
 
@@ -31,7 +31,7 @@ const A: [[f64; RADAU_STAGES]; RADAU_STAGES] = [
     [0.14371356079122594, 0.28135601514946207, 0.31182652297574126, 0.22310390108357073, 0.04],
 ];
 /// The eigenvalues of 1/A, of which one is real and the others are pairs, and their right and left vectors, real and
-/// imaginary parts. They decide how fast Newton's iteration converges, not to what.
+/// imaginary parts. They determine how fast Newton's iteration converges, but not its limit.
 #[rustfmt::skip]
 const SINGLE: (f64, [f64; RADAU_STAGES], [f64; RADAU_STAGES]) = (
     6.2867047517292765,
@@ -75,9 +75,9 @@ const SPREAD_4: [f64; RADAU_STAGES] = [11.414409029082394, -35.16538944447781, 5
 const SPREAD_3: [f64; RADAU_STAGES] = [0.0, -7.727201094286656, 28.298810103886993, -44.332583267514494, 23.760974257914153];
 /// Largest number of Newton's iterations.
 const ITERATIONS: usize = 14;
-/// The factor of the error: about right for a radian of an oscillation.
+/// The factor of the error, which is about right for a radian of an oscillation.
 const MISSED: f64 = 3e-6;
-/// Largest share by which the numbers still move in an iteration that rounding does not let converge.
+/// Largest share by which the numbers still change in an iteration that rounding prevents from converging.
 const STALLED: f64 = 1e-6;
 
 /// The stages of a step: the changes Z, and the rates there.
@@ -86,9 +86,9 @@ pub(crate) struct Collocated<const N: usize> {
     pub rates: [[f64; N]; RADAU_STAGES],
 }
 
-/// One step of `h` from `y`. `slopes[i][j]` is the derivative of the rate of number i by number j, and `sizes` are those of
-/// the first M numbers to which errors are relative. Newton's iteration ends where no number would move by the share
-/// `converged` of its size any more; the error is NaN if it does not.
+/// One step of `h` from `y`. `slopes[i][j]` is the derivative of the rate of number i with respect to number j, and
+/// `sizes` are those of the first M numbers to which errors are relative. Newton's iteration ends when no number
+/// changes by more than the share `converged` of its size; the error is NaN if this does not happen.
 pub(crate) fn step<const M: usize, const N: usize>(
     mut f: impl FnMut(&[f64; N], &mut [f64; N]),
     y: &[f64; N],
@@ -115,7 +115,7 @@ where
         for i in 0..RADAU_STAGES {
             f(&core::array::from_fn(|n| y[n] + all.moved[i][n]), &mut all.rates[i]);
         }
-        // What is left of the equation of each stage.
+        // The residual of the equation of each stage.
         let left: [[f64; N]; RADAU_STAGES] = core::array::from_fn(|i| {
             core::array::from_fn(|n| {
                 h * (0..RADAU_STAGES).map(|j| A[i][j] * all.rates[j][n]).sum::<f64>() - all.moved[i][n]
@@ -145,10 +145,10 @@ where
                 most = larger(most, by.abs() / size);
             }
         }
-        // The first iteration does not show how fast they converge.
+        // The first iteration does not show the rate of convergence.
         let Some(before) = last.replace(most) else { continue };
         let share = most / before;
-        // All further moves together, if each is this share of the one before.
+        // The sum of all further changes, if each is this share of the previous one.
         more = if share < 0.9 { share / (1.0 - share) } else { 10.0 };
         unknown = most * more;
         let stalls = share > 0.9 && unknown < STALLED;

@@ -1,4 +1,4 @@
-//! The classical Runge-Kutta method of fourth order, at a fixed step.
+//! The classical Runge-Kutta method of fourth order, with a fixed step.
 //!
 //! ```text
 //! y(t + h) = y + h (k1 + 2 k2 + 2 k3 + k4)/6
@@ -26,7 +26,7 @@ where
     change(|y: &[f64; N]| f(&Y::from(*y)).into(), y, k1, h)
 }
 
-/// The same of plain arrays of numbers, single or in lanes.
+/// The same for plain arrays of numbers, single or in lanes.
 #[inline(always)]
 pub(crate) fn change<T: Real, const N: usize>(
     mut f: impl FnMut(&[T; N]) -> [T; N],
@@ -56,7 +56,7 @@ pub(crate) fn change<T: Real, const N: usize>(
 pub struct Compensated<const N: usize> {
     /// The numbers.
     pub y: [f64; N],
-    /// The part that is still to be added to the numbers, less than an ulp.
+    /// The part, less than an ulp, that is still to be added to the numbers.
     pub carry: [f64; N],
 }
 
@@ -77,7 +77,7 @@ impl<const N: usize> Compensated<N> {
 
 /// The state after `steps` steps of `h`; a negative `h` goes backward in time.
 ///
-/// The type of `y` holds N numbers, as [`State`](crate::State) or an array does.
+/// The type of `y` holds N numbers, for example [`State`](crate::State) or an array.
 pub fn integrate<Y, const N: usize>(mut f: impl FnMut(&Y) -> Y, y: Y, h: f64, steps: u64) -> Y
 where
     Y: From<[f64; N]> + Into<[f64; N]>,

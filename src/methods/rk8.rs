@@ -23,9 +23,9 @@ pub(crate) struct Step<T, const N: usize> {
 }
 
 impl<T: Real, const N: usize> Step<T, N> {
-    /// The error of the step by the formula above; `per(i)` is one over the tolerance of number `i`, and
-    /// `count` is N for a mean square over the numbers, or 1 for a sum. Overflow gives NaN, since an error of
-    /// 0 would accept the step.
+    /// The error of the step by the formula above; `per(i)` is the inverse of the tolerance of number `i`, and `count`
+    /// is N for a mean square over the numbers, or 1 for a sum. Overflow gives NaN, since an error of 0 would accept
+    /// the step.
     #[inline(always)]
     pub fn error(&self, per: impl Fn(usize) -> T, count: f64) -> T {
         let number = |x: f64| self.change[0].splat(x);
@@ -39,10 +39,9 @@ impl<T: Real, const N: usize> Step<T, N> {
         fifth / square.sqrt() + number(0.0) * square
     }
 
-    /// A factor of at least 1 for the error of a step in which the first `count` numbers change by less than
-    /// 1/`HARDLY` per unit of time. Near an unstable equilibrium errors grow as fast as the motion itself, so
-    /// that an error is then held relative to the motion. No tolerance becomes smaller than `ROUNDING` by
-    /// this.
+    /// A factor of at least 1 for the error of a step in which the first `count` numbers change by less than 1/`HARDLY`
+    /// per unit of time. Near an unstable equilibrium errors grow as fast as the motion itself, so that the error is
+    /// then bounded relative to the motion. No tolerance becomes smaller than `ROUNDING` by this.
     #[inline(always)]
     pub fn strictness(&self, tol: T, count: usize, time: usize) -> T {
         let number = |x: f64| tol.splat(x);
@@ -95,7 +94,7 @@ const FIFTH: Weights<8> = [(0, 0.01312004499419488), (5, -1.2251564463762044), (
 #[rustfmt::skip]
 const THIRD: Weights<8> = [(0, -0.18980075407240762), (5, 4.450312892752409), (6, 1.8915178993145003), (7, -5.801203960010585), (8, -0.4226823213237919), (9, -0.1521609496625161), (10, 0.20136540080403034), (11, 0.02265179219836082)];
 
-/// Room for the rates at the stages of a step, which a flow keeps from one step to the next.
+/// Space for the rates at the stages of a step, which a flow keeps from one step to the next.
 pub(crate) type Stages<T, const N: usize> = [[T; N]; STAGES];
 
 /// The sum `a_1 k_1 + ...`.
@@ -172,7 +171,7 @@ pub(crate) fn step<const LOOP: bool, T: Real, const N: usize>(
     made
 }
 
-/// A sum, and the part that rounding has taken from it so far (Kahan 1965).
+/// A sum, and its accumulated rounding error (Kahan 1965).
 #[inline(always)]
 pub(crate) fn plus<T: Real, const N: usize>(y: &[T; N], carry: &[T; N], change: &[T; N]) -> ([T; N], [T; N]) {
     let (mut sum, mut left) = (*y, *carry);
@@ -185,7 +184,7 @@ pub(crate) fn plus<T: Real, const N: usize>(y: &[T; N], carry: &[T; N], change: 
     (sum, left)
 }
 
-/// The factor by which the step may grow after this error, where 1 is allowed: 0.9 error^(-1/8) within [0.3,
+/// The factor by which the step may grow after this error, in units of the allowed error: 0.9 error^(-1/8) within [0.3,
 /// 5].
 #[inline(always)]
 pub(crate) fn growth<T: Real>(error: T) -> T {

@@ -1,18 +1,19 @@
-//! Real roots of a polynomial between 0 and 1, none missed and none twice.
+//! All real roots of a polynomial between 0 and 1, each of them once.
 //!
 //! ```text
 //! between two neighbouring roots of p' the polynomial p is monotonic: one root or none
 //! ```
-//! The derivatives are taken down to the constant; on the way up again each root is bracketed by the extrema, which are
-//! the roots of the derivative. Signs at the extrema decide whether a pair of roots exists, so coefficients and values
-//! are unevaluated sums (104 bits): an extremum may be off by 2^-53, which moves the value there by the square of that.
+//! The derivatives are formed down to the constant; on the way up again each root is bracketed by the extrema, which
+//! are the roots of the derivative. Signs at the extrema decide whether a pair of roots exists, so coefficients and
+//! values are unevaluated sums (104 bits): an extremum may be off by 2^-53, which changes the value there by the square
+//! of that.
 //!
 //! Root error: 1 ulp of the exact root of the given coefficients, also next to a double root.
 
 use crate::numbers::Sum;
 use core::ops::{Add, Mul, Sub};
 
-/// The highest degree: the polynomial of the boundary of stability of a rounded rim has it.
+/// The highest degree, which the polynomial of the boundary of stability of a rounded rim has.
 const MOST: usize = 16;
 
 /// A few numbers in ascending order.

@@ -13,7 +13,7 @@ pub(crate) fn crossing(
     mut fb: f64,
 ) -> f64 {
     for i in 0..200 {
-        // Regula falsi: the value at an end that stays is halved (Illinois), and every fourth step bisects.
+        // Regula falsi: the value at an end that is kept is halved (Illinois), and every fourth step bisects.
         let middle = 0.5 * (a + b);
         let x = if i % 4 == 3 { middle } else { b - fb * ((b - a) / (fb - fa)) };
         let (low, high) = (a.min(b), a.max(b));

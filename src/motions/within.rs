@@ -1,10 +1,10 @@
-//! Motions that conserve energy, computed by steps within a tolerance. Their error is the difference from the
-//! exact solution, or from a rougher run where no accurate exact solution exists.
+//! Motions that conserve energy, computed by steps within a tolerance. Their error is the difference from the exact
+//! solution, or from a rougher run without an accurate exact solution.
 //!
-//! In a nearly flat passage, steps with errors of 1e-6 may lead to a lift-off that the motion does not have,
-//! and steps a hundred times as accurate may lead to the same lift-off again. So an end is accepted if the
-//! exact solution has it, where that solution is accurate enough; elsewhere an end is accepted if a run
-//! within a smaller tolerance has it too.
+//! In a nearly flat passage, steps with errors of 1e-6 may lead to a lift-off that the motion does not have, and steps
+//! a hundred times as accurate may lead to the same lift-off again. Therefore an end is accepted if the exact solution
+//! has it, where that solution is accurate enough; elsewhere an end is accepted if a run within a smaller tolerance has
+//! it too.
 //!
 //! A motion backward in time is computed forward in time from the reversed angular velocity; the angular
 //! velocities of the result are reversed again.
@@ -100,7 +100,7 @@ fn flown(
     Ok(Some(found))
 }
 
-/// The motion by steps within `tol`, with its errors; `swing` is the exact solution, if it exists.
+/// The motion by steps within `tol`, with its errors; `swing` is the exact solution, if there is one.
 pub(crate) fn within(
     course: &Course<'_>,
     swing: Option<&Swing>,
@@ -133,7 +133,7 @@ pub(crate) fn within(
     Ok(Some(motion))
 }
 
-/// Sets the event of a motion to that of the exact solution, and drops the outputs after an end.
+/// Sets the event of a motion to that of the exact solution, and removes the outputs after an end.
 fn ended(motion: &mut Motion, known: &Known<'_>, course: &Course<'_>, ask: &Ask) {
     motion.event = known.event;
     if let Some(event) = known.event.filter(|e| e.ends(ask.beyond)) {
@@ -141,10 +141,10 @@ fn ended(motion: &mut Motion, known: &Known<'_>, course: &Course<'_>, ask: &Ask)
     }
 }
 
-/// Decides on an end that the steps have (`made`) and the exact solution has not. If that solution is
-/// accurate enough to decide, the steps are continued beyond their end. If they cannot be, since the face has
-/// landed, or if that solution is not accurate enough, the steps are repeated with smaller tolerances until
-/// these confirm an end.
+/// Decides whether an end is real that the steps have (`made`) and the exact solution does not have. If that solution
+/// is accurate enough to decide, the steps are continued beyond their end. If this is impossible, since the face has
+/// landed, or if that solution is not accurate enough, the steps are repeated with smaller tolerances until these
+/// confirm an end.
 fn decided(
     course: &Course<'_>,
     known: &Known<'_>,
@@ -199,7 +199,7 @@ fn judged_alone(
         fine = (0.01 * fine).max(TIGHTEST);
     };
     motion.method = Method::Tolerance(tol);
-    // In an unstable steady state rounding may keep both runs at the start, so that they agree, although any
+    // In an unstable steady state rounding may keep both runs at the initial state, so that they agree, although any
     // disturbance would grow.
     let growth =
         (-stiffness(ask.table.contact(), course.body, course.start)).max(0.0).sqrt() * course.span.abs();

@@ -33,7 +33,7 @@ macro_rules! coded {
         }
 
         impl core::fmt::Display for $Name {
-            /// The name of the value in words, as "lift off" of `LiftOff`.
+            /// The name of the value in words, such as "lift off" for `LiftOff`.
             fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
                 f.pad(&$crate::numbers::codes::words(&format!("{self:?}")))
             }
@@ -42,7 +42,7 @@ macro_rules! coded {
 }
 pub(crate) use coded;
 
-/// The words of a name: "lift off" of "LiftOff".
+/// The words of a name: "lift off" for "LiftOff".
 pub(crate) fn words(name: &str) -> String {
     let mut all = String::new();
     for letter in name.chars() {

@@ -1,4 +1,4 @@
-//! Numbers in files: infinity and NaN, which JSON has not, are the words "inf", "-inf" and "NaN" in files that people read.
+//! Numbers in files: in text files infinity and NaN, which JSON lacks, are the words "inf", "-inf" and "NaN".
 
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -42,7 +42,7 @@ pub(crate) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::
     Written::deserialize(from).map(|x| x.0)
 }
 
-/// The same of rows of numbers.
+/// The same for rows of numbers.
 pub(crate) mod rows {
     use super::Written;
     use serde::{Deserialize, Deserializer, Serializer};

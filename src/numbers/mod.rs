@@ -59,13 +59,13 @@ pub(crate) fn registers() -> Option<()> {
     None
 }
 
-/// Whether `in_registers` compiles its work for AVX2, too, so that the plain work serves old processors only.
+/// Whether `in_registers` also compiles its work for AVX2, so that the plain version serves only old processors.
 pub(crate) const IN_REGISTERS: bool =
     cfg!(all(any(target_arch = "x86", target_arch = "x86_64"), lanes_of_eight));
 
-/// Evaluates `$lanes`, compiled for AVX-512, AVX2 or NEON, on a processor that has it, with the token
-/// `$simd`, which makes lanes; evaluates `$alone` on any other. There are no more levels, since each compiles
-/// all of this code once more.
+/// Evaluates `$lanes`, compiled for AVX-512, AVX2 or NEON, on a processor that has it, with the token `$simd`, which
+/// makes lanes; evaluates `$alone` on any other processor. There are no more levels, since each level compiles all of
+/// this code once more.
 macro_rules! in_lanes {
     ($level:expr, $simd:pat => $lanes:expr, else $alone:expr) => {
         match $level {

@@ -7,7 +7,7 @@
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-/// Implements the operators of a kind of numbers, each from an expression in its operands.
+/// Implements the operators of a type of numbers, each from an expression in its operands.
 macro_rules! operators {
     ([$($generic:tt)*] $kind:ty, ($a:ident, $b:ident), $add:expr, $sub:expr, $mul:expr, $div:expr, $neg:expr) => {
         operators!(@one [$($generic)*] $kind, Add, add, $a, ($b: Self), $add);

@@ -207,7 +207,7 @@ mod tests {
                 assert!(miss.hi.abs() < 8.0 * UNIT, "{theta}: {:e}", miss.hi);
             }
         }
-        // 1 - sin and 1 - |cos| keep their digits where they are small: (1 - cos) (1 + cos) = sin^2 shows it.
+        // 1 - sin and 1 - |cos| keep their digits where they are small, as (1 - cos) (1 + cos) = sin^2 shows.
         for theta in [1e-9, 0.7, 0.9, FRAC_PI_2 - 1e-9, 2.3, 2.4, PI - 1e-9] {
             let [s, c, sin_fall, cos_fall] = sin_cos_falls(theta);
             assert_eq!([s, c], sin_cos(theta));

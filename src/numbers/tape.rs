@@ -82,8 +82,7 @@ impl Tape {
         Taped { tape: self, of: Some(result), scale: 1.0, shift: 0.0 }
     }
 
-    /// The index of an operation; one that is already recorded is not recorded again, since laws repeat many
-    /// of them.
+    /// The index of an operation. An operation that is already recorded is not recorded again, since laws repeat many.
     fn result(&self, op: Op) -> u16 {
         let mut ops = self.ops.borrow_mut();
         let known = ops.iter().rposition(|known| *known == op);
@@ -93,8 +92,8 @@ impl Tape {
         }) as u16
     }
 
-    /// A player of the operations that `first` needs, and of those that only `then` needs, with the given
-    /// numbers and the results in the order of the arguments.
+    /// A player of the operations that `first` needs, and of those that only `then` needs, with the given numbers and
+    /// the results in the order of the arguments.
     pub fn player(&self, given: &[Taped], first: &[Taped], then: &[Taped]) -> Player {
         let ids = |of: &[Taped]| of.iter().map(|x| x.index()).collect::<Vec<u16>>();
         let (given, first, then) = (ids(given), ids(first), ids(then));
@@ -231,8 +230,8 @@ impl Real for Taped<'_> {
     }
 }
 
-/// The power series of a number, and its derivative at t = 0 with respect to the quantity that
-/// [`Player::lean`] chooses.
+/// The power series of a number, and its derivative at t = 0 with respect to the quantity that [`Player::lean`]
+/// chooses.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Row {
     pub at: [f64; TERMS],
@@ -272,35 +271,34 @@ impl Player {
         &self.rows[i].at
     }
 
-    /// The result `i` of `first`.
+    /// The result `i` among those that [`Tape::player`] was given as `first`.
     #[inline(always)]
     pub fn result(&self, i: usize) -> &Row {
         &self.rows[self.results[0][i] as usize]
     }
 
-    /// The first `known` coefficients of the result `i` of `then`.
+    /// The first `known` coefficients of the result `i` among those that [`Tape::player`] was given as `then`.
     pub fn later(&self, i: usize, known: usize) -> Series {
         Series::first(&self.rows[self.results[1][i] as usize].at, known)
     }
 
-    /// Computes the values of `first` at t = 0 and their derivatives.
+    /// Computes the values of the `first` results of [`Tape::player`] at t = 0, and their derivatives.
     pub fn begin(&mut self) {
         self.at_first(self.first.clone());
     }
 
-    /// Computes the coefficients `n` > 0 of `first`.
+    /// Computes the coefficient `n` > 0 of the `first` results of [`Tape::player`] from the coefficients below it.
     pub fn go_on(&mut self, n: usize) {
         self.order(self.first.clone(), n);
     }
 
-    /// Computes the first `known` coefficients of `then`.
+    /// Computes the first `known` coefficients of the `then` results of [`Tape::player`].
     pub fn finish(&mut self, known: usize) {
         self.at_first(self.then.clone());
         (1..known).for_each(|n| self.order(self.then.clone(), n));
     }
 
-    /// Adds `h` to the coefficient `n` > 0 of the chosen quantity, and updates that coefficient of all
-    /// results of `first`.
+    /// Adds `h` to the coefficient `n` > 0 of the chosen quantity, and updates that coefficient of all `first` results.
     pub fn turn(&mut self, n: usize, h: f64) {
         for row in &mut self.rows[..self.first.end] {
             row.at[n] += row.slope * h;

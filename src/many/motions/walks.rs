@@ -31,7 +31,7 @@ pub(super) struct FlowTask<const N: usize> {
 /// The kind of a flow; the flows in lanes at one time are all of one kind.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Among {
-    /// Slips; `dry` says whether the friction is dry and keeps a direction where the slip vanishes, unlike viscous
+    /// Slips; `dry` means that the friction is dry and keeps a direction where the slip vanishes, unlike viscous
     /// friction or ice.
     Slips { dry: bool },
     /// Motions without slip that lose energy by the same laws.

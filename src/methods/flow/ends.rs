@@ -17,26 +17,26 @@ use crate::methods::rk8::{self, Stages};
 use crate::methods::search::{crossing, least};
 use crate::numbers::Dual;
 
-/// Within a step longer than this share of the longest step that turning and nutation allow, a margin may
-/// fall and rise again; such a step is searched for that.
+/// Within a step longer than this share of the longest step that rotation and nutation allow, a margin may fall and
+/// rise again; such a step is searched for that.
 const LONG: f64 = 0.1;
 /// Number of parts of a step at whose ends a margin that may fail within the step is evaluated.
 const PARTS: usize = 4;
 /// Largest number of halvings of a part that is short already.
 const HALVINGS: u32 = 10;
-/// A margin is taken for the cubic through both ends if it differs from that in the middle by less than this
-/// share of its variation. A larger share would miss zeros, a smaller one halves more steps.
+/// A margin counts as the cubic through both ends if it differs from that cubic in the middle by less than this share
+/// of its variation. A larger share would miss zeros, a smaller one would halve more steps.
 const CUBIC: f64 = 0.02;
 const MARGIN_ROUNDING: f64 = 1e-15;
 
 /// A margin that rises from zero at the start of a step and falls again within this share of it has not risen.
 const LEAST_RISE: f64 = 1e-15;
 
-/// How the margins behave within a step.
+/// The behaviour of the margins within a step.
 enum Outlook {
-    /// All stay positive.
+    /// All margins stay positive.
     Clear,
-    /// Each stays positive or falls through zero once.
+    /// Each margin stays positive or falls through zero once.
     Falls,
     /// A margin may become negative and positive again.
     Unsure,
@@ -45,8 +45,8 @@ enum Outlook {
 /// The margins at both ends of a step, and their rates in sigma.
 type Sides<'a, const M: usize> = (&'a [Dual<f64>; M], &'a [Dual<f64>; M]);
 
-/// The first margin that fails within a step of `h` from a place, and its zero as a share of the step.
-/// `calms` is the longest time step that turning and nutation allow, divided by the time of this step.
+/// The first margin that fails within a step of `h` from a place, and its zero as a share of the step. `calms` is the
+/// longest time step that rotation and nutation allow, divided by the time of this step.
 pub(super) fn failed<F: Flow<M>, const M: usize, const N: usize>(
     flow: &F,
     (from, h): (&FlowPlace<N>, f64),
@@ -104,8 +104,8 @@ pub(crate) fn looks<F: Flow<M>, const M: usize, const N: usize>(
     rk8::LOOKS.map(|(stage, share)| (share, at(rk8::place(stage, &from.y, h, stages), stages[stage])))
 }
 
-/// How the margins behave within a step, by the cubics through both ends and three of its stages. A margin
-/// counts as positive only if it would be even with a dip twice as deep as that of the cubics.
+/// The behaviour of the margins within a step, by the cubics through both ends and three of its stages. A margin counts
+/// as positive only if it would be positive even with a dip twice as deep as that of the cubics.
 #[cfg_attr(short_code, inline(never))]
 fn outlook<F: Flow<M>, const M: usize, const N: usize>(
     flow: &F,

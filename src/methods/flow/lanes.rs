@@ -5,29 +5,29 @@
 //!        these, where m_i may have a minimum, the extended chords of the intervals on both sides meet above
 //!        zero; and the step ends before the next requested time
 //! ```
-//! A lane does not take a step that is not sure; it reports this and keeps its state. Then a single
-//! [`Flow`](super::Flow) repeats the step and locates the event within it, so that single flows and lanes
-//! share one search for events. The equations are a [`Flows`], and [`schedule`](super::schedule) fills the
-//! lanes. The steps of a lane do not depend on the other lanes.
+//! A lane does not take a step in which an event is possible; it reports this and keeps its state. Then a single
+//! [`Flow`](super::Flow) repeats the step and locates the event within it, so that single flows and lanes share one
+//! search for events. The equations are a [`Flows`], and [`schedule`](super::schedule) fills the lanes. The steps of a
+//! lane do not depend on the other lanes.
 
 use super::{FROZEN, SHORTEST, SLOW, SOON, Spent};
 use crate::methods::rk8::{self, LOOKS};
 use crate::numbers::side_by_side::{MOST, SideBySide, apart};
 use crate::numbers::{Real, here};
 
-/// Greatest number of parameters of a system, such as the shape of a body and the forces on it. A system with more does
-/// not compile.
+/// Greatest number of parameters of a system, such as the shape of a body and the forces on it. A system with more
+/// parameters does not compile.
 pub(crate) const NUMBERS: usize = 32;
 
 /// Equations of motion in lanes, with N numbers, the last of which is the time, and M margins.
 pub(crate) trait Flows<T: SideBySide, const N: usize, const M: usize>: Copy {
     /// Intermediate results of the rates, from which the margins follow.
     type Seen;
-    /// Whether the stages of a step form a loop: for rates so slow that the loop costs little beside them.
+    /// Whether the stages of a step form a loop: for rates so slow that the loop costs little in comparison.
     const LOOPS: bool = rk8::LOOPS;
     fn of(numbers: &[T; NUMBERS], like: &Self) -> Self;
     fn rates(&self, y: &[T; N], rate: &mut [T; N]) -> Self::Seen;
-    /// The margins, which must stay positive for a step to be sure.
+    /// The margins, which must stay positive for a step to be free of events.
     fn margins(&self, y: &[T; N], seen: &Self::Seen) -> [T; M];
     /// The error of a step divided by the allowed error.
     fn error(&self, tol: T, y: &[T; N], made: &rk8::Step<T, N>) -> T;
@@ -39,9 +39,9 @@ pub(crate) trait Flows<T: SideBySide, const N: usize, const M: usize>: Copy {
     }
     /// The speed to which the error of a step is relative: the largest speed, at least 1.
     fn fastest(&self, y: &[T; N]) -> T;
-    /// The longest time step that turning and nutation allow.
+    /// The longest time step that rotation and nutation allow.
     fn calm(&self, y: &[T; N]) -> T;
-    /// The shortest step from a place: a lane with a shorter one is stuck.
+    /// The shortest step from a place: a lane with a shorter step is stuck.
     #[inline(always)]
     fn shortest(&self, y: &[T; N]) -> T {
         (y[0].splat(SOON) + y[N - 1]) * y[0].splat(SHORTEST)
@@ -76,18 +76,17 @@ pub(crate) enum LaneStatus {
 const NEEDS_SINGLE: f64 = 1.0;
 const TIME_REACHED: f64 = 2.0;
 
-/// A lane that has evaluated its rates more often than this stops, so that the limit of the whole motion is
-/// checked.
+/// A lane stops after this number of evaluations of its rates, so that the limit of the whole motion is checked.
 const TOIL_IN_LANES: f64 = 1e6;
 
 /// The progress of the motions in their lanes.
 #[derive(Clone, Copy)]
 struct Way<T, const N: usize, const M: usize> {
     y: [T; N],
-    /// The parts of the numbers that rounding has taken from them.
+    /// The rounding errors of the numbers, which are added in the next step.
     carry: [T; N],
     h: T,
-    /// The margins at a place before the present one, and how far back that place lies.
+    /// The margins at a place before the current one, and the distance back to that place.
     before: [T; M],
     back: T,
     /// Number of crawling steps that are still allowed.
@@ -112,11 +111,10 @@ fn at<T: SideBySide>(mask: T, yes: T, no: T) -> T {
     mask.splat(0.0).select_lt(mask, yes, no)
 }
 
-/// A new lane gets an earlier place with margins, before its start by this share of its first step.
+/// A new lane has an earlier place with margins, before its start by this share of its first step.
 const RETURN: f64 = 0.03;
-/// Each of two chords is made steeper by this share of the difference of their slopes, as a reserve. Without
-/// it a margin that bends unevenly could dip below zero unseen; a larger share stops more lanes than
-/// necessary.
+/// Each of two chords is made steeper by this share of the difference of their slopes, as a reserve. Without this
+/// reserve a margin that bends unevenly could dip below zero unseen; a larger share stops more lanes than necessary.
 const STEEPER: f64 = 0.25;
 
 /// 1 where all margins stay positive in a step, else 0, also where one is NaN. `places` are the margins
@@ -173,7 +171,7 @@ pub(crate) struct Set<T, L, const N: usize, const M: usize> {
     until: T,
     way: Way<T, N, M>,
     rate: [T; N],
-    /// The margins at the present place.
+    /// The margins at the current place.
     margins: [T; M],
     status: T,
     /// 0 in a lane with a task, else 1.
@@ -182,7 +180,7 @@ pub(crate) struct Set<T, L, const N: usize, const M: usize> {
 }
 
 impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L, N, M> {
-    /// A set with the same start in all lanes.
+    /// A set with the same initial data in all lanes.
     pub fn new(zero: T, law: L, entry: &Entry<N, M>) -> Self {
         let (y, before) = ([zero; N], [zero; M]);
         let way = Way { y, carry: y, h: zero, before, back: zero, patience: zero, made: zero, erred: zero };
@@ -372,7 +370,7 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
                 way.carry[i] = at(takes, carry[i], way.carry[i]);
                 self.rate[i] = at(takes, rate[i], self.rate[i]);
             }
-            // A step that is not sure keeps its length for the single flow.
+            // A step in which an event is possible keeps its length for the single flow.
             way.h = zero.select_lt(good - takes, way.h, grown);
             (way.patience, way.made) = (patience, way.made + zero.splat(12.0));
         }

@@ -31,7 +31,7 @@ pub(crate) const SHORTEST: f64 = 1e-14;
 pub(crate) const SOON: f64 = 1e-9;
 /// Rate of the fall of a face, relative to its inclination, beyond which the first step is not shortened further.
 pub(crate) const FASTEST: f64 = 1e15;
-/// A step crawls if it is shorter than this share of the longest step that turning and nutation allow.
+/// A step crawls if it is shorter than this share of the longest step that rotation and nutation allow.
 pub(crate) const SLOW: f64 = 0.01;
 /// A step also crawls if time advances by less than this share of that longest step.
 pub(crate) const FROZEN: f64 = 1e-6;
@@ -57,8 +57,7 @@ pub(crate) fn toil_of(span: f64) -> u64 {
     TOIL.max((TOIL_PER_TIME * span) as u64)
 }
 
-/// Number of crawling steps before the next call of [`Flow::stuck`]; `patience` is the number that is still
-/// allowed.
+/// Number of crawling steps before the next call of [`Flow::stuck`]; `patience` is the number that is still allowed.
 pub(crate) fn until_tired(patience: u64) -> u64 {
     (TIRING - PATIENCE.saturating_sub(patience) % TIRING).min(patience)
 }
@@ -75,7 +74,7 @@ pub(crate) trait Flow<const M: usize>: Copy {
     const PAUSE: Self::Halt;
     /// The halt of a flow that exceeds its limits of work; if None, this is an error.
     const ENDLESS: Option<Self::Halt> = None;
-    /// Whether the stages of all steps form a loop: for rates so slow that the loop costs little beside them.
+    /// Whether the stages of all steps form a loop: for rates so slow that the loop costs little in comparison.
     const LOOPS: bool = rk8::LOOPS;
     /// Writes the rates of all numbers in sigma.
     fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]);
@@ -85,19 +84,19 @@ pub(crate) trait Flow<const M: usize>: Copy {
     fn margin<const N: usize>(&self, y: &[f64; N], i: usize) -> f64;
     /// The halt of a flow whose margin `i` fails.
     fn end(&self, i: usize) -> Self::Halt;
-    /// The error of a step, where 1 is allowed.
+    /// The error of a step, in units of the allowed error.
     fn error<const N: usize>(&self, y: &[f64; N], made: &rk8::Step<f64, N>) -> f64;
     /// The speed to which the error of a step is relative: the largest speed, at least 1.
     fn fastest<const N: usize>(&self, y: &[f64; N]) -> f64;
-    /// The number of ordinary steps for which a crawling step counts.
+    /// The number of ordinary steps that one step costs, if it crawls.
     fn effort(&self) -> u64 {
         1
     }
-    /// A cautious first step; the next steps grow fast.
+    /// A first step that is short enough; the next steps grow fast.
     fn first<const N: usize>(&self, y: &[f64; N]) -> f64;
-    /// The longest time step that turning and nutation allow.
+    /// The longest time step that rotation and nutation allow.
     fn calm<const N: usize>(&self, y: &[f64; N]) -> f64;
-    /// The shortest step in sigma from a point: a flow with a shorter one is stuck.
+    /// The shortest step in sigma from a point: a flow with a shorter step is stuck.
     fn shortest<const N: usize>(&self, y: &[f64; N]) -> f64 {
         SHORTEST * (SOON + y[Self::TIME])
     }
@@ -107,7 +106,7 @@ pub(crate) trait Flow<const M: usize>: Copy {
     fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Self::Halt, [f64; N])>;
     /// The halt of a flow whose steps become too short or crawl; None where the reason is unknown.
     fn stuck<const N: usize>(&self, place: &FlowPlace<N>, margins: &[Dual<f64>; M]) -> Option<Self::Halt>;
-    /// The rate, in time, at which the speed falls whose zero is this halt; infinite for other halts.
+    /// For a halt at which a speed vanishes, the rate in time at which this speed falls; infinite for other halts.
     fn slows<const N: usize>(&self, _: Self::Halt, _: &FlowPlace<N>) -> f64 {
         f64::INFINITY
     }
@@ -140,12 +139,12 @@ pub(crate) trait Flow<const M: usize>: Copy {
     ) -> (rk8::Step<f64, N>, radau::Collocated<N>) {
         unreachable!("only a stiff flow takes implicit steps")
     }
-    /// Called for each step that is taken, with the step, the length in sigma of the part that is taken, and
-    /// the point at its end. The part ends where the flow ends; if that is at the last requested time, the
-    /// length is that of the whole step.
+    /// Called for each step that is taken, with the step, the length in sigma of the part that is taken, and the point
+    /// at its end. The part ends where the flow ends; if that is at the last requested time, the length is that of the
+    /// whole step.
     #[inline(always)]
     fn passed<const N: usize>(&self, _: TakenStep<'_, N>, _: f64, _: &FlowPlace<N>) {}
-    /// Whether short steps, too, are searched for margins that fail for a moment.
+    /// Whether short steps are also searched for margins that fail for a moment.
     const CLOSELY: bool = false;
     /// Called with a point within a step near which margin `i` has a minimum, and with that minimum, which is
     /// positive and less than the variation of the margin in the step.
@@ -153,7 +152,7 @@ pub(crate) trait Flow<const M: usize>: Copy {
     /// The inclination that an error names.
     fn theta<const N: usize>(&self, y: &[f64; N]) -> f64;
 
-    /// Writes the rates, in a single copy where the code is to be short.
+    /// Writes the rates, in a single copy where the code has to be short.
     #[cfg_attr(short_code, inline(never))]
     #[cfg_attr(not(short_code), inline(always))]
     fn write_rates_here<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {
@@ -167,8 +166,8 @@ pub(crate) trait Flow<const M: usize>: Copy {
         all
     }
 
-    /// The margins; in WebAssembly a single copy of this function, since pages need small code more than fast
-    /// code.
+    /// The margins; in WebAssembly a single copy of this function, since small code is more important for pages than
+    /// fast code.
     #[cfg_attr(short_code, inline(never))]
     fn margins_at<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; M] {
         self.margins(place)
@@ -305,7 +304,7 @@ pub(crate) trait Flow<const M: usize>: Copy {
         count
     }
 
-    /// Follows the flow from a point, up to its halt, to the last of the `times`, or to a pause after the allowed
+    /// Computes the flow from a point, up to its halt, to the last of the `times`, or to a pause after the allowed
     /// steps. `write` receives the numbers at each of the `times` that is reached. None if `go_on` interrupts the flow.
     fn run<const N: usize>(
         &self,
@@ -370,7 +369,7 @@ pub(crate) trait Flow<const M: usize>: Copy {
             tired = false;
             let mut made = self.step::<LOOP, N>(&here, h, &mut stages);
             if Self::MAY_BE_STIFF && made.fifth[0].is_nan() {
-                // Where Newton's iteration does not converge, a short explicit step may do.
+                // Where Newton's iteration does not converge, a short explicit step may succeed.
                 made = self.explicit_step::<LOOP, N>(&here, h, &mut stages);
             }
             let implicit = Self::MAY_BE_STIFF && self.is_stiff(&here);

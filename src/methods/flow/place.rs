@@ -20,8 +20,7 @@ pub(crate) struct Flown<H, const N: usize> {
     pub y: [f64; N],
     /// The next step.
     pub step: f64,
-    /// The rate, in time, at which the margin or the speed fell whose zero ended the flow; infinite for other
-    /// ends.
+    /// The rate, in time, at which the margin or speed fell whose zero ended the flow; infinite for other ends.
     pub steep: f64,
     pub spent: Spent,
 }

@@ -13,9 +13,9 @@ pub(crate) const STEPS_ALONE: u64 = 3;
 pub(crate) trait Waiting<const K: usize, const M: usize> {
     /// The next flow, which gets lane `k`; None if no flow waits.
     fn enter(&mut self, k: usize) -> Option<Entry<K, M>>;
-    /// Takes over the flow of lane `k`, which has left its lane with these numbers and this next step.
+    /// Receives the flow of lane `k`, which has left its lane with these numbers and this next step.
     fn leave(&mut self, k: usize, status: LaneStatus, at: ([f64; K], f64), spent: Spent);
-    /// Whether the flows go on; false if the caller interrupts them.
+    /// Whether the flows continue; false if the caller interrupts them.
     fn go_on(&mut self) -> bool;
 }
 

@@ -22,39 +22,39 @@ pub(crate) trait Phases<const N: usize>: Sized {
     /// The speed below which a slip counts as zero.
     fn over(&self) -> f64;
 
-    /// The state at the present numbers.
+    /// The state at the current numbers.
     fn state(walk: &Walk<'_, Self, N>) -> Self::State;
-    /// The slip at the present numbers, in the components of the outputs.
+    /// The slip at the current numbers, in the components of the outputs.
     fn slip(walk: &Walk<'_, Self, N>) -> [f64; 2];
     /// Perturbs the state of a rougher run by the share `Walk::perturbation`, which is more than rounding.
     fn perturbs(walk: &mut Walk<'_, Self, N>);
     /// Writes a point of a slip to the outputs.
     fn write(walk: &mut Walk<'_, Self, N>, y: &[f64; N]);
-    /// Writes the present point, which is not on a flow.
+    /// Writes the current point, which is not on a flow.
     fn write_here(walk: &mut Walk<'_, Self, N>);
 
-    /// The halt of a slip at its start, if a margin fails there.
+    /// The halt of a slip that is over at once, because a margin fails.
     fn ends_slip(walk: &mut Walk<'_, Self, N>) -> Option<Halt>;
-    /// The ending at the start if an edge or the other rim lies on the table and does not rise; `found` is
-    /// the behaviour of the contact point, which is at rest.
+    /// The ending of a motion that is over at once, because an edge or the other rim lies on the table and does not
+    /// rise; `found` is the behaviour of the contact point, which is at rest.
     fn lies(walk: &mut Walk<'_, Self, N>, found: Standstill) -> Option<Ending>;
-    /// The first phase on a table without a law of friction.
+    /// The first phase without a law of friction.
     fn begins_without_slip(walk: &mut Walk<'_, Self, N>) -> Next;
     /// The behaviour of a contact point at rest, and of one that static friction has just ceased to hold.
     fn rests(walk: &Walk<'_, Self, N>) -> Standstill;
     fn lets_go(walk: &Walk<'_, Self, N>) -> Standstill;
-    /// The error of a start without a unique contact force.
+    /// The error for an initial state without a unique contact force.
     fn no_unique_force(walk: &Walk<'_, Self, N>) -> Error;
 
-    /// Ends the motion before the next phase if its end is known already. Returns whether it has ended.
+    /// Ends the motion before the next phase if its end is already known. Returns whether it has ended.
     fn is_over(_: &mut Walk<'_, Self, N>, _: &Next) -> bool {
         false
     }
-    /// The phase after an ending from which a motion with restitution goes on; otherwise the ending.
+    /// The phase after an ending past which a motion with restitution continues; otherwise the ending.
     fn goes_on(_: &mut Walk<'_, Self, N>, ending: Ending) -> Next {
         Next::Ends(ending)
     }
-    /// Follows a phase of the body's own, or begins its flow.
+    /// Computes a phase that only this body has, or begins its flow.
     fn goes(
         _: &mut Walk<'_, Self, N>,
         _: Kind,
@@ -71,7 +71,7 @@ pub(crate) trait Phases<const N: usize>: Sized {
     /// Begins a slip, or continues one. Returns the numbers at which its flow starts.
     fn slips(walk: &mut Walk<'_, Self, N>) -> [f64; N];
     fn slips_on(walk: &mut Walk<'_, Self, N>) -> [f64; N];
-    /// How fast the contact point slips, or the rim of its patch by drilling.
+    /// The speed of the slip of the contact point, or of the rim of its patch by drilling.
     fn rubbing(walk: &Walk<'_, Self, N>) -> f64 {
         walk.at[Self::SLIP].hypot(walk.at[Self::SLIP + 1])
     }
@@ -79,7 +79,7 @@ pub(crate) trait Phases<const N: usize>: Sized {
     fn begins_slowly(_: &Walk<'_, Self, N>) -> bool {
         true
     }
-    /// Lets a contact point at rest slip along `way`.
+    /// Makes a contact point at rest slip along `way`.
     fn lets_slip(walk: &mut Walk<'_, Self, N>, way: [f64; 2]);
     /// The series of slow slips, with which a slip from rest begins.
     fn slow(walk: &Walk<'_, Self, N>) -> Self::Slow;
@@ -88,8 +88,8 @@ pub(crate) trait Phases<const N: usize>: Sized {
     /// The numbers at the time `MOMENT` after the beginning of a slip along `way`, whose speed grows at the
     /// rate `growth`. Used where no series exists.
     fn nudged(walk: &Walk<'_, Self, N>, way: [f64; 2], growth: f64) -> [f64; N];
-    /// Evaluates a slow slip along its series up to a time since the series' start, to count
-    /// reversals of the spin.
+    /// Evaluates a slow slip along its series up to a time since the beginning of the series, to count reversals of the
+    /// spin.
     fn passed(_: &Walk<'_, Self, N>, _: &SlowSeries<N>, _: f64) {}
     /// Computes a rolling phase up to its event, or begins its flow.
     fn rolls(
@@ -99,7 +99,7 @@ pub(crate) trait Phases<const N: usize>: Sized {
     ) -> Result<Option<WalkStep<N>>, Error>;
     /// The length of a flow's first step.
     fn first(walk: &Walk<'_, Self, N>, y: &[f64; N]) -> f64;
-    /// Follows the flow of the present phase.
+    /// Computes the flow of the current phase.
     fn flows(
         walk: &mut Walk<'_, Self, N>,
         y: [f64; N],
@@ -108,7 +108,7 @@ pub(crate) trait Phases<const N: usize>: Sized {
     ) -> Result<Pause<N>, Error>;
     /// Ends a slip at the numbers `y`, and chooses the next phase.
     fn slip_halts(walk: &mut Walk<'_, Self, N>, y: [f64; N], halt: Halt);
-    /// Whether the margin of this halt vanished exactly where the present phase began.
+    /// Whether the margin of this halt vanished exactly where the current phase began.
     fn leaves_margin(_: &Walk<'_, Self, N>, _: Halt) -> bool {
         false
     }

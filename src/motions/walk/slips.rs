@@ -6,8 +6,8 @@ use crate::motions::halt::{Halt, TIME};
 use crate::motions::result::Ending;
 use crate::numbers::Series;
 
-/// A slip from rest whose speed grows at a higher rate than this does not stay slow: an integrator continues
-/// it after its first series.
+/// A slip from rest whose speed grows faster than this does not stay slow: an integrator continues it after its first
+/// series.
 const SLOWLY: f64 = 0.02;
 
 /// The series of all numbers along a slow slip. Functions return it in a `Box`, since the stack of the
@@ -44,14 +44,14 @@ const A_MOMENT: f64 = 1e-6;
 
 /// The series of slow slips under the laws of a phase.
 pub(crate) trait SlowLaw<const N: usize> {
-    /// The series from the numbers `y` on, in a direction near `angle`, with a `speed` that grows at the rate
-    /// `growth`. None where a slip would not keep such a direction, or is too fast.
+    /// The series from the numbers `y`, in a direction near `angle`, with a `speed` that grows at the rate `growth`.
+    /// None for a slip that would not keep such a direction, or is too fast.
     fn follow(&mut self, y: &[f64; N], angle: Series, growth: f64, speed: f64) -> Option<Box<SlowSeries<N>>>;
 }
 
 impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
-    /// Follows a slip from rest along alpha, whose speed grows at the rate `growth`. Returns the numbers at
-    /// which an integrator takes over; None if the slip ends before that.
+    /// Computes a slip from rest along alpha, whose speed grows at the rate `growth`. Returns the numbers at which an
+    /// integrator continues; None if the slip ends before that.
     pub(super) fn slips_off(&mut self, (alpha, growth): (f64, f64)) -> Option<[f64; N]> {
         let way = towards(alpha);
         P::lets_slip(self, way);
@@ -117,7 +117,7 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
         y
     }
 
-    /// Leaves out a phase that has lasted for a moment only, as one in which the drilling of a patch passes zero does.
+    /// Removes a phase that has lasted only for a moment, such as one in which the drilling of a patch passes zero.
     pub fn forgets_a_moment(&mut self, now: f64) {
         if now - self.began < A_MOMENT && self.made.path.phases.len() > 1 {
             self.made.path.phases.pop();

@@ -25,10 +25,10 @@ use crate::numbers::{Series, TERMS};
 const PER_DIGIT: f64 = 1.2;
 /// A series is used only while the last two terms of alpha(t) are below this, in radians.
 const LAST_TERMS: f64 = 1e-7;
-/// A slip faster than this is left to the integrator.
+/// A slip faster than this is computed by the integrator.
 const SLOW_SLIP: f64 = 0.02;
-/// Longest time over which two sweeps for the series of a slow slip must agree, and largest number of sweeps;
-/// without agreement there is no series, and the integrator follows the slip.
+/// Longest time over which two sweeps for the series of a slow slip must agree, and largest number of sweeps; without
+/// agreement there is no series, and the integrator computes the slip.
 const SOON: f64 = 0.05;
 const MOST_SWEEPS: i32 = 16;
 
@@ -55,9 +55,8 @@ const CHECKS: usize = 16;
 /// Largest number of halvings of a series that is too long for its margins.
 const HALVINGS: u32 = 60;
 
-/// The time up to which no margin fails, at most `until`. `margins` returns the margins at a time. The slip
-/// may vanish at both ends and then has no direction, so that the second argument is a time close by at
-/// which it has one.
+/// The time up to which no margin fails, at most `until`. `margins` returns the margins at a time. The slip may vanish
+/// at both ends and then has no direction; the second argument of `margins` is a time close by at which it has one.
 pub(crate) fn clear_until<const M: usize>(mut until: f64, margins: impl Fn(f64, f64) -> [f64; M]) -> f64 {
     for _ in 0..HALVINGS {
         let part = |k: usize| until * k as f64 / CHECKS as f64;
@@ -76,8 +75,8 @@ pub(crate) fn clear_until<const M: usize>(mut until: f64, margins: impl Fn(f64, 
     until
 }
 
-/// Whether no margin fails after the first of some places that lie close together; at the first one, the
-/// start, a margin may vanish.
+/// Whether no margin fails after the first of some places that lie close together. At the first place, the beginning, a
+/// margin may vanish.
 fn are_clear<const M: usize>(margins: &[[f64; M]]) -> bool {
     let fails = |i: usize| {
         let falls = margins[1..].iter().any(|m| m[i] <= 0.0 || m[i].is_nan());
@@ -92,8 +91,8 @@ fn are_clear<const M: usize>(margins: &[[f64; M]]) -> bool {
     !(0..M).any(fails)
 }
 
-/// The rates of the K numbers of a body beside its slip, of its slip, and (`more`) of numbers on which
-/// no rate depends.
+/// The rates of the K numbers of a body without its slip, of its slip, and (`more`) of numbers on which no rate
+/// depends.
 pub(crate) struct SlowRates<T, const K: usize> {
     pub numbers: [T; K],
     pub slip: [T; 2],
@@ -164,7 +163,7 @@ impl<const K: usize> SlowSlips<K> {
         }
         let (terms, player) = (self.terms, &mut self.player);
         let (mut sweep, mut moved) = (0, f64::INFINITY);
-        // The coefficients of the rate of the angle; those not computed yet are from the sweep before.
+        // The coefficients of the rate of the angle; those not computed yet are from the previous sweep.
         let mut turns = angle.slope().at;
         let settling = loop {
             let [cos, sin] = towards(angle.at[0]);
@@ -212,8 +211,7 @@ impl<const K: usize> SlowSlips<K> {
             }
             let soon = SOON.min(soon(&angle, terms, LAST_TERMS));
             let off: f64 = (0..terms).map(|n| (angle.at[n] - before.at[n]).abs() * soon.powi(n as i32)).sum();
-            // The change of the angle is expected to decrease in the next sweep by the same factor
-            // as in this one.
+            // The change of the angle is expected to decrease in the next sweep by the same factor as in this one.
             if sweep > 0 && off * (off / moved).min(1.0) <= 0.1 * self.tol.max(1e-13) {
                 break settling;
             }
