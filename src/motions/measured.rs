@@ -136,8 +136,8 @@ impl Measured {
     /// ```
     pub fn with_moments(scale: Scale, [height, fillet]: [f64; 2], [i1, i3]: [f64; 2]) -> Result<Self, Error> {
         let [low, high] = [1e-3, 1e4].map(|natural| scale.kilogram_square_metres(natural));
-        within("i1", i1, (low, high), "kg m^2, from 1e-3 to 1e4 M R^2")?;
-        within("i3", i3, (0.0, high), "kg m^2, at most 1e4 M R^2")?;
+        within("i1", i1, (low, high), "1e-3 to 1e4 M R^2, in kg m^2")?;
+        within("i3", i3, (0.0, high), "at most 1e4 M R^2, in kg m^2")?;
         let (ell, rho) = (scale.length(height), scale.length(fillet));
         Ok(Self::new(Body::rounded(ell, scale.moment(i1), scale.moment(i3), rho)?, scale))
     }

@@ -1,15 +1,15 @@
-//! Motions: times, states, and the event that ends a motion.
+//! Motions: states at given times, and the event that ends a motion.
 //!
-//! [`roll`] uses the first integrals ([`exact`](super::exact)) unless [`Ask`] chooses an integrator; an
-//! integrator also replaces the first integrals where these lose all their digits. Either way the assumptions
-//! of the model are checked along the motion:
+//! [`roll`] uses the first integrals ([`exact`](super::exact)) unless [`Ask`] chooses an integrator; an integrator also
+//! replaces the first integrals where these lose all their digits. In both cases the assumptions of the model are
+//! checked along the motion:
 //!
 //! ```text
 //! theta > 0                 the face lands         theta < pi/2    the other rim lands (ell > 0)
 //! N > 0                     contact is kept        F <= mu N       rolling is kept, if a mu is given
 //! ```
-//! The first assumption that fails is the [`Event`] that ends the motion; states after the event are computed
-//! only with [`Ask::beyond`].
+//! The first assumption that fails is the [`Event`] that ends the motion; states after the event are computed only with
+//! [`Ask::beyond`].
 
 use super::conserved::conserved;
 use super::exact::Swing;
@@ -20,10 +20,11 @@ use crate::laws::body::Body;
 use crate::laws::contact::{Contact, Table};
 use crate::laws::state::State;
 
-/// The motion of `body`, which rolls from `start` at the first of the `times`, up to the event that ends it.
+/// Computes the motion of `body`, which rolls, from the state `start` at the first of the `times`, up to the event that
+/// ends it.
 ///
-/// The method is exact, without poses or forces; [`roll_with`] offers the other choices and has
-/// the same errors.
+/// The times are in sqrt(R/g). The method is exact, without poses and forces; [`roll_with`] has the other options, and
+/// the errors of both.
 ///
 /// ```
 /// use spincyl::{Body, roll, steady};
@@ -36,21 +37,21 @@ use crate::laws::state::State;
 /// # Ok::<(), spincyl::Error>(())
 /// ```
 pub fn roll(body: &Body, start: &State, times: &[f64]) -> Result<Motion, Error> {
-    // The error for a first time that is not finite must name `t`, not `t0`.
+    // For a first time that is not finite the error has to name `t`, not `t0`.
     let time = times.first().copied().filter(|t| t.is_finite()).unwrap_or(0.0);
     let start = Start::from(start).with_time(time);
     roll_with(body, start, times, &Ask::default(), || true).map(|m| m.expect("nobody interrupts"))
 }
 
-/// The motion of `body` from a start at the `times`, which are in order and on one side of the start; with a
-/// law of friction or losses no time lies before the start. A [`State`] is a start at time 0 without a slip.
-/// `ask` chooses the table, the losses, the method and the outputs.
+/// Computes the motion of `body` from a [`Start`] at the `times`, in sqrt(R/g). A [`State`] is a start at time 0 without
+/// a slip. The times are in order and all after or all before the initial time; with a law of friction or losses they
+/// are not before it. `ask` chooses the contact, the losses, the method and the outputs.
 ///
-/// `go_on` is called about fifty times a second; if it returns false, the result is `Ok(None)`. Errors before
-/// any work: `OutOfRange` for a body, state, slip, time, step, tolerance or coefficient out of range; `Step`
-/// for a fixed step that is too long for fast precession or nutation; `Painleve` for a start without a unique
-/// contact force. Errors at any time: `Memory` if there is too little memory for the outputs; for a body that
-/// slips or loses energy also the errors of [`path`].
+/// `go_on` is called about fifty times a second; if it returns false, the result is `Ok(None)`. Errors before any work:
+/// `OutOfRange` for a body, state, slip, time, step, tolerance or coefficient out of range; `Step` for a fixed step
+/// that is too long for fast precession or nutation; `Painleve` for an initial state without a unique contact force.
+/// Errors at any time: `Memory` if the memory does not suffice for the outputs; for a body that slips or loses energy
+/// also the errors of [`path`].
 ///
 /// ```
 /// use spincyl::{Body, State, contact::Friction, motion::{Ask, Start, roll_with}};
@@ -76,7 +77,7 @@ pub fn roll_with(
     rolled(body, &start.into(), times, ask, &mut go_on)
 }
 
-/// Does the work of [`roll_with`] without generic parameters, so that this code is compiled only once.
+/// The work of [`roll_with`] without generic parameters, so that this code is compiled only once.
 fn rolled(
     body: &Body,
     start: &Start,
@@ -94,8 +95,8 @@ fn rolled(
         .map(|motion| Motion { smooth: ask.table == Table::Smooth && ask.restitution.is_none(), ..motion }))
 }
 
-/// The first event of an exact motion that the model does not cover, from time 0 on; `mu` is the coefficient
-/// of friction of a body that rolls.
+/// The first event of an exact motion that the model does not cover, from time 0 on; `mu` is the coefficient of friction
+/// of a body that rolls.
 ///
 /// ```
 /// use spincyl::{Body, Contact, exact::Swing, motion, steady};
@@ -110,15 +111,15 @@ pub fn first_event(swing: &Swing, mu: f64) -> Option<Event> {
     limits::first_event(swing, &Limits::new(swing.body(), &Table::of(swing.contact(), mu)), 1.0)
 }
 
-/// The start of a motion: sine and cosine of theta, the rate of the state, and the ending if the
-/// motion ends there.
+/// The initial data of a motion: sine and cosine of theta, the rate of the state, and the ending if the motion is over
+/// at once.
 pub(crate) struct Begun {
     pub angle: (f64, f64),
     pub rate: State,
     pub over: Option<Ending>,
 }
 
-/// The start of a body's motion, where `way` is the direction of time.
+/// The initial data of a body's motion, where `way` is the direction of time.
 pub(crate) fn begun(body: &Body, contact: Contact, mu: f64, y: &State, way: f64) -> Begun {
     let (limits, angle) = (Limits::new(body, &Table::of(contact, mu)), y.theta.sin_cos());
     let rate = limits.rates.derivative(y, angle);

@@ -181,7 +181,7 @@ impl Form {
             }
             Self::Ring { radius, height } => {
                 size("radius", &[radius])?;
-                within("height", height, (-SIZE.1, SIZE.1), "a height").map(drop)
+                within("height", height, (-SIZE.1, SIZE.1), "a height of at most 1e100").map(drop)
             }
         }
     }

@@ -12,7 +12,7 @@
 //! enters w'. Where dry friction holds the drilling, w_z = s w1 + c w3 is kept by one more couple nu z, with
 //! nu = -w_z'/(s^2/I1 + c^2/I3) and |nu| <= length N, on which N does not depend. Only slip along the lean is coupled to
 //! N. Where eps reaches 1, no force or more than one keeps the body on the table (Painleve 1895): this can happen for
-//! mu >= mu_P(theta) = (I1 + g^2)/|g h|, and such a state is refused. Uniform tubes on sharp rims are safe below mu =
+//! mu >= mu_P(theta) = (I1 + g^2)/|g h|, and such a state is an error. Uniform tubes on sharp rims are safe below mu =
 //! sqrt(5)/2. Without losses the sum of heat and energy is constant.
 //!
 //! Near u = 0 the direction of Coulomb's force turns faster and faster, as 1/|u|. In the variable sigma with

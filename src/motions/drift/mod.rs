@@ -163,7 +163,7 @@ pub(crate) fn check(body: &Body, losses: &Losses) -> Result<(), Error> {
         let expected = "at least one law with a positive coefficient: without losses there is no drift";
         return Err(Error::OutOfRange { name: "losses", value: 0.0, expected });
     }
-    within("ell", body.ell(), (-1.0, 1e6), "ell <= 1e6 for a drift")?;
+    within("ell", body.ell(), (-1.0, 1e6), "-1 < ell <= 1e6 for a drift")?;
     within("i1", body.i1(), (1e-12, 1e12), "1e-12 <= i1 <= 1e12 for a drift")?;
     within("i3", body.i3(), (1e-12, 1e12), "1e-12 <= i3 <= 1e12 for a drift")?;
     Ok(())
