@@ -68,6 +68,8 @@ class Engine:
         ]
         total = np.zeros(3)
         for law in self.table["losses"]:
+            if normal is None and law["coefficient"] not in ("b", "b2"):
+                continue  # as the file says of the air
             total = total + eval(law["couple"], {}, known | {law["coefficient"]: law["value"]})
         return total
 
@@ -98,7 +100,7 @@ class Engine:
             return force / self.mass + np.cross(spun @ (np.cross(arm, force) + couple), arm)
 
         if kind == "flying":
-            return np.zeros(3), free, arm, spun
+            return np.zeros(3), self.couple(turn, pose.w, None) + gyro, arm, spun
         # what the contact point gains without a force of the table
         rest = np.cross(spun @ free, arm) + np.cross(pose.w, runs) - self.gravity * UP
         if kind == "rolling":

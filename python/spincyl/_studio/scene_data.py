@@ -36,6 +36,7 @@ _SYMBOLS = (
     " h = ((a.n) n - a)/s. q = (w.a - (a.n) w_n)/s^2. N: normal force, of both rims together."
     " A = (radius of the circle + swollen_by s)/R. R: body.shape.radius."
     " A couple acts on the body and takes the power -couple.w; in the air there are only b and b2."
+    " sign(0), and t/norm(t) of t = 0, is what keeps it 0, of at most the size 1."
 )
 _SLIPS = "-mu N u/|u| at the contact point, where u is its velocity over the table"
 _ROLLS = "what keeps the contact point at rest; any coefficient from `needed` on does"
@@ -213,6 +214,9 @@ def _known(
     phase = extra.get("phase", np.zeros(m.t.size, int))
     both = phase >= KINDS.index("lying")
     normal = m.normal + np.where(both, extra.get("normal_other", 0.0), 0.0)
+    # where a body leaves the table at once, a table that pulled would hold it
+    leaves = normal < 0
+    force = np.where(both[:, None], np.nan, np.where(leaves[:, None], 0.0, m.contact_force))
     point = np.column_stack([m.contact_point, np.zeros(m.t.size)])
     point[both | (phase == KINDS.index("flying"))] = np.nan
     found = {
@@ -223,8 +227,8 @@ def _known(
         "angular_velocity": w / second,
         "theta": inclination(m.orientation),
         "energy": m.energy * joule,
-        "normal_force": normal * weight,
-        "contact_force": np.where(both[:, None], np.nan, m.contact_force) * weight,
+        "normal_force": np.where(leaves, 0.0, normal) * weight,
+        "contact_force": force * weight,
         "contact_point": point * metre,
     }
     for name, key in (("heat_of_slip", "dissipated"), ("lost_by_losses", "work_lost")):
