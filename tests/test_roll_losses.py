@@ -88,9 +88,9 @@ def test_a_slip_is_refused_where_there_is_no_law_for_it(contact):
 
 
 def test_a_family_or_many_states_are_refused():
-    with pytest.raises(ValueError, match="^body: expected a single one"):
+    with pytest.raises(ValueError, match="^body: expected a single body"):
         sc.roll(sc.Body.solid([0.1, 0.2]), DISK.steady(0.3), 1.0, losses=DRY)
-    with pytest.raises(ValueError, match="^state: expected a single one"):
+    with pytest.raises(ValueError, match="^state: expected a single state"):
         sc.roll(DISK, DISK.steady([0.3, 0.4]), 1.0, losses=DRY)
 
 

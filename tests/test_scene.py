@@ -179,7 +179,7 @@ def test_what_has_no_answer_is_refused_and_says_why():
         (
             sc.roll(TUBE, TUBE.steady(1.4), 1.0),
             {"scale": EURO},
-            "^scale = .* is not that of the measured body",
+            "^scale = .*: the measured body has another",
         ),
     ):
         with pytest.raises(ValueError, match=said):

@@ -124,10 +124,10 @@ def test_a_law_or_a_slip_that_makes_no_sense_is_refused_by_name(make, error, mat
         ({"t": np.nan}, ValueError, "^t = NaN"),
         ({"state": sc.State(1.0, 0, 0, 1.0, slip=(np.nan, 0))}, ValueError, "^slip along the lean = NaN"),
         ({"state": sc.State(1.0, 0, 0, 1.0, slip=(0, np.inf))}, ValueError, "^slip across = inf"),
-        ({"state": sc.State(1.0, 0, 0, 1.0, slip=([0, 1], 0))}, ValueError, "^state: expected a single one"),
+        ({"state": sc.State(1.0, 0, 0, 1.0, slip=([0, 1], 0))}, ValueError, "^state: expected a single state"),
         ({"state": sc.State(1.0, 0, 0, 1.0, slip=(np.zeros(0), 0))}, ValueError, "^state: expected a single"),
         ({"state": sc.State(0.0, 0, 0, 1.0, slip=(0, 1))}, ValueError, "^theta = 0.0: expected"),
-        ({"body": sc.Body.solid(np.array([1.0, 2.0]))}, ValueError, "^body: expected a single one"),
+        ({"body": sc.Body.solid(np.array([1.0, 2.0]))}, ValueError, "^body: expected a single body"),
     ],
 )
 def test_a_question_that_makes_no_sense_is_refused_by_name(change, error, match):

@@ -31,49 +31,50 @@ def measured(
     fillet: float = 0.0,
     gravity: float = Scale.gravity,
 ) -> Body:
-    """A uniform tube that knows its size, from its measures in metres and kilograms.
+    """Make a measured body: a uniform tube with dimensions in metres and motions in SI.
 
-    Measures are single numbers, texts such as "120mm", or quantities of pint's in any unit of their kind.
+    Each argument is a single number, a text such as "120mm", or a quantity of pint in any unit of its kind.
 
     Parameters
     ----------
     outer_diameter, length : float
-        In metres.
+        Outer diameter and length of the tube, in metres.
     inner_diameter : float
-        In metres; 0 is a solid cylinder.
+        Inner diameter in metres; 0 is a solid cylinder.
     wall : float, optional
-        Or how thick the wall is, in metres.
+        Thickness of the wall in metres, instead of `inner_diameter`.
     mass : float, optional
-        In kilograms. Rates, times and lengths do not need it; forces and energies do, and say so.
+        Mass in kilograms. Rates, times and lengths do not need it; forces and energies do, else they raise an
+        error.
     fillet : float
-        Radius of its rounded outer edges, in metres.
+        Radius of the rounded outer edges, in metres.
     gravity : float
-        In m/s^2.
+        Acceleration of gravity, in m/s^2.
 
     Returns
     -------
     Body
-        With its `scale`. `roll`, `swing`, `drift` and sweeps take it, and tell seconds, metres, joules,
-        newtons and rad/s; `thrown`, `pressed` and `dropped` take SI. What is asked of the body itself, and
-        every `State`, stays in natural units, unless the name has a unit: `critical_hertz`, `hertz(theta)`,
-        `inclinations(hertz=7.3)`. `natural` is the same body without its scale.
+        Body with a `scale`. `roll`, `swing`, `drift` and sweeps of it return SI: s, m, J, N and rad/s;
+        `thrown`, `pressed` and `dropped` take SI. Methods of the body and every `State` stay in natural
+        units, unless the name has a unit: `critical_hertz`, `hertz(theta)`, `inclinations(hertz=7.3)`.
+        `natural` is the same body without its scale.
 
     Raises
     ------
     ValueError
-        For what is no tube, naming the value and the inequality.
+        If there is no such tube; the message names the value and the inequality.
     TypeError
-        Naming what is no single real number, or has another dimension.
+        If an argument is not a single real number, or has another dimension; the message names it.
 
     Warns
     -----
     UserWarning
-        If it is larger than 5 m, smaller than 0.1 mm or, with a mass, lighter than foam or heavier than
-        osmium, as a tube is whose millimetres were taken for metres.
+        If the tube is larger than 5 m, smaller than 0.1 mm or, with a mass, lighter than foam or heavier than
+        osmium, as if millimetres had been taken for metres.
 
     See Also
     --------
-    Body.in_metres : gives a size to any other body.
+    Body.in_metres : makes any other body a measured body.
 
     Examples
     --------
@@ -109,7 +110,7 @@ _TIME = re.compile(r"(\bt = |\bt0 = |\bstep = |\ba step of )([-+]?[0-9.]+(?:e[-+
 
 
 def speaking(scale: Scale | None, length: str = "R") -> AbstractContextManager[None]:
-    """Context in which errors of the core speak of the units of a measured body: times in seconds.
+    """Context in which errors of the core give times in seconds, for a measured body.
 
     Ranges of valid numbers stay in natural units, and the message says so.
     """
@@ -182,6 +183,6 @@ def told(name: str, values: Any, scale: Scale | None) -> Any:
     factor, said = unit(name, scale)
     if factor is None and scale is not None and said in ("M g", "M g R"):
         in_si = {"M g": "N", "M g R": "J"}[said]
-        why = f"in {in_si} needs the mass of the body, body.in_metres(mass=) in kilograms"
+        why = f"in {in_si} needs the mass of the body, as in body.in_metres(mass=0.02), in kilograms"
         raise AttributeError(f"{name} {why}; natural.{name} of the motion is in {said}")
     return values if factor is None else values * factor

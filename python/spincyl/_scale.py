@@ -1,6 +1,6 @@
-"""Natural units to metres, kilograms and seconds.
+"""Conversion of natural units to metres, kilograms and seconds.
 
-Length R, time sqrt(R/g), speed sqrt(g R), angular velocity sqrt(g/R), force M g, energy M g R.
+Natural units: length R, time sqrt(R/g), speed sqrt(g R), angular velocity sqrt(g/R), force M g, energy M g R.
 """
 
 import math
@@ -32,26 +32,26 @@ _WEIGHED = ("J", "N")
 @compared
 @dataclass(frozen=True)
 class Scale:
-    """SI scale of a body.
+    """Size, mass and gravity of a body in SI, which convert results from natural units.
 
-    Numbers, or quantities of pint's in any unit of their kind.
+    Each is a number, a text such as "12mm", or a quantity of pint in any unit of its kind.
 
     Parameters
     ----------
     radius : float
-        Rim radius R in metres.
+        Outer radius R of the rim, in metres.
     mass : float
-        Mass M in kilograms; forces and energies depend on it, and coefficients of losses
-        (`loss.AirFilm.from_si`). NaN: it is not known, and what depends on it is refused.
+        Mass M in kilograms. Forces, energies, and the coefficients of some losses depend on it. NaN means
+        unknown; results that depend on the mass then raise an error.
     gravity : float
-        In m/s^2.
+        Acceleration of gravity g, in m/s^2.
 
     Raises
     ------
     ValueError
-        Naming the value that is not between 1e-100 and 1e100.
+        If a value is not between 1e-100 and 1e100; the message names it.
     TypeError
-        Naming the value that is no real number.
+        If a value is not a real number; the message names it.
     """
 
     radius: float
@@ -63,43 +63,43 @@ class Scale:
         for name, unit in units.items():
             value = number(name, si(name, getattr(self, name), unit))
             object.__setattr__(self, name, value)
-        self._units  # noqa: B018 (refuses what is out of range)
+        self._units  # noqa: B018 (raises ValueError if a value is out of range)
 
     @elementwise
     def metres(self, length: Reals) -> Result:
-        """A length in R as metres."""
+        """Convert a length in R to metres."""
         return reals("length", length) * self._units[0]
 
     @elementwise
     def seconds(self, time: Reals) -> Result:
-        """A time in sqrt(R/g) as seconds."""
+        """Convert a time in sqrt(R/g) to seconds."""
         return reals("time", time) * self._units[1]
 
     @elementwise
     def metres_per_second(self, speed: Reals) -> Result:
-        """A speed in sqrt(g R), such as that of a slip, as metres per second."""
+        """Convert a speed in sqrt(g R), such as a slip, to metres per second."""
         return reals("speed", speed) * (self._units[0] / self._units[1])
 
     @elementwise
     def joules(self, energy: Reals) -> Result:
-        """An energy in M g R as joules."""
+        """Convert an energy in M g R to joules."""
         return reals("energy", energy) * self._joule("an energy")
 
     @elementwise
     def newtons(self, force: Reals) -> Result:
-        """A force in M g, such as `Motion.normal`, as newtons."""
+        """Convert a force in M g, such as `Motion.normal`, to newtons."""
         return reals("force", force) * (self._joule("a force") / self._units[0])
 
     @elementwise
     def hertz(self, body: "Body", rate: Reals) -> Result:
-        """Turns per second of a reduced rotation rate Omega~ = Omega sqrt(I3) of `body`."""
+        """Convert a reduced rate Omega~ = Omega sqrt(I3) of `body` to turns per second."""
         if not hasattr(body, "angular_rate"):  # `_body` imports this module, so `Body` is not known here
             raise TypeError(f"body: expected a Body, not {type(body).__name__}")
         return body.angular_rate(rate) * self._units[3]
 
     @elementwise
     def turns(self, angular_velocity: Reals) -> Result:
-        """Turns per second of an angular velocity in sqrt(g/R)."""
+        """Convert an angular velocity in sqrt(g/R) to turns per second."""
         return reals("angular_velocity", angular_velocity) * self._units[3]
 
     def _repr_html_(self) -> str:
@@ -122,7 +122,7 @@ class Scale:
 
     @property
     def _worst(self) -> float:
-        """The largest of the units of states, slips and times, which converts a bound of all their errors."""
+        """The largest unit of states, slips and times: it converts a bound on all their errors."""
         metre, second, *_ = self._units
         return max(1.0, 1 / second, second, metre / second)
 
@@ -135,18 +135,18 @@ class Scale:
         if not self._is_weighed:
             raise ValueError(
                 f"{what} in SI needs the mass of the body: give mass=, in kilograms, "
-                "or ask the natural body (.natural) in natural units"
+                "or use the body in natural units (.natural)"
             )
         return self._units[2]
 
 
 def unit(name: str, scale: Scale | None) -> tuple[float | None, str]:
-    """The factor that converts an output of a motion, None without a conversion, and the resulting unit."""
+    """The factor that converts an output of a motion to SI, None without a conversion, and its unit."""
     return si_of(UNITS.get(name, "1"), scale)
 
 
 def si_of(natural: str, scale: Scale | None) -> tuple[float | None, str]:
-    """The factor that converts from a natural unit, None without a conversion, and the resulting unit.
+    """The factor that converts from a natural unit to SI, None without a conversion, and the unit of SI.
 
     Without a mass, forces and energies stay in natural units.
     """
@@ -167,12 +167,12 @@ def si_of(natural: str, scale: Scale | None) -> tuple[float | None, str]:
 
 
 def other(told: str, of: Scale | bool, scale: Scale | None) -> None:
-    """Refuse a coefficient that was given in SI for a body of another radius, or under another gravity."""
+    """Raise ValueError for a coefficient given in SI for a body of another radius or another gravity."""
     if not isinstance(of, Scale) or scale is None:
         return
     if not (math.isclose(of.radius, scale.radius) and math.isclose(of.gravity, scale.gravity)):
         made = f"R = {of.radius:g} m and g = {of.gravity:g} m/s^2"
-        raise ValueError(f"{told} was made for {made}, which this body has not: from_si(..., scale=body)")
+        raise ValueError(f"{told}: made for another scale, {made}; give from_si(..., scale=body)")
 
 
 @overload
@@ -193,15 +193,15 @@ def scale_of(scale: "Scale | Body | None", *bodies: "Body") -> Scale | None:
     """
     given = scale if scale is None or isinstance(scale, Scale) else getattr(scale, "scale", None)
     if scale is not None and not isinstance(given, Scale):
-        more = " that is not measured: body.in_metres(...) is" if hasattr(scale, "scale") else ""
+        more = " without a scale; body.in_metres(...) has one" if hasattr(scale, "scale") else ""
         raise TypeError(f"scale: expected a Scale, not {type(scale).__name__}{more}")
     if scale is None and not bodies:
         raise TypeError("scale: expected a Scale or a measured body, not None")
     for body in bodies:
         own = body.scale
         if own is not None and given is not None and own != given:
-            raise ValueError(f"scale = {given!r} is not that of the measured body, {own!r}: leave it out")
+            raise ValueError(f"scale = {given!r}: the measured body has another, {own!r}; leave out scale=")
     owns = [body.scale for body in bodies]
     if given is None and any(own != owns[0] for own in owns):
-        raise ValueError(f"scale: the bodies have different ones, {owns}: give those of one scale, or scale=")
+        raise ValueError(f"scale: the bodies have different scales, {owns}; give bodies of one, or scale=")
     return given if given is not None or not owns else owns[0]

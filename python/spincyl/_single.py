@@ -1,4 +1,4 @@
-"""A body that is one, and no family."""
+"""Check for a single body."""
 
 from spincyl._body import Body
 from spincyl._input.numbers import is_scalar, made
@@ -8,5 +8,5 @@ def one_body(body: object) -> Body:
     """Return `body` if it is a single body, else raise TypeError or ValueError."""
     found = made("body", body, Body)
     if not is_scalar(*found._numbers):
-        raise ValueError("body: expected a single one, not an array of them")
+        raise ValueError("body: expected a single body, not a family")
     return found

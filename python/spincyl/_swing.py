@@ -16,24 +16,24 @@ from spincyl._upward import above
 
 @compared
 class Swing(NamedTuple):
-    """The nutation of a motion if nothing ends it before; from `swing`.
+    """The nutation of a motion, as if no event ended the motion; the result of `swing`.
 
-    In natural units; of a measured body in SI, with its scale: times in s, lengths in m.
+    In natural units; for a measured body in SI, times in s and lengths in m.
     """
 
-    period: float  #: of a whole nutation; infinite where the face lands
-    theta_min: float  #: least inclination, 0 where the face lands
-    theta_max: float  #: greatest inclination
-    precession_per_period: float  #: phi per period, radians; NaN without a period
-    spin_per_period: float  #: psi per period, radians
-    drift: float  #: how far the contact point has moved after a period, in R
-    drift_radius: float  #: of the circle on which it is after whole periods, in R
-    error: float  #: estimated error of the period; NaN without one
-    scale: Scale | None = None  #: that of a measured body
+    period: float  #: period of the nutation, in sqrt(R/g); infinite if the face lands
+    theta_min: float  #: least inclination, radians; 0 if the face lands
+    theta_max: float  #: greatest inclination, radians
+    precession_per_period: float  #: increase of phi in a period, radians; NaN without a period
+    spin_per_period: float  #: increase of psi in a period, radians
+    drift: float  #: displacement of the contact point in a period, in R
+    drift_radius: float  #: radius of the circle that passes through the contact points at whole periods, in R
+    error: float  #: estimated error of the period; NaN without a period
+    scale: Scale | None = None  #: scale of a measured body
 
     @property
     def nutation(self) -> float:
-        """Angular frequency, 2 pi over the period."""
+        """Angular frequency of the nutation, 2 pi over the period, in sqrt(g/R) or rad/s."""
         return 2 * np.pi / self.period
 
     def _repr_html_(self) -> str:
@@ -41,31 +41,33 @@ class Swing(NamedTuple):
 
 
 def swing(body: Body, state: State, contact: Contact = "rolling") -> Swing:
-    """The nutation of the motion through a state: period, turning points, turn and drift per period.
+    """Compute the nutation of a motion: period, turning points, and rotation and drift per period.
 
-    That is of the equations of motion: the other rim may land, or the contact be lost, before a period is
-    over (theta_max above pi/2 says so of the rim). `roll` tells.
+    Events are ignored. The other rim may land before the period is over (if theta_max exceeds pi/2), or the
+    body may lift off; `roll` finds such events.
 
     Parameters
     ----------
     body : Body
+        Single body in the range of `roll`.
     state : State
-        Single ones, in the range of `roll`.
+        Any state of the motion, single, in the range of `roll`.
     contact : {"rolling", "smooth"}
+        Rolling without slipping, or a frictionless table.
 
     Returns
     -------
     Swing
-        Named numbers. Relative error 1e-14 times the conditioning of the motion; `error` estimates that of
-        the period. Of a measured body in SI.
+        Named numbers, for a measured body in SI. Relative error 1e-14 times the conditioning of the motion;
+        `error` estimates that of the period.
 
     Raises
     ------
     ValueError
-        For a body or state out of range, and where the equations lose all their digits.
+        If the body or the state is out of range, or if the equations lose all their digits.
     """
     of, start = single(body, state)
-    gripping(state, f"a swing is of the motion with contact={contact!r}; roll with contact=sc.Coulomb(mu)")
+    gripping(state, f"contact={contact!r} has no law of friction; take roll with contact=sc.Coulomb(mu)")
     eight: list[float] = _core.swing(of, start, code(contact))
     found = Swing._make([*eight, None])
     if body.scale is None:
@@ -93,7 +95,7 @@ def single(body: Body, state: State) -> tuple[_Six, _Four]:
         return of, at
     for name, values in (("body", of), ("state", at)):
         if not is_scalar(*values):
-            raise ValueError(f"{name}: expected a single one, not an array of them")
+            raise ValueError(f"{name}: expected a single {name}, not an array")
     return (
         (float(ell), float(i1), float(i3), float(bore), float(fillet), float(most)),
         (float(theta), float(w1), float(w2), float(w3)),
@@ -106,7 +108,7 @@ def single_slip(state: State) -> tuple[float, float]:
         return 0.0, 0.0
     along, across = state._slip
     if not is_scalar(along, across):
-        raise ValueError("state: expected a single one, not an array of them")
+        raise ValueError("state: expected a single state, not an array")
     return float(along), float(across)
 
 
@@ -115,5 +117,5 @@ def single_aloft(state: State) -> tuple[float, float] | None:
     if state.height is None:
         return None
     if not is_scalar(state.height, state.lift):
-        raise ValueError("state: expected a single one, not an array of them")
+        raise ValueError("state: expected a single state, not an array")
     return float(state.height), float(state.lift)  # type: ignore[arg-type]  # both are set together
