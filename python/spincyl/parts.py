@@ -1,8 +1,8 @@
-"""Parts on one axis, of which `assembled` makes a body: cylinders, cones, balls, thin walls, rings, points.
+"""Parts on one axis, from which `assembled` makes a body: cylinders, cones, balls, thin walls, rings, points.
 
 Diameters, lengths and heights are in metres, or texts such as "18mm". Each part has a `mass` (kg) or a
-`density`: kg per m^3 of a solid part, per m^2 of a thin wall, per m of a ring. `at` is the height of its
-lowest point; by default a part stands on the one before it, and the first one at 0.
+`density`: in kg/m^3 for a solid part, kg/m^2 for a thin wall, kg/m for a ring. `at` is the height of its
+lowest point; by default a part stands on the part before it, and the first part at height 0.
 
 >>> import spincyl as sc
 >>> from spincyl import parts
@@ -29,31 +29,31 @@ from spincyl._scale import Scale
 
 __all__ = ["Part", "assembled", "ball", "cap", "cone", "cylinder", "disk", "point", "ring", "shell", "wall"]
 
-#: Codes of the forms, and the places of heights among their numbers, the first of which is the lowest point.
+#: Codes of the forms, and the indices of heights among their numbers; the first is that of the lowest point.
 _SOLID, _BALL, _WALL, _SHELL, _RING = range(5)
 _HEIGHTS = {_SOLID: (4, 5), _BALL: (3, 2, 4), _WALL: (2, 3), _SHELL: (2, 1, 3), _RING: (1,)}
 
 
 @dataclass(frozen=True)
 class Part:
-    """A part of a body; the functions of this module make it."""
+    """A part of a body, as made by the functions of this module."""
 
-    name: str
-    form: int
-    #: radii and heights in metres, from its lowest point
+    name: str  #: as that of the function, such as "cylinder"
+    form: int  #: code of the form
+    #: radii and heights in metres, from the lowest point of the part
     numbers: tuple[float, ...]
-    amount: float
-    dense: bool
-    at: float | None
+    amount: float  #: mass in kg, or density
+    dense: bool  #: whether `amount` is a density
+    at: float | None  #: height of the lowest point in metres; None: on the part before
 
     def raised(self, by: float) -> "Part":
-        """The part with its heights raised."""
+        """The part with all heights increased by a length in metres."""
         heights = _HEIGHTS[self.form]
         return replace(self, numbers=tuple(x + by if i in heights else x for i, x in enumerate(self.numbers)))
 
     @property
     def top(self) -> float:
-        """The height of its highest point."""
+        """Height of the highest point of the part, in metres."""
         return max(self.numbers[i] for i in _HEIGHTS[self.form])
 
 
@@ -67,7 +67,7 @@ def cylinder(
     mass: float | None = None,
     density: float | None = None,
 ) -> Part:
-    """A solid or hollow cylinder. A `fillet` rounds its outer edges; its mass stays that of the sharp one."""
+    """Solid or hollow cylinder; a `fillet` rounds its outer edges but does not change mass and moments."""
     r, b = _metres("outer_diameter", outer_diameter) / 2, _metres("inner_diameter", inner_diameter) / 2
     rest = 0.0, _metres("length", length), _metres("fillet", fillet)
     return _part("cylinder", _SOLID, (r, r, b, b, *rest), at, mass, density)
@@ -82,7 +82,7 @@ def cone(
     mass: float | None = None,
     density: float | None = None,
 ) -> Part:
-    """A solid cone, or a frustum: one diameter may be 0."""
+    """Solid cone or frustum; one of the diameters may be 0."""
     r, s = _metres("lower_diameter", lower_diameter) / 2, _metres("upper_diameter", upper_diameter) / 2
     return _part("cone", _SOLID, (r, s, 0.0, 0.0, 0.0, _metres("length", length), 0.0), at, mass, density)
 
@@ -95,7 +95,7 @@ def ball(
     mass: float | None = None,
     density: float | None = None,
 ) -> Part:
-    """A solid or hollow ball."""
+    """Solid or hollow ball."""
     r, b = _metres("diameter", diameter) / 2, _metres("inner_diameter", inner_diameter) / 2
     return _part("ball", _BALL, (r, b, r, 0.0, 2 * r), at, mass, density)
 
@@ -109,7 +109,7 @@ def cap(
     mass: float | None = None,
     density: float | None = None,
 ) -> Part:
-    """The lowest part of a solid ball of this diameter, `height` high; with `upper` the highest one."""
+    """Solid cap of the given height from the bottom of a ball; with `upper`, from its top."""
     r, h = _metres("diameter", diameter) / 2, _metres("height", height)
     return _part("cap", _BALL, (r, 0.0, h - r if upper else r, 0.0, h), at, mass, density)
 
@@ -123,7 +123,7 @@ def wall(
     mass: float | None = None,
     density: float | None = None,
 ) -> Part:
-    """A thin wall, open on both ends: a tube, a paper cone, a cup. The density is in kg/m^2."""
+    """Thin wall, open at both ends: a tube, a paper cone, a cup; `density` in kg/m^2."""
     r, s = _metres("lower_diameter", lower_diameter) / 2, _metres("upper_diameter", upper_diameter) / 2
     return _part("wall", _WALL, (r, s, 0.0, _metres("length", length)), at, mass, density)
 
@@ -136,7 +136,7 @@ def disk(
     mass: float | None = None,
     density: float | None = None,
 ) -> Part:
-    """A thin disk, with a hole or not: a floor, a lid. The density is in kg/m^2."""
+    """Thin disk, with or without a hole: a floor, a lid; `density` in kg/m^2."""
     r, b = _metres("outer_diameter", outer_diameter) / 2, _metres("inner_diameter", inner_diameter) / 2
     return _part("disk", _WALL, (b, r, 0.0, 0.0), at, mass, density)
 
@@ -150,7 +150,7 @@ def shell(
     mass: float | None = None,
     density: float | None = None,
 ) -> Part:
-    """A thin spherical wall, whole or `height` high; with `upper` its highest part. In kg/m^2."""
+    """Thin spherical wall, whole or its lowest `height`, with `upper` its highest; `density` in kg/m^2."""
     r = _metres("diameter", diameter) / 2
     h = 2 * r if height is None else _metres("height", height)
     return _part("shell", _SHELL, (r, h - r if upper else r, 0.0, h), at, mass, density)
@@ -159,50 +159,51 @@ def shell(
 def ring(
     *, diameter: float, at: float | None = None, mass: float | None = None, density: float | None = None
 ) -> Part:
-    """A thin ring, such as a tyre or a weight; it can touch the table. The density is in kg/m."""
+    """Thin ring, such as a tyre or a weight, which can touch the table; `density` in kg/m."""
     return _part("ring", _RING, (_metres("diameter", diameter) / 2, 0.0), at, mass, density)
 
 
 def point(*, mass: float, at: float | None = None) -> Part:
-    """A mass on the axis that has no extent and touches nothing."""
+    """Point mass on the axis, which touches nothing."""
     return _part("point", _RING, (0.0, 0.0), at, mass, None)
 
 
 def assembled(parts: Iterable[Part], *, gravity: float = Scale.gravity) -> Body:
-    """A measured body put together from parts on one axis.
+    """Make a measured body from parts on one axis.
 
     Parameters
     ----------
     parts : iterable of Part
-        From the lowest to the highest, unless they say where they are.
+        Parts from the lowest to the highest, or in any order with `at`.
     gravity : float
-        In m/s^2.
+        Acceleration of gravity, in m/s^2.
 
     Returns
     -------
     Body
-        With its moments, its `scale` (R is the outer radius of its rim, and the mass that of all parts) and
+        Body with its moments, its `scale` (R is the outer radius of its rim, the mass that of all parts) and
         `theta_end`; `natural` is the same in natural units. Pictures, films and pages show its parts.
-        It stands on its lowest edge or ball, of edges at the same height on the widest, and `theta_end` is
-        where another one touches the table. A body whose other rim is as wide and as far from its centre of
-        mass has two equal rims, and may lie on both. Error: a few roundings.
+        It stands on its lowest edge or ball, on the widest if edges are at the same height. `theta_end` is
+        the inclination at which another part lands. If the other rim is as wide and as far from the centre
+        of mass, the body has two equal rims, and may lie on both. Error: a few roundings.
 
     Raises
     ------
     ValueError
-        Naming the number of a part that none has; if there is no mass, or nothing that touches the table.
+        If a number of a part is impossible (the message names it), if there is no mass, or if no part can
+        touch the table.
     TypeError
-        If something is no part.
+        If an element of `parts` is not a part.
 
     Notes
     -----
-    Parts may overlap, and their masses add up. A wheel whose axle sticks out stands on the axle, and rolls on
-    it: give such an axle as a `point` in the middle of its mass if it never touches the table.
+    Parts may overlap; their masses are added. A wheel with a projecting axle stands and rolls on the axle.
+    If the axle never touches the table, give it as a `point` at its centre of mass.
 
     Warns
     -----
     UserWarning
-        If it is larger than 5 m or smaller than 0.1 mm, as if millimetres were taken for metres.
+        If the body is larger than 5 m or smaller than 0.1 mm, as if millimetres had been taken for metres.
 
     Examples
     --------
@@ -220,7 +221,7 @@ def assembled(parts: Iterable[Part], *, gravity: float = Scale.gravity) -> Body:
         made(f"parts[{i}]", part, Part)
         lows[i] = lows[i] if part.at is None else part.at
         lows.append(lows[i] + part.top)
-    # heights count from the lowest point, so that they keep their digits
+    # heights are relative to the lowest point, so that they keep their digits
     placed = [part.raised(low - min(lows[:-1])) for part, low in zip(given, lows, strict=False)]
     found = _core.assembled([(part.form, list(part.numbers), part.amount, part.dense) for part in placed])
     (ell, i1, i3, fillet, theta_end), mass, radius, centre = found
@@ -235,7 +236,7 @@ def assembled(parts: Iterable[Part], *, gravity: float = Scale.gravity) -> Body:
 
 
 def _scaled(part: Part, centre: float, radius: float) -> tuple[float, ...]:
-    """The numbers of a part in R, with heights counted from the centre of mass."""
+    """The numbers of a part in R, with heights relative to the centre of mass."""
     return tuple(x / radius for x in part.raised(-centre).numbers)
 
 
@@ -252,12 +253,12 @@ def _part(
     density: float | None,
 ) -> Part:
     if (mass is None) == (density is None):
-        raise TypeError(f"mass, density: give one of them to the {name}")
+        raise TypeError(f"mass, density: give one of them for the {name}")
     if mass is not None:
         amount: Any = number("mass", si("mass", mass, "kilogram"))
     else:
         amount = number("density", density)
     low = None if at is None else _metres("at", at)
     if low is not None and not math.isfinite(low):
-        raise ValueError(f"at = {low}: expected a height")
+        raise ValueError(f"at = {low}: expected a finite height")
     return Part(name, form, numbers, amount, mass is None, low)
