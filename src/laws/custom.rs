@@ -55,9 +55,9 @@ impl<'a> Custom<'a> {
         Self { friction: Some(friction), ..self }
     }
 
-    /// Returns an error for a couple that supplies energy, is not finite, or jumps where the motion is at rest; and for
-    /// a coefficient of friction that is negative, not finite, above that of static friction (`fixed`) at rest, or
-    /// jumps.
+    /// Returns an error for a couple that supplies energy, is not finite, or jumps where the motion is at rest. Returns
+    /// an error for a coefficient of friction that is negative, not finite, above that of static friction (`fixed`) at
+    /// rest, or that jumps.
     pub fn check(&self, body: &Body, fixed: f64) -> Result<(), Error> {
         self.couple.map_or(Ok(()), |law| check_couple(law, body))?;
         self.friction.map_or(Ok(()), |law| check_friction(law, fixed))

@@ -9,10 +9,10 @@
 //! N      = 1 + g w2' - g' w2^2                            a body that stays on the table
 //! E      = (I1 (w1^2 + w2^2) + I3 w3^2 + v^2)/2 + h
 //! ```
-//! N is the vertical component of the contact force in units of the weight, F2 the component along e2 and Fh the
-//! component along e_h = c e1 - s e3, which is horizontal and leans to the side of e1; m is the couple along e1, e2,
-//! e3, and v is the velocity of the centre. The equations are L' = r x F + m about the centre of mass along axes that
-//! follow the inclination, as in any textbook. The module [`contact`](super::contact) gives the contact force.
+//! The contact force, in units of the weight, has the components N (vertical), F2 (along e2) and Fh (along e_h = c e1 -
+//! s e3, which is horizontal, on the side to which e1 leans); m is the couple along e1, e2, e3, and v is the velocity
+//! of the centre. The equations are L' = r x F + m about the centre of mass along axes that follow the inclination, as
+//! in any textbook. The module [`contact`](super::contact) gives the contact force.
 //!
 //! Error: 4 ulp of the largest term.
 

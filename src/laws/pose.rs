@@ -98,9 +98,9 @@ pub struct Pose {
 }
 
 impl State {
-    /// The state of a body from its orientation (the rotation from its own axes to those of the laboratory, of which
-    /// the third is the vertical) and its angular velocity along the axes of the laboratory, in sqrt(g/R). Error: a few
-    /// roundings of the angular velocity, divided by sin theta for w1 and w2.
+    /// The state of a body from its orientation and its angular velocity, in sqrt(g/R), along the axes of the
+    /// laboratory. The orientation is the rotation from the axes of the body to those of the laboratory, of which the
+    /// third is the vertical. Error: a few roundings of the angular velocity, divided by sin theta for w1 and w2.
     pub fn from_twist(orientation: &UnitQuaternion<f64>, angular_velocity: Vector3<f64>) -> Self {
         let [phi, theta, _] = euler_angles(orientation);
         let w = axes(phi, theta).inverse() * angular_velocity;

@@ -1,4 +1,4 @@
-//! Work in blocks, shared among threads. The module knows nothing about the work.
+//! Work in blocks, shared among threads, for any kind of work.
 //!
 //! The threads end with the call (a pool would hang in a forked child). It is random which thread takes which block, so
 //! the result of a block must not depend on its thread.

@@ -119,7 +119,7 @@ impl Ask {
     }
 }
 
-/// The initial conditions of a motion: a state (`Start::from`), and optionally slip, time and height.
+/// The initial conditions of a motion: `Start::from` a state, then optionally slip, time and height.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]

@@ -70,9 +70,9 @@ impl Rubbing<Dual<f64>> {
         if left * pace <= REST_IS_NEAR { left.max(0.0) } else { 0.0 }
     }
 
-    /// The longest step, in the variable of the slopes. At k = 1 the friction has a term (2 |k - 1|)^(5/2)/5 on one side
-    /// only, so that steps become shorter towards k = 1, and one that passes it is so short that this term is below the
-    /// tolerance.
+    /// The longest step, in the variable of the slopes. At k = 1 the friction has a term (2 |k - 1|)^(5/2)/5 on one
+    /// side only, so that steps become shorter towards k = 1, and a step across k = 1 is so short that this term is
+    /// below the tolerance.
     pub fn longest(&self, tol: f64) -> f64 {
         let left = (self.slip.value - self.turn.value).abs();
         let past = (self.slip.slope - self.turn.slope).abs();

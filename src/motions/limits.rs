@@ -185,7 +185,7 @@ pub(crate) fn first_event(swing: &Swing, limits: &Limits, way: f64) -> Option<Ev
 ///
 /// The zero of the margin `plain`, which has no allowance for rounding, gives the place where `plain` changes its sign.
 /// The margin is evaluated at the nodes of the swing, which resolve the motion, and at `between` places between each
-/// two of them: the required friction, with its quotient and square root, varies faster than the motion.
+/// two of them, since the required friction, with its quotient and square root, varies faster than the motion.
 fn violations(
     swing: &Swing,
     margin: impl Fn(f64) -> f64,

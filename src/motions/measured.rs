@@ -118,8 +118,9 @@ impl Measured {
         Ok(Self::new(body, Scale::new(0.5 * of.outer_diameter, of.mass, of.gravity)?))
     }
 
-    /// Any axisymmetric body of this size, from the height of its centre of mass above the circle of the rim and the
-    /// fillet of the rim, both in metres, and its moments I1 and I3 about the centre of mass, in kg m^2.
+    /// Any axisymmetric body of this size. `height` is that of the centre of mass above the circle of the rim, and
+    /// `fillet` the radius of the rounded edge, both in metres; `i1` and `i3` are the moments about the centre of mass,
+    /// in kg m^2.
     ///
     /// Errors: those of [`Body::rounded`], and `OutOfRange` for moments that are so small or large for this mass and
     /// radius that they must be in another unit.

@@ -74,7 +74,8 @@ pub fn jellett_spin(top: &Body) -> Result<f64, Error> {
 }
 
 /// The least spin w3, in sqrt(g/R), with which a top at the inclination `lean`, with its centre at rest, turns over
-/// under this friction; infinite if it does not turn over with ten times the spin of [`jellett_spin`].
+/// under this friction. The result is infinite if the top does not turn over with ten times the spin of
+/// [`jellett_spin`].
 ///
 /// The top has turned over when its axis comes within 0.14 rad of the vertical. A motion that ends earlier, for example
 /// by a hop, counts as one without turning over. Error: 1e-3 of the spin. On rough tables a larger spin may fail where
@@ -109,8 +110,9 @@ pub fn jellett_rising_spin(egg: &Ellipsoid) -> Result<f64, Error> {
     Ok(one.min(other))
 }
 
-/// The least spin about the vertical, in sqrt(g/a), with which an egg rises to an end, if it lies with its axis raised
-/// by `lean` and its centre at rest; infinite if it does not rise with ten times the spin of [`jellett_rising_spin`].
+/// The least spin about the vertical, in sqrt(g/a), with which an egg rises to an end. The egg lies with its axis
+/// raised by `lean` and its centre at rest. The result is infinite if the egg does not rise with ten times the spin of
+/// [`jellett_rising_spin`].
 ///
 /// The egg has risen when its axis comes within 0.2 rad of the vertical. Error and errors are as for [`turning_spin`].
 pub fn rising_spin(

@@ -1,9 +1,9 @@
 //! Real numbers: every equation of this library is written over the trait of this file.
 //!
 //! An equation is written once over [`Real`] and serves a single state, eight states in lanes, a state with twice the
-//! digits, and a state with a derivative. Every operation of single numbers and of lanes is correctly rounded (the fused
-//! one too, on machines without it), so that the bits of a lane do not depend on its neighbours, the SIMD width or the
-//! machine; only [`Real::mac`] differs between a single number and a lane.
+//! digits, and a state with a derivative. Every operation of single numbers and of lanes is correctly rounded, also the
+//! fused one on machines without it. Therefore the bits of a lane do not depend on its neighbours, the SIMD width or
+//! the machine. Only [`Real::mac`] differs between a single number and a lane.
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 

@@ -8,11 +8,11 @@
 //! compression ends at u_n = 0 with the work W_c < 0 of the normal force, the impact ends where W = (1 - e^2) W_c
 //! ```
 //! Restitution is energetic (Stronge, Proc. R. Soc. A 431, 169 (1990)), so that no impact gains energy. It equals the
-//! ratio of the normal velocities where the direction of the slip stays. Friction along the impact is Coulomb's
-//! (Routh 1860; Keller, J. Appl. Mech. 53, 1 (1986)): where a slip stops, it sticks if |b| <= mu_s a_h, otherwise it
-//! slips on along e_h. For every mu and every body the impact has one outcome. A slip whose friction presses the rim
-//! into the table faster than the impulse slows it, so that no contact force exists (Painleve), jams: an impact that
-//! begins with u_n = 0 stops it (Genot and Brogliato, Eur. J. Mech. A 18, 653 (1999)). The motion is straight, and the
+//! ratio of the normal velocities where the direction of the slip stays. Friction along the impact is Coulomb's (Routh
+//! 1860; Keller, J. Appl. Mech. 53, 1 (1986)): where a slip stops, it sticks if |b| <= mu_s a_h, otherwise it slips on
+//! along e_h. For every mu and every body the impact has one outcome. A slip jams if its friction presses the rim into
+//! the table faster than the impulse slows it, so that no contact force exists (Painleve): an impact that begins with
+//! u_n = 0 stops the slip (Genot and Brogliato, Eur. J. Mech. A 18, 653 (1999)). The motion is straight, and the
 //! formulas are closed, except for a first slip whose direction turns; a viscous film is linear.
 //!
 //! Error: 1e-13 of the largest velocity; a test of `laws` compares with integration in the laboratory's axes.

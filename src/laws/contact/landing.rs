@@ -14,7 +14,7 @@
 //! ```
 //! The impulses are those of Newton's and Euler's equations about the centre of mass. Friction is Coulomb's in the form
 //! of Moreau (Unilateral contact and dry friction in finite freedom dynamics, 1988): the impulse at a rim opposes the
-//! slip after the impact, Q = -mu P u/|u|, or it is as small as is enough to stop the slip. Therefore no landing gains
+//! slip after the impact, Q = -mu P u/|u|, or it is just large enough to stop the slip. Therefore no landing gains
 //! energy. The law is exact where the slip keeps its direction during the impact or stops and sticks; where the slip
 //! turns it is a model. Without friction both rims stay if ell^2 >= I1; with friction if ell^2 - ell Q_up,h/P_up >= I1.
 //!

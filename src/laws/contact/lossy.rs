@@ -8,9 +8,9 @@
 //! contour held:   psi' = 0,   m = lambda h/s,   lambda = psi''_0 D/(al - 2 k ct + b ct^2),   |lambda| <= eps N A
 //! drilling held:  w_z = 0,    m = nu z,         nu = -w_z'_0 D/(b s^2 + 2 k s c + al c^2),   |nu| <= length N
 //! ```
-//! The contact force of rolling does no work, so that E falls by the power of the losses. Where the contact point
-//! stops moving along the rim, or the drilling stops, dry friction exerts the couple that prevents this motion, as long
-//! as that couple does not exceed the bound on |lambda| or |nu| above (Filippov 1960).
+//! The contact force of rolling does no work, so that E falls by the power of the losses. Where the contact point stops
+//! along the rim, or the drilling stops, dry friction exerts the couple that holds it at rest, up to the bound on
+//! |lambda| or |nu| above (Filippov 1960).
 //!
 //! Error: a few roundings of the terms written above; a test of `losses` compares them with [`newton`].
 

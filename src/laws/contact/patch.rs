@@ -6,11 +6,11 @@
 //! k <= 1   f = (3 pi/32) k (4 - k^2),   g = (3 pi/128) (8 - 8 k^2 + 3 k^4)
 //! k >= 1   f = 2F1(-1/2, 1/2; 5/2; q^2),   g = (q/5) 2F1(1/2, 1/2; 7/2; q^2),   q = 1/k
 //! ```
-//! Each piece of the patch rubs against its own slip u + w_z z x xi, under the pressure of Hertz, (3/2 pi) sqrt(1 - r^2)
-//! (Contensou 1963; Leine and Glocker, Eur. J. Mech. A 22, 193 (2003)). On a line through the instantaneous centre at the
-//! angle b to u the integral over the patch is elementary, f = (3/4) k int cos^2 b (1 - k^2 sin^2 b) db and g = (3/16) int
-//! (1 - k^2 sin^2 b)^2 db; at k = 1 both have two continuous derivatives. Friction is smooth at u = 0 as long as the body
-//! drills, so that nothing sticks. Without a radius this is Coulomb's law of a point.
+//! Each piece of the patch rubs against its own slip u + w_z z x xi, under the pressure of Hertz, (3/2 pi) sqrt(1 -
+//! r^2) (Contensou 1963; Leine and Glocker, Eur. J. Mech. A 22, 193 (2003)). On a line through the instantaneous
+//! centre, at the angle b to u, the integral over the patch is elementary: f = (3/4) k int cos^2 b (1 - k^2 sin^2 b) db
+//! and g = (3/16) int (1 - k^2 sin^2 b)^2 db; at k = 1 both have two continuous derivatives. Friction is smooth at u =
+//! 0 as long as the body drills, so that nothing sticks. Without a radius this is Coulomb's law of a point.
 //!
 //! k itself is never formed, since it may be 0/0: f/S takes its place. Outside, f and g/q are analytic in s = sqrt(1 -
 //! q^2), and their Chebyshev series on [0, 1] fall as 5.83^-n.

@@ -6,11 +6,10 @@
 //! w2' = (-I1 ct w1^2 + I3 w1 w3 - g + g g' w2^2)/(I1 + g^2)
 //! Lz  = I1 w1 sin theta + I3 w3 cos theta,   L3 = I3 w3
 //! ```
-//! The table only pushes upwards, so the angular momenta about the vertical and about the symmetry axis are
-//! conserved, and the horizontal velocity of the centre is constant; this velocity is taken as zero, so that
-//! the centre only moves up and down. The stability criterion of Jackson et al., Am. J. Phys. 87, 85 (2019),
-//! Appendix, is for this table; its Eq. (A3) has I1 instead of I1 + g^2. For a given a, a fillet changes only
-//! the height h.
+//! The force of the table is vertical, so the angular momenta about the vertical and about the symmetry axis are
+//! conserved. The horizontal velocity of the centre is constant and taken as zero, so that the centre only moves up and
+//! down. The stability criterion of Jackson et al., Am. J. Phys. 87, 85 (2019), Appendix, is for this table; its Eq.
+//! (A3) has I1 instead of I1 + g^2. For a given a, a fillet changes only the height h.
 //!
 //! Error: a few roundings of the terms above. Energy and both momenta change by less than 64 ulp of the largest power
 //! or torque at any state, and a test of `laws` checks this.

@@ -206,8 +206,8 @@ pub(crate) fn towards(alpha: f64) -> [f64; 2] {
     if alpha.abs() == PI { [-1.0, 0.0] } else { [alpha.cos(), alpha.sin()] }
 }
 
-/// The rate of the slip of a contact point at rest, u' = bare + N (pressed - mu pulled e), N = free/(1 - eps.e), along
-/// two horizontal axes, where e = (cos alpha, sin alpha) is the direction in which the slip begins.
+/// The rate of the slip of a contact point at rest, along two horizontal axes: u' = bare + N (pressed - mu pulled e), N
+/// = free/(1 - eps.e). The slip begins in the direction e = (cos alpha, sin alpha).
 pub(crate) struct Onset {
     pub mu: f64,
     pub free: f64,

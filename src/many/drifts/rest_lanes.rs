@@ -4,9 +4,9 @@
 //! ```text
 //! t = D sum W_k p w_k^(p-1) E'/P,   theta_k = theta_e + D w_k^p          sixteen nodes of Gauss, and twelve; 32 and 24
 //! ```
-//! The exponent p is 1 for a drift to the side. For a drift to the face it is 2 if a single law gives
-//! half-integer powers of theta, else 4. The lanes have a result where n and m are not small at the start, E'
-//! is not small beside its terms at any node, and the two rules agree.
+//! The exponent p is 1 for a drift to the side. For a drift to the face it is 2 if a single law gives half-integer
+//! powers of theta, else 4. The lanes have a result where n and m are not small at the start, E' is not small compared
+//! with its terms at any node, and the two rules agree.
 
 use super::columns::DriftRow;
 use crate::laws::body::{Shape, beyond};

@@ -70,7 +70,7 @@ const SURVEYED: usize = 256;
 /// Number of inclinations that are evaluated one by one on each side of a computed change of region.
 const AROUND: usize = 2;
 
-/// The areas of one body; `asked` is a buffer for the ranges of inclinations that are evaluated.
+/// The areas of one body; `asked` is a buffer for the ranges of evaluated inclinations.
 fn areas_of<const SETS: usize>(
     &Grid { theta, sums, first, tangents }: &Grid<'_, SETS>,
     body: Option<&Body>,

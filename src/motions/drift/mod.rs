@@ -6,9 +6,9 @@
 //! ```
 //! *Rest* is the drift of Jackson et al., Am. J. Phys. 87, 85 (2019): the centre is held at rest, as slip does below a
 //! ridge of the energy, and the body moves to lower energies; above a ridge theta grows. *Rolling* is the drift of a
-//! body that never slips: its losses push the body off the line of states whose centre is at rest, nothing brings it
-//! back, and a ridge has no effect; the drift ends where rolling becomes unstable, kappa = 0. Both are of first order
-//! in the losses.
+//! body that never slips. Its losses push the body off the line of states whose centre is at rest, and nothing brings
+//! it back; a ridge has no effect. The drift ends where rolling becomes unstable, kappa = 0. Both are of first order in
+//! the losses.
 //!
 //! Error: 1e-12 of a time at rest and 1e-10 rolling. Up to 0.99 of the time to the end the same bounds hold for the
 //! relative errors of theta, w1 and Omega, and for the error of w3 relative to |w|. Where these numbers vary as a high

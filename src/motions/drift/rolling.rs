@@ -58,9 +58,9 @@ pub(crate) const DRIFT_MARGINS: usize = 4;
 const DRIFT_ENDS: [End; DRIFT_MARGINS] =
     [End::StabilityLost, End::Side, End::ContactStops, End::DrillingStops];
 
-/// The error of a step over its allowed error. For theta, Omega and w3 the latter is relative to the smaller of the
-/// number and its distance from the start, so that the time of a short drift is as precise; for the time it is relative
-/// to the time.
+/// The error of a step over its allowed error. For theta, Omega and w3 the allowed error is relative to the smaller of
+/// the number and its distance from the start, so that the time of a short drift is just as precise. For the time it is
+/// relative to the time.
 #[inline(always)]
 pub(crate) fn error<T: Real, const N: usize>(start: &Numbers<T>, y: &[T; N], made: &rk8::Step<T, N>) -> T {
     let number = here(
@@ -205,7 +205,7 @@ impl Rolling<'_> {
     }
 
     /// The end of a drift that halts: its kind, its inclination and its time, and the tail of a drift to a face; None
-    /// if the drift goes on.
+    /// if the drift continues.
     pub fn ended(&self, flown: &Flown<DriftHalt, 4>) -> Option<((End, f64, f64), Option<Tail>)> {
         let y = flown.y;
         match flown.halt {
@@ -346,7 +346,7 @@ impl Flow<DRIFT_MARGINS> for Rolling<'_> {
     }
 }
 
-/// The conditions under which a drift goes on; each has a margin that must stay positive.
+/// The conditions under which a drift continues; each has a margin that must stay positive.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Margins<T> {
     side: T,

@@ -371,9 +371,9 @@ fn cotangent(theta: f64) -> f64 {
     }
 }
 
-/// Near a minimum of G close to 0: the place of the minimum if it is positive, else the first zero in the
-/// direction `way`; whether the motion passes, that is, whether it is positive; and the size of G with which
-/// its rounding error is compared. None without a minimum within 0.2.
+/// For a minimum of G close to 0: the place of the minimum if it is positive, else of the first zero in the direction
+/// `way`; whether the minimum is positive, so that the motion passes; and the size of G with which its rounding error
+/// is compared. None without a minimum within 0.2.
 fn nature(g: &PanelTerms, way: f64) -> Option<(f64, bool, f64)> {
     let slope: PanelTerms =
         core::array::from_fn(|i| if i + 1 < ORDER { (i + 1) as f64 * g[i + 1] } else { 0.0 });

@@ -393,8 +393,8 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         self.made.motion.error = self.made.motion.error.max(error);
     }
 
-    /// Includes the error of the time of an end at `y` in the estimated error: the errors of the steps, divided by the
-    /// rate at which the margin, or the speed of a body that comes to rest, fell.
+    /// Includes the error of the time of an end at `y` in the estimated error. It is the error of the steps, divided by
+    /// the rate at which the margin fell, or the speed of a body that comes to rest.
     pub fn claims_time_error(&mut self, halt: Halt, steep: f64, y: &[f64; N]) {
         if let Some(grows) = self.of.grows(halt, y) {
             let erred = grows * (self.spent.erred * self.of.tol() + 8.0 * f64::EPSILON);

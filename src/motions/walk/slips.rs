@@ -1,4 +1,4 @@
-//! A slip from rest: by series in time, until an integrator takes over or the slip ends.
+//! A slip from rest: by series in time, until an integrator continues the slip, or the slip ends.
 
 use super::{Next, Phases, Walk};
 use crate::laws::contact::standstill::towards;

@@ -13,8 +13,8 @@
 //! nutation then has the inertia I1 + g^2, because the centre moves up and down; Eq. (A3) of the paper leaves out g^2,
 //! which changes frequencies but no sign. The criterion *rolling* linearises the motion without slipping, where other
 //! integrals are conserved. Two of its four eigenvalues are zero, since steady states are a two-parameter family; the
-//! others are +-sqrt(-kappa). Where the two criteria disagree for a tube or a disk, friction stabilises a state that is
-//! unstable on a smooth table; for a body much wider than its rim (I3 above about 1.4) the opposite can happen.
+//! others are +-sqrt(-kappa). Where the two criteria differ for a tube or a disk, friction stabilises a state that is
+//! unstable on a smooth table. For a body much wider than its rim (I3 above about 1.4) the opposite can happen.
 //!
 //! Dual numbers, which carry a derivative, give kappa from the law of motion; for maps, `at_rest` has a closed form of
 //! kappa with the centre at rest. Error of `kappa` of a state: 64 ulp of the largest term; a test of `laws` runs it.
@@ -115,10 +115,9 @@ pub(crate) fn stiffness(contact: Contact, body: &Body, y: &State) -> f64 {
 /// ```text
 /// rolling   n^2 = 4 ell (I1 + H^2)/(I3 + rho H)^2,   H = ell + rho         smooth   n^2 = 4 ell I1/I3^2
 /// ```
-/// The result is 0 for a ball that is stable without spin (`ell <= 0`), and NaN for other bodies, which stand on
-/// a face. Error: 4 ulp. The horizontal part zeta of the axis obeys zeta'' = 2 i k n zeta' + (ell/J0) zeta
-/// with J0 = I1 + H^2 and k = (I3 + rho H)/(2 J0), with 0 in place of H on a smooth table; see Routh,
-/// Advanced Rigid Dynamics.
+/// The result is 0 for a ball that is stable without spin (`ell <= 0`), and NaN for other bodies, which stand on a
+/// face. Error: 4 ulp. The horizontal part zeta of the axis obeys zeta'' = 2 i k n zeta' + (ell/J0) zeta with J0 = I1 +
+/// H^2 and k = (I3 + rho H)/(2 J0); on a smooth table H is replaced by 0. See Routh, Advanced Rigid Dynamics.
 pub fn standing_spin(body: &Body, contact: Contact) -> f64 {
     if !body.is_ball() {
         return f64::NAN;

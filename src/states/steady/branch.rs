@@ -28,8 +28,8 @@ pub(crate) fn shared<C: Coefficient>(body: &Body) -> Cubic<C> {
     Cubic::of(1.0) - Cubic::of(body.ell()) * Cubic::tangent()
 }
 
-/// Inclinations in (0, pi/2) of the folds, ascending, NaN after the last. At a fold the rate is stationary along the
-/// branch, where two steady states with the same rate merge.
+/// Inclinations in (0, pi/2) of the folds, in ascending order, NaN after the last. At a fold the rate is stationary
+/// along the branch, where two steady states with the same rate merge.
 ///
 /// All are NaN for `ell` above 1e30 or I1/I3 above 1e60. The error is 16 ulp times the conditioning.
 pub fn folds(body: &Body) -> [f64; MOST] {
@@ -153,8 +153,8 @@ pub(crate) fn inclinations_of(body: &Body, cubic: Cubic) -> [f64; MOST] {
     theta
 }
 
-/// Returns `theta`, or the nearest of its neighbours among the doubles at which a steady state exists: at the very edge
-/// of the forbidden band the double nearest to a root may lie on the wrong side.
+/// Returns `theta`, or the nearest of its neighbours among the doubles at which a steady state exists: right at the
+/// limit of the forbidden band the double nearest to a root may lie on the wrong side.
 pub(crate) fn allowed(body: &Body, theta: f64) -> Option<f64> {
     let (below, above) = (theta.next_down(), theta.next_up());
     let near = [theta, below, above, below.next_down(), above.next_up()];

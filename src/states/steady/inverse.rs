@@ -41,7 +41,7 @@ pub fn inclinations(body: &Body, rate: f64) -> [f64; MOST] {
 }
 
 /// Number of inclinations with this rate, 0 to 5; `None` if `rate` is negative or not finite, if `(I1/I3) rate^2` or
-/// `ell rate^2` exceeds 1e300, or if every inclination has this rate: a ball with I1 = I3 at rate 1.
+/// `ell rate^2` exceeds 1e300, or if every inclination has this rate, as for a ball with I1 = I3 at rate 1.
 pub fn count(body: &Body, rate: f64) -> Option<usize> {
     Some(solve(body, rate)?.iter().filter(|theta| !theta.is_nan()).count())
 }

@@ -56,7 +56,7 @@ pub(super) struct Run {
     pub knot: Knot<f64>,
     pub way: f64,
     pub target: Target,
-    /// The time since the start, in the present direction.
+    /// The time since the start, in the current direction.
     pub time: f64,
     /// The uncertainty of `time` and of the time to the first turning point.
     late: f64,

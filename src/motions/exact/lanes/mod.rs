@@ -11,8 +11,8 @@
 //! F(y) = J theta'^2 = (y - low)(high - y) H(y)
 //! y = mid - amp cos u,   dt/du = (2 s0/Q) sqrt(J/H)
 //! ```
-//! The map from x to y takes the strip |Im x| < pi/2 of `lines`, where the motion is analytic, onto the unit disk: the
-//! series of a swing as wide as a third of it converges like 3^-k, and each term follows from the three before it.
+//! The map from x to y takes the strip |Im x| < pi/2 of `lines`, where the motion is analytic, onto the unit disk. The
+//! series of a swing a third as wide as the disk converges like 3^-k, and each term follows from the three before it.
 //! dt/du is even, periodic and analytic in u: a cosine series on `K` midpoints gives the time, and the period converges
 //! twice as fast.
 //!

@@ -1,6 +1,6 @@
 //! Series in y about a centre: their recurrences, their zeros and their truncation errors.
 //!
-//! The head of [`lanes`](super) has the equations. This module knows a motion only by its [`Reduced`] law.
+//! The head of [`lanes`](super) has the equations. This module uses only the [`Reduced`] law of a motion.
 
 use crate::laws::contact::reduced::Reduced;
 use crate::numbers::power::{term, times};

@@ -6,10 +6,10 @@
 //! no landing in [t1, t2]    if the least value of chord - K (t - t1)(t2 - t)/2 is positive
 //! one landing               if h(t1) > 0 >= h(t2) and h'(t1) + K (t2 - t1) < 0
 //! ```
-//! The bound is one-sided: s is the length of the horizontal part x of e3, so that s s'' >= x.x'' and s'' >= -Lam^2
-//! sin b, while s'' may be as large as it likes from above. An interval that is neither free nor certain is halved. A
-//! rim that touches at the start leaves as t^k, k = 1 after a bounce, 2 where a contact at rest loses its normal force,
-//! 3 where the normal force of a slip vanishes; a power series with the known zeros taken out carries it away from there.
+//! The bound is one-sided: s is the length of the horizontal part x of e3, so that s s'' >= x.x'' and s'' >= -Lam^2 sin
+//! b, while s'' has no upper bound. An interval that is neither free nor certain is halved. The height of a rim that
+//! touches at the start grows as t^k: k = 1 after a bounce, 2 where a contact at rest loses its normal force, 3 where
+//! the normal force of a slip vanishes. There a power series, divided by the known zeros, gives the height.
 //!
 //! Error: that of h divided by the normal velocity; a rim that only grazes the table lands where h is a rounding error.
 

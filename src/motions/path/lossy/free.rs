@@ -112,9 +112,10 @@ impl<T: Real> LossyUnheld<T> {
         acted
     }
 
-    /// The margins, which are all positive where a lane may take a step without a search for events: the distances of
-    /// the face from landing and settling, that of the other rim, N, the margin of friction, those of the motions that
-    /// dry losses resist, and that of the joint speed that rolling resistance brings to rest.
+    /// The margins, which are all positive where a lane may take a step without a search for events. They are the
+    /// distances of the face from landing and settling, and of the other rim from landing; N and the margin of
+    /// friction; the margins of the motions that dry losses resist, and of the joint speed that rolling resistance
+    /// brings to rest.
     #[inline(always)]
     pub fn margins(&self, y: &[T; 6], acted: &Acted<T>) -> [T; 7] {
         let [s, c, p, w2, w3, _] = *y;

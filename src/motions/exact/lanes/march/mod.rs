@@ -318,7 +318,7 @@ impl<T: Lane> March<T> {
     }
 }
 
-/// The turning points ahead and behind; the edge of the series stands for one that is not within reach.
+/// The turning points ahead and behind; the edge of the series replaces a turning point beyond its reach.
 #[inline(always)]
 fn turning<T: Lane, const N: usize>(force: &[T; N]) -> Between<T> {
     let number = here(

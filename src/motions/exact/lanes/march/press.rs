@@ -107,7 +107,7 @@ pub(super) fn normal<T: Real, const N: usize>(
     }
 }
 
-/// The series X from its three polynomials: the one that stands alone, the factor of F' and the factor of F.
+/// The series X from its three polynomials: the term without F, the factor of F' and the factor of F.
 #[inline(always)]
 fn pressed<T: Real, const A: usize, const B: usize, const C: usize>(
     press: &mut [T],

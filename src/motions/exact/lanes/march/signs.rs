@@ -189,8 +189,8 @@ impl<'a, T: Lane, const N: usize> EtaSeries<'a, T, N> {
             if met.any() {
                 let (at, miss, slope) = self.newton(met, zero.select_lt(met, flag.from + first, number(0.1)));
                 let inside = flag.lies_within(at);
-                // A slope that is tiny beside the values before it belongs to an almost double zero, whose place is
-                // uncertain.
+                // A slope that is tiny compared with the earlier values belongs to an almost double zero, whose place
+                // is uncertain.
                 let scale = number(1e-3) * (flag.begin.0.abs() + self.bound) / width;
                 let falls = slope.select_lt(zero - scale, inside, zero);
                 let (hit, lost) = (zero.select_lt(met, falls, zero), zero.select_lt(met, one - falls, zero));
