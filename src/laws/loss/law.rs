@@ -37,7 +37,7 @@ pub(crate) enum Speed {
 /// The exponents p of the power P ~ x^p of a steady state, at a distance x in theta from the end of a drift.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct EndPowers {
-    /// The face lands: of a thin disk, and of a body with ell + rho > 0. Omega and psi' go as x^(-1/2), s as x.
+    /// The face lands, for a thin disk and for a body with ell + rho > 0. Omega and psi' go as x^(-1/2), s as x.
     pub face: [f64; 2],
     /// The body is balanced: Omega ~ x^(1/2), psi' ~ x^(3/2).
     pub balanced: f64,

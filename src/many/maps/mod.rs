@@ -185,7 +185,7 @@ fn gathered_by<C>(
     Ok(Some(columns))
 }
 
-/// The blocks of a map, each with its first row, its inclinations, its first body and its number of bodies. A block is
+/// The blocks of a map, each with its first row, its inclinations, its first body and its number of bodies. A block has
 /// several whole rows or, on a wide map, a part of one row.
 fn tiles(theta: &[f64], width: usize) -> impl Iterator<Item = (usize, &[f64], usize, usize)> {
     let (rows, part) = ((POINTS_PER_BLOCK / width.max(1)).max(1), width.clamp(1, POINTS_PER_BLOCK));

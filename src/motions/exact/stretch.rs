@@ -5,12 +5,12 @@
 //! end     d = w sinh^2 v,                     G = d R                      dx/dv/sqrt(G) = 2 sqrt(w) cosh v/sqrt(R)
 //! dip     d = w sinh v                                                     dx/dv/sqrt(G) = w cosh v/sqrt(G)
 //! face    d = v                                                            dx/dv/sqrt(G) = 1/sqrt(G)
-//! The distance d = |x - place| is measured from the end or from the slow place. A swing without a slow place
-//! is one stretch. Near an unstable steady state a body lingers: either it turns there, and w is the distance
-//! from the end to the next zero of G; or it passes a minimum of G, and w is its width. Then a stretch covers
-//! half the distance to the next slow place: dt/dv is constant while the body lingers and changes only in the
-//! last three units of v, which runs to 19 for w = 1e-16. The width w only chooses the variable, and its
-//! order of magnitude is enough.
+//! ```
+//! The distance d = |x - place| is measured from the end or from the slow place. A swing without a slow place is one
+//! stretch. Near an unstable steady state a body lingers. If it turns there, w is the distance from the end to the next
+//! zero of G; if it passes a minimum of G, w is the width of this minimum. Then a stretch covers half the distance to
+//! the next slow place: dt/dv is constant while the body lingers and changes only in the last three units of v, which
+//! goes up to 19 for w = 1e-16. The width w only chooses the variable, so its order of magnitude is enough.
 //!
 //! Error: [`StretchPoint::noise`], the relative rounding error of H, R or G, which is propagated through the integrals.
 
@@ -18,8 +18,8 @@ use super::lines::{Lines, Slow, Turning};
 use super::panel::{PanelTerms, taylor, value};
 use core::f64::consts::PI;
 
-/// An end gets its own stretches if its width is below this fraction of half the swing, a dip if it is below
-/// this fraction of the distance to the nearer end.
+/// An end has its own stretches if its width is below this fraction of half the swing, a dip if its width is below this
+/// fraction of the distance to the nearer end.
 const SLOW_END: f64 = 0.03;
 const SLOW_DIP: f64 = 0.2;
 
@@ -372,8 +372,8 @@ impl Stretch {
         self.shift
     }
 
-    /// The derivative of v with respect to ln d: a relative error of G/d is one of the distance d. It is 0 on
-    /// the way to a face.
+    /// The derivative of v with respect to ln d: a relative error of G/d is a relative error of the distance d. It is 0
+    /// on the way to a face.
     pub fn stiffness(&self, v: f64) -> f64 {
         match self.map {
             Map::Whole => 0.5 * v.sin(),
