@@ -4,8 +4,8 @@
 //! m = C u,   P = C p = -m.w          the couple u and the power p of a unit coefficient C, and of N = 1
 //! ```
 //! A law is one type that implements [`LossLaw`], in a file of its own, and one line of the table in `loss`. The
-//! defaults are those of a smooth law that does not depend on the normal force. The tests at the end compare the stated
-//! properties with the couple and the power.
+//! defaults are those of a smooth law that does not depend on the normal force. The stated properties are compared with
+//! the couple and the power in the tests at the end.
 
 use super::Kinematics;
 use crate::numbers::Real;
