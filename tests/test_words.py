@@ -28,8 +28,7 @@ ALLOWED = {
 
 def prose(text):
     """Text without blocks of code, code in a line, and addresses of links."""
-    text = "".join(block.text for block in blocks.blocks(text) if not block.kind)
-    return re.sub(r"`[^`]*`|(?<=\])\([^)]*\)", "", text)
+    return re.sub(r"`[^`]*`|(?<=\])\([^)]*\)", "", blocks.prose(text))
 
 
 def docstrings(path):
