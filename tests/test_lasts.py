@@ -81,7 +81,7 @@ COIN, HURRICANE = sc.Body.solid(0.1), sc.Body.balls()
 def test_a_body_on_two_rims_or_on_its_face_is_not_stable_and_is_told_why(body, state, on):
     for contact in ("rolling", "smooth"):
         with pytest.warns(
-            UserWarning, match=rf"^at: at theta = \S+ the body stands on {on}, and stable is False"
+            UserWarning, match=rf"^at: theta = \S+, where the body stands on {on}; stable"
         ) as told:
             found = body.stable(state, contact)
         assert not np.all(found) and told[0].filename == __file__

@@ -200,7 +200,7 @@ def table(contact: AnyContact, mu: float, own: bool = False) -> tuple[int, tuple
     if isinstance(contact, str):
         return TABLES[contact], (mu, 0.0, 0.0)
     if contact._function is not None and not own:
-        raise TypeError(f"contact = {contact!r}: a custom law works only in sc.roll, for a single body")
+        raise TypeError(f"contact = {contact!r}: a law of your own works only in sc.roll, for a single body")
     if not is_scalar(*contact._numbers):
         raise ValueError(f"contact = {contact!r}: expected single numbers, not arrays of them")
     first, second, patch = map(float, contact._numbers)

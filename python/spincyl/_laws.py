@@ -1,4 +1,4 @@
-"""Properties of a body, its stability, and quantities of its states: each is one function of the core."""
+"""Properties of a body, its stability, and quantities of its states: each calls one function of the core."""
 
 import warnings
 from dataclasses import replace
@@ -14,19 +14,19 @@ from spincyl._input.reprs import is_lazy
 from spincyl._slip import slip_of, velocity_of
 from spincyl._state import State, gripping, numbers
 
-_ROLLS = "this is asked of a body whose lowest point is at rest; dataclasses.replace(state, slip=None) is one"
+_ROLLS = "expected a state without slip, as dataclasses.replace(state, slip=None)"
 
 
 class Region(IntEnum):
-    """What is known about a steady state with the centre at rest (a code on grids)."""
+    """Existence and stability of a steady state with the centre at rest, as a code."""
 
-    INVALID = 0  #: no question: theta outside (0, pi/2], or no such body
+    INVALID = 0  #: outside the domain: theta outside (0, pi/2], or an impossible body
     FORBIDDEN = 1  #: no steady state, between theta_balance and theta_limit
-    UNDETERMINED = 2  #: too close to either for double precision to decide
-    UNSTABLE = 4  #: unstable on a smooth table and rolling
-    STABLE_ROLLING = 5  #: unstable on a smooth table, stable when rolling
-    STABLE_SMOOTH = 6  #: stable on a smooth table, unstable when rolling
-    STABLE = 7  #: stable by both
+    UNDETERMINED = 2  #: too close to one of these for double precision to decide
+    UNSTABLE = 4  #: unstable on a smooth table and in rolling
+    STABLE_ROLLING = 5  #: unstable on a smooth table, stable in rolling
+    STABLE_SMOOTH = 6  #: stable on a smooth table, unstable in rolling
+    STABLE = 7  #: stable on a smooth table and in rolling
 
 
 def _say_why(body: "Laws", state: State, kappa: Result) -> None:
@@ -36,19 +36,17 @@ def _say_why(body: "Laws", state: State, kappa: Result) -> None:
         return
     two = _core.two_rims(*body._numbers) == 1
     for place, standing, more in (
-        ("pi/2", two & (theta == np.pi / 2), ": launch_number(body, state) says whether one of them rises"),
+        ("pi/2", two & (theta == np.pi / 2), ". launch_number(body, state) says whether one of them rises"),
         ("0", (body.fillet < 1) & (theta == 0), ""),
     ):
         if np.any(np.isnan(kappa) & standing):
             on = "both its rims" if more else "its whole face"
-            why = "is False, since stability is that of a body on one point, and this is not steady there"
-            warnings.warn(
-                f"at: at theta = {place} the body stands on {on}, and stable {why}{more}", stacklevel=4
-            )
+            why = "stable() is for a body on one point of its rim, where this state is not steady: False"
+            warnings.warn(f"at: theta = {place}, where the body stands on {on}; {why}{more}", stacklevel=4)
 
 
 class Laws:
-    """Base of `Body`: the methods that evaluate one law each."""
+    """Base of `Body`: its methods that evaluate one law each."""
 
     ell: Reals
     i1: Reals
@@ -67,43 +65,43 @@ class Laws:
 
     @property
     def _leans(self) -> str:
-        """The range of theta, in the words of the core, for messages of errors."""
+        """The range of theta, as written in messages of the core."""
         raise NotImplementedError
 
     # Quantities of the shape alone.
 
     @property
     def theta_balance(self) -> Result:
-        """theta0, radians: balanced on a point of the rim, at rest; NaN of a ball."""
+        """Inclination theta0, radians, at which the body balances at rest on its rim; NaN for a ball."""
         return _core.theta_balance(*self._numbers)
 
     @property
     def theta_limit(self) -> Result:
-        """thetaInf, radians: where the steady rate grows without bound."""
+        """Inclination thetaInf, radians, at which the steady rate tends to infinity."""
         return _core.theta_limit(*self._numbers)
 
     @property
     def excess(self) -> Result:
-        """I1/I3 - 1: positive for a cylinder, negative for a disk, zero at the critical aspect."""
+        """I1/I3 - 1: positive for a long cylinder, negative for a disk, 0 at the critical aspect."""
         return _core.excess(*self._numbers)
 
     @elementwise
     def angular_rate(self, rate: Reals) -> Result:
-        """Omega = Omega~ / sqrt(I3): precession rate in sqrt(g/R) of a reduced rate."""
+        """Convert a reduced rate to a precession rate: Omega = Omega~ / sqrt(I3), in sqrt(g/R)."""
         return reals("rate", rate) / np.sqrt(self.i3)
 
     # Stability, on a smooth table or in rolling.
 
     @elementwise
     def stability(self, at: Reals | State, contact: Contact = "rolling", **ufunc: Any) -> Result:
-        """kappa: squared angular frequency of the nutation, in g/R; negative where unstable.
+        """Stability kappa: squared angular frequency of the nutation, in g/R; negative if unstable.
 
         Parameters
         ----------
         at : array_like or State
-            An inclination in (0, pi/2] (radians), meaning the steady state with the centre at
-            rest; or any steady state. What `circular` gives is steady when rolling; on a smooth
-            table, which has no friction to keep a centre circling, it is not.
+            Inclination in (0, pi/2], radians, of the steady state with the centre at rest; or any steady
+            state. A state of `circular` is steady in rolling, but not on a smooth table, where no friction
+            keeps the centre on its circle.
         contact : {"rolling", "smooth"}
             "rolling": the linearised motion without slipping. "smooth": the energy criterion of
             Jackson et al. (Appendix), exact on a frictionless table. They disagree on about an
@@ -114,9 +112,10 @@ class Laws:
         Returns
         -------
         float or array
-            NaN where there is no steady state, or a given one is not steady to six digits. Error at
-            rest 16 (1 + cond) ulp (2^-53) of its larger term, ``cond = cos/|n| + (a cos + ell sin)/|m|``;
-            of a state 64 ulp of its largest term, for theta above 1e-100.
+            NaN where there is no steady state, or where a `State` is not steady to six digits. Error for an
+            inclination: 16 (1 + cond) ulp (2^-53) of the larger term, where
+            ``cond = cos/|n| + (a cos + ell sin)/|m|``. Error for a `State`: 64 ulp of the largest term, for
+            theta above 1e-100.
         """
         rolling = rolls(contact)
         if isinstance(at, State):
@@ -127,16 +126,16 @@ class Laws:
 
     @elementwise
     def stable(self, at: Reals | State, contact: Contact = "rolling") -> Result:
-        """Whether a small disturbance stays small; False where the state is not steady.
+        """Whether a small disturbance stays small (kappa > 0); False where the state is not steady.
 
-        It is that of a body on one point of one rim. At theta = pi/2 a body with two rims stands on both, and
-        at theta = 0 on its whole face: a `State` there that is not steady on one point is False as well,
-        which says nothing of what two rims or a face hold.
+        This is the stability of a body on one point of one rim. At theta = pi/2 a body with two rims stands
+        on both, and at theta = 0 on its whole face. A `State` there may be False because it is not steady on
+        one point, although two rims or a face support it.
 
         Warns
         -----
         UserWarning
-            Of such states: why they are False. `launch_number` says whether one of two rims rises.
+            For such states. `launch_number` tells whether one of two rims rises.
         """
         kappa = self.stability(at, contact)
         if isinstance(at, State):
@@ -145,60 +144,61 @@ class Laws:
 
     @elementwise
     def nutation(self, at: Reals | State, contact: Contact = "rolling") -> Result:
-        """Angular frequency of the nutation in sqrt(g/R): 0 where unstable, NaN where not steady."""
+        """Angular frequency of the nutation, in sqrt(g/R); 0 where unstable, NaN where not steady."""
         return _core.nutation(self.stability(at, contact))
 
     @elementwise
     def growth_rate(self, at: Reals | State, contact: Contact = "rolling") -> Result:
-        """Rate at which a small disturbance grows, in sqrt(g/R): 0 where stable, NaN where not steady."""
+        """Growth rate of a small disturbance, in sqrt(g/R); 0 where stable, NaN where not steady."""
         return _core.growth_rate(self.stability(at, contact))
 
     def standing_spin(self, contact: Contact = "rolling") -> Result:
-        """The least spin w3, in sqrt(g/R), with which a ball stands upright on its pole, as a top sleeps.
+        """Least w3, in sqrt(g/R), at which a ball stands upright on its pole, like a sleeping top.
 
-        0 where it stands at rest, NaN of a body that is no ball. Error 4 ulp (2^-53).
+        0 for a ball that stands at rest, NaN for other bodies. Error 4 ulp (2^-53).
         """
         law = _core.standing_rolling if rolls(contact) else _core.standing_smooth
         return law(*self._numbers)
 
     @elementwise
     def painleve(self, theta: Reals) -> Result:
-        """mu_P: coefficient of friction from which on a slip may have no contact force, or more than one.
+        """Painleve limit mu_P: least coefficient of friction at which the contact force may not be unique.
 
-        That of a slip along the lean which carries the contact away from under the centre, as of chalk that
-        is pushed; infinite where the body is balanced. Uniform tubes are safe below sqrt(5)/2 = 1.118.
+        From mu_P on there may be no contact force, or more than one. This is for a slip along e_h of `State`
+        that moves the contact point away from below the centre, as of pushed chalk. Infinite where the body
+        is balanced; at least sqrt(5)/2 = 1.118 for uniform tubes.
         """
         return _core.painleve(radians("theta", theta, self._leans), *self._numbers)
 
     def boundaries(self, contact: Contact = "rolling") -> Result:
-        """Inclinations where the stability changes: shape and limits as `folds`."""
+        """Inclinations at which the stability changes; unit, shape and errors as for `folds`."""
         law = _core.boundary_rolling if rolls(contact) else _core.boundary_smooth
         return law(*several(self._most, *self._numbers))
 
     def folds(self) -> Result:
-        """Inclinations where the rate turns along the branch: there two states of a rate meet.
+        """Inclinations of extrema of the rate along the branch, where two steady states of one rate meet.
 
-        Radians, last axis 3 or 5 ("root"; see `inclinations`), ascending, NaN-padded. Not computed, and NaN,
-        for ell above 1e30 or I1/I3 above 1e60. Error 16 ulp (2^-53) times the conditioning; so for `ridge`
-        and `boundaries`.
+        Radians, on a last axis of 3 or 5 ("root"; see `inclinations`), ascending, padded with NaN. NaN for
+        ell above 1e30 or I1/I3 above 1e60. Error 16 ulp (2^-53) times the conditioning. The same holds for
+        `ridge` and `boundaries`.
         """
         return _core.fold(*several(self._most, *self._numbers))
 
     def ridge(self) -> Result:
-        """Inclinations where the energy is stationary along the branch: shape and limits as `folds`."""
+        """Inclinations of extrema of the energy along the branch; unit, shape and errors as for `folds`."""
         return _core.ridge(*several(self._most, *self._numbers))
 
     # Quantities of a state.
 
     @elementwise
     def energy(self, state: State, contact: AnyContact = "rolling") -> Result:
-        """Kinetic and potential energy, in M g R, from the table up.
+        """Kinetic and potential energy, in M g R, with heights above the table.
 
-        That of the slip is counted. On a smooth table (`contact="smooth"`) the centre moves up and down only,
-        so that a state with a slip is refused.
+        The kinetic energy includes the slip. On a smooth table (`contact="smooth"`) the centre moves only up
+        and down, and a state with a slip raises ValueError.
         """
         if not isinstance(contact, Coulomb | Viscous) and not rolls(contact):
-            why = "on a smooth table the centre is at rest; contact=sc.Coulomb(0.0) lets it slide"
+            why = "on a smooth table the centre moves only up and down; contact=sc.Coulomb(0.0) lets it slide"
             return _core.energy_smooth(*gripping(state, why), *self._numbers)
         four = numbers(state)
         if state.slip is None:
@@ -213,24 +213,24 @@ class Laws:
 
     @elementwise
     def centre_velocity(self, state: State) -> tuple[Result, Result]:
-        """Horizontal velocity of the centre of mass, sqrt(g R): along the lean, and across it (see `State`).
+        """Horizontal velocity of the centre of mass along e_h and e2 of `State`, in sqrt(g R).
 
-        Of a state without a slip it is that of rolling.
+        A state without a slip rolls.
         """
         numbers(state)
         return velocity_of(self, state)
 
     @elementwise
     def with_centre_velocity(self, state: State, along: Reals, across: Reals) -> State:
-        """The state whose slip is the one that this horizontal velocity of the centre means.
+        """The state with the slip that follows from a horizontal velocity of the centre of mass.
 
         Parameters
         ----------
         state : State
-            Its slip, if it has one, is replaced.
+            State whose slip, if it has one, is replaced.
         along, across : array_like
-            Velocity of the centre of mass in sqrt(g R): in the horizontal direction of the lean,
-            cos(theta) e1 - sin(theta) e3, and across it, along e2.
+            Velocity of the centre of mass in sqrt(g R), along the horizontal vector
+            e_h = cos(theta) e1 - sin(theta) e3, and along e2.
 
         Examples
         --------
@@ -246,13 +246,13 @@ class Laws:
 
     @elementwise
     def acceleration(self, state: State, contact: Contact = "rolling") -> Result:
-        """Theta'' in g/R: how the tilting of any state changes. 0 where it is steady."""
+        """Angular acceleration theta'' of a state, in g/R; 0 if the state is steady."""
         law = _core.acceleration if rolls(contact) else _core.acceleration_smooth
         return law(*gripping(state, _ROLLS), *self._numbers)
 
     @elementwise
     def angular_momentum(self, state: State) -> Result:
-        """Magnitude of the angular momentum about the centre, in M R^2 sqrt(g/R)."""
+        """Magnitude of the angular momentum about the centre of mass, in M R^2 sqrt(g/R)."""
         return _core.angular_momentum(*numbers(state), *self._numbers)
 
     @elementwise
@@ -262,18 +262,21 @@ class Laws:
 
     @elementwise
     def speed_o(self, state: State) -> Result:
-        """Speed of O, opposite to the contact beyond the centre, in sqrt(g R): 0 if the centre rests.
+        """Speed of O, the point opposite to the contact point through the centre of mass, in sqrt(g R).
 
-        Of a tube with sharp rims it is the uppermost point of the upper one.
+        0 if the centre rests. For a tube with sharp rims O is the uppermost point of the upper rim.
         """
         return _core.speed_o(*gripping(state, _ROLLS), *self._numbers)
 
     @elementwise
     def speed_x(self, state: State) -> Result:
-        """Speed of X, the top of the circle of contact, in sqrt(g R); sharp, 2 ell w1 if the centre rests."""
+        """Speed of X, the top of the contact point's circle on the body, in sqrt(g R).
+
+        2 ell w1 if the rim is sharp and the centre rests.
+        """
         return _core.speed_x(*gripping(state, _ROLLS), *self._numbers)
 
     @elementwise
     def centre_radius(self, state: State) -> Result:
-        """Radius of the circle that the centre runs along, in R; 0 at rest, infinite along a line."""
+        """Radius of the circle on which the centre moves, in R; 0 at rest, infinite along a line."""
         return _core.centre_radius(*gripping(state, _ROLLS), *self._numbers)

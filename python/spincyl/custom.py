@@ -1,8 +1,8 @@
-"""Laws of your own: a couple that takes energy, and a coefficient of friction that depends on the speed.
+"""Custom laws: a couple that takes energy, and a coefficient of friction that depends on the speed.
 
-Each is a function of Python, plain or compiled (``numba.njit``), that a motion calls some thousand times. A
-law is checked before the motion begins: it is finite, a couple gives no energy, and neither has a step. A
-law of dry friction, which contains the sign of a speed, has to be rounded: ``tanh(x/e)`` in place of
+Each is a Python function, plain or compiled (``numba.njit``), which a motion calls some thousand times.
+Before the motion begins the law is checked: it must be finite and without jumps, and a couple must not give
+energy. Dry friction, which contains the sign of a speed, has to be smoothed: ``tanh(x/e)`` in place of
 ``sign(x)``.
 
 >>> import numpy as np
@@ -31,7 +31,7 @@ __all__ = ["Couple", "Friction"]
 
 #: A couple from theta, w along e1, e2, e3 (an array of 3), and the normal force.
 CoupleFunction = Callable[[float, Floats, float], Sequence[float] | Floats]
-_ALONE = "a law of your own moves a single body of revolution by sc.roll, and is its only law of loss"
+_ALONE = "a law of your own works only in sc.roll, for a single body of revolution, as its only law of loss"
 
 
 def _called(name: str, function: object, arguments: str) -> None:
@@ -41,22 +41,22 @@ def _called(name: str, function: object, arguments: str) -> None:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Couple(Loss):
-    """A law of loss: a couple on the body, from its inclination, angular velocity and normal force.
+    """Law of loss given by a function: a couple from inclination, angular velocity and normal force.
 
     Parameters
     ----------
     function : callable
-        ``function(theta, w, normal)`` returns the couple along e1, e2, e3 (three numbers). `theta` is in
-        radians, `w` an array of the three components along the same axes in sqrt(g/R), `normal` the normal
-        force in M g, 0 or more, and the couple is in M g R. For a measured body the units are rad/s, N and
-        N m. The couple takes the power ``-couple @ w``, which must not be negative.
+        ``function(theta, w, normal)`` returns the three components of the couple along e1, e2, e3 of `State`,
+        in M g R. Its arguments are `theta` in radians, the array `w` of the angular velocity along the same
+        axes in sqrt(g/R), and the normal force `normal` in M g, 0 or more. For a measured body the units are
+        N m, rad/s and N. The power ``-couple @ w`` must not be negative.
 
     Raises
     ------
     TypeError
-        If it is no function; where it is used for many motions, a drift, a stone, or with another law.
+        If `function` is not callable; on use for many motions, a drift or a stone, or with another law.
     ValueError
-        By `sc.roll`, with a value: of a couple that gives energy, is not finite, or has a step.
+        By `sc.roll`, with a value, if the couple gives energy, is not finite, or jumps.
 
     Notes
     -----
@@ -75,7 +75,7 @@ class Couple(Loss):
 
     @property
     def laws(self) -> tuple[Law, ...]:
-        """None can be listed: TypeError, since no coefficient says what a function does."""
+        """Raises TypeError, since a function has no coefficient that could be listed."""
         raise TypeError(f"losses = {self!r}: {_ALONE}")
 
     def _natural(self, scale: Scale | None) -> Loss:
@@ -90,12 +90,12 @@ class Couple(Loss):
         return type(self)(natural)
 
     def couple(self, body: Body, state: State, normal: Reals = 1.0) -> Result:
-        """The couple along e1, e2, e3: what the function returns for a single state."""
+        """Couple along e1, e2, e3 in a single state, as returned by the function."""
         w = np.array([state.w1, state.w2, state.w3], dtype=float)
         return np.asarray(self.function(float(state.theta), w, float(normal)), dtype=float)
 
     def power(self, body: Body, state: State, normal: Reals = 1.0) -> Result:
-        """The power ``-couple @ w`` in a single state."""
+        """Power ``-couple @ w`` in a single state."""
         return -float(self.couple(body, state, normal) @ np.array([state.w1, state.w2, state.w3]))
 
     def __eq__(self, other: object) -> bool:
@@ -114,21 +114,21 @@ class Friction(Coulomb):
     Parameters
     ----------
     function : callable
-        ``function(speed)`` returns the coefficient of friction, 0 or more. `speed` is that of the slip, in
-        sqrt(g R), for a measured body in m/s.
+        ``function(speed)`` returns the coefficient of friction, 0 or more. `speed` is the magnitude of the
+        slip, in sqrt(g R), or in m/s for a measured body.
     static : float, optional
-        Coefficient up to which a body that rolls is held, at least ``function(0.0)``, which is the default.
+        Coefficient of static friction, at least ``function(0.0)``, which is the default.
 
     Raises
     ------
     TypeError
-        If it is no function; where it is used for many motions, a stone, or a page.
+        If `function` is not callable; on use for many motions, a stone, or a page.
     ValueError
-        By `sc.roll`: of a coefficient that is negative, not finite, or has a step.
+        By `sc.roll`, if the coefficient is negative, not finite, or jumps.
 
     Examples
     --------
-    A hoop thrown with backspin slips until its slip of 5 has been braked, u' = -2 mu(u):
+    A hoop thrown with backspin slips until friction has stopped its slip of 5, u' = -2 mu(u):
 
     >>> import numpy as np
     >>> import spincyl as sc
