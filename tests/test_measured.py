@@ -174,7 +174,9 @@ def test_steps_are_seconds_and_so_is_the_advice():
     coarse = 2.0 * plain.advice * second
     with pytest.warns(sc.StepWarning, match=f"^step = {coarse!r}: .*; take step={m.advice:.2e}"):
         sc.roll(TUBE, START, 0.5, step=coarse)
-    with pytest.raises(ValueError, match=r"^step = 0\.1 s is too large at t = 0 s, .*: a step of 0\.00566 s"):
+    with pytest.raises(
+        ValueError, match=r"^step = 0\.1 s is too large at t = 0 s, .*: use a step of 0\.00566 s"
+    ):
         sc.roll(TUBE, START, 0.5, step=0.1)
     assert sc.roll(TUBE, START, [0.3], t0=0.1).theta == pytest.approx(sc.roll(TUBE, START, 0.2).theta)
 

@@ -60,7 +60,9 @@ def test_what_is_no_press_or_throw_is_refused_by_name_and_nan_in_an_array():
         sc.pressed(PIPE, 1.0, 0.8, table=np.nan)
     with pytest.raises(ValueError, match=r"finger = -0\.1"):
         sc.pressed(PIPE, 1.0, 0.8, finger=-0.1)
-    with pytest.raises(ValueError, match=r"ell = 0\.0: expected ell > 0, for a body that can lie on two rims"):
+    with pytest.raises(
+        ValueError, match=r"ell = 0\.0: expected ell > 0, for a body that can lie on two rims"
+    ):
         sc.pressed(HOOP, 1.0, 0.8)
     with pytest.raises(ValueError, match=r"velocity = inf"):
         sc.thrown(HOOP, np.inf, 0.0)
