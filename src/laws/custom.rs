@@ -69,7 +69,7 @@ const NEARLY: f64 = 1e-9;
 /// A change by more than this share is a jump.
 const STEP: f64 = 1e-3;
 /// A couple may supply this share of its power by rounding, and static friction may be smaller by this share.
-const ROUNDED: f64 = 1e-12;
+const GIVEN_BY_ROUNDING: f64 = 1e-12;
 
 /// Every state with such an index is joined to the next one by a line, on which a jump is searched for.
 const LINES: usize = 12;
@@ -117,7 +117,7 @@ fn check_couple(law: &dyn CoupleLaw, body: &Body) -> Result<(), Error> {
         if !size(m).is_finite() {
             return refuse(size(m), "a couple that is finite in every state");
         }
-        if power < -ROUNDED * size(m) * speed {
+        if power < -GIVEN_BY_ROUNDING * size(m) * speed {
             return refuse(power, "a couple that takes energy, m.w <= 0");
         }
         let mut jump = size(at(speed * NEARLY).0) / size(m).max(f64::MIN_POSITIVE);
@@ -144,7 +144,7 @@ fn check_couple(law: &dyn CoupleLaw, body: &Body) -> Result<(), Error> {
 fn check_friction(law: &dyn FrictionLaw, fixed: f64) -> Result<(), Error> {
     let most = law.coefficient(0.0);
     // In doubles 0.1 + 0.2 exceeds 0.3.
-    within("static", fixed, (most * (1.0 - ROUNDED), f64::INFINITY), "static >= mu at rest")?;
+    within("static", fixed, (most * (1.0 - GIVEN_BY_ROUNDING), f64::INFINITY), "static >= mu at rest")?;
     let speed = |i: f64| 10f64.powf(-6.0 + 9.0 * i / 1000.0);
     let mu = |i: f64| law.coefficient(if i < 0.0 { 0.0 } else { speed(i) });
     for i in -1..1000 {

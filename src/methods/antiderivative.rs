@@ -73,7 +73,7 @@ impl<const M: usize> Piece<M> {
 
 /// M functions at one place.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Sample<const M: usize> {
+pub(crate) struct Sampled<const M: usize> {
     pub value: [f64; M],
     /// The largest of the terms whose sum each function is, as the scale of its rounding error.
     pub scale: [f64; M],
@@ -84,7 +84,7 @@ pub(crate) struct Sample<const M: usize> {
 impl<const M: usize> Antiderivative<M> {
     /// Integrals of `f` from the first of the `cuts` to the last; none if `f` is not finite, or cannot be resolved by
     /// pieces of at least the width `narrowest`.
-    pub fn new(cuts: &[f64], narrowest: f64, mut f: impl FnMut(f64) -> Sample<M>) -> Option<Self> {
+    pub fn new(cuts: &[f64], narrowest: f64, mut f: impl FnMut(f64) -> Sampled<M>) -> Option<Self> {
         let mut waiting: Vec<(f64, f64)> = cuts.windows(2).rev().map(|w| (w[0], w[1])).collect();
         let mut whole = Self { pieces: Vec::new(), total: [0.0; M], doubt: [0.0; M] };
         while let Some((left, right)) = waiting.pop() {
@@ -111,7 +111,7 @@ impl<const M: usize> Antiderivative<M> {
     /// The piece from `left` to `right`, and the uncertainty of its integrals; None if the series is not
     /// complete.
     fn made(
-        f: &mut impl FnMut(f64) -> Sample<M>,
+        f: &mut impl FnMut(f64) -> Sampled<M>,
         left: f64,
         right: f64,
         before: &Self,

@@ -130,7 +130,7 @@ pub(crate) struct Couples<T> {
     /// The signs of the motions that dry friction resists, where a caller holds them fixed within a step.
     pub ways: Option<Ways<T>>,
     /// The couple of a user-defined law, in the state for which these losses are made.
-    pub given: Option<Couple<T>>,
+    pub given: Option<Couple<f64>>,
 }
 
 /// A step may change a speed by this share, or by `NEAR` if that is more, where a law is not smooth at zero speed.

@@ -119,8 +119,10 @@ macro_rules! laws {
             #[inline(always)]
             pub fn at(&self, seen: &Kinematics<T>) -> Couple<T> {
                 let zero = seen.spin.splat(0.0);
-                let Couple { mut free, mut pressed } =
-                    self.given.unwrap_or(Couple { free: [zero; 3], pressed: [zero; 3] });
+                let (mut free, mut pressed) = ([zero; 3], [zero; 3]);
+                if let Some(given) = &self.given {
+                    (free, pressed) = (given.free.map(|x| zero.splat(x)), given.pressed.map(|x| zero.splat(x)));
+                }
                 $(if self.present[$code] {
                     let unit = $file::$Law::couple(seen);
                     let to = if $file::$Law::PRESSES { &mut pressed } else { &mut free };
@@ -141,8 +143,10 @@ macro_rules! laws {
                     power = self.coefficients[$code].mac(unit, power);
                 })+
                 if let Some(given) = &self.given {
-                    let ([m1, m2, m3], [w1, w2, w3]) = (given.under(normal), seen.w);
-                    power = power - (m1 * w1 + m2 * w2 + m3 * w3);
+                    for (i, w) in seen.w.into_iter().enumerate() {
+                        let [free, pressed] = [given.free[i], given.pressed[i]].map(|x| normal.splat(x));
+                        power = power - normal.mac(pressed, free) * w;
+                    }
                 }
                 power
             }

@@ -30,7 +30,7 @@ use nalgebra::SMatrix;
 /// Number of margins: face, other rim, normal force, and room or grip.
 const CUSTOM_MARGINS: usize = 4;
 /// The number of coupled numbers: sine, cosine, w and u.
-const REACTING: usize = 7;
+const COUPLED: usize = 7;
 /// Largest number of secants for the normal force.
 const SECANTS: usize = 40;
 /// Share of the longest step, or of a number, over which a slope is computed.
@@ -48,7 +48,7 @@ pub(super) struct CustomFlow<'a> {
 
 /// The response of the body: accelerations, force, the rates of the slip and of the time, and the margin of the slip.
 #[derive(Clone, Copy)]
-pub(super) struct Answer {
+pub(super) struct CustomResponse {
     pub w: [f64; 3],
     pub u: [f64; 2],
     pub force: [f64; 3],
@@ -119,12 +119,20 @@ impl<'a> CustomFlow<'a> {
     }
 
     /// The response of a body that rolls, or slides freely.
-    fn rolls(&self, angle: (f64, f64), w: [f64; 3]) -> Answer {
+    fn rolls(&self, angle: (f64, f64), w: [f64; 3]) -> CustomResponse {
         let (at, _) = self.held(self.ask.table.contact(), angle, w);
         let [normal, along, across] = at.force;
         let held = grip(self.ask.table.mu(), normal, along * along + across * across);
         let room = if self.ask.table.mu().is_finite() { held } else { 1.0 };
-        Answer { w: at.w, u: [0.0; 2], force: at.force, free: normal, room, power: at.power, pace: 1.0 }
+        CustomResponse {
+            w: at.w,
+            u: [0.0; 2],
+            force: at.force,
+            free: normal,
+            room,
+            power: at.power,
+            pace: 1.0,
+        }
     }
 
     /// The response of a body that slips with u, or that begins to slip along `way`.
@@ -134,7 +142,7 @@ impl<'a> CustomFlow<'a> {
         w: [f64; 3],
         u: [f64; 2],
         way: Option<[f64; 2]>,
-    ) -> Answer {
+    ) -> CustomResponse {
         let law = Slipping::on(self.body, &self.friction(u[0].hypot(u[1])));
         let answer = |losses| {
             let law = law.with_losses(losses);
@@ -146,10 +154,10 @@ impl<'a> CustomFlow<'a> {
         };
         let ((at, pace), losses) = self.solved(angle, w, answer);
         let power = law.with_losses(losses).power(angle, w, at.force[0]);
-        Answer { w: at.w, u: at.u, force: at.force, free: at.free, room: at.room, power, pace }
+        CustomResponse { w: at.w, u: at.u, force: at.force, free: at.free, room: at.room, power, pace }
     }
 
-    pub(super) fn answer<const N: usize>(&self, y: &[f64; N]) -> Answer {
+    pub(super) fn answer<const N: usize>(&self, y: &[f64; N]) -> CustomResponse {
         let (angle, w) = ((y[0], y[1]), [y[2], y[3], y[4]]);
         if self.slips { self.slides(angle, w, [y[5], y[6]], None) } else { self.rolls(angle, w) }
     }
@@ -164,7 +172,7 @@ impl<'a> CustomFlow<'a> {
     }
 
     /// Writes the rates of all numbers from the response.
-    fn writes<const N: usize>(&self, y: &[f64; N], at: &Answer, all: &mut [f64; N]) {
+    fn writes<const N: usize>(&self, y: &[f64; N], at: &CustomResponse, all: &mut [f64; N]) {
         let (precession, w2) = (y[2] / y[0], y[3]);
         let [_, along, across] = at.force;
         let heat = -(along * y[6] + across * y[5]);
@@ -197,7 +205,7 @@ impl<'a> CustomFlow<'a> {
     }
 
     /// The end of a phase that is over at once.
-    pub(super) fn at_start<const N: usize>(&self, y: &[f64; N], at: &Answer) -> Option<Ending> {
+    pub(super) fn at_start<const N: usize>(&self, y: &[f64; N], at: &CustomResponse) -> Option<Ending> {
         let (end, theta) = (self.body.theta_end(), state(y).theta);
         let rises = y[3] > 0.0 || y[3] == 0.0 && at.w[1] > 0.0;
         match () {
@@ -235,12 +243,12 @@ impl Flow<CUSTOM_MARGINS> for CustomFlow<'_> {
     ) -> (rk8::Step<f64, N>, radau::Collocated<N>) {
         let (y, fast, slip) = (&from.y, Slide::fastest(&from.y), from.y[5].hypot(from.y[6]));
         let sizes = [y[0], 1.0, fast, fast, fast, slip, slip];
-        let mut slopes = SMatrix::<f64, REACTING, REACTING>::zeros();
-        for j in 0..REACTING {
+        let mut slopes = SMatrix::<f64, COUPLED, COUPLED>::zeros();
+        for j in 0..COUPLED {
             let (mut more, mut less) = (*y, *y);
             (more[j], less[j]) = (y[j] + ASIDE * sizes[j], y[j] - ASIDE * sizes[j]);
             let [above, below] = [self.rates(&more), self.rates(&less)];
-            (0..REACTING).for_each(|i| slopes[(i, j)] = (above[i] - below[i]) / (more[j] - less[j]));
+            (0..COUPLED).for_each(|i| slopes[(i, j)] = (above[i] - below[i]) / (more[j] - less[j]));
         }
         radau::step(|y, all| self.write_rates(y, all), y, &slopes, &sizes, (h, 0.01 * self.tol))
     }

@@ -32,10 +32,10 @@ use flow::CustomFlow;
 /// The default tolerance of a step, since a user-defined law may be slow.
 const FAIR: f64 = 1e-10;
 /// The numbers of such a motion: those of a slip, with the pose and the lost energy.
-const NUMBERS: usize = 14;
+const CUSTOM_NUMBERS: usize = 14;
 /// For this time a slip keeps its direction after static friction has ceased to hold. The error is the cube of this
 /// time.
-const LATER: f64 = 1e-5;
+const KEEPS_ITS_WAY: f64 = 1e-5;
 
 /// The motion of a body from a start at the `times` under user-defined laws, up to the event that ends it.
 ///
@@ -108,10 +108,10 @@ fn check(body: &Body, start: &Start, ask: &Ask, custom: &Custom<'_>) -> Result<f
 }
 
 /// The least growth of a slip that begins, so that it has a direction.
-const LEAST: f64 = 1e-30;
+const LEAST_GROWTH: f64 = 1e-30;
 
 /// The numbers after a time at these rates.
-fn moved(y: &[f64; NUMBERS], rate: &[f64; NUMBERS], by: f64) -> [f64; NUMBERS] {
+fn moved(y: &[f64; CUSTOM_NUMBERS], rate: &[f64; CUSTOM_NUMBERS], by: f64) -> [f64; CUSTOM_NUMBERS] {
     core::array::from_fn(|i| by.mul_add(rate[i], y[i]))
 }
 
@@ -130,7 +130,7 @@ struct CustomRun<'a> {
     start: &'a Start,
     times: &'a [f64],
     since: Vec<f64>,
-    at: [f64; NUMBERS],
+    at: [f64; CUSTOM_NUMBERS],
     /// The direction in which the current slip began from rest.
     way: [f64; 2],
     made: Followed,
@@ -146,7 +146,7 @@ impl<'a> CustomRun<'a> {
         }
         made.motion.method = Method::Tolerance(flow.tol);
         let (State { theta, w1, w2, w3 }, [along, across]) = (start.state, start.slip);
-        let ((s, c), mut at) = (theta.sin_cos(), [0.0; NUMBERS]);
+        let ((s, c), mut at) = (theta.sin_cos(), [0.0; CUSTOM_NUMBERS]);
         at[..7].copy_from_slice(&[s, c, w1, w2, w3, along, across]);
         let mut since = room(count)?;
         since.extend(times.iter().map(|t| t - start.time + 0.0));
@@ -169,7 +169,7 @@ impl<'a> CustomRun<'a> {
     fn rests(&mut self, let_go: bool) -> Beginning {
         (self.at[5], self.at[6]) = (0.0, 0.0);
         // At the limit itself a slip does not grow; later it does.
-        let (lasts, mut from) = (if let_go { LATER } else { MOMENT }, self.at);
+        let (lasts, mut from) = (if let_go { KEEPS_ITS_WAY } else { MOMENT }, self.at);
         if let_go {
             self.flow.slips = false;
             from = moved(&self.at, &self.flow.rates(&self.at), 0.5 * lasts);
@@ -214,10 +214,10 @@ impl<'a> CustomRun<'a> {
     }
 
     /// The numbers at the time `lasts` after a slip has begun, by the rates at the middle of that time.
-    fn slipped(&self, from: &[f64; NUMBERS], lasts: f64) -> [f64; NUMBERS] {
+    fn slipped(&self, from: &[f64; CUSTOM_NUMBERS], lasts: f64) -> [f64; CUSTOM_NUMBERS] {
         let half = moved(from, &self.flow.rates_along(from, self.way), 0.5 * lasts);
         let mut all = moved(from, &self.flow.rates_along(&half, self.way), lasts);
-        let speed = (all[5] * self.way[0] + all[6] * self.way[1]).max(LEAST * lasts);
+        let speed = (all[5] * self.way[0] + all[6] * self.way[1]).max(LEAST_GROWTH * lasts);
         (all[5], all[6]) = (speed * self.way[0], speed * self.way[1]);
         all
     }
@@ -260,7 +260,7 @@ impl<'a> CustomRun<'a> {
             };
         }
         self.made.motion.times = self.times[..self.made.motion.states.len()].to_vec();
-        (self.made.path.heat, self.made.path.lost) = (self.at[8], self.at[NUMBERS - 1]);
+        (self.made.path.heat, self.made.path.lost) = (self.at[8], self.at[CUSTOM_NUMBERS - 1]);
         Ok(Some(self.made))
     }
 
@@ -271,7 +271,7 @@ impl<'a> CustomRun<'a> {
         let steps = Steps { first: None, most: u64::MAX, patience: self.patience, toil, tired: false };
         let first = self.made.motion.states.len();
         let (made, way) = (&mut self.made, self.way);
-        let mut write = |y: &[f64; NUMBERS]| made.written(&flow, (start, y), way);
+        let mut write = |y: &[f64; CUSTOM_NUMBERS]| made.written(&flow, (start, y), way);
         let Some(flown) = flow.run(flow.place(self.at), steps, &self.since[first..], &mut write, go_on)?
         else {
             return Ok(None);
@@ -288,7 +288,12 @@ impl<'a> CustomRun<'a> {
 
 impl Followed {
     /// Adds the numbers `y` to the outputs of a motion from a start.
-    fn written(&mut self, flow: &CustomFlow<'_>, (start, y): (&State, &[f64; NUMBERS]), way: [f64; 2]) {
+    fn written(
+        &mut self,
+        flow: &CustomFlow<'_>,
+        (start, y): (&State, &[f64; CUSTOM_NUMBERS]),
+        way: [f64; 2],
+    ) {
         let (now, ask) = (state(y), flow.ask);
         let side = if y[0] < 0.0 { -1.0 } else { 1.0 };
         let slip = [side * y[5], side * y[6]];
@@ -302,6 +307,6 @@ impl Followed {
         let force =
             ask.force.then(|| doubted(&now, state_errors(&now, flow.tol), |y| flow.force(y, slip, way)));
         self.put(now, slip, y[8], flow.kind(), pose, force);
-        self.path.work_lost.push(y[NUMBERS - 1]);
+        self.path.work_lost.push(y[CUSTOM_NUMBERS - 1]);
     }
 }

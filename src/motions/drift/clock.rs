@@ -11,7 +11,7 @@
 //! Error: 1e-13 of the time.
 
 use super::ends::Goal;
-use crate::methods::antiderivative::{Antiderivative, Sample};
+use crate::methods::antiderivative::{Antiderivative, Sampled};
 use crate::numbers::Sum;
 
 /// A part of the path with its own variable x.
@@ -90,7 +90,7 @@ impl ClockPath {
             let (spot, rate) = self.spot(leg, x);
             let [slow, size] = slowness(&spot);
             let noise = SLOWNESS_ROUNDINGS * f64::EPSILON * (size / slow).min(1.0 / f64::EPSILON);
-            Sample { value: [slow * rate], scale: [slow * rate], noise }
+            Sampled { value: [slow * rate], scale: [slow * rate], noise }
         })
     }
 }

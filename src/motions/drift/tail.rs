@@ -13,7 +13,7 @@
 //! which falls evenly, and with the three-dimensional model.
 
 use super::circular::{Circular, Numbers, unit};
-use crate::methods::antiderivative::{Antiderivative, Sample};
+use crate::methods::antiderivative::{Antiderivative, Sampled};
 use crate::methods::search;
 use crate::numbers::{Dual, Real, Sum};
 
@@ -83,7 +83,7 @@ impl Tail {
         };
         let integrals = Antiderivative::new(&[0.0, FADED], 0.0, |z| {
             let value = rates(z);
-            Sample { value, scale: value, noise: 8.0 * f64::EPSILON }
+            Sampled { value, scale: value, noise: 8.0 * f64::EPSILON }
         })?;
         // Beyond `FADED` the spin falls at a constant rate, and the rest takes w3/w3'.
         let time = integrals.total[0] + rates(FADED)[0];

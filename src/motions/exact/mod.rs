@@ -29,7 +29,7 @@ use crate::error::{Error, within};
 use crate::laws::body::Body;
 use crate::laws::contact::Contact;
 use crate::laws::state::State;
-use crate::methods::antiderivative::{Antiderivative, Sample};
+use crate::methods::antiderivative::{Antiderivative, Sampled};
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 use lines::Lines;
 use stretch::{Stretch, StretchPoint};
@@ -228,7 +228,7 @@ impl Swing {
         let clock = Antiderivative::new(&cuts, narrowest, |v| {
             let at = lines.at(&stretch, v);
             let value = [at.s * at.s * weight(&at)];
-            Sample { value, scale: value, noise: at.noise }
+            Sampled { value, scale: value, noise: at.noise }
         })?;
         let mut leg = Leg { stretch, clock, turns: None, path: None, before: self.whole };
         if !pose {
@@ -244,7 +244,7 @@ impl Swing {
             let at = lines.at(&leg.stretch, v);
             let turn = at.p * weight(&at);
             let scale = [turn.abs() + 1e-3 * at.s * at.s * weight(&at), terms(&at)];
-            Sample { value: [turn, spin(&at)], scale, noise: at.noise }
+            Sampled { value: [turn, spin(&at)], scale, noise: at.noise }
         })?);
         if self.contact == Contact::Rolling {
             leg.path = Some(Antiderivative::new(&cuts, narrowest, |v| {
@@ -254,7 +254,7 @@ impl Swing {
                 let along = rim.radius((at.s, at.c)) * spin(&at);
                 let round = rim.rho * at.s * at.x_per_root * at.root;
                 let value = [-along * sin - round * cos, along * cos - round * sin];
-                Sample { value, scale: [terms(&at) + round; 2], noise: at.noise }
+                Sampled { value, scale: [terms(&at) + round; 2], noise: at.noise }
             })?);
         }
         Some(leg)

@@ -9,7 +9,6 @@
 //! and (x, y) the contact point on the table. Every step ends with a quaternion of length 1.
 
 use super::known::Recorded;
-use super::loses::REST;
 use super::turns::Spot;
 use crate::laws::contact::grip;
 use crate::laws::stone::law::{StoneLaw, StoneResponse, Touching, across, laboratory, turning};
@@ -18,6 +17,7 @@ use crate::methods::flow::{Flow, FlowPlace, TakenStep, looks};
 use crate::methods::{SHORT_CODE, radau, rk8};
 use crate::motions::creep::{IMPLICIT_TURNS, rests_below};
 use crate::motions::halt::{Halt, TIME, loses};
+use crate::motions::path::lossy::REST;
 use crate::motions::walk::{MOMENT, slip_over};
 use crate::numbers::vector::{dot, plus};
 use crate::numbers::{Dual, Real};
