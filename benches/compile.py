@@ -2,9 +2,10 @@
 
 Compiles the wheel, and new programs in empty folders that use the crate, each from nothing, with its
 dependencies. Each time of the processor stands beside a yardstick that any machine has: a release build of nalgebra
-alone, compiled twice before the others (the smaller is taken) and once after them. Needs cargo, and maturin for the
-wheel; ten minutes.
-usage: python benches/compile.py
+alone, compiled twice before the others (the smaller is taken) and once after them. For unoptimised programs the
+yardstick is such a build of nalgebra, and the program is run: 100 exact motions, and 20 with friction. Needs cargo,
+and maturin for the wheel; ten minutes.
+usage: python benches/compile.py [--debug]
 """
 
 import argparse
@@ -22,10 +23,40 @@ NO_NOALIAS = "-C llvm-args=-enable-noalias-to-md-conversion=false"
 WAYS = {
     "release": ([], ["--release"], {}),
     "release, without noalias": ([], ["--release"], {"RUSTFLAGS": NO_NOALIAS}),
-    "unoptimised": ([], [], {}),
-    "unoptimised, with lanes": ([], [], {"SPINCYL_COMPILED_LANES": "all"}),
-    "unoptimised, without what is many at once": (["--no-default-features"], [], {}),
 }
+#: The same of programs without optimisation, and the level at which this crate alone is optimised.
+DEBUG = {
+    "unoptimised": ([], {}, 0),
+    "unoptimised, without what is many at once": (["--no-default-features"], {}, 0),
+    "unoptimised, with lanes": ([], {"SPINCYL_COMPILED_LANES": "all"}, 0),
+    "this crate at level 2, without lanes": ([], {"SPINCYL_COMPILED_LANES": "none"}, 2),
+    "the same, without what is many at once": (
+        ["--no-default-features"],
+        {"SPINCYL_COMPILED_LANES": "none"},
+        2,
+    ),
+    "this crate at level 2, with lanes": ([], {}, 2),
+}
+PROGRAM = """
+use spincyl::contact::Friction;
+use spincyl::motion::{Ask, Start, roll_with};
+use spincyl::{Body, roll, steady};
+
+fn main() -> Result<(), spincyl::Error> {
+    let body = Body::tube(6.0, 0.8)?;
+    let start = steady::state(&body, 1.4)?.kicked(0.05);
+    let times: Vec<f64> = (0..=200).map(|i| 0.1 * f64::from(i)).collect();
+    for _ in 0..100 {
+        assert!(roll(&body, &start, &times)?.error < 1e-9);
+    }
+    let ask = Ask::on(Friction::coulomb(0.2)).with_pose(true).with_force(true);
+    for _ in 0..20 {
+        let thrown = Start::from(start).with_slip([0.3, -0.5]);
+        assert!(roll_with(&body, thrown, &times, &ask, || true)?.unwrap().error < 1e-6);
+    }
+    Ok(())
+}
+"""
 
 
 def clean(**more):
@@ -63,9 +94,30 @@ def built(added, how, more):
         return took(["cargo", "build", "--quiet", *how], cwd=program(folder, added), env=clean(**more))
 
 
-def yardstick():
-    """A release build of nalgebra alone, of one version and with one set of features."""
-    return built(YARDSTICK, ["--release"], {})
+def yardstick(how):
+    """A build of nalgebra alone, of one version and with one set of features."""
+    return built(YARDSTICK, how, {})
+
+
+def debugged(added, more, level):
+    """What an unoptimised program took to build, and then to run."""
+    with tempfile.TemporaryDirectory() as folder:
+        app = program(folder, [*added, "--path", str(ROOT)])
+        (app / "src/main.rs").write_text(PROGRAM)
+        if level:
+            with (app / "Cargo.toml").open("a") as manifest:
+                manifest.write(f"\n[profile.dev.package.spincyl]\nopt-level = {level}\n")
+        times = took(["cargo", "build", "--quiet"], cwd=app, env=clean(**more))
+        return times, took([str(app / "target/debug/app")])
+
+
+def all_debugged():
+    """Prints what unoptimised programs took, beside a build of nalgebra alone in their profile."""
+    yard = min(yardstick([])[1] for _ in range(2))
+    for name, (added, more, level) in DEBUG.items():
+        times, ran = debugged(added, more, level)
+        told(name, times, yard)
+        print(f"{'':46} it runs for {ran[1]:.2f} s of processor", flush=True)
 
 
 def program(folder, added):
@@ -81,10 +133,13 @@ def program(folder, added):
 
 
 def main():
-    argparse.ArgumentParser(
+    parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    ).parse_args()
-    yards = [yardstick() for _ in range(2)]
+    )
+    parser.add_argument("--debug", action="store_true", help="only unoptimised programs")
+    if parser.parse_args().debug:
+        return all_debugged()
+    yards = [yardstick(["--release"]) for _ in range(2)]
     yard = min(busy for _, busy, _ in yards)
     told("the yardstick: nalgebra alone, in release", yards[0], yard)
     with tempfile.TemporaryDirectory() as folder:
@@ -94,7 +149,8 @@ def main():
         print(f"{'':46} {wheel.stat().st_size / 1e6:.1f} MB")
     for name, (added, how, more) in WAYS.items():
         told(name, built([*added, "--path", str(ROOT)], how, more), yard)
-    told("the yardstick again", yardstick(), yard)
+    told("the yardstick again", yardstick(["--release"]), yard)
+    return all_debugged()
 
 
 if __name__ == "__main__":

@@ -167,9 +167,7 @@ def test_a_start_in_the_air_that_makes_no_sense_is_refused_by_name(how, why):
 
 def test_numbers_of_a_body_on_the_table_refuse_a_state_in_the_air():
     state = sc.dropped(COIN, 1.0, 1.2)
-    with pytest.raises(
-        ValueError, match="^state: in the air, height = 1.0: expected a body on the table"
-    ):
+    with pytest.raises(ValueError, match="^state: in the air, height = 1.0: expected a body on the table"):
         COIN.acceleration(state)
     assert COIN.energy(state) == pytest.approx(COIN.energy(sc.State(1.2, 0, 0, 0)) + 1.0, abs=1e-15)
     m = sc.roll(COIN, COIN.steady(1.3), 1.0)

@@ -104,9 +104,7 @@ def test_a1_forbidden_inclinations_say_so(body):
 )  # fmt: skip
 def test_a2_what_is_no_real_number_is_a_type_error_naming_the_argument(body, bad):
     for name in ELEMENTWISE:
-        with pytest.raises(
-            TypeError, match=r"^(theta|rate|at)(: expected real numbers|, hertz: give one)"
-        ):
+        with pytest.raises(TypeError, match=r"^(theta|rate|at)(: expected real numbers|, hertz: give one)"):
             getattr(body, name)(bad)
     for name, call in {
         "ell": sc.Body.solid,

@@ -95,7 +95,7 @@ def named(thing, name):
     """The public names of a class or module, which the table of the page can list."""
     if inspect.ismodule(thing):
         found = {f"{name}.{x}" for x in thing.__all__}
-        return found if name in ("data", "loss", "plot", "sweep") else set()
+        return found if name in ("custom", "data", "loss", "plot", "sweep") else set()
     if not inspect.isclass(thing) or issubclass(thing, (tuple, enum.Enum, Warning)):
         return {name}
     own = {x: inspect.getattr_static(thing, x) for x in dir(thing) if not x.startswith("_")}

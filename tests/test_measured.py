@@ -139,9 +139,7 @@ def test_a_wet_table_has_its_unit():
         lambda: setattr(sc.play(TUBE), "contact", sc.Viscous(2.0)),
         lambda: sc.roll(stone, stone.spinning(-5.0), 1.0, contact=sc.Viscous(2.0)),
     ):
-        with pytest.raises(
-            ValueError, match=r"contact = Viscous\(2.0\): expected SI for a measured body"
-        ):
+        with pytest.raises(ValueError, match=r"contact = Viscous\(2.0\): expected SI for a measured body"):
             bare()
     with pytest.raises(ValueError, match="c: '2m/s': expected a friction over speed"):
         sc.Viscous.from_si("2m/s", scale=TUBE)

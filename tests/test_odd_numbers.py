@@ -45,10 +45,10 @@ def more():
 def numeric(value):
     """Whether a value is a number, or numbers, that can be replaced."""
     plain = not isinstance(value, str | bool | sc.State | xr.Dataset)
-    if value is None or not plain or np.size(value) == 0:
+    if value is None or not plain:
         return False
     try:
-        return np.asarray(value, np.float64).ndim < 3
+        return np.size(value) > 0 and np.asarray(value, np.float64).ndim < 3
     except (TypeError, ValueError):
         return False
 

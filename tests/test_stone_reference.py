@@ -15,6 +15,14 @@ REFERENCE = pathlib.Path(__file__).with_name("reference")
 TABLE = json.loads((REFERENCE / "stones.json").read_text("utf-8"))
 COLUMNS = TABLE["columns"]
 MOTIONS = {motion["name"]: motion for motion in TABLE["motions"]}
+LOSING_TABLE = json.loads((REFERENCE / "stones_losing.json").read_text("utf-8"))
+LOSING = {motion["name"]: motion for motion in LOSING_TABLE["motions"]}
+LAWS = {
+    "air": sc.loss.AirLinear,
+    "air2": sc.loss.AirQuadratic,
+    "rolling": sc.loss.RollingResistance,
+    "drilling": sc.loss.Drilling,
+}
 STEADY = list(csv.DictReader((REFERENCE / "stones_steady.csv").read_text("utf-8").splitlines()))
 ENDS = {"lift-off": sc.Ending.LIFT_OFF, "face": sc.Ending.FACE}
 #: motions whose contact point always rests or always slides freely, without violent rotation
@@ -55,7 +63,9 @@ def rolled(case, times):
     slip = None if case["law"] == "rolling" else np.array(case["u"]) * (second / metre)
     start = sc.EllipsoidState(n, np.array(case["w"]) * second, slip)
     times = np.array(times) / second
-    return sc.roll(stone(case), start, times, t0=0.0, contact=contact(case), want=("pose", "force"))
+    losses = sum(LAWS[law](x) for law, x in case["losses"].items()) if "losses" in case else None
+    how = {"contact": contact(case), "losses": losses, "want": ("pose", "force")}
+    return sc.roll(stone(case), start, times, t0=0.0, **how)
 
 
 def rows(case):
@@ -64,7 +74,8 @@ def rows(case):
     of = {"t": second, "heat": case["g"] * metre, "fx": case["g"], "fy": case["g"], "normal": case["g"]}
     of |= dict.fromkeys(("w1", "w2", "w3"), 1 / second) | dict.fromkeys(("x", "y"), metre)
     of |= dict.fromkeys(("ux", "uy"), metre / second)
-    named = [dict(zip(COLUMNS, row, strict=True)) for row in case["rows"]]
+    columns = LOSING_TABLE["columns"] if "losses" in case else COLUMNS
+    named = [dict(zip(columns, row, strict=True)) for row in case["rows"]]
     return [{k: v if k == "kind" else float(v) / of.get(k, 1.0) for k, v in row.items()} for row in named]
 
 
@@ -169,3 +180,55 @@ def test_the_eigenvalues_of_an_upright_spin_have_thirteen_digits(row):
 
 
 _EXACT = ("a1", "a2", "a3", "i11", "i12", "i13", "i22", "i23", "i33", "d1", "d2", "d3", "g", "up", "spin")
+
+
+@pytest.mark.parametrize("name", LOSING)
+def test_a_motion_with_losses_is_that_of_the_other_model_within_its_estimated_error(name):
+    case = LOSING[name]
+    samples = [row for row in rows(case) if row["kind"] in ("sample", "end")]
+    m = rolled(case, [row["t"] for row in samples])
+    centre = rolled(case, [0.0]).centre[0, :2]
+    assert m.status == sc.Ending.DONE
+    assert len(m.t) == len(samples) >= 4
+    for i, row in enumerate(samples):
+        state, slip, pose, force = off(m, i, row, centre)
+        assert max(state, slip) <= max(m.error, 1e-12)
+        assert pose <= m.pose_error + 1e-12
+        assert force <= max(m.force_error, 1e-11)
+        assert abs(m.work_lost[i] - row["lost"]) <= max(10 * m.error, 1e-11)
+    assert m.error < 1e-8
+
+
+def test_a_ball_that_is_a_stone_loses_its_energy_as_a_body_does():
+    ball, same = sc.Body.ball(0.0, i1=0.4, i3=0.4), sc.Ellipsoid.uniform((1.0, 1.0, 1.0))
+    t = np.linspace(0, 4, 9)
+    w1, w2, w3 = 0.7, -0.4, 1.1
+    theta = 1.0
+    start = sc.EllipsoidState((np.sin(theta), 0.0, np.cos(theta)), (w1, w2, w3))
+    for law in (
+        sc.loss.AirLinear(0.05),
+        sc.loss.AirQuadratic(0.05),
+        sc.loss.RollingResistance(0.02),
+        sc.loss.Drilling(0.05),
+    ):
+        body = sc.roll(ball, sc.State(theta, w1, w2, w3), t, losses=law)
+        stone = sc.roll(same, start, t, losses=law)
+        assert abs(body.work_lost - stone.work_lost).max() < 1e-10 + 10 * (body.error + stone.error), law
+        assert abs(np.linalg.norm(body.w, axis=1) - np.linalg.norm(stone.w, axis=1)).max() < 1e-9, law
+
+
+def test_losses_along_a_rim_are_refused_for_a_stone():
+    egg = sc.Ellipsoid.egg(0.8, 1.0)
+    for law in (sc.loss.DryContour, sc.loss.ViscousContour, sc.loss.AirFilm, sc.loss.BoundaryLayer):
+        with pytest.raises(ValueError, match="rim"):
+            sc.roll(egg, egg.spinning(1.0), 1.0, losses=law(1e-3))
+
+
+def test_a_rattleback_with_losses_stops_and_its_energy_only_falls():
+    stone = sc.Ellipsoid.rattleback((1.0, 0.2, 0.17), twist=0.05)
+    losses = sc.loss.RollingResistance(2e-3) + sc.loss.AirLinear(1e-3)
+    m = sc.roll(stone, stone.spinning(-0.8, pitch=0.02), np.linspace(0, 100, 401), losses=losses)
+    assert m.status == sc.Ending.STOPS
+    assert (np.diff(m.work_lost) >= 0).all()
+    whole = stone.energy(m.states) + m.work_lost
+    assert np.ptp(whole) < 1e-9

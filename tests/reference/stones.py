@@ -60,8 +60,21 @@ class Scene:
     """A stone, a law of friction, a start and times."""
 
     def __init__(
-        self, name, stone, law, n, w, end, mu=0.0, static=None, u=(0, 0), theta_end=None, samples=6, g=1.0,
-        losses=None, held=False,
+        self,
+        name,
+        stone,
+        law,
+        n,
+        w,
+        end,
+        mu=0.0,
+        static=None,
+        u=(0, 0),
+        theta_end=None,
+        samples=6,
+        g=1.0,
+        losses=None,
+        held=False,
     ):
         self.name, self.law, self.g, self.theta_end = name, law, float(g), theta_end
         axes, inertia, offset = stone
@@ -144,7 +157,10 @@ def scenes():
 
 def losing():
     """Motions with losses, whose rows have one number more, the energy that the losses have taken."""
-    both, every = {"drilling": 0.02, "rolling": 0.01}, {"air": 0.01, "air2": 0.02, "rolling": 0.01, "drilling": 0.02}
+    both, every = (
+        {"drilling": 0.02, "rolling": 0.01},
+        {"air": 0.01, "air2": 0.02, "rolling": 0.01, "drilling": 0.02},
+    )
     # fmt: off
     yield Scene("small stone in air", SMALL, "rolling", *spinning(-0.6, 0.02, 0.01), 12, losses={"air": 2e-3})
     yield Scene("odd stone in fast air", ODD, "rolling", (0.3, -0.2, 0.9), (0.6, 0.4, -0.5), 8, losses={"air2": 0.05})

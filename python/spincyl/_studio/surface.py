@@ -51,9 +51,9 @@ class Part(NamedTuple):
     triangles: np.ndarray  #: (m, 3) indices, counter-clockwise from outside
 
 
-def lathe(profile: Profile, around: int = _AROUND) -> Part:
+def lathe(profile: Profile, around: int | None = None) -> Part:
     """The surface that a profile makes when it is turned and, for a stone, stretched."""
-    turned = _turned(profile, around)
+    turned = _turned(profile, around or _AROUND)
     return turned if profile.stretch is None else profile.stretch(turned)
 
 
