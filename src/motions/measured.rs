@@ -12,6 +12,7 @@ use super::{Ask, Ending, Kind, Motion, Start, motion};
 use crate::error::{Error, within};
 use crate::laws::body::Body;
 use crate::laws::scale::Scale;
+use core::f64::consts::FRAC_PI_4;
 use nalgebra::{Point3, UnitQuaternion, Vector3};
 
 /// The dimensions of a uniform tube. A solid cylinder has `inner_diameter` 0, and a sharp rim `fillet` 0.
@@ -112,9 +113,13 @@ impl Measured {
         Self { body, scale }
     }
 
-    /// A uniform tube. Errors: those of [`Body::from_metres`] and of [`Scale::new`].
+    /// A uniform tube. Errors: those of [`Body::from_metres`] and of [`Scale::new`], and `OutOfRange` for a tube of less than
+    /// 0.01 kg/m^3, a hundredth of the density of air, as of one whose millimetres were taken for metres.
     pub fn tube(of: &Tube) -> Result<Self, Error> {
         let body = Body::from_metres(of.outer_diameter, of.inner_diameter, of.length, of.fillet)?;
+        let wall = (of.outer_diameter - of.inner_diameter) * (of.outer_diameter + of.inner_diameter);
+        let least = 0.01 * FRAC_PI_4 * wall * of.length;
+        within("mass", of.mass, (least, f64::MAX), "kilograms, 0.01 kg/m^3 or more of a tube in metres")?;
         Ok(Self::new(body, Scale::new(0.5 * of.outer_diameter, of.mass, of.gravity)?))
     }
 

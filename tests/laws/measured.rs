@@ -115,6 +115,12 @@ fn a_tube_without_measures_is_refused_by_name() {
         (Tube::default(), "outer_diameter = 0.0"),
         (Tube { mass: 0.0, ..coin() }, "mass = 0.0"),
         (Tube { gravity: -9.8, ..coin() }, "gravity = -9.8"),
+        (
+            Tube { outer_diameter: 24.0, length: 2.0, ..coin() },
+            "mass = 0.008: expected kilograms, 0.01 kg/m^3",
+        ),
+        (Tube { outer_diameter: 24.0, length: 2.0, mass: 1.0, ..coin() }, "mass = 1.0"),
+        (Tube { mass: f64::NAN, ..coin() }, "mass = NaN"),
         (Tube { inner_diameter: 25e-3, ..coin() }, "inner_diameter = 0.025"),
         (Tube { length: f64::NAN, ..coin() }, "length = NaN"),
         (Tube { outer_diameter: 1e-300, ..coin() }, "ell = 2e297"),

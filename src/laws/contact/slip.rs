@@ -50,7 +50,8 @@ pub enum Friction {
     },
     /// A viscous film: the force is c N u against the slip, and the contact point never sticks.
     Viscous {
-        /// Force per normal force and slip velocity, in 1/sqrt(g R), 0 or more and finite.
+        /// Force per normal force and slip velocity, in 1/sqrt(g R), 0 or more and finite; of a number in s/m it is
+        /// [`Scale::metres_per_second`](crate::Scale::metres_per_second).
         c: f64,
     },
 }
