@@ -49,7 +49,7 @@ LOSSES = {
 }
 
 
-def rolled(body, start, seconds=1.0, points=21, scale=None, **how):
+def rolled(body, start, seconds=0.6, points=13, scale=None, **how):
     """A scene of a body in natural units, or of a measured one, in seconds."""
     unit = 1.0 if body.scale is not None else (scale or sc.Scale(1.0)).seconds(1.0)
     return sc.scene(sc.roll(body, start, np.linspace(0, seconds / unit, points), **how), scale=scale)
@@ -65,9 +65,9 @@ PRESSED = {x: sc.pressed(PIPE, x, np.radians(60), finger=0.3) for x in (5.0, 12.
 THROWN = slid(COIN, sc.State(1.2, 0.4, 0.1, -1.0), 0.5, 2.0)
 ROLLING = {
     "cylinder": lambda: rolled(CYLINDER, nutating_cylinder.start),
-    "tube": lambda: rolled(TUBE, TUBE.steady(1.4).kicked(0.02), 0.06),
+    "tube": lambda: rolled(TUBE, TUBE.steady(1.4).kicked(0.02), 0.04),
     "Euler's disk": lambda: rolled(
-        EULER, EULER.steady(0.3).kicked(0.1), 0.3, scale=sc.Scale(0.03755, mass=0.44)
+        EULER, EULER.steady(0.3).kicked(0.1), 0.2, scale=sc.Scale(0.03755, mass=0.44)
     ),
     "rolling coin": lambda: rolled(EULER, EULER.circular(1.2, 0.3)),
     "NumPy's numbers": lambda: rolled(
@@ -90,7 +90,7 @@ ROLLING = {
     "glass": lambda: rolled(GLASS, GLASS.steady(0.6).kicked(0.05), 0.2),
     "spool": lambda: rolled(SPOOL, SPOOL.steady(1.2).kicked(0.05), 0.2),
     "top": lambda: rolled(TOP, sc.State(0.2, 0.02, 0.0, 0.8), 0.1),
-    "rattleback": lambda: rolled(RATTLE, RATTLE.spinning(hertz=-1.0, pitch=0.02), 0.3),
+    "rattleback": lambda: rolled(RATTLE, RATTLE.spinning(hertz=-1.0, pitch=0.02), 0.15),
 }
 ON_ICE = {
     "round on ice": lambda: rolled(ROUNDED, ROUNDED.steady(1.3).kicked(0.05), **SMOOTH),
@@ -141,15 +141,15 @@ LOST |= {
     "ice and losses": lambda: rolled(COIN, COIN.steady(0.4), losses=sc.loss.AirFilm(1e-3), **SMOOTH),
 }
 ALOFT = {
-    "hops": lambda: rolled(PIPE, PRESSED[12.0], 2.0, 201, contact=sc.Coulomb(0.3), restitution=0.5),
+    "hops": lambda: rolled(PIPE, PRESSED[12.0], 2.0, 81, contact=sc.Coulomb(0.3), restitution=0.5),
     "hops in air": lambda: rolled(
-        PIPE, PRESSED[12.0], 2.0, 201, contact=sc.Coulomb(0.3), restitution=0.5, losses=LOSSES["linear air"]
+        PIPE, PRESSED[12.0], 2.0, 81, contact=sc.Coulomb(0.3), restitution=0.5, losses=LOSSES["linear air"]
     ),
     "dropped coin": lambda: rolled(
         COIN,
         sc.dropped(COIN, 2.0, 1.2, w1=1.0, w2=-0.4, w3=0.5, velocity=(0.3, 0.2, 0.1)),
         0.3,
-        201,
+        81,
         scale=EURO,
         contact=sc.Coulomb(0.3),
         restitution=0.3,

@@ -199,7 +199,7 @@ def test_a_couple_for_an_engine_is_that_of_the_formula_and_of_the_unit(name):
     scene, law = scene_of(name), LOSSES[name]
     data, known = read(scene)
     engine, told = Engine(data), data["table"]["losses"][0]
-    for i in (0, 7, 20):
+    for i in (0, 5, 12):
         pose = poses(known)[i]
         turn = Rotation.from_quat(pose.q).as_matrix()
         for normal in (0.05, 1.3):
