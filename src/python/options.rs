@@ -84,7 +84,7 @@ pub fn motion_options() -> [&'static str; MotionAsked::NAMES.len()] {
 impl MotionAsked {
     pub fn ask(&self) -> PyResult<Ask> {
         if self.is_custom() {
-            let told = "a user-defined law works only for a single body of revolution: sc.roll(body, ...)";
+            let told = "a law of your own works only for a single body of revolution: sc.roll(body, ...)";
             return Err(PyTypeError::new_err(told));
         }
         self.ask_without_custom()
