@@ -259,7 +259,7 @@ impl<T: Real> Couples<T> {
     /// Whether some law acts about the axis of the rocking.
     #[inline(always)]
     pub fn tilts(&self) -> bool {
-        self.given.is_some()
+        (T::IS_PLAIN && self.given.is_some())
             || self.has_any(
                 #[inline(always)]
                 |law| law.tilts(),

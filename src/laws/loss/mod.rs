@@ -120,7 +120,7 @@ macro_rules! laws {
             pub fn at(&self, seen: &Kinematics<T>) -> Couple<T> {
                 let zero = seen.spin.splat(0.0);
                 let (mut free, mut pressed) = ([zero; 3], [zero; 3]);
-                if let Some(given) = &self.given {
+                if T::IS_PLAIN && let Some(given) = &self.given {
                     (free, pressed) = (given.free.map(|x| zero.splat(x)), given.pressed.map(|x| zero.splat(x)));
                 }
                 $(if self.present[$code] {
@@ -142,7 +142,7 @@ macro_rules! laws {
                     let unit = if $file::$Law::PRESSES { unit * normal } else { unit };
                     power = self.coefficients[$code].mac(unit, power);
                 })+
-                if let Some(given) = &self.given {
+                if T::IS_PLAIN && let Some(given) = &self.given {
                     for (i, w) in seen.w.into_iter().enumerate() {
                         let [free, pressed] = [given.free[i], given.pressed[i]].map(|x| normal.splat(x));
                         power = power - normal.mac(pressed, free) * w;
