@@ -27,6 +27,6 @@ def test_a_coin_rolls_round_a_circle_of_the_radius_or_with_the_spin_that_is_aske
     for wrong in ({}, {"radius": 1.0, "w3": 1.0}, {"precession": 1.0, "radius": 2.0}):
         with pytest.raises(TypeError, match="precession, radius, w3: give one of them"):
             coin.circular(1.4, **wrong)
-    with pytest.raises(ValueError, match="radius = -0.1: no such circle is steady"):
+    with pytest.raises(ValueError, match="radius = -0.1: no steady state at theta"):
         sc.Body.solid(5.0).circular(1.0, radius=-0.1)
     assert np.isnan(sc.Body.solid(5.0).circular(np.array([1.0]), radius=-0.1).w1).all()

@@ -125,7 +125,7 @@ def test_threads_and_progress_are_those_of_any_sweep(family):
         ({"tol": "fine"}, TypeError, "tol: "),
         ({"mu": [1.0, 2.0]}, TypeError, "mu: expected a number"),
         ({"t": np.inf}, ValueError, "t = inf: expected"),
-        ({"want": "colour"}, ValueError, "want: no such quantity 'colour'"),
+        ({"want": "colour"}, ValueError, "want = 'colour': expected some of"),
         ({"contact": "sticky"}, ValueError, "contact = 'sticky': expected"),
         ({"threads": 0}, ValueError, "threads = 0: expected"),
         ({"progress": 1}, TypeError, "progress: expected"),

@@ -375,7 +375,7 @@ def test_a_long_film_is_cut_and_says_so_and_how_much_of_it_is_done(tmp_path):
     ):
         with pytest.raises(ValueError, match=said):
             view.save(tmp_path / "film.gif", **how)
-    with pytest.raises(TypeError, match="^progress: expected something to call"):
+    with pytest.raises(TypeError, match="^progress: expected a function"):
         view.save(tmp_path / "film.gif", progress=3, seconds=1)
 
 

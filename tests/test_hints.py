@@ -16,16 +16,16 @@ STATE = BODY.steady(1.3)
 @pytest.mark.parametrize(
     ("call", "told"),
     [
-        (lambda: sc.roll(BODY, STATE, 1.0, slope=0.1), "'slope': the table is flat and level"),
-        (lambda: sc.roll(BODY, STATE, 1.0, incline=0.1), "'incline': the table is flat and level"),
+        (lambda: sc.roll(BODY, STATE, 1.0, slope=0.1), "'slope': only a flat and level table"),
+        (lambda: sc.roll(BODY, STATE, 1.0, incline=0.1), "'incline': only a flat and level table"),
         (lambda: sc.roll(BODY, STATE, 1.0, height=0.1), "'height': .*sc.dropped\\(body, height, theta\\)"),
         (lambda: BODY.roll(STATE, 1.0, tols=0.1), "^roll\\(\\) .*'tols': did you mean tol\\?"),
-        (lambda: sc.roll(BODY, STATE, 1.0, mass=0.1), "'mass': there are body, state, t, t0, step"),
+        (lambda: sc.roll(BODY, STATE, 1.0, mass=0.1), "'mass': expected body, state, t, t0, step"),
         (lambda: sc.measured(outer_diameter=0.1, height=0.1), "^measured\\(\\) .*'height': .*length="),
         (lambda: sc.measured(outer_diameter=0.1, lenght=0.1), "'lenght': did you mean length\\?"),
         (
             lambda: sc.thrown(BODY, 1.0, 2.0, slope=0.1),
-            "^thrown\\(\\) .*'slope': the table is flat and level",
+            "^thrown\\(\\) .*'slope': only a flat and level table",
         ),
         (lambda: sc.plot.branches([2.5], slope=0.1), "^branches\\(\\) .*'slope'"),
     ],

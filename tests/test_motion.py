@@ -90,7 +90,7 @@ def test_a_motion_has_the_shape_of_scipys():
 
 def test_what_is_not_asked_for_is_not_there_and_says_how_to_get_it():
     m = sc.roll(CYLINDER, START, T)
-    with pytest.raises(AttributeError, match=r'phi was not asked for: roll\(..., want="pose"\)'):
+    with pytest.raises(AttributeError, match=r'phi: not computed; give want="pose" to roll'):
         _ = m.phi
     with pytest.raises(AttributeError, match='want="force"'):
         _ = m.normal
@@ -138,7 +138,7 @@ def test_time_may_fall_or_be_a_number_or_start_elsewhere():
     assert np.allclose(later.y, sc.roll(CYLINDER, START, [2.0, 3.0], t0=0.0).y, atol=1e-13)
     assert np.array_equal(sc.roll(CYLINDER, START, [0.0]).y[:, 0], start)
     assert np.array_equal(sc.roll(CYLINDER, START, [5.0], t0=5.0).y[:, 0], start)
-    with pytest.raises(ValueError, match="^t: the only time of an array would be that of the start"):
+    with pytest.raises(ValueError, match=r"^t = .*: an array of one time needs t0="):
         sc.roll(CYLINDER, START, [5.0])
 
 

@@ -259,9 +259,9 @@ def test_stones_on_patches_of_all_sizes_keep_energy_and_heat_from_any_start():
 
 def test_an_arm_of_rolling_resistance_beyond_the_patch_is_warned_of():
     losses = sc.loss.RollingResistance(0.05)
-    with pytest.warns(UserWarning, match="beside the patch"):
+    with pytest.warns(UserWarning, match="outside the patch"):
         sc.roll(TOP, spun(3.0), 1.0, contact=PATCH, losses=losses)
-    with pytest.warns(UserWarning, match="beside the patch"):
+    with pytest.warns(UserWarning, match="outside the patch"):
         sc.sweep.roll(TOP, spun(np.array([3.0, 4.0])), 1.0, contact=PATCH, losses=losses)
     sc.roll(TOP, spun(3.0), 1.0, contact=PATCH, losses=sc.loss.RollingResistance(0.01))
     with pytest.raises(AttributeError, match='want="force"'):
@@ -279,7 +279,7 @@ def test_the_heat_of_an_egg_is_the_work_of_its_friction_and_of_its_couple(radius
     assert (m.couple * m.drilling < 0).all() and m.creep.min() < 1 < m.creep.max()
     power = scipy.interpolate.CubicSpline(m.t, m.friction * slip - m.couple * m.drilling)
     np.testing.assert_allclose(power.integrate(0.0, 20.0), m.dissipated[-1], rtol=1e-6)
-    with pytest.raises(AttributeError, match="creep is not there: the contact is 'rolling'"):
+    with pytest.raises(AttributeError, match="creep: needs a patch of contact, not contact = 'rolling'"):
         _ = sc.roll(EGG, EGG.spinning(5.5), 1.0).creep
 
 

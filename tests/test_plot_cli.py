@@ -208,7 +208,7 @@ def test_the_command_runs_and_teaches(tmp_path, capsys):
     status, told, _ = run("--version")
     assert status == 0 and told.startswith("spincyl ")
     status, _, told = run("steady", "--ell", "2.5", "--theta", "steep")
-    assert status == 2 and "argument --theta: 'steep' is no number" in told
+    assert status == 2 and "argument --theta: 'steep': expected a number" in told
     picture = tmp_path / "portrait.png"
     assert run("portrait", "-o", str(picture), "--points", "200")[0] == 0
     assert picture.stat().st_size > 20_000

@@ -63,8 +63,8 @@ def test_a_measured_stone_takes_grams_and_millimetres():
     [
         (3, TypeError, "list of"),
         ([3], TypeError, r"weights\[0\]: expected \(mass"),
-        ([(1, 2)], TypeError, "three coordinates"),
-        ([(1, (1, 2))], TypeError, "three coordinates"),
+        ([(1, 2)], TypeError, "a position"),
+        ([(1, (1, 2))], TypeError, "a position"),
         ([(-1, (0, 0, 0))], ValueError, "positive"),
         ([(np.nan, (0, 0, 0))], ValueError, "mass"),
         ([(1, (0, 0, np.inf))], ValueError, "finite"),
@@ -83,5 +83,5 @@ def test_a_weight_outside_a_family_and_an_unknown_mass_are_told():
         PEBBLE.with_weights([(0.1, (0.0, 0.0, 0.4))])
     with pytest.raises(ValueError, match="single stone"):
         sc.Ellipsoid.uniform([(1.0, 0.4, 0.3)] * 2).with_weights([])
-    with pytest.raises(ValueError, match="not known"):
+    with pytest.raises(ValueError, match="unknown"):
         PEBBLE.in_metres().with_weights([])

@@ -105,7 +105,7 @@ def test_a6_what_is_masked_is_nan_on_an_axis_and_no_time():
 
 
 def test_mistakes_are_named():
-    with pytest.raises(ValueError, match=r"want: no such quantity 'speed'"):
+    with pytest.raises(ValueError, match=r"want = 'speed': expected some of"):
         sc.sweep.portrait(THETA, ELL, want=["speed"])
     with pytest.raises(ValueError, match="theta: expected a number or one dimension"):
         sc.sweep.portrait(np.ones((2, 2)), ELL)

@@ -1,8 +1,8 @@
 """Rigid bodies that spin and roll on their rim.
 
-Steady states of cylinders, tubes and disks, their stability, their motion, and dense maps. Natural units:
-rim radius R, mass M and gravity g are 1, so lengths are in R, times in sqrt(R/g); `Scale` turns
-them into metres and seconds, and the motions of a body that is `measured` are in SI. Angles are in radians.
+Steady states of cylinders, tubes and disks, their stability, their motion, and dense maps. In natural units
+the rim radius R, the mass M and gravity g are 1: lengths are in R, times in sqrt(R/g). `Scale` converts them
+to metres and seconds, and the motions of `measured` bodies are in SI. Angles are in radians.
 """
 
 # The layers from below, one a line. A module imports from its own layer and from those before it, wherever an

@@ -23,7 +23,7 @@ _DOUBLE = np.dtype(np.float64)
 
 
 class Asked(NamedTuple):
-    """The arguments of `roll`: of one motion, or of many, whose coefficients may be arrays."""
+    """The arguments of `roll`, for one motion, or for many, whose coefficients may be arrays."""
 
     times: Floats
     t0: float = 0.0
@@ -45,7 +45,7 @@ def crossing(
 ) -> dict[str, Any]:
     """The options of one motion or of many as keyword arguments of the core.
 
-    Defaults are left out: passing them would take longer than a short motion may.
+    Defaults are left out, since passing them can take longer than a short motion.
     """
     _, t0, step, tol, _, contact, mu, beyond, want, restitution, losses, stop_at, spread = asked
     options: dict[str, Any] = {"t0": t0} if t0 else {}
@@ -76,7 +76,7 @@ def crossing(
 
 
 def times_of(t: Reals) -> Floats:
-    """Times as an array of one dimension, not empty."""
+    """Times as a one-dimensional array that is not empty."""
     if type(t) is float:
         return np.array([t])
     if type(t) is np.ndarray and t.dtype is _DOUBLE and t.ndim == 1 and t.size:
@@ -128,9 +128,7 @@ def ask(
     else:
         first = times.item(0)
         if times.size == 1 and first != 0 and math.isfinite(first):
-            raise ValueError(
-                "t: the only time of an array would be that of the start; give it as a number, or t0=0"
-            )
+            raise ValueError(f"t = [{first!r}]: an array of one time needs t0=, or give the time as a number")
         t0 = first if math.isfinite(first) else 0.0
     beyond = beyond if beyond is False else flag("beyond", beyond)
     word = isinstance(contact, str)

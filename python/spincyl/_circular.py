@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def circular(body: "Body", theta: Reals, precession: Reals, radius: Reals, w3: Reals) -> State:
-    """The state with one of three numbers."""
+    """The state with the given one of precession, radius and w3."""
     given = {"precession": precession, "radius": radius, "w3": w3}
     chosen = [name for name, x in given.items() if x is not None]
     if len(chosen) != 1:
@@ -33,7 +33,7 @@ def circular(body: "Body", theta: Reals, precession: Reals, radius: Reals, w3: R
         if np.isnan(asked):
             raise ValueError(f"{name} = nan: expected a number")
         if np.isnan(number):
-            raise ValueError(f"{name} = {given[name]!r}: no such circle is steady at theta = {theta!r}")
+            raise ValueError(f"{name} = {given[name]!r}: no steady state at theta = {theta!r} has it")
         return State(*_core.circular_state(float(theta), float(number), numbers))
     w1, w3 = (f(theta, number, *numbers) for f in (_core.circular_w1, _core.circular_w3))
     return State(theta, w1, w1 * 0.0, w3)

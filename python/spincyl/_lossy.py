@@ -11,23 +11,21 @@ from spincyl._input.reprs import is_lazy
 from spincyl._loss import Loss, made_law
 
 _WHY = {
-    "step": "the motion has steps of its own, tol= is their error",
-    "method": "there are no first integrals, the motion is found by steps, tol= is their error",
+    "step": "give tol=, the tolerance of the steps of eighth order",
+    "method": "without first integrals the motion is integrated with steps of eighth order; give tol=",
 }
 
 
 def check(losses: object, times: Floats, t0: float, settings: dict[str, Any]) -> None:
-    """Refuse arguments that exclude losses; `settings` are those that were given, by name."""
+    """Raise ValueError for arguments that exclude losses; `settings` are the settings given, by name."""
     if made_law(losses)._function is None and not is_scalar(*losses._coefficients):  # type: ignore[attr-defined]
-        raise ValueError(
-            f"losses = {losses!r}: expected single numbers, not arrays of them; sc.drift takes these"
-        )
+        raise ValueError(f"losses = {losses!r}: expected single numbers, not arrays; sc.drift takes arrays")
     for name in filter(settings.__contains__, _WHY):
         raise ValueError(f"{name} = {settings[name]!r} does not go with losses={losses!r}: {_WHY[name]}")
     if np.any(times < t0):
         raise ValueError(
-            f"t = {float(times[times < t0][0])!r}: expected times from the start on, t0 = {t0!r};"
-            " what is lost does not come back"
+            f"t = {float(times[times < t0][0])!r}: expected at least t0 = {t0!r};"
+            " a motion with losses cannot go backward in time"
         )
 
 
@@ -36,7 +34,7 @@ def of_stone(losses: object, body: Any) -> Loss:
     found = made_law(losses, body)
     for law in found.laws:
         if law._parameter not in _core.stone_losses():
-            why = "acts along the rim of a body; on stones act air, rolling resistance and drilling"
+            why = "acts along a rim, which a stone lacks; take air, rolling resistance or drilling"
             raise ValueError(f"losses = {law!r}: {why}")
     return found
 
@@ -51,6 +49,6 @@ def narrow(losses: Loss, contact: AnyContact) -> None:
         return
     if arms and np.any((np.asarray(arms[0]) > patch) & (np.asarray(patch) > 0)):
         warn(
-            f"the arm of rolling resistance, {arms[0]!r}, is larger than the patch, {patch!r}: its force"
-            " would act beside the patch"
+            f"losses: the arm of rolling resistance, {arms[0]!r}, exceeds the radius of the patch, {patch!r};"
+            " the normal force would act outside the patch"
         )

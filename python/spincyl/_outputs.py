@@ -1,4 +1,4 @@
-"""Outputs of a motion as properties, which say how to get one that was not asked for."""
+"""Outputs of a motion as properties; the error for a missing output says how to compute it."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -11,13 +11,13 @@ if TYPE_CHECKING:
     from spincyl._motion import Motion
 
 # messages about missing outputs: how to get them, by output and contact
-_LACKS = "{{}} was not asked for: roll(..., want={}), or m.wanting of the same"
+_LACKS = "{{}}: not computed; give want={0} to roll, or take m.wanting({0})"
 POSE, FORCE, BOTH = (_LACKS.format(want) for want in ('"pose"', '"force"', '("pose", "force")'))
-FRICTION = "{} is not there: the contact is {!r}; roll(..., contact=sc.Coulomb(mu)) has it"
-ALOFT = "{} is not there: the motion ends where it leaves the table; roll(..., restitution=0.0) goes on"
-LOSSES = "{} is not there: nothing is lost; roll(..., losses=sc.loss.DryContour(eps)) has it"
-PATCH = "{} is not there: the contact is {!r}; roll(..., contact=sc.Coulomb(mu, patch=eps)) has it"
-COUPLE = PATCH.replace("eps))", 'eps), want="force")')
+FRICTION = "{}: needs a law of friction, not contact = {!r}; give contact=sc.Coulomb(mu) to roll"
+ALOFT = "{}: needs restitution=; this motion ends where it leaves the table. Give restitution=0.0 to roll"
+LOSSES = "{}: needs losses=; give losses=sc.loss.DryContour(eps) to roll"
+PATCH = "{}: needs a patch of contact, not contact = {!r}; give contact=sc.Coulomb(mu, patch=eps) to roll"
+COUPLE = PATCH.replace(" to roll", ' and want="force" to roll')
 
 
 class Number(property):
@@ -36,7 +36,7 @@ class Number(property):
 
 
 def output(m: "Motion", name: str, lacking: str) -> Floats:
-    """Return an output of a motion in its units, or raise AttributeError that says how to get it."""
+    """Return an output of a motion in its units, or raise AttributeError that says how to compute it."""
     if name not in m._extra:
         raise AttributeError(lacking.format(name, named(m.contact)))
     return m._told(name, m._extra[name])

@@ -1,4 +1,4 @@
-"""The spin from which an egg that lies rises."""
+"""The least spin at which an egg on its side rises."""
 
 import numpy as np
 
@@ -9,43 +9,44 @@ from spincyl._input.numbers import Result, number
 
 
 def rising_spin(egg: Ellipsoid, contact: Coulomb | Viscous | None = None, *, lean: float = 0.1) -> Result:
-    """Least spin with which an egg that lies rises to an end: an estimate without a table, else a search.
+    """Least spin at which an egg on its side rises to an end: by an estimate, or by a search with a contact.
 
     Parameters
     ----------
     egg : Ellipsoid
-        One spheroid with a long third semi-axis and a mass that is symmetric about it, as `Ellipsoid.egg`
-        makes it.
+        Single spheroid with a long third semi-axis and a mass that is symmetric about it, as from
+        `Ellipsoid.egg`.
     contact : Coulomb or Viscous, optional
-        The table, with single numbers. Default: the estimate, which holds for no table exactly.
+        Law of friction, with single numbers. Default: the estimate, which is exact for no law of friction.
     lean : float, optional
-        How far its axis is raised from where it lies, in radians; from 1e-6 to 1. Only with a table.
+        Initial angle between the axis and its position at rest on the side, in radians, from 1e-6 to 1.
+        Used only with a contact.
 
     Returns
     -------
     float
-        The spin about the vertical at the start, in sqrt(g/a), with the centre at rest. inf for an egg that
-        no spin makes stable on an end, and on a table where ten times the estimate does not raise it. Error:
-        a few roundings without a table, else 1e-3 of the spin. Never less than half of the estimate.
+        Initial spin about the vertical, in sqrt(g/a), with the centre at rest. inf if no spin makes the egg
+        stable on an end, or if ten times the estimate does not raise it with this contact. Error: a few
+        roundings for the estimate, else 1e-3 of the spin. Never less than half of the estimate.
 
     Raises
     ------
     ValueError
-        For a stone that is no egg, or that stands on an end without any spin, naming the number; for a
-        family; if a number of the table is an array.
+        If the stone is not an egg or stands on an end without spin (the message names the number), if it is a
+        family, or if a number of the contact is an array.
     TypeError
-        If an argument is of another kind.
+        If an argument has another type.
 
     Notes
     -----
-    A force at a point does not change Jellett's number J. Of an egg that lies it is the spin about the
-    vertical times the moment of inertia about it times the height of the centre of mass (H. K. Moffatt and
-    Y. Shimomura, Nature 416, 385 (2002)). On an end at the distance h from the centre of mass, with the
-    radius of curvature rho, the least energy with this J has a minimum for
+    A force at the contact point does not change Jellett's number J. For an egg on its side, J is the spin
+    about the vertical times the moment of inertia about the vertical times the height of the centre of mass
+    (H. K. Moffatt and Y. Shimomura, Nature 416, 385 (2002)). On an end at the distance h from the centre of
+    mass, with the radius of curvature rho, the least energy with this J has a minimum for
 
         J^2 > I3^2 h^4 (h - rho)/(rho (I3 h - I1 rho)).
 
-    The search follows motions; each has risen if its axis comes within 0.2 rad of the vertical.
+    The search computes motions. An egg has risen if its axis comes within 0.2 rad of the vertical.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""The size of a body, of whatever kind: tube, ball, stone, or put together."""
+"""The size of a body of any kind: tube, ball, stone, or assembled."""
 
 import math
 from collections.abc import Callable
@@ -11,48 +11,49 @@ from spincyl._scale import Scale
 
 
 class Sized:
-    """Base of bodies that may know their size: `scale` is None, or that of a measured body."""
+    """Base of bodies that may be measured: `scale` is None if the size is unknown."""
 
     scale: Scale | None
     #: The unit of length in metres, as far as it is known; an error names `radius`.
     _radius: Callable[[], float]
-    #: What the body is, how long and how wide, and its volume, 0 if it is not known; in natural units.
+    #: Kind, length and width, and volume (0 if unknown) of the body, in natural units.
     _bulk: Callable[[], tuple[str, tuple[float, float], float]]
     _with_scale: Callable[[Scale | None], Self]
 
     def in_metres(
         self, mass: float | None = None, *, radius: float | None = None, gravity: float | None = None
     ) -> Self:
-        """The same body, measured: its motions are asked for in seconds and told in SI.
+        """Make a measured body of this body: its motions take seconds and are in SI.
 
         Parameters
         ----------
         mass : float, optional
-            In kilograms, or a text such as "20g". Default: its own if it is measured, else it is not known,
-            and what depends on it is refused.
+            Mass in kilograms, or a text such as "20g". Default: the mass of a measured body, else unknown;
+            results that depend on an unknown mass raise an error.
         radius : float, optional
-            The unit of length of its numbers in metres, or a text: the outer radius R of its rim, of an
-            `Ellipsoid` the largest semi-axis. Default: its own if it is measured, else that of the lengths
-            which `Body.from_metres` or the `Ellipsoid` was given, as metres.
+            Outer radius R of the rim, or largest semi-axis of an `Ellipsoid`, in metres, or a text. Default:
+            the radius of a measured body, else that of the lengths given to `Body.from_metres` or
+            `Ellipsoid`, taken as metres.
         gravity : float, optional
-            In m/s^2. Default: its own, or 9.80665.
+            Acceleration of gravity, in m/s^2. Default: that of a measured body, else 9.80665.
 
         Returns
         -------
         Body or Ellipsoid
-            With its `scale`. States, and what is asked of the body itself, stay in natural units, but for
-            what has a unit in its name.
+            The body with a `scale`. States and methods of the body stay in natural units, unless the name has
+            a unit.
 
         Raises
         ------
         TypeError, ValueError
-            Naming the argument; of a body that has no size yet, `radius`.
+            If an argument is invalid, or if `radius` is missing for a body without a size; the message names
+            the argument.
 
         Warns
         -----
         UserWarning
-            If it is larger than 5 m, smaller than 0.1 mm or, where the volume is known, lighter than foam or
-            heavier than osmium, as if millimetres or grams were taken for metres or kilograms.
+            If the body is larger than 5 m, smaller than 0.1 mm or, where the volume is known, lighter than
+            foam or heavier than osmium, as if millimetres or grams had been taken for metres or kilograms.
 
         Examples
         --------
@@ -68,7 +69,7 @@ class Sized:
         if mass is not None:
             weight = number("mass", si("mass", mass, "kilogram"))
             if math.isnan(weight):
-                raise ValueError("mass = nan: expected kilograms, or no mass= if it is not known")
+                raise ValueError("mass = nan: expected kilograms, or no mass= if the mass is unknown")
         scale = Scale(size, weight, own.gravity if gravity is None else gravity)
         why = self._doubt_of(scale)
         if why:
@@ -77,7 +78,7 @@ class Sized:
 
     @property
     def natural(self) -> Self:
-        """The same body in natural units: without its scale."""
+        """The same body without its scale, in natural units."""
         return self if self.scale is None else self._natural
 
     @cached_property
@@ -85,14 +86,14 @@ class Sized:
         return self._with_scale(None)
 
     def _sized(self, what: str) -> Scale:
-        """The scale of the body, or AttributeError that says how to give the body one."""
+        """The scale of the body; AttributeError says how to give the body one."""
         if self.scale is None:
-            how = "sc.measured(...) makes a tube that does, body.in_metres(radius=...) any"
-            raise AttributeError(f"{what}: the body does not know its size; {how}")
+            how = "as sc.measured(...) makes for a tube, body.in_metres(radius=...) for any other"
+            raise AttributeError(f"{what}: needs a measured body, {how}")
         return self.scale
 
     def _doubt_of(self, scale: Scale) -> str:
-        """A reason to suspect millimetres or grams in a size; empty if there is none."""
+        """Why millimetres or grams are suspected in a size; empty if they are not."""
         what, (length, width), volume = self._bulk()
         r = scale.radius
         return dubious(what, (length * r, width * r), volume * r**3, scale.mass)

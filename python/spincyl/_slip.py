@@ -1,4 +1,4 @@
-"""Slip of the lowest point over the table, and the velocity of the centre that goes with it."""
+"""Slip of the contact point over the table, and the corresponding velocity of the centre."""
 
 from typing import TYPE_CHECKING
 
@@ -25,7 +25,7 @@ def slip_of(body: "Laws", state: State, along: Reals, across: Reals) -> tuple[Re
 
 
 def velocity_of(body: "Laws", state: State) -> tuple[Result, Result]:
-    """The velocity of the centre, along the lean and across it."""
+    """The horizontal velocity of the centre, along e_h and e2."""
     given = *numbers(state), *state._slip, *_rim(body)
     return _core.centre_along(*given), _core.centre_across(*given)
 
@@ -37,10 +37,7 @@ def lever(stone: "Ellipsoid", vertical: Floats) -> Floats:
 
 
 def slip_of_stone(stone: "Ellipsoid", vertical: Floats, w: Floats, x: Reals, y: Reals) -> Floats:
-    """The slip for a given velocity of the centre, along the laboratory's x and y; (..., 2).
-
-    The stone is turned from upright by the smallest angle; upside down, by half a turn about axis 1.
-    """
+    """The slip for a given velocity of the centre along x and y of `EllipsoidState.slip`; (..., 2)."""
     at_rest = _core.stone_slip(*several(2, *stone._columns(), *components(vertical), *components(w)))
     slip: Floats = at_rest + np.stack(np.broadcast_arrays(x, y, at_rest[..., 0])[:2], axis=-1)
     return slip

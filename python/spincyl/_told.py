@@ -31,14 +31,14 @@ def message(m: "Motion") -> str:
 
 
 def _digits(time: float, error: float) -> int:
-    """How many digits of a time an error leaves, and one more; at most twelve, at least two."""
+    """Number of digits of a time that are within its error, and one more; from 2 to 12."""
     if not 0 < error < np.inf or time == 0:
         return 12
     return int(np.clip(2 + np.floor(np.log10(abs(time) / error)), 2, 12))
 
 
 def shortened(m: "Motion") -> "Motion":
-    """The same motion; if it ended early, its arrays say so to whom plots them against all times."""
+    """The same motion; if it ended early, plotting its arrays against all times gives the reason."""
     if m.event and m.t.size < m._asked.times.size:
         why = f"the body {ends(m)} at t = {m.event.time:.6g}{_second(m)}: plot against m.t, up to there"
         m.__dict__.update({name: short(getattr(m, name), why) for name in ("t", "theta", "w")})
@@ -72,5 +72,5 @@ def _how(m: "Motion") -> str:
     }[m.method]
     free = m._asked.step is None and m._asked.tol is None
     if free and m.method != "exact":
-        how += ", because the first integrals lose all their digits here"
+        how += ", since the first integrals lose all their digits here"
     return how

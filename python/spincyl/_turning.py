@@ -1,4 +1,4 @@
-"""The spin from which a tippe top turns over."""
+"""The least spin at which a tippe top turns over."""
 
 import numpy as np
 
@@ -11,45 +11,48 @@ from spincyl._throw import six
 
 @elementwise
 def turning_spin(top: Body, contact: Coulomb | Viscous | None = None, *, lean: float = 0.1) -> Result:
-    """Least spin with which a tippe top turns over: an estimate without a table, else a search.
+    """Least spin at which a tippe top turns over: by an estimate, or by a search with a contact.
 
     Parameters
     ----------
     top : Body
-        A ball with its centre of mass below its middle, `Body.ball(offset, ...)` with offset < 0. One, or
-        a family if no table is given.
+        Ball with its centre of mass below its centre, `Body.ball(offset, ...)` with offset < 0. A single
+        body, or without a contact a family.
     contact : Coulomb or Viscous, optional
-        The table, with single numbers. Default: the estimate, which holds for no table exactly.
+        Law of friction, with single numbers. Default: the estimate, which is exact for no law of friction.
     lean : float, optional
-        Inclination of the axis at the start, in radians; from 1e-6 to 1. Only with a table.
+        Initial inclination, in radians, from 1e-6 to 1. Used only with a contact.
 
     Returns
     -------
     float or array
-        The spin w3 about the axis at the start, in sqrt(g/R), with the centre at rest. inf for a top that
-        no spin makes stable upside down, and on a table where ten times the estimate does not turn it over,
-        as at a point of a table that is not very slippery. Error: a few roundings without a table, else 1e-3
-        of the spin. On rough tables the border is ragged (a little more spin may fail where less does not),
-        and the result is one point of it. Never less than half of the estimate.
+        Initial w3, in sqrt(g/R), with the centre at rest. inf if no spin makes the top stable upside down, or
+        if ten times the estimate does not turn it over with this contact, as with a contact point unless the
+        table is very slippery. Error: a few roundings for the estimate, else 1e-3 of the spin. With large
+        friction the boundary is ragged (a larger spin may fail where a smaller one does not), and the result
+        is one point of it. Never less than half of the estimate.
 
     Raises
     ------
     ValueError
-        If a single body is no top, naming the number; if a number of the table is an array.
+        If a single body is not a tippe top (the message names the number), or a number of the contact is an
+        array.
     TypeError
-        If an argument holds no real numbers.
+        If an argument has another type.
 
     Notes
     -----
-    A force at a point does not change Jellett's number J = I1 w1 sin(theta) + I3 w3 (ell + cos(theta)). A
-    top can turn over if upside down, with the same J, it spins fast enough to be stable there (J. H. Jellett
-    1872; S. Ebenfeld and F. Scheck, Ann. Phys. 243, 195 (1995)). With l = -ell:
+    A force at the contact point does not change Jellett's number
+    J = I1 w1 sin(theta) + I3 w3 (ell + cos(theta)). A top can turn over if with the same J it spins fast
+    enough to be stable upside down (J. H. Jellett 1872; S. Ebenfeld and F. Scheck, Ann. Phys. 243, 195
+    (1995)). With l = -ell:
 
         w3 = (1 + l)^2/(1 - l) sqrt(l/(I3 (1 + l) - I1))
 
-    On a patch the couple of drilling takes some of J, as much on the smallest patch, for there the rise is as
-    slow as that loss: a top needs 1.25 times the estimate at mu = 0.1, 1.7 times at 0.3, 2.1 times at 0.6.
-    The search follows motions; each has turned over if its axis comes within 0.14 rad of the vertical.
+    On a patch the couple of drilling reduces J. The reduction is the same on the smallest patch, since there
+    the rise is as slow as the loss. A top needs 1.25 times the estimate at mu = 0.1, 1.7 times at 0.3, 2.1
+    times at 0.6. The search computes motions. A top has turned over if its axis comes within 0.14 rad of the
+    vertical.
 
     Examples
     --------
@@ -70,6 +73,6 @@ def turning_spin(top: Body, contact: Coulomb | Viscous | None = None, *, lean: f
     if not isinstance(contact, Coulomb | Viscous):
         raise TypeError(f"contact: expected Coulomb or Viscous, not {contact!r}")
     if not is_scalar(*top._numbers):
-        raise ValueError("top: expected one body where a table is given, not a family")
+        raise ValueError("top: expected a single body with contact=, not a family")
     fitting(contact, top.scale)
     return np.float64(_core.turning_spin(*table(contact, 0.0), float(number("lean", lean)), six(top)))

@@ -1,4 +1,4 @@
-"""Methods that a layer above their class carries out: `m.plot()`, `m.sound(path)`, cards in a notebook.
+"""Methods whose function is in a layer above their class: `m.plot()`, `m.sound(path)`, cards in a notebook.
 
 The method, with its arguments and docstring, belongs to the class; the function behind it stands in a layer
 that imports the class. Since no module imports from a layer above its own, `spincyl/__init__.py` lists them.

@@ -15,10 +15,10 @@ _Stone = TypeVar("_Stone", bound=Any)
 def weighted(stone: _Stone, weights: Iterable[Any]) -> _Stone:
     """Add point masses to a stone; see `Ellipsoid.with_weights`."""
     if np.ndim(stone.axes) != 1:
-        raise ValueError("with_weights: expected a single stone, not a family of them")
+        raise ValueError("with_weights: expected a single stone, not a family")
     scale = stone.scale
     if scale is not None and math.isnan(scale.mass):
-        raise ValueError("with_weights: the mass of the stone is not known; give it by in_metres(mass=)")
+        raise ValueError("with_weights: the mass of the stone is unknown; give it by in_metres(mass=)")
     size, kilograms = (1.0, 1.0) if scale is None else (scale.radius, scale.mass)
     found = [_weight(i, each, scale is not None) for i, each in enumerate(_listed(weights))]
     if not found:
@@ -28,13 +28,13 @@ def weighted(stone: _Stone, weights: Iterable[Any]) -> _Stone:
     for i, (mass, place) in enumerate(found):
         place = place / size
         if np.sum((place / axes) ** 2) > 1 + 1e-9:
-            warn(f"weights[{i}]: it is outside of the ellipsoid, and may strike the table")
+            warn(f"weights[{i}]: the weight is outside the ellipsoid, and may strike the table")
         bodies.append((mass / kilograms, place, np.zeros((3, 3))))
     whole = math.fsum(mass for mass, *_ in bodies)
     centre = sum(mass * place for mass, place, _ in bodies) / whole
     inertia = sum(mass * (own + _about(place - centre)) for mass, place, own in bodies) / whole
     scale = None if scale is None else replace(scale, mass=whole * kilograms)
-    # the constructor's warning about mass beyond the ellipsoid is for moments that somebody typed
+    # the constructor's warning about mass outside the ellipsoid is only for moments given by the user
     return replace(stone, inertia=inertia, offset=centre, scale=scale, _doubted=True)
 
 
@@ -58,7 +58,7 @@ def _weight(i: int, given: Any, measured: bool) -> tuple[float, Floats]:
         raise TypeError(f"{name}: expected (mass, (x, y, z)), not {given!r}")
     mass, place = given
     if isinstance(place, str) or not np.iterable(place) or len(list(place)) != 3:
-        raise TypeError(f"{name}: expected three coordinates of its place, not {place!r}")
+        raise TypeError(f"{name}: expected a position (x, y, z), not {place!r}")
     if measured:
         mass = si(f"{name} mass", mass, "kilogram")
         place = [si(f"{name} place", x, "metre") for x in place]

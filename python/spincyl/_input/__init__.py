@@ -1,1 +1,1 @@
-"""Reading of arguments and writing of numbers: units, words, threads and whole files. No physics."""
+"""Reading of arguments and writing of numbers and files: units, words, threads. No physics."""

@@ -10,7 +10,7 @@ _Kind = TypeVar("_Kind")
 
 
 def key(value: Any) -> Hashable:
-    """A hashable key, the same for equal values: numbers and arrays count by value, not by type."""
+    """A hashable key that is the same for equal values; numbers and arrays compare by value, not by type."""
     if hasattr(type(value), "_compared"):
         return value  # type: ignore[no-any-return]
     if isinstance(value, Mapping):

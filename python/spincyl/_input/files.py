@@ -1,6 +1,6 @@
-"""Whole files: each is written beside its target, which it replaces only when it is complete.
+"""Whole files: each is written next to its target, and replaces it only when it is complete.
 
-Until then the old file stays, even if the program fails or is killed. All files of the package go this way.
+Until then the old file stays, even if the program fails or is killed. The package writes all its files so.
 """
 
 import os
@@ -30,17 +30,17 @@ def path_of(name: str, value: str | os.PathLike[str]) -> Path:
 
 @contextmanager
 def replaced(path: str | os.PathLike[str]) -> Iterator[Path]:
-    """An empty file to write to, which replaces `path` at the end, or is removed if anything fails.
+    """Context with an empty file to write to, which replaces `path` at the end, or is removed on failure.
 
-    Its name is absolute and ends in the suffix of `path` in small letters, so that other programs and
-    libraries take it for a plain file. A new file has the permissions that `open` gives; a file that replaces
-    an older one has the older one's owner and permissions. Links are followed. A device, a pipe, and a file
-    whose folder or owner forbids its replacement are written in place at the end.
+    The name of the file is absolute and ends in the suffix of `path` in small letters, so that other programs
+    and libraries accept it. A new file gets the permissions that `open` gives; a file that replaces an older
+    one keeps its owner and permissions. Links are followed. A device, a pipe, and a file whose folder or
+    owner forbids its replacement are written in place at the end.
 
     Raises
     ------
     OSError
-        Where `open` or the writing raises one; with the path that was given.
+        If `open` or the writing fails; the error has the given path.
     """
     path = Path(path)
     there = _there(path)
@@ -62,7 +62,7 @@ def replaced(path: str | os.PathLike[str]) -> Iterator[Path]:
 
 
 def _there(path: Path) -> os.stat_result | None:
-    """The status of the existing file, None without one; an error if it is not writable."""
+    """The status of an existing file, else None; raises OSError if the file is not writable."""
     try:
         there = path.stat()
     except FileNotFoundError:
@@ -73,7 +73,7 @@ def _there(path: Path) -> os.stat_result | None:
 
 
 def _target(path: Path, there: os.stat_result | None) -> Path | None:
-    """The file to replace, behind all links; None if it has to be written in place."""
+    """The file to replace, with all links resolved; None if `path` has to be written in place."""
     target = Path(os.path.realpath(path))
     if there is None:
         return target
@@ -82,7 +82,7 @@ def _target(path: Path, there: os.stat_result | None) -> Path | None:
 
 
 def _is_open(path: Path) -> bool:
-    """Whether the path is a link to an open file of a process, as /dev/stdout, which cannot be replaced."""
+    """Whether the path links to an open file of a process, as /dev/stdout, which cannot be replaced."""
     while path.is_symlink():
         folder = Path(os.path.realpath(path.parent))
         if folder.parts[:2] == ("/", "proc"):
@@ -106,7 +106,7 @@ def _moved(part: Path, target: Path, there: os.stat_result | None) -> bool:
 
 
 def _of(path: Path, part: Path, error: OSError) -> OSError:
-    """An error about the part as one about the path."""
+    """Rewrite an error about the temporary file as one about the path."""
     if error.errno is None:
         return OSError(f"{path}: {str(error).replace(str(part), str(path))}")
     if error.filename not in (None, part, str(part)):

@@ -1,4 +1,4 @@
-"""Names that are not there: an error that says what there is instead."""
+"""Unknown names: the error proposes known ones."""
 
 import difflib
 from collections.abc import Callable, Iterable
@@ -9,15 +9,15 @@ from typing import Any, ParamSpec, TypeVar
 _Given = ParamSpec("_Given")
 _Found = TypeVar("_Found")
 _FEW = 24  #: More names than these are not listed.
-_LEVEL = "the table is flat and level, and no other is modelled"
-#: What there is instead of names that the library does not have.
+_LEVEL = "only a flat and level table is modelled"
+#: Proposals for names that the library does not have.
 _INSTEAD = {
     **dict.fromkeys(("slope", "incline", "tilt", "bowl", "concave"), _LEVEL),
-    "height": "how high a body is, is its length=; sc.dropped(body, height, theta) starts in the air",
-    **dict.fromkeys(("thickness", "width"), "how thick a disk is, is its length="),
+    "height": "give length= for the height of a body; sc.dropped(body, height, theta) starts in the air",
+    **dict.fromkeys(("thickness", "width"), "give length= for the thickness of a disk"),
     **dict.fromkeys(("radius", "diameter"), "outer_diameter= is the size of a tube, in metres"),
-    **dict.fromkeys(("friction", "mu_s"), "a table that rubs is contact=sc.Coulomb(mu, static)"),
-    "cone": "sc.assembled([sc.parts.cone(...)]) is a body, and so is any sum of parts",
+    **dict.fromkeys(("friction", "mu_s"), "give contact=sc.Coulomb(mu, static) for friction"),
+    "cone": "sc.assembled([sc.parts.cone(...)]) makes a body of parts",
     **dict.fromkeys(
         ("cylinder", "disk", "disc", "coin"), "sc.Body.solid(ell), or sc.measured(...) in metres"
     ),
@@ -29,17 +29,17 @@ _INSTEAD = {
 
 
 def instead(name: str, known: Iterable[str]) -> str:
-    """What there is instead of a name, after a colon; empty if nothing is near."""
+    """A proposal in place of a name, after a colon; empty if no known name is similar."""
     names = [x for x in known if not x.startswith("_")]
     if name in _INSTEAD:
         return f": {_INSTEAD[name]}"
     near = difflib.get_close_matches(name, names, 3, 0.7)
-    told = f"did you mean {' or '.join(near)}?" if near else f"there are {', '.join(names)}"
+    told = f"did you mean {' or '.join(near)}?" if near else f"expected {', '.join(names)}"
     return f": {told}" if near or 0 < len(names) <= _FEW else ""
 
 
 def helpful(call: Callable[_Given, _Found]) -> Callable[_Given, _Found]:
-    """Decorator: the error about an argument that there is not says what there is."""
+    """Decorator: the error about an unknown argument proposes known ones."""
 
     @wraps(call)
     def helped(*args: _Given.args, **named: _Given.kwargs) -> _Found:
@@ -53,7 +53,7 @@ def helpful(call: Callable[_Given, _Found]) -> Callable[_Given, _Found]:
 
 
 def explain(call: Callable[..., Any], named: dict[str, Any], error: TypeError) -> None:
-    """Raise a TypeError that says what arguments there are, if one of these is unknown."""
+    """If an argument is unknown, raise a TypeError that proposes known arguments."""
     known = signature(call).parameters
     odd = next((x for x in named if x not in known), None)
     if odd is not None and f"unexpected keyword argument {odd!r}" in str(error):
@@ -62,7 +62,7 @@ def explain(call: Callable[..., Any], named: dict[str, Any], error: TypeError) -
 
 
 class Named(type):
-    """Metaclass: the error about a name that the class does not have says what there is."""
+    """Metaclass: the error about an unknown name of the class proposes known ones."""
 
     def __getattr__(cls, name: str) -> Any:
         more = "" if name.startswith("_") else instead(name, dir(cls))

@@ -39,15 +39,15 @@ def reals(name: str, value: Reals) -> Reals:
         raise TypeError(f"{name}: expected real numbers, not {type(value).__name__}")
     for dtype in kinds:
         if getattr(dtype, "kind", "O") in "US":
-            why = "a text with its unit stands for one number in SI, and this is in natural units or a list"
-            raise TypeError(f"{name}: expected real numbers, not texts: {why}")
+            why = "a text with a unit is one number in SI, and this argument is in natural units or a list"
+            raise TypeError(f"{name}: expected real numbers, not texts; {why}")
         if getattr(dtype, "kind", "O") not in "biuf" or dtype.itemsize > 8:
             raise TypeError(f"{name}: expected real numbers of at most double precision, not {dtype}")
     return float(array) if type(array) is np.ndarray and array.ndim == 0 else array
 
 
 def radians(name: str, value: Reals, expected: str | None = None, likely: float = math.pi) -> Reals:
-    """Return an angle in radians. Beyond pi, as degrees are: ValueError, in an array NaN and a warning.
+    """Return an angle in radians. Beyond pi, probably degrees: ValueError, in an array NaN and a warning.
 
     Between `likely` and pi there is only a warning. The values of a lazy array are not computed.
     """
@@ -80,7 +80,7 @@ def radians(name: str, value: Reals, expected: str | None = None, likely: float 
 
 def _doubted(name: str, value: float) -> None:
     told = f"{name} = {value:.6g} rad is {math.degrees(value):.4g} degrees"
-    warn(f"{told}: are these degrees? np.radians makes radians of them")
+    warn(f"{told}: are these degrees? np.radians converts degrees to radians")
 
 
 def warn(why: str, kind: type[Warning] = UserWarning) -> None:
@@ -94,7 +94,7 @@ def warn(why: str, kind: type[Warning] = UserWarning) -> None:
 
 
 def _own(value: Any) -> Any:
-    """A copy of an array; an axis along which its numbers repeat (stride 0) takes no memory."""
+    """A copy of an array in which an axis of repeated numbers (stride 0) takes no memory."""
     if not isinstance(value, np.ndarray) or 0 not in value.strides:
         return value.copy()
     once = value[tuple(slice(None if step else 1) for step in value.strides)].copy()
@@ -135,7 +135,7 @@ def metres(measures: dict[str, Any]) -> dict[str, float]:
 
 
 def lengths(name: str, value: Any) -> tuple[Any, bool]:
-    """Lengths by name or in a list, in metres if one of them is a text with its unit; and whether one is."""
+    """Lengths by name or in a list, in metres if one of them is a text with a unit; and whether one is."""
     listed = not isinstance(value, dict) and isinstance(value, Sequence)
     named = {f"{name}[{i}]": x for i, x in enumerate(value)} if listed else value
     if not isinstance(named, dict) or not any(isinstance(x, str) for x in named.values()):
@@ -146,7 +146,7 @@ def lengths(name: str, value: Any) -> tuple[Any, bool]:
 
 
 def vector_in(unit: str, name: str, value: Reals) -> Reals:
-    """A vector in the unit of SI; of a list or a tuple each component may be a text or a quantity."""
+    """A vector in the unit of SI; each component of a list or a tuple may be a text or a quantity."""
     if isinstance(value, list | tuple):
         return [vector_in(unit, f"{name}[{i}]", x) for i, x in enumerate(value)]
     return radians_per_second(name, value) if unit == "radian/second" else si(name, value, unit)
@@ -157,7 +157,7 @@ def alike(measures: dict[str, Any]) -> None:
     bare = [(name, x) for name, x in measures.items() if isinstance(x, Real) and x != 0]
     if bare and any(isinstance(x, str) for x in measures.values()):
         name, x = bare[0]
-        raise ValueError(f"{name} = {x!r}: give it a unit as well, as in '{x!r} mm'")
+        raise ValueError(f"{name} = {x!r}: expected a unit, as for the other lengths: '{x!r} mm'")
 
 
 def turns_per_second(name: str, value: Reals) -> Reals:
@@ -172,7 +172,7 @@ def turns_per_second(name: str, value: Reals) -> Reals:
 
 
 def radians_per_second(name: str, value: Reals) -> Reals:
-    """An angular velocity in rad/s; hertz of a quantity are turns per second."""
+    """An angular velocity in rad/s; a quantity in hertz is taken as turns per second."""
     if isinstance(value, str):
         return _read(name, value, "radian/second")
     return 2 * np.pi * turns_per_second(name, value) if is_quantity(value) else value
@@ -211,21 +211,21 @@ def _dtypes(array: Any) -> Any:
 
 
 def keywords(law: np.ufunc, given: dict[str, Any], of: str = "") -> dict[str, Any]:
-    """The keywords of a ufunc, of the method `of`; an unsuitable `out` or `where` raises an error by name.
+    """Check the keywords of a ufunc for the method `of`; an unsuitable `out` or `where` raises an error.
 
-    A labelled `where` is refused, since pandas and xarray would apply it by position and ignore its labels.
+    A labelled `where` raises TypeError, since pandas and xarray would ignore its labels.
     """
     for word in given:
         if word not in ("out", "where", "casting", "order", "dtype", "subok", "signature"):
             raise TypeError(f"{of or law.__name__}() got an unexpected keyword argument {word!r}")
     out = given.get("out")
     if isinstance(out, tuple) and len(out) != 1:
-        raise TypeError(f"out: expected an array to fill, not {len(out)} of them")
+        raise TypeError(f"out: expected one array to fill, not {len(out)}")
     for array in out if isinstance(out, tuple) else (out,):
         if array is None:
             continue
         if isinstance(array, np.ndarray) and not array.flags.writeable:
-            raise ValueError("out: expected an array to fill, not one that is read-only")
+            raise ValueError("out: expected an array to fill, not a read-only array")
         kinds = _dtypes(array) if hasattr(array, "__array_ufunc__") else None
         if kinds is None:
             raise TypeError(f"out: expected an array to fill, not {type(array).__name__}")
@@ -310,7 +310,7 @@ def fitting(named: dict[str, Reals]) -> tuple[int, ...]:
 def elementwise(law: Callable[_Given, _Found]) -> Callable[_Given, _Found]:
     """Decorator of functions with broadcast arguments: names shapes that do not fit, silences NumPy.
 
-    Overflow gives inf and invalid operations NaN, without warnings, as in the functions of the core.
+    Overflow gives inf and invalid operations give NaN, without warnings, as in the core.
     """
 
     @wraps(law)
@@ -333,7 +333,7 @@ def elementwise(law: Callable[_Given, _Found]) -> Callable[_Given, _Found]:
 
 
 def of_its_shape(*values: Any) -> Reals:
-    """An array of the common shape of the values; a body or a state counts by its fields."""
+    """An array of the common shape of the values; for a body or a state, the shape of its fields."""
     fields: list[Any] = []
     for value in values:
         own = getattr(value, "_numbers", getattr(value, "_coefficients", None))
@@ -391,7 +391,7 @@ def words(name: str, value: str | Iterable[str], known: Sequence[str]) -> tuple[
         ) from None
     for word in found:
         if not isinstance(word, str) or word not in known:
-            raise ValueError(f"{name}: no such quantity {word!r}; there are {list(known)}")
+            raise ValueError(f"{name} = {word!r}: expected some of {list(known)}")
     return found
 
 
@@ -434,7 +434,7 @@ def extra(module: str, name: str) -> ModuleType:
 
 
 def plain(value: Any) -> Any:
-    """What JSON can hold: lists for arrays and tuples, None for numbers that are not finite."""
+    """The value as JSON can hold it: lists for arrays and tuples, None for numbers that are not finite."""
     if isinstance(value, dict):
         return {key: plain(x) for key, x in value.items()}
     if isinstance(value, np.ndarray):

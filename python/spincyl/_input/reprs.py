@@ -17,7 +17,7 @@ def call(name: str, *plain: Reals, **named: Reals) -> str:
 
 
 def text(value: Reals) -> str:
-    """A number with all digits, a short array as a list, a long one by its ends and shape; tuples, too."""
+    """A number with all digits, a short array as a list, a long array by its ends and shape; or a tuple."""
     if isinstance(value, tuple):
         return f"({', '.join(map(text, value))})"
     if is_scalar(value):

@@ -1,4 +1,4 @@
-"""Arrays that are shorter than was asked for, whose shape says why."""
+"""Arrays that are shorter than requested, whose printed shape gives the reason."""
 
 from typing import Any
 
@@ -8,7 +8,7 @@ from spincyl._input.numbers import Floats
 
 
 class _Told(tuple[int, ...]):
-    """A shape that an error prints with its reason."""
+    """A shape that is printed with a reason."""
 
     why = ""
 
@@ -17,9 +17,9 @@ class _Told(tuple[int, ...]):
 
 
 class Short(np.ndarray):
-    """An array that is shorter than was asked for: who plots it against more times reads why.
+    """An array that is shorter than requested; an attempt to plot it against more times gives the reason.
 
-    Matplotlib says then which shapes do not fit, and prints `shape`.
+    Matplotlib's error then prints `shape`.
     """
 
     why = ""
@@ -32,7 +32,7 @@ class Short(np.ndarray):
 
     @property  # type: ignore[misc]
     def shape(self) -> tuple[int, ...]:
-        """As of any array; printed with the reason."""
+        """Shape of the array, printed with the reason."""
         told = _Told(np.ndarray.shape.__get__(self))
         told.why = self.why
         return told
@@ -45,12 +45,12 @@ Short.__name__ = "array"  # which is printed
 
 
 def short(values: Floats, why: str) -> Floats:
-    """The same numbers, with the reason why there are no more."""
+    """The same numbers, with the reason why the array is short."""
     found = values.view(Short)
     found.why = why
     return found
 
 
 def alike(values: Floats, other: Floats) -> Floats:
-    """The same numbers, with the reason that another array has, if it has one."""
+    """The same numbers, with the reason of another array, if any."""
     return short(values, other.why) if isinstance(other, Short) else values

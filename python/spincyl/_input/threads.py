@@ -43,5 +43,5 @@ def thread_count(threads: int | None) -> int:
 def callback(progress: Progress | None) -> Progress | None:
     """`progress` if it can be called, or TypeError."""
     if progress is not None and not callable(progress):
-        raise TypeError(f"progress: expected something to call, not {type(progress).__name__}")
+        raise TypeError(f"progress: expected a function, not {type(progress).__name__}")
     return progress

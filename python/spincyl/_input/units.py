@@ -37,19 +37,19 @@ _NAMES = {unit for units in _UNITS.values() for unit in units} | {*_DEGREES, "ra
 
 
 class Seconds(float):
-    """A time that was given in seconds, not in units of sqrt(R/g)."""
+    """A time given in seconds, not in sqrt(R/g)."""
 
 
 class Metres(float):
-    """A length that was given in metres, not in units of the outer radius."""
+    """A length given in metres, not in outer radii."""
 
 
 class NewtonSeconds(float):
-    """An impulse that was given in newton seconds, not in units of M sqrt(g R)."""
+    """An impulse given in newton seconds, not in M sqrt(g R)."""
 
 
 class MetresPerSecond(float):
-    """A speed that was given in metres per second, not in units of sqrt(g R)."""
+    """A speed given in metres per second, not in sqrt(g R)."""
 
 
 def joined(argv: Sequence[str]) -> list[str]:
@@ -76,7 +76,7 @@ def _parts(text: str) -> tuple[str, str]:
     """The number and the unit."""
     found = _NUMBER.match(text.strip())
     if found is None:
-        raise ArgumentTypeError(f"{text!r} is no number")
+        raise ArgumentTypeError(f"{text!r}: expected a number")
     return found.group(), text.strip()[found.end() :].strip()
 
 
@@ -86,7 +86,7 @@ def has_unit(text: str) -> bool:
 
 
 def angle(text: str) -> float:
-    """Radians of '1.3', '1.3rad', '85deg' or '85°'."""
+    """The angle '1.3', '1.3rad', '85deg' or '85°' in radians."""
     number, unit = _parts(text)
     value = float(number)
     if unit in _DEGREES:
@@ -94,7 +94,7 @@ def angle(text: str) -> float:
     if unit not in ("", "rad"):
         raise ArgumentTypeError(f"{text!r}: expected an angle, as in 1.3, 1.3rad or 85deg")
     if not unit and abs(value) > math.pi:
-        raise ArgumentTypeError(f"angles are radians; {number} degrees is {number}deg")
+        raise ArgumentTypeError(f"{text!r}: expected radians; for degrees write {number}deg")
     return value
 
 
@@ -103,7 +103,7 @@ def _one(kind: str) -> str:
 
 
 def quantity(kind: str) -> Callable[[str], float]:
-    """A function that reads a length, mass, gravity, frequency or duration."""
+    """A function that reads a quantity of a kind, such as a length, with or without its unit."""
     units = _UNITS[kind]
 
     def read(text: str) -> float:
@@ -111,7 +111,7 @@ def quantity(kind: str) -> Callable[[str], float]:
         unit = unit.replace(" ", "")  # "N m s" as well as "Nms"
         if unit not in {"", *units}:
             known = ", ".join(filter(str.isascii, units))
-            raise ArgumentTypeError(f"{text!r}: expected {_one(kind)}, bare or in {known}")
+            raise ArgumentTypeError(f"{text!r}: expected {_one(kind)}, without unit or in {known}")
         factor = units[unit] if unit else "1"
         try:
             # decimal arithmetic, so that 15.875mm equals 0.015875
@@ -148,10 +148,10 @@ _KINDS = {
 
 
 def read(text: str, unit: str) -> float:
-    """A number with its unit as a number in the unit `unit` of SI; TypeError if either is missing."""
+    """Convert a number with a unit to the unit `unit` of SI; TypeError if number or unit is missing."""
     known = unit in _KINDS or unit == "radian"
     if not known or _NUMBER.match(text.strip()) is None or not has_unit(text):
-        like = ", or a text with its unit as '16mm' or '85deg'" if known else ""
+        like = ", or a text with a unit, as '16mm' or '85deg'" if known else ""
         raise TypeError(f"expected real numbers{like}, not {text!r}")
     return angle(text) if unit == "radian" else quantity(_KINDS[unit])(text)
 
@@ -177,7 +177,7 @@ speed = _natural_or("speed", MetresPerSecond)
 
 
 def whole(text: str) -> int:
-    """A whole number, also as 1e6."""
+    """A whole number, also written as 1e6."""
     try:
         return int(text)
     except ValueError:
@@ -193,12 +193,12 @@ def whole(text: str) -> int:
 
 
 def dubious(what: str, sides: tuple[float, float], volume: float, mass: float) -> str:
-    """A reason to suspect millimetres or grams in the measures (length, width) of a body; empty if none."""
+    """Why millimetres or grams are suspected in the size (length, width) of a body; empty if they are not."""
     why = ""
     if max(sides) > _LENGTHS[1]:
         why = f"{sides[0]:.4g} m long and {sides[1]:.4g} m wide; 1 mm is 1e-3"
     elif sides[1] < _LENGTHS[0]:
         why = f"{sides[1]:.4g} m wide"
     elif volume > 0 and (mass < _DENSITIES[0] * volume or mass > _DENSITIES[1] * volume):
-        why = f"of {mass / volume:.3g} kg/m^3, and water has 1000; 1 g is 1e-3"
-    return why and f"this is a {what} {why}: are these metres and kilograms?"
+        why = f"as dense as {mass / volume:.3g} kg/m^3, where water has 1000; 1 g is 1e-3"
+    return why and f"the {what} is {why}: are these metres and kilograms?"

@@ -77,7 +77,7 @@ def drift(args: Namespace) -> None:
         elif suffix in _PICTURES:
             _draw(spincyl.drift(replace(body, scale=scale), args.theta, losses, centre=args.centre), args)
     # drop warnings about single times: the user did not choose the rows of the table
-    messages = (str(warning.message) for warning in caught if "asked there" not in str(warning.message))
+    messages = (str(warning.message) for warning in caught if "evaluated there" not in str(warning.message))
     for message in dict.fromkeys(messages):
         print(f"spincyl drift: {message}", file=sys.stderr)
     if args.json:
