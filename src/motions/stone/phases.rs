@@ -16,6 +16,7 @@ use crate::methods::SHORT_CODE;
 use crate::methods::flow::{Flow, Flown, Steps};
 use crate::motions::creep::LOST_DRILLING;
 use crate::motions::halt::{Halt, TIME, loses};
+use crate::motions::path::lossy::JUMP;
 use crate::motions::walk::slow::clear_until;
 use crate::motions::walk::{Next, Pause, Phases, SlowSeries, Walk, WalkStep, after_rest, ending};
 use crate::motions::{Ask, Ending, Kind, Start};
@@ -36,9 +37,6 @@ const DEEP: f64 = 1e-2;
 /// From this share of the Painleve coefficient on, more than one contact force may be consistent, and
 /// all are counted.
 const DOUBTFUL: f64 = 0.9;
-
-/// A friction demand that exceeds mu N by more than this share has jumped beyond mu N.
-const JUMPED: f64 = 1e-6;
 
 /// The data of a stone's walk: the flow of the present phase.
 pub(super) struct StonePhases<'n> {
@@ -211,7 +209,7 @@ impl<'a, 'n, const N: usize> StoneWalk<'a, 'n, N> {
     fn jumps(&self) -> bool {
         let Seen { at, to, .. } = self.of.flow.seen_at(&self.at);
         let along = plus(to.force, -to.free, at.n);
-        dot(along, along).sqrt() > self.of.flow.mu * to.free * (1.0 + JUMPED)
+        dot(along, along).sqrt() > self.of.flow.mu * to.free * (1.0 + JUMP)
     }
 
     /// The behaviour of a contact point at rest. That of a stone which rolling resistance keeps at rest sticks.

@@ -48,7 +48,7 @@ enum Hold {
 
 /// If the required friction exceeds mu N by more than this share, it has jumped beyond mu N, as at a reversal of a dry
 /// couple, and has not crossed mu N continuously.
-const JUMP: f64 = 1e-6;
+pub(crate) const JUMP: f64 = 1e-6;
 /// Speed of a motion that has just reversed and slips at once, so that its new direction is definite.
 const NUDGE: f64 = 1e-13;
 /// A body with a smaller joint speed of rolling and rocking is at rest for the law of rolling resistance.
