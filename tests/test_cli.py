@@ -60,7 +60,7 @@ def test_several_angles_with_units_are_several(capsys):
 def test_a_bare_number_that_can_only_be_degrees_is_told_how_to_say_so(capsys, number):
     for command in (["steady"], ["roll", "--t", "5"]):
         err = refused(capsys, *command, "--ell", "2.5", "--theta", number)
-        assert f"{number} degrees is {number}deg" in err
+        assert f"for degrees write {number}deg" in err
     assert "expected 0 < theta <= pi/2" in said(capsys, "steady", "--ell", "1", "--theta", "3", status=2).err
 
 
