@@ -145,7 +145,7 @@ def from_above(
     >>> inch = 25.4e-3
     >>> tube = sc.Body.from_metres(outer_diameter=0.625 * inch, inner_diameter=0.5 * inch, length=3.75 * inch)
     >>> sc.data.from_above(sc.data.example("tube_from_above"), tube)
-    <Filmed: 7.2938 +- 0.0018 turns a second, 82.98 +- 0.30 degrees, steady at 83.4; 32 frames>
+    <Filmed: 7.2936 +- 0.0018 turns a second, 82.98 +- 0.30 degrees, steady at 83.4; 32 frames>
     """
     body, scale = with_size("tube", tube, scale)
     ruler = number("ruler", ruler)
