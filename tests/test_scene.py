@@ -317,3 +317,50 @@ def test_every_kind_of_motion_has_a_scene():
         "viscous",
     }
     assert PIPE is scene_of("lies").motion.body and EGG.natural == scene_of("egg").motion.body and PRESSED
+
+
+def shifted(m, e, p, rng):
+    """A copy of a motion of a body on one rim whose states are off by `e`, and whose poses by `p`, in any direction."""
+
+    def off(by, x):
+        return x + by * rng.choice([-1.0, 1.0], np.shape(x))
+
+    def arm(theta, phi):
+        """From the contact point to the centre, of a sharp rim."""
+        c, s = np.cos(theta), np.sin(theta)
+        along = m.body.ell * -s + c
+        return np.column_stack([along * np.cos(phi), along * np.sin(phi), m.body.ell * c + s])
+
+    theta, w, phi, psi = off(e, m.theta), off(e, m.w), off(p, m.phi), off(p, m.psi)
+    point = off(p / np.sqrt(2), m.contact_point)
+    assert np.allclose(arm(m.theta, m.phi)[:, :2] + m.contact_point, m.centre[:, :2], atol=1e-11)
+    turned = Rotation.from_euler("ZYZ", np.column_stack([phi, -theta, psi])).as_quat()
+    astray = Rotation.from_quat(turned).inv() * Rotation.from_quat(m.orientation)
+    assert astray.magnitude().max() < 1.01 * e + 2.01 * p, "the angles are those of the orientation"
+    extra = m._extra | {
+        "phi": np.column_stack([0 * phi, phi]), "contact_point": point, "orientation": turned,
+        "centre": arm(theta, phi) + np.pad(point, ((0, 0), (0, 1))), "slip": off(e, m.slip),
+    }  # fmt: skip
+    other = object.__new__(type(m))
+    new = {"theta": theta, "w": w, "error": e, "pose_error": p, "_extra": extra}
+    object.__setattr__(other, "__dict__", m.__dict__ | new)
+    return other
+
+
+@pytest.mark.parametrize(("e", "p"), [(1e-7, 0.0), (0.0, 1e-7), (1e-7, 1e-7)])
+def test_the_errors_of_what_is_told_are_bounds_and_not_far_above_what_the_motion_claims(e, p):
+    rng, most = np.random.default_rng(1), {}
+    for body in (COIN, PIPE):
+        start = body.with_centre_velocity(sc.State(1.2, 0.4, 0.1, -1.0), 0.5, 2.0)
+        right = sc.scene(sc.roll(body, start, np.linspace(0, 1, 401), contact=sc.Coulomb(0.3)), scale=EURO)
+        wrong = sc.Scene(shifted(right.motion, e, p, rng), EURO).data
+        known, told = right.data["expected"], wrong["expected"]
+        for name in ("position", "velocity", "angular_velocity", "theta", "energy"):
+            off = np.array(told[name]) - known[name]
+            off = np.linalg.norm(off, axis=1).max() if off.ndim == 2 else np.abs(off).max()
+            assert off <= wrong["error"][name] * (1 + 1e-6) + 1e-14, name
+            most[name] = max(most.get(name, 0.0), off / max(wrong["error"][name], 1e-14))
+        q = Rotation.from_quat(told["orientation"]).inv() * Rotation.from_quat(known["orientation"])
+        assert q.magnitude().max() <= wrong["error"]["angle"] * (1 + 1e-6) + 1e-14
+        most["angle"] = max(most.get("angle", 0.0), q.magnitude().max() / wrong["error"]["angle"])
+    assert all(share > 0.1 for name, share in most.items() if p == 0 or name not in ("theta", "energy")), most
