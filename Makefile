@@ -48,11 +48,11 @@ rust: export RUSTFLAGS = -C llvm-args=-enable-noalias-to-md-conversion=false
 rust:
 	cargo fmt --all --check
 	SPINCYL_COMPILED_LANES=none nice -n 10 cargo check --quiet --lib
-	nice -n 10 cargo clippy --workspace --exclude spincyl-benches --all-targets --features python -- -D warnings
+	nice -n 10 cargo clippy --workspace --exclude spincyl-benches --all-targets --features python,serde -- -D warnings
 	CARGO_PROFILE_TEST_OPT_LEVEL=1 nice -n 10 cargo test --lib
-	nice -n 10 cargo test --test '*'
-	nice -n 10 cargo test --doc
-	RUSTDOCFLAGS='-D warnings' nice -n 10 cargo doc --no-deps --quiet
+	nice -n 10 cargo test --features serde --test '*'
+	nice -n 10 cargo test --features serde --doc
+	RUSTDOCFLAGS='-D warnings' nice -n 10 cargo doc --features serde --no-deps --quiet
 
 # In one process: a second one would take a fifth more of the processor, and the tests of pages and docs run beside it.
 # Rust and docs give way to both. The docs test the numbers of their note.

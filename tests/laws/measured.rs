@@ -92,10 +92,7 @@ fn moments_in_the_wrong_unit_are_refused_by_name() {
     let scale = Scale::new(12e-3, 8e-3, 9.81).unwrap();
     let right = Measured::with_moments(scale, [1e-3, 0.0], [2.9e-7, 5.76e-7]).unwrap();
     assert!((right.body().i1() - 2.9e-7 / (8e-3 * 144e-6)).abs() < 1e-15);
-    assert!(
-        name(Measured::with_moments(scale, [1e-3, 0.0], [0.25, 0.5]))
-            .starts_with("i1 = 0.25: expected kg m^2")
-    );
+    assert!(name(Measured::with_moments(scale, [1e-3, 0.0], [0.25, 0.5])).starts_with("i1 = 0.25: expected"));
     assert!(
         name(Measured::with_moments(scale, [1e-3, 0.0], [2.9e-10, 5.76e-10])).starts_with("i1 = 2.9e-10")
     );
