@@ -22,7 +22,9 @@ HOW: dict[str, dict[str, Any]] = {
 def main() -> None:
     """Draw the pictures again."""
     page = (DOCS / "desk.md").read_text("utf-8")
-    for path, code in re.findall(r"\((figures/desk/\w+\.png)\)\n\n```python\n(.*?)```", page, re.S):
+    for path, code in re.findall(
+        r"\((figures/desk/\w+\.png)\)\n\n```python\n(.*?)```", page, re.S
+    ):
         room: dict[str, Any] = {}
         exec(code, room)
         how = dict(HOW.get(Path(path).stem, {}))

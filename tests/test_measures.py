@@ -214,7 +214,9 @@ def test_a_coefficient_that_was_made_for_another_body_is_refused():
         ):
             ask()
     ours = sc.loss.RollingResistance.from_si("0.02mm", scale=sc.Scale(12e-3))
-    with pytest.raises(ValueError, match="^laws: RollingResistance.* made for another scale, R = 0.0079375 m"):
+    with pytest.raises(
+        ValueError, match="^laws: RollingResistance.* made for another scale, R = 0.0079375 m"
+    ):
         ours + theirs
     assert sc.drift(coin, "30deg", ours).stops_at == pytest.approx(23.31, abs=0.01)
     assert sc.drift(coin.natural, 0.5, theirs).stops_at > 0

@@ -60,7 +60,11 @@ def rolled(start="disk", losses=DRY, t=T, **how):
         ({"losses": loss.DryContour([1e-3, 2e-3])}, ValueError, "expected single numbers, not arrays"),
         ({"losses": loss.DryContour([1e-3])}, ValueError, r"^losses = DryContour\(\[0.001\]\): expected"),
         ({"step": 1e-3}, ValueError, r"^step = 0.001 does not go with losses=DryContour\(0.005\): .* tol="),
-        ({"method": "exact"}, ValueError, "^method = 'exact' does not go with losses=.*without first integrals"),
+        (
+            {"method": "exact"},
+            ValueError,
+            "^method = 'exact' does not go with losses=.*without first integrals",
+        ),
         ({"method": "rk4", "tol": 1e-9}, ValueError, "^method = 'rk4' takes step="),
         ({"t": [0.0, -1.0]}, ValueError, "^t = -1.0: expected at least t0 = 0.0"),
         ({"t": [5.0, 6.0], "t0": 7.0}, ValueError, "^t = 5.0: expected at least t0 = 7.0"),
