@@ -139,7 +139,7 @@ def inputs(rows: "xarray.Dataset") -> dict[str, Any]:
 
     Notes
     -----
-    The coordinates are ``body_*``, ``start_*``, ``contact_*`` and ``loss_*``. The names after the underscore are
+    The coordinates are ``body_*``, ``start_*``, ``contact_*`` and ``loss_*``. The names behind are
     those of the fields of bodies (for an `Ellipsoid` a1, i11, i23, d1, ...), states, `Coulomb`, `Viscous` and
     laws of loss. These coordinates are in natural units, also for measured bodies.
 
