@@ -14,6 +14,7 @@ printed too, beside that of our RK4 where it rolls.
 import argparse
 import time
 from pathlib import Path
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -24,7 +25,12 @@ import spincyl as sc
 def scenes(seconds: float) -> dict[str, sc.Scene]:
     """The scenes by name."""
 
-    def made(body, state, scale=None, **how):
+    def made(
+        body: Any,
+        state: Any,
+        scale: sc.Scale | None = None,
+        **how: Any,
+    ) -> sc.Scene:
         unit = 1.0 if body.scale is not None else (scale or sc.Scale(1.0)).seconds(1.0)
         t = np.linspace(0.0, seconds / unit, 101)
         return sc.scene(sc.roll(body, state, t, **how), scale=scale)
@@ -94,7 +100,8 @@ def mujoco_run(scene: sc.Scene, times: int) -> tuple[sc.Deviation, float, int, f
     state = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, state, 0)
     until, lossy = scene.data["expected"]["time"][-1], scene.motion.losses is not None
-    clock, x, q, force = [], [], [], np.zeros(6)
+    clock: list[float] = []
+    x, q, force = [], [], np.zeros(6)
     began = time.process_time()
     while state.time < until and (not clock or state.time > clock[-1]):
         clock.append(state.time)
@@ -142,8 +149,8 @@ def rows(name: str, scene: sc.Scene, seconds: float) -> list[list[str]]:
     m, told = scene.motion, scene.data["error"]
     if m.contact == "rolling" and m.losses is None and isinstance(m.body, sc.Body):
         steps = round(float(m.t[-1]) / 5e-4)
-        off, took = ours(scene, steps)
-        less = f"{off:.0e} rad" if off > m.error else f"below {m.error:.0e} rad"
+        wrong, took = ours(scene, steps)
+        less = f"{wrong:.0e} rad" if wrong > m.error else f"below {m.error:.0e} rad"
         found.append(
             [name, "spincyl, RK4", f"{steps}", less, "", f"{1e3 * took:.1f} ms"]
         )

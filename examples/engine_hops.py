@@ -55,7 +55,9 @@ def run(scene: sc.Scene, steps: int) -> tuple[sc.Deviation, float]:
     model.opt.timestep = scene.data["scale"]["second"] / steps
     state = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, state, 0)
-    until, clock, x, q = scene.data["expected"]["time"][-1], [], [], []
+    until = scene.data["expected"]["time"][-1]
+    clock: list[float] = []
+    x, q = [], []
     began = time.process_time()
     # it may give up and begin anew
     while state.time < until and (not clock or state.time > clock[-1]):
