@@ -361,9 +361,10 @@ impl ImpactCourse {
                         - x * (1.0 / 24.0
                             - x * (1.0 / 120.0 - x * (1.0 / 720.0 - x * (1.0 / 5040.0 - x / 40320.0))))))
         };
-        let lift = |p: f64| -1.0 + a_n * p - c * b * u_h * once(p) - b * b / a_h * (p - once(p));
+        let (first, pulls, sticking) = (self.lift, c * b * u_h, b * b / a_h);
+        let lift = |p: f64| first + a_n * p - pulls * once(p) - sticking * (p - once(p));
         let work =
-            |p: f64| -p + 0.5 * a_n * p * p - c * b * u_h * twice(p) - b * b / a_h * (0.5 * p * p - twice(p));
+            |p: f64| first * p + 0.5 * a_n * p * p - pulls * twice(p) - sticking * (0.5 * p * p - twice(p));
         let rises = |f: &dyn Fn(f64) -> f64, from: f64| {
             let mut far = from.max(1.0);
             while f(far) < 0.0 {
@@ -371,7 +372,9 @@ impl ImpactCourse {
             }
             crossing(f, from, far, f(from).min(-f64::MIN_POSITIVE), f(far))
         };
-        let middle = rises(&lift, 0.0);
+        // A slip that jams presses the rim down first, until its film has slowed it.
+        let lowest = ((pulls - sticking) / (a_n - sticking)).max(1.0).ln() / (c * a_h);
+        let middle = rises(&lift, lowest);
         let target = self.keeps * work(middle);
         let p = if self.keeps == 1.0 { middle } else { rises(&|p| work(p) - target, middle) };
         let along = u_h * once(p) + b / (c * a_h) * (p - once(p));
