@@ -1,11 +1,12 @@
-"""Bullet and Drake on scenes of which they know the JSON file, and nothing else: no spincyl is imported here.
+"""Run Bullet and Drake on scenes that are read from their JSON files; spincyl is not imported here.
 
     pip install pybullet drake
     python examples/contact_engine.py --seconds 0.5 --save scenes
     python benches/engines.py scenes [--docs docs/engines.md]
 
-The contact is as stiff as each of them bears, with three lengths of the step. Drake has two ways of solving for dry
-friction: "sap", a convex problem, and "lagged", which is not. The deviation is the largest at the times of the file.
+The contact is as stiff as each engine allows, with three lengths of the step. Drake has two solvers for dry friction:
+"sap", which solves a convex problem, and "lagged", which does not. The table has the largest deviations at the times
+of the file.
 """
 
 import argparse
@@ -29,7 +30,7 @@ def off(data, poses):
 
 
 def bullet(data, steps):
-    """Poses at the times of the file; None if it has no such shape."""
+    """Poses at the times of the file; None if Bullet does not have the shape."""
     import pybullet as p
 
     body, start, shape = data["body"], data["start"], data["body"]["shape"]
@@ -42,7 +43,7 @@ def bullet(data, steps):
     it = p.createMultiBody(
         body["mass"], form, basePosition=start["position"], baseOrientation=start["orientation"]
     )
-    # the coefficients of both are multiplied
+    # Bullet multiplies the coefficients of the two bodies
     mu = float(np.sqrt(data["table"]["friction"]["mu"]))
     still = {"rollingFriction": 0, "spinningFriction": 0, "linearDamping": 0, "angularDamping": 0}
     sharp = {"collisionMargin": 0, "contactProcessingThreshold": 0}
@@ -112,8 +113,8 @@ def main():
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("folder", type=Path)
-    parser.add_argument("--docs", metavar="PAGE", type=Path, help="put the table into a page")
+    parser.add_argument("folder", type=Path, help="folder with the JSON files of the scenes")
+    parser.add_argument("--docs", metavar="PAGE", type=Path, help="write the table into a page")
     args = parser.parse_args()
     head = ["scene", "engine", "step", "centre off by", "inclination off by"]
     table = ["| " + " | ".join(head) + " |", "| --- " * len(head) + "|"]

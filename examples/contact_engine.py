@@ -1,14 +1,14 @@
-"""MuJoCo on scenes with a known answer: how far it deviates, and how far we do.
+"""Compare MuJoCo, and RK4 of spincyl, with the known answers of eight scenes.
 
     pip install 'spincyl[engine]'
     python examples/contact_engine.py [--seconds 1] [--save FOLDER]
 
-Rolling: a solid cylinder, the PVC tube of the paper, Euler's disk (75.1 mm by 12.8 mm) with a sharp rim and with a
-fillet of 2 mm, Hurricane balls (two of 16 mm), each a little off a steady state, and a rattleback. Then a coin that
-loses energy by dry friction along its rim, a law that MuJoCo has not and that is applied by hand, and a coin that
-slips. MuJoCo is run with its defaults (times in units of sqrt(R/g)), and with the stiff contact of the MJCF file, with
-two lengths of its step. The deviation is the largest of the inclination, from the known answer, whose own error is
-printed too, beside that of our RK4 where it rolls.
+Six bodies roll: a solid cylinder, the PVC tube of the paper, Euler's disk (75.1 mm by 12.8 mm) with a sharp rim and
+with a fillet of 2 mm, Hurricane balls (two of 16 mm), each near a steady state, and a rattleback. A coin loses energy
+by dry friction along its rim; MuJoCo does not have this law, so that its couple is applied by hand. Another coin
+slips. MuJoCo runs with its defaults (times in units of sqrt(R/g)), and with the stiff contact of the MJCF file at two
+lengths of the step. The table has the largest deviations of the inclination and of the centre, the estimated error of
+the known answer, and the deviation of RK4 for bodies of revolution that roll without loss.
 """
 
 import argparse
@@ -84,14 +84,14 @@ def with_defaults(model: mujoco.MjModel, second: float) -> None:
 
 
 def finer(model: mujoco.MjModel, times: int) -> None:
-    """Shorten its step; the contact is as stiff as the step bears."""
+    """Shorten the step of a model; its contact becomes as stiff as the shorter step allows."""
     model.opt.timestep /= times
     for solref in (model.geom_solref, model.pair_solref):
         solref *= (times**2, times)
 
 
 def mujoco_run(scene: sc.Scene, times: int) -> tuple[sc.Deviation, float, int, float]:
-    """Deviation, processor seconds, steps, and the time reached; `times` 0 is with its defaults."""
+    """Deviation, processor seconds, steps, and the time reached; with MuJoCo's defaults if `times` is 0."""
     model = mujoco.MjModel.from_xml_string(scene.mjcf)
     if times:
         finer(model, times)
@@ -107,7 +107,7 @@ def mujoco_run(scene: sc.Scene, times: int) -> tuple[sc.Deviation, float, int, f
         clock.append(state.time)
         x.append(state.qpos[:3].copy())
         q.append(state.qpos[3:7].copy())
-        if lossy:  # MuJoCo has no such law
+        if lossy:  # MuJoCo does not have this law
             normal = 0.0
             for i in range(state.ncon):
                 mujoco.mj_contactForce(model, state, i, force)
@@ -121,7 +121,7 @@ def mujoco_run(scene: sc.Scene, times: int) -> tuple[sc.Deviation, float, int, f
 
 
 def ours(scene: sc.Scene, steps: int) -> tuple[float, float]:
-    """Error of RK4 with so many steps, and processor seconds of it."""
+    """Error of RK4 with this number of steps, and its processor seconds."""
     m = scene.motion
     began = time.process_time()
     rk4 = sc.roll(m.body, m.start, m.t, step=m.t[-1] / steps)
@@ -130,9 +130,9 @@ def ours(scene: sc.Scene, steps: int) -> tuple[float, float]:
 
 
 def rows(name: str, scene: sc.Scene, seconds: float) -> list[list[str]]:
-    """What the solvers make of a scene: name, solver, steps, deviations of the inclination and the centre, time."""
+    """Rows for one scene: name, solver, steps, deviations of the inclination and of the centre, time."""
     found = []
-    solvers = {"its defaults": 0, "as in the file": 1, "four times finer": 4}
+    solvers = {"defaults": 0, "MJCF file": 1, "four times finer": 4}
     for what, times in solvers.items():
         off, took, steps, until = mujoco_run(scene, times)
         gave_up = f", to {until:.2g} s" if until < 0.99 * seconds else ""
@@ -146,7 +146,7 @@ def rows(name: str, scene: sc.Scene, seconds: float) -> list[list[str]]:
                 f"{1e3 * took:.0f} ms",
             ]
         )
-    m, told = scene.motion, scene.data["error"]
+    m, errors = scene.motion, scene.data["error"]
     if m.contact == "rolling" and m.losses is None and isinstance(m.body, sc.Body):
         steps = round(float(m.t[-1]) / 5e-4)
         wrong, took = ours(scene, steps)
@@ -154,8 +154,8 @@ def rows(name: str, scene: sc.Scene, seconds: float) -> list[list[str]]:
         found.append(
             [name, "spincyl, RK4", f"{steps}", less, "", f"{1e3 * took:.1f} ms"]
         )
-    claims = f"{told['theta']:.0e} rad", f"{1000 * told['position']:.0e} mm"
-    found.append([name, "the known answer: its own error", "", *claims, ""])
+    known = f"{errors['theta']:.0e} rad", f"{1000 * errors['position']:.0e} mm"
+    found.append([name, "spincyl, known answer: estimated error", "", *known, ""])
     return found
 
 
@@ -164,14 +164,16 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--seconds", type=float, default=1.0)
     parser.add_argument(
-        "--save", metavar="FOLDER", help="write the scenes as JSON and MJCF, too"
+        "--seconds", type=float, default=1.0, help="duration of each scene (default: 1)"
+    )
+    parser.add_argument(
+        "--save", metavar="FOLDER", help="also write the scenes as JSON and MJCF"
     )
     parser.add_argument(
         "--docs",
         metavar="PAGE",
-        help="put the table into a page, after the line that says so",
+        help="write the table into a page, below the comment that names this script",
     )
     args = parser.parse_args()
     head = [

@@ -1,11 +1,11 @@
-"""MuJoCo on bodies that are dropped, hop and lie, beside the motion of two rigid bodies.
+"""Compare MuJoCo with spincyl on bodies that are dropped, hop, and lie on their side.
 
     pip install 'spincyl[engine]'
     python examples/engine_hops.py [--docs docs/engines.md]
 
-Five scenes of half a second, in which the body slips, flies, strikes and lies. MuJoCo has a stiff contact whose damping
-belongs to the coefficient of restitution, with three lengths of its step. Deviations are those of the centre of mass, up
-to the first blow and in all, and of the inclination.
+In five scenes of half a second the body slips, flies, strikes the table and lies on its side. MuJoCo has a stiff contact,
+whose damping follows from the coefficient of restitution, and three lengths of the step. The table has the largest
+deviations of the centre of mass, before the first blow and in all, and of the inclination.
 """
 
 import argparse
@@ -59,7 +59,7 @@ def run(scene: sc.Scene, steps: int) -> tuple[sc.Deviation, float]:
     clock: list[float] = []
     x, q = [], []
     began = time.process_time()
-    # it may give up and begin anew
+    # MuJoCo resets an unstable simulation to time 0
     while state.time < until and (not clock or state.time > clock[-1]):
         clock.append(state.time)
         x.append(state.qpos[:3].copy())
@@ -67,12 +67,12 @@ def run(scene: sc.Scene, steps: int) -> tuple[sc.Deviation, float]:
         mujoco.mj_step(model, state)
     took = time.process_time() - began
     some = np.unique(np.linspace(0, len(clock) - 1, 2001).astype(int))
-    told = (np.array(column)[some] for column in (clock, x, q))
-    return scene.compare(*told, scalar_first=True), took
+    few = (np.array(column)[some] for column in (clock, x, q))
+    return scene.compare(*few, scalar_first=True), took
 
 
 def rows(name: str, scene: sc.Scene) -> list[list[str]]:
-    """The table's rows of one scene."""
+    """Rows of the table for one scene."""
     m, found = scene.motion, []
     blows = scene.data["expected"]["impacts"]
     first = blows[0]["time"] if blows else np.inf
@@ -92,10 +92,9 @@ def rows(name: str, scene: sc.Scene) -> list[list[str]]:
     began = time.process_time()
     m.at(np.linspace(m.t[0], m.t[-1], 2001))
     took = time.process_time() - began
-    claim = (
-        f"{len(blows)} blows, claims {scene.data['error']['position'] * 1000:.0e} mm"
-    )
-    found.append([name, f"spincyl, {claim}", "", "", "", f"{1e3 * took:.1f} ms"])
+    error = f"estimated error {scene.data['error']['position'] * 1000:.0e} mm"
+    solver = f"spincyl, {len(blows)} blows, {error}"
+    found.append([name, solver, "", "", "", f"{1e3 * took:.1f} ms"])
     return found
 
 
@@ -104,7 +103,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--docs", metavar="PAGE", help="put the table into a page")
+    parser.add_argument("--docs", metavar="PAGE", help="write the table into a page")
     args = parser.parse_args()
     head = [
         "scene",
