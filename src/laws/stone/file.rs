@@ -1,4 +1,4 @@
-//! A stone in a file: its numbers in natural units, which make a stone again only if they are those of one.
+//! A stone in a file: its numbers in natural units, which are checked when the file is read.
 
 use super::Ellipsoid;
 use crate::error::{Error, within};

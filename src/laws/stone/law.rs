@@ -8,18 +8,18 @@
 //!        B = r x (I^-1 (w x I w)) + w x (r' + w x r),   N (1 + (I^-1 (r x f)) x r . n) = 1 - B.n
 //!        u' = F - n + w' x r + w x (r' + w x r)   in the laboratory;   heat' = mu N |u|, c N u^2
 //! patch  f = n - mu f(k) e,  and the couple -mu N eps g(k) sgn(w.n) n;   r x f in N and w' includes this couple over N
-//! held   w' has the couple M n with (w.n)' = w'.n = 0                       where static friction stops the drilling
+//! held   w' has the couple M n with (w.n)' = w'.n = 0                       if static friction stops the drilling
 //! losses   the couple m = m0 + N mN on the right side of w', and N from it:   P = -m.w,   (E + heat)' = -P
 //! E      = (w.I w + v^2)/2 - r.n,   v = u - w x r
 //! ```
-//! Vectors stand along the axes of the ellipsoid: n is the vertical, r leads from the centre of mass to the contact
-//! point, w is the angular velocity, u the slip of the contact point, and v the velocity of the centre of mass. D has the
-//! squares of the semi-axes, I is the tensor of inertia about the centre of mass, and d leads from the centre of the
-//! ellipsoid to the centre of mass. These are Newton's and Euler's equations with the force of the contact eliminated
+//! Vectors have components along the axes of the ellipsoid: n is the vertical, r leads from the centre of mass to the
+//! contact point, w is the angular velocity, u the slip of the contact point, and v the velocity of the centre of mass. D
+//! is the diagonal matrix of the squared semi-axes, I the tensor of inertia about the centre of mass, and d leads from the
+//! centre of the ellipsoid to the centre of mass. These are Newton's and Euler's equations with the contact force eliminated
 //! (Kane and Levinson 1982 for rolling); the slip is that of [`contact::slip`](crate::laws::contact::slip).
 //!
-//! Error: a few roundings of the terms written above; `tests/laws/stone.rs` checks it, with references of 25
-//! digits from equations in the laboratory.
+//! Error: a few roundings of the terms above; `tests/laws/stone.rs` checks it against references of 25 digits,
+//! from equations in the laboratory frame.
 
 use crate::laws::body::Rim;
 use crate::laws::contact::JAMMED;
@@ -37,7 +37,7 @@ pub(crate) struct StoneLaw<T> {
     pub inertia: Symmetric<T>,
     inverse: Symmetric<T>,
     offset: [T; 3],
-    /// The coefficient of friction: mu, or c of a viscous film.
+    /// The coefficient of friction: mu, or c for a viscous film.
     pub strength: T,
     /// The speed of slip below which the variable sigma differs much from time.
     pub soft: T,
@@ -45,11 +45,11 @@ pub(crate) struct StoneLaw<T> {
     pub dry: bool,
     /// The radius of the patch of contact; None for a point.
     radius: Option<T>,
-    /// The losses beside friction; None if the stone has none.
+    /// The losses in addition to friction; None if the stone has none.
     pub losses: Option<Couples<T>>,
 }
 
-/// The place of the contact point, and its change in time, along the axes of the body.
+/// The position of the contact point and its derivative, along the axes of the body.
 #[derive(Clone, Copy)]
 pub(crate) struct Touching<T> {
     pub n: [T; 3],
@@ -57,7 +57,7 @@ pub(crate) struct Touching<T> {
     pub r_rate: [T; 3],
     /// The couple of the losses; None if there are none.
     pub lost: Option<Couple<T>>,
-    /// Whether dry friction holds the drilling at zero.
+    /// True if dry friction holds the drilling w.n at zero.
     pub holds: bool,
 }
 
@@ -67,12 +67,12 @@ pub(crate) struct StoneResponse<T> {
     pub w: [T; 3],
     /// The contact force along the axes of the body.
     pub force: [T; 3],
-    /// The normal force N without friction, times a positive factor; the stone lifts off where this number
-    /// vanishes.
+    /// The normal force N without friction, times a positive factor; the stone lifts off when this number
+    /// becomes zero.
     pub free: T,
-    /// The factor of N minus [`JAMMED`]; where this number vanishes no unique force exists.
+    /// The factor of N minus [`JAMMED`]; no unique force exists when this number is zero or less.
     pub room: T,
-    /// The couple of a patch about the vertical, or the one that holds the drilling.
+    /// The couple about the vertical: that of a patch, or the one that holds the drilling.
     pub couple: T,
 }
 
@@ -87,23 +87,23 @@ impl<T: Real> StoneLaw<T> {
         Self { squares, inertia, inverse, offset, strength, soft, dry, radius: None, losses: None }
     }
 
-    /// The same stone on a patch of this radius.
+    /// Returns this law for a patch of this radius.
     pub fn with_patch(self, radius: Option<T>) -> Self {
         Self { radius, ..self }
     }
 
-    /// The radius of the patch of contact; None for a point, which is all that a page knows.
+    /// The radius of the patch of contact; None for a point. The code for web pages has no patches.
     #[inline(always)]
     pub fn patch(&self) -> Option<T> {
         if SHORT_CODE { None } else { self.radius }
     }
 
-    /// The same stone with losses.
+    /// Returns this law with losses.
     pub fn with_losses(self, losses: Option<Couples<T>>) -> Self {
         Self { losses, ..self }
     }
 
-    /// The same law with numbers of another type.
+    /// Returns this law with numbers of another type.
     pub fn map<U: Real>(&self, f: impl Fn(T) -> U) -> StoneLaw<U> {
         let &Self { squares, inertia, offset, strength, dry, .. } = self;
         StoneLaw::new(squares.map(&f), Symmetric(inertia.0.map(&f)), offset.map(&f), f(strength), dry)
@@ -111,7 +111,7 @@ impl<T: Real> StoneLaw<T> {
             .with_losses(self.losses.as_ref().map(|losses| losses.map(&f)))
     }
 
-    /// The contact point of a stone with the vertical `n`, which turns with `w`.
+    /// The contact point of a stone with the vertical `n` and the angular velocity `w`.
     #[inline(always)]
     pub fn touching(&self, n: [T; 3], w: [T; 3]) -> Touching<T> {
         let by = |v: [T; 3]| [self.squares[0] * v[0], self.squares[1] * v[1], self.squares[2] * v[2]];
@@ -124,8 +124,8 @@ impl<T: Real> StoneLaw<T> {
         Touching { n, r, r_rate, lost: None, holds: false }
     }
 
-    /// What the laws of loss see of a stone that turns with `w`: a disk that stands upright, whose e1 is the vertical, and
-    /// whose e2 and e3 are the axes x and y of the laboratory.
+    /// The arguments of the laws of loss for a stone with the angular velocity `w`: those of an upright disk, whose e1 is
+    /// the vertical, and whose e2 and e3 are the axes x and y of the laboratory.
     #[inline(always)]
     pub fn kinematics(losses: &Couples<T>, lab: &[[T; 3]; 3], w: [T; 3]) -> Kinematics<T> {
         let (zero, one) = (w[0].splat(0.0), w[0].splat(1.0));
@@ -133,7 +133,7 @@ impl<T: Real> StoneLaw<T> {
         losses.seen(&Rim { ell: zero, a: one, rho: zero }, (one, zero), z, [z, x, y])
     }
 
-    /// The same contact point, with the couple of the losses.
+    /// Returns this contact point with the couple of the losses.
     #[inline(always)]
     pub fn losing(&self, at: Touching<T>, lab: &[[T; 3]; 3], w: [T; 3]) -> Touching<T> {
         let Some(losses) = &self.losses else { return at };
@@ -143,13 +143,13 @@ impl<T: Real> StoneLaw<T> {
         Touching { lost: Some(lost), holds: losses.holds_drilling(), ..at }
     }
 
-    /// The response of a stone whose contact point rests. The force is computed only if it is used.
+    /// The response of a stone that rolls without slip. The compiler drops the force if it is not used.
     #[inline(always)]
     pub fn rolling(&self, at: &Touching<T>, w: [T; 3]) -> StoneResponse<T> {
         self.resting(at, w, at.holds)
     }
 
-    /// The response of a stone whose contact point rests, and whose drilling w.n a couple keeps if it is `held`.
+    /// The response of a stone that rolls without slip. If `held`, a couple keeps its drilling w.n constant.
     #[inline(always)]
     pub fn resting(&self, at: &Touching<T>, w: [T; 3], held: bool) -> StoneResponse<T> {
         let &Touching { n, r, r_rate, lost, .. } = at;
@@ -184,7 +184,7 @@ impl<T: Real> StoneLaw<T> {
                 turned = plus(turned, twist, gives);
             }
             let factor = one + dot(cross(turned, r), n);
-            // After a lift-off no force presses the stone on the table.
+            // After a lift-off the normal force is zero.
             let normal = ((one - dot(plus(carried, one, cross(dw, r)), n)) / factor).max(one.splat(0.0));
             (dw, kept) = (plus(dw, normal, turned), normal.mac(twist, kept));
             room = factor - one.splat(JAMMED);
@@ -199,7 +199,7 @@ impl<T: Real> StoneLaw<T> {
         self.twisted(at, w, pull, None)
     }
 
-    /// The response to this friction force, and to a couple `twist` N about the vertical.
+    /// The response to the friction force -strength N `pull` and to a couple `twist` N about the vertical.
     #[inline(always)]
     fn twisted(&self, at: &Touching<T>, w: [T; 3], pull: [T; 3], twist: Option<T>) -> StoneResponse<T> {
         let &Touching { n, r, r_rate, .. } = at;
@@ -234,7 +234,7 @@ impl<T: Real> StoneLaw<T> {
         }
     }
 
-    /// This change of w with a couple about the vertical that keeps the drilling, and this couple.
+    /// Adds to a derivative of w that of a couple which keeps the drilling w.n constant; also returns this couple.
     fn without_drilling(&self, n: [T; 3], turn: [T; 3]) -> ([T; 3], T) {
         let gives = self.inverse.times(n);
         let kept = -(dot(turn, n) / dot(gives, n));
@@ -256,7 +256,7 @@ impl<T: Real> StoneLaw<T> {
         (self.pulled(at, w, u.map(|x| x * per)), speed / (speed + self.soft))
     }
 
-    /// The same on a patch of contact.
+    /// The response of a stone that slips on a patch of contact; also dt/dsigma.
     #[inline(never)]
     fn on_patch(&self, at: &Touching<T>, w: [T; 3], u: [T; 3], patch: T) -> (StoneResponse<T>, T) {
         let [share, twist, size] = rubs(dot(u, u).sqrt(), dot(w, at.n), patch);
@@ -264,7 +264,7 @@ impl<T: Real> StoneLaw<T> {
         (to, size / (size + self.soft))
     }
 
-    /// The rate of the slip in the laboratory, along the axes of the body.
+    /// The derivative of the slip in the laboratory frame, with components along the axes of the body.
     #[inline(always)]
     pub fn slip_rate(&self, at: &Touching<T>, w: [T; 3], to: &StoneResponse<T>) -> [T; 3] {
         let &Touching { n, r, r_rate, .. } = at;
@@ -284,15 +284,15 @@ impl<T: Real> StoneLaw<T> {
         cross(if at.holds { self.without_drilling(at.n, turned).0 } else { turned }, at.r)
     }
 
-    /// Kinetic and potential energy of a stone whose contact point has the velocity `u`, with heights above the table.
+    /// Kinetic and potential energy of a stone whose contact point has the velocity `u`; heights are above the table.
     pub fn energy(&self, at: &Touching<T>, w: [T; 3], u: [T; 3]) -> T {
         let v = plus(u, -u[0].splat(1.0), cross(w, at.r));
         w[0].splat(0.5) * (dot(w, self.inertia.times(w)) + dot(v, v)) - dot(at.r, at.n)
     }
 }
 
-/// The axes of the laboratory, the third of which is the vertical, along those of a body with the unit
-/// quaternion (w, x, y, z).
+/// The axes of the laboratory, of which the third is the vertical, in components along the axes of a body with the
+/// unit quaternion (w, x, y, z).
 #[inline(always)]
 pub(crate) fn laboratory<T: Real>([w, x, y, z]: [T; 4]) -> [[T; 3]; 3] {
     let (ww, xx, yy, zz) = (w * w, x * x, y * y, z * z);
@@ -304,7 +304,7 @@ pub(crate) fn laboratory<T: Real>([w, x, y, z]: [T; 4]) -> [[T; 3]; 3] {
     ]
 }
 
-/// The rate of the unit quaternion of a body with the angular velocity `v` along its own axes.
+/// The derivative of the unit quaternion of a body with the angular velocity (a, b, c) along its own axes.
 #[inline(always)]
 pub(crate) fn turning<T: Real>([w, x, y, z]: [T; 4], [a, b, c]: [T; 3]) -> [T; 4] {
     let half = w.splat(0.5);
@@ -316,7 +316,7 @@ pub(crate) fn turning<T: Real>([w, x, y, z]: [T; 4], [a, b, c]: [T; 3]) -> [T; 4
     ]
 }
 
-/// The horizontal vector with these components in the laboratory, along the axes of the body.
+/// The horizontal vector with the components (a, b) in the laboratory, in components along the axes of the body.
 #[inline(always)]
 pub(crate) fn across<T: Real>(lab: &[[T; 3]; 3], [a, b]: [T; 2]) -> [T; 3] {
     plus(lab[0].map(|x| x * a), b, lab[1])

@@ -3,7 +3,7 @@
 //! ```text
 //! D = diag(a1^2, a2^2, a3^2),   I = (i11, i22, i33, i23, i13, i12),   d = centre of mass - centre of the ellipsoid
 //! uniform    I = diag(a2^2 + a3^2, a3^2 + a1^2, a1^2 + a2^2)/5
-//! half       the lower half of it: d = (0, 0, -3 a3/8), the moments about d, and an edge that lands at pi/2
+//! half       the lower half of an ellipsoid: d = (0, 0, -3 a3/8), moments about d, and an edge that lands at pi/2
 //! theta      the inclination of axis 3, cos theta = n3
 //! ```
 //! Natural units: the mass, the largest semi-axis and gravity are 1. An ellipsoid is not a
@@ -24,7 +24,8 @@ use core::f64::consts::{FRAC_PI_2, PI};
 use law::StoneLaw;
 pub use state::{StonePose, StoneState};
 
-/// An ellipsoid with any inertia. If it has an edge, the edge lands at the inclination `theta_end` of axis 3.
+/// A stone: an ellipsoid with any inertia. If the stone has an edge, the edge lands at the inclination `theta_end` of
+/// axis 3.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -45,13 +46,13 @@ const AXES: (f64, f64) = (1e-30, 1e30);
 const ROUNDED: f64 = 1e-12;
 
 impl Ellipsoid {
-    /// An ellipsoid with these semi-axes, this tensor of inertia about its centre of mass, per mass, and this offset of
+    /// Makes an ellipsoid from its semi-axes, its tensor of inertia about the centre of mass, per mass, and the offset of
     /// the centre of mass from the centre of the ellipsoid, all in one unit of length. The largest semi-axis becomes the
     /// unit of the body.
     ///
     /// Errors: `OutOfRange` for semi-axes outside `[1e-30, 1e30]` or in a ratio above 1e6, for a tensor that is not
-    /// symmetric, and for a centre of mass outside; `Inertia` for principal moments that no body has, of which each is
-    /// positive and at most the sum of the two others.
+    /// symmetric, and for a centre of mass outside the ellipsoid; `Inertia` for impossible principal moments (each has to
+    /// be positive and at most the sum of the two others).
     pub fn new(axes: [f64; 3], inertia: [[f64; 3]; 3], offset: [f64; 3]) -> Result<Self, Error> {
         let stone = Self::shaped(axes, inertia, offset)?;
         stone.checked(stone.moments())
@@ -82,14 +83,14 @@ impl Ellipsoid {
                 "inertia",
                 (a - b).abs(),
                 (0.0, most),
-                "a symmetric tensor, and two elements differ by this",
+                "a symmetric tensor; two of its elements differ by this value",
             )?;
         }
         let inertia = Symmetric([i[0][0], i[1][1], i[2][2], i[1][2], i[0][2], i[0][1]]);
         Ok(Self { axes, inertia, offset, theta_end: PI, unit })
     }
 
-    /// Returns an error for principal moments that no body has.
+    /// Returns an error for impossible principal moments.
     fn checked(self, moments: [f64; 3]) -> Result<Self, Error> {
         let [a, b, c] = moments;
         let (least, most, square) = (a.min(b).min(c), a.max(b).max(c), self.unit * self.unit);
@@ -102,9 +103,9 @@ impl Ellipsoid {
         Self::turned(axes, uniform(axes), 0.0, [0.0; 3])
     }
 
-    /// A rattleback with these semi-axes: principal moments per mass about the centre of mass, whose axes are turned by
-    /// `twist` (radians) about axis 3 from the axes of the ellipsoid, counterclockwise as seen from above. Without moments
-    /// the stone is the lower half of a uniform ellipsoid, with its edge at the height of its centre.
+    /// A rattleback with these semi-axes and these principal moments per mass about the centre of mass. The principal axes
+    /// are turned by `twist` (radians) about axis 3 from the axes of the ellipsoid, counterclockwise as seen from above.
+    /// Without moments the stone is the lower half of a uniform ellipsoid, with its edge at the height of its centre.
     pub fn rattleback(
         axes: [f64; 3],
         moments: Option<[f64; 3]>,
@@ -134,7 +135,7 @@ impl Ellipsoid {
         within("twist", twist, (-1e6, 1e6), "an angle in radians")?;
         let (s, co) = twist.sin_cos();
         let mut across = (a - b) * s * co;
-        // A twist by a quarter or half of a turn is none; only rounding is left.
+        // A twist by a quarter or half of a turn leaves only rounding errors here.
         if across.abs() <= 4.0 * f64::EPSILON * (a - b).abs() {
             across = 0.0;
         }
@@ -143,9 +144,9 @@ impl Ellipsoid {
         stone.checked([a, b, c].map(|x| x / (stone.unit * stone.unit)))
     }
 
-    /// How far out the mass of the stone lies: the mean of `sum (x_i/a_i)^2` over its mass, with x counted from the centre
-    /// of the ellipsoid. It is 3/5 of a uniform ellipsoid, 1 of a thin shell, and at most 1 of any mass within the
-    /// ellipsoid; moments for which it is larger need mass outside.
+    /// How far out the mass of the stone lies: the mean of `sum (x_i/a_i)^2` over its mass, where x is counted from the
+    /// centre of the ellipsoid. The mean is 3/5 for a uniform ellipsoid, 1 for a thin shell, and at most 1 if all mass is
+    /// within the ellipsoid; moments with a larger mean need mass outside.
     pub fn reach(&self) -> f64 {
         let [a, b, c, ..] = self.inertia.0;
         let spread = [b + c - a, a + c - b, a + b - c].map(|x| 0.5 * x);
@@ -153,7 +154,7 @@ impl Ellipsoid {
         squares.map(|((spread, d), a)| (spread + d * d) / (a * a)).sum()
     }
 
-    /// The same stone with an edge that lands where axis 3 leans by `theta_end` in (0, pi], radians.
+    /// Returns this stone with an edge that lands at the inclination `theta_end` of axis 3, in (0, pi], radians.
     pub fn with_theta_end(self, theta_end: f64) -> Result<Self, Error> {
         within("theta_end", theta_end, (1e-6, PI), "1e-6 <= theta_end <= pi (radians)")?;
         Ok(Self { theta_end, ..self })
@@ -163,13 +164,13 @@ impl Ellipsoid {
     pub const NAMES: [&str; 13] =
         ["a1", "a2", "a3", "i11", "i22", "i33", "i23", "i13", "i12", "d1", "d2", "d3", "theta_end"];
 
-    /// The stone with these numbers: its semi-axes, its moments 11, 22, 33, 23, 13 and 12, its offset, and theta_end, NaN
+    /// Makes a stone from its numbers: semi-axes, moments 11, 22, 33, 23, 13 and 12, offset, and theta_end, which is NaN
     /// without an edge. Errors: those of [`new`](Self::new).
     pub fn of_numbers([a, b, c, i, j, k, l, m, n, x, y, z, end]: [f64; 13]) -> Result<Self, Error> {
         Self::new([a, b, c], [[i, n, m], [n, j, l], [m, l, k]], [x, y, z])?.with_edge(end)
     }
 
-    /// The same stone with an edge, or without one for NaN.
+    /// Returns this stone with an edge, or without an edge if `theta_end` is NaN.
     pub(crate) fn with_edge(self, theta_end: f64) -> Result<Self, Error> {
         if theta_end.is_nan() { Ok(self) } else { self.with_theta_end(theta_end) }
     }
@@ -180,7 +181,7 @@ impl Ellipsoid {
         [a, b, c, i, j, k, l, m, n, x, y, z, if self.theta_end < PI { self.theta_end } else { f64::NAN }]
     }
 
-    /// The semi-axes, of which the largest is 1.
+    /// The semi-axes; the largest is 1.
     pub fn axes(&self) -> [f64; 3] {
         self.axes
     }
@@ -214,31 +215,31 @@ impl Ellipsoid {
         moments
     }
 
-    /// The state of [`StoneState::spinning`], whatever the stone.
+    /// The state of [`StoneState::spinning`]; it does not depend on the stone.
     pub fn spinning(&self, spin: f64, pitch: f64, roll: f64) -> StoneState {
         StoneState::spinning(spin, pitch, roll)
     }
 
-    /// The lowest point where this unit vector points upward, counted from the centre of mass.
+    /// The lowest point of the stone, counted from the centre of mass, if this unit vector points upward.
     pub fn lowest_point(&self, vertical: [f64; 3]) -> [f64; 3] {
         self.law(0.0, false).touching(vertical, [0.0; 3]).r
     }
 
-    /// The slip of the contact point, where `centre` is the horizontal velocity of the centre of mass: both along the axes
-    /// x and y of the laboratory in which the stone has turned from upright by the smallest angle.
+    /// The slip of the contact point if the centre of mass has the horizontal velocity `centre`. Both are along the axes x
+    /// and y of the laboratory in which the stone is turned from upright by the smallest angle.
     pub fn slip(&self, y: &StoneState, centre: [f64; 2]) -> [f64; 2] {
         let lab = law::laboratory(y.orientation());
         let turned = cross(y.w, self.lowest_point(y.vertical));
         core::array::from_fn(|i| centre[i] + dot(lab[i], turned))
     }
 
-    /// Kinetic and potential energy in M g a, of a stone whose contact point rests (or on a smooth table,
-    /// whose centre of mass has no horizontal velocity), with heights above the table.
+    /// Kinetic and potential energy in M g a of a stone that rolls without slip, or if `smooth` of a stone whose centre
+    /// of mass has no horizontal velocity. Heights are above the table.
     pub fn energy(&self, y: &StoneState, smooth: bool) -> f64 {
         self.energy_slipping(y, [0.0; 2], smooth)
     }
 
-    /// The energy of a stone whose contact point slips with `slip`.
+    /// The energy of a stone whose contact point has the slip `slip`.
     pub(crate) fn energy_slipping(&self, y: &StoneState, slip: [f64; 2], smooth: bool) -> f64 {
         let law = self.law(0.0, false);
         let at = law.touching(y.vertical, y.w);

@@ -7,15 +7,15 @@ use nalgebra::{Point2, Quaternion, UnitQuaternion};
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct StoneState {
-    /// The unit vector that points upward.
+    /// The vertical: the unit vector that points upward.
     pub vertical: [f64; 3],
     /// The angular velocity.
     pub w: [f64; 3],
 }
 
 impl StoneState {
-    /// A nearly upright state that spins about the vertical: the vertical is turned about axis 2 by `pitch`
-    /// and then about axis 1 by `roll` (radians).
+    /// The state of a nearly upright stone that spins about the vertical with `spin`. The stone is turned from
+    /// upright about axis 2 by `pitch` and about axis 1 by `roll` (radians).
     pub fn spinning(spin: f64, pitch: f64, roll: f64) -> Self {
         let ((sp, cp), (sr, cr)) = (pitch.sin_cos(), roll.sin_cos());
         let vertical = [-sp, cp * sr, cp * cr];
@@ -39,15 +39,15 @@ impl StoneState {
         [y.hypot(z).atan2(x), z.hypot(x).atan2(y), x.hypot(y).atan2(z)]
     }
 
-    /// The initial orientation: the smallest turn from upright that gives this vertical, as a quaternion (w,
-    /// x, y, z). Upside down it is a half turn about axis 1.
+    /// The initial orientation: the smallest rotation from upright that gives this vertical, as a quaternion (w,
+    /// x, y, z). For a stone upside down this is a half turn about axis 1.
     pub(crate) fn orientation(&self) -> [f64; 4] {
         let [x, y, z] = self.vertical;
         let across = x.hypot(y);
         if across == 0.0 {
             return if z > 0.0 { [1.0, 0.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0, 0.0] };
         }
-        // The turn takes the vertical, by the shortest way, to axis 3 of the laboratory.
+        // The rotation takes the vertical, by the shortest way, to axis 3 of the laboratory.
         let (sin, cos) = (0.5 * across.atan2(z)).sin_cos();
         [cos, sin * y / across, -sin * x / across, 0.0]
     }
@@ -57,9 +57,9 @@ impl StoneState {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct StonePose {
-    /// The turn from the axes of the ellipsoid to those of the laboratory.
+    /// The rotation from the axes of the ellipsoid to those of the laboratory.
     pub orientation: UnitQuaternion<f64>,
-    /// The contact point on the table; it starts at the origin.
+    /// The contact point on the table; at first it is at the origin.
     pub contact_point: Point2<f64>,
     /// The centre of mass.
     pub centre: [f64; 3],
