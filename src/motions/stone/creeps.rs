@@ -2,12 +2,12 @@
 //!
 //! ```text
 //! |M| <= mu_s N eps g(k),   f(k) = F/(mu_s N)                            holds the drilling
-//! |w.n| = 2 DRILLS, or F = mu N                                          slips, with the slip of its creep
+//! |w.n| = 2 DRILLS, or F = mu N                                          begins to slip, with the slip of the creep
 //! ```
-//! [`creep`](crate::motions::creep) has the creep. Where the drilling passes zero the stone rolls through that moment, as a body of revolution does
-//! ([`lossy`](crate::motions::path::lossy)); the couple, which acts for so short a time, is left out.
+//! [`creep`](crate::motions::creep) computes the creep. When the drilling passes zero, the stone rolls through that moment, as a
+//! body of revolution does ([`lossy`](crate::motions::path::lossy)); the couple acts only for a short time and is left out.
 //!
-//! Error: the slip that is left out, DRILLS eps at most, and the couple times the time that DRILLS takes.
+//! Error: the slip that is left out, at most DRILLS eps, and the couple times the time in which w.n passes DRILLS.
 
 use super::flow::{HOLD, STONE_MARGINS, Seen, StoneFlow, Touch, slip_of};
 use crate::laws::contact::patch;
@@ -22,11 +22,11 @@ use nalgebra::SMatrix;
 
 /// The number of numbers that react to each other: the quaternion, w, the time and u.
 const STONE_REACTING: usize = 10;
-/// A coefficient of static friction beyond this counts as this, since a couple of 0 infinities would be NaN.
+/// Largest coefficient of static friction in a couple; an infinite one times zero would be NaN.
 const STICKY: f64 = 1e9;
 
 impl StoneFlow<'_> {
-    /// The speed of the slip, and that of the rim of the patch by the drilling.
+    /// The speed of the slip, and the speed of the rim of the patch from the drilling.
     pub(super) fn rubs<const N: usize>(&self, y: &[f64; N]) -> f64 {
         let [u, v] = slip_of(y);
         u.hypot(v) + self.law.patch().map_or(0.0, |patch| patch * self.drilling(y).abs())
@@ -36,7 +36,7 @@ impl StoneFlow<'_> {
         dot(self.seen_at(y).at.n, [y[4], y[5], y[6]])
     }
 
-    /// How fast the patch rubs, with slopes in sigma; None for a point, and for a contact point that rests.
+    /// The speeds of the patch, with slopes in sigma; None for a point, and if the contact point is at rest.
     fn rubbing<const N: usize>(&self, place: &FlowPlace<N>) -> Option<Rubbing<Dual<f64>>> {
         let radius = self.sloped.patch().filter(|_| self.touch == Touch::Slips)?;
         let [a, b, c, d, e, f, g, _, u, v] =
@@ -44,7 +44,7 @@ impl StoneFlow<'_> {
         Some(Rubbing::of([u, v], dot(laboratory([a, b, c, d])[2], [e, f, g]), radius))
     }
 
-    /// The halt of a patch that neither slips nor drills any more.
+    /// The end of the phase when the patch neither slips nor drills any more.
     #[inline(never)]
     pub(super) fn hardly_rubs<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
         let (radius, rubbing) = (self.law.patch()?, self.rubbing(place)?);
@@ -54,7 +54,7 @@ impl StoneFlow<'_> {
         rubbing.comes_to_rest(radius).then(|| (Halt::Standstill, self.kept(rests)))
     }
 
-    /// The margins of a stone on a patch, whose contact point rests only as long as the patch does not drill. `grips` is
+    /// The margins of a stone on a patch. The contact point is at rest only as long as the patch does not drill. `grips` is
     /// the couple per normal force that can hold the drilling; its derivative is left out.
     #[inline(always)]
     pub(super) fn on_patch<T: Real>(
@@ -76,12 +76,12 @@ impl StoneFlow<'_> {
         margins
     }
 
-    /// Whether the contact point rests on a patch that is not held.
+    /// True if the contact point is at rest on a patch that is not held.
     fn may_drill(&self) -> bool {
         self.law.patch().is_some() && self.touch == Touch::Rolls && self.watch
     }
 
-    /// The couple per normal force that can hold the drilling beside the force of these numbers; 0 if nothing is held.
+    /// The couple per normal force that can hold the drilling together with the contact force; 0 if nothing is held.
     pub(super) fn grips<const N: usize>(&self, y: &[f64; N]) -> f64 {
         let Some(radius) = self.law.patch().filter(|_| self.touch == Touch::Held) else { return 0.0 };
         let Seen { at, to, .. } = self.seen_at(y);
@@ -90,7 +90,7 @@ impl StoneFlow<'_> {
         mu * radius * patch::of(patch::slip_for(share.min(1.0)))[1]
     }
 
-    /// The same flow of a stone whose contact point rests: held, if friction holds the drilling.
+    /// Returns the flow of the stone with its contact point at rest: held, if friction holds the drilling.
     pub(super) fn resting<const N: usize>(&self, y: &[f64; N]) -> Self {
         let held = Self { touch: Touch::Held, ..*self };
         let holds =
@@ -98,7 +98,7 @@ impl StoneFlow<'_> {
         if holds { held } else { Self { touch: Touch::Rolls, ..*self } }
     }
 
-    /// The slip of the creep of a stone that rolls here, in the laboratory; None if the stone hardly drills.
+    /// The slip, in the laboratory, of the creep of a rolling stone; None if the stone hardly drills.
     pub(super) fn creeps<const N: usize>(&self, y: &[f64; N]) -> Option<[f64; 2]> {
         let radius = self.law.patch()?;
         let Seen { lab, to, .. } = Self { touch: Touch::Rolls, ..*self }.seen_at(y);
@@ -112,7 +112,7 @@ impl StoneFlow<'_> {
         self.rubbing(place).map_or(f64::INFINITY, |rubbing| rubbing.longest(self.tol))
     }
 
-    /// Whether u follows the forces of rolling much faster than the stone turns.
+    /// True if u follows the forces of rolling much faster than the stone turns.
     #[inline(never)]
     pub(super) fn creeps_fast<const N: usize>(&self, place: &FlowPlace<N>) -> bool {
         self.touch == Touch::Slips && is_fast(place.rate[TIME], self.calm(&place.y))
@@ -131,7 +131,7 @@ impl StoneFlow<'_> {
         radau::step(|y, all| self.write_rates(y, all), y, &self.slopes(y), &sizes, (h, converged))
     }
 
-    /// The derivatives of the rates of the quaternion, of w and u by these numbers and the time.
+    /// The derivatives of the rates of the quaternion, of w and of u with respect to these numbers and the time.
     fn slopes<const N: usize>(&self, y: &[f64; N]) -> SMatrix<f64, STONE_REACTING, STONE_REACTING> {
         let mut all = SMatrix::zeros();
         for j in 0..STONE_REACTING {

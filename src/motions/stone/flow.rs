@@ -1,9 +1,9 @@
 //! The flow of a phase of a stone: its numbers, their rates, and the margins that end the phase.
 //!
 //! ```text
-//! y = (q, w, t; u_x, u_y, heat, x, y; lost)   N = 8 of a stone that rolls without a pose, 14 with losses, else 13
-//! dt = |u|/(|u| + soft) dsigma                while a contact point slips on a dry table, else dt = dsigma
-//! margins   cos theta - cos theta_end,  N,  (mu_s N)^2 - F^2 while it rolls, or the room of a slip,  and w.n or its hold
+//! y = (q, w, t; u_x, u_y, heat, x, y; lost)   N = 8 for a stone that rolls without a pose, 14 with losses, else 13
+//! dt = |u|/(|u| + soft) dsigma                if the contact point slips with dry friction, else dt = dsigma
+//! margins   cos theta - cos theta_end,  N,  (mu_s N)^2 - F^2 in rolling, or the room of a slip,  and w.n or its hold
 //! ```
 //! The quaternion q = (w, x, y, z) turns the axes of the ellipsoid to those of the laboratory; u is the slip
 //! and (x, y) the contact point on the table. Every step ends with a quaternion of length 1.
@@ -26,14 +26,14 @@ use nalgebra::Vector3;
 
 /// Number of margins of a stone.
 pub(super) const STONE_MARGINS: usize = 4;
-/// The numbers of a stone that rolls without a pose, of any other, and of one that loses energy.
+/// Count of numbers: of a stone that rolls without a pose, of any other stone, and of a stone with losses.
 pub(super) const WITHOUT_POSE: usize = 8;
 pub(super) const ALL: usize = 13;
 pub(super) const LOSING: usize = 14;
-/// A minimum of a margin is recorded if it is below this many tolerances of a step, since the errors of a
-/// motion that counts as known may reach it.
+/// A minimum of a margin is recorded if it is below this many tolerances of a step: the errors of a motion
+/// that counts as known may be that large.
 const NEAR_END: f64 = 1e7;
-/// Index of the margin of static friction, or in a slip of a unique contact force.
+/// Index of the margin of static friction; in a slip, that of a unique contact force.
 pub(super) const HOLD: usize = 2;
 
 /// Index of the margin of the drilling that dry friction resists or holds.
@@ -46,10 +46,10 @@ const ALMOST_NONE: f64 = 1e-150;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Touch {
     Rolls,
-    /// It rolls, and friction of the patch of contact holds the drilling at zero.
+    /// The stone rolls, and friction of the patch of contact holds the drilling at zero.
     Held,
     Slips,
-    /// The table is smooth, and the slip is not followed.
+    /// The table is smooth, and the slip is not computed.
     Smooth,
 }
 
@@ -69,13 +69,13 @@ pub(super) struct StoneFlow<'a> {
     pub stride: f64,
     /// Whether events other than a landing of the edge end the flow.
     pub watch: bool,
-    /// How fast rolling resistance changes w; 0 without any.
+    /// How fast rolling resistance changes w; 0 without rolling resistance.
     pub resisted: f64,
     /// The records of reversals and ends, in the finer run.
     pub recorded: Option<&'a RefCell<Recorded>>,
 }
 
-/// The axes of the laboratory, the contact point and the response of a stone with some numbers.
+/// The axes of the laboratory, the contact point and the response of a stone.
 pub(super) struct Seen<T> {
     pub lab: [[T; 3]; 3],
     pub at: Touching<T>,
@@ -85,7 +85,7 @@ pub(super) struct Seen<T> {
 }
 
 impl StoneFlow<'_> {
-    /// The response of a stone with these numbers, over plain numbers or numbers with a slope; `slip` is None if it is
+    /// The response of a stone with these numbers, for plain numbers or numbers with a slope; `slip` is None if it is
     /// not among the numbers.
     #[inline(always)]
     pub(super) fn seen<T: Real, const N: usize>(
@@ -143,7 +143,7 @@ impl StoneFlow<'_> {
         [edge, seen.to.free, hold, drilling]
     }
 
-    /// Whether the contact point rests on the table.
+    /// True if the contact point is at rest.
     #[inline(always)]
     pub fn rests(&self) -> bool {
         matches!(self.touch, Touch::Rolls | Touch::Held)
@@ -154,7 +154,7 @@ impl StoneFlow<'_> {
         self.law.patch().map_or(slip_over(self.law.dry, self.law.strength), rests_below)
     }
 
-    /// The margins at some numbers.
+    /// The margins at these numbers.
     pub fn margins_at<const N: usize>(&self, y: &[f64; N]) -> [f64; STONE_MARGINS] {
         let (seen, w) = (self.seen_at(y), [y[4], y[5], y[6]]);
         self.on_patch(self.margins_of::<_, N>(&self.law, &seen, w), (&seen, w), self.grips(y))
@@ -188,14 +188,14 @@ impl StoneFlow<'_> {
         self.kept(to)
     }
 
-    /// The contact force along the axes of the laboratory. Where a dry slip only begins, with u = 0, friction
-    /// acts against the direction `way` in which it begins.
+    /// The contact force along the axes of the laboratory. If a dry slip is just beginning, with u = 0, friction
+    /// acts against its direction `way`.
     pub fn force<const N: usize>(&self, y: &[f64; N], way: [f64; 2]) -> Vector3<f64> {
         let Seen { lab, to, .. } = self.seen_towards(y, way);
         lab.map(|axis| dot(axis, to.force)).into()
     }
 
-    /// The orientation, the contact point and the centre of mass; `still` is the centre on a smooth table.
+    /// The orientation, the contact point and the centre of mass; `still` is the centre of mass on a smooth table.
     pub fn pose<const N: usize>(&self, y: &[f64; N], still: [f64; 2]) -> StonePose {
         let Seen { lab, at, .. } = self.seen_at(y);
         let [x, y_r, z] = lab.map(|axis| -dot(axis, at.r));
@@ -210,20 +210,20 @@ pub(super) fn state<const N: usize>(y: &[f64; N]) -> StoneState {
     StoneState { vertical: laboratory([a, b, c, d])[2], w: [y[4], y[5], y[6]] }
 }
 
-/// The spin with these numbers and rates.
+/// The spin from these numbers and their rates.
 pub(super) fn spot<const N: usize>(y: &[f64; N], rate: &[f64; N]) -> Spot {
     let [a, b, c, d, e, f, g] = core::array::from_fn(|i| Dual { value: y[i], slope: rate[i] / rate[TIME] });
     Spot { t: y[TIME], spin: dot(laboratory([a, b, c, d])[2], [e, f, g]) }
 }
 
-/// The slip among the numbers; zero for a stone without one.
+/// The slip among these numbers; zero if they have none.
 #[inline(always)]
 pub(super) fn slip_of<const N: usize>(y: &[f64; N]) -> [f64; 2] {
     if N >= ALL { [y[8], y[9]] } else { [0.0; 2] }
 }
 
 /// The slip in the outputs: its components in the laboratory frame in which the stone has the orientation of
-/// a start with its vertical. So the state and the slip of an output can be a start.
+/// an initial state with this vertical. So the state and the slip of an output can start another motion.
 pub(super) fn output_slip<const N: usize>(y: &[f64; N]) -> [f64; 2] {
     let slip = slip_of(y);
     if slip == [0.0; 2] {
@@ -352,7 +352,7 @@ impl Flow<STONE_MARGINS> for StoneFlow<'_> {
         self.creeps_on(from, h)
     }
 
-    /// The halt of an almost vanished slip, extrapolated linearly to u = 0.
+    /// The end of a slip that is almost zero, extrapolated linearly to u = 0.
     fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
         if loses(N)
             && let Some(rests) = self.rolls_no_more(place)
@@ -421,7 +421,7 @@ impl Flow<STONE_MARGINS> for StoneFlow<'_> {
     }
 
     fn grazed<const N: usize>(&self, y: &[f64; N], i: usize, margin: f64) {
-        // A slip that is missed where static friction only just holds would be too short to matter.
+        // If static friction only just holds, a slip that is missed would be too short to matter.
         if let Some(recorded) = self.recorded
             && margin < NEAR_END * self.tol * self.fastest(y)
             && !(self.rests() && self.law.dry && i == HOLD || i == DRILLING)

@@ -1,14 +1,14 @@
 //! The time up to which the motion of a stone is known, and whether its ends are certain.
 //!
 //! ```text
-//! known     while the claimed error is at most 1 % of the largest speed, or 0.01 for slow motions; where
+//! known     while the estimated error is at most 1 % of the largest speed, or 0.01 for slow motions; if
 //!           reversals of the spin are counted, also at most the spin that completes a reversal
 //! room      |margin|/sum |d margin/dy_i|: change of each number of the state that can bring a margin to zero
-//! certain   an end, or a minimum of a margin close to zero, whose room is at least four claimed errors
+//! certain   an end, or a minimum of a margin close to zero, whose room is at least four estimated errors
 //! ```
 //! The energy is the only first integral of a stone, and errors grow like any disturbance: a rattleback
-//! forgets its start within a minute. If the error claimed for the whole motion is too large to decide, the
-//! motion is computed again with the same steps and more outputs, and an error is claimed up to each output.
+//! forgets its initial state within a minute. If the estimated error of the whole motion is too large, the motion
+//! is computed again with the same steps and more outputs, and the error is estimated up to each output.
 
 use super::turns::Reversals;
 use crate::error::Error;
@@ -18,8 +18,8 @@ use crate::motions::followed::Followed;
 
 /// Largest error of a state that is known, as a share of the largest speed.
 const KNOWN: f64 = 0.01;
-/// An end or a minimum is certain if its room is at least this many claimed errors; more than one, because
-/// the claimed error is an estimate.
+/// An end or a minimum is certain if its room is at least this many estimated errors; more than one, because
+/// the error is only an estimate.
 const SURELY: f64 = 4.0;
 /// Number of additional outputs. With fewer, the time up to which a motion is known is coarser.
 const MARKS: usize = 128;
@@ -38,7 +38,7 @@ type TwoRuns = [Followed<StoneState>; 2];
 /// Two runs; none if they are interrupted.
 pub(crate) type Runs = Result<Option<TwoRuns>, Error>;
 
-/// Computes the time up to which a motion with a claimed error is known. `again` computes the motion with
+/// Computes the time up to which a motion with an estimated error is known. `again` computes the motion with
 /// other outputs. Returns false if `again` is interrupted.
 pub(crate) fn settle(
     found: &mut Followed<StoneState>,
@@ -93,7 +93,7 @@ pub(crate) fn settle(
     Ok(true)
 }
 
-/// The error that is claimed for a motion up to its first `count` times.
+/// The estimated error of a motion up to the last of its first `count` times.
 fn claimed(runs: &TwoRuns, count: usize, tol: f64) -> f64 {
     if count == 0 {
         return 0.0;

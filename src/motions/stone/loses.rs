@@ -2,15 +2,15 @@
 //!
 //! ```text
 //! w = w_z n + w_h        w_z the drilling, w_h the rolling and the rocking, along x and y of the laboratory
-//! dt = v/(v + delta l) dsigma,   v = |w_h|          under rolling resistance, while no slip sets the pace; l a lightness
-//! w_h = 0    stays if |m_h| <= delta N, with the horizontal couple m_h that keeps it; else it rolls along a root of f,
-//!            as a contact point at rest slips along one (`standstill`)
+//! dt = v/(v + delta l) dsigma,   v = |w_h|          with rolling resistance, unless a slip sets the pace; l an inverse inertia
+//! w_h = 0    stays if |m_h| <= delta N, with the horizontal couple m_h that keeps it; else the stone rolls along a root
+//!            of f, as a contact point at rest begins to slip along a root (`standstill`)
 //! w_z = 0    is held while |m_z| <= length N
 //! ```
-//! The laws are those of bodies of revolution, with one set of words for both: for them a stone is a disk that stands
-//! upright. A stone that no longer rolls or rocks is at its end, as a body is, and may drill there.
+//! The laws are those of bodies of revolution, in the same variables: for these laws a stone is an upright disk.
+//! A stone that no longer rolls or rocks has stopped, as a body has, but may go on drilling.
 //!
-//! Error: a stone that begins to roll is given the speed 2 `REST`.
+//! Error: a stone that begins to roll gets the speed 2 `REST`.
 
 use super::flow::{Seen, StoneFlow, Touch, slip_of};
 use crate::laws::contact::standstill::{HeldContact, Onset, Standstill, towards};
@@ -23,8 +23,8 @@ use crate::motions::path::slide::ways;
 use crate::numbers::vector::{dot, plus};
 use crate::numbers::{Dual, Real, Sum};
 
-/// A slower rolling in a slip, of which a step may change `NEAR`, is at its end if rolling resistance would stop it in the
-/// opposite direction, too.
+/// In a slip, rolling that is slower than this, and that a step may change by `NEAR`, ends if rolling resistance would also
+/// stop it in the opposite direction.
 pub(super) const HARDLY_ROLLS: f64 = 4.0 * NEAR;
 
 /// w without the drilling.
@@ -34,7 +34,7 @@ fn rolling_of<T: Real>(n: [T; 3], w: [T; 3]) -> [T; 3] {
 }
 
 impl<T: Real> StoneLaw<T> {
-    /// The largest change of w, per time, under rolling resistance and the weight.
+    /// The largest derivative of w that rolling resistance and the weight cause.
     pub(super) fn resisted(&self) -> T {
         let [a, b, c, ..] = self.inertia.0;
         let (least, [x, y, z]) = (a.min(b).min(c), self.squares);
@@ -45,7 +45,7 @@ impl<T: Real> StoneLaw<T> {
 }
 
 impl StoneFlow<'_> {
-    /// Whether rolling resistance sets the pace.
+    /// True if rolling resistance limits the steps.
     pub(super) fn is_paced(&self) -> bool {
         self.resisted > 0.0 && self.touch != Touch::Slips
     }
@@ -69,14 +69,14 @@ impl StoneFlow<'_> {
         dot(rolling, rolling).sqrt()
     }
 
-    /// The rate, in time, of that speed.
+    /// The derivative of that speed with respect to time.
     pub(super) fn rolling_growth<const N: usize>(&self, y: &[f64; N]) -> f64 {
         let (Seen { at, to, .. }, w) = (self.seen_at(y), [y[4], y[5], y[6]]);
         let rolling = rolling_of(at.n, w);
         dot(rolling, to.w) / dot(rolling, rolling).sqrt()
     }
 
-    /// The longest step that the roots in the laws allow.
+    /// The longest step that the square roots in the laws allow.
     #[inline(never)]
     pub(super) fn longest_of_roots<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
         let [a, b, c, d, e, f, g] =
@@ -86,7 +86,7 @@ impl StoneFlow<'_> {
         losses.map_or(f64::INFINITY, |losses| losses.longest(&seen(losses), self.is_paced()))
     }
 
-    /// The margin of the drilling, or of the couple that holds it, and of a unique normal force under rolling resistance.
+    /// The margins of the drilling, or of the couple that holds it, and of a unique normal force with rolling resistance.
     #[inline(always)]
     pub(super) fn drilling_margin<T: Real>(law: &StoneLaw<T>, seen: &Seen<T>, w: [T; 3]) -> T {
         let one = w[0].splat(1.0);
@@ -107,8 +107,8 @@ impl StoneFlow<'_> {
         }
     }
 
-    /// Lets dry friction hold the drilling, or sets the sign of the drilling that it resists. `toward` is the direction of
-    /// a slip from rest, and `freed` says that friction has just let the drilling go. Returns the drilling that is left out.
+    /// Lets dry friction hold the drilling, or sets the sign of the drilling that friction resists. `toward` is the direction
+    /// of a slip from rest; `freed` is true if friction has just let the drilling go. Returns the drilling that is left out.
     pub(super) fn sets_ways<const N: usize>(
         &mut self,
         y: &mut [f64; N],
@@ -135,14 +135,14 @@ impl StoneFlow<'_> {
         if stopped.holds_drilling { self.removes_drilling(y) } else { 0.0 }
     }
 
-    /// Removes the drilling, and returns its size.
+    /// Sets the drilling to zero, and returns its size.
     pub(super) fn removes_drilling<const N: usize>(&self, y: &mut [f64; N]) -> f64 {
         let (n, drilling) = (self.seen_at(y).at.n, self.drilling(y));
         (0..3).for_each(|i| y[4 + i] -= drilling * n[i]);
         drilling.abs()
     }
 
-    /// The response at these numbers, or where a dry slip only begins, of friction against the direction `way`.
+    /// The response at these numbers. If a dry slip is just beginning, friction acts against its direction `way`.
     pub(super) fn seen_towards<const N: usize>(&self, y: &[f64; N], way: [f64; 2]) -> Seen<f64> {
         let mut seen = self.seen_at(y);
         if self.touch == Touch::Slips && self.law.dry && slip_of(y) == [0.0; 2] {
@@ -151,7 +151,7 @@ impl StoneFlow<'_> {
         seen
     }
 
-    /// The numbers where rolling and rocking end, by linear extrapolation; None if they do not end here.
+    /// The numbers at the end of rolling and rocking, by linear extrapolation; None if they do not end here.
     #[inline(never)]
     pub(super) fn rolls_no_more<const N: usize>(&self, place: &FlowPlace<N>) -> Option<[f64; N]> {
         let (y, speed) = (&place.y, self.rolls_at(&place.y));
@@ -174,7 +174,7 @@ impl StoneFlow<'_> {
         Some(self.rolling_along(&self.kept(rests), [0.0; 2]))
     }
 
-    /// These numbers with another rolling and rocking, along x and y of the laboratory.
+    /// Returns these numbers with another w_h, along x and y of the laboratory.
     pub(super) fn rolling_along<const N: usize>(&self, y: &[f64; N], by: [f64; 2]) -> [f64; N] {
         let (Seen { lab, .. }, mut to) = (self.seen_at(y), *y);
         let w = plus(across(&lab, by), self.drilling(y), lab[2]);
@@ -182,8 +182,8 @@ impl StoneFlow<'_> {
         to
     }
 
-    /// What becomes of a stone that only drills: rolling resistance holds it, or it begins to roll, with w_h along the
-    /// angle alpha from axis x of the laboratory.
+    /// The next motion of a stone that only drills: rolling resistance holds it, or the stone begins to roll, with w_h at
+    /// the angle alpha from axis x of the laboratory.
     #[inline(never)]
     pub(super) fn leaves<const N: usize>(&self, y: &[f64; N]) -> Standstill {
         let (mut law, mut delta, y) = (self.law, 0.0, self.rolling_along(y, [0.0; 2]));
@@ -192,7 +192,7 @@ impl StoneFlow<'_> {
             losses.sets(Law::RollingResistance, 0.0);
         }
         let (Seen { lab, at, .. }, w) = (Self { law, ..*self }.seen_at(&y), [y[4], y[5], y[6]]);
-        // The normal force and the rate of w_h under more couples, of which one is proportional to that force.
+        // The normal force and the rate of w_h with additional couples, one of which is proportional to that force.
         let acts = |free: [f64; 3], pressed: [f64; 3]| {
             let more = |lost: Couple<f64>| Couple {
                 free: plus(lost.free, 1.0, free),

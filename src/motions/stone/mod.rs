@@ -25,7 +25,7 @@ pub use rolling::{RollingStone, rolling};
 /// one is corrected.
 const UNIT: f64 = 1e-9;
 
-/// Refuses a start or options out of range. Returns the start with a vertical of length 1, and the tolerance.
+/// Checks an initial state and options. Returns the state with a vertical of length 1, and the tolerance.
 pub(crate) fn check(
     start: &Start<StoneState>,
     times: &[f64],

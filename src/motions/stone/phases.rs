@@ -32,7 +32,7 @@ pub(super) type StoneWalk<'a, 'n, const N: usize> = Walk<'a, StonePhases<'n>, N>
 /// show the errors.
 pub(super) const ROUGH_STRIDE: f64 = 0.7;
 /// An end whose room (see [`known`](super::known)) is larger than this is certain in all motions that count
-/// as known, and its room is not computed further.
+/// as known; its room is not computed more closely.
 const DEEP: f64 = 1e-2;
 /// From this share of the Painleve coefficient on, more than one contact force may be consistent, and
 /// all are counted.
@@ -41,14 +41,14 @@ const DOUBTFUL: f64 = 0.9;
 /// The data of a stone's walk: the flow of the present phase.
 pub(super) struct StonePhases<'n> {
     flow: StoneFlow<'n>,
-    /// Whether friction of the patch has just let the drilling go.
+    /// True if friction of the patch has just let the drilling go.
     freed: bool,
     /// The horizontal position of the centre of mass at the start, which is constant on a smooth table.
     still_centre: [f64; 2],
 }
 
 impl<'a, 'n, const N: usize> StoneWalk<'a, 'n, N> {
-    /// A walk at its start; `fine` is the requested tolerance.
+    /// Begins a walk; `fine` is the requested tolerance.
     pub fn of_stone(
         (stone, start): (&Ellipsoid, &Start<StoneState>),
         times: &'a [f64],
@@ -87,12 +87,12 @@ impl<'a, 'n, const N: usize> StoneWalk<'a, 'n, N> {
         Ok(walk)
     }
 
-    /// The contact in a phase without a slip under friction.
+    /// The contact in a phase in which the stone does not slip with friction.
     fn resting(&self) -> Touch {
         if self.kind() == Kind::Slipping { Touch::Smooth } else { self.of.flow.resting(&self.at).touch }
     }
 
-    /// Whether the edge lies on the table, and does not leave it.
+    /// True if the edge lies on the table and does not leave it.
     fn is_down(&self) -> bool {
         let flow = &self.of.flow;
         let place = flow.place(self.at);
@@ -110,14 +110,14 @@ impl<'a, 'n, const N: usize> StoneWalk<'a, 'n, N> {
         let free = law.pulled(&at, w, [0.0; 3]);
         let held = law.rolling(&at, w).force;
         let [along, aside, normal] = lab.map(|axis| dot(axis, held));
-        // The rate of the slip per force along the axes of the laboratory.
+        // The derivative of the slip per force along the axes of the laboratory.
         let per = lab.map(|axis| law.yields(&at, axis));
         let [mu, fixed] = match self.friction() {
             Friction::Coulomb { mu, fixed, .. } => [mu, fixed],
             Friction::Viscous { .. } => [0.0; 2],
         };
         let element = |i: usize, j: usize| dot(lab[i], per[j]);
-        // The rate of the slip per normal force, by the arm of that force and by the losses.
+        // The derivative of the slip per normal force, from the arm of that force and from the losses.
         let swings = at.lost.map_or([0.0; 3], |lost| law.swings(&at, lost.pressed));
         let pressed = |i: usize| element(i, 2) + dot(lab[i], swings);
         let upright = pressed(2);
@@ -205,14 +205,14 @@ impl<'a, 'n, const N: usize> StoneWalk<'a, 'n, N> {
         self.continues_with(next);
     }
 
-    /// Whether rolling needs more friction than there is by a jump, as where a dry couple has just turned round.
+    /// True if the friction that rolling needs has just jumped beyond its limit, as when a dry couple changes its direction.
     fn jumps(&self) -> bool {
         let Seen { at, to, .. } = self.of.flow.seen_at(&self.at);
         let along = plus(to.force, -to.free, at.n);
         dot(along, along).sqrt() > self.of.flow.mu * to.free * (1.0 + JUMP)
     }
 
-    /// The behaviour of a contact point at rest. That of a stone which rolling resistance keeps at rest sticks.
+    /// The behaviour of a contact point at rest. It sticks if rolling resistance keeps the whole stone at rest.
     fn rests_here(&self) -> Standstill {
         let flow = StoneFlow { touch: Touch::Rolls, ..self.of.flow };
         let still = self.at[4..7].iter().all(|w| w.abs() < REST);
@@ -222,7 +222,7 @@ impl<'a, 'n, const N: usize> StoneWalk<'a, 'n, N> {
         self.rest().decides()
     }
 
-    /// Sets what dry losses resist or hold at the present numbers. Returns the next phase if the stone stays at rest.
+    /// Sets which motions dry losses resist or hold at the present numbers. Returns the next phase if the stone stays at rest.
     fn begins_to_lose(&mut self, toward: [f64; 2]) -> Option<Next> {
         let freed = core::mem::take(&mut self.of.freed);
         let left = self.of.flow.sets_ways(&mut self.at, toward, freed);

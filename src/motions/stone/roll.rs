@@ -1,8 +1,8 @@
 //! The motion of a stone, through phases of rolling and of slipping.
 //!
-//! The phases are those of [`walk`](crate::motions::walk): a contact point at rest begins to slip where
-//! rolling needs more friction than mu_s N, and at the end of a slip it sticks where rolling needs no more
-//! than that. Each phase is integrated as a `StoneFlow`.
+//! The phases are those of [`walk`](crate::motions::walk): a contact point at rest begins to slip when
+//! rolling needs more friction than mu_s N. When a slip ends, the contact point sticks if rolling needs no more
+//! friction than that. Each phase is integrated as a `StoneFlow`.
 //!
 //! Error: from a second run with a larger tolerance, as for a body with friction; `tests/laws/stone.rs`
 //! compares it with references of 25 digits.
@@ -17,15 +17,15 @@ use crate::motions::followed::{Followed, rougher};
 use crate::motions::{Ask, Motion, Start};
 use core::cell::RefCell;
 
-/// The motion of a stone from a start at the `times`, which are in order and not before the start.
+/// Computes the motion of a stone at `times`, in ascending order and not before the time of the initial state.
 ///
-/// The start is a [`StoneState`], or a [`Start`] with a slip and a time; the vertical of a state is scaled to
-/// length 1. A slip has its components along the horizontal axes x and y of that laboratory frame in which
-/// the orientation of the stone is the smallest turn from upright, at the start and in all outputs. `ask` has
-/// the table, the losses, the tolerance, `beyond` and the outputs; a stone has no fixed step and no landing of
-/// another rim. `go_on` is called often; if it returns false, the result is `Ok(None)`. Errors: `OutOfRange`,
-/// which names the argument; `Painleve` for a start without a unique contact force; `Restless` where slipping
-/// and rolling alternate too often; `Endless` where the motion hardly advances.
+/// `start` is a [`StoneState`], or a [`Start`] with a slip and a time; the vertical of a state is scaled to
+/// length 1. The components of a slip, initially and in all outputs, are along the horizontal axes x and y of the
+/// laboratory frame in which the stone is turned from upright by the smallest angle. `ask` has
+/// the contact, the losses, the tolerance, `beyond` and the outputs; a stone has no fixed step and no second rim
+/// that could land. `go_on` is called often; if it returns false, the result is `Ok(None)`. Errors: `OutOfRange`,
+/// which names the argument; `Painleve` for an initial state without a unique contact force; `Restless` if slipping
+/// and rolling alternate too often; `Endless` if the motion hardly advances.
 ///
 /// ```
 /// use spincyl::{Ellipsoid, motion::Ask, stone};
@@ -49,7 +49,7 @@ pub fn roll(
     rolled(stone, &start.into(), times, ask, &mut go_on)
 }
 
-/// Does the work of [`roll`] without generic parameters, so that this code is compiled only once.
+/// Does the work of [`roll`], without generic parameters, so that this code is compiled only once.
 fn rolled(
     stone: &Ellipsoid,
     start: &Start<StoneState>,
@@ -90,7 +90,7 @@ pub(crate) fn followed(
     Ok(settled.then_some(found))
 }
 
-/// A walk at its start, on the heap: while it runs, threads with a small stack need theirs.
+/// Begins a walk, on the heap, since threads may have only a small stack.
 #[inline(never)]
 fn walk<'a, 'n, const N: usize>(
     of: (&Ellipsoid, &Start<StoneState>),

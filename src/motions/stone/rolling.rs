@@ -3,8 +3,8 @@
 //! ```text
 //! y = (q, w, x, y, t)     q' = q w/2,   w' of the law of rolling,   (x, y)' = -w x r along the table
 //! ```
-//! This is the motion of [`roll`](super::roll) without phases and margins, which a web page does not need and
-//! whose code is ten times as long. Error: from a second run with a larger tolerance and other steps;
+//! This is the motion of [`roll`](super::roll) without phases and margins: a web page does not need them, and
+//! their code is ten times as long. Error: from a second run with a larger tolerance and other steps;
 //! `tests/laws/stone.rs` compares it with `roll`.
 
 use super::phases::ROUGH_STRIDE;
@@ -23,29 +23,29 @@ use crate::numbers::vector::{cross, dot};
 pub(super) const N: usize = 10;
 const FREE_TIME: usize = 9;
 
-/// A stone at one time of its rolling.
+/// A rolling stone at one time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RollingStone {
     /// The time, in sqrt(a/g).
     pub time: f64,
-    /// The turn from the axes of the ellipsoid to those of the laboratory, as a quaternion (w, x, y,
+    /// The rotation from the axes of the ellipsoid to those of the laboratory, as a quaternion (w, x, y,
     /// z) of length 1.
     pub orientation: [f64; 4],
-    /// The place of the centre of mass above the table, counted from that of the first contact point.
+    /// The position of the centre of mass, counted from the first contact point.
     pub centre: [f64; 2],
-    /// The rates of the orientation and of the centre.
+    /// The derivatives of the orientation and of the centre of mass.
     pub rates: ([f64; 4], [f64; 2]),
     /// The vertical and the angular velocity.
     pub state: StoneState,
-    /// The normal force per weight; the stone would lift off where it is negative.
+    /// The normal force per weight; a real stone would lift off when it becomes negative.
     pub normal: f64,
 }
 
-/// Computes the rolling of a stone from a start at time 0, at `times` in ascending order from 0 on,
-/// and its error.
+/// Computes the motion of a rolling stone from its state at time 0, at `times` in ascending order from 0 on,
+/// and its estimated error.
 ///
 /// `tol` is the tolerance of a step. `go_on` is called often; if it returns false, the result is `Ok(None)`.
-/// Errors: `OutOfRange` for an angular velocity beyond 1e6; `Endless` where the motion hardly advances.
+/// Errors: `OutOfRange` for an angular velocity beyond 1e6; `Endless` if the motion hardly advances.
 ///
 /// ```
 /// use spincyl::{Ellipsoid, stone};
@@ -124,7 +124,7 @@ impl FreeRolling {
         Ok(flown.map(|_| rows))
     }
 
-    /// The numbers y of a start.
+    /// The numbers y of an initial state.
     pub(super) fn numbers(&self, start: &StoneState) -> [f64; N] {
         let at = self.law.touching(start.vertical, start.w);
         let ([a, b, c, d], [e, f, g]) = (start.orientation(), start.w);
@@ -132,7 +132,7 @@ impl FreeRolling {
         [a, b, c, d, e, f, g, -dot(lab[0], at.r), -dot(lab[1], at.r), 0.0]
     }
 
-    /// Writes the rates of the numbers, and returns the vertical and the normal force.
+    /// Writes the derivatives of the numbers, and returns the vertical and the normal force.
     #[inline(never)]
     pub(super) fn rates_of<const M: usize>(&self, y: &[f64; M], all: &mut [f64; M]) -> ([f64; 3], f64) {
         let [a, b, c, d, e, f, g] = core::array::from_fn(|i| y[i]);

@@ -7,7 +7,7 @@ use crate::motions::walk::{SlowLaw, SlowSeries};
 use crate::numbers::Series;
 use crate::numbers::vector::dot;
 
-/// The series of a stone's slow slips. Besides its numbers they have the heat, the contact point (x, y), and what is lost.
+/// The series of a stone's slow slips: its numbers, the heat, the contact point (x, y), and the energy lost.
 pub(super) struct StoneSlips {
     slips: SlowSlips<7>,
 }

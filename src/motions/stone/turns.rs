@@ -1,17 +1,17 @@
 //! The reversals of the spin of a stone, and their times.
 //!
 //! ```text
-//! reversal   the spin s = n.w has passed zero and reached a tenth of its first value, in the other direction
-//! step       bounds of s from cubics through its ends and three of its stages; if zero or that tenth lies
+//! reversal   the spin s = n.w has passed zero and reached a tenth of its initial value, in the other direction
+//! step       bounds of s from cubics through the ends and three stages of the step; if zero or that tenth lies
 //!            within twice their range, the step is halved until the cubic through both ends has an error
 //!            of at most 1e-4 of that tenth
 //! ```
-//! So no reversal within a step is missed. Error of its time: that of the cubic over the rate of the spin.
+//! So no reversal within a step is missed. Error of its time: the error of the cubic over the derivative of the spin.
 
 use crate::methods::search::crossing;
 use crate::numbers::Dual;
 
-/// The spin at a time, and its rate.
+/// The spin at a time, and its derivative.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Spot {
     pub t: f64,
@@ -21,9 +21,9 @@ pub(crate) struct Spot {
 /// The reversals of the spin of a stone so far.
 #[derive(Debug, Clone)]
 pub(crate) struct Reversals {
-    /// The spin in the other direction that completes a reversal; infinite for a start without a spin.
+    /// The spin in the other direction that completes a reversal; infinite if the initial spin is zero.
     pub enough: f64,
-    /// The sign of the spin at the start, or after the last reversal.
+    /// The sign of the initial spin, or of the spin after the last reversal.
     side: f64,
     /// The time of the last zero of the spin.
     crossed: f64,
@@ -31,10 +31,10 @@ pub(crate) struct Reversals {
     pub times: Vec<[f64; 2]>,
 }
 
-/// A spin in the other direction completes a reversal where it reaches this share of the first spin. A
-/// smaller share would count the oscillations of a spin around zero.
+/// A spin in the other direction completes a reversal when it reaches this share of the initial spin. A
+/// smaller share would count oscillations of the spin around zero.
 const COUNTS: f64 = 0.1;
-/// A first spin below this share of the largest angular velocity, or of 1, counts as zero: it has no
+/// An initial spin below this share of the largest angular velocity, or of 1, counts as zero: it has no
 /// direction, and no reversals are counted.
 const NONE: f64 = 1e-12;
 /// Allowed error of a cubic, as a share of `enough`. A larger error shifts the times of reversals.
@@ -43,14 +43,14 @@ const CUBIC: f64 = 1e-4;
 const STEP_HALVINGS: u32 = 12;
 
 impl Reversals {
-    /// The count at the start, from the first spin and the largest angular velocity.
+    /// Begins to count, with the initial spin and the largest angular velocity.
     pub fn of(spin: f64, fastest: f64) -> Self {
         let none = spin.abs() <= NONE * fastest.max(1.0);
         let enough = if none { f64::INFINITY } else { COUNTS * spin.abs() };
         Self { enough, side: spin.signum(), crossed: f64::NAN, times: Vec::new() }
     }
 
-    /// Whether the spin may reach zero or complete a reversal along these spots, whose spins have the
+    /// True if the spin may reach zero or complete a reversal along these spots, whose spins have the
     /// error `known`.
     pub fn near(&self, spots: &[Spot], known: f64) -> bool {
         if self.enough == f64::INFINITY {
