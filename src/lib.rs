@@ -91,7 +91,7 @@ pub mod custom {
     //! F = mu(|u|) N      friction against a slip u; a contact point at rest holds up to mu_s N
     //! ```
     //! Each law is checked at a thousand states before a motion begins. A couple has to be finite, must not supply
-    //! energy, and must not jump where the motion that it resists is at rest. A law with a jump, such as dry friction,
+    //! energy, and must not jump when the motion that it resists is at rest. A law with a jump, such as dry friction,
     //! has to be rounded: tanh(x/e) in place of sgn(x). Such motions are computed more slowly than those under the laws
     //! in [`loss`](crate::loss), since nothing is known of the laws in advance.
     //!
@@ -107,7 +107,7 @@ pub mod stone {
     //! ```text
     //! D = diag(a1^2, a2^2, a3^2),   I = (i11, i22, i33, i23, i13, i12),   d = centre of mass - centre of the ellipsoid
     //! uniform    I = diag(a2^2 + a3^2, a3^2 + a1^2, a1^2 + a2^2)/5
-    //! half       the lower half of it: d = (0, 0, -3 a3/8), the moments about d, and an edge that lands at pi/2
+    //! half       the lower half of an ellipsoid: d = (0, 0, -3 a3/8), the moments about d, and an edge that lands at pi/2
     //! theta      the inclination of axis 3, cos theta = n3
     //! ```
     //! Natural units: the mass, the largest semi-axis and gravity are 1. An ellipsoid is not a [`Body`](crate::Body),

@@ -39,7 +39,7 @@ impl Angle {
         Self { turns, rest }.settled()
     }
 
-    /// The same angle with the remainder in [-pi, pi].
+    /// Returns this angle with the remainder in [-pi, pi].
     pub(crate) fn settled(self) -> Self {
         if self.rest.abs() <= PI {
             return self;

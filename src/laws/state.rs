@@ -56,7 +56,7 @@ impl State {
         Self { theta, w1: precession * s, w2: -thetadot, w3: precession.mul_add(c, spin) }
     }
 
-    /// The same state with its rate of inclination `theta'` increased by `thetadot`, in sqrt(g/R).
+    /// Returns this state with its rate of inclination `theta'` increased by `thetadot`, in sqrt(g/R).
     #[must_use]
     pub fn kicked(self, thetadot: f64) -> Self {
         Self { w2: self.w2 - thetadot, ..self }

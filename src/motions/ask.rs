@@ -72,42 +72,42 @@ impl Ask {
         Self::default().with_table(table)
     }
 
-    /// The same options with another contact.
+    /// Returns these options with another contact.
     pub fn with_table(self, table: impl Into<Table>) -> Self {
         Self { table: table.into(), ..self }
     }
 
-    /// The same options with these losses.
+    /// Returns these options with these losses.
     pub fn with_losses(self, losses: Losses) -> Self {
         Self { losses, ..self }
     }
 
-    /// The same options with this method.
+    /// Returns these options with this method.
     pub fn with_method(self, method: Method) -> Self {
         Self { method, ..self }
     }
 
-    /// The same options, with or without a continuation past events.
+    /// Returns these options, with or without a continuation past events.
     pub fn with_beyond(self, beyond: bool) -> Self {
         Self { beyond, ..self }
     }
 
-    /// The same options with this coefficient of restitution, or with `None`.
+    /// Returns these options with this coefficient of restitution, or with `None`.
     pub fn with_restitution(self, restitution: impl Into<Option<f64>>) -> Self {
         Self { restitution: restitution.into(), ..self }
     }
 
-    /// The same options, with or without an end at rolling.
+    /// Returns these options, with or without an end at rolling.
     pub fn with_stop_at_rolling(self, stop_at_rolling: bool) -> Self {
         Self { stop_at_rolling, ..self }
     }
 
-    /// The same options, with poses or without them.
+    /// Returns these options, with poses or without them.
     pub fn with_pose(self, pose: bool) -> Self {
         Self { pose, ..self }
     }
 
-    /// The same options, with contact forces or without them.
+    /// Returns these options, with contact forces or without them.
     pub fn with_force(self, force: bool) -> Self {
         Self { force, ..self }
     }
@@ -146,17 +146,17 @@ impl<S> From<S> for Start<S> {
 }
 
 impl<S> Start<S> {
-    /// The same start with this slip.
+    /// Returns this start with this slip.
     pub fn with_slip(self, slip: [f64; 2]) -> Self {
         Self { slip, ..self }
     }
 
-    /// The same start at this time.
+    /// Returns this start at this time.
     pub fn with_time(self, time: f64) -> Self {
         Self { time, ..self }
     }
 
-    /// The same start in the air, with this height of the lowest point and its vertical velocity, or with `None`.
+    /// Returns this start in the air, with this height of the lowest point and its vertical velocity, or with `None`.
     pub fn with_aloft(self, aloft: impl Into<Option<[f64; 2]>>) -> Self {
         Self { aloft: aloft.into(), ..self }
     }

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! J = I3 n (1 - l)        at the start, upright;  l = |ell|, the centre of mass below the middle of the ball
-//! J = I3 n' (1 + l)       upside down, where it is stable for n'^2 > l (1 + l)^2/(I3 (1 + l) - I1)
+//! J = I3 n' (1 + l)       upside down; stable for n'^2 > l (1 + l)^2/(I3 (1 + l) - I1)
 //! n = (1 + l)^2/(1 - l) sqrt(l/(I3 (1 + l) - I1))      if friction keeps J, Jellett's number
 //!
 //! J = w (I1 s^2 + I3 c^2) h                       of an egg that lies, with the height h of its centre of mass

@@ -189,7 +189,7 @@ const STONE_LABELS: [[&str; 2]; StoneSummary::NAMES.len()] = [
     ["M g a", "heat of friction"],
     ["M g a", "energy lost to the losses"],
     ["1", "largest estimated error among the numbers of the state"],
-    ["sqrt(a/g)", "time up to which the motion is computed"],
+    ["sqrt(a/g)", "time up to which the motion is known"],
 ];
 
 /// Name, unit and description of each output of many motions of stones.

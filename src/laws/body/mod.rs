@@ -150,7 +150,7 @@ impl Body {
         Self::rounded(offset, i1, i3, 1.0)
     }
 
-    /// The same body with another end of its motion: the inclination `theta_end` in (0, pi], in radians, at which a
+    /// Returns this body with another end of its motion: the inclination `theta_end` in (0, pi], in radians, at which a
     /// stem, a cap or the shoulder of a bottle lands.
     pub fn with_theta_end(self, theta_end: f64) -> Result<Self, Error> {
         within("theta_end", theta_end, (1e-6, PI), "1e-6 <= theta_end <= pi (radians)")?;

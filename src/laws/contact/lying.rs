@@ -1,7 +1,7 @@
 //! A body that lies on both rims: its forces and accelerations while the rims slip or stick.
 //!
 //! ```text
-//! theta = pi/2, w2 = 0;   the rim from which the state is told touches at +ell e_h, the other one at -ell e_h
+//! theta = pi/2, w2 = 0;   the rim to which the state refers touches at +ell e_h, the other one at -ell e_h
 //! u = (u_h, u_2),   u' = (u_h, u_2 - 2 ell w1);     v_h = u_h,   v_2 = u_2 - ell w1 + w3
 //! N + N' = 1,   ell (N - N') = K - F_h,   K = I3 w1 w3,   F_h the friction of both along e_h
 //! I1 w1' = ell (F_2 - F_2') + m1,   I3 w3' = -(F_2 + F_2') + m3,   v_h' = F_h + w1 v_2,   v_2' = F_2 + F_2' - w1 v_h
@@ -49,7 +49,7 @@ pub(crate) struct Lain<T> {
 /// The numbers of a body on both rims: w1, w3, u_h and u_2.
 pub(crate) type Flat<T> = [T; 4];
 
-/// The same numbers as seen from the other rim.
+/// Returns these numbers as seen from the other rim.
 #[inline(always)]
 pub(crate) fn from_other<T: Real>(ell: T, [w1, w3, u_h, u_2]: Flat<T>) -> Flat<T> {
     let zero = ell.splat(0.0);

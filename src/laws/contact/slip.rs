@@ -146,7 +146,7 @@ impl<T: Real> Slipping<T> {
         Self { shape: *shape, per_i1, per_i3, strength, soft, dry, losses: None, radius: None }
     }
 
-    /// The same body on a patch of this radius.
+    /// Returns this body on a patch of this radius.
     pub fn with_patch(self, radius: Option<T>) -> Self {
         Self { radius, ..self }
     }
@@ -157,7 +157,7 @@ impl<T: Real> Slipping<T> {
         self.radius
     }
 
-    /// The same body with losses.
+    /// Returns this body with losses.
     pub fn with_losses(self, losses: Option<Couples<T>>) -> Self {
         Self { losses, ..self }
     }

@@ -42,7 +42,7 @@ pub(crate) enum Standstill {
 const DOUBTFUL: f64 = 0.9;
 /// A slip whose speed grows more slowly than this counts as not growing, since that is a rounding error.
 const STILL: f64 = 1e-11;
-/// The same limit where static friction has just ceased to hold, at a time that is rounded.
+/// The limit if static friction has just ceased to hold, at a time that is rounded.
 const JUST: f64 = 1e-8;
 
 /// The forces at a contact point at rest, which decide whether it sticks.

@@ -76,7 +76,7 @@ impl Table {
         }
     }
 
-    /// The same law with other coefficients, as [`TableKind::with`] takes them.
+    /// Returns this law with other coefficients, as [`TableKind::with`] takes them.
     pub(crate) fn with_coefficients(&self, coefficients: [f64; 3]) -> Self {
         let kind = match self {
             Self::Rolling { .. } => TableKind::Rolling,

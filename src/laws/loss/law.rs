@@ -53,7 +53,7 @@ pub(crate) trait LossLaw {
     const PARAMETER: &'static str;
     /// The motion that the law resists.
     const RESISTS: Resists;
-    /// How the power goes near the ends of a drift.
+    /// The behaviour of the power near the ends of a drift.
     const POWERS: EndPowers;
     /// Whether the law is dry: proportional to the normal force, and to the sign of a motion. Where that motion comes
     /// to rest, dry friction may hold it. `path::lossy` and `path::slide` give the couple that then acts, for each dry

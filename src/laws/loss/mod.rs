@@ -88,7 +88,7 @@ macro_rules! laws {
                 match self { $(Self::$Law => $file::$Law::ROOT,)+ }
             }
 
-            /// How the power of this law goes near the ends of a drift.
+            /// The behaviour of the power of this law near the ends of a drift.
             pub(crate) const fn powers(self) -> EndPowers {
                 match self { $(Self::$Law => $file::$Law::POWERS,)+ }
             }
@@ -269,7 +269,7 @@ impl Losses {
         Self::NONE.with(law, coefficient)
     }
 
-    /// The same losses with this coefficient of a law.
+    /// Returns these losses with this coefficient of a law.
     #[must_use]
     pub fn with(mut self, law: Law, coefficient: f64) -> Self {
         self.coefficients[law as usize] = coefficient;

@@ -142,7 +142,7 @@ impl MotionBlock<'_> {
         left
     }
 
-    /// How many of the series in `TERMS` are tried for the motions of this job.
+    /// The number of series in `TERMS` that are tried for the motions of this job.
     fn series(&self, round: bool) -> usize {
         if !self.job.beyond && can(self.job, round) { SHORT } else { TERMS.len() }
     }

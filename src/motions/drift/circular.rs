@@ -58,7 +58,7 @@ impl<T: Real> Circular<T> {
         Self { of: Reduced::of(Contact::Rolling, shape, round), losses, signs: [one; 2] }
     }
 
-    /// The same equations for another type of number.
+    /// Returns these equations for another type of number.
     pub fn map<U: Real>(&self, number: impl Fn(T) -> U) -> Circular<U> {
         let of = &self.of;
         let signs = self.signs.map(&number);

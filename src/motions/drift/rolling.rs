@@ -49,7 +49,7 @@ pub(crate) const MOST: u64 = 5000;
 /// Lengths in x of the first step and of the longest step.
 pub(crate) const STEPS: [f64; 2] = [0.02, 1.5];
 
-/// How many numbers [`Rolling::numbers`] gives to lanes.
+/// The count of numbers that [`Rolling::numbers`] gives to lanes.
 pub(crate) const DRIFT_NUMBERS: usize = 7;
 /// Number of margins that a drift must keep positive.
 pub(crate) const DRIFT_MARGINS: usize = 4;
@@ -171,7 +171,7 @@ impl Rolling<'_> {
         Ok((Self { of, sloped, margins, start, far, ball, steps }, start))
     }
 
-    /// The same drift, with its steps stored.
+    /// Returns this drift with its steps stored.
     pub fn watched<'a>(self, steps: &'a RefCell<Vec<DriftStep>>) -> Rolling<'a>
     where
         Self: 'a,
@@ -179,7 +179,7 @@ impl Rolling<'_> {
         Rolling { steps: Some(steps), ..self }
     }
 
-    /// The same drift, where the inclination is counted from pi if `far` is -1.
+    /// Returns this drift with the inclination counted from pi if `far` is -1.
     pub fn counting_from(self, far: f64) -> Self {
         Self { far, ..self }
     }
@@ -239,7 +239,7 @@ pub(crate) fn counted<T: Real>(theta: T, far: T) -> T {
     theta.splat(0.0).select_lt(far, theta, theta.splat(PI) - theta)
 }
 
-/// The same numbers with the inclination counted from the other end if it is above `FROM_ABOVE`.
+/// Returns these numbers with the inclination counted from the other end if it is above `FROM_ABOVE`.
 fn turned([theta, rate, w3, t]: Numbers<f64>, far: f64) -> (Numbers<f64>, f64) {
     if theta < FROM_ABOVE { ([theta, rate, w3, t], far) } else { ([PI - theta, rate, w3, t], -far) }
 }

@@ -284,7 +284,7 @@ impl Panel {
         self.size + self.growth * (y / self.reach).abs().min(1.0)
     }
 
-    /// The same panel with more accurate values of G and its slope at the centre.
+    /// Returns this panel with more accurate values of G and its slope at the centre.
     pub fn knowing(mut self, [g, slope]: [f64; 2], known: Certainty) -> Self {
         (self.g[0], self.g[1], self.known) = (g, slope, known);
         self

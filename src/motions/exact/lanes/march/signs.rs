@@ -10,7 +10,7 @@
 //! bottom: if that is below zero, the zero lies before it; if above, the search continues behind it. The zero remains
 //! unknown if Newton's method does not reach the bottom, or if the bottom is above zero in a part whose end is below.
 //!
-//! Lanes are independent: a computation that one lane asks for changes no other lane.
+//! Lanes are independent: a computation for one lane changes no other lane.
 
 use super::{MORE, PARTS, REACH, WIDTH, equals, here};
 use crate::numbers::{Lane, Real};
