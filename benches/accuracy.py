@@ -3,7 +3,7 @@
     python benches/accuracy.py [--points 1e7] [--whole]
 
 Prints the maximum and the 99th percentile of error/(1 + kappa_c) in units of 2^-53, and the number of points
-on the wrong side: a rate where there is no steady state, or the region "forbidden" where there is one. Points
+on the wrong side: a rate without a steady state, or the region "forbidden" with one. Points
 are uniform on the map that is drawn. With --whole ell is log-uniform from 1e-8 to 1e8, a fifth of it next to
 the critical aspect ratio; theta is next to theta0 or thetaInf for a quarter of the points, log-uniform from
 5e-324 to 1 for a third, and else uniform. Half of the bodies have a bore. The reference shares no formula
@@ -65,7 +65,7 @@ def exact(theta, ell, bore):
 
 def errors(theta, ell, bore, rate, region):
     """error/(1 + kappa_c) in ulp of every steady state, and the number of points at which library and
-    reference disagree whether there is one."""
+    reference disagree whether there is a steady state."""
     gmpy2.set_context(gmpy2.context(precision=260, emin=-(10**6), emax=10**6))
     found, wrong = [], 0
     for t, e, q, r, where in zip(theta, ell, bore, rate.tolist(), region.tolist(), strict=True):

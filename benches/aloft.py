@@ -1,13 +1,13 @@
-"""Random motions through the air, impacts and lying: what they come to, their energy, their time, their claims.
+"""Random motions with flights, impacts and lying bodies: their endings, energies, times and estimated errors.
 
     python benches/aloft.py                          500 starts, each with three coefficients: a minute
     python benches/aloft.py --count 20000            half an hour
-    python benches/aloft.py --scene 17 0.3           what becomes of one of them, and of it at a wider tolerance
-    python benches/aloft.py --hops                   what a hop costs: a flight, its landing and the impact
+    python benches/aloft.py --scene 17 0.3           one of them, also with a larger tolerance
+    python benches/aloft.py --hops                   the cost of a hop: a flight, its landing and the impact
 
 Tubes, cylinders, coins, disks, hoops, balls, rounded cylinders and bodies of any moments, standing on a rim or in the
-air, slipping or not, under Coulomb(0.05 to 1), followed to t = 50. Every motion is followed twice, the second time with
-a wider tolerance, and the difference is compared with the two claims.
+air, slipping or not, with Coulomb(0.05 to 1), to t = 50. Every motion is computed twice, the second time with
+a larger tolerance, and the difference is compared with the two estimated errors.
 """
 
 import argparse
@@ -23,12 +23,12 @@ import spincyl as sc
 KINDS = ("tube", "cylinder", "coin", "disk", "hoop", "ball", "rounded", "any moments")
 UNTIL = 50.0
 WIDER = 1e-12
-#: ends that are determined; others are refusals
+#: endings of motions that are determined; the others are errors
 SOUND = (sc.Ending.FACE, sc.Ending.STOPS)
 
 
 def drawn(number):
-    """Kind, body, start and table of a number."""
+    """Kind, body, initial state and contact of the motion with this number."""
     rng = np.random.default_rng([51, number])
     kind = KINDS[number % len(KINDS)]
     if kind == "tube":
@@ -56,7 +56,7 @@ def drawn(number):
 
 
 def followed(number, restitution, **how):
-    """The motion of a number, and seconds of the processor."""
+    """The motion with this number, and its processor seconds."""
     _, body, state, table = drawn(number)
     since = time.process_time()
     t = np.linspace(0.0, UNTIL, 26)
@@ -67,7 +67,7 @@ def followed(number, restitution, **how):
 
 
 def told(motion, k):
-    """A state whose numbers do not depend on the rim from which it is told: on both rims these are two."""
+    """A state in numbers that do not depend on the rim to which it refers, since a body on both rims has two."""
     theta, (w1, w2, w3) = motion.theta[k], motion.w[k]
     if abs(theta - np.pi / 2) < 1e-9:
         w2, w3 = abs(w2), abs(w3)
@@ -75,7 +75,7 @@ def told(motion, k):
 
 
 def one(job):
-    """Kind, end, seconds, error of the energy, claim, and the difference of two runs over their claims."""
+    """Kind, end, seconds, error of the energy, estimated error, and difference of two runs over their estimated errors."""
     number, restitution = job
     kind, *_ = drawn(number)
     try:
@@ -119,7 +119,7 @@ def scene(number, restitution):
 
 
 def hops():
-    """Print what hops cost whose slip turns in the impact, and others, in seconds of the processor."""
+    """Print the processor seconds of hops whose slip turns in the impact, and of other hops."""
     tube, ball = sc.Body.tube(6.0, bore=0.8), sc.Body.ball(0.0, 0.4, 0.4)
     print("| hops | each | impacts | claim |\n| --- | --- | --- | --- |")
     for name, body, table in (

@@ -22,9 +22,9 @@ class Answer(NamedTuple):
 
 
 class Apart(NamedTuple):
-    """Absolute differences of a result from the truth; NaN where there is nothing to compare."""
+    """Absolute differences of a result from the truth; NaN if there is nothing to compare."""
 
-    kind: bool  # whether they end differently
+    kind: bool  # true if they end differently
     states: float
     time: float  # of the end
     end: float  # of the state at the end

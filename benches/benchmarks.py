@@ -34,7 +34,7 @@ def long_run(steps):
         m = sc.roll(body, start, n * 1e-3, t0=0.0, step=1e-3)
         exact = sc.roll(body, start, n * 1e-3, t0=0.0)
         energy = np.abs(m.energy / body.energy(start) - 1)
-        # the time by which the motion is ahead, from the difference along the rate of change
+        # time by which the motion is ahead, from the difference along the derivative
         h = 1e-6
         ahead = sc.roll(body, start, n * 1e-3 + h, t0=0.0)
         rate = (ahead.y - exact.y) / h

@@ -1,7 +1,7 @@
 """Speeds of two builds of the library, best of many runs: many motions, single ones, maps and drifts.
 
     python benches/beside.py OLDER NEWER                     ten minutes
-    python benches/beside.py --scenes 20000 OLDER NEWER      whether both give the same answers; a minute
+    python benches/beside.py --scenes 20000 OLDER NEWER      compare the answers of both; a minute
 
 OLDER and NEWER are folders with one build of `spincyl` each, as `pip install --target OLDER some.whl` makes
 them. The builds run in turn, each in a process of its own and on one thread, so that other work on the
@@ -9,7 +9,7 @@ machine affects both. Prints the time of each, per motion or point, and their ra
 
 With --scenes the builds compute random scenes of tests/scenes.py instead, each motion alone and all at once.
 Prints how many motions have the same bits, how many end in another way, and how many differ by more than the
-sum of both claims, with their calls. The command fails if there are any of the last two kinds.
+sum of both estimated errors, with their calls. The command fails if there are any of the last two kinds.
 """
 
 import argparse
@@ -138,7 +138,7 @@ def measured():
 
 
 def answered(count):
-    """Of every motion of random scenes, alone and at once: status, claim, end and states; and how to call it."""
+    """Status, estimated error, end, states and call of every motion of random scenes, alone and at once."""
     sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
     import scenes
     from limit import Late, limit
@@ -169,7 +169,7 @@ def answered(count):
 
 
 def compare(folders, count):
-    """Compares the answers of two builds; whether they agree."""
+    """Compare the answers of two builds; true if they agree."""
     with tempfile.TemporaryDirectory() as made:
         jobs = []
         for k, folder in enumerate(folders):
@@ -195,8 +195,12 @@ def compare(folders, count):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("folders", nargs="*", metavar="FOLDER", help="OLDER NEWER")
-    parser.add_argument("--scenes", type=int, default=0, help="compare the answers to so many random motions")
+    parser.add_argument(
+        "folders", nargs="*", metavar="FOLDER", help="two folders, each with a build: OLDER NEWER"
+    )
+    parser.add_argument(
+        "--scenes", type=int, default=0, help="compare the answers for this number of random motions"
+    )
     parser.add_argument("--work", action="store_true", help=argparse.SUPPRESS)
     given = parser.parse_args()
     if given.work and given.scenes:

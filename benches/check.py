@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Cost of `make test`: processor time and peak memory of each command, by target.
 
-Clones what is committed into a temporary folder and makes the targets of `make test` there, one after the other. This
+Clones the last commit into a temporary folder and makes the targets of `make test` there, one after the other. This
 program stands in for the shell that make starts, so that every line of a recipe is measured and none is changed.
-The times stand beside the yardstick of compile.py, a release build of nalgebra alone. A quarter of an hour.
+The times are compared with the yardstick of compile.py, a release build of nalgebra alone. A quarter of an hour.
 usage: python benches/check.py [TARGET ...] [--of FOLDER]
 """
 
@@ -29,7 +29,7 @@ SUBREAPER = 36  # PR_SET_CHILD_SUBREAPER in <linux/prctl.h>
 def line(words):
     """Runs one line of a recipe with bash and appends what it took to the log; its exit code.
 
-    Processes that outlive their parent, as those of a browser do, become children of this one, so that their time is
+    Processes that outlive their parent, such as those of a browser, become children of this one, so that their time is
     counted too.
     """
     if ctypes.CDLL(None).prctl(SUBREAPER, 1, 0, 0, 0):
@@ -46,7 +46,7 @@ def line(words):
 
 
 def short(text):
-    """The line of a recipe without its folders and options of courtesy, in at most 90 characters."""
+    """The line of a recipe, without folders and minor options, in at most 90 characters."""
     for plain in (".venv/bin/", "nice -n 10 ", "--quiet "):
         text = text.replace(plain, "")
     text = " ".join(text.split())
@@ -54,7 +54,7 @@ def short(text):
 
 
 def made(target, clone, log, yard):
-    """Makes one target and prints what each line took that took half a second; the processor time of these."""
+    """Make one target and print the cost of each line that takes half a second or more; their processor time."""
     log.write_text("")
     subprocess.run(
         ["make", "--no-print-directory", target, f"SHELL={Path(__file__).resolve()}"],

@@ -1,17 +1,17 @@
-"""Claimed errors and ends of motions, one kind after the other, against truths that share nothing with them.
+"""Estimated errors and ends of motions, by kind, against truths that share no code with the library.
 
     python benches/claims.py --of KIND [--count 1000] [--seed 1]
-    python benches/claims.py --of KIND --help        what is drawn, what is compared, and all options
+    python benches/claims.py --of KIND --help        describe the motions, the comparison, and all options
     python benches/claims.py --of all                every kind with a moderate count; half an hour on one core
 
 motions   states, events and poses, rolling and smooth          slips     slipping motions, alone and swept
-starts    starts at rest or almost                              phases    phases of random starts with friction
+starts    initial states at or near rest                            phases    phases of random starts with friction
 saddles   motions that linger at an unstable steady state       launches  10,000 launches of the paper's tube
 periods   periods and precessions                               losses    motions with losses
 ends      ends of a million random starts and of hard ones      stones    random stones from random starts
-many      many motions at once against each alone               singles   times and claims of single motions
+many      many motions at once against each alone               singles   times and errors of single motions
 
-A ratio is the true error over the claimed one: one is honest, a hundredth is vague.
+A ratio is the true error over the estimated error: one is honest, a hundredth is vague.
 """
 
 import argparse
@@ -31,7 +31,7 @@ KINDS = (
 
 
 def whole(text):
-    """A whole number, which may be given as 1e6."""
+    """A whole number, which may be written as 1e6."""
     return int(float(text))
 
 
@@ -47,11 +47,11 @@ def asked():
     )
     if kind:
         parser.add_argument("--few", action="store_true", help="a moderate count")
-        parser.add_argument("--count", type=whole, help="how many motions")
-        parser.add_argument("--seed", type=int, help="default of many: a fresh one")
-        parser.add_argument("--show", type=int, default=5, help="how many of each fault")
-        parser.add_argument("--slowest", type=int, default=5, help="how many of the slowest")
-        parser.add_argument("--seconds", type=float, default=math.inf, help="stop after so long")
+        parser.add_argument("--count", type=whole, help="number of motions")
+        parser.add_argument("--seed", type=int, help="seed (default of many: a new one each time)")
+        parser.add_argument("--show", type=int, default=5, help="number of faults of each kind to show")
+        parser.add_argument("--slowest", type=int, default=5, help="number of slowest motions to show")
+        parser.add_argument("--seconds", type=float, default=math.inf, help="stop after this time")
         getattr(kind, "options", lambda _: None)(parser.add_argument)
         parser.set_defaults(**kind.DEFAULTS)
     few = kind.FEW.split() if kind and "--few" in sys.argv else []
@@ -69,7 +69,7 @@ def main():
         for of in KINDS:
             subprocess.run([sys.executable, __file__, "--of", of, "--few"], check=False)
         return
-    warnings.simplefilter("ignore")  # many motions, moments of inertia and phases at rest rightly cause some
+    warnings.simplefilter("ignore")  # some cases give warnings, as they should
     print(f"python benches/claims.py {' '.join(sys.argv[1:])}  # seed {given.seed}", flush=True)
     tally = Tally(given.show, given.slowest, getattr(kind, "HONEST", 10.0), getattr(kind, "NOTHING", 0.0))
     clock = time.perf_counter()

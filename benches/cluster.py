@@ -1,11 +1,11 @@
-"""A sweep on two worker processes beside two threads of one: docs/cluster.md.
+"""A sweep on two worker processes, compared with two threads of one process: docs/cluster.md.
 
-    python benches/cluster.py --docs           every figure of that page, in some minutes; writes its tables
-    python benches/cluster.py --seconds 0.3    the same with smaller jobs, to see that it works
-    python benches/cluster.py --motions 1e9    so many motions of each job on the workers, only counted
+    python benches/cluster.py --docs           every figure of that page, in a few minutes; writes its tables
+    python benches/cluster.py --seconds 0.3    the same with smaller jobs, as a trial
+    python benches/cluster.py --motions 1e9    this number of motions of each job on the workers, only counted
 
 Two jobs. `kicked`: bodies near a steady state, which nutate on. `any start`: shapes, inclinations and angular
-velocities spread evenly, most of which end. Both compute a start from the index of its motion, so that a
+velocities spread evenly, most of which end. Both compute an initial state from the index of its motion, so that a
 worker receives a range of indices. Contestants: `sweep.roll(threads=2)` with starts that exist already; dask
 on two threads; dask on a LocalCluster of two processes with one thread each. With dask a job begins with the
 indices and returns the number of every kind of end. Rounds alternate. The efficiency of the workers compares
@@ -43,7 +43,7 @@ def spent(client):
 
 
 def efficiency(client, blocks, count, rounds):
-    """Two workers beside two threads; returns the CPU microseconds per motion of a worker for each job."""
+    """Compare two workers with two threads; returns the CPU microseconds per motion of a worker for each job."""
     walls, cpus, each = [], [], {}
     for name, start in JOBS.items():
         size = blocks[name]
@@ -177,10 +177,14 @@ def main():
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--seconds", type=float, default=1.0, help="of a block")
-    parser.add_argument("--blocks", type=int, default=16, help="in a round of the comparison")
+    parser.add_argument("--seconds", type=float, default=1.0, help="duration of a block")
+    parser.add_argument(
+        "--blocks", type=int, default=16, help="number of blocks in a round of the comparison"
+    )
     parser.add_argument("--rounds", type=int, default=3)
-    parser.add_argument("--motions", type=float, default=0, help="only this: so many of each job")
+    parser.add_argument(
+        "--motions", type=float, default=0, help="only compute and count this number of motions of each job"
+    )
     parser.add_argument("--docs", action="store_true")
     args = parser.parse_args()
     blocks = sizes(args.seconds)

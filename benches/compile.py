@@ -1,7 +1,7 @@
 """Cost of compiling: wall time, CPU time, and the memory of the largest compiler process.
 
-Compiles the wheel, and new programs in empty folders that use the crate, each from nothing, with its
-dependencies. Each time of the processor stands beside a yardstick that any machine has: a release build of nalgebra
+Compiles the wheel, and new programs in empty folders that use the crate, each from scratch, with its
+dependencies. Each processor time is compared with a yardstick that any machine has: a release build of nalgebra
 alone, compiled twice before the others (the smaller is taken) and once after them. For unoptimised programs the
 yardstick is such a build of nalgebra, and the program is run: 100 exact motions, and 20 with friction. Needs cargo,
 and maturin for the wheel; ten minutes.
@@ -80,7 +80,7 @@ def took(words, **how):
 
 
 def told(name, times, yard):
-    """Prints what a command took, its CPU time also in units of the yardstick's."""
+    """Print the cost of a command, its CPU time also in units of the yardstick."""
     seconds, busy, memory = times
     print(
         f"{name:46} {seconds:5.0f} s, {busy:5.0f} s of processor = {busy / yard:5.2f} yardsticks, {memory:5.2f} GB",
@@ -89,7 +89,7 @@ def told(name, times, yard):
 
 
 def built(added, how, more):
-    """What a program that uses something took to build."""
+    """Cost of building a program with given dependencies."""
     with tempfile.TemporaryDirectory() as folder:
         return took(["cargo", "build", "--quiet", *how], cwd=program(folder, added), env=clean(**more))
 
@@ -100,7 +100,7 @@ def yardstick(how):
 
 
 def debugged(added, more, level):
-    """What an unoptimised program took to build, and then to run."""
+    """Cost of building an unoptimised program, and of running it."""
     with tempfile.TemporaryDirectory() as folder:
         app = program(folder, [*added, "--path", str(ROOT)])
         (app / "src/main.rs").write_text(PROGRAM)
@@ -112,7 +112,7 @@ def debugged(added, more, level):
 
 
 def all_debugged():
-    """Prints what unoptimised programs took, beside a build of nalgebra alone in their profile."""
+    """Print the costs of unoptimised programs, and of a build of nalgebra alone in their profile."""
     yard = min(yardstick([])[1] for _ in range(2))
     for name, (added, more, level) in DEBUG.items():
         times, ran = debugged(added, more, level)
@@ -121,7 +121,7 @@ def all_debugged():
 
 
 def program(folder, added):
-    """An empty program with what `cargo add` is told to add."""
+    """An empty program with the given dependencies, added by `cargo add`."""
     app = Path(folder) / "app"
     for words in (
         ["init", "--quiet", "--vcs", "none", str(app)],

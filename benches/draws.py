@@ -1,4 +1,4 @@
-"""Random bodies and starts, of all kinds that a user may type: for motions, starts and saddles of claims.py."""
+"""Random bodies and initial states of all kinds that a user may type, for motions, starts and saddles of claims.py."""
 
 import math
 from typing import NamedTuple
@@ -73,7 +73,7 @@ def body(rng, extreme=0.0):
 
 
 def tilt(rng):
-    """An inclination between 0 and pi/2, most of them ordinary."""
+    """An inclination between 0 and pi/2, in most cases an ordinary one."""
     kind = rng.random()
     if kind < 0.8:
         return min(max(uniform(rng, 0.05, 1.55), 0.05), 1.55)
@@ -91,7 +91,7 @@ def inclination(rng, ell, beyond):
 
 
 def steady(of, theta):
-    """w1, w3 of the steady state with the centre at rest, None where there is none."""
+    """w1, w3 of the steady state with the centre at rest, None if there is none."""
     ell, i1, i3 = of
     s, c = math.sin(theta), math.cos(theta)
     square = (c - ell * s) / ((i1 * c - i3 * ell * s) * s)
@@ -120,12 +120,12 @@ def spins(rng, of, theta):
 
 
 def almost_none(rng):
-    """A tilting rate: exactly zero, or between 1e-300 and 1e-4."""
+    """A derivative of the inclination: exactly zero, or between 1e-300 and 1e-4."""
     return 0.0 if rng.random() < 0.5 else sign(rng) * log_uniform(rng, 1e-300, 1e-4)
 
 
 def at_rest(rng, scene):
-    """A start that does not tilt, or hardly; a scene has `contact`, `mu` and `beyond`."""
+    """A start whose inclination is constant or almost constant; a scene has `contact`, `mu` and `beyond`."""
     of = body(rng)
     theta = inclination(rng, of[0], scene["beyond"])
     w1, w3 = spins(rng, of, theta)

@@ -1,9 +1,9 @@
-"""What all kinds of claims.py share: blocks of motions until there are enough, and a table of true over claimed
-errors with one row for each claim, counts of other events, and times.
+"""Parts that all kinds of claims.py share: blocks of motions until there are enough, and a table of true over
+estimated errors with one row for each estimate, counts of other events, and times.
 
-A ratio of one is honest, a hundredth is vague; a claim of 0 beside a true error counts as infinite. The first
-motions that break a claim are printed. Rows with "aside" in their names are of numbers that the claim does not
-cover, and break none.
+A ratio of one is honest, a hundredth is vague; if an estimate is 0 and the true error is not, the ratio is infinite.
+The first motions whose error exceeds the estimate are printed. Rows with "aside" in their names have numbers that the
+estimate does not cover, and are not counted.
 """
 
 import collections
@@ -36,7 +36,7 @@ class Tally:
         self.honest, self.nothing, self.times, self.notes = honest, nothing, [], []
 
     def add(self, name, true, claimed, line=""):
-        """Adds a true error and the claimed one of the motion with the call `line`; a true error of NaN is
+        """Adds the true and the estimated error of the motion with the call `line`; a true error of NaN is
         left out."""
         if math.isnan(true):
             return

@@ -5,7 +5,7 @@
 Rates from 0.5 to 6, launch numbers from 1 to 3, mu = 0.3; each without restitution, where a motion ends as the body
 leaves the table or lies down, and with two coefficients, through all impacts. Prints wall times, the least of two runs
 (with restitution and on one thread, of one), on all processors and on one thread, impacts of each flick, the median of
-the claimed errors, and the shares of the outcomes.
+the estimated errors, and the shares of the outcomes.
 """
 
 import argparse

@@ -1,8 +1,8 @@
-"""What each layer of `src` costs the compiler of the wheel: lines, LLVM lines, seconds, and machine code.
+"""Cost of each layer of `src` when the wheel is compiled: lines, LLVM lines, seconds, and machine code.
 
-Compiles the crate twice as the wheel is compiled: once up to the LLVM code that the generic code becomes before anything
-is inlined, and once to the end with LLVM's own clock. A function counts for the layer where it is defined, whoever
-inlines it. The seconds are LLVM's for each function; those of rustc itself are not by layer. Three minutes.
+Compiles the crate twice, as for the wheel: once up to the LLVM code of the generic code before anything is inlined,
+and once to the end with the timings of LLVM. A function counts for the layer where it is defined, wherever it is
+inlined. The seconds are LLVM's for each function; those of rustc itself are not by layer. Three minutes.
 usage: python benches/layers.py
 """
 
@@ -40,7 +40,7 @@ def lines():
 
 
 def compiled(target, *flags):
-    """Compiles the crate of the wheel with more flags; its folder of outputs."""
+    """Compile the crate of the wheel with additional flags; returns the folder of outputs."""
     words = [
         "cargo",
         "rustc",

@@ -5,7 +5,7 @@ until a twentieth of the time is left (0.03 rad for laws that never stop). `fit_
 data and fits all eight laws. Prints for each true law, over all its spin-downs: mean and spread of (fitted -
 true) / error of the coefficient and of the stopping time, which should be 0 and 1; the percentage of
 spin-downs in which AIC selects the true law, and in which it also rules out all others; the least dAIC of the
-others; and the exponent of the log-log line with free stopping time, its spread, its claimed error and its
+others; and the exponent of the log-log line with free stopping time, its spread, its estimated error and its
 difference from the true one.
 
 usage: python benches/losses_fit.py [--count 200] [--centre rest] [--precession] [--law DryContour]
@@ -57,7 +57,7 @@ def main():
     parser.add_argument(
         "--precession", action="store_true", help="the precession was measured, no inclinations"
     )
-    parser.add_argument("--law", choices=[law.__name__ for law in EXPONENTS], help="this one only")
+    parser.add_argument("--law", choices=[law.__name__ for law in EXPONENTS], help="test only this law")
     options = parser.parse_args()
     true_laws = {law: x for law, x in EXPONENTS.items() if options.law in (None, law.__name__)}
     rng, begun = np.random.default_rng(1), time.perf_counter()

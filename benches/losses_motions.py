@@ -1,11 +1,11 @@
-"""Every reference motion with losses: errors, claim, time; SciPy's DOP853 beside it.
+"""Every reference motion with losses: errors, estimated error and time, compared with SciPy's DOP853.
 
-    python benches/losses_motions.py [name ...]      those whose names begin so; default: all
+    python benches/losses_motions.py [name ...]      motions whose names begin like this; default: all
 
 States, work lost, and the time and the state of the end are compared with 25 digits
 (tests/reference/losses.json); errors are divided by the number if it is above 1. The ratio is the largest
 true error of states and of the end, not divided, over `Motion.error`, which covers both. The work has a
-column of its own, since the claim does not cover it.
+column of its own, since the estimate does not cover it.
 
 DOP853 solves the same equations in plain Python (losses_scipy.py) at the same times, and finds the first end
 of a smooth piece: the contact stops, slip ends, drilling is held. The table has the cheapest of its
@@ -56,7 +56,7 @@ def last(case):
 
 
 def errors(case, m):
-    """Errors of states, work, time and state of the end, scaled; and the largest that the claim covers, not
+    """Errors of states, work, time and state of the end, scaled; and the largest that the estimate covers, not
     scaled."""
     samples = [row for row in case.rows if row.kind in ON_THE_WAY][: m.t.size]
     plain, scaled = off(np.column_stack([m.theta, m.w]), samples, STATE)

@@ -9,7 +9,7 @@ of the tables of tests/reference/losses.json. The numbers of a motion are (theta
 lost). With `compiled` the right-hand side is compiled by numba, if that is installed.
 
 Within a piece of the motion dry friction and drilling friction keep the sign that psi' or w_z has at its
-start. They keep it also past the change of sign, so that the equations are smooth while the integrator
+start. They also keep it past the change of sign, so that the equations are smooth while the integrator
 locates it.
 """
 
@@ -117,7 +117,7 @@ class Lossy:
         return math.copysign(1.0, y[3] - c / s * y[1]), math.copysign(1.0, s * y[1] + c * y[3])
 
     def events(self, signs):
-        """Functions that vanish where a piece ends, by name."""
+        """Functions that are zero at the end of a piece, by name."""
 
         def crossing(name, way):
             def of(_, y, *_signs):
@@ -151,7 +151,7 @@ class Lossy:
         return self.force(y, signs)[0]
 
     def solve(self, start, times, rtol, atol=None, crosses=0, until=None):
-        """The motion to its first end, which is looked for up to `until`, also beyond the last of the times.
+        """The motion to its first end; the end is searched for up to `until`, which may be after the last of the times.
 
         The first `crosses` changes of the sign of psi' do not end the motion.
         """

@@ -1,4 +1,4 @@
-"""Map of the rate: spincyl beside NumPy's best broadcast formula, in one run, with the error of each.
+"""Map of the rate: spincyl and the best broadcast formula in NumPy, in one run, with the error of each.
 
     python benches/map.py [--side 4000] [--rounds 15]
 

@@ -1,10 +1,10 @@
-"""Planted errors: how many of them the tests of Rust catch, and which live.
+"""Planted errors: how many of them the Rust tests catch, and which survive.
 
 Draws places in the physics of `src` at random, plants one error in each (a sign, a comparison, a product for a quotient, a
 condition), and builds a copy of the crate once with all of them, each switched off. Every test is run once to see which
 places it reaches. Then each error is switched on alone, and the tests that reach it are run, the quickest first, until one
-fails. Prints those that no test catches, and how many no test reaches. What lives may be caught by the tests of Python,
-or be no error: a start of an iteration, say. Needs `pip install --group mutants`; a quarter of an hour.
+fails. Prints those that no test catches, and how many no test reaches. Survivors may be caught by the Python tests,
+or be harmless: a first guess of an iteration, say. Needs `pip install --group mutants`; a quarter of an hour.
 usage: python benches/mutants.py [--count 200] [--seed 1] [--folder target/mutants]
 """
 
@@ -109,7 +109,7 @@ def places(path):
 
 
 def drawn(folder, count, seed):
-    """Random places of all rooms, none of them inside another."""
+    """Random places, none of them inside another."""
     files = sorted(p for room in ROOMS for p in (folder / "src" / room).rglob("*.rs") if "test" not in p.stem)
     every = [(p, *place) for p in files for place in places(p)]
     random.Random(seed).shuffle(every)

@@ -1,9 +1,9 @@
-"""Friction of a patch: random scenes, one motion beside many, and the times of a tippe top and of a coin.
+"""Friction of a patch: random scenes, alone and at once, and the times of a tippe top and of a coin.
 
     python benches/patches.py [--count 10000] [--seed 52]     five minutes
 
-Prints how many motions end in which way, alone and at once, those that differ by more than both claims, the
-slowest, and what is refused; then the times of a tippe top that turns over and of a 2-euro coin that whirrs to its face.
+Prints the number of each ending, alone and at once, the motions that differ by more than both estimated errors, the
+slowest motions, and the errors raised; then the times of a tippe top that turns over and of a 2-euro coin that whirrs to its face.
 The command fails if a motion alone and at once end in different ways.
 """
 

@@ -1,10 +1,10 @@
-"""Time for a rounded rim beside that for a sharp one, in one run and on one thread: maps, single motions,
+"""Times for a rounded and for a sharp rim, in one run and on one thread: maps, single motions,
 ensembles.
 
     python benches/rims.py [--fillet 0.1] [--motions 100000]
 
 Times are minima of several runs; their ratio is the result. The bodies are solid and have the same half
-length over the outer radius with either rim. The errors are the largest that the library claims in a run; the
+length over the outer radius with either rim. The errors are the largest estimated errors of a run; the
 maps have at most 2 (1 + kappa_c) ulp with either rim.
 """
 

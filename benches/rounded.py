@@ -5,7 +5,7 @@ inverse.
 
 Each number is the largest of its kind over its bound: 2 (1 + kappa_c) ulp of a rate; 1e-13 of the larger term
 and 16 ulp times the conditioning of a kappa; 8 (1 + kappa_c) ulp of the rate of an inclination. For motions
-it is the error, divided by t/20 where that is above 1, and the error over the claimed one.
+it is the error, divided by t/20 if that is above 1, and the error over the estimated error.
 """
 
 import argparse
@@ -57,7 +57,7 @@ def steady_states():
 
 
 def motions():
-    """The largest error of states and of poses, and of each over the claimed one."""
+    """The largest error of states and of poses, and the largest ratio of each to the estimated error."""
     worst = dict.fromkeys(("state", "state over claim", "pose", "pose over claim"), 0.0)
     for kind, _, contact, *words in rows("motion"):
         if kind != "state":

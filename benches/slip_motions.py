@@ -1,4 +1,4 @@
-"""Every reference motion with friction: error, claim, time; SciPy's DOP853 on its first slip beside it.
+"""Every reference motion with friction: error, estimated error and time; DOP853 of SciPy on its first slip.
 
     python benches/slip_motions.py
 

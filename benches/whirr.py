@@ -1,4 +1,4 @@
-"""Whirrs to their end: evaluations per turn, and time against error, beside SciPy's DOP853.
+"""Whirrs to their end: evaluations per turn, and time against error, compared with SciPy's DOP853.
 
     python benches/whirr.py        a minute; needs gmpy2 and a C compiler
 

@@ -6,7 +6,7 @@ Euler's disk (half its thickness is 0.17 of its radius, a sharp rim) starts at 0
 one with a nutation, and is followed to its end, or to t = 60 where it has none by then. The coefficients are
 such that drift alone would need 20 to 30 units of time from 0.3 rad to 0.03 rad, so that all laws take about
 equally long. Times are least CPU times of one thread. `off` is the largest difference of the end and of the
-last state from the same sweep at the tolerance 1e-12, divided by the number if it is above 1; the claims must
+last state from the same sweep at the tolerance 1e-12, divided by the number if it is above 1; the estimated errors must
 cover it.
 """
 

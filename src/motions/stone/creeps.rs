@@ -4,8 +4,8 @@
 //! |M| <= mu_s N eps g(k),   f(k) = F/(mu_s N)                            holds the drilling
 //! |w.n| = 2 DRILLS, or F = mu N                                          begins to slip, with the slip of the creep
 //! ```
-//! [`creep`](crate::motions::creep) computes the creep. When the drilling passes zero, the stone rolls through that moment, as a
-//! body of revolution does ([`lossy`](crate::motions::path::lossy)); the couple acts only for a short time and is left out.
+//! [`creep`](crate::motions::creep) computes the creep. When the drilling passes zero, the stone rolls through it, as a
+//! body of revolution does ([`lossy`](crate::motions::path::lossy)); the couple acts only briefly and is left out.
 //!
 //! Error: the slip that is left out, at most DRILLS eps, and the couple times the time in which w.n passes DRILLS.
 

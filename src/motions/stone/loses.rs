@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! w = w_z n + w_h        w_z the drilling, w_h the rolling and the rocking, along x and y of the laboratory
-//! dt = v/(v + delta l) dsigma,   v = |w_h|          with rolling resistance, unless a slip sets the pace; l an inverse inertia
+//! dt = v/(v + delta l) dsigma,   v = |w_h|          with rolling resistance and without slip; l is an inverse inertia
 //! w_h = 0    stays if |m_h| <= delta N, with the horizontal couple m_h that keeps it; else the stone rolls along a root
 //!            of f, as a contact point at rest begins to slip along a root (`standstill`)
 //! w_z = 0    is held while |m_z| <= length N
@@ -107,7 +107,7 @@ impl StoneFlow<'_> {
         }
     }
 
-    /// Lets dry friction hold the drilling, or sets the sign of the drilling that friction resists. `toward` is the direction
+    /// Lets dry friction hold the drilling, or sets the sign of the drilling that it resists. `toward` is the direction
     /// of a slip from rest; `freed` is true if friction has just let the drilling go. Returns the drilling that is left out.
     pub(super) fn sets_ways<const N: usize>(
         &mut self,

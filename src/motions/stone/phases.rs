@@ -205,7 +205,7 @@ impl<'a, 'n, const N: usize> StoneWalk<'a, 'n, N> {
         self.continues_with(next);
     }
 
-    /// True if the friction that rolling needs has just jumped beyond its limit, as when a dry couple changes its direction.
+    /// True if the friction for rolling has just jumped past its limit, as when a dry couple changes its direction.
     fn jumps(&self) -> bool {
         let Seen { at, to, .. } = self.of.flow.seen_at(&self.at);
         let along = plus(to.force, -to.free, at.n);
@@ -222,7 +222,7 @@ impl<'a, 'n, const N: usize> StoneWalk<'a, 'n, N> {
         self.rest().decides()
     }
 
-    /// Sets which motions dry losses resist or hold at the present numbers. Returns the next phase if the stone stays at rest.
+    /// Sets which motions dry losses resist or hold. Returns the next phase if the stone stays at rest.
     fn begins_to_lose(&mut self, toward: [f64; 2]) -> Option<Next> {
         let freed = core::mem::take(&mut self.of.freed);
         let left = self.of.flow.sets_ways(&mut self.at, toward, freed);
