@@ -13,7 +13,7 @@ Floats = NDArray[np.float64]
 
 
 class Shot(NamedTuple):
-    """A shot until nothing moves, in SI."""
+    """A shot until the ball is at rest, in SI."""
 
     rolls: sc.Motion  # until the centre stops
     turns: sc.Motion  # from then on, where only the patch still slows the ball
@@ -23,7 +23,7 @@ class Shot(NamedTuple):
 
 
 def shot(patch: float) -> Shot:
-    """Follow the ball with a patch of this radius in metres."""
+    """Compute the shot with a patch of this radius in metres."""
     contact = sc.Coulomb.from_si(MU, patch=patch, scale=body)
     rolls = sc.roll(body, start, t, contact=contact, losses=losses)
     assert rolls.event is not None
@@ -48,7 +48,7 @@ def speed(motion: sc.Motion) -> Floats:
 
 
 def creep() -> float:
-    """Slip of the ball over that of the rim of its patch, while it creeps, k.
+    """Slip over the speed of the rim of the patch while the ball creeps, k.
 
     Rolling resistance needs the force (5/7) (DELTA/R) M g, and a slow slip of the patch
     gives (3 pi/8) k MU M g.
@@ -74,7 +74,7 @@ SMALL, WIDE = 0.5e-3, 2e-3  # radii of the patch in metres
 
 
 def picture() -> None:
-    """Draw the speed of the centre and the spin, while it slides and until it ends."""
+    """Draw speed and spin while the ball slides, and until the spin ends."""
     _, axes = plt.subplots(2, 2, sharex="col", sharey="row", width_ratios=(1, 2.2))
     for patch, style in ((SMALL, "-"), (WIDE, "--")):
         found = shot(patch)

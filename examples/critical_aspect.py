@@ -1,4 +1,4 @@
-"""A cylinder whose moments are equal balances at one inclination at any rate, and above a least rate that lasts if it rolls."""
+"""A cylinder with equal moments balances at one inclination at any rate, and above a least rate this is stable in rolling."""
 
 from typing import Literal
 

@@ -7,7 +7,7 @@ from typing import Any
 import spincyl as sc
 
 DOCS = Path(__file__).parents[1] / "docs"
-# what a picture needs beside the motion: a time in seconds, or arguments of `sc.view`
+# options of a picture: a time in seconds, or arguments of `sc.view`
 HOW: dict[str, dict[str, Any]] = {
     "tube": {"above": True, "exposure": 1},
     "top": {"t": 0.4},

@@ -26,14 +26,14 @@ def picture() -> None:
     motion = rest(0.5)
     assert motion.event is not None
     end = motion.event.time
-    # more times while it bounces
+    # a denser grid of times while the coin bounces
     many = np.union1d(np.linspace(0.0, 12.0, 3001), np.linspace(0.0, end, 3001))
     now = motion.at(many)
     _, (above, below) = plt.subplots(2, 1, figsize=(9.6, 5.4))
     above.plot(scale.seconds(many), 1000 * scale.metres(now.height))
     above.set(ylabel="lowest point (mm)", xlim=(0, scale.seconds(12.0)))
     above.set_title("it bounces for a third of a second")
-    # whichever rim is lower
+    # the lower one of both rims
     lean = np.minimum(now.theta, np.pi - now.theta)
     below.plot(scale.seconds(many), np.degrees(lean), color="#D55E00")
     below.set(xlabel="time (s)", ylabel="inclination (degrees)")

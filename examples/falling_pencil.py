@@ -22,12 +22,12 @@ def law(lean: Floats, first: float = 0.0) -> tuple[Floats, Floats]:
 
 
 def let_go(first: float) -> sc.State:
-    """At rest, leaning by `first` from where it balances on its edge."""
+    """At rest, leaning by `first` from its balance on the edge."""
     return sc.State(float(body.theta_balance) + first, 0.0, 0.0, 0.0)
 
 
 def way(motion: sc.Motion) -> str:
-    """Where the foot goes first: away from where the pencil falls, or there."""
+    """First direction of the foot: against the fall of the pencil, or with it."""
     first = next(phase for phase in motion.phases if phase.kind == "slipping")
     slipping = motion.slip[motion.t > first.time, 0][0]
     return "backwards" if slipping > 0 else "forwards"
@@ -42,7 +42,7 @@ t = np.linspace(0.0, 40.0, 8001)
 
 
 def picture() -> None:
-    """Draw the friction that it needs as it pivots, and what three tables can give."""
+    """Draw the friction that pivoting needs, and the limits of three tables."""
     lean = np.linspace(0.0, np.radians(66), 500)
     normal, friction = law(lean)
     plt.plot(np.degrees(lean), friction / normal, "k", label="what it needs")

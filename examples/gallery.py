@@ -57,7 +57,7 @@ def draw(scene: str) -> Figure:
 
 
 def main() -> None:
-    """Write the pictures that were asked for."""
+    """Write the chosen pictures."""
     folder = Path(sys.argv[1] if len(sys.argv) > 1 else "docs/figures/gallery")
     folder.mkdir(parents=True, exist_ok=True)
     for scene in sys.argv[2:] or SCENES:

@@ -10,7 +10,7 @@ body = sc.Body.from_metres(
 )
 scale = sc.Scale(radius=0.015875 / 2, mass=0.0095)
 table = sc.Coulomb(0.3)
-# how much of its speed an end keeps in a blow without friction
+# share of its speed that an end keeps in a blow without friction
 RESTITUTION = 0.5
 # in M sqrt(g R): the launch number is 5.0, and 1.1 would be enough
 IMPULSE = 15.0

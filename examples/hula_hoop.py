@@ -9,11 +9,11 @@ import spincyl as sc
 
 
 class Law(NamedTuple):
-    """What becomes of an upright hoop under constant friction, in SI."""
+    """The motion of an upright hoop with constant friction, in SI."""
 
     turns_back: float  # when its centre stops to come back, in seconds
     grips: float  # when it stops slipping, in seconds
-    distance: float  # how far its centre is away by then, in metres
+    distance: float  # of its centre from the hand then, in metres
     velocity: float  # of its centre from then on, in metres per second
     back: float  # when it is back, in seconds; before the throw if it goes on
     heat: float  # in joules
@@ -39,7 +39,7 @@ def law(velocity: float, backspin: float, mu: float) -> Law:
 
 
 def least_speed() -> float:
-    """Speed in m/s from which on it rolls stably: v^2 = g R I1/(I3 (I3 + 1))."""
+    """Least speed, in m/s, of stable rolling: v^2 = g R I1/(I3 (I3 + 1))."""
     i1, i3 = float(body.i1), float(body.i3)
     return float(np.sqrt(scale.gravity * scale.radius * i1 / (i3 * (i3 + 1))))
 
@@ -53,7 +53,7 @@ t = np.linspace(0.0, 1.7, 341) / scale.seconds(1.0)
 
 
 def picture() -> None:
-    """Draw where the hoop is and how fast its rim slips, over time."""
+    """Draw the position of the hoop and the slip of its rim over time."""
     expected = law(VELOCITY, BACKSPIN, table.mu)
     motion = sc.roll(body, start, t, contact=table, want="pose")
     seconds = scale.seconds(motion.t)

@@ -60,7 +60,7 @@ def verdict(body: sc.Body, state: sc.State) -> str:
 
 
 def numbers() -> None:
-    """Print what the library knows of each body."""
+    """Print the main numbers of each body."""
     print(
         "Of each body: the steady states at four rates. theta is the inclination of its axis from the vertical. Then\n"
         "what a kick does: N is the normal force in weights, mu the friction that rolling needs, and the number in\n"
@@ -91,7 +91,7 @@ def numbers() -> None:
 
 
 def motion(body: sc.Body, start: sc.State, scale: sc.Scale) -> None:
-    """Print what a small kick does in 20 time units."""
+    """Print the effect of a small kick in 20 time units."""
     m = sc.roll(body, start, np.linspace(0, 20, 501), want="force")
     low, high = np.degrees([m.theta.min(), m.theta.max()])
     how = (
@@ -123,7 +123,7 @@ def portrait(folder: Path) -> None:
         ["rate", "kappa_rolling", "kappa_smooth", "region"],
     )
     for want in wanted:
-        # Memory that is new from the system is slow where it is touched first: that says nothing of the library.
+        # The first access to new memory is slow: this time is not that of the library.
         data, first = swept(theta, ell, want, None)
         data, again = swept(theta, ell, want, data)
         speed = theta.size * ell.size / again / 1e6

@@ -1,4 +1,4 @@
-"""A cylinder that was pushed out of its steady state nods about it, and returns after every period."""
+"""A cylinder that is pushed out of its steady state nods about it, and returns after every period."""
 
 import numpy as np
 

@@ -12,7 +12,7 @@ Floats = NDArray[np.float64]
 
 
 class Law(NamedTuple):
-    """The rocking that grows at a spin: what the eigenvalues say, in SI."""
+    """The rocking that grows at a spin, from the eigenvalues, in SI."""
 
     axis: int  # of the stone, which it tilts
     growth: float  # per second
@@ -31,20 +31,20 @@ def law(spin: float) -> Law:
 
 
 def spun(spin: float) -> sc.EllipsoidState:
-    """Upright, but for a push of a fiftieth of a degree about both axes."""
+    """Upright, except for a push of a fiftieth of a degree about both axes."""
     push = np.radians(0.02)
     return body.spinning(spin * second, pitch=push, roll=push)
 
 
 def swings(motion: sc.EllipsoidMotion, axis: int) -> tuple[Floats, Floats]:
-    """When an axis of the stone is farthest from level, and by how many degrees."""
+    """Times at which an axis is farthest from level, and its angles in degrees."""
     angle = np.abs(90 - np.degrees(motion.inclinations[:, axis]))
     most = 1 + np.flatnonzero((angle[1:-1] >= angle[:-2]) & (angle[1:-1] > angle[2:]))
     return motion.t[most], angle[most]
 
 
 def grows(motion: sc.EllipsoidMotion, axis: int) -> float:
-    """How its swings grow: from 0.3 s on to the loss of a thousandth of its spin."""
+    """Growth of its swings, from 0.3 s until a thousandth of the spin is lost."""
     times, angle = swings(motion, axis)
     early = (times > 0.3) & (
         times < motion.t[np.argmax(np.abs(motion.spin) < 0.999 * SPIN)]
@@ -65,7 +65,7 @@ ROCKING = ("end to end", "side to side")
 
 
 def picture() -> None:
-    """Draw the spin, spun either way, and how far it rocks beside the eigenvalues."""
+    """Draw the spin for both directions, and the rocking with its growth rate."""
     _, (left, right) = plt.subplots(1, 2, figsize=(9.6, 5.4))
     for way, spin, colour in WAYS:
         motion, rocking = sc.roll(body, spun(spin), t), law(spin)
@@ -78,7 +78,7 @@ def picture() -> None:
             ROCKING[rocking.axis],
             color=colour,
         )
-        # through the swing of a fifth of a degree, as steep as the eigenvalue says
+        # through the swing of a fifth of a degree, with the slope of the eigenvalue
         first = int(np.argmax(angle > 0.2))
         size = np.array([0.01, 80.0])
         right.plot(

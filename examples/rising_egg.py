@@ -10,11 +10,11 @@ Floats = NDArray[np.float64]
 
 
 def lying(turns: float) -> sc.EllipsoidState:
-    """Five degrees from level, its centre at rest, with so many turns a second."""
+    """Five degrees from level, its centre at rest, with these turns a second."""
     lean = np.radians(85)
     up = np.array([-np.sin(lean), 0.0, np.cos(lean)])
     spin = 2 * np.pi * turns * second
-    # its lowest point lies aside from the vertical through its centre, and runs round
+    # the lowest point is not below the centre, and runs round
     contact = -squares * up / np.sqrt(squares @ up**2)
     return sc.EllipsoidState(
         up, spin * up, slip=(0.0, spin * float(np.cross(up, contact)[1]))
@@ -22,7 +22,7 @@ def lying(turns: float) -> sc.EllipsoidState:
 
 
 def jellett(motion: sc.EllipsoidMotion) -> Floats:
-    """Jellett's number over its start: L along the way from contact to centre of mass.
+    """Jellett's number over its first value: L.(C - P), contact P to centre C.
 
     No force at the contact can change it. In a ball it is a constant, in an egg that
     spins fast nearly one.
@@ -34,7 +34,7 @@ def jellett(motion: sc.EllipsoidMotion) -> Floats:
 
 
 def standing() -> float:
-    """How many times as fast it spins when it stands if that number is what it was.
+    """Spin of the standing egg over that of the lying one, for one Jellett's number.
 
     Lying, its centre of mass is at the height b, standing at 1: b I1 spin = I3 spin.
     """
@@ -43,7 +43,7 @@ def standing() -> float:
 
 
 def least() -> float:
-    """Turns a second that standing needs: (I1 - I3 standing^2) spin^2 = 2 (1 - b)."""
+    """Least turns a second of a standing egg: (I1 - I3 standing^2) spin^2 = 2 (1 - b)."""
     i1, _, i3 = np.diag(body.inertia)
     return float(
         np.sqrt(2 * (1 - np.sqrt(squares[0])) / (i1 - i3 * standing() ** 2))
@@ -62,7 +62,7 @@ t = np.linspace(0.0, 3.0, 3001)
 
 
 def picture() -> None:
-    """Draw how it rises, what it keeps, nearly or wholly, and what it loses."""
+    """Draw its inclination, its nearly constant number, and its loss of energy."""
     motion = sc.roll(body, start, t, contact=table)
     first = motion.energy[0]
     _, (left, right) = plt.subplots(1, 2, figsize=(9.6, 5.4))

@@ -1,4 +1,4 @@
-"""A can that falls nearly flat leans farther round by an angle that hardly varies."""
+"""A can that falls nearly flat rises again, turned by an angle that hardly varies."""
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -11,7 +11,7 @@ t = np.linspace(0.0, 5.0, 2001)
 
 
 def picture() -> None:
-    """Draw where its top leans, from above, as it falls and rises again."""
+    """Draw the direction of its lean, from above, as it falls and rises again."""
     figure, (left, right) = plt.subplots(1, 2, figsize=(9.6, 5.4))
     for w1 in (1e-1, 1e-2, start.w1):
         motion = sc.roll(

@@ -10,10 +10,10 @@ Floats = NDArray[np.float64]
 
 
 def jellett(motion: sc.Motion) -> Floats:
-    """Jellett's number, L along the way from the contact to the centre of mass.
+    """Jellett's number, L.(C - P), from the contact P to the centre of mass C.
 
     L.(C - P) = I1 w1 sin(theta) + I3 w3 (ell + cos(theta)): a force at P cannot change
-    it, whatever its law is. The couple of a patch takes some of it.
+    it, whatever the law of friction. The couple of a patch takes some of it.
     """
     sin, cos = np.sin(motion.theta), np.cos(motion.theta)
     number: Floats = body.i1 * motion.w[:, 0] * sin + body.i3 * motion.w[:, 2] * (
@@ -23,7 +23,7 @@ def jellett(motion: sc.Motion) -> Floats:
 
 
 def kept(motion: sc.Motion, last: int) -> str:
-    """Jellett's number at the start and later."""
+    """Jellett's number over time."""
     number = jellett(motion)
     return f"{number[0]:.6f}, then {number[last]:.6f}"
 
@@ -42,7 +42,7 @@ t = np.linspace(0.0, 400.0, 4001)
 
 
 def picture() -> None:
-    """Draw the inclination of the axis on the three tables."""
+    """Draw the inclination on the three tables."""
     for contact, label in (
         (wet, "wet table"),
         (patch, "dry table, a patch of 0.3 mm"),
