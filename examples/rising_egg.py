@@ -43,7 +43,7 @@ def standing() -> float:
 
 
 def least() -> float:
-    """Least turns a second of a standing egg: (I1 - I3 standing^2) spin^2 = 2 (1 - b)."""
+    """Least turns a second to stand: (I1 - I3 standing^2) spin^2 = 2 (1 - b)."""
     i1, _, i3 = np.diag(body.inertia)
     return float(
         np.sqrt(2 * (1 - np.sqrt(squares[0])) / (i1 - i3 * standing() ** 2))
