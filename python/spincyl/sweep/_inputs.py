@@ -103,7 +103,8 @@ def with_inputs(result: "xarray.Dataset", named: dict[str, Any], length: str) ->
         if dims or data == data:
             coords[name] = dims, data, {"units": _UNITS[name].replace("R", length)}
     # inputs that are variables of an earlier sweep bring its coordinates with them
-    return result.drop_vars(_UNITS, errors="ignore").assign_coords(coords)
+    brought = [name for name in result.coords if name in _UNITS]
+    return (result.drop_vars(brought) if brought else result).assign_coords(coords)
 
 
 def _varying(dims: tuple[Any, ...], data: Floats) -> tuple[tuple[Any, ...], Floats]:

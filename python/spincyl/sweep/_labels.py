@@ -58,7 +58,7 @@ def labelled(fields: dict[str, Reals], more: dict[str, Reals]) -> tuple[list[Any
     def label(x: Reals) -> Any:
         if hasattr(x, "dims"):
             return x
-        return lib.DataArray(x, dims=dims[rank - np.ndim(x) :])
+        return lib.Variable(dims[rank - np.ndim(x) :], x)  # lighter than a DataArray
 
     # xarray does not broadcast lengths of one by name: drop them where another field is longer
     named = [label(x) for x in (*fields.values(), *more.values())]
@@ -69,7 +69,8 @@ def labelled(fields: dict[str, Reals], more: dict[str, Reals]) -> tuple[list[Any
 
 def free(named: list[Any], names: list[str], spread: frozenset[str]) -> None:
     """Refuse inputs that have a coordinate, or the only dimension, with the name of an output."""
-    coords, dims = {c for x in named for c in x.coords}, {d for x in named for d in x.dims}
+    coords = {c for x in named for c in getattr(x, "coords", ())}
+    dims = {d for x in named for d in x.dims}
     for name in names:
         if name in coords or (dims == {name} and name not in spread):
             why = f"bodies, states: {name!r} is a coordinate of theirs, and a result of the sweep"
