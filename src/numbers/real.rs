@@ -33,8 +33,6 @@ pub(super) use operators;
 pub(crate) trait Real:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
-    /// Whether these are plain numbers, for which laws of the user's own exist; lanes have no code for them.
-    const IS_PLAIN: bool = false;
     /// The constant `x` in as many lanes as `self` has.
     fn splat(self, x: f64) -> Self;
     /// Square root; NaN below zero.
@@ -105,7 +103,6 @@ impl Lane for f64 {
 }
 
 impl Real for f64 {
-    const IS_PLAIN: bool = true;
     #[inline(always)]
     fn splat(self, x: f64) -> Self {
         x

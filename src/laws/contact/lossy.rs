@@ -17,7 +17,7 @@
 use super::reduced::{Coefficients, Rates};
 use super::{Contact, rolling};
 use crate::laws::body::Body;
-use crate::laws::loss::{Couple, Couples, Law, Losses};
+use crate::laws::loss::{Couple, Couples, Given, Law, Losses};
 use crate::laws::newton;
 use crate::laws::state::State;
 use crate::numbers::Real;
@@ -38,9 +38,9 @@ pub(crate) enum Held<T> {
 
 /// A body on a table, with losses.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Lossy<T> {
+pub(crate) struct Lossy<T, G = ()> {
     pub rates: Rates<T>,
-    pub losses: Couples<T>,
+    pub losses: Couples<T, G>,
 }
 
 /// The accelerations, the contact force and the lost power in one state.
@@ -55,7 +55,7 @@ pub(crate) struct Acted<T> {
     pub held: [T; 2],
 }
 
-impl<T: Real> Lossy<T> {
+impl<T: Real, G: Given<T>> Lossy<T, G> {
     /// -s^2 D psi''/lambda, where psi'' is the part that the couple lambda h/s causes.
     #[inline(always)]
     fn yielding(of: &Coefficients<T>, (s, c): (T, T)) -> T {
@@ -162,7 +162,9 @@ impl Lossy<f64> {
     pub fn of(contact: Contact, body: &Body, losses: &Losses) -> Self {
         Self { rates: contact.rates(body), losses: Couples::of(losses, |x| x) }
     }
+}
 
+impl<G: Given<f64>> Lossy<f64, G> {
     /// The response in a state in which dry friction holds nothing.
     pub fn in_state(&self, y: &State) -> Acted<f64> {
         let angle = y.theta.sin_cos();
@@ -193,7 +195,7 @@ pub fn derivative(contact: Contact, body: &Body, y: &State, losses: &Losses) -> 
 /// ```
 pub fn under_couple(contact: Contact, body: &Body, y: &State, couple: [f64; 3]) -> (State, newton::Force) {
     let given = Couple { free: couple, pressed: [0.0; 3] };
-    let losses = Couples::of(&Losses::NONE, |x| x).with_given(given);
+    let losses = Couples::of(&Losses::NONE, |x| x).with_given(Some(given));
     let at = Lossy { rates: contact.rates(body), losses }.in_state(y);
     let ([w1, w2, w3], [normal, along, across]) = (at.w, at.force);
     (State { theta: -y.w2, w1, w2, w3 }, newton::Force { normal, along, across })

@@ -25,7 +25,7 @@ use super::JAMMED;
 use super::patch::rubs;
 use crate::error::{Error, within};
 use crate::laws::body::{Body, Shape};
-use crate::laws::loss::{Couples, Law, Losses};
+use crate::laws::loss::{Couples, Given, Law, Losses};
 use crate::laws::newton::{self, Force};
 use crate::laws::state::State;
 use crate::numbers::Real;
@@ -102,7 +102,7 @@ impl Friction {
 
 /// A body on a table with friction.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Slipping<T> {
+pub(crate) struct Slipping<T, G = ()> {
     pub shape: Shape<T>,
     per_i1: T,
     per_i3: T,
@@ -113,7 +113,7 @@ pub(crate) struct Slipping<T> {
     /// Whether the friction is Coulomb's, whose force has a direction even where u vanishes.
     pub dry: bool,
     /// The losses in addition to friction; None if the body has none.
-    pub losses: Option<Couples<T>>,
+    pub losses: Option<Couples<T, G>>,
     /// The radius of the patch of contact; None for a point.
     radius: Option<T>,
 }
@@ -145,7 +145,9 @@ impl<T: Real> Slipping<T> {
         let soft = strength * (one + reach * reach * per_i1 + per_i3) * strength.splat(0.25);
         Self { shape: *shape, per_i1, per_i3, strength, soft, dry, losses: None, radius: None }
     }
+}
 
+impl<T: Real, G: Given<T>> Slipping<T, G> {
     /// Returns this body on a patch of this radius.
     pub fn with_patch(self, radius: Option<T>) -> Self {
         Self { radius, ..self }
@@ -158,8 +160,9 @@ impl<T: Real> Slipping<T> {
     }
 
     /// Returns this body with losses.
-    pub fn with_losses(self, losses: Option<Couples<T>>) -> Self {
-        Self { losses, ..self }
+    pub fn with_losses<H>(self, losses: Option<Couples<T, H>>) -> Slipping<T, H> {
+        let Self { shape, per_i1, per_i3, strength, soft, dry, radius, .. } = self;
+        Slipping { shape, per_i1, per_i3, strength, soft, dry, losses, radius }
     }
 
     /// The response with a couple `push` h/s along the contour that makes psi' change at this rate, with dt/dsigma and
@@ -345,6 +348,14 @@ impl Slipping<f64> {
         Self::on(body, friction).with_losses(Couples::some(losses))
     }
 
+    /// The contact force N, F2 and Fh in a state.
+    pub fn force(&self, y: &State, u: [f64; 2]) -> Force {
+        let [normal, along, across] = self.answers(y.theta.sin_cos(), [y.w1, y.w2, y.w3], u).0.force;
+        Force { normal, along, across }
+    }
+}
+
+impl<G: Given<f64>> Slipping<f64, G> {
     /// The power of the losses, without that of friction.
     pub fn power(&self, angle: (f64, f64), w: [f64; 3], normal: f64) -> f64 {
         self.losses.map_or(0.0, |losses| {
@@ -357,12 +368,6 @@ impl Slipping<f64> {
     pub fn painleve(&self, angle: (f64, f64)) -> f64 {
         let (lever, rim) = (self.shape.rim.lever(angle), &self.shape.rim);
         (self.shape.i1 + lever * lever) / (lever * rim.height(angle)).abs()
-    }
-
-    /// The contact force N, F2 and Fh in a state.
-    pub fn force(&self, y: &State, u: [f64; 2]) -> Force {
-        let [normal, along, across] = self.answers(y.theta.sin_cos(), [y.w1, y.w2, y.w3], u).0.force;
-        Force { normal, along, across }
     }
 
     /// Kinetic and potential energy in M g R, with heights measured from the table.

@@ -93,6 +93,25 @@ impl<T: Real> Couple<T> {
     }
 }
 
+/// The couple of a user-defined law in the state for which losses are made: `()` costs no code.
+pub(crate) trait Given<T>: Copy {
+    fn couple(&self) -> Option<&Couple<T>>;
+}
+
+impl<T> Given<T> for () {
+    #[inline(always)]
+    fn couple(&self) -> Option<&Couple<T>> {
+        None
+    }
+}
+
+impl<T: Real> Given<T> for Option<Couple<T>> {
+    #[inline(always)]
+    fn couple(&self) -> Option<&Couple<T>> {
+        self.as_ref()
+    }
+}
+
 /// The signs of the motions that dry friction resists, held fixed by a caller: of psi', of w_z, and of the rocking.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Ways<T = f64> {
@@ -124,13 +143,12 @@ impl Ways {
 
 /// The losses in the form that the equations of motion use, of one body or of eight in lanes.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Couples<T> {
+pub(crate) struct Couples<T, G = ()> {
     pub(super) coefficients: [T; COUNT],
     pub(super) present: [bool; COUNT],
     /// The signs of the motions that dry friction resists, where a caller holds them fixed within a step.
     pub ways: Option<Ways<T>>,
-    /// The couple of a user-defined law, in the state for which these losses are made.
-    pub given: Option<Couple<f64>>,
+    pub(super) given: G,
 }
 
 /// A step may change a speed by this share, or by `NEAR` if that is more, where a law is not smooth at zero speed.
@@ -192,6 +210,9 @@ pub(crate) fn rolling_growth((s, c): (f64, f64), [w1, w2, w3]: [f64; 3], [d1, d2
     [speed, (rolling * rate + w2 * d2) / speed]
 }
 
+/// Losses with a user-defined couple.
+pub(crate) type UnderCouple = Couples<f64, Option<Couple<f64>>>;
+
 impl Couples<f64> {
     /// These losses without the laws that act along the contour.
     pub fn off_the_contour(mut self) -> Self {
@@ -202,8 +223,9 @@ impl Couples<f64> {
     }
 
     /// These losses with a user-defined couple.
-    pub fn with_given(self, given: Couple<f64>) -> Self {
-        Self { given: Some(given), ..self }
+    pub fn with_given(self, given: Option<Couple<f64>>) -> UnderCouple {
+        let Self { coefficients, present, ways, .. } = self;
+        Couples { coefficients, present, ways, given }
     }
 
     /// The couples of these losses; None if nothing is lost.
@@ -216,7 +238,7 @@ impl<T: Real> Couples<T> {
     #[inline(always)]
     pub fn of(losses: &Losses, number: impl Fn(f64) -> T) -> Self {
         let coefficients = losses.coefficients.map(number);
-        Self { coefficients, present: losses.coefficients.map(|x| x != 0.0), ways: None, given: None }
+        Self { coefficients, present: losses.coefficients.map(|x| x != 0.0), ways: None, given: () }
     }
 
     /// These losses in another type of number.
@@ -233,9 +255,17 @@ impl<T: Real> Couples<T> {
         for (to, from) in coefficients.iter_mut().zip(self.coefficients) {
             *to = number(from);
         }
-        Couples { coefficients, present: self.present, ways, given: None }
+        Couples { coefficients, present: self.present, ways, given: () }
     }
 
+    /// The losses with these coefficients among the laws that are present, where `ways` holds signs fixed.
+    #[inline(always)]
+    pub fn among(coefficients: [T; COUNT], present: [bool; COUNT], ways: Option<Ways<T>>) -> Self {
+        Self { coefficients, present, ways, given: () }
+    }
+}
+
+impl<T: Real, G: Given<T>> Couples<T, G> {
     /// The kinematics from sine and cosine of theta, w1/s and w, with the signs that a caller holds fixed.
     #[inline(always)]
     pub fn seen(&self, rim: &Rim<T>, angle: (T, T), precession: T, w: [T; 3]) -> Kinematics<T> {
@@ -243,12 +273,6 @@ impl<T: Real> Couples<T> {
         let Some(ways) = self.ways else { return seen };
         let rocks = (ways.rocking != 0.0).then(|| angle.0.splat(ways.rocking));
         Kinematics { signs: [ways.contour, ways.drilling], rocks, ..seen }
-    }
-
-    /// The losses with these coefficients among the laws that are present, where `ways` holds signs fixed.
-    #[inline(always)]
-    pub fn among(coefficients: [T; COUNT], present: [bool; COUNT], ways: Option<Ways<T>>) -> Self {
-        Self { coefficients, present, ways, given: None }
     }
 
     /// Which laws are present, in the order of [`Law::ALL`].
@@ -259,7 +283,7 @@ impl<T: Real> Couples<T> {
     /// Whether some law acts about the axis of the rocking.
     #[inline(always)]
     pub fn tilts(&self) -> bool {
-        (T::IS_PLAIN && self.given.is_some())
+        self.given.couple().is_some()
             || self.has_any(
                 #[inline(always)]
                 |law| law.tilts(),

@@ -37,7 +37,8 @@ use crate::numbers::Real;
 use crate::numbers::codes::coded;
 use core::ops::Add;
 pub(crate) use couples::{
-    Couple, Couples, GRACE, Kinematics, NEAR, SLACK, Ways, going, holds, mirrored, rolling_growth, rounded,
+    Couple, Couples, GRACE, Given, Kinematics, NEAR, SLACK, UnderCouple, Ways, going, holds, mirrored,
+    rolling_growth, rounded,
 };
 pub(crate) use law::{EndPowers, LossLaw, Resists, Speed};
 
@@ -114,14 +115,14 @@ macro_rules! laws {
 
         /// The sums over all laws are written out, law by law: a loop with a `match` costs lanes and single motions
         /// up to a tenth of their time.
-        impl<T: Real> Couples<T> {
+        impl<T: Real, G: Given<T>> Couples<T, G> {
             /// The couple of all laws.
             #[inline(always)]
             pub fn at(&self, seen: &Kinematics<T>) -> Couple<T> {
                 let zero = seen.spin.splat(0.0);
                 let (mut free, mut pressed) = ([zero; 3], [zero; 3]);
-                if T::IS_PLAIN && let Some(given) = &self.given {
-                    (free, pressed) = (given.free.map(|x| zero.splat(x)), given.pressed.map(|x| zero.splat(x)));
+                if let Some(given) = self.given.couple() {
+                    (free, pressed) = (given.free, given.pressed);
                 }
                 $(if self.present[$code] {
                     let unit = $file::$Law::couple(seen);
@@ -142,10 +143,9 @@ macro_rules! laws {
                     let unit = if $file::$Law::PRESSES { unit * normal } else { unit };
                     power = self.coefficients[$code].mac(unit, power);
                 })+
-                if T::IS_PLAIN && let Some(given) = &self.given {
-                    for (i, w) in seen.w.into_iter().enumerate() {
-                        let [free, pressed] = [given.free[i], given.pressed[i]].map(|x| normal.splat(x));
-                        power = power - normal.mac(pressed, free) * w;
+                if let Some(given) = self.given.couple() {
+                    for (m, w) in given.under(normal).into_iter().zip(seen.w) {
+                        power = power - m * w;
                     }
                 }
                 power

@@ -12,7 +12,7 @@ use crate::laws::contact::slip::{Friction, Slipping};
 use crate::laws::contact::standstill::{Standstill, standstill_under};
 use crate::laws::contact::{Contact, Force, Table, grip};
 use crate::laws::custom::Custom;
-use crate::laws::loss::{Couple, Couples, Losses};
+use crate::laws::loss::{Couple, Couples, Losses, UnderCouple};
 use crate::laws::state::State;
 use crate::methods::flow::{Flow, FlowPlace};
 use crate::methods::{radau, rk8};
@@ -78,19 +78,20 @@ impl<'a> CustomFlow<'a> {
         &self,
         angle: (f64, f64),
         w: [f64; 3],
-        answer: impl Fn(Option<Couples<f64>>) -> (R, f64),
-    ) -> (R, Option<Couples<f64>>) {
-        let built_in = Couples::some(&self.ask.losses);
-        let Some(law) = self.custom.couple else { return (answer(built_in).0, built_in) };
+        answer: impl Fn(Option<UnderCouple>) -> (R, f64),
+    ) -> (R, Option<UnderCouple>) {
+        let built_in = Couples::of(&self.ask.losses, |x| x);
+        let Some(law) = self.custom.couple else {
+            let couples = (!self.ask.losses.is_none()).then(|| built_in.with_given(None));
+            return (answer(couples).0, couples);
+        };
         let side = if angle.0 < 0.0 { -1.0 } else { 1.0 };
         let y = State { theta: (side * angle.0).atan2(angle.1), w1: side * w[0], w2: side * w[1], w3: w[2] };
         let at = |normal: f64| {
             let [m1, m2, m3] = law.couple(self.body, &y, normal.max(0.0));
             [side * m1, side * m2, m3]
         };
-        let of = |given: Couple<f64>| {
-            Some(built_in.unwrap_or(Couples::of(&Losses::NONE, |x| x)).with_given(given))
-        };
+        let of = |given: Couple<f64>| Some(built_in.with_given(Some(given)));
         let (mut normal, mut m) = (1.0, at(1.0));
         let mut couples = of(Couple { free: m, pressed: [0.0; 3] });
         let (mut found, mut next) = answer(couples);
@@ -109,10 +110,10 @@ impl<'a> CustomFlow<'a> {
     }
 
     /// The response of a body that rolls, or slides freely on a smooth table, and the couples that act.
-    fn held(&self, contact: Contact, angle: (f64, f64), w: [f64; 3]) -> (Acted<f64>, Option<Couples<f64>>) {
+    fn held(&self, contact: Contact, angle: (f64, f64), w: [f64; 3]) -> (Acted<f64>, Option<UnderCouple>) {
         let rates = contact.rates(self.body);
         self.solved(angle, w, |losses| {
-            let losses = losses.unwrap_or(Couples::of(&Losses::NONE, |x| x));
+            let losses = losses.unwrap_or(Couples::of(&Losses::NONE, |x| x).with_given(None));
             let acted = Lossy { rates, losses }.at(angle, w[0] / angle.0, w, Held::Nothing);
             (acted, acted.force[0])
         })
