@@ -9,8 +9,8 @@ use core::f64::consts::PI;
 ///
 /// A closure `|body: &Body, y: &State, normal: f64| -> [f64; 3]` is such a law.
 pub trait CoupleLaw {
-    /// The couple along e1, e2, e3, in M g R, in a state and under a normal force in M g (never negative). The couple
-    /// is continuous, and zero where the motion that it resists is at rest.
+    /// The couple along e1, e2, e3, in M g R, in a state and with a normal force in M g (never negative). The couple
+    /// has to be continuous, and zero when the motion that it resists is at rest.
     fn couple(&self, body: &Body, y: &State, normal: f64) -> [f64; 3];
 }
 
@@ -24,7 +24,7 @@ impl<F: Fn(&Body, &State, f64) -> [f64; 3]> CoupleLaw for F {
 ///
 /// A closure `|speed: f64| -> f64` is such a law.
 pub trait FrictionLaw {
-    /// The coefficient of friction mu >= 0, at a speed of the slip >= 0 in sqrt(g R).
+    /// The coefficient of friction mu >= 0 at the speed >= 0 of the slip, in sqrt(g R).
     fn coefficient(&self, speed: f64) -> f64;
 }
 
@@ -34,7 +34,7 @@ impl<F: Fn(f64) -> f64> FrictionLaw for F {
     }
 }
 
-/// The user-defined laws under which a body moves; by default there are none.
+/// The user-defined laws of a motion; by default there are none.
 #[derive(Clone, Copy, Default)]
 #[non_exhaustive]
 pub struct Custom<'a> {
@@ -45,33 +45,33 @@ pub struct Custom<'a> {
 }
 
 impl<'a> Custom<'a> {
-    /// These laws with this couple.
+    /// Returns these laws with this couple.
     pub fn with_couple(self, couple: &'a dyn CoupleLaw) -> Self {
         Self { couple: Some(couple), ..self }
     }
 
-    /// These laws with this friction.
+    /// Returns these laws with this friction.
     pub fn with_friction(self, friction: &'a dyn FrictionLaw) -> Self {
         Self { friction: Some(friction), ..self }
     }
 
-    /// Returns an error for a couple that supplies energy, is not finite, or jumps where the motion is at rest. Returns
-    /// an error for a coefficient of friction that is negative, not finite, above that of static friction (`fixed`) at
-    /// rest, or that jumps.
+    /// Checks the laws. Returns an error if a couple supplies energy, is not finite, or jumps when the motion is at rest.
+    /// Returns an error if a coefficient of friction is negative, is not finite, jumps, or at rest exceeds that of static
+    /// friction (`fixed`).
     pub fn check(&self, body: &Body, fixed: f64) -> Result<(), Error> {
         self.couple.map_or(Ok(()), |law| check_couple(law, body))?;
         self.friction.map_or(Ok(()), |law| check_friction(law, fixed))
     }
 }
 
-/// The law is evaluated near rest at this share of a speed.
+/// Near rest the law is evaluated at this share of a speed.
 const NEARLY: f64 = 1e-9;
 /// A change by more than this share is a jump.
 const STEP: f64 = 1e-3;
 /// A couple may supply this share of its power by rounding, and static friction may be smaller by this share.
 const GIVEN_BY_ROUNDING: f64 = 1e-12;
 
-/// Every state with such an index is joined to the next one by a line, on which a jump is searched for.
+/// States whose index is a multiple of this are joined by lines, along which jumps are searched for.
 const LINES: usize = 12;
 /// Number of halvings of such a line.
 const LINE_HALVINGS: u32 = 44;
@@ -80,8 +80,8 @@ fn size(m: [f64; 3]) -> f64 {
     m.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// The jump of a function at one point between 0 and 1: the remaining change after repeated halving, down to rounding,
-/// towards the half with the larger change.
+/// The jump of a function between 0 and 1. The interval is halved, always towards the half with the larger change, down
+/// to rounding; the change that remains is the jump.
 fn step(f: impl Fn(f64) -> [f64; 3]) -> f64 {
     let apart = |a: [f64; 3], b: [f64; 3]| size(core::array::from_fn(|k| a[k] - b[k]));
     let (mut from, mut to) = ((0.0, f(0.0)), (1.0, f(1.0)));

@@ -8,7 +8,7 @@ pub(crate) fn rows<'a>(mut columns: impl Iterator<Item = &'a [f64]>) -> usize {
     columns.find(|x| x.len() != 1).map_or(1, <[f64]>::len)
 }
 
-/// Whether every column has this length or is a single number.
+/// True if every column has this length or is a single number.
 pub(crate) fn fit<'a>(mut columns: impl Iterator<Item = &'a [f64]>, count: usize) -> bool {
     columns.all(|x| x.len() == 1 || x.len() == count)
 }
@@ -35,7 +35,7 @@ impl<'a> LossColumns<'a> {
     /// No losses.
     pub const NONE: Self = Self([&[0.0]; COUNT]);
 
-    /// The same columns with this column for a law.
+    /// Returns these columns with a column for a law.
     #[must_use]
     pub fn with(mut self, law: Law, column: &'a [f64]) -> Self {
         self.0[law as usize] = column;

@@ -1,4 +1,4 @@
-//! Many stones at once, each followed on its own, on threads; and the reversals of their spin.
+//! The motions of many stones, computed one by one on threads, and the reversals of their spin.
 
 use super::threads::share;
 use crate::error::{Error, room};
@@ -13,18 +13,18 @@ use crate::motions::stone::turns::Reversals;
 use crate::motions::{Ask, Ending, Motion, Moving, Start};
 use core::cell::RefCell;
 
-/// The numbers of one motion: its stone, the vertical, w and slip of its start, and its own coefficients of
-/// friction, if any.
+/// The numbers of one motion: its stone, initial state and slip, and its own coefficients of friction and
+/// losses, if any.
 #[derive(Debug, Clone, Copy)]
 pub struct StoneRow {
     /// The numbers of the stone, as [`Ellipsoid::of_numbers`] takes them.
     pub stone: [f64; 13],
-    /// The vertical and the angular velocity of the start.
+    /// The initial vertical and angular velocity.
     pub state: [f64; 6],
-    /// The slip at the start.
+    /// The initial slip.
     pub slip: [f64; 2],
-    /// The coefficients of sliding and of static friction and the radius of the patch, or c of viscous friction and any
-    /// numbers; None for those of `ask`.
+    /// The coefficients of sliding and of static friction and the radius of the patch, or c of viscous friction and two
+    /// numbers that are not used; None for those of `ask`.
     pub coefficients: Option<[f64; 3]>,
     /// Its own losses, if any; None for those of `ask`.
     pub losses: Option<Losses>,
@@ -40,7 +40,7 @@ pub struct StoneSummary {
 }
 
 impl StoneSummary {
-    /// The names of the numbers: the last vertical and angular velocity, the time of the end, the spin then,
+    /// The names of the numbers: the last vertical and angular velocity, the time of the end, the last spin,
     /// the number of reversals of the spin, the time of the first reversal, the heat, the energy lost, the
     /// estimated error, and the time up to which the motion is known.
     pub const NAMES: [&str; 14] = [
@@ -65,16 +65,16 @@ impl StoneSummary {
     }
 }
 
-/// Follows `count` stones, each given by `row`, to the last of the times. `go_on` is called with the finished
-/// share of the work; if it returns false, the result is None.
+/// Computes the motions of `count` stones, each given by `row`, up to the last of the times. `go_on` is called with
+/// the finished share of the work; if it returns false, the result is None.
 ///
-/// The spin reverses when it has passed zero and reached at least a tenth of the initial spin in the other
-/// direction; the time of the reversal is that of the last zero before, to about 1e-4 of the time of a nod.
-/// Reversals are counted if `turns` is true, as long as the motion is known; the motion then also counts as
-/// unknown where its estimated error exceeds that tenth. An initial spin of less than 1e-12 has no direction.
+/// A reversal is complete when the spin has passed zero and reached at least a tenth of the initial spin in the other
+/// direction; the time of the reversal is that of the last zero before, to about 1e-4 of a period of the rocking.
+/// If `turns` is true, reversals are counted as long as the motion is known; the motion then also counts as
+/// unknown when its estimated error exceeds that tenth. An initial spin of less than 1e-12 has no direction.
 ///
 /// # Errors
-/// Those of [`roll`](crate::motions::stone::roll) for times or options that make no sense, and too little memory.
+/// Those of [`roll`](crate::motions::stone::roll) for invalid times or options, and too little memory.
 pub fn many(
     count: usize,
     row: &(dyn Fn(usize) -> StoneRow + Sync),

@@ -8,8 +8,8 @@ use crate::methods::beat::{Beat, EVERY};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-/// The bytes that a thread may reserve at its first small allocation, its stack included. Without this much memory no
-/// thread is started, since code that cannot return an error would fail.
+/// The bytes that a thread may reserve at its first small allocation, including its stack. With less memory no
+/// thread is started, since it could fail in code that cannot return an error.
 const ARENA: usize = 80 << 20;
 
 /// The stack of a thread of this module. The stack of the caller may be as small as 64 KiB, which does not
@@ -18,8 +18,8 @@ const STACK: usize = 2 << 20;
 
 /// Calls `work` with every block, on `threads` threads, one of which is the calling thread. The calling thread calls
 /// `go_on`, with the finished share of the blocks, about fifty times a second; `work` may call its second argument in
-/// between to learn whether to go on. Returns whether all blocks are done. Fewer threads are used where the system does
-/// not provide so many. If one panics, all stop, and the panic is passed on to the caller.
+/// between, which returns false if it should stop. Returns true if all blocks are done. Fewer threads are used if the
+/// system does not provide so many. If one panics, all stop, and the panic is passed on to the caller.
 pub(crate) fn share<B: Send>(
     blocks: Vec<B>,
     threads: usize,

@@ -36,7 +36,7 @@ const SECANTS: usize = 40;
 /// Share of the longest step, or of a number, over which a slope is computed.
 const ASIDE: f64 = 1e-5;
 
-/// One phase: its body, its laws, and whether the contact point slips.
+/// One phase: its body, its laws, and a flag that is true if the contact point slips.
 #[derive(Clone, Copy)]
 pub(super) struct CustomFlow<'a> {
     pub body: &'a Body,
@@ -185,7 +185,7 @@ impl<'a> CustomFlow<'a> {
         }
     }
 
-    /// The rates of all numbers, in time, of a slip that begins along `way`.
+    /// The derivatives of all numbers with respect to time, for a slip that begins along `way`.
     pub(super) fn rates_along<const N: usize>(&self, y: &[f64; N], way: [f64; 2]) -> [f64; N] {
         let (at, mut all) = (self.slides((y[0], y[1]), [y[2], y[3], y[4]], [0.0; 2], Some(way)), *y);
         self.writes(y, &at, &mut all);
@@ -205,7 +205,7 @@ impl<'a> CustomFlow<'a> {
         standstill_under(self.body, y, &self.friction(0.0), couples)
     }
 
-    /// The end of a phase that is over at once.
+    /// The end of a phase, if the phase is over at once.
     pub(super) fn at_start<const N: usize>(&self, y: &[f64; N], at: &CustomResponse) -> Option<Ending> {
         let (end, theta) = (self.body.theta_end(), state(y).theta);
         let rises = y[3] > 0.0 || y[3] == 0.0 && at.w[1] > 0.0;
@@ -231,7 +231,7 @@ impl Flow<CUSTOM_MARGINS> for CustomFlow<'_> {
         self.writes(y, &self.answer(y), all);
     }
 
-    /// A slip that begins approaches its slow direction faster, the smaller the slip is.
+    /// The smaller a slip that begins, the faster it approaches its slow direction.
     fn is_stiff<const N: usize>(&self, place: &FlowPlace<N>) -> bool {
         let grows = place.y[5] * place.rate[5] + place.y[6] * place.rate[6] > 0.0;
         grows && is_fast(place.rate[TIME], self.calm(&place.y))

@@ -31,18 +31,18 @@ use flow::CustomFlow;
 
 /// The default tolerance of a step, since a user-defined law may be slow.
 const FAIR: f64 = 1e-10;
-/// The numbers of such a motion: those of a slip, with the pose and the lost energy.
+/// Count of numbers of such a motion: those of a slip, the pose and the energy lost.
 const CUSTOM_NUMBERS: usize = 14;
 /// For this time a slip keeps its direction after static friction has ceased to hold. The error is the cube of this
 /// time.
 const KEEPS_ITS_WAY: f64 = 1e-5;
 
-/// The motion of a body from a start at the `times` under user-defined laws, up to the event that ends it.
+/// Computes the motion of a body with user-defined laws at `times`, up to the event that ends it.
 ///
 /// `ask` gives the contact, smooth losses, poses and forces. A motion in the air, beyond events or on a patch of
 /// contact is an error, and so are dry losses. The default tolerance of a step is 1e-10. With `custom.friction` the
 /// contact has to be Coulomb's friction, of which only the static coefficient is used. Errors: those of
-/// [`motion::roll_with`](super::motion::roll_with) and of [`Custom::check`], and `Lost` where a law is not finite.
+/// [`motion::roll_with`](super::motion::roll_with) and of [`Custom::check`], and `Lost` if a law is not finite.
 ///
 /// ```
 /// use spincyl::{Body, State, contact::Friction, custom::{self, Custom}, motion::{Ask, Start}};
@@ -110,7 +110,7 @@ fn check(body: &Body, start: &Start, ask: &Ask, custom: &Custom<'_>) -> Result<f
 /// The least growth of a slip that begins, so that it has a direction.
 const LEAST_GROWTH: f64 = 1e-30;
 
-/// The numbers after a time at these rates.
+/// The numbers after a time with these constant rates.
 fn moved(y: &[f64; CUSTOM_NUMBERS], rate: &[f64; CUSTOM_NUMBERS], by: f64) -> [f64; CUSTOM_NUMBERS] {
     core::array::from_fn(|i| by.mul_add(rate[i], y[i]))
 }
@@ -232,7 +232,7 @@ impl<'a> CustomRun<'a> {
         self.made.written(&self.flow, (&self.start.state, &self.at), self.way);
     }
 
-    /// The run to its end; None if it is interrupted.
+    /// Computes the run to its end; None if it is interrupted.
     fn run(mut self, go_on: &mut dyn FnMut() -> bool) -> Result<Option<Followed>, Error> {
         let mut next = self.first();
         loop {
@@ -264,7 +264,7 @@ impl<'a> CustomRun<'a> {
         Ok(Some(self.made))
     }
 
-    /// Computes the current phase up to its halt.
+    /// Computes the current phase up to its end.
     fn flows(&mut self, go_on: &mut dyn FnMut() -> bool) -> Result<Option<Halt>, Error> {
         let (flow, start, began) = (self.flow, &self.start.state, self.at[TIME]);
         let toil = TOIL.saturating_sub(self.made.motion.evaluations);
@@ -287,7 +287,7 @@ impl<'a> CustomRun<'a> {
 }
 
 impl Followed {
-    /// Adds the numbers `y` to the outputs of a motion from a start.
+    /// Adds the numbers `y` to the outputs of a motion.
     fn written(
         &mut self,
         flow: &CustomFlow<'_>,
