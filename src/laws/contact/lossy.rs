@@ -17,7 +17,7 @@
 use super::reduced::{Coefficients, Rates};
 use super::{Contact, rolling};
 use crate::laws::body::Body;
-use crate::laws::loss::{Couple, Couples, Given, Law, Losses};
+use crate::laws::loss::{Couple, Couples, Law, Losses, OwnCouple};
 use crate::laws::newton;
 use crate::laws::state::State;
 use crate::numbers::Real;
@@ -55,7 +55,7 @@ pub(crate) struct Acted<T> {
     pub held: [T; 2],
 }
 
-impl<T: Real, G: Given<T>> Lossy<T, G> {
+impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
     /// -s^2 D psi''/lambda, where psi'' is the part that the couple lambda h/s causes.
     #[inline(always)]
     fn yielding(of: &Coefficients<T>, (s, c): (T, T)) -> T {
@@ -164,7 +164,7 @@ impl Lossy<f64> {
     }
 }
 
-impl<G: Given<f64>> Lossy<f64, G> {
+impl<G: OwnCouple<f64>> Lossy<f64, G> {
     /// The response in a state in which dry friction holds nothing.
     pub fn in_state(&self, y: &State) -> Acted<f64> {
         let angle = y.theta.sin_cos();

@@ -25,7 +25,7 @@ use super::JAMMED;
 use super::patch::rubs;
 use crate::error::{Error, within};
 use crate::laws::body::{Body, Shape};
-use crate::laws::loss::{Couples, Given, Law, Losses};
+use crate::laws::loss::{Couples, Law, Losses, OwnCouple};
 use crate::laws::newton::{self, Force};
 use crate::laws::state::State;
 use crate::numbers::Real;
@@ -147,7 +147,7 @@ impl<T: Real> Slipping<T> {
     }
 }
 
-impl<T: Real, G: Given<T>> Slipping<T, G> {
+impl<T: Real, G: OwnCouple<T>> Slipping<T, G> {
     /// Returns this body on a patch of this radius.
     pub fn with_patch(self, radius: Option<T>) -> Self {
         Self { radius, ..self }
@@ -355,7 +355,7 @@ impl Slipping<f64> {
     }
 }
 
-impl<G: Given<f64>> Slipping<f64, G> {
+impl<G: OwnCouple<f64>> Slipping<f64, G> {
     /// The power of the losses, without that of friction.
     pub fn power(&self, angle: (f64, f64), w: [f64; 3], normal: f64) -> f64 {
         self.losses.map_or(0.0, |losses| {

@@ -19,7 +19,7 @@ use super::lossy::{Held, Lossy};
 use super::slip::{Friction, Slipping};
 use super::{Contact, Force, force};
 use crate::laws::body::Body;
-use crate::laws::loss::{Couples, Given, Law, Losses, Ways, rounded};
+use crate::laws::loss::{Couples, Law, Losses, OwnCouple, Ways, rounded};
 use crate::laws::state::State;
 use crate::methods::roots::Trig;
 use crate::numbers::Sum;
@@ -134,7 +134,7 @@ pub(crate) fn standstill_under(
     body: &Body,
     y: &State,
     friction: &Friction,
-    of: Option<Couples<f64, impl Given<f64>>>,
+    of: Option<Couples<f64, impl OwnCouple<f64>>>,
 ) -> Standstill {
     let Friction::Coulomb { mu, fixed, .. } = *friction else { return Standstill::Sticks };
     rest(body, y, (friction, [mu, fixed]), of).decides()
@@ -151,7 +151,7 @@ fn rest(
     body: &Body,
     y: &State,
     (friction, mu): (&Friction, [f64; 2]),
-    losses: Option<Couples<f64, impl Given<f64>>>,
+    losses: Option<Couples<f64, impl OwnCouple<f64>>>,
 ) -> HeldContact<impl Fn(f64) -> Option<f64>> {
     let mut slipping = Slipping::on(body, friction).with_losses(losses);
     let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
@@ -177,7 +177,11 @@ fn rest(
 
 /// The force that keeps the contact point at rest, and the signs of the dry losses if the drilling is at
 /// rest, too.
-fn rolling(body: &Body, y: &State, losses: Option<Couples<f64, impl Given<f64>>>) -> (Force, Option<Ways>) {
+fn rolling(
+    body: &Body,
+    y: &State,
+    losses: Option<Couples<f64, impl OwnCouple<f64>>>,
+) -> (Force, Option<Ways>) {
     let Some(losses) = losses else { return (force(Contact::Rolling, body, y), None) };
     let ((s, c), w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
     let mut law = Lossy { rates: Contact::Rolling.rates(body), losses };
@@ -261,7 +265,7 @@ impl Onset {
 }
 
 /// The rates at which the slip of a rim begins, along e_h and e2.
-fn onset(slipping: &Slipping<f64, impl Given<f64>>, angle: (f64, f64), w: [f64; 3], free: f64) -> Onset {
+fn onset(slipping: &Slipping<f64, impl OwnCouple<f64>>, angle: (f64, f64), w: [f64; 3], free: f64) -> Onset {
     let crate::laws::body::Shape { rim, i1, i3 } = slipping.shape;
     let (lever, height) = (rim.lever(angle), rim.height(angle));
     let (depth, radius) = (rim.depth(angle), rim.radius(angle));

@@ -94,18 +94,18 @@ impl<T: Real> Couple<T> {
 }
 
 /// The couple of a user-defined law in the state for which losses are made: `()` costs no code.
-pub(crate) trait Given<T>: Copy {
+pub(crate) trait OwnCouple<T>: Copy {
     fn couple(&self) -> Option<&Couple<T>>;
 }
 
-impl<T> Given<T> for () {
+impl<T> OwnCouple<T> for () {
     #[inline(always)]
     fn couple(&self) -> Option<&Couple<T>> {
         None
     }
 }
 
-impl<T: Real> Given<T> for Option<Couple<T>> {
+impl<T: Real> OwnCouple<T> for Option<Couple<T>> {
     #[inline(always)]
     fn couple(&self) -> Option<&Couple<T>> {
         self.as_ref()
@@ -265,7 +265,7 @@ impl<T: Real> Couples<T> {
     }
 }
 
-impl<T: Real, G: Given<T>> Couples<T, G> {
+impl<T: Real, G: OwnCouple<T>> Couples<T, G> {
     /// The kinematics from sine and cosine of theta, w1/s and w, with the signs that a caller holds fixed.
     #[inline(always)]
     pub fn seen(&self, rim: &Rim<T>, angle: (T, T), precession: T, w: [T; 3]) -> Kinematics<T> {

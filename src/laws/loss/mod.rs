@@ -37,7 +37,7 @@ use crate::numbers::Real;
 use crate::numbers::codes::coded;
 use core::ops::Add;
 pub(crate) use couples::{
-    Couple, Couples, GRACE, Given, Kinematics, NEAR, SLACK, UnderCouple, Ways, going, holds, mirrored,
+    Couple, Couples, GRACE, Kinematics, NEAR, OwnCouple, SLACK, UnderCouple, Ways, going, holds, mirrored,
     rolling_growth, rounded,
 };
 pub(crate) use law::{EndPowers, LossLaw, Resists, Speed};
@@ -115,7 +115,7 @@ macro_rules! laws {
 
         /// The sums over all laws are written out, law by law: a loop with a `match` costs lanes and single motions
         /// up to a tenth of their time.
-        impl<T: Real, G: Given<T>> Couples<T, G> {
+        impl<T: Real, G: OwnCouple<T>> Couples<T, G> {
             /// The couple of all laws.
             #[inline(always)]
             pub fn at(&self, seen: &Kinematics<T>) -> Couple<T> {
