@@ -1,4 +1,4 @@
-"""Many motions at once."""
+"""`sweep.roll`: many motions at once."""
 
 from collections.abc import Iterable
 from enum import IntEnum
@@ -44,13 +44,13 @@ if TYPE_CHECKING:
 
 
 class Answer(IntEnum):
-    """Who answered for a motion of a sweep."""
+    """Method that computed a motion of a sweep."""
 
-    NONE = 0  #: nobody: see `Status.INVALID`
+    NONE = 0  #: none: see `Status.INVALID`
     LANES = 1  #: the first integrals, eight motions at a time
-    SINGLE = 2  #: the first integrals, one at a time
-    TOLERANCE = 3  #: RK4 whose steps keep an error, where the first integrals lose their digits
-    STEP = 4  #: RK4 with the fixed step asked for
+    SINGLE = 2  #: the first integrals, one motion at a time
+    TOLERANCE = 3  #: steps of eighth order, where the first integrals lose their digits
+    STEP = 4  #: RK4 with the fixed step `step`
     FLOW = 5  #: an integrator of eighth order, with friction or losses
 
 
@@ -76,101 +76,115 @@ def roll(
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> "xarray.Dataset":
-    """How many bodies move on from as many states.
+    """Compute the motions of many bodies from their initial states.
 
     Parameters
     ----------
-    bodies, states : Body, State
-        Or `Ellipsoid` and `EllipsoidState`, see the Notes.
-        Whose fields broadcast against each other: NumPy arrays by NumPy's rule, xarray's by name. If any
-        field is backed by dask, so is the result: nothing runs before it is computed (or handed to `save`).
+    bodies : Body or Ellipsoid
+        Family of bodies, or of stones (see the Notes). The fields of bodies and states broadcast against each
+        other: NumPy arrays by shape, xarray's by the names of their dimensions. If any field is backed by
+        dask, the result is lazy: nothing is computed before `compute` or `save` asks for it.
+    states : State or EllipsoidState
+        Initial states at time 0, in natural units, also for measured bodies. Stones need an `EllipsoidState`.
     t : float or array_like, 1-D
-        In sqrt(R/g), of measured bodies in seconds, as is `step`; the start is at 0, and negative is
-        backward. A number: only the final state, at `t`. An
-        array: the states at these times, in order, on one side of 0.
-    want : str or iterable of str
-        "final" (theta, w1, w2, w3 at the last time, or where the motion ended before; the default of a
-        number) or "states" (at all times; the default of an array, NaN after an end); "theta_min",
-        "theta_max", "normal_min" (per weight), "friction_coefficient_max" (of what rolling needs, infinite
-        where nothing presses): from the start to the end; "period", "precession_per_period" (radians); "end"
-        (its time). What is not wanted is not computed.
-        On a table with friction there are "final" (with `slip_along`, `slip_across`), "states", "end" and
-        "slip_time", "dissipated" (M g R), "phases" (how many), "rolling_time", "rolling_theta", "rolling_w1",
-        "rolling_w2", "rolling_w3" (where the last rolling begins; NaN if none does). With losses there are
-        "final", "states", "end" and "work_lost" (M g R), with friction as well all that there is then.
+        Time of the final state, or an array of the times of all states: at least 0 and ascending, or at most
+        0 and descending to go backward in time. In sqrt(R/g); for measured bodies `t` and `step` are in
+        seconds.
+    want : str or iterable of str, optional
+        Outputs to compute. Default: "final" if `t` is a number, "states" if `t` is an array.
+
+        - Always: "states" (theta, w1, w2, w3 at each of an array of times; NaN after the end of a
+          motion), "final" (the last of these, or the state at the end of a motion that ends before), "end"
+          (time of the end).
+        - Without friction, losses and restitution: "theta_min", "theta_max", "normal_min" (per weight) and
+          "friction_coefficient_max" (the largest that rolling needs; infinite if the normal force vanishes),
+          from time 0 to the end; "period", "precession_per_period" (radians).
+        - With a law of friction, or a restitution: "slip_time", "dissipated" (M g R), "phases" (their
+          number), and for the beginning of the last rolling "rolling_time", "rolling_theta", "rolling_w1",
+          "rolling_w2", "rolling_w3" (NaN if the body never rolls). States then include
+          `slip_along` and `slip_across`.
+        - With losses: "work_lost" (M g R).
+        - With a restitution: "impacts" and "landings" (their numbers), "air_time", "lost_in_impacts" (M g R)
+          and "last_phase" (code of `Motion.phase`).
     contact : {"rolling", "smooth"}, Coulomb or Viscous
-        Rolling without slipping, a frictionless table, or friction, whose coefficients may be arrays that
-        broadcast with the rest, as may the slip of the states.
+        Rolling without slipping, a frictionless table, or a law of friction. The coefficients of a law, and
+        the slips of the states, may be arrays that broadcast with the rest.
     tol : float
-        Error that is good enough, 1e-15 to 0.1: more costs more. It is a promise of the first integrals:
-        where they cannot keep it in lanes, a single motion is computed as well as it can be, and `error` says
-        how well that is.
-        With friction or losses it is what a step of the integrator may err by; `error` says what comes of it.
+        Error that a motion may have (absolute, 1e-15 to 0.1); a smaller one costs more. If eight motions at a
+        time cannot reach it, a motion is computed alone, as accurately as the first integrals allow. With
+        friction or losses `tol` is the tolerance of each step of the integrator. `error` has the estimated
+        errors.
     step : float, optional
-        By RK4 with this fixed step instead. `error` then is the difference from the first integrals.
+        Fixed step of RK4, in sqrt(R/g), which then replaces the first integrals. `error` is the difference
+        from the first integrals.
     mu : float
-        Coefficient of friction: where rolling needs more, the motion ends (`Status.SLIP`).
+        Largest coefficient of friction that rolling may need. A motion ends with `Status.SLIP` where rolling
+        needs more. Only for `contact="rolling"`.
     beyond : bool
-        Whether to leave out the watch for the ends that the equations of motion can pass: the other rim
-        lands, lift-off, slip. Cheaper, and no longer the motion of a body after that.
+        If true, skip the search for lift-off, slip and a landing of the other rim. This is cheaper, but after
+        such an event the solution no longer describes the real body.
     restitution : float, optional
-        Of impacts, 0 to 1, as of `spincyl.roll`. Default: a motion ends where the body leaves the table or
-        its other rim lands. With it there are also "impacts" and "landings" (how many), "air_time",
-        "lost_in_impacts" (M g R) and "last_phase" (`Motion.phase`).
+        Coefficient of restitution of impacts, 0 to 1, as in `spincyl.roll`. Default: a motion ends where the
+        body leaves the table or its other rim lands.
     stop_at : {"rolling"}, optional
-        With friction: end where the contact point first comes to rest for good and the body rolls. What it
-        does then costs nothing.
+        End each motion where the contact point first comes to rest for good and the body rolls; the time
+        after that costs nothing. Only with a law of friction.
     losses : Loss, optional
-        What takes energy, as of `spincyl.roll`, with any contact: a law of `spincyl.loss`, or laws added with
-        ``+``, whose coefficients may be arrays that broadcast with the rest. Motions go on to their last turn
-        (`Status.STOPS`, `Status.FACE`). Eight at a time where the contact point rolls or slides freely, each
-        as finely as its own error asks for; a slip that loses energy besides is followed alone.
+        Law of `spincyl.loss` that takes energy, or several added with ``+``, with any contact; coefficients
+        may be arrays that broadcast with the rest. Motions continue until the contact point stops
+        (`Status.STOPS`) or the face lands (`Status.FACE`). Rolling and frictionless motions are computed
+        eight at a time, each with its own steps; with a law of friction each is computed alone.
     threads : int, optional
-        Default: RAYON_NUM_THREADS, else every core that this process may use. In a dask block: 1.
+        Number of threads. Default: RAYON_NUM_THREADS, else every core that this process may use; in a dask
+        block, 1.
     progress : callable, optional
-        Called with the share that is done, 0 to 1, about fifty times a second.
+        Function that is called with the finished share, 0 to 1, about fifty times a second.
 
     Returns
     -------
     xarray.Dataset
-        What was wanted, and `error` (estimated, of the worst number of the states, and of "period" and
-        "precession_per_period" where they are wanted and there is a period), `method` (`Answer`) and
-        `status` (`Status`). Dimensions: those of the inputs, "motion" for plain arrays (several: "motion_0",
-        ...), as NumPy broadcasts them; "t". In natural units, of measured bodies in SI: each array has its
-        `units`. Coordinates are the bodies, states and laws of each motion (`sweep.inputs`). The same bits
-        for any number of threads, any neighbours, and on AVX2, AVX-512 and NEON alike.
+        The wanted outputs, `error` (estimated error of a motion: the largest over its states, and over
+        "period" and "precession_per_period" if these are wanted and exist), `method` (`Answer`) and `status`
+        (`Status`). Dimensions are those of the inputs, "motion" for plain arrays ("motion_0", "motion_1", ...
+        if they have several), and "t" for "states". In natural units, for measured bodies in SI; each array
+        has its `units`. The body, state and laws of each motion are coordinates (see `sweep.inputs`). The
+        bits of a result depend neither on the number of threads nor on the other motions, and are the same on
+        AVX2, AVX-512 and NEON.
 
     Raises
     ------
     ValueError, TypeError
-        Naming the argument, before any work; also an input labelled by a coordinate with the name of a
-        result. A body or a state of the family that is out of the range of `spincyl.roll` has NaN and
-        `Status.INVALID` instead.
+        If an argument is invalid, or an input has a coordinate with the name of a result; before any work,
+        and the message names the argument. A body or state of a family that is out of the range of
+        `spincyl.roll` raises no error: its motion has NaN and `Status.INVALID`.
     KeyboardInterrupt
         Within 0.1 s of Ctrl-C.
 
     Warns
     -----
     RuntimeWarning
-        Of how many motions that slip or lose energy were given up: each may take 600,000 steps that hardly
-        advance, 20 phases for each unit of time (5,000 to 10,000), or 8 million evaluations (of times beyond
-        200: 40,000 for each unit). Such a motion has NaN, `Status.BOUNDED` and the time at which it was
-        given up as its "end"; the others go on.
+        If motions with friction or losses are given up; the message gives their number. The limits are
+        600,000 steps that hardly advance the time, 20 phases per unit of time (at least 5,000, at most
+        10,000), and 8 million evaluations (40,000 per unit of time if the time exceeds 200). Such a motion
+        has NaN, `Status.BOUNDED` and, as its "end", the time at which it was given up.
     ErrorWarning
-        Of how many stones are not known to the end of their motion: see the Notes.
+        If the estimated errors of stones become too large before the end (see the Notes); the message gives
+        their number.
 
     Notes
     -----
-    Of stones, which have no first integrals, `t` is a number, and there are "spin" (at the end), "reversals"
-    (how often the spin has turned back: to a tenth of the first spin at least, in the other direction),
-    "first_reversal" (the last zero before), "end", "dissipated", with losses "work_lost", and "final" (n1,
-    n2, n3, w1, w2, w3); each is
-    followed alone, on threads, twice for its error. `known_until` is the time up to which each motion is
-    known, as of `EllipsoidMotion`; if reversals are wanted, they are counted up to there, and the error then
-    is also at most the spin that counts. A spin of less than 1e-12 at the start has no direction.
+    Chaplygin, Appell and Korteweg found the first integrals; docs/physics.md has the equations. Each motion
+    is a power series about its initial state, with as many terms as the width of the swing needs; the cost
+    does not grow with time. docs/benchmarks.md has the times and the errors.
 
-    The solution by first integrals as a series about the start, as many terms as the width of the swing
-    takes; the cost does not grow with time. See docs/physics.md and docs/benchmarks.md.
+    Stones have no first integrals. Each is integrated alone, twice, to estimate its error. `t` is a number,
+    at least 0, in sqrt(a/g); `step`, `beyond`, `restitution` and `stop_at` are not available. The outputs are
+    "spin" (about the vertical, at the end), "reversals" (their number), "first_reversal" (its time), "end",
+    "dissipated", "work_lost" (with losses) and "final" (n1, n2, n3, w1, w2, w3); the default is the first
+    three. A reversal counts when the spin has passed zero and reached a tenth of the initial spin in the
+    other direction; its time is that of the last zero before. An initial spin below 1e-12 has no direction.
+    `known_until` is the time up to which each motion is known, as in `EllipsoidMotion`. Reversals are counted
+    up to there; if they are wanted, the motion counts as known only while its error is at most that tenth.
 
     Examples
     --------
@@ -187,7 +201,7 @@ def roll(
         from spincyl.sweep import _stones
 
         if step is not None or beyond or restitution is not None or stop_at is not None:
-            raise ValueError("step, beyond, restitution, stop_at: not of stones")
+            raise ValueError("step, beyond, restitution, stop_at: only for bodies, not for stones")
         stones = _stones.question(bodies, states, t, want, contact, tol, mu, losses)
         labels = LABELS | _stones.LABELS
         found = swept(_stones.fill, stones, labels, threads=threads, progress=progress, length="a")
@@ -210,9 +224,9 @@ def roll(
     asked = _checked(asked._replace(restitution=restitution, stop_at=stop_at), losses)
     asked = asked._replace(tol=number("tol", tol))
     if restitution is None:
-        landed(states, "give restitution=0.0, or how much of its velocity an impact gives back")
+        landed(states, "give restitution=, the coefficient of restitution, 0 to 1")
     if not rubs(contact) and (restitution is None or states.height is None):
-        gripping(states, f"contact={contact!r} has no law for that")
+        gripping(states, f"contact={contact!r} has no law of friction; give contact=sc.Coulomb(mu)")
     of = TABLES[contact] if isinstance(contact, str) else law(contact)
     summaries = _core.summaries(of, losses is not None, restitution is not None)
     wanted = _wanted(want, several, tuple(summaries))
@@ -249,11 +263,12 @@ def _checked(asked: Asked, losses: Loss | None) -> Asked:
     if rubs(contact) or losses is not None or asked.restitution is not None:
         if asked.times[-1] < 0:
             raise ValueError(
-                f"t = {float(asked.times[-1])!r}: expected times from 0 on: what is lost does not come back"
+                f"t = {float(asked.times[-1])!r}: expected at least 0; a motion with friction, losses or a"
+                " restitution cannot go backward in time"
             )
         if step is not None or asked.beyond or (rubs(contact) and asked.mu != np.inf):
-            given = f"contact = {contact!r}, losses = {losses!r}, restitution = {asked.restitution!r}"
-            raise ValueError(f"step, mu, beyond: not with {given}")
+            given = f"contact={contact!r}, losses={losses!r}, restitution={asked.restitution!r}"
+            raise ValueError(f"step, mu, beyond: not available with {given}")
     return asked._replace(step=None if step is None else number("step", step))
 
 
@@ -283,11 +298,12 @@ def _times(t: Reals) -> tuple[Floats, bool]:
         return np.array([within("t", given, -1e15, 1e15, "sqrt(R/g)") + 0.0]), False
     at = floats(given) + 0.0
     if at.ndim != 1 or at.size == 0:
-        like = "a number, for the final state alone, or an array of times, for the states at these"
-        raise ValueError(f"t: expected {like}, not shape {at.shape}")
+        like = "a number, for the final state only, or an array of times, with one dimension and not empty"
+        raise ValueError(f"t: expected {like}; not shape {at.shape}")
     ordered = any((np.diff(x, prepend=0.0) >= 0).all() for x in (at, -at))
     if not ordered or not np.abs(at).max() <= 1e15:
-        raise ValueError("t: expected times in order, on one side of 0, at most 1e15 in size")
+        order = "all >= 0 and ascending, or all <= 0 and descending"
+        raise ValueError(f"t: expected times in order, {order}, at most 1e15 in size")
     return at, True
 
 
@@ -295,7 +311,7 @@ def _wanted(want: str | Iterable[str] | None, several: bool, summaries: tuple[st
     kinds = ("final", "states", *summaries)
     asked = words("want", ("states" if several else "final") if want is None else want, kinds)
     if "states" in asked and ("final" in asked or not several):
-        raise ValueError('want: "states" are those at an array of times t, and "final" is the last of them')
+        raise ValueError('want: expected "states" only for an array of times t, and not with "final"')
     return tuple(name for name in kinds if name in asked)
 
 
