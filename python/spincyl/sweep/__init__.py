@@ -1,8 +1,8 @@
 """Dense sweeps: maps of the steady states, and many motions at once, on all cores.
 
-Labelled results need xarray (``pip install 'spincyl[sweep]'``). Inputs that are dask-backed stay lazy and run
-block by block on whatever scheduler dask has; `block_size` says how large a block should be, and `save`
-writes such a result to zarr and can be resumed.
+Labelled results need xarray (``pip install 'spincyl[sweep]'``). If an input is backed by dask, the result is
+lazy and is computed block by block by the scheduler of dask. `block_size` computes how large a block should
+be, and `save` writes a lazy result to zarr; an interrupted save can be resumed.
 """
 
 from spincyl.sweep._blocks import block_size

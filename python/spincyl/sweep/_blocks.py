@@ -14,7 +14,7 @@ from spincyl.sweep import _records
 if TYPE_CHECKING:
     import xarray
 
-#: Least share of a sample's time that is counted for its motions; the rest is the fixed cost of a block.
+#: Least share of a sample's time that counts as that of its motions; the rest is the fixed cost of a block.
 OWN = 0.25
 
 
@@ -24,34 +24,43 @@ def block_size(
     seconds: float = 1.0,
     path: str | os.PathLike[str] | None = None,
 ) -> int:
-    """How many motions (or points) a block of dask should hold, from the time that a sample takes.
+    """Compute how many motions, or points of a map, a block of dask should hold, by timing a sample.
 
     Parameters
     ----------
     job : callable
-        What is to be done with the arrays of the sweep: it returns what `roll` or `portrait` returns.
+        Function that takes the arrays of the sweep and returns the result of `roll` or `portrait` for them.
     *sample : array_like
-        What `job` is called with: a thousand motions or more, drawn from all of the sweep, in memory. Numbers
-        are passed on as they are.
+        Arguments for `job`: a thousand motions or more, from all parts of the sweep, in memory. Numbers are
+        passed on unchanged.
     seconds : float
-        How long a block is to take, starts and all, on a core like this one with nothing else to do: what is
-        measured is CPU time, less that of a block of one motion: the
-        first of the sample, or the last if that is quicker.
+        Time that a block should take on a core like this one without other work; more than 0. The measured
+        time of the sample is CPU time, less that of a block of one motion: the first of the sample, or the
+        last if that is faster.
     path : path, optional
-        Of the store that `save` is to write. If a sweep has begun there, the answer is the size that its
-        blocks have, and nothing is measured: a script that is run again goes on with the blocks that it began
-        with. What `save` would refuse, as a folder that is no sweep, is refused here, too.
+        Path of the store for `save`. If a sweep has begun there, the result is the size of its blocks and
+        nothing is measured, so that a script that is run again continues with the same blocks. A path that
+        `save` would not accept, such as a folder that is not a sweep, raises the same error here.
 
     Returns
     -------
     int
-        1, 2 or 5 times a power of ten. A block takes `seconds` at most if it is like the sample, and its
-        results are no larger than ``dask.config.get("array.chunk-size")``, 128 MiB unless it is set.
+        1, 2 or 5 times a power of ten. A block takes at most `seconds` if its motions are like the sample,
+        and its results need at most ``dask.config.get("array.chunk-size")``, 128 MiB by default.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument is invalid, or `job` does not return a lazy result for lazy arguments; the message
+        names the argument.
+    OSError
+        As in `save`.
 
     Notes
     -----
-    A scheduler needs some milliseconds for a block, and a store some tens: with blocks of a tenth of a second
-    a tenth or more is lost, and with blocks of an hour an hour when a worker dies. See docs/cluster.md.
+    A scheduler needs some milliseconds for each block, and a store some tens. Blocks of a tenth of a second
+    therefore lose a tenth of the time or more; if a worker dies, a block of an hour loses up to an hour. See
+    docs/cluster.md.
 
     Examples
     --------
@@ -72,22 +81,21 @@ def block_size(
     if path is not None and (begun := _begun(path)) is not None:
         return begun
     if not callable(job):
-        raise TypeError(f"job: expected something to call, not {type(job).__name__}")
+        raise TypeError(f"job: expected a function, not {type(job).__name__}")
     dask, array = extra("dask", "sweep"), extra("dask.array", "sweep")
     blocks = [_one_block(x, array) for x in sample]
     found = job(*blocks)
     if not hasattr(found, "chunksizes") or not found.chunksizes:
         raise TypeError(
-            "job: expected it to return a Dataset of spincyl.sweep that is lazy as its arguments are"
+            "job: expected a function that returns a lazy Dataset of spincyl.sweep for lazy arguments"
         )
     count = math.prod(n for name, n in found.sizes.items() if name != "t")
     if count == 0:
         raise ValueError("sample: expected at least one motion")
     taken = _cost(found, asked)
     if count > 1:
-        # A block has a fixed cost, which matters in a small sample and hardly in a large block. It is
-        # measured with blocks of one motion, the first and the last of the sample, since one of these may be
-        # slow.
+        # The fixed cost of a block matters in a small sample, but hardly in a large block. It is measured
+        # with two blocks of one motion, the first and the last of the sample, since one of them may be slow.
         ends = slice(0, 1), slice(-1, None)
         least = min(_cost(job(*(_part(x, end) for x in blocks)), asked) for end in ends)
         taken = max(taken - least, OWN * taken)

@@ -33,7 +33,7 @@ def targets(out: Any, want: Iterable[str]) -> dict[str, Any]:
         raise TypeError(f"out: expected an earlier result, not {type(out).__name__}")
     for name in want:
         if name not in out:
-            raise ValueError(f"out: has no {name!r}, which is wanted; there are {list(out)}")
+            raise ValueError(f"out: expected an array {name!r}, as in want=; out has {list(out)}")
         if not hasattr(out[name], "__array__"):
             raise TypeError(f"out[{name!r}]: expected an array to fill, not {type(out[name]).__name__}")
     return {name: out[name] for name in want}
@@ -57,7 +57,7 @@ def target(name: str, shape: tuple[int, ...], dtype: Any, given: Any) -> np.ndar
     array: np.ndarray = given if isinstance(given, np.ndarray) else given.to_numpy()
     if array.size != math.prod(shape) or array.dtype != dtype or not array.flags.carray:
         lies = "" if array.flags.carray else ", read-only or not contiguous and aligned"
-        wanted = f"{math.prod(shape)} contiguous {dtype}"
+        wanted = f"a contiguous array of {math.prod(shape)} numbers {dtype}"
         raise ValueError(f"out[{name!r}]: expected {wanted}, not {array.shape} {array.dtype}{lies}")
     return array.reshape(shape)
 

@@ -1,4 +1,4 @@
-"""Many flicks of a tube: which settle on one rim, which lie down again, and which hop before."""
+"""Many flicks of a tube: which settle on one rim, which lie down again, and which hop first."""
 
 from enum import IntEnum
 from inspect import signature
@@ -20,20 +20,19 @@ if TYPE_CHECKING:
 
 
 class Outcome(IntEnum):
-    """What a flick comes to.
+    """Outcome of a flick of a tube.
 
-    `SETTLES`: at the last time it goes round on one rim. `LIES_DOWN`: its other rim lands, or does not rise;
-    with a `restitution` it then lies on its side. `LIFTS_OFF`: the normal force vanishes, and it hops; with a
-    `restitution` the hop is followed, and the outcome says what it comes to. `NONE` of these: `status` says
-    what.
+    Without a restitution the motion ends where the other rim lands (`LIES_DOWN`) or where the tube leaves the
+    table (`LIFTS_OFF`). With a restitution it continues to the last time, and the outcome says how the tube
+    then moves. The `status` of the sweep gives the reason for `NONE`.
     """
 
-    NONE = 0  #: none of these: `status` says what
-    SETTLES = 1  #: it goes on to the last time asked for
-    LIES_DOWN = 2  #: its other rim lands, or does not rise
-    LIFTS_OFF = 3  #: the normal force vanishes: it hops, and at the last time it is still in the air
-    HOPS_AND_SETTLES = 4  #: it hops, and then goes round on one rim
-    HOPS_AND_LIES = 5  #: it hops, and then lies on its side
+    NONE = 0  #: none of these; see `status`
+    SETTLES = 1  #: at the last time the tube goes round on one rim
+    LIES_DOWN = 2  #: the other rim lands, or does not rise
+    LIFTS_OFF = 3  #: the normal force vanishes; with a restitution the tube is in the air at the last time
+    HOPS_AND_SETTLES = 4  #: the tube hops, and then goes round on one rim
+    HOPS_AND_LIES = 5  #: the tube hops, and then lies on its side
 
 
 _OUTCOMES = np.zeros(len(Status), np.uint8)
@@ -42,7 +41,7 @@ _OUTCOMES[[Status.DONE, Status.SIDE, Status.LIFT_OFF]] = (
     Outcome.LIES_DOWN,
     Outcome.LIFTS_OFF,
 )
-#: Outcome of a motion that goes on, by its last phase, without an impact and with one.
+#: Outcome of a motion with a restitution, by its last phase, without and with a time in the air.
 _ON_RIM, _ON_SIDE = KINDS[:2], KINDS[3:]
 _GOES_ON = np.array(
     [
@@ -65,7 +64,7 @@ _GOES_ON = np.array(
 
 
 def _outcome(status: Any, last: Any, air_time: Any) -> Any:
-    """What motions with a restitution come to."""
+    """Outcome of motions with a restitution, by their status, last phase and time in the air."""
     known = np.isfinite(last) & np.isin(status, (Status.DONE, Status.STOPS))
     found = _GOES_ON[np.where(known, last, 0).astype(int), (air_time > 0).astype(int)]
     return np.where(known, found, Outcome.NONE).astype(np.uint8)
@@ -83,35 +82,35 @@ def flicks(
     contact: AnyContact,
     **how: Any,
 ) -> "xarray.Dataset":
-    """How flicks of a tube end: every rate against every launch number, or every spin about the axis.
+    """Compute the outcomes of many flicks of a tube: every rate with every launch number or spin.
 
     Parameters
     ----------
     body : Body
-        A single one, as of `spincyl.flicked`; of a measured one everything is in SI.
+        Single body with two rims, as for `spincyl.flicked`. For a measured body all numbers are in SI.
     t : float
-        How long each is followed, in sqrt(R/g), of a measured body in seconds. 200 sqrt(R/g), which is 5.7 s
-        of the tube below, is enough to lie down, to lift off, or to roll for the first time.
-    hertz, w1, launch, spin_hertz, centre : array_like, 1-D, or numbers
-        As of `spincyl.flicked`, which takes one of the first two and one of the next two; arrays are axes of
-        the result: "hertz", or "precession" of `w1`, "launch" or "spin_hertz", and "centre".
+        Time at which the motions end, in sqrt(R/g), for a measured body in seconds. 200 sqrt(R/g), which is
+        5.7 s for the tube below, is long enough to lie down, to lift off, or to roll for the first time.
+    hertz, w1, launch, spin_hertz, centre : array_like, 1-D, or float
+        Arguments of `spincyl.flicked`: `hertz` or `w1`, and `launch` or `spin_hertz`; `centre` is optional.
+        Each array is a dimension of the result with the name of the argument ("precession" for `w1`).
     contact : Coulomb or Viscous
-        Of numbers, or labelled arrays of them.
+        Law of friction. Its coefficients are numbers or labelled arrays.
     **how
-        `want=` (default "end" and "rolling_time") and the others of `roll`. With ``restitution=`` every flick
-        is followed through its hops, and lying down, to the last time.
+        Keyword arguments of `roll`; here the default of `want` is "end" and "rolling_time". With
+        ``restitution=`` each motion continues to `t` through hops and on both rims.
 
     Returns
     -------
     xarray.Dataset
-        What `roll` gives, and "outcome" (`Outcome`). `plot.flicks` draws it. A tube that settles may slip for
-        a moment in every nod, and its "rolling_time" is the last of many; with ``stop_at="rolling"`` it is
-        the first time at which the tube rolls.
+        The result of `roll`, and "outcome" (`Outcome`), which `plot.flicks` draws. A tube that settles may
+        slip for a moment in every nod; "rolling_time" is then the beginning of the last rolling, and with
+        ``stop_at="rolling"`` that of the first.
 
     Raises
     ------
     ValueError, TypeError
-        Naming the argument.
+        If an argument is invalid; the message names it.
 
     Examples
     --------
@@ -142,7 +141,7 @@ def flicks(
     of = [found[name] for name in (("status", "last_phase", "air_time") if on else ("status",))]
     told = _outcome if on else _OUTCOMES.__getitem__
     found["outcome"] = lib.apply_ufunc(told, *of, dask="parallelized", output_dtypes=[np.uint8])
-    found["outcome"].attrs = {"long_name": "what it comes to", **flags(Outcome)}
+    found["outcome"].attrs = {"long_name": "outcome", **flags(Outcome)}
     return found
 
 

@@ -37,7 +37,7 @@ _COEFFICIENTS = {
     loss.AirFilm: "M g^(1/2)/R^(3/2)",
     loss.BoundaryLayer: "M g^(1/4) R^(7/4)",
 }
-#: Every coordinate that these functions give, with its unit; in that of a stone R is a.
+#: The coordinates of all inputs, with their units; in the units of a stone, a replaces R.
 _UNITS = (
     dict(zip((f"body_{name}" for name in FIELDS), ("R", "M R^2", "M R^2", "1", "R", "rad"), strict=True))
     | dict(zip((f"body_{name}" for name in _AXES[:-1]), ["R"] * 3 + ["M R^2"] * 6 + ["R"] * 3, strict=True))
@@ -91,7 +91,7 @@ def kept_contact(contact: AnyContact) -> dict[str, Reals]:
 def with_inputs(result: "xarray.Dataset", named: dict[str, Any], length: str) -> "xarray.Dataset":
     """The result with these inputs as coordinates, each along the dimensions along which it varies.
 
-    Numbers that are NaN say nothing and are left out. A lazy input is cut into the blocks of the result.
+    Single numbers that are NaN are left out. A lazy input gets the blocks of the result.
     """
     cut = result.chunksizes
     coords: dict[str, Any] = {}
@@ -102,7 +102,7 @@ def with_inputs(result: "xarray.Dataset", named: dict[str, Any], length: str) ->
             dims, data = given.dims, given.data.astype(np.float64).rechunk([cut[d] for d in given.dims])
         if dims or data == data:
             coords[name] = dims, data, {"units": _UNITS[name].replace("R", length)}
-    # inputs that are variables of an earlier sweep bring its coordinates with them
+    # inputs taken from an earlier sweep bring its coordinates with them
     brought = [name for name in result.coords if name in _UNITS]
     return (result.drop_vars(brought) if brought else result).assign_coords(coords)
 
@@ -117,32 +117,33 @@ def _varying(dims: tuple[Any, ...], data: Floats) -> tuple[tuple[Any, ...], Floa
 
 
 def inputs(rows: "xarray.Dataset") -> dict[str, Any]:
-    """The arguments of a sweep, from the coordinates and attributes of its result or of some of its rows.
+    """Rebuild the arguments of a sweep from its result, or from some rows of the result.
 
     Parameters
     ----------
     rows : xarray.Dataset
-        What `roll` or `flicks` returned, or what `save` has stored, opened; or any part of it, as of `isel`.
+        Result of `roll` or `flicks`, or a stored result that was opened again, or a part of one, for example
+        by `isel`.
 
     Returns
     -------
     dict
-        The keywords of `roll`: "bodies", "states", "t", "contact" and "tol", and those of "losses",
-        "restitution", "mu", "step", "beyond" and "stop_at" that were given. Rolled again a row has the same
-        bits: the coordinates are the numbers that were rolled. Of lazy coordinates bodies and states are
-        lazy: ``.load()`` reads the rows first.
+        Keyword arguments of `roll`: "bodies", "states", "t", "contact" and "tol", and "losses",
+        "restitution", "mu", "step", "beyond" and "stop_at" if they were given. `roll` with these arguments
+        repeats the results bit by bit. Lazy coordinates give lazy bodies and states; ``rows.load()`` reads
+        the rows first.
 
     Raises
     ------
     TypeError, ValueError
-        If `rows` is no Dataset, or lacks the coordinates or attributes of a sweep; of a single row that is no
-        body or no state, naming its number.
+        If `rows` is not a Dataset, or lacks the coordinates or attributes of a sweep; also for a single row
+        whose body or state is invalid, with the name of the number.
 
     Notes
     -----
-    The coordinates are ``body_*``, ``start_*``, ``contact_*`` and ``loss_*``. The names behind are
-    those of the fields of bodies (for an `Ellipsoid` a1, i11, i23, d1, ...), states, `Coulomb`, `Viscous` and
-    laws of loss. These coordinates are in natural units, also for measured bodies.
+    The coordinates are ``body_*``, ``start_*``, ``contact_*`` and ``loss_*``. Their names end with those of
+    the fields of bodies (for an `Ellipsoid` a1, i11, i23, d1, ...), states, `Coulomb`, `Viscous` and laws of
+    loss. These coordinates are in natural units, also for measured bodies.
 
     Examples
     --------
@@ -162,7 +163,7 @@ def inputs(rows: "xarray.Dataset") -> dict[str, Any]:
     missing = [name for name in ("start_w3", "body_a1" if stones else "body_ell") if name not in rows.coords]
     missing += [name for name in ("contact", "t", "tol") if name not in at]
     if missing:
-        raise ValueError(f"rows: expected a result of sweep.roll, and this has no {missing[0]!r}")
+        raise ValueError(f"rows: expected a result of sweep.roll; these have no {missing[0]!r}")
     given: dict[str, Any] = {name: _input(rows[name]) for name in _UNITS if name in rows.coords}
     scale = Scale(*(at[name] for name in ("radius", "mass", "gravity"))) if "radius" in at else None
     known: Any = True if scale is None else scale
@@ -184,7 +185,7 @@ def inputs(rows: "xarray.Dataset") -> dict[str, Any]:
 
 
 def _input(array: Any) -> Any:
-    """A number, or an array without coordinates but those of its dimensions."""
+    """A number, or an array with the coordinates of its dimensions only."""
     return float(array) if array.ndim == 0 else array.reset_coords(drop=True)
 
 

@@ -13,16 +13,16 @@ from spincyl.sweep._common import many_blocks
 class Status(IntEnum):
     """How a motion of a sweep ended."""
 
-    DONE = 0  #: it reached the last time asked for
+    DONE = 0  #: the last time was reached
     FACE = 1  #: the face landed on the table
     SIDE = 2  #: the other rim landed
     LIFT_OFF = 3  #: the normal force vanished
     SLIP = 4  #: rolling needed more friction than mu N
-    INVALID = 5  #: no such body, state or table, or a step too large for it: NaN
+    INVALID = 5  #: NaN: an invalid body, state or coefficient, or too long a step
     PAINLEVE = 6  #: no contact force, or more than one, obeys the law of friction
-    STOPS = 7  #: with losses: the contact point stops, the body rolls no more
+    STOPS = 7  #: with losses: the contact point stopped; the body may still spin about the vertical
     LANDING = 9  #: a landing on both rims has no outcome, or more than one, that obeys the law of friction
-    BOUNDED = 8  #: given up, NaN: 600,000 steps that hardly advance, many phases, or 8 million evaluations
+    BOUNDED = 8  #: NaN: given up, since phases alternate too often, or the motion hardly advances
 
 
 def flags(codes: type[IntEnum]) -> dict[str, object]:
@@ -34,17 +34,18 @@ def flags(codes: type[IntEnum]) -> dict[str, object]:
 
 
 def given_up(status: np.ndarray) -> None:
-    """Warn of motions that the core has given up."""
+    """Warn if the core has given up motions."""
     count = int(np.count_nonzero(status == Status.BOUNDED))
     if count:
-        told = f"{count} of {status.size} motions hardly advance and were given up: NaN, Status.BOUNDED"
-        warn(told, RuntimeWarning)
+        told = f"{count} of {status.size} motions were given up (Status.BOUNDED) and are NaN"
+        why = "slipping and rolling alternate too often, or the motion hardly advances"
+        warn(f"{told}: {why}", RuntimeWarning)
 
 
 def labelled(fields: dict[str, Reals], more: dict[str, Reals]) -> tuple[list[Any], list[str]]:
-    """Every field with named dimensions: its own, or "motion" names for the broadcast plain fields.
+    """Fields, and then `more`, with named dimensions; and the names that the plain fields have, in order.
 
-    Besides these names in their order. `more` are parts of the fields, and are labelled as these are.
+    Plain fields are arrays without names: their broadcast dimensions are "motion", or "motion_0" and so on.
     """
     lib: Any = extra("xarray", "sweep")
     plain = [np.shape(x) for x in fields.values() if not hasattr(x, "dims")]
@@ -73,8 +74,8 @@ def free(named: list[Any], names: list[str], spread: frozenset[str]) -> None:
     dims = {d for x in named for d in x.dims}
     for name in names:
         if name in coords or (dims == {name} and name not in spread):
-            why = f"bodies, states: {name!r} is a coordinate of theirs, and a result of the sweep"
-            raise ValueError(f"{why}: rename it, as by .rename({name}='{name}_start')")
+            why = f"bodies, states: {name!r} is a coordinate of the inputs and also a result of the sweep"
+            raise ValueError(f"{why}; rename it, for example with .rename({name}='{name}_start')")
 
 
 def in_order(array: Any, dims: list[str]) -> Any:

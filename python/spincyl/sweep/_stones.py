@@ -1,4 +1,4 @@
-"""Many stones at once: how they end, and which of them reverse their spin."""
+"""Many stones at once: their endings, and the reversals of their spin."""
 
 from collections.abc import Iterable
 from typing import Any
@@ -48,7 +48,7 @@ def question(
     if not isinstance(contact, Coulomb | Viscous):
         code(contact, rubs=True)
         if states._slips:
-            why = f"contact={contact!r} has no law for that: contact=sc.Coulomb(mu)"
+            why = f"contact={contact!r} has no law of friction; give contact=sc.Coulomb(mu)"
             raise ValueError(f"states: slip, and {why}")
     names = [name for name in _TOLD if name in (*wanted, "error", "known_until")]
     names += [*(_FINAL if "final" in wanted else ()), "status"]
@@ -82,5 +82,5 @@ def fill(
     given_up(out["status"])
     lost = np.count_nonzero((out["known_until"] < all_of["end"]) | np.isinf(out["error"]))
     if lost:
-        why = "beyond, their estimated errors are too large, and no reversal is counted"
+        why = "after that their estimated errors are too large, and no reversals are counted"
         warn(f"{lost} of {out['status'].size} motions are known only up to known_until: {why}", ErrorWarning)
