@@ -97,7 +97,7 @@ def test_a_map_of_measured_tubes_is_in_hertz_and_joules(bodies):
 
 
 def test_a_map_takes_tubes_and_no_other_body():
-    with pytest.raises(ValueError, match="^ell: expected tubes"):
+    with pytest.raises(ValueError, match="^ell: expected a tube"):
         sc.sweep.portrait([0.1], sc.Body.balls())
     with pytest.raises(ValueError, match="^ell: expected tubes that differ in one"):
         sc.sweep.portrait([0.1], sc.Body.tube([1.0, 2.0], [0.1, 0.2]))

@@ -90,7 +90,7 @@ def test_a_folder_that_no_sweep_has_begun_is_refused_whatever_lies_beside_it(tmp
         lambda path: sc.sweep.save(lazy(), path),
         lambda path: sc.sweep.block_size(lazy, path=path),
     ):
-        with pytest.raises(FileExistsError, match=r"no sweep that could go on: '.*data'"):
+        with pytest.raises(FileExistsError, match=r"not a sweep that save began: '.*data'"):
             refused(tmp_path / "data")
     assert files(tmp_path) == before and sorted(os.listdir(tmp_path)) == there
 
@@ -152,7 +152,7 @@ def test_a_link_is_the_folder_that_it_leads_to(tmp_path):
 
 def test_what_is_a_file_is_refused_with_its_path(tmp_path):
     (tmp_path / "a").write_text("mine")
-    with pytest.raises(FileExistsError, match="no sweep that could go on: .*a'"):
+    with pytest.raises(FileExistsError, match="not a sweep that save began: .*a'"):
         sc.sweep.save(lazy(), tmp_path / "a")
     (tmp_path / "b.sweep").write_text("mine")
     with pytest.raises(OSError, match=r"b\.sweep"):
@@ -185,9 +185,9 @@ def test_records_of_another_sweep_are_no_ones_but_its_own(store, tmp_path):
     before = files(tmp_path)
     shutil.rmtree(beside(store))
     shutil.move(beside(tmp_path / "other.zarr"), beside(store))
-    with pytest.raises(ValueError, match=r"copy\.zarr\.sweep is of another sweep: ell is content"):
+    with pytest.raises(ValueError, match=r"copy\.zarr\.sweep belongs to another sweep: ell is content"):
         sc.sweep.save(lazy(), store)
-    with pytest.raises(ValueError, match=r"copy\.zarr is of another sweep: ell is content"):
+    with pytest.raises(ValueError, match=r"copy\.zarr belongs to another sweep: ell is content"):
         sc.sweep.save(lazy(ELL + 1), store)
     shutil.move(beside(store), beside(tmp_path / "other.zarr"))
     assert all(file.read_bytes() == raw for file, raw in before.items() if file.exists())
@@ -213,7 +213,7 @@ def test_a_sweep_that_was_changed_by_hand_is_another_one(store):
         (lazy().astype("float32"), "variables"),
     ):
         changed.attrs = lazy().attrs
-        with pytest.raises(ValueError, match=f"of another sweep: {what} is .* there, .* here"):
+        with pytest.raises(ValueError, match=f"belongs to another sweep: {what} is .* there, .* here"):
             sc.sweep.save(changed, store)
 
 

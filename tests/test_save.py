@@ -193,7 +193,7 @@ def test_p3_what_cannot_be_written_is_an_os_error_with_its_path(tmp_path):
     with pytest.raises(OSError, match="nowhere"):
         sc.sweep.save(lazy(), tmp_path / "nowhere" / "map.zarr")
     (tmp_path / "file.zarr").write_text("something else")
-    with pytest.raises(FileExistsError, match="no sweep that could go on"):
+    with pytest.raises(FileExistsError, match="not a sweep that save began"):
         sc.sweep.save(lazy(), tmp_path / "file.zarr")
 
 

@@ -55,44 +55,60 @@ def portrait(
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> "xarray.Dataset":
-    """Map the steady states with the centre at rest: every inclination against every tube.
+    """Map the steady states whose centre is at rest, for every inclination and every tube.
 
     Parameters
     ----------
-    theta : array_like, 1-D
-        Inclinations in radians.
-    ell, bore, fillet : array_like, 1-D or a number
-        Half lengths over the outer radius, bores and fillets of uniform tubes, as in `Body.tube`. A number
-        makes no dimension. Or in place of `ell` a `Body`: a tube, or tubes that differ in one of the three;
-        of measured ones the map is in SI, with lengths in metres. Where one of them is backed by dask, so is
-        the result: nothing runs before it is computed (or handed to `save`).
+    theta : float or array_like, 1-D
+        Inclinations, in radians.
+    ell, bore, fillet : float or array_like, 1-D
+        Half lengths over the outer radius, bores and fillets of uniform tubes, as in `Body.tube`. `ell` may
+        also be a `Body`: a tube, or tubes that differ in one of the three; the map of measured tubes is in
+        SI, with lengths in metres. If an axis is backed by dask, the result is lazy: nothing is computed
+        before `compute` or `save` asks for it.
     want : str or iterable of str
-        Which of "rate", "kappa_rolling", "kappa_smooth", "energy" (see `Body.rate`, `Body.stability`,
-        `Body.energy`) and "region" (see `Region`) to compute. What is not asked for costs nothing.
+        Quantities to compute; others cost nothing: "rate", "kappa_rolling", "kappa_smooth", "energy" (see
+        `Body.rate`, `Body.stability`, `Body.energy`) and "region" (see `Region`).
     out : xarray.Dataset, optional
-        An earlier result on axes of the same lengths: its arrays are filled again. Pass it wherever a map is
-        made again: fresh memory takes the system several times as long as filling it takes the rate.
+        Earlier result on axes of the same lengths, whose arrays are filled again. This saves time for
+        repeated maps: to get new memory takes the system several times as long as the rates take to compute.
     dtype : {"float64", "float32"}
-        In single precision the rate of a sharp rim has a relative error of at most 1.51 * 2^-24, and alone
-        takes about 0.6 of the time. All else is as in double precision, rounded once; regions are the same.
+        Type of the numbers. In single precision the rate for a sharp rim has a relative error of at most
+        1.51 * 2^-24, and a map of the rate alone takes about 0.6 of the time. Other numbers are computed in
+        double precision and rounded once; regions are the same.
     threads : int, optional
-        Default: RAYON_NUM_THREADS, else every core that this process may use. In a dask block: 1.
+        Number of threads. Default: RAYON_NUM_THREADS, else every core that this process may use; in a dask
+        block, 1.
     progress : callable, optional
-        Called with the share that is done, 0 to 1, about fifty times a second.
+        Function that is called with the finished share, 0 to 1, about fifty times a second.
 
     Returns
     -------
     xarray.Dataset
-        Dimensions theta, ell, bore and fillet (as far as they are arrays), `units` in the attributes; of
-        measured tubes "hertz" beside the rate, which is the reduced one. NaN
-        and `Region.INVALID` where theta or the tube is out of range. In double precision the values are those
-        of the methods of `Body`, bit by bit, whatever the number of threads; the energy to
+        One array per quantity with its `units`, and with those of the dimensions theta, ell, bore and fillet
+        whose arguments are arrays. "rate" is the reduced rate; for measured tubes there is also "hertz". NaN
+        and `Region.INVALID` where theta or the tube is out of range. In double precision the numbers are
+        those of the methods of `Body`, bit by bit, for any number of threads; the energy agrees to
         32 (1 + kappa_c) 2^-53.
 
     Raises
     ------
     TypeError, ValueError
-        Naming the argument. KeyboardInterrupt is honoured within a tenth of a second.
+        If an argument is invalid; the message names it.
+    KeyboardInterrupt
+        Within 0.1 s of Ctrl-C.
+
+    Notes
+    -----
+    docs/physics.md has the equations, and `Body` the error bound of each quantity.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import spincyl as sc
+    >>> found = sc.sweep.portrait(np.linspace(0.1, 1.5, 400), np.linspace(0.5, 3, 300), want="rate")
+    >>> found["rate"].dims, found["rate"].shape
+    (('theta', 'ell'), (400, 300))
     """
     lib = extra("xarray", "sweep")
     body = ell if isinstance(ell, Body) else None
@@ -106,7 +122,7 @@ def portrait(
     dims = [name for name, x in axes.items() if x.ndim]
     if lazy:
         if out is not None:
-            raise ValueError("out: a lazy result has no arrays to fill")
+            raise ValueError("out: expected None for dask-backed inputs; a lazy result has no arrays to fill")
         labelled = [lib.DataArray(x, dims=_dims(name, x)) for name, x in axes.items()]
         with many_blocks():
             found = lib.apply_ufunc(
@@ -154,26 +170,35 @@ def points(
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> dict[str, np.ndarray]:
-    """The quantities of `portrait` at scattered points: an inclination and a tube each.
+    """Compute the quantities of `portrait` at scattered points, each an inclination of one tube.
 
     Parameters
     ----------
-    theta, ell, bore, fillet : array_like
-        Of shapes that broadcast. Contiguous double arrays of one shape, and single numbers, are not copied.
+    theta, ell, bore, fillet : float or array_like
+        Inclinations and tubes as in `portrait`, of shapes that broadcast. Numbers and contiguous arrays of
+        float64 of one shape are not copied.
     want, dtype, threads, progress
         As in `portrait`.
     out : dict of str to ndarray, optional
-        Contiguous arrays to fill: much faster than fresh ones, see `portrait`.
+        Contiguous arrays to fill, which is much faster than new ones; see `portrait`.
 
     Returns
     -------
     dict of str to ndarray
-        An array of the broadcast shape for each quantity; the values are those of `portrait`, bit by bit.
+        Array of the broadcast shape for each quantity; the numbers are those of `portrait`, bit by bit.
 
     Raises
     ------
     TypeError, ValueError
-        Naming the argument. KeyboardInterrupt is honoured within a tenth of a second.
+        If an argument is invalid; the message names it.
+    KeyboardInterrupt
+        Within 0.1 s of Ctrl-C.
+
+    Examples
+    --------
+    >>> import spincyl as sc
+    >>> sc.sweep.points([0.4, 1.0, 0.4], [1.0, 1.0, 2.0])["rate"].round(4)
+    array([1.4116, 1.302 , 0.4133])
     """
     want = _wanted(want)
     cell = _cell(dtype)
@@ -200,30 +225,47 @@ def survey(
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> dict[str, Any]:
-    """What a `portrait` on these axes would show, without making it: counts, areas, extrema.
+    """Compute counts, areas and extrema of a `portrait` on these axes without the map itself.
 
     Parameters
     ----------
-    theta, ell, bore, fillet
-        As in `portrait`; theta ascending.
+    theta, ell, bore, fillet : float or array_like, 1-D
+        As in `portrait`, but not a `Body`; theta ascending.
     want : str or iterable of str
-        "region": for how many points, and how much area, each `Region` covers. "rate", "kappa_rolling",
-        "kappa_smooth", "energy": least and greatest, and where.
+        "region": number of points and share of the area of each `Region`. "rate", "kappa_rolling",
+        "kappa_smooth", "energy": least and greatest value, and their places.
     threads, progress
         As in `portrait`.
 
     Returns
     -------
     dict
-        "count": {Region: number of points}; "area": {Region: share of the area of the map}, each point
-        standing for its cell (trapezoid rule along every axis of two points and more). For the others
-        {"min": (value, {axis: place}), "max": ...}, None where there is no steady state at all.
+        For "region" two entries: "count", {Region: number of points}, and "area", {Region: share of the area
+        of the map}. Each point has the area of its cell, by the trapezoid rule along every axis of at least
+        two points. For each other quantity {"min": (value, {axis: place}), "max": (value, {axis: place})},
+        or None if no point has a steady state.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument is invalid; the message names it.
+    KeyboardInterrupt
+        Within 0.1 s of Ctrl-C.
 
     Notes
     -----
-    Regions change only at theta0, thetaInf and the zeros of both kappas: of sharp tubes these are found among
-    the inclinations by halving, of rounded ones solved for, and the points in between are not looked at.
-    Extrema store no point; of the rate alone, what cannot be one is seen for sixteen inclinations at once.
+    Regions change only at theta0, thetaInf and the zeros of both kappas. For sharp tubes bisection finds
+    these among the inclinations, for rounded tubes they are computed; points far from them are not evaluated.
+    Extrema need no memory for the map. If only the rate is wanted, sixteen inclinations at a time are skipped
+    where they cannot contain an extremum.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import spincyl as sc
+    >>> found = sc.sweep.survey(np.linspace(0.01, 1.57, 2000), np.linspace(0.1, 3, 1000))
+    >>> round(found["area"][sc.Region.FORBIDDEN], 3)
+    0.251
     """
     axes = {name: _axis(name, x) for name, x in zip(_AXES, (theta, ell, bore, fillet), strict=True)}
     asked, progress = _wanted(want), callback(progress)
@@ -253,18 +295,31 @@ def survey(
 
 
 def boundaries(ell: Reals, bore: Reals = 0.0, fillet: Reals = 0.0) -> "xarray.Dataset":
-    """The curves that part the regions of the map: inclinations for each tube, in radians.
+    """Compute the curves that separate the regions of the map: inclinations for each tube.
 
     Parameters
     ----------
-    ell, bore, fillet : array_like, 1-D or a number
-        As in `portrait`.
+    ell, bore, fillet : float or array_like, 1-D
+        As in `portrait`, but not a `Body`.
 
     Returns
     -------
     xarray.Dataset
-        theta_balance, theta_limit; rolling, smooth (along "root", NaN after the last: up to three each, of
-        rounded rims five); fold, ridge (turning points of rate and energy).
+        Inclinations in radians: "theta_balance" and "theta_limit" (theta0 and thetaInf); "rolling" and
+        "smooth" (zeros of the kappas), "fold" and "ridge" (turning points of rate and energy). The last four
+        have a dimension "root" of three numbers, or five for rounded rims, with NaN after the last root.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument is invalid; the message names it.
+
+    Examples
+    --------
+    >>> import spincyl as sc
+    >>> found = sc.sweep.boundaries([0.5, 1.0, 2.0])
+    >>> found["theta_balance"].values.round(4)
+    array([1.1071, 0.7854, 0.4636])
     """
     lib = extra("xarray", "sweep")
     axes = {name: _axis(name, x) for name, x in (("ell", ell), ("bore", bore), ("fillet", fillet))}
@@ -300,7 +355,7 @@ def _grid(
     shape: tuple[int, ...],
     given: dict[str, Any],
 ) -> list[np.ndarray]:
-    """The wanted arrays, of this shape. Of each axis, at most one dimension is longer than one."""
+    """The wanted arrays, of this shape. At most one dimension of each axis is longer than one."""
     arrays = {name: target(name, shape, np.uint8 if name == "region" else cell, given[name]) for name in want}
     columns = _bodies(theta, np.ravel(ell), np.ravel(bore), np.ravel(fillet))
     apart(arrays, columns)
@@ -349,12 +404,12 @@ def _ends(name: str, ends: list[tuple[float, int, int]], axes: dict[str, Floats]
 
 
 def _tube(body: Body, bore: Reals, fillet: Reals) -> tuple[Reals, Reals, Reals]:
-    """Half length, bore and fillet of tubes; an error if bore or fillet is given besides the body's own."""
+    """Half length, bore and fillet of tubes; an error if bore or fillet is given as well."""
     if not (is_scalar(bore, fillet) and bore == 0.0 == fillet):
-        raise TypeError("bore, fillet: the body has its own")
+        raise TypeError("bore, fillet: the body has its own; leave them out")
     found = body.ell + body.fillet if np.any(body.fillet != 0) else body.ell, body.bore, body.fillet
     if np.isnan(body.bore).any():
-        raise ValueError("ell: expected tubes, as of sc.measured or Body.tube; a general body has no bore")
+        raise ValueError("ell: expected a tube from sc.measured or Body.tube; a general body has no bore")
     if sum(not is_scalar(x) for x in found) > 1:
         raise ValueError("ell: expected tubes that differ in one of ell, bore and fillet")
     return found

@@ -1,6 +1,6 @@
-"""Records within a store, which show that it belongs to a sweep, and marks beside it for completed blocks.
+"""Records in a store, which identify its sweep, and marks of completed blocks in the folder next to it.
 
-A folder without an intact record is not ours, whatever lies beside it: nothing in it is written or deleted.
+A folder without an intact record is not ours, whatever lies next to it: nothing in it is written or deleted.
 """
 
 import errno
@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 from spincyl._input.files import path_of, replaced
 
-#: Name of the record in each array's folder, where zarr ignores it; and of its copy in the folder of marks.
+#: Names of the record in each array's folder, where zarr ignores it, and of its copy in the folder of marks.
 RECORD, BESIDE = "spincyl.json", "job.json"
 # files that killed writers leave behind: those of this package, and those of zarr
 _LEFT = re.compile(r"\.spincyl-[0-9a-f]{32}\.part.*|.+\.[0-9a-f]{32}\.partial", re.DOTALL)
@@ -33,7 +33,7 @@ class Store(NamedTuple):
 
     @property
     def marks(self) -> Path:
-        """The folder beside the store, with a file for each completed block."""
+        """The folder next to the store, with a file for each completed block."""
         return self.folder.with_name(f"{self.folder.name}.sweep")
 
 
@@ -47,7 +47,7 @@ def place(path: str | os.PathLike[str]) -> Store:
 
 @contextmanager
 def naming(store: Store) -> Iterator[None]:
-    """Context in which an OSError speaks of the path as given."""
+    """Context in which an OSError names the path as given."""
     try:
         yield
     except OSError as e:
@@ -86,45 +86,47 @@ def recorded(store: Store) -> list[Record]:
     """
     if not store.folder.exists():
         return []
-    no_sweep = FileExistsError(errno.EEXIST, "exists, and is no sweep that could go on", store.said)
+    no_sweep = FileExistsError(errno.EEXIST, "exists, but is not a sweep that save began", store.said)
     if not store.folder.is_dir():
         raise no_sweep
     files = sorted(store.folder.glob(f"*/{RECORD}"))
     found = [record for record in map(_whole, files) if record is not None]
     if not found and files:
         torn = ", ".join(str(file.relative_to(store.folder)) for file in files)
-        why = f"its records ({torn}) are damaged, and nothing else says of which sweep it is"
-        raise ValueError(f"{store.said}: {why}: save to another place, or remove this one")
+        why = f"its records ({torn}) are damaged, and nothing else identifies the sweep"
+        raise ValueError(f"{store.said}: {why}; save to another path, or remove this store")
     if not found and any(not _LEFT.fullmatch(name) for *_, names in os.walk(store.folder) for name in names):
         raise no_sweep
     return found
 
 
 def same(store: Store, record: Record) -> Record | None:
-    """The record of this sweep in a store, None in a store without one; ValueError for another sweep's."""
+    """The record of this sweep in a store, None in an empty store; ValueError for another sweep's."""
     found = recorded(store)
     for there in found:
         if _differs(there, record) is None:
             return there
     if found:
-        raise ValueError(f"{store.said} is of another sweep: {_differs(found[0], record)}")
+        raise ValueError(f"{store.said} belongs to another sweep: {_differs(found[0], record)}")
     return None
 
 
 def beside(store: Store, record: Record) -> None:
-    """Refuse a folder of marks that is not of this sweep; an empty one is accepted.
+    """Raise an error if the folder of marks is neither empty nor that of this sweep.
 
     Raises
     ------
     FileExistsError
-        If it holds anything else.
+        If the folder holds anything else.
     ValueError
-        If its record is of another sweep.
+        If its record belongs to another sweep.
     """
     there = _whole(store.marks / BESIDE)
     if there is not None:
         if (other := _differs(there, record)) is not None:
-            raise ValueError(f"{store.marks} is of another sweep: {other}; if its store is gone, remove it")
+            raise ValueError(
+                f"{store.marks} belongs to another sweep: {other}; remove it if the store is gone"
+            )
         return
     try:
         entries = sorted(os.scandir(store.marks), key=lambda entry: entry.name)
@@ -132,7 +134,7 @@ def beside(store: Store, record: Record) -> None:
         return
     left = [e for e in entries if not _LEFT.fullmatch(e.name) and not (e.name == "lock" and not _size(e))]
     if left and not any(_is_mark(Path(entry)) for entry in left):
-        why = "exists, and holds no records of a sweep: save to another place, or remove it"
+        why = "exists, but holds no records of a sweep; save to another path, or remove this folder"
         raise FileExistsError(errno.EEXIST, why, os.fspath(store.marks))
 
 
@@ -160,7 +162,7 @@ def _differs(there: Record, here: Record) -> str | None:
 
 
 def lay_out(store: Store, record: Record, files: dict[str, bytes]) -> None:
-    """Write files that are not as wanted; records first, so that a kill leaves no folder without one."""
+    """Write the files whose content differs; records first, so that a kill leaves no folder without one."""
     seal = sealed(record)
     records = {f"{name}/{RECORD}": seal for name in record["variables"]}
     store.folder.mkdir(exist_ok=True)
@@ -173,7 +175,7 @@ def lay_out(store: Store, record: Record, files: dict[str, bytes]) -> None:
 
 
 def settle(store: Store, record: Record) -> None:
-    """Write the record in the folder of marks, if it is missing there."""
+    """Write the record into the folder of marks if it is missing there."""
     if _bytes(store.marks / BESIDE) != (seal := sealed(record)):
         with replaced(store.marks / BESIDE) as part:
             part.write_bytes(seal)
@@ -196,12 +198,12 @@ def sweep_up(store: Store) -> None:
 
 
 def digest(record: Record) -> str:
-    """A hash in every mark of a sweep, so that marks of other sweeps or layouts do not count."""
+    """Hash of a sweep and its layout; every mark has it, so that marks of other sweeps do not count."""
     return blake2b(sealed(record), digest_size=8).hexdigest()
 
 
 def mark(of: str, chunks: dict[str, int | None]) -> bytes:
-    """The content of a mark for a completed block: the sweep's hash, and the checksums of its files."""
+    """Content of the mark of a completed block: the hash of the sweep, and the checksums of its files."""
     return json.dumps({"sweep": of, "chunks": chunks}).encode()
 
 

@@ -1,4 +1,4 @@
-"""Results saved block by block, so that a sweep killed at any moment resumes where it stopped."""
+"""Save a lazy sweep block by block, so that it can resume after a kill at any moment."""
 
 import errno
 import json
@@ -36,49 +36,61 @@ def _zarr(folder: str | os.PathLike[str]) -> Any:
 def save(
     result: "xarray.Dataset", path: str | os.PathLike[str], *, progress: Progress | None = None
 ) -> "xarray.Dataset":
-    """Compute a lazy sweep and write it to zarr, block by block; or go on where a call was interrupted.
+    """Compute a lazy sweep and write it to zarr, block by block; or resume an interrupted call.
 
     Parameters
     ----------
     result : xarray.Dataset
-        What `portrait` or `roll` returned for dask-backed inputs; one block of dask is one block on disk. Its
-        coordinates are saved with it (`inputs`), but for those that are dropped before.
+        Result of `portrait`, `roll` or `flicks` for dask-backed inputs. Each block of dask becomes one block
+        on disk. Coordinates are saved, too (see `inputs`); to save without some, drop them first.
     path : path
-        A directory: of a new store, or of one that this function began for the same sweep. What is done is
-        marked in a directory beside it, `path` with ".sweep" at its end.
+        Directory for the store: a new one, or one that this function began for the same sweep. The completed
+        blocks are marked in a second directory, `path` with ".sweep" at its end.
     progress : callable, optional
-        Called with the share of blocks done, 0 to 1, after each pass.
+        Function that is called with the finished share of the blocks, 0 to 1, after each pass.
 
     Returns
     -------
     xarray.Dataset
-        The stored result, opened.
+        The stored result, opened with xarray.
 
     Raises
     ------
+    TypeError
+        If `result` is not a lazy result of this module.
     ValueError
-        If the store at `path`, or what is beside it, is of another sweep or another version: the message
-        names the first difference. If all records in the store are damaged, or `path` has no name of its own,
-        as "." has none.
+        If the store at `path` or its ".sweep" belongs to another sweep or another version (the message names
+        the first difference), if all records in the store are damaged, or if `path` has no name of its own,
+        such as ".".
     OSError
-        If it cannot be written, with the path; what has been written stays good, and a later call goes on.
-        A BlockingIOError if another process or thread is saving to it now; a FileExistsError if something is
-        there that this function has not begun.
+        If a file cannot be written; the message has the path. What has been written stays valid, and a later
+        call resumes. BlockingIOError if another process or thread is saving to the store now;
+        FileExistsError if `path` has something that this function has not written.
 
     Warns
     -----
     UserWarning
-        Once, if blocks that were done, coordinates or metadata are missing or damaged: they are made again.
-        Where files cannot be locked, so that nobody would notice two processes that save to one store.
+        If completed blocks, coordinates or metadata are missing or damaged, once; they are computed again. If
+        files cannot be locked, so that two processes could save to one store unnoticed.
 
     Notes
     -----
-    Blocks are written by xarray as they are computed by whatever scheduler dask has, a distributed one
-    included. A block counts as done when its checksum has been recorded, after its arrays are on disk;
-    writing a block again gives the same bytes. So a kill costs at most the blocks that were being computed.
-    A store is known by records within it, one for each of its arrays: it can be copied, moved and renamed,
-    and goes on if its ".sweep" comes along. Only what this function has written is ever written again;
-    whatever else lies in the store stays.
+    Any scheduler of dask computes the blocks, also a distributed one. A block is complete when its checksum
+    has been recorded, after its arrays are on disk; writing a block again gives the same bytes. A kill
+    therefore costs at most the blocks that were being computed. Each array in a store has a record, which
+    identifies the sweep: a store can be copied, moved and renamed, and resumes together with its ".sweep".
+    This function overwrites only what it has written; other files in the store stay.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import dask.array as da
+    >>> import spincyl as sc
+    >>> lazy = sc.sweep.portrait(0.8, da.linspace(0.5, 3, 1000, chunks=250), want="region")
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     stored = sc.sweep.save(lazy, folder + "/map.zarr").load()
+    >>> stored["region"].dims, stored["region"].size
+    (('ell',), 1000)
     """
     xr, dask = extra("xarray", "sweep"), extra("dask", "sweep")
     extra("zarr", "sweep")
@@ -146,7 +158,7 @@ def _alone(store: Store) -> Iterator[None]:
             if e.errno in (errno.EACCES, errno.EAGAIN, errno.EWOULDBLOCK):
                 said = "another process or thread is saving to it"
                 raise BlockingIOError(errno.EWOULDBLOCK, said, store.said) from None
-            said = f"{store.said}: it cannot be locked ({e.strerror}): see that nobody else saves to it"
+            said = f"{store.said}: the store cannot be locked ({e.strerror}); let only one process save to it"
             warnings.warn(said, stacklevel=4)
             yield
             return
@@ -165,7 +177,9 @@ def _chunks(result: "xarray.Dataset") -> Chunks:
     chunks = {}
     for dim, sizes in result.chunksizes.items():
         if len(set(sizes[:-1])) > 1 or (len(sizes) > 1 and sizes[-1] > sizes[0]):
-            raise ValueError(f"result: blocks of one size along {dim}, not {list(sizes)}: rechunk it")
+            raise ValueError(
+                f"result: expected blocks of one size along {dim}, not {list(sizes)}; rechunk it"
+            )
         chunks[str(dim)] = int(sizes[0]), int(sum(sizes))
     return chunks
 
@@ -183,8 +197,8 @@ def _blocks(chunks: Chunks) -> Iterator[Block]:
 def _written(result: "xarray.Dataset", store: Store, record: Record) -> Any:
     """A lazy array with one number for each block; computing the number writes the block.
 
-    Only this number returns to the caller. All blocks are in one graph of dask: to build a graph for each
-    block takes the client longer than a worker needs for the block.
+    Only this number returns to the caller. All blocks are in one graph of dask, since building a graph for
+    each block would take the client longer than a worker needs for the block.
     """
     array = extra("dask.array", "sweep")
     chunks, arguments = record["chunks"], list[Any]()
@@ -220,7 +234,7 @@ def _number(block: Block, dim: str, chunks: Chunks) -> int:
 
 
 def _record(result: "xarray.Dataset") -> Record:
-    """The description of a sweep, as it is written to disk and compared later."""
+    """The description of a sweep, which is written to disk and compared later."""
     chunks = _chunks(result)
     record = {
         "job": result.attrs["spincyl_sweep"],
@@ -280,7 +294,7 @@ def _layout(result: "xarray.Dataset", record: Record) -> dict[str, bytes]:
     layout.attrs = {**result.attrs, "spincyl_sweep": json.dumps(result.attrs["spincyl_sweep"])}
     made: dict[str, Any] = {}
     with warnings.catch_warnings(), zarr.config.set({"array.write_empty_chunks": True}):
-        # other readers may ignore the consolidated metadata: then they read those of each array
+        # readers that ignore the consolidated metadata read those of each array
         warnings.filterwarnings("ignore", "Consolidated metadata")
         how: dict[str, Any] = {"consolidated": True, "zarr_format": 3, "safe_chunks": False}
         layout[list(result.variables)].to_zarr(MemoryStore(made), compute=False, **how)
@@ -324,7 +338,7 @@ def _is_done(store: Store, block: Block, record: Record, sweep: str) -> bool:
 
 
 def _own(columns: dict[str, list[str]], block: Block) -> dict[str, list[str]]:
-    """The columns of which a block writes a chunk: of several blocks with one chunk, the first writes it."""
+    """The columns whose chunk this block writes; if several blocks share a chunk, the first one writes it."""
     return {
         name: dims
         for name, dims in columns.items()
@@ -362,6 +376,6 @@ def _write(
         with replaced(_marker(store, block)) as part:
             part.write_bytes(_mark(store, block, chunks, columns, sweep))
     except OSError as e:
-        why = f"{e.strerror or e}; the sweep can go on from what is written"
+        why = f"{e.strerror or e}; a later call of save resumes from the blocks that are written"
         raise OSError(e.errno, why, store.said) from e
     return np.ones((1,) * len(chunks), np.uint8)

@@ -32,10 +32,10 @@ class Question(NamedTuple):
     names: list[str]  # outputs
     spread: frozenset[str]  # outputs with a dimension of times
     asked: Asked
-    want: tuple[str, ...]  # as the caller gave it
+    want: tuple[str, ...]  # the outputs that the caller wants
     scale: Scale | None
     seconds: Reals  # the times as the caller gave them
-    kept: dict[str, Reals]  # what is to be a coordinate of the result
+    kept: dict[str, Reals]  # inputs that become coordinates of the result
 
 
 def swept(
@@ -47,7 +47,7 @@ def swept(
     progress: Progress | None,
     length: str = "R",
 ) -> "xarray.Dataset":
-    """The Dataset of a sweep. `law` fills the columns of a block; `labels` are their units and meanings."""
+    """The Dataset of a sweep. `law` fills the columns of a block; `labels` has their units and meanings."""
     lib: Any = extra("xarray", "sweep")
     fields, names, spread, asked, want, scale, seconds, kept = question
     lazy, at = is_lazy(*fields.values()), asked.times
@@ -55,7 +55,7 @@ def swept(
     share = 1 if lazy and threads is None else thread_count(threads)
     fill = partial(_block, law=law, given=tuple(fields), names=names, spread=spread, times=at, asked=options)
     run = partial(fill, threads=share, progress=callback(progress))
-    # an empty block raises errors about the arguments before any work
+    # an empty block, run first, raises errors about the arguments before any work
     with speaking(scale, length):
         fill(*(np.empty(0) for _ in fields), threads=1, progress=None)
     given, dims = labelled(fields, kept)
