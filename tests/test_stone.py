@@ -98,7 +98,7 @@ def test_a_motion_says_how_the_stone_stands_and_turns_back():
     later = m.at([5.0, 10.0])
     assert np.abs(later.spin - np.interp([5.0, 10.0], m.t, m.spin)).max() < 1e-3
     assert sc.roll(STONE, START, 5.0).wanting("pose").orientation.shape == (1, 4)
-    with pytest.raises(AttributeError, match="orientation tells"):
+    with pytest.raises(AttributeError, match="for a stone use orientation"):
         m.phi
     with pytest.raises(AttributeError, match='want="force"'):
         sc.roll(STONE, START, 5.0).normal
@@ -374,7 +374,7 @@ def test_a_family_of_a_constructor_marks_what_is_no_stone():
 
 def test_moments_that_mass_within_a_stone_has_not_are_warned_of():
     for moments in ((1, 2, 3), (0.01, 0.02, 0.025)):
-        with pytest.warns(UserWarning, match="times the largest of a mass within the ellipsoid"):
+        with pytest.warns(UserWarning, match="times the largest inertia of a mass inside"):
             stone = sc.Ellipsoid.rattleback((0.06, 0.012, 0.01), moments=moments, twist=0.05)
     with pytest.warns(UserWarning, match="inertia"):
         sc.Ellipsoid((1, 1, 1), [[0.4, 0.4, 0.4], [0.7, 0.7, 0.7]])

@@ -42,9 +42,9 @@ class Ellipsoid(Sized):
     """An ellipsoid with any inertia on a table, called a stone: a rattleback, an egg, a pebble.
 
     Natural units: the mass M, gravity g and the largest semi-axis a are 1. Lengths may be given in any common
-    unit. Fields may be arrays that broadcast over their leading axes; this makes a family of stones, and all
-    fields get its shape. Impossible stones of a family are NaN, and `Status.INVALID` in a sweep. With arrays
-    of dask the family is lazy, for a lazy sweep; all other methods compute it.
+    unit. Arrays that broadcast over their leading axes make a family of stones, and all fields get its shape.
+    Impossible stones of a family are NaN, and `Status.INVALID` in a sweep. With arrays of dask the family is
+    lazy, for a lazy sweep; all other methods compute it.
 
     Parameters
     ----------
@@ -116,8 +116,8 @@ class Ellipsoid(Sized):
         *fields, unit, reach = parts(rows)
         if not self._doubted and not is_lazy(reach) and np.any(reach > 1 + 1e-9):
             object.__setattr__(self, "_doubted", True)
-            most = f"{float(np.nanmax(reach)):.3g} times the largest of a mass within the ellipsoid"
-            warn(f"inertia: {most}: is it per mass, in the unit of the semi-axes squared?")
+            most = f"{float(np.nanmax(reach)):.3g} times the largest inertia of a mass inside the ellipsoid"
+            warn(f"inertia: {most}; expected inertia per mass, in the unit of the semi-axes squared")
         for name, value in zip(("axes", "inertia", "offset", "theta_end"), fields, strict=True):
             object.__setattr__(self, name, kept(value))
         object.__setattr__(self, "_unit", self._unit * unit)
@@ -135,7 +135,10 @@ class Ellipsoid(Sized):
 
     @classmethod
     def uniform(cls, axes: Reals, *, mass: float | None = None) -> Self:
-        """Uniform ellipsoid with semi-axes (..., 3); with a `mass` (kg), or texts such as "8cm", measured."""
+        """Uniform ellipsoid with semi-axes (..., 3).
+
+        A `mass` (kg), or lengths such as "8cm", make a measured stone. Errors are those of `Ellipsoid`.
+        """
         axes, told = lengths("axes", axes)
         return cls._of(_core.uniform_stone, axes=(vectors("axes", axes, 3), True))._measured(told, mass)
 
@@ -157,7 +160,7 @@ class Ellipsoid(Sized):
             Semi-axes; the stone stands on the end of the third. A stone 16 cm long, 3.2 cm wide and 1.4 cm
             deep has (0.08, 0.016, 0.014), or ("8cm", "16mm", "14mm"), which makes a measured stone.
         twist : array_like
-            Angle of that rotation about axis 3, radians, counterclockwise as seen from above.
+            Angle of the rotation about axis 3, in radians, counterclockwise as seen from above.
         moments : array_like, (..., 3), optional
             Principal moments per mass about the centre of mass. Default: those of the lower half of a uniform
             ellipsoid, whose edge lands at an inclination of pi/2.
@@ -165,12 +168,12 @@ class Ellipsoid(Sized):
             Vector from the centre of the ellipsoid to the centre of mass. Default: zero with `moments`, else
             that of the lower half, downward by 3/8 of the third semi-axis.
         mass : float, optional
-            Mass in kilograms, which makes a measured stone, as does `in_metres`.
+            Mass in kilograms, which makes a measured stone with `axes` in metres; see also `in_metres`.
 
         Raises
         ------
         ValueError, TypeError
-            As `Ellipsoid`.
+            As for `Ellipsoid`.
 
         Examples
         --------
@@ -203,6 +206,7 @@ class Ellipsoid(Sized):
         """Uniform spheroid about axis 3 whose centre of mass lies `offset` above the centre of the spheroid.
 
         Lengths are in any common unit. A `mass` (kg), or lengths such as "22mm", make a measured stone.
+        Errors are those of `Ellipsoid`.
         """
         given = {"radius": radius, "half_length": half_length, "offset": offset}
         given, told = lengths("", given)
@@ -211,6 +215,8 @@ class Ellipsoid(Sized):
 
     def with_weights(self, weights: Iterable[Any]) -> Self:
         """Fix point masses to a single stone: clay on a rattleback, or an unbalanced disk.
+
+        ValueError for a family or a stone of unknown mass; UserWarning if a weight is outside the ellipsoid.
 
         Parameters
         ----------
@@ -242,7 +248,7 @@ class Ellipsoid(Sized):
     def spinning(
         self, spin: Reals | None = None, *, hertz: Reals | None = None, pitch: Reals = 0.0, roll: Reals = 0.0
     ) -> EllipsoidState:
-        """State that spins about the vertical, upright or nearly so.
+        """Initial state of a stone that spins about the vertical, upright or nearly upright.
 
         Parameters
         ----------
@@ -251,8 +257,8 @@ class Ellipsoid(Sized):
         hertz : array_like
             Turns per second of a measured stone; replaces `spin`.
         pitch, roll : array_like
-            Angles of rotation from upright, radians: first `pitch` about axis 2, then `roll` about axis 1.
-            Without both the state is steady and lasts for ever, even if it is unstable.
+            Angles of rotation from upright, in radians: first `pitch` about axis 2, then `roll` about axis 1.
+            If both are 0, the motion is steady, even if it is unstable: nothing disturbs it.
         """
         spin = self._spin(spin, hertz)
         pitch, roll = _tilt("pitch", pitch), _tilt("roll", roll)
@@ -366,11 +372,11 @@ class Ellipsoid(Sized):
         return doubles(reals("hertz", turns_per_second("hertz", hertz))) / self.scale._units[3]
 
     def spin_limits(self) -> Floats:
-        """Spins in sqrt(g/a) at which upright spinning becomes stable or unstable; for a single stone."""
+        """Spins in sqrt(g/a) at which upright spinning of a single stone becomes stable or unstable."""
         return np.array(_core.spin_limits(self._numbers))
 
     def energy(self, state: EllipsoidState, contact: AnyContact = "rolling") -> Result:
-        """(...) kinetic and potential energy in M g a, heights above the table; for a single stone."""
+        """(...) kinetic and potential energy of a single stone, in M g a, with heights above the table."""
         made("state", state, EllipsoidState)
         smooth = not isinstance(contact, Coulomb | Viscous) and code(contact) == code("smooth")
         n, w, u = (np.asarray(x) for x in (state.vertical, state.w, state._pair))

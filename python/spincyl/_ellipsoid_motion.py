@@ -21,12 +21,13 @@ from spincyl._phases import phases, rubs
 
 
 class EllipsoidMotion(Motion):
-    """Times and states of a stone, and how its motion ended; a `Motion` along the axes of the ellipsoid.
+    """Motion of a stone: times, states, and how the motion ended; the result of `roll` for an `Ellipsoid`.
 
-    Units, `status`, `event`, `phases`, `error` and what is wanted are those of `Motion`, with the largest
-    semi-axis in place of R. `theta` is the inclination of axis 3, and `w` (n, 3) stands along the axes of the
-    ellipsoid. With `tol` above 1e-7 an error may be twice what is claimed. There are no angles phi and psi:
-    `orientation` tells how it stands. A stone that rattles forgets its start: see `known_until`.
+    Attributes, optional outputs and units are those of `Motion`, with the largest semi-axis a in place of R,
+    except that `theta` is the inclination of axis 3, and `w` (n, 3) has components along the axes of the
+    ellipsoid. There are no angles phi and psi; `orientation` has the rotation of the stone. With `tol` above
+    1e-7 the error may be twice the estimated error. The errors of a rattling stone grow fast; see
+    `known_until`.
     """
 
     _axes = Motion._axes | {
@@ -38,7 +39,7 @@ class EllipsoidMotion(Motion):
     start: EllipsoidState  # type: ignore[assignment]
     slip = Number(
         FRICTION,
-        """(n, 2) velocity of the contact point over the table, sqrt(g a). Needs a law of friction.
+        """(n, 2) velocity of the contact point over the table, sqrt(g a) or m/s. Needs a law of friction.
 
         Along x and y, as in `EllipsoidState`.
         """,
@@ -52,22 +53,22 @@ class EllipsoidMotion(Motion):
 
     @property
     def spin(self) -> Floats:
-        """(n,) angular velocity about the vertical; it changes its sign where a rattleback turns back."""
+        """(n,) angular velocity about the vertical; the spin of a rattleback changes its sign."""
         found: Floats = _core.stone_spin(*components(self.vertical), *components(self.w))
         return found
 
     @property
     def inclinations(self) -> Floats:
-        """(n, 3) angles from the vertical to the axes of the ellipsoid, radians."""
+        """(n, 3) angles from the vertical to the axes of the ellipsoid, in radians."""
         return self.states.inclinations
 
     @property
     def known_until(self) -> float:
-        """Time up to which the motion is known: its end, unless the error has grown too large before.
+        """Time up to which the motion is known: its end, unless the estimated error is too large before.
 
-        Up to there the estimated error of the states is at most 1 % of the largest angular velocity, or 0.01
-        in natural units of a slow motion. It is the time of an end, or of a passage beside one, that is so
-        narrow that the error decides it; then `error` is infinite.
+        Up to this time the estimated error of the states is at most 1 % of the largest angular velocity, or
+        0.01 in natural units for a slow motion. The motion is also unknown after an event, or a narrow
+        passage without one, if the error decides whether the event occurs; `error` is then infinite.
         """
         until: float | None = self.natural._known_until  # type: ignore[attr-defined]
         if until is None:
@@ -94,18 +95,21 @@ class EllipsoidMotion(Motion):
 
     @property
     def states(self) -> EllipsoidState:  # type: ignore[override]
-        """The states as one `EllipsoidState` of arrays, in natural units."""
+        """All states as one `EllipsoidState` of arrays, in natural units."""
         if self._natural is not None:
             return self._natural.states  # type: ignore[return-value]
         return EllipsoidState(self.vertical, self.w, self._extra.get("slip"))
 
     @property
     def y(self) -> Floats:
-        """(6, n): the vertical, and the angular velocity."""
+        """(6, n) array with the rows n1, n2, n3 (`vertical`) and w1, w2, w3."""
         return np.vstack([self.vertical.T, self.w.T])
 
     def wanting(self, *want: Want | Iterable[Want], t: Reals | None = None) -> "EllipsoidMotion":
-        """The same motion with more of it, or at other times `t`, computed anew."""
+        """The same motion with further outputs, or at other times `t`, computed again.
+
+        `want` names outputs as in `roll`, in one or several arguments; those of this motion are kept.
+        """
         a = self._asked
         return roll(
             self.body,
@@ -124,7 +128,7 @@ class EllipsoidMotion(Motion):
         )
 
     def _angle(self, name: str) -> Floats:
-        raise AttributeError(f"{name} is of bodies of revolution; orientation tells how a stone stands")
+        raise AttributeError(f"{name}: only for bodies of revolution; for a stone use orientation")
 
 
 def roll(
@@ -146,11 +150,13 @@ def roll(
     """Compute the motion of a stone: `spincyl.roll` calls this."""
     made("state", state, EllipsoidState)
     if not rubs(contact) and state._slips:
-        raise ValueError(f"state: slips, and contact={contact!r} has no law for that: contact=sc.Coulomb(mu)")
+        why = f"contact={contact!r} has no law of friction; give contact=sc.Coulomb(mu)"
+        raise ValueError(f"state: slips, slip = {state.slip!r}; {why}")
     if step is not None or method is not None:
-        raise ValueError("step, method: a stone has no first integrals but its energy; give tol=, or none")
+        raise ValueError("step, method: only for bodies of revolution; for a stone give tol=, or nothing")
     if restitution is not None:
-        raise ValueError("restitution: of bodies of revolution; a stone ends where it leaves the table")
+        why = "the motion of a stone ends where the stone leaves the table"
+        raise ValueError(f"restitution: only for bodies of revolution; {why}")
     if losses is not None:
         narrow(of_stone(losses, body), contact)
     scale, seconds = body.scale, t
@@ -176,7 +182,7 @@ def rolled(body: Ellipsoid, state: EllipsoidState, asked: Asked) -> EllipsoidMot
     """Compute the motion of a stone in natural units from checked arguments."""
     n, w, slip = (np.asarray(x) for x in (state.vertical, state.w, state._pair))
     if not n.ndim == w.ndim == slip.ndim == 1:
-        raise ValueError("state: expected a single one; spincyl.sweep.roll takes many")
+        raise ValueError("state: expected a single state; use spincyl.sweep.roll for a family")
     start, own = [*n.tolist(), *w.tolist()], None if state.slip is None else slip.tolist()
     found: dict[str, Any] = _core.roll(body._numbers, start, asked.times, crossing(asked, own))
     status = ENDINGS[found["status"]]

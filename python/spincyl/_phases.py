@@ -98,7 +98,7 @@ _WHY = {
 
 
 def slipping(four: Sequence[float], slip: Sequence[float] | None) -> State:
-    """The state of theta, w1, w2, w3 and of the slip along and across the lean; None: without a slip."""
+    """The state of theta, w1, w2, w3 and of the slip along e_h and e2; None for no slip."""
     return State(*four, slip=None if slip is None else (slip[0], slip[1]))
 
 

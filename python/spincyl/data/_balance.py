@@ -85,7 +85,7 @@ class Balance:
         self.guess = float(np.median(shares)) if shares.size else 1.0
 
     def off(self, place: Floats, ratio: float, factor: float) -> Floats:
-        """Torque at points in units of their errors: theta'' times the moment of inertia of tilting."""
+        """Torque at points in units of their errors: theta'' times the moment of inertia about e2."""
         inclination, rate = place * self.sigma
         # an inclination beyond the pole is the same state as one with theta - 2 pi
         inclination = np.where(np.abs(inclination) > np.pi, inclination - 2 * np.pi, inclination)

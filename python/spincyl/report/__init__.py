@@ -1,7 +1,7 @@
 """Speed against error on this machine: the cost and the accuracy of a trajectory by every method.
 
 The error of a final state is its distance from the exact one (the largest difference of its four numbers),
-plus the error that the exact solution claims for itself. With a file of high-precision motions
+plus the estimated error of the exact solution. With a file of high-precision motions
 (tests/reference/motion.csv in the repository), the exact solution is compared with those.
 """
 
@@ -47,7 +47,7 @@ class Point(NamedTuple):
 
 @dataclass(frozen=True)
 class Row:
-    """The measurements of a scene: points by method; the exact solution's claim and, if known, error."""
+    """Measurements of a scene: points by method; estimated and (if known) true error of the exact one."""
 
     scene: Scene
     curves: dict[str, list[Point]]
@@ -267,7 +267,7 @@ def _time(seconds: float) -> str:
 
 def table(rows: list[Row]) -> str:
     """Markdown: a table of all scenes, the points of every curve, the cost of each output."""
-    head = ["scene", "t", "exact: true error", "claimed", "one call", "a state of 1000"]
+    head = ["scene", "t", "exact: true error", "estimated", "one call", "a state of 1000"]
     methods = list(rows[0].curves)
     head += [f"{name} to {target:g}" for name in methods for target in _TARGETS]
     lines = ["| " + " | ".join(head) + " |", "|" + " --- |" * len(head)]
