@@ -97,7 +97,7 @@ def test_one_found_by_steps_is_drawn_at_its_own_times_or_refused():
     time, drawn = curve(sc.plot.motion(m)[0])
     assert np.array_equal(time, t)
     assert np.array_equal(drawn, np.degrees(m.theta))
-    with pytest.raises(ValueError, match=r"^m: no curve through 1 time: ask roll for more"):
+    with pytest.raises(ValueError, match=r"^m: expected at least two times, not 1 time; give roll more"):
         sc.plot.motion(sc.roll(CYLINDER, START, 20.0, step=1e-2))
     with pytest.raises(ValueError, match="no duration to show from t = 20 on"):
         sc.plot.motion(sc.roll(CYLINDER, START, [20.0], t0=20.0))
@@ -333,8 +333,8 @@ def test_a_map_of_flicks_has_each_outcome_where_it_is():
             )
         plt.close(ax.figure)
     for wrong, words in (
-        (found.isel(hertz=0), "two axes"),
-        (found.isel(hertz=[0]), "two axes"),
+        (found.isel(hertz=0), "two dimensions"),
+        (found.isel(hertz=[0]), "two dimensions"),
         (found.drop_vars("rolling_time"), "rolling_time"),
     ):
         with pytest.raises(ValueError, match=f"^found: .*{words}"):

@@ -1,6 +1,6 @@
 """Pictures: branches of steady states, the theta-ell map, the energy landscape, motions, losses, photographs.
 
-Every function takes `ax=`, draws on it and returns it; none calls `show()`.
+Most functions draw on the axes `ax=`, or on new ones, and return the axes; none calls `show()`.
 """
 
 from spincyl.plot._drift import drift

@@ -1,4 +1,4 @@
-"""What a drawn motion has besides if it flies, bounces or lies on both rims."""
+"""Additions to the drawing of a motion that flies, bounces or lies on both rims."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
@@ -25,12 +25,12 @@ _SHADES = {
 
 
 def _shade(phase: Phase) -> str:
-    """The kind of phase in whose colour a phase is shaded; empty for none."""
+    """The key of `_SHADES` for a phase; empty if the phase is not shaded."""
     return {"rolling": "", "slipping": "slipping", "flying": "flying"}.get(phase.kind, "lying")
 
 
 def breaks(m: "Motion") -> np.ndarray:
-    """(n,) whether another rim has taken over since the time before: there a curve told from a rim jumps."""
+    """(n,) whether the rim that carries the body has changed since the time before; curves jump there."""
     other = aloft(m.natural, *span(m.natural)).on_other(m.natural.t)
     found: np.ndarray = np.append(False, other[1:] != other[:-1])
     return found
@@ -61,9 +61,9 @@ def shades(axes: "Sequence[Axes]", m: "Motion", second: float) -> None:
 def height(
     ax: "Axes", m: "Motion", t: Floats, units: tuple[float, float, str], style: dict[str, Any]
 ) -> None:
-    """Draw the height of the lowest place, with the impacts as marks, and say what is tinted.
+    """Draw the height of the lowest point, marks for the impacts, and a legend of the tints.
 
-    `units` are those of time and length, and the name of the latter.
+    `units`: the units of time and of length, and the name of the unit of length.
     """
     second, metre, said = units
     right = ax.twinx()
@@ -73,7 +73,7 @@ def height(
     (marks,) = right.plot(times, 0 * times, "v", color=BLACK, ms=6, clip_on=False, label="impact", zorder=4)
     right.set_ylim(0, 1.1 * float(high.max()) or 1.0)
     if not high.any():
-        right.set_axis_off()  # it only rolls on its side
+        right.set_axis_off()  # the body only rolls on its side
     right.set_ylabel(f"height of its lowest point ({said})", color=ORANGE)
     patch: Any = extra("matplotlib.patches", "plot").Patch
     there = dict.fromkeys(filter(None, map(_shade, m.phases)))
@@ -83,7 +83,7 @@ def height(
 
 
 def strikes(m: "Motion") -> Floats:
-    """(2, k) where on the table the impacts of a motion are."""
+    """(2, k) positions of the impacts of a motion on the table."""
     there = m.wanting("pose", t=np.unique([x.time for x in m.impacts]))
     found: Floats = there.contact_point.T
     return found

@@ -22,23 +22,25 @@ def drift(found: Drift, ax: "Axes | None" = None) -> "Axes":
     Parameters
     ----------
     found : Drift
-        A single one, from `spincyl.drift`; of a measured body in seconds and turns per second.
+        Single drift, from `spincyl.drift`. In natural units; for a measured body in seconds and turns per
+        second.
     ax : matplotlib Axes, optional
-        Default: a new one. Its twin has the precession.
+        Axes to draw on. Default: new axes. A second vertical axis has the precession.
 
     Returns
     -------
     Axes
+        The axes of the inclination.
 
     Raises
     ------
     TypeError
-        If `found` is no Drift, or `ax` no Axes.
+        If `found` is not a Drift, or `ax` not an Axes.
     ValueError
-        If there are several drifts.
+        If `found` has several drifts.
     """
     if made("found", found, Drift)._shape:
-        raise ValueError(f"found: expected a single drift, not those of shape {found._shape}")
+        raise ValueError(f"found: expected a single drift, not a family of shape {found._shape}")
     first, last = float(np.asarray(found.start.theta)), float(found.ends_at_theta)
     # equal steps of inclination; inclinations where the law of loss is no longer valid are left out
     low = float(found._columns["eps"][0])

@@ -37,18 +37,18 @@ def figures(
     slides: bool = False,
     progress: Callable[[float], object] | None = None,
 ) -> list[Path]:
-    """Write the pictures of a lecture: the paper's predictions (fig4 to fig8), and ours.
+    """Write the figures of a lecture as files: the predictions of Jackson et al. (fig4 to fig8), and more.
 
     Parameters
     ----------
     folder : str or Path
-        Made if it does not exist. Pictures that are there are replaced.
+        Folder for the files; it is created if necessary, and existing figures are replaced.
     suffix : {".png", ".pdf", ".svg"}
-        The format.
+        Format of the files.
     slides : bool
-        Whether all are 16:9 (as PNG 1920 x 1080 pixels), or each as wide and high as suits it.
+        If true, all figures are 16:9 (PNG: 1920 x 1080 pixels). Default: each has a shape that suits it.
     progress : callable, optional
-        Called after every picture with the share that is done, 0 to 1.
+        Function that is called after each figure with the finished share, 0 to 1.
 
     Returns
     -------
@@ -57,19 +57,17 @@ def figures(
 
     Raises
     ------
-    ValueError
-        For another suffix.
-    TypeError
-        Naming the argument that cannot be one.
+    ValueError, TypeError
+        If an argument is invalid; the message names it.
     OSError
-        If they cannot be written.
+        If a file cannot be written.
     ImportError
         Without spincyl[plot].
 
     Notes
     -----
-    fig4 to fig8 are what the paper of Jackson et al. discusses, each by its criterion (smooth table) and for
-    rolling.
+    fig4 to fig8 show the steady states that Jackson et al., Am. J. Phys. 87, 85 (2019), discuss: by their
+    criterion (smooth table) and for rolling.
     """
     folder, slides = path_of("folder", folder), flag("slides", slides)
     callback(progress)
@@ -145,7 +143,7 @@ def _motions() -> "dict[str, list[Motion]]":
 
 
 def _slipping() -> "dict[str, list[Motion]]":
-    """Motions with friction: tube and coin from the finger on, a hoop, Euler's disk, a tippe top."""
+    """Motions with friction: a pressed tube, a flicked coin, a hoop, Euler's disk, a tippe top."""
     pipe, hoop, top = Body.tube(6.0, 0.8), Body.tube(0.0, 0.97), Body.ball(-0.2, 16 / 27, 14 / 27)
     flicked = pressed(pipe, 8.67, np.radians(60), finger=0.3)
     # nearly upright, with the velocity and backspin of the page about slip
@@ -166,7 +164,7 @@ def _slipping() -> "dict[str, list[Motion]]":
 
 
 def _exposed() -> "list[tuple[str, Motion, Letter]]":
-    """The motions to photograph, and the letter on the upper end of each."""
+    """The motions to photograph, and the symbol on the upper end of each."""
     pipe, coin = Body.tube(6.0, 0.8), Body.solid(0.05)
 
     def turns(body: Body, degrees: float, count: int) -> "Motion":
@@ -182,7 +180,7 @@ def _exposed() -> "list[tuple[str, Motion, Letter]]":
 
 
 def _tubes(axes: Any) -> None:
-    """Draw thin tubes beside the solid cylinder: a branch for each, and the critical aspect ratio."""
+    """Draw branches of the solid cylinder and of tubes, and the critical aspect ratio."""
     colours = [BLUE, GREEN, ORANGE]
     for bore, colour in zip((0.0, 0.8, 1.0), colours, strict=True):
         body = Body.tube(6.0, bore)

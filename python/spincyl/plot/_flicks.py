@@ -1,4 +1,4 @@
-"""A map of flicks: which settle and how long that takes, which lie down, and which lift off or hop before."""
+"""A map of flicks: which settle and how long that takes, which lie down, and which lift off or hop first."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -21,7 +21,7 @@ _AXES = {
     "launch": r"launch number  $I_3 \omega_1 \omega_3/\ell$",
     "centre": "velocity of the centre, at first",
 }
-#: Those that hop before are hatched, which shows without colours too, and over those that settle.
+#: Hatching of flicks that hop first: it shows without colours, and over the colours of those that settle.
 _HOPS, _INK = "////", "0.3"
 #: Upper end of the colours, in medians: few tubes slip much longer than most without slipping to the end.
 _MEDIANS = 2.0
@@ -29,17 +29,18 @@ _MEDIANS = 2.0
 
 @sized
 def flicks(found: "xarray.Dataset", ax: "Axes | None" = None) -> "Axes":
-    """Draw how flicks of a tube end: the colour of those that settle is the time after which they roll.
+    """Draw a map of the outcomes of flicks; for tubes that settle, colours show the time until they roll.
 
-    What slips up to the last time, or up to shortly before it in every nod, has a colour of its own. With a
-    `restitution` those that hop before are hatched.
+    Tubes that slip until the last time, or in every nod until shortly before it, have one colour. With a
+    `restitution`, tubes that hop first are hatched.
 
     Parameters
     ----------
     found : xarray.Dataset
-        From `spincyl.sweep.flicks`, with two axes: the first is drawn to the right, the second upwards.
+        Result of `spincyl.sweep.flicks` with two dimensions: the first is the horizontal axis, the second the
+        vertical axis.
     ax : matplotlib Axes, optional
-        Default: a new one. The bar of colours stands beside it.
+        Axes to draw on. Default: new axes. A bar of colours is added to its figure.
 
     Returns
     -------
@@ -48,9 +49,10 @@ def flicks(found: "xarray.Dataset", ax: "Axes | None" = None) -> "Axes":
     Raises
     ------
     TypeError
-        If `found` is no Dataset, or `ax` no Axes.
+        If `found` is not a Dataset, or `ax` not an Axes.
     ValueError
-        If `found` is of another kind, or has not two axes with numbers of their own.
+        If `found` is not a result of `sweep.flicks`, or does not have two dimensions with coordinates and at
+        least two values each.
 
     Examples
     --------
@@ -71,7 +73,7 @@ def flicks(found: "xarray.Dataset", ax: "Axes | None" = None) -> "Axes":
     if len(axes) != 2 or not all(name in found.coords and found.sizes[name] > 1 for name in axes):
         sizes = dict(found["outcome"].sizes)
         raise ValueError(
-            f"found: expected two axes of several values, not {sizes}; choose with .sel or .isel"
+            f"found: expected two dimensions of at least two values, not {sizes}; use .sel or .isel"
         )
     colormap: Any = extra("matplotlib.colors", "plot").ListedColormap
     patch: Any = extra("matplotlib.patches", "plot").Patch

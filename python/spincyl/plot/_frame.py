@@ -1,4 +1,4 @@
-"""The angles, axes and points of the equations, drawn on a tilted body."""
+"""The angles, axes and points of the equations, drawn on an inclined body."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -17,17 +17,17 @@ _GREY = "#8A8A8A"
 
 @sized
 def frame(*, ax: "Axes | None" = None) -> "Axes":
-    """Draw what the symbols mean: theta, phi, psi, e1, e2, e3, the points O and X, and the contact point P.
+    """Draw a body with theta, phi, psi, the axes e1, e2, e3, the points O and X, and the contact point P.
 
     Parameters
     ----------
     ax : matplotlib Axes, optional
-        Default: a new one.
+        Axes to draw on. Default: new axes.
 
     Returns
     -------
     Axes
-        In R, in parallel projection.
+        Parallel projection, in units of R.
     """
     ax = new_axes(ax)
     lean, across = _level(_PHI), _level(_PHI + np.pi / 2)

@@ -21,26 +21,27 @@ _MOST = 4  # number of laws that are drawn
 
 @sized
 def losses(found: "LossFit", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
-    """Draw a spin-down: data with the fitted drifts, residuals of the best, and the log-log line.
+    """Draw a fitted spin-down: data with fitted drifts, residuals of the best fit, and the log-log line.
 
-    The four best laws are drawn. Where inclination and precession were measured, the curves are those of the
-    inclination and the residuals those of both.
+    The fits of the four best laws are drawn. If both inclination and precession were measured, the curves are
+    those of the inclination, and the residuals are those of both.
 
     Parameters
     ----------
     found : LossFit
-        From `spincyl.data.fit_losses`.
-    axes : three matplotlib Axes, optional
-        Default: three new ones side by side.
+        Result of `spincyl.data.fit_losses`.
+    axes : sequence of three matplotlib Axes, optional
+        Axes to draw on. Default: three new ones side by side.
 
     Returns
     -------
     list of Axes
+        The three axes.
 
     Raises
     ------
     TypeError
-        If `found` is no LossFit, or `axes` are not three Axes.
+        If `found` is not a LossFit, or `axes` are not three Axes.
     """
     from spincyl.data import LossFit
 
@@ -105,7 +106,7 @@ def losses(found: "LossFit", axes: "Sequence[Axes] | None" = None) -> "list[Axes
 
 
 def _logs(found: "LossFit", ax: "Axes", values: Any, unit: str) -> None:
-    """Draw the log-log line against the time left until its own stopping time, or a note without one."""
+    """Draw the log-log line against the time left until it reaches zero; without a line, only the data."""
     ticker: Any = extra("matplotlib.ticker", "plot")
     ax.set_xscale("log")
     ax.set_yscale("log")

@@ -47,12 +47,32 @@ class Landmark(NamedTuple):
 
 
 def landmarks(body: Body, contact: Contact = "rolling") -> list[Landmark]:
-    """The points A to G of one body: where its branches begin, turn, change and end.
+    """List the points A to G of the branches of one body: where they begin, turn, change stability and end.
 
-    A balanced at rest; B on its side, at rate 1; C the limit of high rates, thetaInf; D flat on its face,
-    rate without bound; E folds; F changes of stability; G ridges of the energy. C and D lie at infinite
-    rate. Of the critical body, where folds and boundaries run into theta0, those are left out. For anything
-    but a single body and a contact it is a TypeError or ValueError that names the argument.
+    Parameters
+    ----------
+    body : Body
+        Single body.
+    contact : {"rolling", "smooth"}
+        Contact whose stability gives the points F.
+
+    Returns
+    -------
+    list of Landmark
+        A: balanced at rest; B: on its side, at rate 1; C: limit of high rates, thetaInf; D: flat on its face;
+        E: folds; F: changes of stability; G: ridges of the energy. C and D are at infinite rate. For a body
+        of critical aspect ratio, points that coincide with theta0 are left out.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument is invalid; the message names it.
+
+    Examples
+    --------
+    >>> import spincyl as sc
+    >>> [(x.letter, round(x.rate, 3)) for x in sc.plot.landmarks(sc.Body.solid(2.5))]
+    [('A', 0.0), ('B', 1.0), ('C', inf), ('D', inf), ('F', 0.323), ('G', 0.599)]
     """
     one_body(body)
     fixed = [
@@ -86,30 +106,36 @@ def branches(
     marks: bool | None = None,
     hertz: bool = False,
 ) -> "Axes":
-    """Draw theta against the reduced rate of the steady states: solid where stable, dashed where not.
+    """Draw inclination against reduced rate for the steady states: solid if stable, dashed if unstable.
 
     Parameters
     ----------
     ells : iterable of float or Body
-        Aspect ratios of tubes, or bodies, a curve each. For a single one the forbidden band is shaded and the
-        points A to G are marked (`landmarks`).
+        Aspect ratios of tubes, or bodies; each gives a curve. For a single one the regions of stability are
+        shaded and the points A to G are marked (see `landmarks`).
     bore : float
-        Of all aspect ratios; a body has its own.
+        Inner over outer radius of the tubes in `ells`, 0 to 1; a body has its own.
     contact : {"rolling", "smooth"}
-        Which stability: see `Body.stability`; "smooth" is the paper's criterion.
+        Contact for the stability (see `Body.stability`); "smooth" is the criterion of Jackson et al.
     ax : matplotlib Axes, optional
-        Default: a new one.
+        Axes to draw on. Default: new axes.
     rate_max : float, optional
-        Right edge: a reduced rate, or turns per second. Default: a reduced rate of 3, of the fastest body.
+        Right edge, as a reduced rate or in turns per second. Default: a reduced rate of 3 of the fastest
+        body.
     marks : bool, optional
-        Whether to mark A to G; default for a single body.
+        Whether to mark the points A to G. Default: for a single body only.
     hertz : bool
-        Against turns per second, of measured bodies or those from `Body.from_metres`.
+        If true, draw turns per second instead of the reduced rate; the bodies must be measured, or from
+        `Body.from_metres`.
+
+    Returns
+    -------
+    Axes
 
     Raises
     ------
     ValueError, TypeError
-        Naming the argument.
+        If an argument is invalid; the message names it.
     """
     bore = within("bore", bore, 0.0, 1.0)
     bodies = [x if isinstance(x, Body) else Body.tube(x, bore) for x in _ells(ells)]
@@ -159,26 +185,30 @@ def portrait(
     ax: "Axes | None" = None,
     ell_max: float = 3.0,
 ) -> "Axes":
-    """Draw the theta-ell map: forbidden, unstable and stable steady states with the centre at rest.
+    """Draw the map of theta and ell: forbidden, unstable and stable steady states with the centre at rest.
 
     Parameters
     ----------
     data : xarray.Dataset, optional
-        What `spincyl.sweep.portrait` returned with "region" over theta and ell; computed if left out.
+        Result of `spincyl.sweep.portrait` with "region" over theta and ell. Default: computed here.
     bore, fillet : float
-        Of all tubes, if `data` is left out.
+        Bore and fillet of all tubes, 0 to 1; only without `data`.
     contact : {"rolling", "smooth"}, optional
-        Colour by this criterion; by both if left out: then the states that only friction keeps up
-        have a colour of their own.
+        Contact for the stability. Default: both; states that are stable for one contact only have colours of
+        their own.
     ax : matplotlib Axes, optional
-        Default: a new one.
+        Axes to draw on. Default: new axes.
     ell_max : float
-        Right edge, if `data` is left out: more than the fillet, at most 1000.
+        Right edge, more than the fillet and at most 1000; only without `data`.
+
+    Returns
+    -------
+    Axes
 
     Raises
     ------
     ValueError, TypeError
-        Naming the argument.
+        If an argument is invalid; the message names it.
     """
     from matplotlib.colors import BoundaryNorm, ListedColormap
     from matplotlib.patches import Patch
@@ -243,11 +273,27 @@ def portrait(
 
 @sized
 def energy(*, bore: float = 0.0, ax: "Axes | None" = None, ell_max: float = 3.0) -> "Axes":
-    """Draw the energy of the steady states with the centre at rest over the theta-ell map.
+    """Draw the energy of the steady states with the centre at rest on the map of theta and ell.
 
-    Contours in M g R above the energy of the body balanced at rest, sqrt(1 + ell^2). At the dashed ridge the
-    energy is stationary along the branch of one body. The right edge, `ell_max`, is 0.01 to 1000. What an
-    argument cannot be is a ValueError or TypeError that names it.
+    Parameters
+    ----------
+    bore : float
+        Inner over outer radius of the tubes, 0 to 1.
+    ax : matplotlib Axes, optional
+        Axes to draw on. Default: new axes.
+    ell_max : float
+        Right edge, 0.01 to 1000.
+
+    Returns
+    -------
+    Axes
+        Contours are in M g R above the energy of the body balanced at rest, sqrt(1 + ell^2). On the dashed
+        ridge the energy is stationary along the branch of one body.
+
+    Raises
+    ------
+    ValueError, TypeError
+        If an argument is invalid; the message names it.
     """
     from matplotlib.colors import LogNorm
 
@@ -288,18 +334,18 @@ def _ells(ells: Iterable[float | Body]) -> list[float | Body]:
     if not given:
         raise ValueError("ells: expected at least one aspect ratio")
     if any(isinstance(x, Body) and not is_scalar(*x._numbers) for x in given):
-        raise ValueError("ells: expected single bodies, not an array of them")
+        raise ValueError("ells: expected single bodies, not a family; give a list of bodies")
     return [x if isinstance(x, Body) else within(f"ells[{k}]", x, 0.0, 1e6) for k, x in enumerate(given)]
 
 
 def _mapped(data: Any) -> tuple[Any, Any, Any, float, float]:
-    """Inclinations, half lengths, regions, bore and fillet of a Dataset of `sweep.portrait`, or an error."""
+    """Inclinations, half lengths, regions, bore and fillet from `sweep.portrait`; an error for other data."""
     if not hasattr(data, "data_vars"):
         raise TypeError(f"data: expected a Dataset of sweep.portrait, not {type(data).__name__}")
     region = data.get("region")
     if region is None or region.dims != ("theta", "ell") or min(region.shape) < 2:
         found = "none" if region is None else f"one over {dict(region.sizes)}"
-        raise ValueError(f'data: expected "region" over two and more of theta and ell, not {found}')
+        raise ValueError(f'data: expected "region" over at least two theta and two ell, not {found}')
     bore, fillet = (number(f"data[{name!r}]", data.get(name, 0.0)) for name in ("bore", "fillet"))
     return data["theta"].values, data["ell"].values, region.values, bore, fillet
 

@@ -30,38 +30,52 @@ if TYPE_CHECKING:
 
 @sized
 def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
-    """Draw a motion: inclination, or distance of a straight roll, contact path on the table, contact force.
-
-    A motion that ended is grey from there to the last time asked for. With a law of friction the path is red
-    where the body slips, and the time tinted. With a `restitution` the height of its lowest point stands
-    beside the inclination, impacts are marked, and flights and rests on both rims are tinted as well. Units
-    are natural; of a measured body seconds, newtons (or weights if its mass is not known) and millimetres,
-    from R = 0.1 m on metres. A body that runs straight on at a constant inclination shows how far its centre
-    has moved in place of the inclination. Of a stone the spin about the vertical stands beside the
-    inclination, and the largest semi-axis for R; if it stays within 60 degrees of upright, its two rockings
-    are shown by their envelopes: the largest tilts of its longer and of its shorter axis.
+    """Draw a motion on three axes: inclination, path of the contact point on the table, and contact force.
 
     Parameters
     ----------
     m : Motion
-        What it lacks of pose and contact force is computed. One that was not asked for with `step` or `tol`
-        is drawn at times of its own, close enough for its nutation and its turning, from the first time
-        asked for (the start, if `t` was a number) to the last; dots stand for the curves of one so long that
-        a hundred thousand times are not close enough. One found with `step` or `tol` is drawn at its times.
-    axes : three matplotlib Axes, optional
-        Default: three new ones side by side.
+        Motion of a body or a stone; pose and contact force are computed if it lacks them. A motion with
+        `step` or `tol` is drawn at its times. Any other is drawn at times close enough for its nutation and
+        precession, from the first time (the initial state, if `t` was a number) to the last; if 100,000 times
+        are not close enough, dots replace the curves.
+    axes : sequence of three matplotlib Axes, optional
+        Axes to draw on. Default: three new ones side by side.
 
     Returns
     -------
     list of Axes
+        The three axes.
 
     Raises
     ------
     TypeError
-        If `m` is no Motion, or `axes` are not three Axes.
+        If `m` is not a Motion, or `axes` are not three Axes.
     ValueError
-        If there is no curve to draw: the motion has no duration, or was found with `step` or `tol` at less
+        If there is no curve to draw: the motion has no duration, or was computed with `step` or `tol` at less
         than two times.
+
+    Notes
+    -----
+    Units are natural; for a measured body they are seconds, newtons (weights if its mass is unknown) and
+    millimetres, or metres from R = 0.1 m on. The time after the end of a motion is grey.
+
+    - *A law of friction*: the path is red and the time is tinted where the body slips.
+    - *A restitution*: the height of the lowest point is drawn with the inclination, impacts are marked, and
+      times in the air and on both rims are tinted, too.
+    - *A body that rolls straight at constant inclination*: the distance of its centre replaces the
+      inclination.
+    - *A stone*: the spin about the vertical is drawn with the inclination. If the stone stays within 60
+      degrees of upright, the envelopes of both rockings are drawn: the largest angles of its longer and its
+      shorter axis from the horizontal. The unit of length is the largest semi-axis.
+
+    Examples
+    --------
+    >>> import spincyl as sc
+    >>> body = sc.Body.solid(2.5)
+    >>> axes = sc.plot.motion(sc.roll(body, body.steady(1.3).kicked(0.05), 20.0))
+    >>> [ax.get_title() for ax in axes[1:]]
+    ['on the table, from dot to square', 'contact force']
     """
     made("m", m, Motion)
     asked, scale, (m, close) = m, m.scale, _close(m.natural)
@@ -167,7 +181,7 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
 
 
 def _spin(ax: "Axes", m: EllipsoidMotion, t: Any, scale: "Scale | None", style: dict[str, Any]) -> None:
-    """Draw the spin of a stone about the vertical beside its inclination; the stone turns back at zero."""
+    """Draw the spin of a stone on a second axis of the inclination; the spin reverses at zero."""
     right = ax.twinx()
     right.plot(t, _in(scale, "w", m.spin), color=ORANGE, **style)
     right.axhline(0.0, color="#888888", lw=0.8, ls=":")
@@ -176,7 +190,7 @@ def _spin(ax: "Axes", m: EllipsoidMotion, t: Any, scale: "Scale | None", style: 
 
 
 def _rockings(ax: "Axes", m: EllipsoidMotion, t: Any, legend: dict[str, Any]) -> None:
-    """Draw the envelopes of both rockings over the inclination, through the largest tilts of each axis."""
+    """Draw the envelopes of both rockings: the maxima of the angle of each axis from the horizontal."""
     ax.lines[0].set_alpha(0.25)
     tilts = np.abs(90 - np.degrees(m.inclinations))
     longer = int(np.argmax(np.asarray(m.body.axes)[:2]))
@@ -188,14 +202,14 @@ def _rockings(ax: "Axes", m: EllipsoidMotion, t: Any, legend: dict[str, Any]) ->
 
 
 def _straight(m: "Motion") -> "Floats | None":
-    """How far the centre of a body has moved that runs straight on at a constant inclination, else None."""
+    """Distance of the centre of a body that rolls straight at constant inclination; None for others."""
     if isinstance(m, EllipsoidMotion) or np.ptp(m.theta) > 1e-6 or np.ptp(m.phi) > 1e-6:
         return None
     plan = m.centre[:, :2] - m.centre[0, :2]
     away = np.hypot(*plan.T)
     if away.max() < 1e-6:
         return None
-    # in the direction in which it sets out
+    # along the initial direction
     first = plan[np.argmax(away > 1e-3 * away.max())]
     found: Floats = plan @ (first / np.hypot(*first))
     return found
@@ -213,7 +227,7 @@ def _close(m: "Motion") -> "tuple[Motion, bool]":
         if m.t.size < 2:
             many = f"{m.t.size} time{'' if m.t.size == 1 else 's'}"
             raise ValueError(
-                f"m: no curve through {many}: ask roll for more, as in t = np.linspace(0, 20, 2001)"
+                f"m: expected at least two times, not {many}; give roll more, as t=np.linspace(0, 20, 999)"
             )
         return m.wanting("pose", "force"), True
     first, last = span(m)
@@ -223,7 +237,7 @@ def _close(m: "Motion") -> "tuple[Motion, bool]":
     up = aloft(m, first, last) if goes_up(m) else None
     if up is not None:  # both sides of each kink
         share = np.union1d(share, (up.edges - first) / (last - first))
-    if isinstance(m, EllipsoidMotion):  # is integrated anew for any times
+    if isinstance(m, EllipsoidMotion):  # integrated again for other times
         return m.at(first + share * (last - first)), True
     while share.size < _MOST:
         there = m.at(first + share * (last - first))
@@ -235,7 +249,7 @@ def _close(m: "Motion") -> "tuple[Motion, bool]":
         if not long.any():
             return there, True
         share = np.sort(np.append(share, ((share[1:] + share[:-1]) / 2)[: long.size][long]))
-    # dots at times that keep step with no nutation show the whole range
+    # times that are out of step with any nutation, so that the dots show its whole range
     share = (np.arange(_MOST) + np.arange(_MOST) * 0.618034 % 1) / _MOST
     return m.at(first + share * (last - first)), False
 
@@ -247,7 +261,7 @@ def _in(scale: "Scale | None", name: str, values: Any) -> Any:
 
 
 def _unit(name: str, scale: "Scale | None") -> tuple[float | None, str]:
-    """The factor and the unit of an output in a plot: lengths of a thing on a table are in millimetres."""
+    """Factor and unit of an output in a plot; lengths of small bodies are in millimetres."""
     factor, said = unit_of(name, scale)
     small = factor is not None and said == "m" and factor < 0.1
     return (1e3 * factor, "mm") if factor is not None and small else (factor, said)
@@ -261,7 +275,7 @@ def _said(name: str, scale: "Scale | None") -> str:
 
 
 def _law(m: "Motion") -> str:
-    """A law of friction, for a title."""
+    """The law of friction, for a title."""
     if isinstance(m.contact, Viscous):
         return rf"viscous, $c = {m.contact.c:.4g}$"
     mu, static, _ = m.contact._numbers if isinstance(m.contact, Coulomb) else (0.0, 0.0, 0.0)
@@ -298,28 +312,31 @@ def exposure(
     gamma: float = 0.8,
     **how: Any,
 ) -> "Axes":
-    """Draw what the eye sees: the long-exposure photograph from above, developed.
+    """Draw the long-exposure photograph of a motion from above, as the eye sees the motion.
 
     Parameters
     ----------
     m : Motion
+        Motion of a single body.
     seconds : float, optional
-        As `spincyl.exposure` takes it, and so are `scale`, `upper`, `size`, `samples` and `width`.
+        Duration of the exposure, as in `spincyl.exposure`.
     ax : matplotlib Axes, optional
-        Default: a new one.
+        Axes to draw on. Default: new axes.
     gamma : float
-        Exponent of the brightness, 0.01 to 100; smaller ones bring out what is faint.
+        Exponent of the brightness, 0.01 to 100; a smaller one shows faint parts better.
+    **how
+        `scale`, `upper`, `size`, `samples` and `width`, as in `spincyl.exposure`.
 
     Returns
     -------
     Axes
-        In R, of a measured body in millimetres (from R = 0.1 m in metres), about the middle of the centre's
-        path.
+        Axes in R, for a measured body in millimetres (in metres from R = 0.1 m on). The origin is the middle
+        of the path of the centre.
 
     Raises
     ------
     ValueError, TypeError
-        Naming the argument, as `spincyl.exposure` does.
+        As in `spincyl.exposure`; the message names the argument.
     """
     made("m", m, Motion)
     gamma = within("gamma", gamma, 0.01, 100.0)
@@ -344,23 +361,24 @@ def exposure(
 
 @sized
 def comparison(found: "Comparison", ax: "Axes | None" = None) -> "Axes":
-    """Draw a measurement with its error bars, the body's branches, and those of the fitted inertia ratio.
+    """Draw measured steady states with error bars, and the branches of the body as built and as fitted.
 
     Parameters
     ----------
     found : Comparison
-        From `spincyl.data.compare`.
+        Result of `spincyl.data.compare`.
     ax : matplotlib Axes, optional
-        Default: a new one.
+        Axes to draw on. Default: new axes.
 
     Returns
     -------
     Axes
+        Inclination in degrees against the reduced rate, or turns per second if they were measured.
 
     Raises
     ------
     TypeError
-        If `found` is no Comparison, or `ax` no Axes.
+        If `found` is not a Comparison, or `ax` not an Axes.
     """
     from spincyl.data import Comparison
     from spincyl.data._report import with_error

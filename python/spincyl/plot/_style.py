@@ -45,7 +45,7 @@ def sized(draw: Callable[_Given, _Drawn]) -> Callable[_Given, _Drawn]:
     def drawn(*args: _Given.args, **kwargs: _Given.kwargs) -> _Drawn:
         try:
             bound = given.bind(*args, **kwargs).arguments.get(axes)
-        except TypeError:  # which names the function in this call
+        except TypeError:  # raised again by the call below, with the name of the function
             return draw(*args, **kwargs)
         if bound is not None:
             _refuse(axes, bound)
