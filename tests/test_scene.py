@@ -166,10 +166,14 @@ def test_what_has_no_answer_is_refused_and_says_why():
     can, weightless = sc.Body.solid(1.0), sc.measured(outer_diameter=0.02, length=0.1)
     upright = sc.roll(COIN, COIN.steady(0.4), [0.0, 1.0])
     for motion, how, said in (
-        (sc.roll(CYLINDER, CYLINDER.steady(1.3), [1.0, 0.0]), {}, "^motion: expected times that ascend"),
-        (sc.roll(CYLINDER, CYLINDER.steady(1.3), [0.0, 0.0]), {}, "^motion: expected times that ascend"),
-        (sc.roll(CYLINDER, CYLINDER.steady(1.3), 0.0), {}, "^motion: has no time after its start"),
-        (sc.roll(can, sc.State(0.3, 0.0, 0.0, 0.0), 5.0), {}, "^motion: has no time .*the face landed"),
+        (sc.roll(CYLINDER, CYLINDER.steady(1.3), [1.0, 0.0]), {}, "^motion: expected ascending times"),
+        (sc.roll(CYLINDER, CYLINDER.steady(1.3), [0.0, 0.0]), {}, "^motion: expected ascending times"),
+        (
+            sc.roll(CYLINDER, CYLINDER.steady(1.3), 0.0),
+            {},
+            "^motion: expected a time after the initial state",
+        ),
+        (sc.roll(can, sc.State(0.3, 0.0, 0.0, 0.0), 5.0), {}, "^motion: expected a time .*the face landed"),
         (
             sc.roll(can, sc.State(0.3, 0.9, 0.0, 0.0), 9.0, mu=0.01, beyond=True),
             {},
@@ -197,7 +201,7 @@ def test_a_stone_that_is_not_known_to_its_end_has_no_scene():
     with pytest.warns(sc.ErrorWarning):
         m = sc.roll(stone, start, np.linspace(0, 40, 41))
     with pytest.raises(
-        ValueError, match="^motion: not known up to its last time: .*known to 1 % up to t = 2"
+        ValueError, match="^motion: expected a motion known up to its last time: .*known to 1 % up to t = 2"
     ):
         sc.scene(m)
     known = sc.scene(m.at(np.linspace(0, 0.5 * m.known_until, 11)))
@@ -245,7 +249,7 @@ def test_what_lies_beyond_the_end_of_the_answer_is_left_out_and_what_is_no_traje
     x, q = answer(tube, [0.0, 0.01])
     for wrong, said in (
         (([0.01, 0.0], x, q), "^time: .*ascending"),
-        (([-0.1, 0.0], x, q), "^time: .*since the start"),
+        (([-0.1, 0.0], x, q), "^time: .*since the initial state"),
         (([], x, q), "^time: expected finite numbers"),
         (([0.0, np.nan], x, q), "^time: expected finite numbers"),
         (([0.0, 0.01], x[:, :2], q), r"^position: expected finite numbers of shape \(2, 3\), not \(2, 2\)"),
@@ -255,7 +259,7 @@ def test_what_lies_beyond_the_end_of_the_answer_is_left_out_and_what_is_no_traje
     ):
         with pytest.raises(ValueError, match=said):
             tube.compare(*wrong)
-    with pytest.raises(ValueError, match="^time = .*the answer ends before, the face landed"):
+    with pytest.raises(ValueError, match="^time = .*the answer ends before: the face landed"):
         fall.compare([3 * end], x[:1], q[:1])
     with pytest.raises(TypeError, match="^scalar_first"):
         tube.compare([0.0, 0.01], x, q, scalar_first=1)

@@ -1,4 +1,4 @@
-"""Scenes by which engines that simulate contacts are checked: body, table, start, and the known answer."""
+"""Scenes for checks of contact engines: body, table, initial state, and the known answer."""
 
 import json
 import math
@@ -22,9 +22,9 @@ from spincyl._studio.mjcf import mjcf
 from spincyl._studio.scene_data import inclination, pose_errors, scene_data
 from spincyl._studio.shape import profiles, rotations
 
-#: Number of pieces of a profile that become one in a mesh for display, and points around it.
+#: Of a mesh for display: number of pieces of a profile that become one, and number of points round the axis.
 _PIECES, _AROUND = 4, 48
-#: A unit quaternion of an engine, and how far it may be turned at the start before its order is doubted.
+#: Tolerance of unit quaternions; turn from the initial orientation, radians, above which there is a warning.
 _UNIT, _DOUBTED = 1e-3, 0.1
 #: Coefficients of the losses that act in the air.
 _IN_AIR = "b", "b2"
@@ -33,14 +33,14 @@ _IN_AIR = "b", "b2"
 @compared
 @dataclass(frozen=True, eq=False, repr=False)
 class Deviation:
-    """How far an engine is from the known answer, at each time; from `Scene.compare`. In SI units."""
+    """Deviation of an engine from the known answer at each time, in SI; the result of `Scene.compare`."""
 
-    time: Floats  #: (n,) those that were compared: none after the end of the answer
+    time: Floats  #: (n,) times that were compared, up to the end of the answer, seconds
     position: Floats  #: (n,) distance between the centres of mass, metres
-    angle: Floats  #: (n,) between the orientations, radians
-    theta: Floats  #: (n,) difference of the inclinations of axis 3, engine less answer, radians
-    position_error: float  #: claimed of the answer, metres
-    angle_error: float  #: claimed of the answer, radians
+    angle: Floats  #: (n,) angle between the orientations, radians
+    theta: Floats  #: (n,) inclination of axis 3 in the engine minus that in the answer, radians
+    position_error: float  #: estimated error of the answer, metres
+    angle_error: float  #: estimated error of the answer, radians
 
     def __repr__(self) -> str:
         most = [np.abs(x).max() for x in (self.position, self.angle, self.theta)]
@@ -52,19 +52,20 @@ class Deviation:
 
 
 class Scene:
-    """A body on a table and what becomes of it; from `scene`.
+    """A body on a table, its initial state and its known motion; the result of `scene`.
 
     Attributes
     ----------
     motion : Motion
         The known answer, in natural units.
     scale : Scale
-        What converts it to SI.
+        Scale that converts the answer to SI.
     data : dict
-        What the JSON file has: body, table, start and known answer in SI units. docs/engines.md has its keys.
+        Content of the JSON file: body, table, initial state and known answer, in SI. docs/engines.md has its
+        keys.
     mjcf : str
-        The scene for MuJoCo, with its start as the keyframe "start". What MuJoCo has no law for is named in a
-        comment at its top.
+        The scene for MuJoCo, with the initial state as the keyframe "start". A comment at its top names the
+        laws that MuJoCo does not have.
     """
 
     def __init__(self, motion: Motion, scale: Scale) -> None:
@@ -72,13 +73,13 @@ class Scene:
 
     @cached_property
     def data(self) -> dict[str, Any]:
-        """Body, table, start and known answer: numbers, lists and text, None for what is not finite."""
+        """Body, table, initial state and known answer: numbers, lists and text; None for NaN and infinity."""
         found: dict[str, Any] = plain(scene_data(self.motion, self.scale, self._began))
         return found
 
     @property
     def mjcf(self) -> str:
-        """The scene for MuJoCo. Contacts as stiff and friction as steady as its solver bears."""
+        """The scene for MuJoCo, with contacts as stiff and friction as steady as its solver allows."""
         return mjcf(self.data, self.scale.radius * _outside(self.motion.body))
 
     def save(self, path: str | PathLike[str]) -> list[Path]:
@@ -87,12 +88,18 @@ class Scene:
         Parameters
         ----------
         path : path-like
-            Ends in .json or .xml (MJCF); any other name gets both endings, for both files.
+            Path that ends in .json or .xml (MJCF), for one file. For any other path both files are written,
+            with these endings added.
+
+        Returns
+        -------
+        list of Path
+            The files.
 
         Raises
         ------
         OSError
-            If a file cannot be written. Files that are there stay until all new ones are complete.
+            If a file cannot be written. Existing files stay until all new ones are complete.
         """
         path = path_of("path", path)
         known = {".json": self._json, ".xml": self._model}
@@ -107,47 +114,49 @@ class Scene:
     def compare(
         self, time: Reals, position: Reals, orientation: Reals, *, scalar_first: bool = False
     ) -> Deviation:
-        """How far the trajectory of an engine is from the known answer, which is computed at its times.
+        """Compare the trajectory of an engine with the known answer, computed at the times of the engine.
 
         Parameters
         ----------
         time : array_like, (n,)
-            Seconds since the start, in ascending order. Times after the answer ends are left out.
+            Times since the initial state, in seconds, in ascending order. Times after the end of the answer
+            are left out.
         position : array_like, (n, 3)
-            Of the centre of mass, in metres.
+            Positions of the centre of mass, in metres.
         orientation : array_like, (n, 4)
-            Unit quaternions x, y, z, w, from the body's axes to the laboratory's. Their sign is free.
+            Unit quaternions x, y, z, w, from the axes of the body to those of the laboratory, of either sign.
         scalar_first : bool
-            If true they are w, x, y, z, as in MuJoCo and Drake.
+            If true, the quaternions are w, x, y, z, as in MuJoCo and Drake.
 
         Returns
         -------
         Deviation
+            Distances and angles at the times up to the end of the answer.
 
         Raises
         ------
         ValueError, TypeError
-            Naming the argument.
+            If an argument is invalid; the message names it.
 
         Warns
         -----
         UserWarning
-            If the first orientation, at time 0, is not that of the start: then the order may be another one.
+            If the orientation at time 0 is not the initial one; the order of the quaternions may be wrong.
         """
         t = _shaped("time", si("time", time, "second"), ())
         x = _shaped("position", position, (t.size, 3))
         q = _shaped("orientation", orientation, (t.size, 4), scalar_first)
         if t[0] < 0 or (np.diff(t) < 0).any():
-            raise ValueError("time: expected seconds since the start, in ascending order")
+            raise ValueError("time: expected seconds since the initial state, in ascending order")
         m = self.motion.at(self._began + t / self.scale.seconds(1.0))
         n = m.t.size
         if not n:
-            raise ValueError(f"time = {t[0]!r}: the answer ends before, {m.message.split(';')[0]}")
+            raise ValueError(f"time = {t[0]!r}: the answer ends before: {m.message.split(';')[0]}")
         apart = [np.linalg.norm(q[:n] + sign * m.orientation, axis=1) for sign in (-1, 1)]
         angle = 4 * np.arcsin(np.minimum(np.minimum(*apart) / 2, 1.0))
         if t[0] == 0 and angle[0] > _DOUBTED:
-            why = "quaternions are x, y, z, w, or with scalar_first=True w, x, y, z"
-            warn(f"orientation: at time 0 turned by {angle[0]:.2g} rad from the start of the scene; {why}")
+            why = "expected quaternions x, y, z, w, or w, x, y, z with scalar_first=True"
+            warn(f"orientation: at time 0 turned by {angle[0]:.2g} rad from that of the scene; {why}")
         metre, (off, turned) = self.scale.radius, pose_errors(m)
         away = np.linalg.norm(x[:n] - metre * m.centre, axis=1)
         theta = inclination(q[:n]) - inclination(m.orientation)
@@ -161,23 +170,29 @@ class Scene:
         *,
         scalar_first: bool = False,
     ) -> Floats:
-        """The couple of the losses on the body, for an engine that has no such law.
+        """Couple of the losses on the body, for an engine without these laws.
 
         Parameters
         ----------
         orientation : array_like, (4,)
-            Unit quaternion, as in `compare`, of a body whose axis is not vertical.
+            Unit quaternion of the body, as in `compare`; the axis of the body must not be vertical.
         angular_velocity : array_like, (3,)
-            Along the laboratory's axes, rad/s.
+            Angular velocity along the axes of the laboratory, in rad/s.
         normal_force : float
-            Of the table, in newtons; 0 in the air, where only the laws act that resist all turning.
+            Normal force of the table, in newtons. In the air it is 0, and only the resistance of the air
+            acts.
         scalar_first : bool
             As in `compare`.
 
         Returns
         -------
         ndarray, (3,)
-            In N m, along the laboratory's axes; zero without losses. Error: a few roundings.
+            Couple along the axes of the laboratory, in N m; zero without losses. Error: a few roundings.
+
+        Raises
+        ------
+        ValueError, TypeError
+            If an argument is invalid; the message names it.
         """
         q = _shaped("orientation", orientation, (4,), scalar_first)
         w = _shaped("angular_velocity", angular_velocity, (3,)) * self.scale.seconds(1.0)
@@ -209,34 +224,36 @@ class Scene:
 
 
 def scene(motion: Motion, *, scale: Scale | None = None) -> Scene:
-    """A scene with a known answer, by which an engine that simulates contacts can be checked.
+    """Make a scene with a known answer, with which an engine that simulates contacts can be checked.
 
     Parameters
     ----------
     motion : Motion
-        From `roll`, of a body or of a stone, on any table: what the engine has to find. Its times are those
-        of the answer; poses and forces are computed if they were not wanted.
+        Motion of a body or a stone with any contact, from `roll`: the answer that the engine should reproduce
+        at the times of the motion. Poses and forces are computed if the motion lacks them.
     scale : Scale, optional
-        Makes metres, kilograms and seconds of a motion in natural units; a measured body has one. Default: a
-        radius (of a stone, the largest semi-axis) of one metre, one kilogram, 9.80665 m/s^2.
+        Scale that converts a motion in natural units to SI; a measured body has its own. Default: a radius
+        (for a stone, a largest semi-axis) of 1 m, 1 kg, and 9.80665 m/s^2.
 
     Returns
     -------
     Scene
-        ``save("scene")`` writes scene.json and scene.xml (MJCF); `compare` judges what the engine found.
+        ``save("scene")`` writes scene.json and scene.xml (MJCF); `compare` computes the deviations of the
+        engine.
 
     Raises
     ------
     ValueError
-        If it has no time after its start, goes backward or beyond an event, or is not known up to its end;
-        for a measured body without a mass.
+        If the motion has no time after its initial state, goes backward in time, continues beyond an event or
+        is not known up to its last time; or if a measured body has no mass.
     TypeError
-        If `motion` is none.
+        If `motion` is not a Motion.
 
     Notes
     -----
-    The answer carries the errors that the motion claims. Where it ends, say because the face lands, the
-    scene ends, too, and says how. Of a body on both rims only the sum of the normal forces is given.
+    The answer includes the estimated errors of the motion. If the motion ends, for example because the face
+    lands, the scene ends at the same time and names the ending. For a body on both rims the scene has only
+    the sum of the normal forces.
 
     Examples
     --------
@@ -248,19 +265,20 @@ def scene(motion: Motion, *, scale: Scale | None = None) -> Scene:
     """
     made("motion", motion, Motion)
     given = scale_of(scale, motion.body) or Scale(1.0)
-    given.newtons(1.0)  # refuses an unknown mass
+    given.newtons(1.0)  # raises an error for an unknown mass
     m = motion.natural
     t0, t = m._asked.t0, m.t
     if not t.size or t[0] != t0:
         t = np.concatenate([[t0], t])
     if not (np.diff(t) > 0).all():
-        raise ValueError("motion: expected times that ascend, since an engine starts at the first of them")
+        raise ValueError("motion: expected ascending times, since an engine starts at the first of them")
     if m.event is not None and m._asked.beyond:
-        raise ValueError(f"motion: goes on beyond an event, and then is not that of the body: {m.message}")
+        why = "expected a motion that ends at its event; leave out beyond=True"
+        raise ValueError(f"motion: goes on beyond an event: {m.message}; {why}")
     if t.size < 2:
-        raise ValueError(f"motion: has no time after its start: {motion.message}")
+        raise ValueError(f"motion: expected a time after the initial state: {motion.message}")
     if m._doubt or not math.isfinite(m.error):
-        raise ValueError(f"motion: not known up to its last time: {motion.message}")
+        raise ValueError(f"motion: expected a motion known up to its last time: {motion.message}")
     m = m.wanting("pose", "force", t=None if t is m.t else t)
     return Scene(m, given)
 
@@ -274,7 +292,7 @@ def _lines(value: Any, begin: str = "\n ") -> str:
 
 
 def _shaped(name: str, value: Reals, shape: tuple[int, ...], scalar_first: bool | None = None) -> Floats:
-    """Finite numbers of a shape, () for any (n,); with `scalar_first`, unit quaternions as x, y, z, w."""
+    """Finite numbers of a shape, where () is any (n,); with `scalar_first`, unit quaternions x, y, z, w."""
     found = floats(reals(name, value))
     fits = found.shape == shape if shape else found.ndim == 1
     if not fits or not found.size or not np.isfinite(found).all():
@@ -287,7 +305,7 @@ def _shaped(name: str, value: Reals, shape: tuple[int, ...], scalar_first: bool 
 
 
 def _outside(body: Any) -> Floats:
-    """Points (n, 3) on a body that MuJoCo cannot draw as it is; their convex hull is drawn."""
+    """Points (n, 3) on a body that MuJoCo has no shape for; MuJoCo draws their convex hull."""
     rounded = isinstance(body, Body) and 0 < body.fillet < 1
     if not (isinstance(body, Body) and (body._parts or rounded)):
         return np.empty((0, 3))
