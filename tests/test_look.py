@@ -272,7 +272,7 @@ def test_a_vector_drawing_has_no_pixels_and_shows_what_the_picture_shows(tmp_pat
         ({"drawn": 3}, TypeError, "drawn: expected"),
         ({"above": 1}, TypeError, "above: expected True or False"),
         ({"follow": "body"}, TypeError, "follow: expected True or False"),
-        ({"exposure": 0}, ValueError, "exposure = 0.0: expected 0.01 turns or more"),
+        ({"exposure": 0}, ValueError, "exposure = 0.0: expected at least 0.01 turns"),
         ({"exposure": float("nan")}, ValueError, "exposure = nan"),
         ({"exposure": "1"}, TypeError, "exposure"),
     ],
@@ -284,7 +284,7 @@ def test_a_look_that_no_view_has_is_refused_by_name(how, kind, said):
 
 def test_an_exposure_that_begins_at_the_end_is_refused_and_leaves_no_file(tmp_path):
     m = turning(3.0)
-    with pytest.raises(ValueError, match="^t = .*: an exposure begins at the end of the motion"):
+    with pytest.raises(ValueError, match="^t = .*: expected a time before the end, for an exposure"):
         sc.view(m, exposure=1).save(tmp_path / "late.png", t=float(m.t[-1]))
     assert not list(tmp_path.iterdir())
 

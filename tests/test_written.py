@@ -55,7 +55,7 @@ def test_a_save_that_fails_leaves_what_was_there_and_says_of_which_file(cramped,
 def test_a_process_that_is_killed_while_it_saves_leaves_what_was_there(cramped, name):
     folder, told = cramped[1]
     # for a film the signal kills ffmpeg, which writes the file
-    assert told[name].startswith("film.mp4: ffmpeg: it ended with -" if name == "film.mp4" else "signal ")
+    assert told[name].startswith("film.mp4: ffmpeg: ended with code -" if name == "film.mp4" else "signal ")
     assert told[name] != "signal 0" and (folder / name).read_text() == f"an older {name}"
 
 

@@ -1,8 +1,8 @@
-"""Motions that leave the table or lie on both rims: their kinks, and angles told from one rim throughout.
+"""Motions that leave the table or lie on both rims: their kinks, and angles that refer to one rim throughout.
 
-An impact changes all velocities at once, so that positions and angles have a kink there. Where the other rim
-takes over, theta, phi and psi are told from that rim: theta becomes pi - theta, phi grows by pi, psi changes
-its sign. Told from the first rim throughout, they are continuous.
+An impact changes all velocities at once, so that positions and angles have a kink. Where the other rim takes
+over, theta, phi and psi refer to that rim: theta becomes pi - theta, phi grows by pi, psi changes its sign.
+Angles that refer to the first rim throughout are continuous.
 """
 
 from contextlib import suppress
@@ -22,12 +22,12 @@ if TYPE_CHECKING:
     from spincyl._body import Body
     from spincyl._motion import Motion
 
-#: Shares of the time shown: width of a kink, and the distance below which kinks become one. Bounces that come
-#: to an end are as many as one likes in a moment.
+#: Shares of the time shown: width of a kink, and the distance below which kinks become one. Bounces that die
+#: out are arbitrarily many in a short time.
 _KINK, _NEAR = 1e-9, 1e-6
-#: Of phases shorter than this share the rates are not asked for.
+#: The nutations of phases shorter than this share are not counted.
 _BRIEF = 1e-3
-#: A body tumbles in a vertical plane if all other rates are below this share; impacts leave roundings.
+#: A body tumbles in a vertical plane if its other rates are below this share; impacts leave rounding errors.
 _PLANAR = 1e-12
 #: Kinds of phases on one rim, and on both.
 _ON_RIM, _ON_BOTH = ("rolling", "slipping"), ("lying", "pivoting", "rolling on its side")
@@ -37,28 +37,28 @@ FLIES = 2
 
 
 def goes_up(m: "Motion") -> bool:
-    """Whether the motion ever leaves the table or lies on both rims."""
+    """Whether the motion leaves the table or lies on both rims at any time."""
     return m._impacts is not None and any(phase.kind not in _ON_RIM for phase in m.phases)
 
 
 class Aloft(NamedTuple):
-    """What a motion that leaves the table has besides its poses."""
+    """Kinks of a motion that leaves the table, and the changes of the rim to which its angles refer."""
 
-    edges: Floats  #: (k, 2) where each kink begins and ends, ascending
-    begins: Floats  #: times of phases at which no kink is
-    times: Floats  #: times from which on the angles are told in another way
-    #: (k + 1, 5) how, until each of these: how often another rim has taken over; half turns by which phi, and
-    #: psi as told from the first rim, have jumped; whole turns and sign with which theta is counted
+    edges: Floats  #: (k, 2) begin and end of each kink, ascending
+    begins: Floats  #: begins of phases that have no kink
+    times: Floats  #: times at which the reference of the angles changes
+    #: (k + 1, 5) until each of these times: how often the rim has changed; half turns by which phi, and psi
+    #: with respect to the first rim, have jumped; whole turns and sign with which theta is counted
     told: np.ndarray
 
     def on_other(self, t: Floats) -> Any:
-        """Whether the angles at these times are told from the other rim."""
+        """Whether the angles at these times refer to the other rim."""
         return self.told[np.searchsorted(self.times, t, "right"), 0] % 2 == 1
 
     def from_first(self, t: Floats, theta: Floats, phi: Floats, psi: Floats) -> Floats:
-        """The three angles as told from the first rim, and continuous, along a last axis.
+        """The three angles with respect to the first rim, continuous, along a last axis.
 
-        A body that only tumbles in a vertical plane passes through the poles: theta goes on beyond them.
+        A body that only tumbles in a vertical plane passes the poles; its theta continues beyond them.
         """
         told = self.told[np.searchsorted(self.times, t, "right")]
         rims, across, about, turns, sign = np.moveaxis(told, -1, 0)
@@ -71,7 +71,7 @@ class Aloft(NamedTuple):
 
 
 def aloft(m: "Motion", first: float, last: float) -> Aloft:
-    """Kinks of a motion between its first and its last time, and how its angles are told."""
+    """Kinks of a motion between two times, and the reference of its angles."""
     kinks = {x.time for x in m.natural.impacts}
     kinds = ["", *(phase.kind for phase in m.phases)]
     kinks |= {
@@ -90,7 +90,7 @@ def aloft(m: "Motion", first: float, last: float) -> Aloft:
 
 
 def _without_turns(m: "Motion", up: Aloft) -> Aloft:
-    """Take whole turns of phi and psi out of kinks in which impacts are too close to be told apart."""
+    """Remove whole turns of phi and psi from kinks that merge several impacts."""
     there = m.wanting("pose", t=up.edges.ravel())
     many = there.t.size // 2
     angles = up.from_first(there.t, there.theta, there.phi, there.psi)[: 2 * many].reshape(many, 2, 3)
@@ -102,7 +102,7 @@ def _without_turns(m: "Motion", up: Aloft) -> Aloft:
 
 
 def _groups(t: Floats, near: float) -> list[tuple[float, float]]:
-    """First and last of those among ascending times that are near each other."""
+    """First and last time of each group of ascending times that are near each other."""
     ends = np.flatnonzero(np.diff(t) > near)
     return list(zip(t[[0, *(ends + 1)]], t[[*ends, -1]], strict=True)) if t.size else []
 
@@ -127,7 +127,7 @@ def _poles(m: "Motion", first: float, last: float) -> Floats:
 
 
 def _changes(m: "Motion", t: Floats, poles: Floats, first: float, last: float) -> tuple[Floats, np.ndarray]:
-    """The times among these from which on the angles are told in another way, and in which, as in `Aloft`."""
+    """The times among these at which the reference of the angles changes, and its changes as in `Aloft`."""
     groups = np.array(_groups(np.union1d(t, poles), 1e-12 * (last - first))).reshape(-1, 2)
     # both sides of each group, closer to it than to the next one
     gaps = np.concatenate([groups[:1, 0] - first, groups[1:, 0] - groups[:-1, 1], last - groups[-1:, 1]])
@@ -135,11 +135,11 @@ def _changes(m: "Motion", t: Floats, poles: Floats, first: float, last: float) -
     sides = groups + off * [-1, 1] if len(groups) else groups
     start = first + (float(off[0, 0]) / 4 if len(groups) else 0.0)
     there = m.wanting("pose", t=np.unique(np.append(sides, start)))
-    # steps to other times may end the motion a little earlier
+    # with steps to other times the motion may end a little earlier
     sides = sides[sides[:, 1] <= there.t[-1]]
     place = np.searchsorted(there.t, sides)
     by_phi, by_psi = (np.round(np.diff(x[place])[:, 0] / np.pi).astype(int) for x in (there.phi, there.psi))
-    # at first: from which end of the axis the angles are told
+    # at first: the end of the axis to which the angles refer
     theta, phi = there.theta[:1], there.phi[:1]
     axis = np.stack([-np.sin(theta) * np.cos(phi), -np.sin(theta) * np.sin(phi), np.cos(theta)], -1)
     at_first = int((rotations(there.orientation[:1])[:, :, 2] * axis).sum() < 0)
@@ -148,7 +148,7 @@ def _changes(m: "Motion", t: Floats, poles: Floats, first: float, last: float) -
         rims, halves, spins, turns, sign = told[-1]
         if ((before < poles) & (poles < after)).any():
             other = rims % 2 == 1
-            below = (there.theta[k] > np.pi / 2) != other  # the pole at pi, as told from the first rim
+            below = (there.theta[k] > np.pi / 2) != other  # the pole at pi, with respect to the first rim
             spins += -about if other else about
             told.append((rims, halves + across, spins, turns + sign * below, -sign))
         else:
@@ -169,7 +169,7 @@ def parts(m: "Motion", first: float, last: float) -> list[tuple[float, float, fl
 
 
 def _often(body: "Body", phase: Phase) -> float:
-    """Nutations per unit of time; in the air turns of the axis about the angular momentum, which stays."""
+    """Nutations per unit of time; in the air, turns of the axis about the constant angular momentum."""
     state: State = replace(phase.state, slip=None, height=None, lift=None)
     if phase.kind == "flying":
         w = np.array([state.w1, state.w2, state.w3 * body.i3 / body.i1])
@@ -183,7 +183,7 @@ def _often(body: "Body", phase: Phase) -> float:
 
 
 def tops(theta: Floats, z: Floats, far: float) -> Floats:
-    """Height of the highest place of a cylinder whose largest distance from its centre is `far`."""
+    """Height of the highest point of a cylinder whose largest distance from its centre is `far`."""
     half = max(0.0, far * far - 1) ** 0.5
     found: Floats = z + half * np.abs(np.cos(theta)) + np.sin(theta)
     return found

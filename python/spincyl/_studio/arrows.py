@@ -1,8 +1,8 @@
 """Arrows of the vectors of a motion, and the instantaneous axis, as the page draws them.
 
-The axis is the line of the points whose velocity is along it, or zero: it passes through C + w x v/w^2, and
-through the contact point P while the body rolls. The line P-C-O goes on from P through the centre of mass C
-to the point opposite to P. Where the centre rests they are one, and O, the top of the upper rim, rests too.
+The points of the axis have velocities along it, or zero: it passes through C + w x v/w^2, and through the
+contact point P while the body rolls. The line P-C-O runs from P through the centre of mass C to the point
+opposite to P. If the centre is at rest, the two lines coincide, and O, the top of the upper rim, is at rest.
 """
 
 from typing import Any, NamedTuple
@@ -17,7 +17,7 @@ from spincyl._studio.painted import Painted, Piece, painted, whole
 from spincyl._studio.poses import seen, span
 from spincyl._studio.shape import Profile, lathe, rotations
 
-_NEAR = 1e-4  # between the times of a difference, over the time in which the body turns by one radian
+_NEAR = 1e-4  # time step of a difference, over the time in which the body turns by one radian
 _SAMPLES = 600
 _LETTERS = {"omega": "ω", "momentum": "L", "velocity": "v", "normal": "N", "friction": "F"}
 _POINTS = ("P", "C", "O")
@@ -46,12 +46,12 @@ class Vectors(NamedTuple):
     centre: Floats
 
     def at(self, k: int) -> "Vectors":
-        """Those at time number k."""
+        """The vectors and points at time number k."""
         return Vectors({name: x[k] for name, x in self.of.items()}, self.contact[k], self.centre[k])
 
 
 def vectors(m: Motion, t: Floats, drawn: tuple[str, ...]) -> Vectors:
-    """The vectors whose arrows, or whose axis, are drawn."""
+    """The vectors that are drawn as arrows or define the axis."""
     first, last = sorted(span(m))
     t = np.clip(t, first, last)
     (w,) = seen(m, t, "w")
@@ -74,7 +74,7 @@ def vectors(m: Motion, t: Floats, drawn: tuple[str, ...]) -> Vectors:
 
 
 def usual(m: Motion, drawn: tuple[str, ...]) -> dict[str, float]:
-    """The size of each vector that has an arrow of the usual length: the largest, and the median of N."""
+    """The magnitude of each vector with an arrow of usual length: the largest; for forces the median N."""
     first, last = sorted(span(m))
     of = vectors(m, np.linspace(first, last, _SAMPLES), drawn).of
     sizes = {name: np.linalg.norm(x, axis=-1) for name, x in of.items()}
@@ -83,7 +83,7 @@ def usual(m: Motion, drawn: tuple[str, ...]) -> dict[str, float]:
 
 
 class Tip(NamedTuple):
-    """A letter, the name of its colour, where it points to and from, in the picture."""
+    """A letter, the name of its colour, and the tip and the root of its arrow in the picture."""
 
     letter: str
     name: str
@@ -94,7 +94,7 @@ class Tip(NamedTuple):
 def drawings(
     now: Vectors, drawn: tuple[str, ...], sizes: dict[str, float], half: float, camera: Camera, colours: Any
 ) -> tuple[list[Painted], list[Tip]]:
-    """Rods and arrows of a moment as triangles, and their letters."""
+    """Rods and arrows at one time as triangles, and their letters."""
     found: list[Painted] = []
     tips: list[Tip] = []
     if "axis" in drawn:
@@ -144,7 +144,7 @@ def _set(
     camera: Camera,
     back: bool = False,
 ) -> Painted:
-    """A piece of length 1 along the third axis, set at a place in a direction with its sizes."""
+    """A piece of length 1 along the third axis, scaled, turned into a direction and moved to its root."""
     across = np.cross([0.0, 0.0, 1.0] if abs(way[2]) < 0.9 else [1.0, 0.0, 0.0], way)
     across /= np.linalg.norm(across)
     axes = np.column_stack([across, np.cross(way, across), way])

@@ -1,8 +1,8 @@
-"""The photograph from above with the shutter open for a while.
+"""Long-exposure photograph from above.
 
-Its brightness is the share of the time during which each place of the picture shows ink. The two marks, O
-and X, glow, and the body only hides what lies behind it. A mark that stops whenever it is uppermost, as the
-one on the upper end does while the centre rests, leaves an image; one that moves fast leaves a blur.
+The brightness of a point of the picture is the share of the time during which it shows ink. The two marks, O
+and X, glow, and the body only hides what lies behind it. A mark that stops whenever it is uppermost, like the
+mark on the upper end while the centre is at rest, leaves an image; a mark that moves fast leaves a blur.
 """
 
 import math
@@ -28,47 +28,47 @@ def exposure(
     samples: float = 4e6,
     width: float | None = None,
 ) -> Floats:
-    """The long-exposure photograph of a motion from above.
+    """Compute the long-exposure photograph of a motion from above.
 
     Parameters
     ----------
     motion : Motion
-        What it lacks of the pose is computed, at times of its own.
+        Motion of a single body; poses at further times are computed.
     seconds : float, optional
-        How long the shutter is open from the motion's first time on, in seconds of `scale`. Default: for
-        all of the motion.
+        Duration of the exposure from the first time of the motion on, in seconds. Default: the whole motion.
     scale : Scale, optional
-        Needed by `seconds`; the motion of a measured body has one.
+        Scale for `seconds`; the motion of a measured body has its own.
     upper : {"O", "X"}
-        The letter on the upper end, which is the one that was pressed when the tube was flicked.
+        Symbol on the upper end, which is the end that was pressed when the tube was flicked.
     size : int
-        Pixels along each side.
+        Number of pixels along each side, at most 20,000.
     samples : float
-        Number of pairs of a time and a place of the ink. The noise falls as its root.
+        Number of samples, each a time and a point of the ink, 1e3 to 1e9. The noise decreases with its square
+        root.
     width : float, optional
-        What the picture shows, in R, of a measured body in metres, about the middle of the centre's path.
-        Default: all that the body reaches.
+        Width of the picture in R, for a measured body in metres; its middle is that of the path of the
+        centre. Default: wide enough for the whole motion.
 
     Returns
     -------
     ndarray, shape (size, size)
-        The first row is the far side (largest y), columns run along x. Each pixel: the share of the time
-        during which it shows ink, 0 to 1 up to noise (more of it where the
-        body rests). Light is added up, not developed:
-        `plot.exposure` shows it.
+        Share of the time during which each pixel shows ink, from 0 to 1 up to noise, which is largest where
+        the body rests. The first row is the far side (largest y); columns run along x. `plot.exposure` draws
+        the picture.
 
     Raises
     ------
     ValueError
-        For `seconds` without a scale or beyond the end of the motion, sizes that make no picture.
+        If `seconds` has no scale or exceeds the motion, or a number is out of range; the message names the
+        argument.
     TypeError
-        For anything but a motion and numbers.
+        If an argument has the wrong type; the message names it.
 
     Notes
     -----
-    The ink of both marks is sampled evenly in place and time. A place shows if its normal points up: that
-    is exact for the outside of a convex body. Of two balls, what the upper one hides of the lower does not
-    show. The camera is far above.
+    The ink of both marks is sampled evenly in space and time. A point is visible if its normal points up,
+    which is exact for the outside of a convex body; of two balls, the upper one also hides parts of the lower
+    one. The camera is far above.
 
     Examples
     --------
@@ -107,13 +107,13 @@ def light(
     shape: tuple[int, int],
     samples: float,
 ) -> Floats:
-    """The picture (rows, columns) of these marks while the shutter is open; `exposure` tells of its light.
+    """The picture (rows, columns) of these marks while the shutter is open, with the light of `exposure`.
 
-    Times and lengths are natural. The middle of the picture is that of the centre's path by default.
+    Times and lengths are natural. Default of `middle`: the middle of the path of the centre.
     """
     first, last = open_
     area = sum(_area(part) for part in ink)
-    # Motion is smooth and a mark at rest counts often: so more times than places, in several sets of places.
+    # The motion is smooth, and a mark at rest is seen often: use more times than points, in sets of points.
     places = max(16, int(np.sqrt(samples) / 8))
     times = max(_SETS, int(samples / places))
     place, normal = _sampled(ink, places * _SETS)
@@ -146,13 +146,13 @@ def light(
             within = (column >= 0) & (column < columns) & (row >= 0) & (row < rows)
             spots = (row * columns + column)[within]
             image += np.bincount(spots, weights=shown[up][within], minlength=rows * columns)
-    # each place stands for an equal share of the area of the ink, seen foreshortened
+    # each point has an equal share of the area of the ink, which is seen foreshortened
     image *= area / (places * times * pixel**2)
     return image.reshape(shape)
 
 
 def frame(motion: Motion, seconds: float | None = None, scale: Scale | None = None) -> float:
-    """Width of a square about the middle of the centre's path that holds the whole motion of the body.
+    """Width of a square about the middle of the path of the centre that contains the whole motion.
 
     In R; for a measured body in metres.
     """
@@ -171,13 +171,15 @@ def _open(motion: Motion, seconds: float | None, scale: Scale | None) -> tuple[f
     if scale is None:
         raise ValueError(
             f"seconds = {seconds!r}: needs scale=, as in scale=Scale(radius=0.008); without both,"
-            " the shutter is open for all of the motion"
+            " the exposure lasts for the whole motion"
         )
     seconds = number("seconds", si("seconds", seconds, "second"))
     open_, longest = seconds / float(scale.seconds(1.0)), abs(last - first)
     if not 0 < open_ <= longest * (1 + 1e-9):
         most = float(scale.seconds(longest))
-        raise ValueError(f"seconds = {seconds!r}: expected more than 0 and at most {most:.6g}, the motion's")
+        raise ValueError(
+            f"seconds = {seconds!r}: expected more than 0 and at most {most:.6g}, the duration of the motion"
+        )
     return first, first + math.copysign(min(open_, longest), last - first)
 
 
@@ -188,7 +190,7 @@ def _area(part: Part) -> float:
 
 
 def _sampled(ink: list[Part], count: int) -> tuple[Floats, Floats]:
-    """Places spread evenly over the marks, and so is each of `_SETS` interleaved sets; their normals."""
+    """Points and their normals, evenly over the marks, as is each of the `_SETS` interleaved sets."""
     corners = np.concatenate([part.vertices[part.triangles] for part in ink])
     normals = np.concatenate([part.normals[part.triangles] for part in ink])
     sides = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])

@@ -30,11 +30,11 @@ def reel(
     size: tuple[int, int] | None,
     seconds: float | None = None,
 ) -> Reel:
-    """The film of a page, for this kind of file; an error names a wrong measure."""
+    """The settings of the film of a page for a kind of file; an error names a wrong argument."""
     gif = suffix == ".gif"
     fps = (25 if gif else 30) if fps is None else whole("fps", fps, 1, 240)
     if gif and 100 % fps:
-        raise ValueError(f"fps = {fps}: frames of a GIF last whole hundredths of a second: 50, 25, 20 or 10")
+        raise ValueError(f"fps = {fps}: expected a divisor of 100 for a GIF, such as 50, 25, 20 or 10")
     size = ((640, 360) if gif else (1280, 720)) if size is None else size
     if not isinstance(size, tuple | list) or len(size) != 2:
         raise TypeError(f"size: expected width and height, not {size!r}")
@@ -48,7 +48,7 @@ def reel(
         spans = [sorted(span(m)) for m in view.motions]
         lasts = (max(b for _, b in spans) - min(a for a, _ in spans)) * view.slow * unit
         if lasts > _LONG * (1 + 1e-9):
-            told = f"the film shows the first {_LONG:g} of {lasts:.3g} seconds; seconds= says how many"
+            told = f"the film shows the first {_LONG:g} of {lasts:.3g} seconds; give seconds= for more"
             warnings.warn(told, UserWarning, stacklevel=3)
     return Reel(
         view.motions,
@@ -78,7 +78,8 @@ def film(what: Reel, path: Path, progress: Progress | None = None) -> None:
         write(what, shown(), part, program)
     large = path.stat().st_size
     if large > _LARGE:
-        how = "size=, fps= or seconds= make it smaller" + (", and .mp4 by far" if write is _gif else "")
+        how = "reduce size=, fps= or seconds="
+        how += "; an .mp4 is much smaller" if write is _gif else ""
         warnings.warn(f"{path}: {large / 1e6:.0f} MB; {how}", UserWarning, stacklevel=3)
 
 
@@ -101,7 +102,7 @@ def still(what: Reel, path: Path, t: float | None) -> None:
 
 
 def _program() -> str:
-    """The path of ffmpeg: the one in imageio-ffmpeg, or the one on the search path."""
+    """The path of ffmpeg: that of imageio-ffmpeg, or the one on the search path."""
     try:
         from imageio_ffmpeg import get_ffmpeg_exe
 
@@ -140,7 +141,7 @@ def _mp4(what: Reel, pictures: Iterator[np.ndarray], path: Path, program: str) -
         if code:
             said.seek(0)
             told = said.read().decode(errors="replace").strip()
-            raise OSError(f"ffmpeg: {told or f'it ended with {code}'}")
+            raise OSError(f"ffmpeg: {told or f'ended with code {code}'}")
 
 
 def _gif(what: Reel, pictures: Iterator[np.ndarray], path: Path, program: str) -> None:

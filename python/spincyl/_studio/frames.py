@@ -49,7 +49,7 @@ class Reel(NamedTuple):
 
     @property
     def drawn(self) -> tuple[str, ...]:
-        """What is drawn besides the body."""
+        """Names of the lines and vectors that are drawn with the body."""
         return ("path",) if self.look.drawn is None else self.look.drawn
 
     @property
@@ -65,7 +65,7 @@ class Reel(NamedTuple):
         last = min(last, until)
         count = math.floor((last - first) / step * (1 + 1e-12)) + 1
         if count > _MOST:
-            raise ValueError(f"{count} frames are too many: at most {_MOST}; give fewer seconds= or fps=")
+            raise ValueError(f"seconds, fps: {count} frames, expected at most {_MOST}; reduce one of them")
         times = np.minimum(first + step * np.arange(count + 1), last)
         if last - times[-2] < 1e-9 * step:
             times = times[:-1]
@@ -79,7 +79,7 @@ def frames(what: Reel, which_of: np.ndarray | None = None) -> Iterator[np.ndarra
 
 
 def pictures(what: Reel, times: Floats, *, still: bool = False) -> Iterator[np.ndarray]:
-    """The pictures at these times: of a film, or a still each."""
+    """The pictures at these times: frames of a film, or stills."""
     stage = _Stage(what, times, still=still)
     for k in range(times.size):
         yield stage.picture(k)
@@ -153,7 +153,7 @@ class _Stage:
         if not still:  # two frames do not show the same time
             self.digits = max(2, min(self.digits, math.ceil(math.log10(what.fps * what.slow))))
         self.gain = [self._gain(index) for index in range(len(panels))] if self.exposes else []
-        # draw everything once that no frame changes
+        # draw everything that no frame changes, once
         if not vector:
             self.canvas.draw()
             self.still = self.canvas.copy_from_bbox(self.figure.bbox)
@@ -277,13 +277,13 @@ class _Stage:
                 ax.draw_artist(artist)
 
     def _besides(self, panel: Shown, k: int, camera: Camera) -> tuple[list[Painted], list[Tip]]:
-        """Arrows and axis at frame k, and their letters."""
+        """Arrows and axis at frame k, and the letters at their tips."""
         if panel.vectors is None:
             return [], []
         return drawings(panel.vectors.at(k), self.what.drawn, self.sizes, self.half, camera, self.colour)
 
     def _named(self, ax: Any, words: list[Any], tips: list[Tip]) -> None:
-        """Write the letters, each beside its arrow on the side away from the one before."""
+        """Write each letter next to the tip of its arrow, on alternating sides."""
         from matplotlib.patheffects import withStroke
 
         around = [withStroke(linewidth=3, foreground=self.colour["paper"])]
@@ -303,7 +303,7 @@ class _Stage:
 
     @property
     def _open(self) -> str:
-        """For how long the shutter is open, in words."""
+        """The duration of the exposure, in words."""
         turns = self.what.look.exposure
         if turns is None:
             return ""
@@ -311,7 +311,7 @@ class _Stage:
         return f"\nexposure: {told}"
 
     def _light(self, index: int, t: float, *, before: bool) -> tuple[np.ndarray, float]:
-        """The light (rows, columns, 3) of a photograph before or after this time, and how long it took."""
+        """The light (rows, columns, 3) of an exposure before or after this time, and its duration."""
         panel, turns, camera = self.panels[index], self.what.look.exposure, self.cameras[index]
         assert turns is not None
         open_ = opened(t, turns, panel.along, panel.turned, before=before)
@@ -332,12 +332,12 @@ class _Stage:
         t = float(self.times[0] if self.opens else min(self.times[-1], along[-1]))
         found, long = self._light(index, t, before=not self.opens)
         if not long:
-            raise ValueError(f"t = {t * self.what.unit:.6g}: an exposure begins at the end of the motion")
+            raise ValueError(f"t = {t * self.what.unit:.6g}: expected a time before the end, for an exposure")
         most = found.max(axis=-1)
         return 2 / (float(np.percentile(most[most > 0], 99.7)) * long) if most.any() else 0.0
 
     def _developed(self, index: int, t: float) -> np.ndarray:
-        """The photograph at a time: of a still from then on, of a film the one that closes there."""
+        """The photograph at a time: of a still the exposure from then on, of a film the one until then."""
         found, long = self._light(index, t, before=not self.opens)
         return np.asarray(np.round(-255 * np.expm1(-self.gain[index] * long * found)), np.uint8)
 
@@ -351,7 +351,7 @@ class _Stage:
         return f"spin {told} {self.what.rates}"
 
     def _note(self, index: int, t: float) -> tuple[str, float] | None:
-        """The note about a motion before its first time, at its end or later; and the time to show."""
+        """The note about a motion before its first time, or from its end on, and the time to show."""
         before, after = (self.what.edges[index][name] for name in ("before", "after"))
         if t > after["at"] or (after["event"] and t >= after["at"]):
             return after["said"], after["t"]
@@ -398,7 +398,7 @@ def _body(panel: Shown, k: int, camera: Camera, over: bool) -> list[Painted]:
 
 
 def _surface(ax: Any, vector: bool) -> Any:
-    """An artist that draws triangles in their order, shaded, or as a vector drawing in one colour each."""
+    """An artist that draws triangles in their order: shaded, or each in one colour for a vector drawing."""
     from matplotlib.artist import Artist
     from matplotlib.collections import PolyCollection
 

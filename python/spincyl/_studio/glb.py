@@ -25,7 +25,7 @@ _MOST = 1_000_000
 
 
 def glb(motions: Sequence[Motion], labels: Sequence[str], scale: Scale | None, upper: Letter) -> bytes:
-    """The bytes of the file. Its frames are so close that a body turns by a quarter of a radian at most."""
+    """The bytes of the file. Between two frames a body turns by at most a quarter of a radian."""
     metre, second = (1.0, 1.0) if scale is None else (scale.metres(1.0), scale.seconds(1.0))
     views: list[dict[str, Any]] = []
     accessors: list[dict[str, Any]] = []
@@ -120,10 +120,10 @@ def glb(motions: Sequence[Motion], labels: Sequence[str], scale: Scale | None, u
 
 def _frames(m: Motion) -> tuple[Floats, Floats, Floats]:
     """Ascending times, centres and orientations; signs of successive quaternions agree."""
-    repeats(m)  # refuses motions that are too long
+    repeats(m)  # raises an error for motions that are too long
     coarse = knots(m)[:, 0]
-    # between knots the motion is smooth, with about the rates at the knots: those of the body, and of its
-    # axis about the vertical, which may be faster
+    # between knots the motion is smooth, with about the rates at the knots: that of the body, and that of
+    # the axis about the vertical, which may be larger
     w, theta = seen(m, coarse, "w", "theta")
     rates = np.linalg.norm(w, axis=1)
     if not isinstance(m, EllipsoidMotion):
@@ -132,7 +132,7 @@ def _frames(m: Motion) -> tuple[Floats, Floats, Floats]:
     if goes_up(m):  # straight lines between frames are within 0.002 R of the parabola of a fall
         count = np.maximum(count, np.ceil(8 * np.diff(coarse)).astype(int))
     if count.sum() > _MOST:
-        raise ValueError(f"{count.sum()} frames are too many: roll over a shorter time")
+        raise ValueError(f"motion: {count.sum()} frames, expected at most {_MOST}; use a shorter time")
     pieces = [np.linspace(a, b, n, endpoint=False) for (a, b), n in zip(pairwise(coarse), count, strict=True)]
     t = np.append(np.concatenate(pieces), coarse[-1])
     centre, orientation = seen(m, t, "centre", "orientation")

@@ -1,4 +1,4 @@
-"""What a view shows besides the body, and from where; its page, its films and its stills look alike."""
+"""Lines, vectors and camera of a view, the same for its page, its films and its stills."""
 
 import math
 from collections.abc import Iterable
@@ -11,29 +11,27 @@ from spincyl._input.numbers import Floats, flag, number, words
 _AZIMUTH, _ELEVATION = -1.1, 0.55  # direction of the page's first view
 _SPREAD = math.tan(0.3)  # tangent of half the angle of view
 _FLAT = 1e6  # distance of a camera above the table, over half the height that it shows
-#: What can be drawn besides the body.
+#: Lines and vectors that can be drawn with the body.
 DRAWN = ("path", "omega", "momentum", "velocity", "force", "axis")
 
 
 class Look(NamedTuple):
     """The look of a view."""
 
-    drawn: (
-        tuple[str, ...] | None
-    )  #: of `DRAWN`; None: the path, and on a page the forces where there is friction
-    above: bool  #: whether the camera is above the table
+    drawn: tuple[str, ...] | None  #: names in `DRAWN`; None: the path, and on a page with friction the forces
+    above: bool  #: whether the camera looks straight down
     follow: bool | None  #: whether the camera follows the body; None: if it moves far
     exposure: float | None  #: turns about the vertical for which the shutter is open
 
 
 def look(drawn: str | Iterable[str] | None, above: bool, follow: bool | None, exposure: float | None) -> Look:
-    """The look of a view from its arguments, or an error naming one."""
+    """The look of a view from its arguments; an error names a wrong argument."""
     drawn = None if drawn is None else words("drawn", drawn, DRAWN)
     follow = None if follow is None else flag("follow", follow)
     if exposure is not None:
         exposure = math.inf if exposure == math.inf else number("exposure", exposure)
         if not exposure >= 0.01:
-            raise ValueError(f"exposure = {exposure!r}: expected 0.01 turns or more, or inf: to the end")
+            raise ValueError(f"exposure = {exposure!r}: expected at least 0.01 turns, or inf for no limit")
     return Look(drawn, flag("above", above), follow, exposure)
 
 
@@ -59,7 +57,7 @@ class Camera(NamedTuple):
 
 
 def camera(at: Floats, reach: float, half: float, aspect: float, above: bool) -> Camera:
-    """The camera of the page, as it is at first or from above: then x runs to the right and y upwards."""
+    """The first camera of the page, or one that looks straight down, with x to the right and y upwards."""
     azimuth, elevation = (-math.pi / 2, math.pi / 2) if above else (_AZIMUTH, _ELEVATION)
     ce, se = math.cos(elevation), math.sin(elevation)
     ca, sa = math.cos(azimuth), math.sin(azimuth)
@@ -75,10 +73,9 @@ def held(reach: float, top: float) -> float:
 
 
 def opened(t: float, turns: float, along: Floats, turned: Floats, *, before: bool) -> tuple[float, float]:
-    """When the shutter opens and closes, so many turns after `t`, or before it.
+    """Begin and end of an exposure that lasts for a number of turns after `t`, or before `t`.
 
-    `turned` is the number of turns about the vertical at the times `along`. At most until the motion ends, or
-    from its beginning.
+    `turned` is the number of turns about the vertical at the times `along`. It stays within the motion.
     """
     if before:
         first, last = opened(-t, turns, -along[::-1], -turned[::-1], before=False)

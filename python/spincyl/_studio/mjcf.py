@@ -1,11 +1,13 @@
-"""A scene as a model of MuJoCo (MJCF), from the numbers of its JSON file; its start is the keyframe "start".
+"""A scene as a model of MuJoCo (MJCF), from the numbers of the scene's JSON file.
 
-Contacts are as stiff and friction as steady as its solver bears. What MuJoCo has no law for is named in a
-comment at the top, with the couple that has to be applied instead.
+The initial state is the keyframe "start". Contacts are as stiff and friction as steady as the solver of
+MuJoCo allows. A comment at the top of the model names the laws that MuJoCo does not have, and the couple to
+apply instead.
 
-A cylinder with a fillet is a smaller one with a margin: contact begins when plane and cylinder are two
-fillets apart, and MuJoCo puts the contact point half way between them. So the plane lies one fillet below
-the table. The shape is exact, without facets. A single circle is a cylinder of a millionth of the radius.
+A cylinder with a fillet is modelled by a smaller cylinder with a margin: contact begins when plane and
+cylinder are two fillets apart, and MuJoCo puts the contact point half way between them. Therefore the plane
+is one fillet below the table. The shape is exact, without facets. A single circle is modelled by a cylinder
+whose half thickness is a millionth of the radius.
 """
 
 import math
@@ -24,7 +26,7 @@ _TURNS = 3 * math.pi / 16
 
 
 def mjcf(data: dict[str, Any], looks: Floats) -> str:
-    """The model of a scene; `looks` are points (n, 3) of the surface of what MuJoCo cannot draw as it is."""
+    """The model of a scene; `looks` are points (n, 3) on a surface that MuJoCo has no shape for."""
     body, start, metre = data["body"], data["start"], data["scale"]["R"]
     second = data["scale"]["second"]
     grip, notes = _laws(data["table"])
@@ -71,7 +73,7 @@ def mjcf(data: dict[str, Any], looks: Floats) -> str:
 
 
 def _laws(table: dict[str, Any]) -> tuple[tuple[float, float], list[str]]:
-    """Sliding and torsional friction for MuJoCo, and what is to be said of the laws."""
+    """Coefficients of sliding and torsional friction for MuJoCo, and notes on the laws for the comment."""
     friction, torsion = table["friction"], 0.0
     mu, notes = friction.get("mu", 0.0), []
     if friction["law"] == "viscous":
@@ -97,7 +99,7 @@ def _laws(table: dict[str, Any]) -> tuple[tuple[float, float], list[str]]:
 def _geometry(
     data: dict[str, Any], grip: tuple[float, float], looks: Floats
 ) -> tuple[str, str, str, str, list[str]]:
-    """The geoms of table and body, the mesh for display, the pair's contact, and what is said of them."""
+    """The geoms of table and body, the mesh for display, the contact of their pair, and notes on them."""
     shape, metre, second = data["body"]["shape"], data["scale"]["R"], data["scale"]["second"]
     mu, torsion = grip
     bounce = data["table"]["restitution"]
@@ -140,8 +142,8 @@ def _geometry(
 
 
 def _damped(restitution: float) -> float:
-    """Damping of a linear spring, over its critical one, with which a body bounces so."""
-    # an engine takes no damping of zero for one of springs
+    """Damping ratio of a linear spring on which a body bounces with this coefficient of restitution."""
+    # MuJoCo does not accept a damping of zero here
     decrement = -math.log(min(max(restitution, 1e-3), 1 - 1e-9))
     return decrement / math.hypot(math.pi, decrement) if restitution > 0 else 1.0
 

@@ -1,8 +1,9 @@
 """Surfaces as triangles in the order of drawing, lit as on the page.
 
-A surface is cut by planes across its axis at the ends of all parts. A plane that parts a piece from the eye
-shows that nothing beyond the plane hides it: such pieces are drawn from far to near. Between two planes come
-surfaces seen from inside, the widest first, then outsides, the narrowest first, each with its marks.
+A surface is cut by planes across its axis at the ends of all parts. A piece on the far side of a plane cannot
+hide anything on the eye's side, so the pieces between two planes are drawn together, the farthest first.
+Among these the order is: surfaces seen from inside, the widest first, then surfaces seen from outside, the
+narrowest first, each with its marks.
 """
 
 import math
@@ -39,7 +40,7 @@ def whole(part: Part) -> Piece:
 
 
 def _coarse(profile: Profile) -> Part:
-    """The surface of a profile with a quarter of the triangles where it is curved along the axis, too."""
+    """The surface of a profile; where it is curved along the axis, with a quarter of the usual triangles."""
     if profile.normals is None:
         return lathe(profile)
     corners, normals = ([*x[:-1:2], x[-1]] for x in (profile.corners, profile.normals))
@@ -58,7 +59,7 @@ def pieces(m: Motion, upper: Letter, *, coarse: bool = False) -> list[Piece]:
 
 
 def _slabs(piece: Piece, heights: Floats) -> list[Piece]:
-    """A piece cut at these heights, and into what is seen from inside and from outside."""
+    """A piece cut at these heights, and into parts that are seen from inside and from outside."""
     for height in heights:
         piece = _cut(piece, float(height))
     corners, normals = piece.corners, piece.normals
@@ -80,7 +81,7 @@ def _slabs(piece: Piece, heights: Floats) -> list[Piece]:
 
 
 def _cut(piece: Piece, height: float) -> Piece:
-    """The same triangles, those that pass through a height cut there."""
+    """The same triangles; those that contain a height are cut there."""
     off = piece.corners[..., 2] - height
     sides = np.where(np.abs(off) < _SAME, 0, np.sign(off)).astype(int)
     through = (sides.min(axis=1) < 0) & (sides.max(axis=1) > 0)
@@ -106,9 +107,10 @@ def ordered(found: list[Piece], height: float) -> list[Piece]:
 def painted(
     piece: Piece, rotation: Floats, centre: Floats, camera: Camera, *, over: bool = False, back: bool = False
 ) -> Painted:
-    """The triangles of a piece that face the camera, or those that do not, in their light.
+    """The triangles of a piece that face the camera, with their light.
 
-    `over`: after the end of a motion the colour loses most of its hue. The back is not lit.
+    `over`: the motion has ended, and the colour loses most of its hue. `back`: the triangles that face away,
+    without light.
     """
     eye = (camera.eye - centre) @ rotation
     corners = piece.corners

@@ -8,8 +8,8 @@ of one period suffice.
 A stone has no axis of symmetry for such angles: its knots hold the four components of a quaternion, which
 is normalised after interpolation.
 
-A body that leaves the table has the height of its centre as well, and two knots at each kink, an instant
-apart, with the slopes before and after it. Its angles are told from the first rim throughout.
+For a body that leaves the table, the knots also hold the height of the centre, and each kink has two knots,
+an instant apart, with the slopes before and after it. The angles refer to the first rim throughout.
 """
 
 from contextlib import suppress
@@ -37,7 +37,7 @@ _MOST, _LONGEST, _LOOKS = 200_000, 3000, 65
 _STEEPEST = 8.0
 # per rocking of a stone, with steps within 1e-14; fewer with a larger tolerance, as its -1/10 power
 _EVALUATIONS = 900
-# columns of a stone's quaternion, and of its place, which are those of a body's
+# columns of a stone's quaternion, and of x and y of its centre, which are the same as for a body
 _TURN, _PLACE = [0, 1, 2, 5], [3, 4]
 
 
@@ -58,7 +58,7 @@ def span(m: "Motion") -> tuple[float, float]:
     elif m.t.size < times.size:  # after the landing of a face there are no states
         last = float(m.t[-1]) if m.t.size else first
     if not (last - first) * (times[-1] - start) > 0:
-        raise ValueError(f"the motion has no duration to show from t = {first:.6g} on: {m.message}")
+        raise ValueError(f"motion: no duration to show from t = {first:.6g} on: {m.message}")
     return first, last
 
 
@@ -72,7 +72,7 @@ def seen(m: "Motion", t: Floats, *names: str) -> list[Floats]:
     want: tuple[Want, ...] = ("pose", "force") if "contact_force" in names else ("pose",)
     there = m.wanting(*want, t=times[::backward])
     if there.t.size == 0:
-        raise ValueError(f"there is nothing to show at t = {times[::backward][0]:.6g}: {there.message}")
+        raise ValueError(f"motion: no state to show at t = {times[::backward][0]:.6g}: {there.message}")
     rows = np.minimum(np.arange(times.size), there.t.size - 1)[::backward]
     return [getattr(there, name)[rows][back.reshape(np.shape(t))] for name in names]
 
@@ -80,9 +80,9 @@ def seen(m: "Motion", t: Floats, *names: str) -> list[Floats]:
 def pace(m: "Motion") -> float:
     """Duration of a nutation: the exact period, or with friction the shortest period of any phase.
 
-    With losses it is the mean over the motion, since nutations become shorter as a disk falls, and so it is
-    for a body that leaves the table. For a stone it is roughly the mean duration of its rockings, from the
-    number of evaluations.
+    With losses, and for a body that leaves the table, it is the mean over the motion, since nutations become
+    shorter as a disk falls. For a stone it is roughly the mean duration of its rockings, from the number of
+    evaluations.
     """
     if isinstance(m.body, Ellipsoid):
         many = m.nfev / _EVALUATIONS * (m._setting / 1e-14) ** 0.1
@@ -140,7 +140,8 @@ def repeats(m: "Motion") -> Repeat | None:
     period = pace(m)
     if last - first > _LONGEST * period:
         many = (last - first) / period
-        raise ValueError(f"{many:.0f} nutations are too many to show: roll over a shorter time")
+        told = f"motion: {many:.0f} nutations, too many to show"
+        raise ValueError(f"{told}; expected at most {_LONGEST}: use a shorter time")
     if m.method != "exact" or not period < last - first:
         return None
     phi, psi, centre = seen(m, np.array([first, first + period]), "phi", "psi", "centre")
@@ -150,22 +151,23 @@ def repeats(m: "Motion") -> Repeat | None:
 
 
 def knots(m: "Motion", tolerance: float = 2e-3, until: float | None = None) -> Floats:
-    """Times, places and slopes from which a page draws the motion.
+    """Times, poses and slopes from which a page draws the motion.
 
     Parameters
     ----------
     m : Motion
+        The motion, in natural units.
     tolerance : float
-        Largest error of an angle (radians) or of the centre (R) at the places looked at.
+        Largest error of an angle (radians) or of the centre (R), tested at three points of each interval.
     until : float, optional
         Last time. Default: the end of the motion.
 
     Returns
     -------
     ndarray, shape (n, 11)
-        t; theta, phi, psi, x and y of the centre; the slopes of these five. Ascending times. For a stone
-        (n, 13): x, y, z of its quaternion in place of the angles, and w after the centre. For a body that
-        leaves the table (n, 13): z of the centre after x and y.
+        Rows with ascending times: t; theta, phi, psi, x and y of the centre; the slopes of these five. For a
+        stone (n, 13): x, y, z of its quaternion in place of the angles, and w after the centre. For a body
+        that leaves the table (n, 13): z of the centre after x and y.
 
     Raises
     ------
@@ -191,7 +193,7 @@ def knots(m: "Motion", tolerance: float = 2e-3, until: float | None = None) -> F
         if not missed.any():
             break
         if len(t) + missed.sum() > _MOST:
-            raise ValueError(f"more than {_MOST} poses are needed: roll over a shorter time")
+            raise ValueError(f"motion: needs more than {_MOST} poses to show; use a shorter time")
         at = np.flatnonzero(open_)[missed] + 1
         t = np.insert(t, at, ((left[:, 0] + right[:, 0]) / 2)[missed])
         still = np.zeros(len(open_), bool)
@@ -215,9 +217,9 @@ def knots(m: "Motion", tolerance: float = 2e-3, until: float | None = None) -> F
 
 
 def _graded(m: "Motion", found: Floats, up: Aloft) -> Floats:
-    """Knots so that no long interval is next to a very short one with a turn in it, as close to a pole.
+    """Add knots so that no long interval is next to a very short one in which the body turns, as near a pole.
 
-    There the slopes would be far from what `packed` predicts, and all others would lose their digits.
+    Slopes there would be far from the prediction of `packed`, and all other slopes would lose digits.
     """
     for _ in range(50):
         far = np.abs(_slopes(found)[1]).max(axis=1) > _STEEPEST
@@ -233,7 +235,7 @@ def _graded(m: "Motion", found: Floats, up: Aloft) -> Floats:
 
 
 def _between(m: "Motion", up: Aloft, first: float, last: float) -> Floats:
-    """First times for knots of a motion with kinks: both sides of each, begins of phases, some between."""
+    """First times for knots of a motion with kinks: both sides of kinks, begins of phases, times between."""
     times = [np.array([first, last]), up.edges.ravel(), up.begins]
     for begin, end, often, _ in parts(m, first, last):
         count = 4 + int(3 * (end - begin) * often)
@@ -300,7 +302,7 @@ def _poses(m: "Motion", t: Floats, up: Aloft | None) -> Floats:
     gaps = np.where(kinks, np.inf, np.diff(t))
     h = 1e-3 * np.minimum(np.append(gaps, gaps[-1]), np.append(gaps[0], gaps))
     around = np.clip(np.stack([t - h, t, t + h], -1), t[0], t[-1])
-    # beside a kink only on its own side
+    # next to a kink only on the knot's own side
     around[1:, 0][kinks], around[:-1, 2][kinks] = t[1:][kinks], t[:-1][kinks]
     y = _places(m, around, up)
     slopes = (y[:, 2] - y[:, 0]) / (around[:, 2] - around[:, 0])[:, np.newaxis]

@@ -1,7 +1,7 @@
-"""What the JSON file of a scene holds: body, table, start, and the known answer with its errors, in SI units.
+"""Content of the JSON file of a scene: body, table, initial state, and the known answer with errors, in SI.
 
-Everything is along the axes of the laboratory, z up. The origin of a body is its centre of mass; its axes are
-those of `Motion.orientation`, of a stone those of its ellipsoid. docs/engines.md has the keys.
+Vectors are along the axes of the laboratory, z up. The origin of a body is its centre of mass; its axes are
+those of `Motion.orientation`, for a stone those of its ellipsoid. docs/engines.md has the keys.
 """
 
 import math
@@ -20,7 +20,7 @@ from spincyl._scale import Scale
 from spincyl._studio.shape import kind, landing, reach, rotations, skin
 
 VERSION = 1
-#: Of each coefficient of loss: unit, exponents of metre, second and joule, and the couple of its law.
+#: For each coefficient of loss: unit, exponents of metre, second and joule, and the couple of its law.
 _COUPLES: dict[str, tuple[str, tuple[float, float, float], str]] = {
     "eps": ("m", (1, 0, 0), "eps*N*A*sign(q)*h/s"),
     "c": ("N m s", (0, 1, 1), "c*A**2*q*h/s"),
@@ -44,14 +44,14 @@ _PATCH = (
     "-mu p(r) (u + (w.n) n x r)/|u + (w.n) n x r| per area of a disk of radius `patch`, and its moment"
     " about n: p = 3 N/(2 pi patch^2) sqrt(1 - r^2/patch^2)"
 )
-#: Times of phases and impacts, and energies that are lost, are known so well at least, in natural units.
+#: Least error of the times of phases and impacts and of lost energies, in natural units.
 _LEAST = 1e-11
-#: The friction that a scene of rolling has, unless the motion says: at least, over what it needs, at most.
+#: Friction of a scene of rolling whose motion has no `mu`: least value, ratio to the needed value, largest.
 _MU = 1.0, 1.5, 1e3
 
 
 def scene_data(m: Motion, scale: Scale, t0: float) -> dict[str, Any]:
-    """The scene of a motion in natural units that has poses and forces, and begins at the time `t0`."""
+    """The scene of a motion in natural units with poses and forces, whose initial state is at time `t0`."""
     metre, second, joule = (float(x) for x in (scale.metres(1.0), scale.seconds(1.0), scale.joules(1.0)))
     w, v = moving(m)
     known = _known(m, metre, second, joule, w, v, t0)
@@ -79,7 +79,7 @@ def moving(m: Motion) -> tuple[Floats, Floats]:
     if isinstance(m, EllipsoidMotion):
         turned = rotations(m.orientation)
         w = np.einsum("nij,nj->ni", turned, m.w)
-        # a slip is along the axes in which the smallest turn from upright gives the stone this vertical
+        # slip is along the x and y from which the smallest rotation gives the stone this vertical
         x, y, z = m.vertical.T
         least = np.column_stack([y, -x, np.zeros(x.size), 1 + z])
         least[z == -1] = [1.0, 0.0, 0.0, 0.0]
@@ -146,7 +146,7 @@ def _body(body: Body | Ellipsoid, scale: Scale, metre: float) -> dict[str, Any]:
 
 
 def _rims(body: Body, metre: float) -> dict[str, Any]:
-    """The shape of a body of revolution, as far as it touches: one circle or two, swollen by the fillet."""
+    """The parts of a body of revolution that can touch: one or two circles, swollen by the fillet."""
     middle, wall, fillet, rim, bore = (x * metre for x in skin(body))
     both = two_rims(body)
     heights = [-wall, wall] if both else [middle if kind(body) == "ball" else -float(body.ell) * metre]
@@ -209,12 +209,12 @@ def friction_needed(m: Motion, t0: float) -> float:
 def _known(
     m: Motion, metre: float, second: float, joule: float, w: Floats, v: Floats, t0: float
 ) -> dict[str, Any]:
-    """The answer; NaN where the contact has no single point or force."""
+    """The known answer; NaN where the contact has no single point or force."""
     weight, extra = joule / metre, m._extra
     phase = extra.get("phase", np.zeros(m.t.size, int))
     both = phase >= KINDS.index("lying")
     normal = m.normal + np.where(both, extra.get("normal_other", 0.0), 0.0)
-    # where a body leaves the table at once, a table that pulled would hold it
+    # where N < 0 the body leaves the table at once, and there is no force
     leaves = normal < 0
     force = np.where(both[:, None], np.nan, np.where(leaves[:, None], 0.0, m.contact_force))
     point = np.column_stack([m.contact_point, np.zeros(m.t.size)])
@@ -262,9 +262,9 @@ def _known(
 
 
 def _errors(m: Motion, metre: float, second: float, joule: float, w: Floats, v: Floats) -> dict[str, Any]:
-    """Bounds of the errors at any time, from what the motion claims of states, poses and forces.
+    """Bounds of the errors at any time, from the estimated errors of states, poses and forces.
 
-    To first order: a state is off by `e`, its directions in space by `e + p`.
+    To first order: the error of a state is `e`, that of its directions in space `e + p`.
     """
     e, p, far = m.error, m.pose_error, reach(m.body)
     root, turned = math.sqrt(3.0), e + p

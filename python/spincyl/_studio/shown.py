@@ -32,10 +32,10 @@ class Shown(NamedTuple):
     path: Floats  #: (k, 3) of the contact point
     along: Floats  #: (k,) times of these
     slips: np.ndarray  #: (k,) whether the contact slips there
-    gaps: np.ndarray  #: (k,) whether there is no path: in the air, and where another rim takes over
+    gaps: np.ndarray  #: (k,) whether there is no path: in the air, and where the other rim takes over
     turned: Floats  #: (k,) turns about the vertical at `along`
-    vectors: Vectors | None  #: with arrows or an axis
-    sizes: dict[str, float]  #: of these, for an arrow of the usual length
+    vectors: Vectors | None  #: None without arrows and axis
+    sizes: dict[str, float]  #: magnitudes of the vectors that get an arrow of usual length
     pieces: list[Piece]
     ink: list[Part]
     caster: Caster
@@ -47,7 +47,7 @@ class Shown(NamedTuple):
 def shown(
     m: Motion, times: Floats, upper: Letter, drawn: tuple[str, ...] = (), *, coarse: bool = False
 ) -> Shown:
-    """The motion at the times of frames, with what is drawn besides the body."""
+    """The motion at the times of frames, with its lines and vectors."""
     first, last = sorted(span(m))
     arrows = bool({*drawn} - {"path"})
     centre, orientation, theta = seen(m, np.clip(times, first, last), "centre", "orientation", "theta")
@@ -91,7 +91,7 @@ def shown(
 
 
 def _turned(m: Motion, along: Floats) -> Floats:
-    """Turns about the vertical at ascending times; of a stone the integral of its spin."""
+    """Turns about the vertical at ascending times; for a stone the integral of its spin."""
     if not isinstance(m.body, Ellipsoid):
         found: Floats = seen(m, along, "phi")[0] / (2 * np.pi)
         return found
