@@ -170,7 +170,7 @@ def test_steps_are_seconds_and_so_is_the_advice():
     assert np.array_equal(m.theta, plain.theta) and m.advice == pytest.approx(plain.advice * second)
     assert "step 0.0001 s" in m.message
     coarse = 2.0 * plain.advice * second
-    with pytest.warns(sc.StepWarning, match=f"^step = {coarse!r}: .*; take step={m.advice:.2e}"):
+    with pytest.warns(sc.StepWarning, match=f"^step = {coarse!r}: .*; give step={m.advice:.2e}"):
         sc.roll(TUBE, START, 0.5, step=coarse)
     with pytest.raises(
         ValueError, match=r"^step = 0\.1 s is too large at t = 0 s, .*: use a step of 0\.00566 s"

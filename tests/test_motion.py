@@ -220,7 +220,7 @@ def test_a_step_that_would_lie_is_refused_and_a_doubtful_one_warned_of():
     nearly_flat = sc.State(0.3, 1.3e-5, 0, 0)
     with pytest.raises(ValueError, match=r"step = 0.01 is too large at t = 1.46.*use a step of .*, or tol="):
         sc.roll(can, nearly_flat, 2.9, step=0.01)
-    with pytest.warns(sc.StepWarning, match="take step=.*, or tol="):
+    with pytest.warns(sc.StepWarning, match="give step=.*, or tol="):
         m = sc.roll(CYLINDER, START, 20, step=0.4)
     assert m.error > 1e-6
     # the proposed step causes no warning

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 class StepWarning(UserWarning):
-    """The fixed step is too large: RK4 damps the nutation, or gives the precession inaccurately."""
+    """The fixed step of RK4 is so long that it damps the nutation or makes the precession inaccurate."""
 
 
 def is_stone(body: object) -> TypeGuard["Ellipsoid"]:
@@ -243,6 +243,6 @@ def roll(
     if m.coarse:
         why = f"RK4 damps the nutation by {100 * m.step_loss:.3g} % of its amplitude"
         if m.step_loss <= 1e-3:
-            why = "a step has more than 0.3 rad of precession or 0.5 rad of nutation"
-        warn(f"step = {step!r}: {why}; take step={m.advice:.2e}, or tol=", StepWarning)
+            why = "the precession advances by more than 0.3 rad, or the nutation by 0.5 rad, in a step"
+        warn(f"step = {step!r}: {why}; give step={m.advice:.2e}, or tol=", StepWarning)
     return shortened(m)

@@ -1,6 +1,6 @@
-"""Cards in a notebook: a drawing of the tilted body, and a table of the main numbers.
+"""Cards in a notebook: a drawing of the inclined body, and a table of the main numbers.
 
-A card takes the colour of the text around it and has no script; its text is escaped.
+A card has the colour of the text around it and no script; its text is escaped.
 """
 # ruff: noqa: RUF001 (Greek, for people to read)
 
@@ -92,7 +92,7 @@ def state(found: State) -> str:
 
 
 def motion(found: Motion) -> str:
-    """The card of a motion: the body at its start, and the range of its inclination."""
+    """The card of a motion: the body in its initial state, and the range of its inclination."""
     rows, reached = _motion(found)
     if found.scale is not None:
         turns = (
@@ -113,7 +113,7 @@ def stone_motion(found: EllipsoidMotion) -> str:
 
 
 def _motion(found: Motion) -> tuple[list[tuple[str, str]], tuple[float, ...]]:
-    """The rows of any motion, and the inclinations between which the body nods."""
+    """Rows that all motions have, and the inclinations between which the body nods."""
     rows = [("body", repr(found.body)), ("contact", named(found.contact))]
     if found.losses is not None:
         rows.append(("losses", titled(found.losses, found.scale)))
@@ -200,7 +200,7 @@ def drawing(of: Body | None, theta: float, label: str, others: Iterable[float] =
         shapes = [_silhouette(ell, x) for x in drawn]
     else:
         shapes = [_round(rounded, x, 8 if k else 4) for k, x in enumerate(drawn)]
-    # points are complex numbers, in R, with the contact at 0; the body leans to the right
+    # points are complex numbers, in R, with the contact point at 0; the axis is inclined to the right
     across, up = 1j * _axis(thetas[0]), _axis(thetas[0])
     end, half = across + 2 * ell * up, ell
     if rounded is not None:
@@ -208,7 +208,7 @@ def drawing(of: Body | None, theta: float, label: str, others: Iterable[float] =
         across = _centre(rounded, thetas[0]) + (middle - half) * up
         end = across + 2 * half * up
     unit = _SIZE / (2 * max(half, 1.0))
-    reach = 0.3 * _SIZE / unit  # of the angle's arc, which is drawn at the upper end
+    reach = 0.3 * _SIZE / unit  # radius of the arc that shows the angle, at the upper end
     far = [p for shape in shapes for p in shape] + [end + 1.2 * reach * up, end + 1.6j * reach]
     left, right = unit * min(p.real for p in far) - _ROOM, unit * max(p.real for p in far) + _ROOM
     top = unit * max(p.imag for p in far)
@@ -247,18 +247,18 @@ def drawing(of: Body | None, theta: float, label: str, others: Iterable[float] =
 
 
 def _axis(theta: float) -> complex:
-    """Unit vector that leans to the right of the vertical by `theta`."""
+    """Unit vector at the angle `theta` to the right of the vertical."""
     return complex(math.sin(theta), math.cos(theta))
 
 
 def _silhouette(ell: float, theta: float) -> list[complex]:
-    """The corners of a cylinder seen from the side: the contact, then round the lower and the upper face."""
+    """The corners of a cylinder seen from the side: the contact point, then the lower and the upper face."""
     across, up = 2j * _axis(theta), 2 * ell * _axis(theta)
     return [0j, across, across + up, up]
 
 
 def _centre(of: Body, theta: float) -> complex:
-    """The centre of mass of a body with a fillet, relative to its contact."""
+    """The centre of mass of a body with a fillet, relative to its contact point."""
     rim = 1 - float(of.fillet)
     return 1j * rim * _axis(theta) + float(of.ell) * _axis(theta) + 1j * float(of.fillet)
 
@@ -287,7 +287,7 @@ def _angle(x: Reals) -> str:
 
 
 def span(theta: Floats) -> str:
-    """The least and the greatest angle in degrees; of a single angle only that."""
+    """The least and the greatest angle in degrees, or a single angle."""
     if theta.size == 1:
         return f"{math.degrees(theta.item()):.4g}°"
     return f"{math.degrees(theta.min()):.4g}° to {math.degrees(theta.max()):.4g}°"

@@ -12,8 +12,8 @@ import numpy as np
 from spincyl._input.numbers import Floats
 from spincyl._studio.shape import Part
 
-#: Darkness of the full shadow; points of the lamp, and more for a body high above the table, where shadows of
-#: few would be seen apart.
+#: Darkness of the full shadow; number of points of the lamp, and a larger one for a body high above the
+#: table, where the shadows from a few points would be visible one by one.
 DARK = 0.24
 LAMPS, MANY = 12, 32
 

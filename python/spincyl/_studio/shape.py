@@ -1,7 +1,7 @@
 """Drawn shapes of bodies: triangles of the surface and of the two marks, O and X, in units of R.
 
 The axes are those of `Motion.orientation`: the origin is the centre of mass, the third axis is the axis of
-symmetry, and at the start the first axis points to the top of the rim. The upper end is at z = ell + fillet.
+symmetry, and initially the first axis points to the top of the rim. The upper end is at z = ell + fillet.
 The page, the photograph, the glTF file and the scenes for engines share this geometry; the page turns the
 profiles itself, so that only profiles are stored.
 
@@ -82,7 +82,7 @@ def reach(body: Body | Ellipsoid) -> float:
 
 
 def size(body: Body | Ellipsoid) -> float:
-    """Radius round the centre of a body that a camera has to show."""
+    """Radius of the sphere about the centre of a body that a camera has to show."""
     if isinstance(body, Ellipsoid) or body._parts:
         return reach(body)
     return math.hypot(1.0, float(body.ell))
@@ -189,7 +189,7 @@ def _ball(body: Body) -> list[Profile]:
 
 
 def marks(body: Body | Ellipsoid, upper: Letter = "O") -> list[Part]:
-    """The two marks; `upper` is the letter on the upper end, or the colour of a stone's first mark."""
+    """The two marks; `upper` is the symbol on the upper end, or the colour of the first mark of a stone."""
     one_of("upper", upper, ("O", "X"))
     if isinstance(body, Ellipsoid):
         return stone_shape.marks(body, upper)

@@ -4,12 +4,12 @@ The origin is the centre of mass. A stone with an edge is cut by the plane of th
 
     z = -a3^2 cos(theta_end)/hypot(a sin(theta_end), a3 cos(theta_end))
 
-above the centre, where a is the one of a1 and a2 that gives the larger z; so everything that touches the
+above the centre, where a is a1 or a2, whichever gives the larger z, so that everything that touches the
 table is drawn. A needle lies on the plane along the longer axis, and a stripe in its colours surrounds the
 hull. A whole stone has a band round its longer side and a dot beside the band, which show any rotation.
 
-As for other bodies the corners lie on the true surface. The drawn ball lies at most 6e-4 inside the true
-one, and the stone by that share of the height of its centre above the table.
+As for other bodies, the corners lie on the true surface. The drawn unit ball lies at most 6e-4 inside the
+true one, and a drawn stone at most that share of the height of its centre above the table.
 """
 
 import math
