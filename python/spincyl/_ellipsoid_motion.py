@@ -23,8 +23,8 @@ from spincyl._phases import phases, rubs
 class EllipsoidMotion(Motion):
     """Motion of a stone: times, states, and how the motion ended; the result of `roll` for an `Ellipsoid`.
 
-    Attributes, optional outputs and units are those of `Motion`, with the largest semi-axis a in place of R,
-    except that `theta` is the inclination of axis 3, and `w` (n, 3) has components along the axes of the
+    Attributes, optional outputs and units are those of `Motion`, with the largest semi-axis a in place of R.
+    Here `theta` is the inclination of axis 3, and `w` (n, 3) has components along the axes of the
     ellipsoid. There are no angles phi and psi; `orientation` has the rotation of the stone. With `tol` above
     1e-7 the error may be twice the estimated error. The errors of a rattling stone grow fast; see
     `known_until`.

@@ -65,7 +65,7 @@ def portrait(
         Half lengths over the outer radius, bores and fillets of uniform tubes, as in `Body.tube`. `ell` may
         also be a `Body`: a tube, or tubes that differ in one of the three; the map of measured tubes is in
         SI, with lengths in metres. If an axis is backed by dask, the result is lazy: nothing is computed
-        before `compute` or `save` asks for it.
+        before a call of `compute` or `save`.
     want : str or iterable of str
         Quantities to compute; others cost nothing: "rate", "kappa_rolling", "kappa_smooth", "energy" (see
         `Body.rate`, `Body.stability`, `Body.energy`) and "region" (see `Region`).

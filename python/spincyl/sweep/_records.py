@@ -80,7 +80,7 @@ def recorded(store: Store) -> list[Record]:
     Raises
     ------
     FileExistsError
-        If the folder holds anything, but no records; or if the path is no folder.
+        If the folder has files but no records, or the path is not a folder.
     ValueError
         If all records are damaged.
     """

@@ -83,7 +83,7 @@ def roll(
     bodies : Body or Ellipsoid
         Family of bodies, or of stones (see the Notes). The fields of bodies and states broadcast against each
         other: NumPy arrays by shape, xarray's by the names of their dimensions. If any field is backed by
-        dask, the result is lazy: nothing is computed before `compute` or `save` asks for it.
+        dask, the result is lazy: nothing is computed before a call of `compute` or `save`.
     states : State or EllipsoidState
         Initial states at time 0, in natural units, also for measured bodies. Stones need an `EllipsoidState`.
     t : float or array_like, 1-D
@@ -93,8 +93,8 @@ def roll(
     want : str or iterable of str, optional
         Outputs to compute. Default: "final" if `t` is a number, "states" if `t` is an array.
 
-        - Always: "states" (theta, w1, w2, w3 at each of an array of times; NaN after the end of a
-          motion), "final" (the last of these, or the state at the end of a motion that ends before), "end"
+        - Always: "states" (theta, w1, w2, w3 at all times of an array; NaN after the end of a motion),
+          "final" (theta, w1, w2, w3 at the last time, or at the end of a motion that ends before), "end"
           (time of the end).
         - Without friction, losses and restitution: "theta_min", "theta_max", "normal_min" (per weight) and
           "friction_coefficient_max" (the largest that rolling needs; infinite if the normal force vanishes),
@@ -115,7 +115,7 @@ def roll(
         friction or losses `tol` is the tolerance of each step of the integrator. `error` has the estimated
         errors.
     step : float, optional
-        Fixed step of RK4, in sqrt(R/g), which then replaces the first integrals. `error` is the difference
+        Fixed step of RK4, in sqrt(R/g), which replaces the first integrals. `error` is then the difference
         from the first integrals.
     mu : float
         Largest coefficient of friction that rolling may need. A motion ends with `Status.SLIP` where rolling
@@ -132,8 +132,8 @@ def roll(
     losses : Loss, optional
         Law of `spincyl.loss` that takes energy, or several added with ``+``, with any contact; coefficients
         may be arrays that broadcast with the rest. Motions continue until the contact point stops
-        (`Status.STOPS`) or the face lands (`Status.FACE`). Rolling and frictionless motions are computed
-        eight at a time, each with its own steps; with a law of friction each is computed alone.
+        (`Status.STOPS`) or the face lands (`Status.FACE`). Motions that roll or slide without friction are
+        computed eight at a time, each with its own steps; motions that slip with friction, one at a time.
     threads : int, optional
         Number of threads. Default: RAYON_NUM_THREADS, else every core that this process may use; in a dask
         block, 1.
@@ -174,8 +174,8 @@ def roll(
     Notes
     -----
     Chaplygin, Appell and Korteweg found the first integrals; docs/physics.md has the equations. Each motion
-    is a power series about its initial state, with as many terms as the width of the swing needs; the cost
-    does not grow with time. docs/benchmarks.md has the times and the errors.
+    is computed from a power series about its initial state, with as many terms as the width of the swing
+    needs; the cost does not grow with time. docs/benchmarks.md has measured times and errors.
 
     Stones have no first integrals. Each is integrated alone, twice, to estimate its error. `t` is a number,
     at least 0, in sqrt(a/g); `step`, `beyond`, `restitution` and `stop_at` are not available. The outputs are

@@ -59,9 +59,9 @@ def save(
     TypeError
         If `result` is not a lazy result of this module.
     ValueError
-        If the store at `path` or its ".sweep" belongs to another sweep or another version (the message names
-        the first difference), if all records in the store are damaged, or if `path` has no name of its own,
-        such as ".".
+        If the store at `path` or its ".sweep" belongs to another sweep or another version; the message names
+        the first difference. If all records in the store are damaged. If `path` has no name of its own, such
+        as ".".
     OSError
         If a file cannot be written; the message has the path. What has been written stays valid, and a later
         call resumes. BlockingIOError if another process or thread is saving to the store now;
