@@ -44,7 +44,7 @@ def test_a_comparison_of_turns_a_second_is_that_of_the_reduced_rates(body):
         (
             {"body": sc.Body.solid(6.0), "hertz": HERTZ},
             ValueError,
-            "^body: its size is not known: make it by sc.measured",
+            "^body: its size is not known; make it with sc.measured",
         ),
     ],
 )

@@ -119,14 +119,16 @@ def test_a_rounded_tube_is_as_long_as_it_was_measured():
 
 def test_frames_too_few_are_counted_in_words():
     tracks = filmed()
-    with pytest.raises(ValueError, match="two frames given, three needed"):
+    with pytest.raises(ValueError, match="expected at least three frames with both ends, not two"):
         sc.data.from_above(changed(tracks, lambda v: v[:2]), TUBE)
     seen = np.arange(40) < 1
     empty = {
         name: {k: v if k == "t" else np.where(seen, v, np.nan) for k, v in c.items()}
         for name, c in tracks.items()
     }
-    with pytest.raises(ValueError, match="one frame given, three needed; in 39 rows"):
+    with pytest.raises(
+        ValueError, match="expected at least three frames with both ends, not one; in 39 rows"
+    ):
         sc.data.from_above(empty, TUBE)
 
 
@@ -134,13 +136,13 @@ def test_what_is_no_film_of_both_ends_is_refused_with_what_would_be_right():
     tracks = filmed()
     twice = {k: {n: np.r_[v, v[:3] + (n != "t") * 0.01] for n, v in c.items()} for k, c in tracks.items()}
     for wrong, said in (
-        (({"O": tracks["O"]}, TUBE), r"one track \('O'\) given, two needed"),
-        (({}, TUBE), "no track given, two needed"),
+        (({"O": tracks["O"]}, TUBE), r"expected two tracks, not one \('O'\)"),
+        (({}, TUBE), "expected two tracks, not none"),
         (({"a": 1, "b": 2, "c": 3}, TUBE), "'a', 'b', 'c'.*ends="),
-        (({"O": {"t": [0, 1]}, "X": tracks["X"]}, TUBE), "no column 'x'; there are 't'"),
+        (({"O": {"t": [0, 1]}, "X": tracks["X"]}, TUBE), "expected a column 'x'; there are 't'"),
         (
             ({n: {"t": c["t"], "x (px)": c["x"], "y": c["y"]} for n, c in tracks.items()}, TUBE),
-            "x is in 'px'",
+            "unit 'px' of x",
         ),
         ((changed(tracks, lambda v: 100 * v), TUBE), "times as long as the tube; are x and y in cm"),
         ((changed(tracks, lambda v: v / 0.3048), TUBE), "are x and y in ft"),
@@ -150,14 +152,14 @@ def test_what_is_no_film_of_both_ends_is_refused_with_what_would_be_right():
         ),
         ((changed(tracks, lambda v: 5e4 * v), TUBE), "in pixels"),
         ((changed(tracks, lambda v: 1e-3 * v), TUBE), "is the tube in metres"),
-        ((twice, TUBE), "two places at t = 0"),
-        (({"O": tracks["O"], "X": tracks["O"]}, TUBE), "one place"),
+        ((twice, TUBE), "two positions at t = 0"),
+        (({"O": tracks["O"], "X": tracks["O"]}, TUBE), "the same place"),
         ((filmed(hertz=TURNS * 2.05), TUBE), "film more frames a second"),
         ((tracks, CYLINDER), "give scale="),
     ):
         with pytest.raises(ValueError, match=said):
             sc.data.from_above(*wrong)
-    with pytest.raises(ValueError, match="ends: no track 'Z'; there are 'O', 'X'"):
+    with pytest.raises(ValueError, match="ends: no track is called 'Z'; expected two of 'O', 'X'"):
         sc.data.from_above(tracks, TUBE, ends=("O", "Z"))
     with pytest.raises(ValueError, match="ruler"):
         sc.data.from_above(tracks, TUBE, ruler=1.0)

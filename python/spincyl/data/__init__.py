@@ -1,4 +1,4 @@
-"""Measured data: tables and sound are read; steady states and spin-downs are compared with a body's own."""
+"""Measured data: read tables and sound, and compare steady states and spin-downs with those of a body."""
 
 from spincyl.data._above import Filmed, from_above
 from spincyl.data._columns import Columns

@@ -23,45 +23,45 @@ from spincyl.data._tracker import read_tracker
 
 _METRES = {"": 1.0, "m": 1.0, "cm": 1e-2, "mm": 1e-3, "in": 0.0254, "inch": 0.0254, "ft": 0.3048}
 _SECONDS = {"": 1.0, "s": 1.0, "sec": 1.0, "seconds": 1.0, "ms": 1e-3, "min": 60.0}
-_RULER = 1.05  # times the tube's length: a longer line is refused, since noise does not explain it
-_SHORT = 0.0105  # times the tube's length: a shorter line is refused, since a unit is probably wrong
+_RULER = 1.05  # times the tube's length: a longer line raises an error, since noise does not explain it
+_SHORT = 0.0105  # times the tube's length: a shorter line raises an error, since a unit is probably wrong
 _FAR = math.radians(10.0)  # an inclination farther than this from every steady one causes a warning
-_FARTHEST = 1e12  # metres or seconds: larger numbers are refused
+_FARTHEST = 1e12  # metres or seconds: larger numbers raise an error
 _WANDERS = 0.3  # radians: a direction that deviates more from uniform rotation causes a warning
 
 
 @compared
 class Filmed(NamedTuple):
-    """A steady state of a tube as a film from above shows it; from `from_above`."""
+    """Steady state of a tube, measured in a film from above; returned by `from_above`."""
 
     body: Body
     scale: Scale
-    t: Floats  #: (n,) seconds, ascending, where both ends were seen
-    direction: Floats  #: (n,) of the line from the second end to the first, radians, unwrapped
-    line: Floats  #: (n,) its length, metres
-    hertz: float  #: turns per second, positive whichever way it turns
-    hertz_err: float  #: standard error
+    t: Floats  #: (n,) seconds, ascending: the times at which both ends were found
+    direction: Floats  #: (n,) direction of the line from the second end to the first, radians, unwrapped
+    line: Floats  #: (n,) length of this line, metres
+    hertz: float  #: turns per second, positive for both senses of rotation
+    hertz_err: float  #: standard error of `hertz`
     rate: float  #: reduced rate
     rate_err: float
     theta: float  #: inclination, radians; NaN where the line is longer than the tube
     theta_err: float
     inclinations: Floats  #: (k,) steady inclinations of the body at this rate, ascending
-    unseen: int  #: rows in which an end was not found
+    unseen: int  #: number of rows in which an end was not found
 
     @property
     def predicted(self) -> float:
-        """The body's inclination at this rate that is nearest to the one seen; NaN if there is none."""
+        """Steady inclination at this rate that is nearest to the measured one; NaN if there is none."""
         if not self.inclinations.size:
             return math.nan
         near = math.pi / 2 if math.isnan(self.theta) else self.theta
         return float(self.inclinations[np.abs(self.inclinations - near).argmin()])
 
     def report(self) -> str:
-        """What was seen, with its errors, and what the body would do, as lmfit writes it."""
+        """Measured values with their errors, and the steady inclination, as a report in lmfit's style."""
         turns = float(np.ptp(self.direction)) / (2 * math.pi)
         rows = [
             ("body", repr(self.body)),
-            ("frames", f"{self.t.size}, and {self.unseen} in which an end was not found"),
+            ("frames", f"{self.t.size}, and {self.unseen} more in which an end was not found"),
             ("film", f"{turns:.3g} turns in {float(np.ptp(self.t)):.4g} s"),
         ]
         degrees = [math.degrees(x) for x in (self.theta, self.theta_err, self.predicted)]
@@ -92,52 +92,53 @@ def from_above(
     ruler: float = 0.0,
     encoding: str | None = None,
 ) -> Filmed:
-    """Rate and inclination of a tube whose two ends were tracked in a film from straight above.
+    """Measure the rate and inclination of a tube whose two ends were tracked in a film from straight above.
 
     Parameters
     ----------
     tracks : mapping or path
-        By name of the end, its columns t, x and y in seconds and metres: as `read_tracker` gives them, or the
-        file that it reads. Units in brackets, such as "x (cm)", are understood. Empty places are left out.
+        The tracks by name: for each end its columns t, x and y in seconds and metres, as `read_tracker`
+        returns them; or the path of a file for `read_tracker`. Units in brackets, such as "x (cm)", are
+        converted. Rows without a position are left out.
     tube : Body
-        With its size: one from `Body.from_metres`, or measured; any other with `scale`.
+        A single body with a known size: from `Body.from_metres`, measured, or any other with `scale`.
     scale : Scale, optional
-        Size of `tube`, if it does not know its own.
+        Size of `tube`, for a body without one.
     ends : two names, optional
-        Which tracks are the ends. Default: O and X, or the only two.
+        Names of the tracks of the two ends. Default: O and X, or the only two tracks.
     ruler : float
-        Standard error of the film's scale of length as a share, 0.01 for one per cent: near 90 degrees it
-        decides how well the inclination is known.
+        Relative standard error of the film's scale of length, 0.01 for one per cent. Near 90 degrees this
+        error limits the accuracy of the inclination.
     encoding : str, optional
-        Of the text of a file, as of `read_table`.
+        Encoding of the file, as in `read_table`.
 
     Returns
     -------
     Filmed
-        ``.report()`` tells it; ``theta``, ``rate`` and their errors are what `compare` takes.
+        ``.report()`` summarises the measurement; `compare` takes ``theta``, ``rate`` and their errors.
 
     Raises
     ------
     ValueError
-        For fewer than three frames, tracks or columns that are not there, two places at one time, a line much
-        longer than the tube or next to none, turning too fast for the frames, and a tube of unknown size.
+        For fewer than three frames, missing tracks or columns, two positions at one time, a line much longer
+        or very much shorter than the tube, a tube that turns too fast for the frames, or has no known size.
     TypeError
-        For anything but tracks, a body and numbers.
+        If an argument is of the wrong type; the message names it.
     OSError
-        For a file that cannot be read.
+        If the file cannot be read.
 
     Warns
     -----
     UserWarning
-        Where the line is a little longer than the tube, so that it is not known how far from 90 degrees it
-        was; where the direction does not turn evenly; and where it is far from every steady state of this
-        rate.
+        If the line is a little longer than the tube, so that the distance from 90 degrees is not known; if
+        the direction does not turn evenly; or if the inclination is far from every steady state at this rate.
 
     Notes
     -----
-    The rate is the slope of the direction, by least squares; errors are from the scatter about it, larger
-    where neighbours err together. The inclination follows from the median of the lengths. A tube that turns
-    by more than half a turn from frame to frame cannot be told from one that turns slowly back.
+    The rate is the slope of the direction, by least squares. Its error follows from the scatter, and is
+    larger if the errors of neighbouring frames are correlated. The inclination follows from the median of the
+    lengths. From frame to frame the tube has to turn by less than half a turn, since a faster rotation looks
+    like a slow one backwards.
 
     Examples
     --------
@@ -150,11 +151,11 @@ def from_above(
     body, scale = with_size("tube", tube, scale)
     ruler = number("ruler", ruler)
     if not 0 <= ruler < 0.5:
-        raise ValueError(f"ruler = {ruler!r}: expected a share from 0 to 0.5, such as 0.01 for one per cent")
+        raise ValueError(f"ruler = {ruler!r}: expected 0 or more, less than 0.5; 0.01 is one per cent")
     if isinstance(tracks, str | PathLike):
         tracks = read_tracker(tracks, encoding=encoding)
     if not isinstance(tracks, Mapping):
-        raise TypeError(f"tracks: expected tracks by name, or a path, not {type(tracks).__name__}")
+        raise TypeError(f"tracks: expected a dict of tracks, or a path, not {type(tracks).__name__}")
     first, second = (_track(tracks, name) for name in _ends(tracks, ends))
     t, between, unseen = _between(first, second)
     tall = float(scale.metres(2.0 * (body.ell + body.fillet)))
@@ -186,8 +187,8 @@ def from_above(
     if off > max(_FAR, 5 * found.theta_err) or math.isnan(found.predicted):
         steady = f"steady at {math.degrees(found.predicted):.3g} degrees" if off > 0 else "never steady"
         warnings.warn(
-            f"it was seen at {math.degrees(theta):.3g} degrees, but at {hertz:.4g} turns a second this tube"
-            f" is {steady}: is t in seconds, and is the radius right?",
+            f"the tube was seen at {math.degrees(theta):.3g} degrees, but at {hertz:.4g} turns a second it is"
+            f" {steady}: is t in seconds, and is the radius right?",
             UserWarning,
             stacklevel=2,
         )
@@ -195,17 +196,17 @@ def from_above(
 
 
 def with_size(name: str, body: Any, scale: Scale | None) -> tuple[Body, Scale]:
-    """A single body and its scale: the given one, its own, or that of the measures that made the body."""
+    """A single body and its scale: the given one, its own, or that of the measures it was made from."""
     if not isinstance(body, Body):
         raise TypeError(f"{name}: expected a Body, not {type(body).__name__}")
     if not is_scalar(*body._numbers):
-        raise ValueError(f"{name}: expected a single body, not an array of them")
+        raise ValueError(f"{name}: expected a single body, not a family")
     found = scale_of(scale, body)
     if found is None and body._measured:
         found = Scale(radius=float(body._measured["outer_diameter"]) / 2)
     if found is None:
         more = ", or give scale=" if name == "tube" else ""
-        raise ValueError(f"{name}: its size is not known: make it by sc.measured{more}")
+        raise ValueError(f"{name}: its size is not known; make it with sc.measured{more}")
     return body, found
 
 
@@ -215,9 +216,8 @@ def _ends(tracks: Mapping[str, Any], ends: Sequence[str] | None) -> tuple[str, s
     if ends is None:
         found = ["O", "X"] if {"O", "X"} <= tracks.keys() else list(tracks)
         if len(found) != 2:
-            many = f"{counted(len(found))} track{'s' * (len(found) > 1)}" if found else "no track"
-            many += f" ({known})" if found else ""
-            raise ValueError(f"tracks: {many} given, two needed: name them, as in ends=('O', 'X')")
+            many = f"{counted(len(found))} ({known})" if found else "none"
+            raise ValueError(f"tracks: expected two tracks, not {many}; name them, as in ends=('O', 'X')")
     else:
         try:
             found = list(ends)
@@ -228,7 +228,7 @@ def _ends(tracks: Mapping[str, Any], ends: Sequence[str] | None) -> tuple[str, s
             raise ValueError(f"ends = {ends!r}: expected the names of two tracks, as in ends=('O', 'X')")
         for name in found:
             if name not in tracks:
-                raise ValueError(f"ends: no track {name!r}; there are {known}")
+                raise ValueError(f"ends: no track is called {name!r}; expected two of {known}")
     return found[0], found[1]
 
 
@@ -236,7 +236,7 @@ def _track(tracks: Mapping[str, Any], name: str) -> tuple[Floats, Floats]:
     """Times in seconds and positions x + iy in metres of a track."""
     columns = tracks[name]
     if not hasattr(columns, "keys"):
-        raise TypeError(f"tracks[{name!r}]: expected columns by name, not {type(columns).__name__}")
+        raise TypeError(f"tracks[{name!r}]: expected a dict of columns, not {type(columns).__name__}")
     if not isinstance(columns, Columns):
         columns = Columns((str(key), columns[key]) for key in list(columns.keys()))
     found: list[Floats] = []
@@ -245,22 +245,22 @@ def _track(tracks: Mapping[str, Any], name: str) -> tuple[Floats, Floats]:
         key = next((k for k in others if k in columns), None)
         if key is None:
             there = ", ".join(map(repr, columns))
-            raise ValueError(f"tracks[{name!r}]: no column {wanted!r}; there are {there}")
+            raise ValueError(f"tracks[{name!r}]: expected a column {wanted!r}; there are {there}")
         unit = columns.units[key]
         if unit not in units:
             known = ", ".join(u for u in units if u)
-            raise ValueError(f"tracks[{name!r}]: {key} is in {unit!r}; expected one of {known}")
+            raise ValueError(f"tracks[{name!r}]: unit {unit!r} of {key}: expected one of {known}")
         values = np.asarray(reals(f"tracks[{name!r}][{key!r}]", columns[key]), np.float64)
         if np.any(np.abs(values[np.isfinite(values)]) > _FARTHEST):
-            raise ValueError(f"tracks[{name!r}]: {key} has numbers beyond {_FARTHEST:g}")
+            raise ValueError(f"tracks[{name!r}]: expected numbers up to {_FARTHEST:g} in {key}")
         if values.ndim != 1 or (found and values.shape != found[0].shape):
-            raise ValueError(f"tracks[{name!r}]: expected columns of one length, not {values.shape}")
+            raise ValueError(f"tracks[{name!r}]: expected columns of equal length; {key} has {values.shape}")
         found.append(values * units[unit])
     return found[0], found[1] + 1j * found[2]
 
 
 def _between(first: tuple[Floats, Floats], second: tuple[Floats, Floats]) -> tuple[Floats, Floats, int]:
-    """Ascending times, the vector from the second end to the first, and the number of rows without one."""
+    """Ascending times, the vector from the second end to the first, and the number of rows that lack one."""
     (t, one), (s, two) = (_ordered(*track) for track in (first, second))
     # two files of one film have the same times to the written digits
     fine = 1e-6 + 1e-3 * (float(np.median(np.diff(t))) if t.size > 1 else 0.0)
@@ -271,10 +271,10 @@ def _between(first: tuple[Floats, Floats], second: tuple[Floats, Floats]) -> tup
     unseen = max(len(one), len(two)) - t.size
     if t.size < 3:
         rest = f"; in {unseen} rows an end was not found" if unseen else ""
-        many = f"{counted(t.size)} frame{'s' * (t.size > 1)}" if t.size else "no frame with both ends"
-        raise ValueError(f"tracks: {many} given, three needed{rest}")
+        many = counted(t.size)
+        raise ValueError(f"tracks: expected at least three frames with both ends, not {many}{rest}")
     if not (np.abs(between) > 0).all():
-        raise ValueError("tracks: both ends are at one place; are they two tracks of one mark?")
+        raise ValueError("tracks: both ends are at the same place; are they two tracks of one mark?")
     return t, between, unseen
 
 
@@ -288,7 +288,7 @@ def _ordered(t: Floats, place: Floats) -> tuple[Floats, Floats]:
     differ = np.isfinite(place[same]) & np.isfinite(place[same + 1]) & (place[same] != place[same + 1])
     if differ.any():
         at = t[same[differ][0]]
-        raise ValueError(f"tracks: two places at t = {at:.6g}; are these two films in one table?")
+        raise ValueError(f"tracks: two positions at t = {at:.6g}; does the table contain two films?")
     # of two rows with the same time, keep the one with a position
     lost = np.append(same[~np.isfinite(place[same])], same[np.isfinite(place[same])] + 1).astype(int)
     return np.delete(t, lost), np.delete(place, lost)
@@ -310,12 +310,13 @@ def _share(shares: Floats, ruler: float) -> tuple[float, float]:
         raise ValueError(f"tracks: the line between the ends is {share:.4g} times as long as the tube{hint}")
     if share < _SHORT:
         raise ValueError(
-            f"tracks: the line between the ends is {share:.2g} of the tube's length; is the tube in metres?"
+            f"tracks: the line between the ends has only {share:.2g} of the tube's length; is the tube in"
+            " metres?"
         )
     if share > 1:
         warnings.warn(
-            f"the line between the ends is longer than the tube by {100 * (share - 1):.2g} %: how far it was"
-            " from 90 degrees is not known; film from the side as well",
+            f"the line between the ends is longer than the tube by {100 * (share - 1):.2g} %, so that the"
+            " distance from 90 degrees is not known; film from the side as well",
             UserWarning,
             stacklevel=3,
         )
@@ -330,8 +331,8 @@ def _turning(t: Floats, between: Floats) -> tuple[float, float, Floats]:
     most = abs(slope) * float(np.median(gaps))
     if most > 0.9 * math.pi:
         raise ValueError(
-            f"tracks: it turns by {most / (2 * math.pi):.2g} of a turn from frame to frame, so that one sense"
-            " cannot be told from the other; film more frames a second"
+            f"tracks: the tube turns by {most / (2 * math.pi):.2g} of a turn from frame to frame, too much to"
+            " tell the two senses of rotation apart; film more frames a second"
         )
     direction = np.empty_like(t)
     direction[0] = np.angle(between[0])
@@ -348,8 +349,8 @@ def _turning(t: Floats, between: Floats) -> tuple[float, float, Floats]:
     spread = float(rest @ rest) / max(t.size - 2, 1)
     if math.sqrt(spread) > _WANDERS:
         warnings.warn(
-            f"the direction is off an even turning by {math.sqrt(spread):.2g} rad: the tube is not steady, or"
-            " the marks were exchanged on the way",
+            f"the direction deviates from uniform rotation by {math.sqrt(spread):.2g} rad: the tube is not"
+            " steady, or the two marks were exchanged",
             UserWarning,
             stacklevel=3,
         )
