@@ -273,7 +273,7 @@ def test_what_says_nothing_of_the_ratio_is_refused_and_what_fits_badly_is_warned
     theta, rate, *_ = measured(CYLINDER, np.random.default_rng(7))
     upright = np.full(5, np.pi / 2)
     for wrong, said in (
-        ((upright, [1.0, 1.01, 0.99, 1.02, 0.98]), "say nothing"),
+        ((upright, [1.0, 1.01, 0.99, 1.02, 0.98]), "do not determine"),
         (([0.2] * 5, [1.0] * 5), "three different"),
         ((theta, -rate), "rate"),
         ((theta, 0 * rate), "rate"),
@@ -304,7 +304,7 @@ def test_empty_cells_are_left_out_and_what_makes_no_sense_is_refused():
     assert len(sc.data.compare(CYLINDER, theta, rate).theta) == 14
     for wrong, said in (
         ((CYLINDER, theta[:2], rate[:2]), "three different points"),
-        ((CYLINDER, theta, rate[:5]), "one shape"),
+        ((CYLINDER, theta, rate[:5]), "equal shapes"),
         ((CYLINDER, np.degrees(theta), rate), "radians"),
         ((sc.Body.solid([1.0, 2.0]), theta, rate), "single"),
     ):

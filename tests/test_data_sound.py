@@ -105,7 +105,7 @@ def test_what_is_no_recording_is_refused_by_name():
         ((t, torn), "sound: has 2 that are no numbers"),
         ((torn, sound), "t: has 2 that are no numbers"),
         ((uneven, sound), "t: expected evenly spaced"),
-        ((t, sound[:-1]), "t and sound: expected one shape"),
+        ((t, sound[:-1]), "t and sound: expected equal shapes"),
         ((t[::20], sound[::20]), "t: 2.2e\\+03 samples a second"),
     ):
         with pytest.raises(ValueError, match=said):

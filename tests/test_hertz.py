@@ -39,7 +39,7 @@ def test_a_comparison_of_turns_a_second_is_that_of_the_reduced_rates(body):
         ({"rate": HERTZ, "theta_err": 0.1, "hertz_err": 0.1}, TypeError, "^hertz_err: .* give rate_err="),
         ({"hertz": HERTZ, "hertz_err": 0.1}, ValueError, "^theta_err and hertz_err: give both or none"),
         ({"hertz": -HERTZ}, ValueError, "^hertz: expected positive numbers"),
-        ({"hertz": HERTZ[:3]}, ValueError, "^theta and hertz: expected one shape"),
+        ({"hertz": HERTZ[:3]}, ValueError, "^theta and hertz: expected equal shapes"),
         ({"hertz": "fast"}, TypeError, "^hertz: expected real numbers"),
         (
             {"body": sc.Body.solid(6.0), "hertz": HERTZ},

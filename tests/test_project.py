@@ -163,7 +163,7 @@ def test_a_packed_project_has_its_film_beside_it(tmp_path):
         read(tmp_path, packed({"a.trk": TEXT, "b.trk": TEXT}), "film.zip")
     with pytest.raises(ValueError, match="a workbook or a zip file"):
         read(tmp_path, packed({"tube.mp4": b"\0"}), "film.trz")
-    with pytest.raises(ValueError, match="film.trz: a torn zip file"):
+    with pytest.raises(ValueError, match="film.trz: the zip file is damaged"):
         read(tmp_path, raw[:-60], "film.trz")
 
 
@@ -171,7 +171,7 @@ def test_a_packed_project_is_not_unpacked_beyond_the_limit(tmp_path, monkeypatch
     monkeypatch.setattr("spincyl.data._contents.MOST_BYTES", 1_000_000)
     raw = packed({"a.trk": b" " * 1_000_001}, compression=zipfile.ZIP_DEFLATED)
     assert len(raw) < 10_000
-    with pytest.raises(ValueError, match="holds more than"):
+    with pytest.raises(ValueError, match="more than 1"):
         read(tmp_path, raw, "film.trz")
 
 

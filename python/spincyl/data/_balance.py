@@ -18,7 +18,7 @@ from spincyl import _core
 from spincyl._body import Body
 from spincyl._input.numbers import Floats, extra
 
-_ROUNDED = 1e-10  # least scatter, in units of the errors: exact points scatter by their rounding
+_ROUNDED = 1e-10  # smallest scatter, in units of the errors: exact points scatter by rounding
 # two variables whose effects on the points are correlated more than this cannot be told apart
 _ALIKE = 0.9995
 
@@ -101,7 +101,7 @@ class Balance:
     def _resting(self, theta: Floats, precession: Floats) -> tuple[Floats, Floats, float, Floats]:
         """Numbers of the rolling state whose centre is at rest, steady or not, whatever the moments."""
         body, w1 = self.bodies[0]._numbers, precession * np.sin(theta)
-        # where nothing slips, the velocity of the centre across the lean is linear in w1 and w3
+        # for rolling contact the velocity of the centre along e2 is linear in w1 and w3
         by_w1, by_w3 = (
             _core.centre_across(theta, one, 0.0, 1.0 - one, 0.0, 0.0, *body) for one in (1.0, 0.0)
         )

@@ -1,4 +1,4 @@
-"""Columns of a table, whose written names contain their units."""
+"""Columns of a table, whose names in the file contain their units."""
 
 from collections import Counter
 from collections.abc import Iterable, Mapping
@@ -31,7 +31,7 @@ UNITS = frozenset(
 
 
 def cleaned(name: str) -> tuple[str, str]:
-    """The name of a column without comment marks, quotes and unit; and the unit, or "".
+    """The name of a column without comment marks, quotes and unit, and the unit, "" if there is none.
 
     "# degrees" is "degrees"; "t (s)", "t [s]" and "t / s" are "t" in "s".
     """
@@ -46,12 +46,13 @@ def cleaned(name: str) -> tuple[str, str]:
 
 
 class Columns(dict[str, Floats]):
-    """Columns of numbers by their names without units; a name as the file has it is understood, too.
+    """Dict of columns of numbers by name, without the unit; the full name in the file is a key as well.
 
     Attributes
     ----------
     units : dict
-        By name, the unit that the file gives in brackets: "" where there is none. No number is converted.
+        Unit of each column by name, as the file gives it in brackets; "" if there is none. Numbers are not
+        converted.
     """
 
     def __init__(self, columns: Iterable[tuple[str, Floats]] = ()) -> None:
@@ -59,10 +60,10 @@ class Columns(dict[str, Floats]):
             pairs = [(name, values) for name, values in columns]
         except (TypeError, ValueError):
             what = type(columns).__name__
-            raise TypeError(f"columns: expected pairs of a name and an array, not {what}") from None
+            raise TypeError(f"columns: expected pairs (name, array), not {what}") from None
         for name, _ in pairs:
             if not isinstance(name, str):
-                raise TypeError(f"columns: expected names that are text, not {type(name).__name__}")
+                raise TypeError(f"columns: expected names of type str, not {type(name).__name__}")
         bare = [cleaned(name) for name, _ in pairs]
         self.units: dict[str, str] = {}
         self._written: dict[str, str] = {}
@@ -87,14 +88,14 @@ class Columns(dict[str, Floats]):
         return super().__contains__(name) or name in self._written
 
     def get(self, name: str, default: Any = None) -> Any:
-        """The column of this name, or `default`."""
+        """Return the column of this name, or `default`."""
         try:
             return self[name]
         except KeyError:
             return default
 
     def __eq__(self, other: object) -> bool:
-        """Whether names, in any order, numbers, NaN equal to NaN, and units are the same."""
+        """Whether names (in any order), numbers (NaN equal to NaN) and units are the same."""
         if not isinstance(other, Mapping):
             return NotImplemented
         same = dict(self).keys() == dict(other).keys() and key(dict(self)) == key(dict(other))

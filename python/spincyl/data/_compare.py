@@ -23,35 +23,35 @@ if TYPE_CHECKING:
 
 @compared
 class Comparison(NamedTuple):
-    """Measured inclinations and rates beside a body's steady states; from `compare`."""
+    """Measured inclinations and rates compared with the steady states of a body; returned by `compare`."""
 
     body: Body
-    theta: Floats  #: (n,) measured, radians, without what was not measured
+    theta: Floats  #: (n,) measured inclinations, radians, without missing points
     rate: Floats  #: (n,) measured reduced rates
     theta_err: Floats  #: (n,) standard errors
     rate_err: Floats
-    residual: Floats  #: (n,) measured rate less that of the body; NaN where it is forbidden
+    residual: Floats  #: (n,) measured rate minus that of the body; NaN in the forbidden band
     ratio: float  #: the inertia ratio I1/I3 that fits best
     ratio_err: float  #: its standard error
-    expected: float  #: the body's own
+    expected: float  #: the ratio of the body as built
     chi2: float  #: sum of squares over the errors, per degree of freedom
-    factor: float = 1.0  #: that all measured rates have in common, fitted if `common` was given
-    factor_err: float = 0.0  #: its standard error; 0 if it was not fitted
-    correlation: float = math.nan  #: of ratio and factor; NaN if that was not fitted
+    factor: float = 1.0  #: common factor of all measured rates, fitted if `common` was given
+    factor_err: float = 0.0  #: its standard error; 0 if the factor was not fitted
+    correlation: float = math.nan  #: correlation of ratio and factor; NaN if the factor was not fitted
     common: float = 0.0  #: standard error of the factor before the fit
-    alone: float = math.nan  #: the factor that explains the points best with the ratio as built
-    alone_err: float = math.nan
-    alone_chi2: float = math.nan  #: per degree of freedom, of that
-    unit: float = math.nan  #: turns a second of a reduced rate of 1; NaN unless `hertz` was given
+    alone: float = math.nan  #: common factor of the rates that fits best with the ratio as built
+    alone_err: float = math.nan  #: its standard error
+    alone_chi2: float = math.nan  #: chi2 of this second fit, per degree of freedom
+    unit: float = math.nan  #: turns per second of a reduced rate of 1; NaN unless `hertz` was given
 
     @property
     def hertz(self) -> Floats:
-        """(n,) measured turns a second, if they were given."""
+        """(n,) measured turns per second; NaN unless `hertz` was given."""
         return self.rate * self.unit
 
     @property
     def hertz_err(self) -> Floats:
-        """Their standard errors."""
+        """(n,) standard errors of `hertz`."""
         return self.rate_err * self.unit
 
     def __repr__(self) -> str:
@@ -74,17 +74,17 @@ class Comparison(NamedTuple):
         return framed("Comparison", rows, drawing(self.body, middle, "θ"))
 
     def _rates(self) -> str:
-        """The range of the turns a second, if these were given."""
+        """The range of the turns per second, if these were given."""
         low, high = self.hertz.min(), self.hertz.max()
         return "" if math.isnan(self.unit) else f", {low:.4g} to {high:.4g} turns a second"
 
     @property
     def fitted(self) -> Body:
-        """The body with the fitted ratio, at least the 1/2 of a real one; all else stays as it is."""
+        """The body with the fitted ratio, at least 1/2, the limit for real bodies; all else is unchanged."""
         return with_ratio(self.body, max(self.ratio, 0.5))
 
     def plot(self, ax: "Axes | None" = None) -> "Axes":
-        """Draw the measurement with its error bars, the body's branches and the fitted ones."""
+        """Draw the measurement with error bars, and the branches of the body as built and as fitted."""
         shown = self if self.factor == 1 else self._replace(rate=self.rate / self.factor)
         drawn: Axes = above("Comparison.plot")(shown, ax)
         if self.factor != 1:
@@ -92,7 +92,7 @@ class Comparison(NamedTuple):
         return drawn
 
     def report(self) -> str:
-        """What was fitted, with errors and correlation, as lmfit writes it."""
+        """Fitted values with errors and correlation, as a report in lmfit's style."""
         varied = 1 + (self.factor_err > 0)
         rows = [
             ("body", repr(self.body)),
@@ -132,52 +132,52 @@ def compare(
     hertz_err: Reals | None = None,
     common: float = 0.0,
 ) -> Comparison:
-    """How well a body's steady states explain a measurement, and which inertia ratio explains it best.
+    """Compare measured inclinations and rates with a body's steady states, and fit its inertia ratio.
 
     Parameters
     ----------
     body : Body
-        What is believed: aspect ratio and moments. A single one.
+        A single body with the aspect ratio and the moments of inertia as built.
     theta : array_like, 1-D
-        Inclinations in radians, of balls and of what leans further than its side beyond pi/2, too.
+        Inclinations in radians, up to pi/2; beyond for balls, and for bodies with steady states there.
     rate : array_like, 1-D
         Reduced rates: turns per second over `body.critical_hertz`.
     hertz : array_like, 1-D
-        Or turns per second, of a measured body or one from `Body.from_metres`.
+        Turns per second instead of `rate`, for a measured body or one from `Body.from_metres`.
     theta_err, rate_err or hertz_err : array_like, optional
-        Standard errors, both or none. Without, points are weighed by a degree and two per cent, and their
-        scatter gives the error of the ratio.
+        Standard errors, both or none. Default: the points have weights for errors of one degree and two per
+        cent, and their scatter gives the error of the ratio.
     common : float
-        Standard error of a factor that all rates have in common, such as that of the radius or of the film's
-        frames a second: 0.03 for three per cent. The factor is then fitted, too, and the error of the ratio
-        includes what is not known of it. inf: nothing is known. Default: 0, all rates are to scale.
+        Standard error of a factor common to all rates, for example because of the radius or the frame rate of
+        the film: 0.03 for three per cent. The factor is then fitted as well, and the error of the ratio
+        includes its uncertainty. Use inf if nothing is known of the factor. Default: 0, no such factor.
 
     Returns
     -------
     Comparison
-        ``.report()`` tells it.
+        ``.report()`` summarises the fit.
 
     Raises
     ------
     ValueError
-        For fewer than three different points, shapes that differ, rates and errors that are not positive, a
-        fit that fails, and points that say nothing of the ratio, or do not tell it from a common factor.
+        For fewer than three different points, shapes that differ, or rates and errors that are not positive;
+        if the fit fails; if the points do not determine the ratio, or cannot tell it from a common factor.
     TypeError
-        For anything but a body and real numbers.
+        If an argument is not a body or real numbers; the message names it.
     ImportError
-        Without spincyl[lab].
+        If odrpack is missing: install spincyl[lab].
 
     Warns
     -----
     UserWarning
-        If chi2 exceeds 10; if the rates look as if they had a factor in common; and if the ratio is more than
-        three errors from the built one, while a common factor of the rates explains the points as well.
+        If chi2 exceeds 10; if all rates seem to be off by a common factor; or if the ratio is more than three
+        errors from that of the body as built, while a common factor of the rates fits the points as well.
 
     Notes
     -----
-    Orthogonal distance regression (Boggs and Donaldson 1989) by odrpack: both errors count, and the curve is
-    the implicit one on which theta'' vanishes, so that forbidden bands and folds do no harm. Points with an
-    empty theta or rate are left out.
+    The fit is an orthogonal distance regression (Boggs and Donaldson 1989) by odrpack, which takes account of
+    the errors of both variables. The curve is implicit, theta'' = 0, so that it may have forbidden bands and
+    folds. Points with NaN as theta or rate are left out.
 
     Examples
     --------
@@ -194,7 +194,7 @@ def compare(
     rate, rate_err, unit = _reduced(body, rate, rate_err, hertz, hertz_err)
     common = number("common", common)
     if not common >= 0 or 0 < common < 1e-6:
-        raise ValueError(f"common = {common!r}: expected 0, or a share such as 0.03, or inf")
+        raise ValueError(f"common = {common!r}: expected 0, inf, or at least 1e-6, such as 0.03")
     try:
         x = _points(theta, rate, theta_err, rate_err, body)
     except (TypeError, ValueError) as e:
@@ -204,15 +204,18 @@ def compare(
     own = float(body.i1) / float(body.i3)
     curve = Balance(body, *x.values())
     if not curve.tells(("ratio",)):
-        raise ValueError("theta and rate: these points say nothing of I1/I3, as near 90 degrees")
+        raise ValueError(
+            "theta and rate: these points do not determine I1/I3; measure at inclinations farther from 90"
+            " degrees"
+        )
     found = curve.fit(("ratio",))
     alone = curve.fit(("factor",))
     both = curve.fit(("ratio", "factor")) if curve.tells(("ratio", "factor")) else None
     if common > 0:
         if math.isinf(common) and both is None:
             raise ValueError(
-                "common = inf: these points cannot tell a factor of the rates from I1/I3; give its"
-                " standard error"
+                "common = inf: these points cannot tell a factor of the rates from I1/I3; give the standard"
+                " error of the factor"
             )
         free = both if both is not None and math.isinf(common) else curve.fit(("ratio", "factor"), common)
         if not known and not math.isinf(common) and free.chi2 > 0:
@@ -222,7 +225,9 @@ def compare(
     ratio, ratio_err, factor, factor_err = found.told(known)
     # a real body has I3 <= 2 I1; measurement errors may bring the ratio slightly below 1/2
     if not found.success or not ratio + 5 * ratio_err >= 0.5:
-        raise ValueError(f"no real body fits: I1/I3 = {ratio:.3g}; give turns a second as hertz=")
+        raise ValueError(
+            f"theta and rate: no real body fits: I1/I3 = {ratio:.3g}; give turns a second as hertz="
+        )
     said = _doubts(found, alone, both, own, known, fitted=common > 0)
     if said:
         warnings.warn(said, UserWarning, stacklevel=2)
@@ -252,15 +257,15 @@ def compare(
 def _reduced(
     body: Body, rate: Reals | None, rate_err: Reals | None, hertz: Reals | None, hertz_err: Reals | None
 ) -> tuple[Reals, Reals | None, float]:
-    """Reduced rates with their errors, and the turns a second of one; NaN where rates were given."""
+    """Reduced rates, their errors, and turns per second of a reduced rate of 1; NaN if rates were given."""
     if (rate is None) == (hertz is None):
         raise TypeError("rate, hertz: give one of them")
     if hertz is None:
         if hertz_err is not None:
-            raise TypeError("hertz_err: goes with hertz=; of reduced rates give rate_err=")
+            raise TypeError("hertz_err: goes with hertz=; for reduced rates give rate_err=")
         return rate, rate_err, math.nan
     if rate_err is not None:
-        raise TypeError("rate_err: goes with reduced rates; of hertz= give hertz_err=")
+        raise TypeError("rate_err: goes with reduced rates; for hertz= give hertz_err=")
     found, scale = with_size("body", body, None)
     unit = float(scale.hertz(found, 1.0))
     given = (("hertz", hertz), ("hertz_err", hertz_err))
@@ -277,7 +282,7 @@ def _points(
     x = {name: np.asarray(reals(name, v), np.float64) for name, v in (("theta", theta), ("rate", rate))}
     if x["theta"].ndim != 1 or x["rate"].shape != x["theta"].shape:
         shapes = f"{x['theta'].shape} and {x['rate'].shape}"
-        raise ValueError(f"theta and rate: expected one shape (n,), not {shapes}")
+        raise ValueError(f"theta and rate: expected equal shapes (n,), not {shapes}")
     measured = np.isfinite(x["theta"]) & np.isfinite(x["rate"])
     if (theta_err is None) != (rate_err is None):
         raise ValueError("theta_err and rate_err: give both or none")
@@ -290,18 +295,19 @@ def _points(
     x = {name: values[measured] for name, values in x.items()}
     leaning("theta", x["theta"], body)
     if not ((x["rate"] >= 1e-6) & (x["rate"] <= 1e6)).all():
-        raise ValueError("rate: expected positive numbers, reduced rates from 1e-6 to 1e6")
+        raise ValueError("rate: expected positive numbers: reduced rates from 1e-6 to 1e6")
     for name, of in (("theta_err", 1.0), ("rate_err", x["rate"])):
         if not ((x[name] >= 1e-12 * of) & (x[name] <= 1e3 * of)).all():
-            raise ValueError(f"{name}: expected positive numbers, 1e-12 to 1e3 of a radian or of the rate")
+            unit = "radian" if name == "theta_err" else "times the value"
+            raise ValueError(f"{name}: expected positive numbers from 1e-12 to 1e3 {unit}")
     given = x["theta"].size
     different = len(np.unique(np.stack([x["theta"], x["rate"]]), axis=1).T) if given else 0
     if different < 3:
-        told = f"{counted(given)} given"
-        told += f", {counted(different)} different" if different < given else ""
+        told = counted(given)
+        told += f" ({counted(different)} different)" if different < given else ""
         empty = int((~measured).sum())
-        told += f" ({empty} empty)" if empty else ""
-        raise ValueError(f"theta and rate: {told}, three needed: at least three different points")
+        told += f", and {counted(empty)} with NaN" if empty else ""
+        raise ValueError(f"theta and rate: expected at least three different points, not {told}")
     return x
 
 
@@ -310,11 +316,11 @@ def _doubts(found: Fit, alone: Fit, both: Fit | None, own: float, known: bool, *
     one, one_err = alone.told(known)[2:]
     off = f"{abs(one - 1):.1%} too {'large' if one > 1 else 'small'}"
     if one > 1.5 or one < 0.7:
-        off = f"{one:.3g} times what the body as built has"
+        off = f"{one:.3g} times those of the body as built"
     if found.chi2 > 10:
         hint = "give turns a second as hertz="
         if alone.success and alone.squares < 0.1 * found.squares:
-            hint = f"rates {off} would, with the ratio as built: {hint}"
+            hint = f"rates {off} would explain them with the ratio as built: {hint}"
         return f"chi2 = {found.chi2:.3g}: no inertia ratio explains these points within their errors; {hint}"
     if fitted:
         return ""
@@ -322,9 +328,9 @@ def _doubts(found: Fit, alone: Fit, both: Fit | None, own: float, known: bool, *
         ratio, _, factor, factor_err = both.told(known)
         if abs(factor - 1) > _sure(4.0, both.freedom, known) * factor_err:
             return (
-                f"the rates look {abs(factor - 1):.1%} too {'large' if factor > 1 else 'small'} in all points"
-                f" ({factor:.4f} +- {factor_err:.1g}, with I1/I3 = {ratio:.4g}): are radius and frames a"
-                " second right? common=inf fits the factor, too"
+                f"all rates look {abs(factor - 1):.1%} too {'large' if factor > 1 else 'small'}"
+                f" ({factor:.4f} +- {factor_err:.1g}, with I1/I3 = {ratio:.4g}): are radius and frame rate"
+                " right? common=inf fits the factor as well"
             )
     ratio, ratio_err, *_ = found.told(known)
     as_well = alone.squares <= found.squares + 4 * (1.0 if known else found.chi2)
@@ -332,11 +338,11 @@ def _doubts(found: Fit, alone: Fit, both: Fit | None, own: float, known: bool, *
         return (
             f"I1/I3 = {ratio:.4g} is {abs(ratio - own) / ratio_err:.1f} errors from the built {own:.4g}, but"
             f" rates {off} in all points ({one:.4f} +- {one_err:.1g}) explain them as well: are radius and"
-            " frames a second right? common=0.03 allows for three per cent"
+            " frame rate right? common=0.03 allows for an error of three per cent"
         )
     return ""
 
 
 def _sure(errors: float, freedom: int, known: bool) -> float:
-    """The number of standard errors as unlikely as `errors` of a normal deviate; more for few points."""
+    """Number of standard errors that is as unlikely as `errors` normal deviates: larger for few points."""
     return errors if known else student(errors, freedom)

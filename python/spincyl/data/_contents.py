@@ -1,4 +1,4 @@
-"""Reading of files up to a limit of size."""
+"""Reading of files up to a limited size."""
 
 import zipfile
 from collections.abc import Callable
@@ -9,7 +9,7 @@ from typing import IO
 
 from spincyl._input.files import path_of
 
-#: Largest size of a file, and of all the contents of a zip file together; more is refused.
+#: Largest size in bytes of a file, and of all the contents of a zip file together.
 MOST_BYTES = 100_000_000
 _PIECE = 1 << 20
 
@@ -22,18 +22,18 @@ def contents(path: str | PathLike[str]) -> bytes:
 
 
 def limited(file: IO[bytes], name: str, most: int) -> bytes:
-    """The bytes of a file, whatever size its directory gives; ValueError for more than `most`."""
+    """The bytes of a file, whatever size the directory of its zip file gives; ValueError beyond `most`."""
     pieces, left = [], most
     while piece := file.read(_PIECE):
         pieces.append(piece)
         left -= len(piece)
         if left < 0:
-            raise ValueError(f"{name}: holds more than {MOST_BYTES:,} bytes; cut it into parts")
+            raise ValueError(f"{name}: more than {MOST_BYTES:,} bytes; cut the file into parts")
     return b"".join(pieces)
 
 
 def unpacked(raw: bytes, name: str, wanted: Callable[[PurePosixPath], bool]) -> list[tuple[str, bytes]]:
-    """Names and contents of the files in a zip file that are wanted, without those of macOS."""
+    """Names and contents of the wanted files in a zip file, without those that macOS adds."""
     found: list[tuple[str, bytes]] = []
     left = MOST_BYTES
     try:
@@ -49,9 +49,9 @@ def unpacked(raw: bytes, name: str, wanted: Callable[[PurePosixPath], bool]) -> 
     except MemoryError:
         raise
     except ValueError as e:
-        raise ValueError(str(e) if name in str(e) else f"{name}: a torn zip file: {e}") from None
+        raise ValueError(str(e) if name in str(e) else f"{name}: the zip file is damaged: {e}") from None
     except (
         Exception
     ) as e:  # a damaged or encrypted file raises errors of many kinds; nothing is read from disk here
-        raise ValueError(f"{name}: a torn zip file, or one that needs a password: {e!r}") from None
+        raise ValueError(f"{name}: the zip file is damaged or needs a password: {e!r}") from None
     return found

@@ -56,7 +56,7 @@ def counted(many: int) -> str:
 
 
 def student(errors: float, freedom: int) -> float:
-    """The number of standard errors, found from few points, as unlikely as `errors` of a normal deviate.
+    """Number of standard errors, estimated from few points, that is as unlikely as `errors` normal deviates.
 
     Student's t from the normal deviate, after Wallace (1959), Ann. Math. Statist. 30, 1121.
     """

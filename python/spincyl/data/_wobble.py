@@ -125,7 +125,7 @@ def _recording(t: Reals, sound: Reals, low: float, high: float) -> tuple[Floats,
     """The sound without its mean, its first time, and its sampling rate; an error names a wrong argument."""
     time, x = (np.asarray(reals(name, v), np.float64) for name, v in (("t", t), ("sound", sound)))
     if x.ndim != 1 or time.shape != x.shape:
-        raise ValueError(f"t and sound: expected one shape (n,), not {time.shape} and {x.shape}")
+        raise ValueError(f"t and sound: expected equal shapes (n,), not {time.shape} and {x.shape}")
     for name, values in (("t", time), ("sound", x)):
         if not np.isfinite(values).all():
             raise ValueError(f"{name}: has {np.size(values) - np.isfinite(values).sum()} that are no numbers")
