@@ -147,7 +147,9 @@ def test_a_sum_of_laws_that_cannot_be_told_apart_is_refused_by_name():
 def test_coefficients_that_only_their_sum_is_known_of_are_refused_however_exact_the_points():
     laws = sc.loss.DryContour, sc.loss.ViscousContour
     t, theta, _, _ = spun(laws[0](1e-3) + laws[1](1e-4), points=60, share=0.2, noise=1e-8)
-    with pytest.raises(ValueError, match=r"cannot tell .*: their coefficients are correlated by -0\.999"):
+    with pytest.raises(
+        ValueError, match=r"cannot tell .*, since the correlation of their coefficients is -0\.999"
+    ):
         sc.data.fit_losses(t, theta, body=EULER, laws=[laws])
 
 
@@ -189,7 +191,7 @@ def test_rates_that_several_inclinations_could_have_need_a_start():
     law, can = sc.loss.DryContour, sc.Body.solid(0.9)
     t, _, precession, _ = spun(law(1e-3), can, 1.2, noise=0.0)
     with pytest.raises(
-        ValueError, match=r"precession: it may start from 0\.\d+ or 1\.2 rad: give theta, or start="
+        ValueError, match=r"precession: the drift may start from 0\.\d+ or 1\.2 rad; give theta, or start="
     ):
         sc.data.fit_losses(t, precession=precession, body=can, laws=[law])
     found = sc.data.fit_losses(t, precession=precession, body=can, laws=[law], start=1.0, centre="rest").best
@@ -221,12 +223,12 @@ def test_what_cannot_be_a_spin_down_is_refused_by_name():
     rng = np.random.default_rng(5)
     inside = 0.5 * float(CYLINDER.theta_balance + CYLINDER.theta_limit)
     for given, said in (
-        ({"theta": None}, "theta and precession: give at least one"),
+        ({"theta": None}, "theta, precession: give at least one"),
         ({"t": t[:4], "theta": theta[:4]}, "t: expected at least 5 points"),
         ({"t": 0 * t}, "t: expected at least 5 points"),
-        ({"theta": theta[:5]}, r"theta: expected shape \(40,\)"),
+        ({"theta": theta[:5]}, r"theta: expected the shape of t, \(40,\)"),
         ({"t": t[:, None]}, r"t: expected shape \(n,\)"),
-        ({"t": t[::-1]}, "t: expected times that do not fall"),
+        ({"t": t[::-1]}, "t: expected times in ascending order"),
         ({"theta": theta[::-1]}, "theta: rises, but .* drifts down"),
         ({"theta": None, "precession": 1e-3 * precession}, "precession: no steady state of this body drifts"),
         ({"theta": rng.uniform(0.1, 0.3, 40)}, "theta: expected a drift"),
@@ -240,7 +242,7 @@ def test_what_cannot_be_a_spin_down_is_refused_by_name():
         ({"centre": "slipping"}, "centre = 'slipping'"),
         ({"start": 0.0}, "start = 0.0"),
         ({"laws": []}, "laws: expected at least one"),
-        ({"laws": ALL[:1] * 2}, "none of them twice"),
+        ({"laws": ALL[:1] * 2}, "each law only once"),
         ({"laws": [tuple(ALL[:3])]}, "laws: expected one law, or two"),
         ({"laws": [(ALL[0], ALL[0])]}, "laws: expected one law, or two"),
         ({"body": sc.Body.solid([1.0, 2.0])}, "body: expected a single"),
@@ -395,7 +397,7 @@ def test_a_spin_down_that_was_heard_is_fitted_in_seconds_and_its_line_is_of_rate
     assert found.best.stops_at == pytest.approx(true.stops_at, rel=1e-8)
     left = found.line.stops_at - t
     assert found.line.factor * left**found.line.exponent == pytest.approx(true.precession(t), rel=0.1)
-    with pytest.raises(ValueError, match=r"^precession: no steady state .* is it in rad/s\?"):
+    with pytest.raises(ValueError, match=r"^precession: no drift .* is precession in rad/s\?"):
         sc.data.fit_losses(t, precession=true.precession(t) / 1000, body=disk, laws=law)
 
 
@@ -408,6 +410,8 @@ def test_a_diameter_taken_for_a_radius_or_twice_is_warned_of_and_the_fit_goes_on
     theta, precession = (
         x * (1 + 0.005 * random.normal(size=60)) for x in (true.theta(t), true.precession(t))
     )
-    with pytest.warns(UserWarning, match="^the precession is .* times that of steady .* is its size right"):
+    with pytest.warns(
+        UserWarning, match="^the precession is .* times that of steady .* is the size of the body right"
+    ):
         found = sc.data.fit_losses(t, theta, precession, body=wrong, laws=ALL[:2])
     assert np.isfinite(found.best.stops_at) and found.best.coefficient > 0

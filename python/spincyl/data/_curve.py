@@ -30,9 +30,9 @@ class Curve:
     """The drift of a body under one law or a sum, as a function of coefficients and first inclination.
 
     `ends` are the least and the greatest first inclination. The tabulated drift starts at the end that it
-    passes first, the greatest if it goes `down`. For rolling, one more number may follow the coefficients:
-    the inclination at which the centre was at rest, as a share of the way from the first inclination to that
-    end.
+    passes first, the greatest if the drift goes `down`. For rolling, one more number may follow the
+    coefficients: the inclination at which the centre was at rest, as a share of the way from the first
+    inclination to that end.
     """
 
     def __init__(
@@ -52,7 +52,7 @@ class Curve:
         return total
 
     def drift(self, coefficients: Sequence[float] | Floats, theta: float) -> Any:
-        """The drift from an inclination on, with its warnings."""
+        """The drift from an inclination, with its warnings."""
         law, rested = self.law(coefficients), self.rested(coefficients, theta)
         start: Any = theta
         if rested != theta:
@@ -61,7 +61,7 @@ class Curve:
         return drift(self.body, start, law, centre=self.centre)
 
     def rested(self, coefficients: Sequence[float] | Floats, theta: float) -> float:
-        """The inclination of a centre at rest, for a drift that is at `theta` at the first time."""
+        """Inclination at which the centre was at rest, for a drift with `theta` at the first time."""
         share = float(coefficients[-1]) if len(coefficients) > len(self.laws) else 0.0
         return theta + share * (self.ends[1 if self.down else 0] - theta)
 
@@ -72,7 +72,7 @@ class Curve:
             return self.drift(coefficients, theta)
 
     def times(self, coefficients: Sequence[float] | Floats, theta: Floats) -> Floats:
-        """Times at which the drift passes inclinations, from `top` on; for rolling from the first one."""
+        """Times at which the drift passes inclinations, from `top` on; for rolling, from the first one."""
         begin = self.top
         if self.centre != "rest":
             begin = float(theta.max() if self.down else theta.min())

@@ -1,4 +1,4 @@
-"""The usual first analysis in the literature: a power of the time left, a straight log-log line.
+"""The usual first analysis in the literature: a power law of the time left, a straight log-log line.
 
 Its exponent is biased unless the inclination is small: by 0.01 to 0.03 from 0.3 rad on, which is many times
 the error from the scatter. It suggests which laws to try, but cannot decide between them.
@@ -12,18 +12,18 @@ from spincyl._input.numbers import Floats
 
 
 class Line(NamedTuple):
-    """A power of the time left, fitted in a log-log diagram: a quick look, biased."""
+    """Power law of the time left, fitted in a log-log diagram: a quick, biased estimate."""
 
-    exponent: float  #: of theta, or of the precession if theta was not measured
-    exponent_err: float  #: from the scatter about the line alone
+    exponent: float  #: exponent of theta, or of the precession if theta was not measured
+    exponent_err: float  #: standard error from the scatter about the line, without the bias
     stops_at: float  #: the stopping time that makes the line straightest
-    factor: float  #: value where one unit of time is left
+    factor: float  #: value one unit of time before the end
 
 
 def line(t: Floats, y: Floats) -> Line | None:
     """The straightest log-log line of positive values against the time left, with a free stopping time.
 
-    None if no stopping time within a hundred spans after the last time makes it straightest.
+    None if the best stopping time is not within 100 times the duration of the data after the last time.
     """
     log_y, last, span = np.log(y), float(t[-1]), float(t[-1] - t[0])
 

@@ -34,65 +34,67 @@ def fit_losses(
     hertz_err: Reals | None = None,
     start: float | None = None,
 ) -> LossFit:
-    """Which laws of loss explain a measured spin-down, with which coefficients and stopping times.
+    """Fit laws of loss to a measured spin-down: coefficients, stopping times, and a ranking of the laws.
 
     Parameters
     ----------
     t : array_like, 1-D
-        Times that do not fall, in sqrt(R/g); of a measured body in seconds.
+        Times in ascending order, possibly repeated, in sqrt(R/g); for a measured body in seconds.
     theta : array_like, optional
         Inclinations in radians.
     precession : array_like, optional
-        Precession phi' in sqrt(g/R); of a measured body in rad/s. Give `theta`, `precession` (or `hertz`) or
-        both; what was not measured at a time is NaN.
+        Precession phi' in sqrt(g/R); for a measured body in rad/s. Give `theta`, or `precession` (or
+        `hertz`), or both. Missing values are NaN.
     body : Body
-        A single one. Of a measured one all times and precessions, given and found, are in seconds and rad/s;
-        coefficients are the natural ones of the laws, and `coefficients_si` has them in SI.
+        Single body. For a measured body all times are in seconds and precessions in rad/s, in the arguments
+        and in the result. Coefficients are in natural units; `coefficients_si` gives them in SI.
     hertz : array_like, optional
-        Or the precession in turns per second, of a measured body.
+        Precession in turns per second, instead of `precession`, for a measured body.
     laws : sequence, optional
         Classes of `spincyl.loss`; a tuple or list of two stands for their sum. Default: all eight.
     centre : {"rest", "rolling"}, optional
-        Which drift: the centre held at rest, or rolling since it rested, at the first time or before.
-        Default: both, each law by either.
+        Drift with the centre held at rest, or rolling after the centre was at rest, at the first time or
+        before. Default: both, so that each law is fitted twice.
     t_err : array_like, optional
-        Standard errors of the times. Default: none, all scatter is that of `theta` and `precession`.
+        Standard errors of the times. Default: times are exact.
     theta_err, precession_err or hertz_err : array_like, optional
-        Standard errors. Default: every value errs by the same share of itself, which the scatter about the
-        best law gives.
+        Standard errors. Default: the same relative error for all values, estimated from the scatter about
+        the best law.
     start : float, optional
-        About where it starts, in radians: for a precession alone that several inclinations could have.
+        Approximate inclination at the first time, in radians. Needed if only the precession is given and
+        several inclinations have it.
 
     Returns
     -------
     LossFit
+        The laws by AIC, the best first; ``.report()`` and ``.table()`` summarise them.
 
     Raises
     ------
     ValueError
-        For fewer than five points and for shapes that differ; for values that are not positive, that do not
-        drift, drift against the loss, or lie in the forbidden band; if every law is refused, as a sum of two
-        is that the points cannot tell apart.
+        For fewer than five points, or shapes that differ; for values that are not positive, do not drift,
+        drift in the sense of growing energy, or lie in the forbidden band. Also if no law can be fitted: for
+        instance a sum of two laws that the points cannot tell apart.
     TypeError
-        For anything but a body, laws and real numbers.
+        If an argument is not a body, a law or real numbers; the message names it.
     ImportError
-        Without spincyl[lab].
+        If odrpack is missing: install spincyl[lab].
 
     Warns
     -----
     UserWarning
-        If chi2 exceeds 10 for every law, with the points that weigh most; if the precession is a quarter and
-        more off that of steady states at the same inclinations, as in other units; and what the fitted drift
-        warns of.
+        If chi2 exceeds 10 for every law; the message gives the points that contribute most. Also if the
+        precession differs by a quarter or more from that of steady states at the same inclinations, as with
+        wrong units. Warnings of the fitted drift are passed on.
 
     Notes
     -----
-    The drift itself is fitted by orthogonal distance regression (Boggs and Donaldson 1989, odrpack), not the
-    line in a log-log diagram, whose exponent is biased beyond its error. Laws that cannot be told apart are
-    no error: the table says so. A law that cannot be, such as a film of air below a ball, is a row of the
-    table with its reason (`refused`). From the precession alone a coefficient depends on `centre`. Where
-    points scatter by more than the errors that are given, errors and differences of AIC are those of larger
-    ones (QAIC; Burnham and Anderson 2002).
+    The drift itself is fitted, by orthogonal distance regression (Boggs and Donaldson 1989, odrpack), not a
+    line in a log-log diagram, whose exponent has a bias larger than its error. If laws cannot be told apart,
+    the table says so. A law that cannot hold, such as a film of air below a ball, is listed with the reason
+    (`refused`). From the precession alone a coefficient depends on `centre`. If points scatter by more than
+    their given errors, errors and differences of AIC are scaled accordingly (QAIC; Burnham and Anderson
+    2002).
 
     Examples
     --------
@@ -108,9 +110,9 @@ def fit_losses(
     odrpack = extra("odrpack", "lab")
     if hertz is not None or hertz_err is not None:
         if precession is not None or precession_err is not None:
-            raise TypeError("precession, hertz: give one of them, with the error of the same name")
+            raise TypeError("precession, hertz: give only one of them, with the error of the same name")
         if one_body(body).scale is None:
-            raise ValueError("hertz: needs a measured body; of any other give precession=")
+            raise ValueError("hertz: needs a measured body; for any other give precession=")
         precession, precession_err = (
             None if x is None else 2 * np.pi * reals(name, turns_per_second(name, x))
             for name, x in (("hertz", hertz), ("hertz_err", hertz_err))
@@ -205,7 +207,7 @@ def _doubts(body: Body, best: _Raw, fit: FittedLoss) -> list[str]:
     factor = data.off_by(body)
     if not 0.8 < factor < 1.25:
         told = f"the precession is {factor:.3g} times that of steady states at these inclinations"
-        said.append(f"{told}; are times and precession in {units}, and is its size right?")
+        said.append(f"{told}; are times and precession in {units}, and is the size of the body right?")
     if fit.chi2 > 10:
         off = np.stack([fit.residual[name] for name in data.names]) / data.errors
         share = np.nansum(off**2, axis=0)
@@ -213,8 +215,8 @@ def _doubts(body: Body, best: _Raw, fit: FittedLoss) -> list[str]:
         second, unit = (1.0, "") if body.scale is None else (body.scale.seconds(1.0), " s")
         heavy = [k for k in np.argsort(-share, kind="stable")[:3] if share[k] > 0.1]
         weigh = ", ".join(f"t = {data.t[k] * second:.4g}{unit} ({100 * share[k]:.0f} %)" for k in heavy)
-        weigh = f"of chi2 most is from {weigh}" if weigh else "no few points are to blame"
-        asks = f"are all of them of the spin-down, and are times and precession in {units}?"
+        weigh = f"most of chi2 is due to {weigh}" if weigh else "it is not due to a few points"
+        asks = f"do all points belong to the spin-down, and are times and precession in {units}?"
         told = f"chi2 = {fit.chi2:.3g}: no law explains these points within their errors"
         said.append(f"{told}; {weigh}: {asks}")
     return said
@@ -300,21 +302,21 @@ def _refuse_degenerate(found: _Raw) -> None:
     errors = np.sqrt(np.diag(_covariance(found)))[: len(found.curve.laws)]
     if len(errors) < 2:
         if not (np.isfinite(found.beta).all() and 0 < errors[0] < 100 * found.beta[0]):
-            raise ValueError(f"no coefficient of {called(found.curve.laws)} explains these points")
+            raise ValueError(f"laws: no coefficient of {called(found.curve.laws)} explains these points")
         return
     names = [law.__name__ for law in found.curve.laws]
     why = ""
     for name, k, error, other in zip(names, found.beta, errors, names[::-1], strict=False):
         if not 0 < error <= k:
-            share = "no share" if error == 0 else f"the coefficient {k:.2g} +- {error:.2g}"
-            why = f"beside {other}, {name} has {share}"
+            share = "a coefficient of 0" if error == 0 else f"the coefficient {k:.2g} +- {error:.2g}"
+            why = f"together with {other}, {name} has {share}"
     if not why:
         correlation = found.covariance[0, 1] / math.sqrt(found.covariance[0, 0] * found.covariance[1, 1])
         if not abs(correlation) <= _CORRELATED:
-            why = f"their coefficients are correlated by {correlation:.5f}"
+            why = f"the correlation of their coefficients is {correlation:.5f}"
     if why:
         told = f"these points cannot tell {names[0]} from {names[1]}"
-        raise ValueError(f"laws: {told}: {why}; fit them one by one")
+        raise ValueError(f"laws: {told}, since {why}; fit them one by one")
 
 
 def _covariance(found: _Raw) -> Floats:

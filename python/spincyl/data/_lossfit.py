@@ -18,51 +18,52 @@ from spincyl.data._report import section, variables, written
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-#: A law whose AIC exceeds the least by no more than this is not told apart from the best; at this difference
-#: it is twenty times less likely, exp(-6/2).
+#: A law whose AIC exceeds the least by no more than this cannot be told apart from the best. At this
+#: difference it is twenty times less likely, exp(-6/2).
 APART = 6.0
 
 
 @compared
 class FittedLoss(NamedTuple):
-    """One law, or two that add, as it explains a spin-down best; from `fit_losses`."""
+    """Fit of one law, or of the sum of two, to a spin-down; one of the results of `fit_losses`."""
 
     name: str  #: "DryContour", or "DryContour + AirLinear"
-    centre: str  #: "rest" or "rolling": by which drift
+    centre: str  #: "rest" or "rolling": the drift that was fitted
     law: Any  #: the law, or the sum, with its fitted coefficients
     coefficients: Floats  #: (1,) or (2,)
     coefficient_errs: Floats  #: standard errors
     theta: float  #: inclination at the first time
     theta_err: float
-    rested: float  #: inclination at which the centre rested, of what rolls: at the first time or before
-    stops_at: float  #: when the drift ends, on the clock of the measurement; infinite if never
-    stops_at_err: float  #: NaN if never
-    correlation: float  #: of coefficient and stopping time (inclination, if never), or of two coefficients
-    residual: dict[str, Floats]  #: by "theta" and "precession": measured less fitted at the times measured
+    rested: float  #: for rolling, inclination at which the centre was at rest, at the first time or before
+    stops_at: float  #: time of the measurement at which the drift ends; infinite if it never does
+    stops_at_err: float  #: standard error; NaN if the drift never ends
+    #: correlation of the coefficient with `stops_at` (with `theta` if infinite), or of the two coefficients
+    correlation: float
+    residual: dict[str, Floats]  #: measured minus fitted values, by "theta" and "precession"
     chi2: float  #: sum of squares over the errors, per degree of freedom
-    aic: float
-    daic: float  #: AIC above that of the best law, over chi2 of that if it is more than 1
+    aic: float  #: Akaike's information criterion
+    daic: float  #: AIC minus that of the best law, divided by chi2 of the best law if that exceeds 1
     drift: Any  #: the fitted drift, from the first time on
 
     @property
     def coefficients_si(self) -> Floats:
-        """The coefficients in the units that `from_si` takes; an error says where that needs a mass."""
+        """The coefficients in the units of `from_si`; ValueError if that needs a mass and there is none."""
         return self.coefficients * _units(self)
 
     @property
     def coefficient_errs_si(self) -> Floats:
-        """Their standard errors in the same units."""
+        """Standard errors of `coefficients_si`, in the same units."""
         return self.coefficient_errs * _units(self)
 
     @property
     def coefficient(self) -> float:
-        """The coefficient, of a single law."""
+        """The coefficient of a single law; ValueError for a sum of two."""
         (found,) = self.coefficients
         return float(found)
 
     @property
     def coefficient_err(self) -> float:
-        """Its standard error."""
+        """Standard error of `coefficient`."""
         (found,) = self.coefficient_errs
         return float(found)
 
@@ -74,7 +75,7 @@ class FittedLoss(NamedTuple):
 
 @compared
 class Refused(NamedTuple):
-    """A law that was to be fitted but cannot be, and the reason."""
+    """A law that could not be fitted, and the reason."""
 
     name: str
     centre: str
@@ -83,20 +84,20 @@ class Refused(NamedTuple):
 
 @compared
 class LossFit(NamedTuple):
-    """A spin-down and the laws that may explain it, the best first; from `fit_losses`."""
+    """A measured spin-down and the laws fitted to it, the best first; returned by `fit_losses`."""
 
     body: Body
-    centre: str  #: "rest", "rolling" or "either": which drifts were fitted
-    t: Floats  #: (n,) measured, without what was not
+    centre: str  #: drifts that were fitted: "rest", "rolling" or, for both, "either"
+    t: Floats  #: (n,) measured times, without missing points
     theta: Floats | None  #: (n,) NaN where it was not measured
-    precession: Floats | None
-    t_err: Floats  #: standard errors that points were weighed with; zero where times are exact
+    precession: Floats | None  #: (n,) NaN where it was not measured
+    t_err: Floats  #: (n,) standard errors of the times; zero if they are exact
     theta_err: Floats | None
     precession_err: Floats | None
-    estimated: tuple[str, ...]  #: of "theta" and "precession", those whose errors were found from the scatter
+    estimated: tuple[str, ...]  #: names, "theta" or "precession", of values with errors from the scatter
     fits: tuple[FittedLoss, ...]  #: by AIC
-    line: Line | None  #: the log-log line, a quick look, biased; None where there is none
-    refused: tuple[Refused, ...] = ()  #: laws that cannot be
+    line: Line | None  #: the log-log line: a quick, biased estimate; None if there is none
+    refused: tuple[Refused, ...] = ()  #: laws that could not be fitted
 
     @property
     def best(self) -> FittedLoss:
@@ -105,14 +106,14 @@ class LossFit(NamedTuple):
 
     @property
     def told_apart(self) -> bool:
-        """Whether any other law, or place of the centre, is twenty times less likely: its AIC larger by 6."""
+        """Whether every other fit is at least twenty times less likely: its AIC is larger by more than 6."""
         return len(self.fits) < 2 or self.fits[1].daic > APART
 
     def of(self, law: Any, centre: str | None = None) -> FittedLoss:
-        """The fit of a law, by its class, or of a sum, by its classes as a tuple or list.
+        """Return the fit of a law, given by its class, or of a sum, given by a tuple or list of two classes.
 
-        Of both centres it is the better one, if `centre` does not say which. KeyError for one that was not
-        fitted; TypeError for what is no law.
+        Without `centre`, "rest" or "rolling", it is the better of the two fits. Raises KeyError if the law
+        was not fitted, TypeError if it is not a law.
         """
         classes = tuple(law) if isinstance(law, tuple | list) else (law,)
         if not classes or not all(isinstance(one, type) and issubclass(one, Loss) for one in classes):
@@ -122,10 +123,10 @@ class LossFit(NamedTuple):
                 return found
         known = ", ".join(dict.fromkeys(found.name for found in self.fits))
         why = next((f": {no.why}" for no in self.refused if no.name == called(classes)), "")
-        raise KeyError(f"law: {called(classes)} was not fitted{why}; there are {known}")
+        raise KeyError(f"law: {called(classes)} was not fitted{why}; expected one of {known}")
 
     def table(self) -> str:
-        """Laws by AIC: coefficients and stopping times with errors, chi2, and which are not told apart."""
+        """Table of the laws by AIC: coefficients, stopping times, chi2, and laws close to the best."""
         either = self.centre == "either"
         head: tuple[str, ...] = ("law", "centre", "coefficient", "stops at", "chi2", "dAIC")
         if self.body.scale is not None:
@@ -143,7 +144,7 @@ class LossFit(NamedTuple):
         return "\n".join([*lines, *notes(self)])
 
     def report(self) -> str:
-        """The best law with errors and correlation, then all laws, as lmfit writes it."""
+        """The best law with errors and correlation, and the table of laws, as a report in lmfit's style."""
         best = self.best
         names = best.name.split(" + ")
         second = "the other" if len(names) > 1 else "stops at" if math.isfinite(best.stops_at) else "theta"
@@ -169,7 +170,7 @@ class LossFit(NamedTuple):
         return "\n".join([*lines, "[[Laws]]", *("    " + line for line in self.table().splitlines())])
 
     def plot(self, axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
-        """Draw data with fits, residuals, and the log-log line: see `spincyl.plot.losses`."""
+        """Draw data and fits, residuals, and the log-log line: see `spincyl.plot.losses`."""
         drawn: list[Axes] = above("LossFit.plot")(self, axes)
         return drawn
 
@@ -235,7 +236,7 @@ def printed(found: FittedLoss) -> list[tuple[float, float, str]]:
 
 
 def _units(found: FittedLoss) -> Floats:
-    """Of each coefficient the factor to the unit that `from_si` takes."""
+    """Factor of each coefficient to the unit of `from_si`."""
     return np.array([law.in_si(found.drift.body) / law.coefficient for law in found.law.laws], np.float64)
 
 
@@ -257,7 +258,7 @@ def cells(found: FittedLoss) -> tuple[str, str, str, str, str, str]:
 
 
 def remark(found: FittedLoss) -> str:
-    """A note on whether a law is the best, or not told apart from it."""
+    """A note on whether a law is the best, or cannot be told apart from it."""
     if found.daic == 0:
         return "best"
     return "not told apart" if found.daic <= APART else ""

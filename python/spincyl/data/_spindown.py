@@ -11,11 +11,10 @@ from spincyl._contact import CODES
 from spincyl._input.numbers import Floats, Reals, is_scalar, number, one_of, radians_per_second, reals, si
 from spincyl._studio.shape import steepest
 from spincyl.data._curve import branches, goes_down
-from spincyl.data._report import counted
 
 LAWS = tuple(CODES["Law"])
 CENTRES = ("rest", "rolling")
-_SHARE = 0.01  # relative error of values as long as nothing is known about it
+_SHARE = 0.01  # first guess of the relative error of values
 
 
 class Several(ValueError):
@@ -37,7 +36,7 @@ class SpinDown(NamedTuple):
 
     @property
     def clock(self) -> Floats:
-        """Times from the first one on."""
+        """Times since the first one."""
         after: Floats = self.t - self.t[0]
         return after
 
@@ -47,7 +46,7 @@ class SpinDown(NamedTuple):
         return int(np.isfinite(self.values).sum())
 
     def off_by(self, body: Body) -> float:
-        """Median of measured over steady precession at the measured inclinations; 1 if not both are known."""
+        """Median ratio of measured to steady precession at the same inclinations; 1 if either is unknown."""
         both = np.isfinite(self.values).all(axis=0)
         if len(self.names) < 2 or not both.any():
             return 1.0
@@ -68,7 +67,7 @@ class SpinDown(NamedTuple):
 
 
 def centres(centre: str | None) -> tuple[str, ...]:
-    """Which drifts are asked for: one of them, or both."""
+    """The drifts to fit: the given one, or both."""
     return CENTRES if centre is None else (one_of("centre", centre, CENTRES),)
 
 
@@ -99,9 +98,9 @@ def asked(laws: Sequence[Any] | None) -> list[tuple[Any, ...]]:
             known_law("laws", one)
         if not 1 <= len(law) <= 2 or len(set(law)) < len(law):
             names = ", ".join(one.__name__ for one in law)
-            raise ValueError(f"laws: expected one law, or two different ones that add, not ({names})")
+            raise ValueError(f"laws: expected one law, or a sum of two different ones, not ({names})")
     if not found or len({frozenset(law) for law in found}) < len(found):
-        raise ValueError("laws: expected at least one, and none of them twice")
+        raise ValueError("laws: expected at least one law, and each law only once")
     return found
 
 
@@ -117,11 +116,11 @@ def measured(
     start: float | None,
     laws: int,
 ) -> SpinDown:
-    """The measured spin-down without points where nothing is known; an error names a wrong argument."""
+    """The measured spin-down without missing points; an error names a wrong argument."""
     if not isinstance(body, Body):
         raise TypeError(f"body: expected a Body, not {type(body).__name__}")
     if not is_scalar(*body._numbers):
-        raise ValueError("body: expected a single one, not an array of them")
+        raise ValueError("body: expected a single body, not a family")
     if body.scale is not None:
         t, t_err = si("t", t, "second"), None if t_err is None else si("t_err", t_err, "second")
         precession = None if precession is None else radians_per_second("precession", precession)
@@ -134,7 +133,7 @@ def measured(
             raise ValueError(f"{name}_err: given without {name}")
     names = tuple(name for name, (values, _) in given.items() if values is not None)
     if not names:
-        raise ValueError("theta and precession: give at least one of them")
+        raise ValueError("theta, precession: give at least one of them")
     time = np.asarray(reals("t", t), np.float64)
     if time.ndim != 1:
         raise ValueError(f"t: expected shape (n,), not {time.shape}")
@@ -142,9 +141,9 @@ def measured(
     for name in names:
         row = np.asarray(reals(name, given[name][0]), np.float64)
         if row.shape != time.shape:
-            raise ValueError(f"{name}: expected shape {time.shape}, that of t, not {row.shape}")
+            raise ValueError(f"{name}: expected the shape of t, {time.shape}, not {row.shape}")
         if np.isinf(row).any() or (row <= 0).any():
-            raise ValueError(f"{name}: expected positive numbers, NaN where it was not measured")
+            raise ValueError(f"{name}: expected positive numbers, or NaN for missing values")
         rows.append(row)
         errs.append(_errors(f"{name}_err", given[name][1], time, _SHARE * row))
     values, errors = np.stack(rows), np.stack(errs)
@@ -152,18 +151,17 @@ def measured(
     if theta is not None:
         leaning("theta", rows[0], body)
     if np.isinf(time).any():
-        raise ValueError("t: expected finite times, NaN where there is none")
+        raise ValueError("t: expected finite times, or NaN for missing ones")
     seen = np.isfinite(time) & np.isfinite(values).any(axis=0)
     time, times, values, errors = time[seen], times[seen], values[:, seen], errors[:, seen]
     least = 4 + laws
     different = len(np.unique(time))
     if different < least:
-        told = f"{counted(different)} given, {counted(least)} needed"
-        raise ValueError(f"t: expected at least {least} points at different times: {told}")
+        raise ValueError(f"t: expected at least {least} points at different times, not {different}")
     if (np.diff(time) < 0).any():
         at = float(time[1:][np.diff(time) < 0][0])
         raise ValueError(
-            f"t: expected times that do not fall, as they do to {at:.6g}: sort them with np.argsort(t)"
+            f"t: expected times in ascending order; they fall to {at:.6g}: sort the points with np.argsort(t)"
         )
     errors = np.where(np.isfinite(values), errors, 1.0)
     if body.scale is not None:
@@ -179,7 +177,7 @@ def measured(
 
 
 def leaning(name: str, theta: Floats, body: Body) -> None:
-    """Refuse inclinations at which the body has no steady state, such as degrees; NaN is allowed."""
+    """Raise ValueError for inclinations outside the body's range, as for degrees; NaN is allowed."""
     known = theta[np.isfinite(theta)]
     if not ((known > 0) & (known <= steepest(body))).all():
         degrees = (known > 0).all() and known.max() <= math.degrees(steepest(body))
@@ -206,13 +204,13 @@ def _errors(name: str, given: Reals | None, t: Floats, default: Floats) -> Float
 
 
 def _rises(name: str, t: Floats, values: Floats) -> bool:
-    """Whether values rise, by rank correlation; refused if they neither rise nor fall."""
+    """Whether values rise, by rank correlation; ValueError if they neither rise nor fall."""
     seen = np.isfinite(values)
     first, second = (np.argsort(np.argsort(x[seen], kind="stable"), kind="stable") for x in (t, values))
     correlation = float(np.corrcoef(first.astype(np.float64), second.astype(np.float64))[0, 1])
     if not abs(correlation) > 0.5:
         raise ValueError(
-            f"{name}: expected a drift, but its order correlates with that of t by {correlation:.2f}"
+            f"{name}: expected a drift; the rank correlation with t is {correlation:.2f}, at least 0.5 needed"
         )
     return correlation > 0
 
@@ -230,7 +228,7 @@ def _near(
         forbidden = known[~np.isfinite(np.asarray(body.rate(known)))]
         if forbidden.size:
             raise ValueError(
-                f"theta: {forbidden[0]:.4g} rad lies in the forbidden band: no state is steady there"
+                f"theta: {forbidden[0]:.4g} rad lies in the forbidden band, which has no steady states"
             )
         inside = [int(((known >= p[0]) & (known <= p[-1])).sum()) for p in pieces]
         if not pieces or max(inside) < known.size / 2:
@@ -241,7 +239,8 @@ def _near(
         if rises["theta"] == down:
             way = ("rises", "down") if down else ("falls", "up")
             raise ValueError(
-                f"theta: {way[0]}, but what loses energy with centre = {centre!r} drifts {way[1]} from there"
+                f"theta: {way[0]}, but a body that loses energy with centre = {centre!r} drifts {way[1]}"
+                " from there"
             )
         near = theta
         if "precession" in columns and not np.isfinite(theta).all():
@@ -257,7 +256,7 @@ def _near(
         )
     least, greatest = float(piece[0]), float(piece[-1])
     known = near[np.isfinite(near)]
-    if centre == "rest":  # one drift serves all starts: begin it beyond all of them
+    if centre == "rest":  # one drift serves all first inclinations: begin it beyond all of them
         beyond = 1.3 * float(known.max()) if down else 0.7 * float(known.min())
         least, greatest = (least, min(greatest, beyond)) if down else (max(least, beyond), greatest)
     return np.clip(near, least, greatest), (least, greatest), down
@@ -285,10 +284,10 @@ def _from_precession(
                 found.append((near, piece, down))
     if not found:
         unit = "sqrt(g/R)" if body.scale is None else "rad/s"
-        raise ValueError(f"precession: no steady state of this body drifts through these; is it in {unit}?")
+        raise ValueError(f"precession: no drift of this body has these values; is precession in {unit}?")
     if start is not None:
         return min(found, key=lambda f: abs(float(f[0][0]) - start))
     if len(found) > 1:
         several = " or ".join(f"{float(f[0][0]):.3g}" for f in found)
-        raise Several(f"precession: it may start from {several} rad: give theta, or start=")
+        raise Several(f"precession: the drift may start from {several} rad; give theta, or start=")
     return found[0]
