@@ -98,12 +98,12 @@ def test_what_is_no_recording_is_refused_by_name():
     uneven = t.copy()
     uneven[t > 2] += 1.0
     for wrong, said in (
-        ((t, 0 * sound), "sound: silence"),
-        ((t, 0 * sound + 0.3), "sound: silence"),
+        ((t, 0 * sound), "sound: the recording is silent"),
+        ((t, 0 * sound + 0.3), "sound: the recording is silent"),
         ((t[:2000], sound[:2000]), "sound: too short"),
         ((t[:1], sound[:1]), "sound: too short"),
-        ((t, torn), "sound: has 2 that are no numbers"),
-        ((torn, sound), "t: has 2 that are no numbers"),
+        ((t, torn), "sound: expected finite numbers; 2 are NaN"),
+        ((torn, sound), "t: expected finite numbers; 2 are NaN"),
         ((uneven, sound), "t: expected evenly spaced"),
         ((t, sound[:-1]), "t and sound: expected equal shapes"),
         ((t[::20], sound[::20]), "t: 2.2e\\+03 samples a second"),

@@ -1,4 +1,4 @@
-"""A coefficient of loss from a stopwatch: the times in which a body comes to its end."""
+"""A coefficient of loss from a stopwatch: the time in which a spinning body stops."""
 
 import math
 import warnings
@@ -17,34 +17,34 @@ from spincyl.data._report import section, student, variables
 from spincyl.data._spindown import centres, known_law
 from spincyl.data._typical import typical
 
-_UNIT = 1e-9  #: So small a coefficient that the law holds at all inclinations of the drift.
-_ENDS = ("face lands", "lies down")  #: What is seen to stop; in any other end the body still moves.
-_FEW = 5.0  #: Turns before the end, below which the drift is not slow.
+_UNIT = 1e-9  #: Coefficient so small that the law holds at all inclinations of the drift.
+_ENDS = ("face lands", "lies down")  #: Ends at which the body is seen to stop.
+_FEW = 5.0  #: With fewer turns before the end the drift is not slow.
 _LONGEST = 1e9  #: Seconds.
-_FAR = 10.0  #: Times as large as anything typical.
-_MIXED = 3.0  #: Largest ratio of times in one unit.
+_FAR = 10.0  #: A coefficient beyond the typical ones by this factor causes a warning.
+_MIXED = 3.0  #: A larger ratio of the times causes a warning.
 
 
 @compared
 class FittedStop(NamedTuple):
-    """A coefficient of loss by one of the two drifts; from `fit_stop`."""
+    """Coefficient of loss for one of the two drifts; from `fit_stop`."""
 
     centre: str  #: "rest" or "rolling"
     law: Any  #: the law with this coefficient
-    coefficient: float  #: in natural units, as the law has it
+    coefficient: float  #: in natural units, as in the law
     coefficient_err: float  #: its standard error
-    by_times: float  #: the part of it that is due to the times
-    by_angle: float  #: and to the starting angle
-    drift: Drift  #: from the starting angle to the mean of the times
+    by_times: float  #: part of the standard error that is due to the times
+    by_angle: float  #: part of the standard error that is due to the first inclination
+    drift: Drift  #: from the first inclination to the end, in the mean of the times
 
     @property
     def coefficient_si(self) -> float:
-        """The coefficient in the unit that `from_si` takes; an error says where that needs a mass."""
+        """The coefficient in the unit of `from_si`; ValueError if that needs a mass and there is none."""
         return float(self.law.in_si(self.drift.body))
 
     @property
     def coefficient_err_si(self) -> float:
-        """Its standard error in the same unit."""
+        """Standard error of `coefficient_si`, in the same unit."""
         return self.coefficient_si * self.coefficient_err / self.coefficient
 
     @property
@@ -60,20 +60,20 @@ class FittedStop(NamedTuple):
 
 @compared
 class StopFit(NamedTuple):
-    """Measured times until a body stops, and the coefficient that they give; from `fit_stop`."""
+    """Measured times until a body stops, and the coefficient of loss; returned by `fit_stop`."""
 
     body: Body
-    name: str  #: of the law
-    theta: float  #: where it starts, radians
-    theta_err: float
-    seconds: Floats  #: (n,) measured, without what was not
-    stops_at: float  #: their mean
-    stops_at_err: float  #: its standard error
-    fits: tuple[FittedStop, ...]  #: by the drift with the centre at rest, by the rolling one, or both
-    refused: tuple[Refused, ...]  #: the drift that cannot be
+    name: str  #: name of the law
+    theta: float  #: first inclination, radians
+    theta_err: float  #: its standard error
+    seconds: Floats  #: (n,) measured times, without missing ones
+    stops_at: float  #: mean of the times
+    stops_at_err: float  #: standard error of the mean
+    fits: tuple[FittedStop, ...]  #: for the drift with the centre at rest, the rolling drift, or both
+    refused: tuple[Refused, ...]  #: a drift that could not be fitted
 
     def of(self, centre: str) -> FittedStop:
-        """The coefficient with the centre at "rest" or "rolling"; KeyError, with the reason, if none."""
+        """Return the fit for the centre at "rest" or "rolling"; KeyError with the reason if there is none."""
         for found in self.fits:
             if found.centre == centre:
                 return found
@@ -81,7 +81,7 @@ class StopFit(NamedTuple):
         raise KeyError(f"centre: {centre!r} was not fitted{why}")
 
     def _about(self) -> list[tuple[str, str]]:
-        """What was measured, in words."""
+        """The measurement in words."""
         angle = f"{math.degrees(self.theta):.4g} +/- {math.degrees(self.theta_err):.2g} degrees"
         return [
             ("body", repr(self.body)),
@@ -92,7 +92,7 @@ class StopFit(NamedTuple):
         ]
 
     def report(self) -> str:
-        """The times and the coefficient with its errors and where they come from, as lmfit writes it."""
+        """The times and the coefficient with its error and the sources of this, a report in lmfit's style."""
         told = []
         for found in self.fits:
             value, error, unit = found._printed
@@ -123,55 +123,57 @@ def fit_stop(
     from_err: float = 0.0,
     centre: Literal["rest", "rolling"] | None = None,
 ) -> StopFit:
-    """The coefficient of a loss from the time in which a spinning coin stops: all it takes is a stopwatch.
+    """Fit the coefficient of a loss to the time in which a spinning coin stops, measured with a stopwatch.
 
     Parameters
     ----------
     body : Body
-        A single measured one.
+        Single measured body.
     law : class of `spincyl.loss`
-        Such as ``sc.loss.DryContour``: which law it is, a stopwatch cannot tell (`fit_losses` can).
+        For instance ``sc.loss.DryContour``. A stopwatch cannot tell which law holds (`fit_losses` can).
     from_ : float
         Inclination at which the watch is started, in radians, or a text such as "20deg".
     seconds : array_like
-        Time or times from there to the end, in seconds; NaN where one was missed.
+        One or more times from there to the end, in seconds; NaN for missing ones.
     error : float, optional
-        Standard error of each time in seconds, such as 0.2 of a hand at a watch. Default: the scatter of the
-        times gives it, of which there have to be two.
+        Standard error of each time in seconds, such as 0.2 for a watch started by hand. Default: from the
+        scatter of the times, which needs at least two different ones.
     from_err : float
-        Standard error of the starting angle, in radians or as "2deg". It is taken to be the same in all
-        tries, as of a mark that is not quite in its place, so that more tries do not make it smaller.
+        Standard error of `from_`, in radians or as "2deg". It is assumed to be the same in all trials, like
+        the error of a mark, so that further trials do not reduce it.
     centre : {"rest", "rolling"}, optional
-        Which drift: the centre held at rest, by slip, or the body rolling all the time. A stopwatch cannot
-        tell. Default: both.
+        Drift with the centre held at rest by slip, or of the body rolling all the time. A stopwatch cannot
+        tell which. Default: both.
 
     Returns
     -------
     StopFit
-        ``.report()`` tells it; ``.of("rest").law`` is what `drift` and `roll` take.
+        ``.report()`` summarises the fit; `drift` and `roll` take ``.of("rest").law``.
 
     Raises
     ------
     ValueError
-        For times that are not positive, a single time or times that are all the same without `error`; for a
-        law under which the body never stops, or stops before it has turned once; for a starting angle
-        without a steady state; for a body of unknown size.
+        For times that are not positive; without `error` for a single time, or for equal times; for a law
+        under which the body never stops, or stops within its first turn; for a first inclination without a
+        steady state; for a body of unknown size.
     TypeError
-        Naming what is no body, law or number.
+        If an argument is not a body, a law or a number; the message names it.
 
     Warns
     -----
-    DriftWarning, UserWarning
-        What the fitted drift warns of; if the body turns less than five times, if one time is three times
-        another, and if the coefficient is far from all of `spincyl.loss.typical`: as of minutes typed for
-        seconds.
+    DriftWarning
+        Warnings of the fitted drift are passed on.
+    UserWarning
+        If the body turns less than five times, if one time is three times another, or if the coefficient is
+        far from all in `spincyl.loss.typical`, as when minutes are given for seconds.
 
     Notes
     -----
-    Times of a drift are as one over the coefficient, so that the mean of the times gives it. Errors are
-    propagated to first order, that of the angle by the drift from either end of its error. Errors from the
-    scatter of few times are widened by Student's t: two of three coefficients lie within them. The drift is
-    of first order in the loss; a motion of `roll` with the coefficient tells how far that goes.
+    The times of a drift are inversely proportional to the coefficient, so that the mean of the times gives
+    the coefficient. Errors are propagated to first order; for the inclination, with drifts from both ends of
+    its error interval. Errors from the scatter of few times are widened by Student's t, so that they hold for
+    two of three coefficients. The drift is of first order in the loss; to see how accurate that is, compute
+    the motion with `roll` and this coefficient.
 
     Examples
     --------
@@ -184,18 +186,18 @@ def fit_stop(
     """
     one_body(body)
     if body.scale is None:
-        raise ValueError("body: its size is not known: make it by sc.measured, or give it a scale")
+        raise ValueError("body: its size is not known; make it with sc.measured, or give it a scale")
     kind = known_law("law", law)
     theta, theta_err = (
         number(name, radians(name, x)) for name, x in (("from_", from_), ("from_err", from_err))
     )
     refuse("from_", theta, lambda x: ~(x > 0), "expected a positive angle (radians)")
-    refuse("from_err", theta_err, lambda x: ~((x >= 0) & (x < theta)), "expected 0 or more, less than from_")
+    refuse("from_err", theta_err, lambda x: ~((x >= 0) & (x < theta)), "expected at least 0, less than from_")
     times, mean, mean_err = _timed(seconds, error)
     turns = mean * float(body.hertz(theta))
     if turns < 1:
-        told = f"it would stop within {turns:.2g} of a turn, and no drift is so fast"
-        raise ValueError(f"seconds = {mean:.6g}: {told}: are the times in seconds?")
+        told = f"the body would stop within {turns:.2g} of a turn, too fast for a drift"
+        raise ValueError(f"seconds = {mean:.6g}: {told}; are the times in seconds?")
     fits, refused = [], []
     with warnings.catch_warnings(record=True, action="always") as said:
         for one in centres(centre):
@@ -210,7 +212,8 @@ def fit_stop(
         warnings.warn(kept.message, kept.category, stacklevel=2)
     if turns < _FEW:
         told = (
-            f"it turns {turns:.2g} times before it stops, too few for a slow drift: are the times in seconds?"
+            f"the body turns only {turns:.2g} times before it stops, too few for a slow drift: are the times"
+            " in seconds?"
         )
         warnings.warn(told, UserWarning, stacklevel=2)
     return StopFit(
@@ -227,7 +230,7 @@ def fit_stop(
 
 
 def _doubt(found: FittedStop) -> None:
-    """Warn of a coefficient that is far from all that are typical of its law."""
+    """Warn of a coefficient that is far from all typical ones of its law."""
     value, _, unit = found._printed
     rows = [row for row in typical() if row.of.split()[0] == type(found.law).__name__]
     if not unit or not rows:
@@ -235,9 +238,9 @@ def _doubt(found: FittedStop) -> None:
     low, high = min(row.low for row in rows), max(row.high for row in rows)
     if not low / _FAR <= value <= high * _FAR:
         known = " to ".join(dict.fromkeys(f"{x:.2g}" for x in (low, high)))
-        told = f"{found.law._parameter} = {value:.2g}{unit} is far from the {known}{unit}"
-        asks = "are the times in seconds, or is it another law?"
-        warnings.warn(f"{told} of sc.loss.typical: {asks}", UserWarning, stacklevel=3)
+        told = f"{found.law._parameter} = {value:.2g}{unit} is far from the typical {known}{unit}"
+        asks = "are the times in seconds, or does another law hold?"
+        warnings.warn(f"{told} (sc.loss.typical): {asks}", UserWarning, stacklevel=3)
 
 
 def _timed(seconds: Reals, error: float | None) -> tuple[Floats, float, float]:
@@ -254,12 +257,14 @@ def _timed(seconds: Reals, error: float | None) -> tuple[Floats, float, float]:
     mean = float(np.mean(times))
     one = math.nan if error is None else number("error", si("error", error, "second"))
     if error is not None:
-        refuse("error", one, lambda x: ~((x > 0) & (x < mean)), "expected a positive time, less than it took")
+        refuse(
+            "error", one, lambda x: ~((x > 0) & (x < mean)), "expected a positive time, less than the mean"
+        )
     elif times.size < 2 or np.ptp(times) == 0:
-        what = "one time says" if times.size < 2 else "times that are all the same say"
-        raise ValueError(f"seconds: {what} nothing of its error: give it, as in error=0.2")
+        what = "a single time has" if times.size < 2 else "equal times have"
+        raise ValueError(f"seconds: {what} no scatter; give the error of a time, as in error=0.2")
     if times.max() > _MIXED * times.min():
-        told = f"the times go from {times.min():.4g} to {times.max():.4g} s: are all of them in seconds?"
+        told = f"the times range from {times.min():.4g} to {times.max():.4g} s: are all of them in seconds?"
         warnings.warn(told, UserWarning, stacklevel=3)
     scatter = float(np.std(times, ddof=1)) if times.size > 1 else 0.0
     spread = scatter * student(1.0, times.size - 1) if error is None else max(one, scatter)
@@ -277,15 +282,15 @@ def _fitted(
     except ValueError as e:
         raise ValueError(f"from_: {e}") from None
     if math.isinf(one.stops_at):
-        never = f"under {name} this body never stops from {math.degrees(theta):.4g} degrees on"
-        raise ValueError(f"law: {never}, so that no time tells its coefficient")
+        never = f"with {name}, starting at {math.degrees(theta):.4g} degrees, this body never stops"
+        raise ValueError(f"law: {never}, so that no time determines the coefficient")
     if one.ended not in _ENDS:
         at = f"at {math.degrees(one.ends_at_theta):.3g} degrees, where the body still moves"
-        raise ValueError(f"law: this drift by {name} ends ({one.ended}) {at}; no stopwatch sees it")
+        raise ValueError(f"law: the drift with {name} ends ({one.ended}) {at}; a stopwatch cannot time it")
     beside = drift(plain, np.array([theta - theta_err, theta + theta_err]), kind(_UNIT), centre).stops_at
     off = np.abs(beside - one.stops_at)
     if theta_err and not np.isfinite(off).any():
-        raise ValueError(f"from_err = {theta_err!r}: there is no drift from either end of this error")
+        raise ValueError(f"from_err = {theta_err!r}: there is no drift from either end of this interval")
     coefficient = _UNIT * one.stops_at / (mean / second)
     by_times = coefficient * mean_err / mean
     by_angle = coefficient * float(np.nanmean(off)) / one.stops_at if theta_err else 0.0

@@ -1,4 +1,4 @@
-"""Coefficients of friction, rolling, losses, restitution and air that others have published, by materials."""
+"""Published coefficients of friction, rolling, losses, restitution and air, by materials."""
 
 import csv
 import textwrap
@@ -15,11 +15,11 @@ class Typical(NamedTuple):
     """A published coefficient, or its range."""
 
     of: str  #: a law of loss or a contact with the name of its coefficient, or "restitution"
-    pair: str  #: of what on what
-    low: float
-    high: float  #: the same as `low` where there is one figure
-    unit: str  #: that `from_si` reads; "" of a pure number
-    sure: str  #: "handbook", "measured", "rule", "standard", or "order": of magnitude only
+    pair: str  #: the two materials
+    low: float  #: the coefficient, or the lower end of its range
+    high: float  #: upper end of the range; equal to `low` for a single figure
+    unit: str  #: unit of `from_si`; "" for a pure number
+    sure: str  #: "handbook", "measured", "rule", "standard", or "order" for an order of magnitude
     source: str
 
 
@@ -29,12 +29,12 @@ class Table(tuple[Typical, ...]):
     __slots__ = ()
 
     def of(self, law: Any) -> "Table":
-        """The rows of a law or contact, by class or name, as ``sc.loss.DryContour``, or of "restitution"."""
+        """Return the rows of a law or contact, by class (``sc.loss.DryContour``) or name ("restitution")."""
         name = law if isinstance(law, str) else getattr(law, "__name__", "")
         found = Table(row for row in self if name and name in (row.of, row.of.split()[0]))
         if not found:
             known = ", ".join(dict.fromkeys(row.of.split()[0] for row in typical()))
-            raise ValueError(f"law = {law!r}: nothing is known of it; there is {known}")
+            raise ValueError(f"law = {law!r}: not in the table; expected one of {known}")
         return found
 
     def __repr__(self) -> str:
@@ -43,7 +43,7 @@ class Table(tuple[Typical, ...]):
         lines = ["  ".join(x.ljust(w) for x, w in zip(row, wide, strict=True)).rstrip() for row in cells]
         told = {row.source for row in self}
         if any(row.sure == "order" for row in self):
-            lines.append("~: an order of magnitude, to begin with")
+            lines.append("~: only an order of magnitude")
         for source in sorted(told):
             lines += textwrap.wrap(source, WIDE, subsequent_indent="  ")
         return "\n".join(lines)

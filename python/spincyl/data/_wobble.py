@@ -1,6 +1,6 @@
-"""The rate at which the contact of a whirring body goes round, from the envelope of its ringing.
+"""The rate at which the contact point of a whirring body goes round, from the envelope of its ringing.
 
-The body rings at frequencies of its own, some kHz, and it rings louder once per turn of the contact, with
+The body rings at its natural frequencies, some kHz, and louder once per turn of the contact point, with
 frequency Omega/(2 pi). This frequency appears in the spectrum of the envelope, not in that of the sound. The
 envelope is the magnitude of the analytic signal (Gabor 1946) with frequencies weighted by their excess over
 the noise. Dynamic programming (Viterbi 1967) follows its fundamental through a bank of filters of equal
@@ -31,7 +31,7 @@ _BIAS = 1e-3  # relative systematic error of a window without noise
 
 @compared
 class Wobble(NamedTuple):
-    """How often a contact goes round, over time; from `wobble`."""
+    """Turns per second of a contact point over time; returned by `wobble`."""
 
     t: Floats  #: (n,) seconds, the middles of windows of eight turns that do not overlap
     turns: Floats  #: (n,) turns per second, Omega/(2 pi)
@@ -45,34 +45,34 @@ class Wobble(NamedTuple):
 
 
 def wobble(t: Reals, sound: Reals, *, between: tuple[float, float] = (2.0, 200.0)) -> Wobble:
-    """Turns per second of the contact of a whirring body, from the envelope of its ring.
+    """Find the turns per second of the contact point of a whirring body in a recording of its sound.
 
     Parameters
     ----------
     t : array_like, 1-D
-        Times in seconds, evenly spaced: as `read_sound` gives them.
+        Evenly spaced times in seconds, as `read_sound` returns them.
     sound : array_like, 1-D
         The recording, in any unit.
     between : (float, float)
-        Turns per second to expect. The ring is sought above twice the larger.
+        Expected range of the turns per second. The ringing is sought above twice the larger number.
 
     Returns
     -------
     Wobble
-        Where it is heard, without the turns in which it begins and ends, and windows with a knock. Of a
-        measured body `fit_losses` takes its `t`, and ``2 * np.pi * turns`` as `precession`.
+        Turns per second while the whirr is audible, without its first and last turn and without windows that
+        contain a knock. For a measured body `fit_losses` takes `t`, and `turns` as `hertz`.
 
     Raises
     ------
     ValueError
-        For silence, a recording or a wobble of fewer than 32 turns, one sampled too slowly, NaN, times that
-        are not evenly spaced, and where no wobble stands out of the noise.
+        For silence, NaN, or times that are not evenly spaced; for a recording or whirr of fewer than 32
+        turns; if the sampling rate is too low; if no whirr stands out from the noise.
     TypeError
-        For anything but real numbers.
+        If an argument is not real numbers; the message names it.
 
     Notes
     -----
-    A body that is louder twice a turn is heard twice as often as it turns: look at `turns` beside a film.
+    If a body is louder twice per turn, `turns` is twice the true rate: compare it with a film.
     """
     low, high = _range(between)
     x, begin, hertz = _recording(t, sound, low, high)
@@ -102,12 +102,13 @@ def _unheard(heard: np.ndarray, turns: float, low: float, high: float) -> str:
     """The reason why no wobble was detected: too few audible turns, or none."""
     needed = _RUN * _TURNS
     if turns < needed and heard.size and heard.mean() > 0.5:
-        return f"sound: too short: {int(turns)} turns, {needed} needed"
+        return f"sound: too short: {int(turns)} turns, at least {needed} needed"
     edges = np.flatnonzero(np.diff(np.r_[0, heard.astype(int), 0])).reshape(-1, 2)
     row = int(np.diff(edges, axis=1).max(initial=0))  # consecutive windows start one turn apart
     if row >= 2 * _TURNS:  # noise has short rows of audible windows
-        return f"sound: too short: {row + _TURNS - 1} turns are heard in a row, {needed + 2} needed"
-    return f"sound: no wobble between {low:g} and {high:g} turns a second stands out of the noise"
+        many = row + _TURNS - 1
+        return f"sound: too short: {many} turns in a row are audible, at least {needed + 2} needed"
+    return f"sound: no wobble between {low:g} and {high:g} turns a second stands out from the noise"
 
 
 def _range(between: object) -> tuple[float, float]:
@@ -116,7 +117,7 @@ def _range(between: object) -> tuple[float, float]:
     low, high = (number(f"between[{k}]", x) for k, x in enumerate(between))
     if not 0.01 <= low < high / 1.5 <= 1e5:
         raise ValueError(
-            f"between = {between!r}: expected turns per second, the second at least half as large again"
+            f"between = {between!r}: expected turns per second, the second at least 1.5 times the first"
         )
     return low, high
 
@@ -128,20 +129,23 @@ def _recording(t: Reals, sound: Reals, low: float, high: float) -> tuple[Floats,
         raise ValueError(f"t and sound: expected equal shapes (n,), not {time.shape} and {x.shape}")
     for name, values in (("t", time), ("sound", x)):
         if not np.isfinite(values).all():
-            raise ValueError(f"{name}: has {np.size(values) - np.isfinite(values).sum()} that are no numbers")
+            bad = np.size(values) - np.isfinite(values).sum()
+            raise ValueError(f"{name}: expected finite numbers; {bad} are NaN or infinite")
     least = _RUN * _TURNS / high
     if x.size < 2 or time[-1] - time[0] < least:
-        raise ValueError(f"sound: too short: expected at least {_RUN * _TURNS} turns, {least:.2g} s or more")
+        raise ValueError(f"sound: too short: expected at least {_RUN * _TURNS} turns, here {least:.2g} s")
     step = (time[-1] - time[0]) / (x.size - 1)
     # times written with few digits may be off by some of these
     if not step > 0 or np.abs(time - time[0] - step * np.arange(x.size)).max() > 0.1 / high:
         raise ValueError("t: expected evenly spaced times")
     if step * high > 0.05:
-        raise ValueError(f"t: {1 / step:.3g} samples a second are too few: expected 20 times {high:g}")
+        raise ValueError(
+            f"t: {1 / step:.3g} samples a second are too few; expected at least 20 times {high:g}"
+        )
     loudest = np.abs(x).max()
     x = x - x.mean()
     if not np.abs(x).max() > 1e-9 * loudest:
-        raise ValueError("sound: silence")
+        raise ValueError("sound: the recording is silent")
     return x / np.abs(x).max(), float(time[0]), 1 / step
 
 
@@ -155,7 +159,7 @@ def _envelope(x: Floats, hertz: float, high: float) -> tuple[Floats, float]:
     first, last = (np.clip(np.arange(frequency.size) + k, 0, frequency.size) for k in (-wide, wide + 1))
     power = (total[last] - total[first]) / (last - first)
     weight = np.clip(1 - 2 * np.median(power[ring]) / (power + 1e-300), 0, 1) * ring
-    if not weight.any():  # no frequency stands out of the noise
+    if not weight.any():  # no frequency stands out from the noise
         weight = 1.0 * ring
     analytic = np.zeros(x.size, np.complex128)
     analytic[: spectrum.size] = 2 * weight * spectrum
