@@ -86,7 +86,7 @@ def test_torn_utf_16_names_the_file_and_the_byte(tmp_path, encoding):
         ONE.encode(encoding) + "\ud800".encode(encoding, "surrogatepass"),
     ):
         path.write_bytes(mark + torn)
-        with pytest.raises(ValueError, match=r"export.txt: its UTF-16 is torn at byte \d+ of \d+$"):
+        with pytest.raises(ValueError, match=r"export.txt: invalid UTF-16 at byte \d+ of \d+$"):
             sc.data.read_tracker(path)
 
 
@@ -94,7 +94,7 @@ def test_torn_utf_16_names_the_file_and_the_byte(tmp_path, encoding):
 def test_a_cell_of_any_length_is_read_or_refused_with_its_line(tmp_path, quote):
     name, zeros = 200_000 * "x", 150_000 * "0"
     assert list(read(tmp_path, f"a\nt\t{name}\n0\t1\n")["a"]) == ["t", name]
-    with pytest.raises(ValueError, match="export.txt: .*line 4 has something that is no number") as caught:
+    with pytest.raises(ValueError, match="export.txt: .*line 4 has a cell that is not a number") as caught:
         read(tmp_path, f"a\nt\tx\n0\t1\n1\t{quote}{name}{quote}\n")
     assert len(str(caught.value)) < 1000
     if not quote:

@@ -175,7 +175,7 @@ def test_what_is_no_plain_wav_file_is_refused_with_its_name(tmp_path):
         (b"", "not a WAV file"),
         (good[:36], "no samples"),
         (good[:44], "no samples"),
-        (good.replace(struct.pack("<HH", 1, 1), struct.pack("<HH", 6, 1)), "kind 6"),
+        (good.replace(struct.pack("<HH", 1, 1), struct.pack("<HH", 6, 1)), "format 6"),
     ):
         path = tmp_path / "other.wav"
         path.write_bytes(raw)
@@ -251,7 +251,7 @@ def test_a_zip_file_without_tables_and_a_torn_one_are_refused(tmp_path):
     path = tmp_path / "export.zip"
     with zipfile.ZipFile(path, "w") as file:
         file.writestr("meta/device.csv", "a,b\n1,2\n")
-    with pytest.raises(ValueError, match="export.zip: no CSV"):
+    with pytest.raises(ValueError, match="export.zip: this zip file contains no CSV"):
         sc.data.read_phyphox(path)
     with zipfile.ZipFile(path, "w") as file:
         file.writestr("Raw Data.csv", exported())

@@ -43,18 +43,18 @@ def written(tmp_path, raw, name="file.csv"):
         ('"t,x\n1,2\n3,4\n', "line 1 has a quote that is not closed"),
         ('t;x\n"1;2\n3;4\n', "line 2 has a quote that is not closed"),
         ('a,b,c\n1,"2,5"3,4\n1,2,3\n', "line 2 has a quote that is not closed"),
-        (",\n1,2\n2,3\n", "line 1 has no names that are separated as the numbers are"),
+        (",\n1,2\n2,3\n", "line 1 has no names separated in the same way as the numbers"),
         ("t,\n1,2\n2,3\n", "line 2 has 2 cells under 1 column names"),
-        ("t,x\n1\n2\n", "2 column names stand above 1 numbers in line 2"),
-        ("t\tx\n1,2\n3,4\n", "2 column names stand above 1 numbers in line 2"),
-        ("t,x,y\n1,2\n3,4\n", "3 column names stand above 2 numbers in line 2"),
+        ("t,x\n1\n2\n", "line 2 has 1 number under 2 column names"),
+        ("t\tx\n1,2\n3,4\n", "line 2 has 1 number under 2 column names"),
+        ("t,x,y\n1,2\n3,4\n", "line 2 has 2 numbers under 3 column names"),
         ("t;x\n1,5;2\n1.234;2,5\n", "line 3 has a decimal point among decimal commas"),
-        ("t;x\n1.234;2,5\n1,5;2\n", "line 2 has numbers that are not written as those of line 3"),
-        ('t\n1"\n2\n', "line 2 has numbers that are not written as those of line 3"),
-        ('t,x\n1,"1,234"\n2,"5,678"\n', "line 2: '1,234' may be 1.234 or 1234"),
+        ("t;x\n1.234;2,5\n1,5;2\n", "line 2 has numbers in another format than line 3"),
+        ('t\n1"\n2\n', "line 2 has numbers in another format than line 3"),
+        ('t,x\n1,"1,234"\n2,"5,678"\n', "line 2: '1,234' may mean 1.234 or 1234"),
         ("t,x\n1,inf\n2,1e999\n", "the last line is '2,1e999'"),
-        ("t,x\n1,2\n2,inf\n3,4\n", "line 3 has something that is no number: '2,inf'"),
-        ("t,x\n1,2\n2,-1e999\n", "line 3 has something that is no number: '2,-1e999'"),
+        ("t,x\n1,2\n2,inf\n3,4\n", "line 3 has a cell that is not a number: '2,inf'"),
+        ("t,x\n1,2\n2,-1e999\n", "line 3 has a cell that is not a number: '2,-1e999'"),
         ("t,t\n1,2\n", "line 1: two columns"),
     ],
 )
@@ -129,7 +129,7 @@ def wav(code=1, channels=1, hertz=8000, bits=16, data=bytes(range(64)), pace=Non
 def test_a_head_of_a_sound_that_contradicts_itself_is_refused(tmp_path):
     assert sc.data.read_sound(written(tmp_path, wav(channels=2)))[1].size == 16
     for raw in (wav(pace=8000), wav(frame=4), wav(channels=2, frame=2), wav(bits=8, frame=2)):
-        with pytest.raises(ValueError, match="file.csv: the head of this WAV file contradicts itself"):
+        with pytest.raises(ValueError, match="file.csv: the header of this WAV file contradicts itself"):
             sc.data.read_sound(written(tmp_path, raw))
 
 
@@ -137,7 +137,7 @@ def test_a_head_of_a_sound_that_contradicts_itself_is_refused(tmp_path):
 @pytest.mark.parametrize("kind", ["<f4", "<f8"])
 def test_a_sound_with_samples_that_are_no_numbers_is_refused(tmp_path, bad, kind):
     data = np.array([0.5, 0.25, 0.5, bad, 0.0, 0.0], kind).tobytes()
-    with pytest.raises(ValueError, match="file.csv: sample 1 of this WAV file is .*: it is damaged"):
+    with pytest.raises(ValueError, match="file.csv: sample 1 of this WAV file is .*: the file is damaged"):
         sc.data.read_sound(written(tmp_path, wav(3, 2, 8000, 8 * np.dtype(kind).itemsize, data)))
 
 
@@ -179,7 +179,7 @@ def test_a_zip_bomb_is_refused_whatever_its_header_says(tmp_path, monkeypatch, m
 def test_a_table_of_lines_that_are_cut_off_is_refused_before_it_fills_the_memory(tmp_path, monkeypatch):
     monkeypatch.setattr(_tracker, "MOST_BYTES", 10_000)
     wide = ",".join(f"c{k}" for k in range(200)) + "\n" + ",".join(["1"] * 200) + "\n"
-    with pytest.raises(ValueError, match="200 column names stand above 101 lines: these are too many cells"):
+    with pytest.raises(ValueError, match="200 column names above 101 lines are too many cells"):
         sc.data.read_table(written(tmp_path, wide + "1\n" * 100))
 
 

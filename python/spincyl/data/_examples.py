@@ -6,23 +6,24 @@ from pathlib import Path
 #: File and content of each example.
 _EXAMPLES = {
     "tube_from_above": ("tube_from_above.txt", "both ends of a tube, as Tracker exports them; 34 frames"),
-    "tube_project": ("tube_from_above.trz", "the same film as a project of Tracker's, packed"),
+    "tube_project": ("tube_from_above.trz", "the same film as a packed project of Tracker"),
     "flicks": ("flicks.csv", "inclination in degrees and turns per second of ten flicks of that tube"),
-    "spin_down": ("spin_down.csv", "seconds, degrees and turns per second of a disk that comes to its end"),
-    "whirr": ("whirr.wav", "the sound of that disk, eight seconds"),
+    "spin_down": ("spin_down.csv", "seconds, degrees and turns per second of a disk that spins down"),
+    "whirr": ("whirr.wav", "eight seconds of the sound of that disk"),
 }
 
 
 def example(name: str) -> Path:
-    """The path of a file of sample data, to be read as one reads one's own.
+    """Return the path of a file of sample data.
 
     Parameters
     ----------
     name : {"tube_from_above", "tube_project", "flicks", "spin_down", "whirr"}
-        Both ends of a tube on film (`read_tracker`, `from_above`), exported or as a project; ten flicks of
-        it, degrees and turns per second (`read_table`, `compare`); a disk that comes to its end, filmed
-        (`read_table`, `fit_losses`) and heard (`read_sound`, `wobble`). The tube has the measures 0.625, 0.5
-        and 3.75 inches, the disk is 75.1 mm wide and 12.8 mm thick.
+        "tube_from_above" and "tube_project": both ends of a tube on film, exported by Tracker and as a
+        project (`read_tracker`, `from_above`). "flicks": ten flicks of this tube, degrees and turns per
+        second (`read_table`, `compare`). "spin_down" and "whirr": a disk that spins down, on film
+        (`read_table`, `fit_losses`) and its sound (`read_sound`, `wobble`). The tube has diameters of 0.625
+        and 0.5 inches and a length of 3.75 inches; the disk is 75.1 mm wide and 12.8 mm thick.
 
     Returns
     -------
@@ -31,13 +32,13 @@ def example(name: str) -> Path:
     Raises
     ------
     ValueError
-        For any other name, with those that there are.
+        For any other name; the message lists the names.
     TypeError
-        For anything but a name.
+        If `name` is not a str.
 
     Notes
     -----
-    The data are made up: computed states with errors added by a random generator. They are no measurement.
+    The data are simulated: computed states with random errors, not measurements.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Projects of Tracker's: .trk files, which are XML, and .trz files, which are zip files that hold one."""
+"""Projects of Tracker: .trk files, which are XML, and .trz files, which are zip files that contain one."""
 
 import codecs
 import math
@@ -17,14 +17,14 @@ from spincyl.data._encoding import UTF_16, as_told, found_out, legible
 _HOME = "org.opensourcephysics."
 _PANEL, _POINT = _HOME + "cabrillo.tracker.TrackerPanel", _HOME + "cabrillo.tracker.PointMass"
 _DECLARED = re.compile(rb"""\s*<\?xml[^>]{0,200}?encoding\s*=\s*["']([\w.:-]{1,40})["']""")
-_MOST = 1_000_000  #: Elements of a project.
-#: Undecoded bytes, which XML may not hold, and characters for private use that stand for them in between.
+_MOST = 1_000_000  #: Largest number of elements of a project.
+#: Undecoded bytes, which XML may not contain, and the private-use characters that replace them meanwhile.
 _BARE = dict(zip(range(0xDC80, 0xDD00), range(0xF780, 0xF800), strict=True))
 _BACK = {private: bare for bare, private in _BARE.items()}
 
 
 class _Builder(ElementTree.TreeBuilder):
-    """Builds the tree of a project; a document type, where entities are defined, is refused unread."""
+    """Builds the tree of a project; ValueError for a document type, since it may define entities."""
 
     _count = 0
 
@@ -39,12 +39,12 @@ class _Builder(ElementTree.TreeBuilder):
 
 
 def project(raw: bytes, name: str, encoding: str | None) -> dict[str, Columns] | None:
-    """The tracks of a project, packed or not; None if the file is none."""
+    """The tracks of a project, packed or not; None if the file is not a project."""
     if raw[:4] == b"PK\x03\x04":
         packed = unpacked(raw, name, lambda inside: inside.suffix.lower() == ".trk")
         if len(packed) > 1:
             inside = ", ".join(one for one, _ in packed)
-            raise ValueError(f"{name}: {len(packed)} projects of Tracker's: {inside}; unpack it and read one")
+            raise ValueError(f"{name}: expected one Tracker project, not {len(packed)} ({inside}); unpack it")
         if not packed:
             return None
         name, raw = f"{name}: {packed[0][0]}", packed[0][1]
@@ -55,14 +55,14 @@ def project(raw: bytes, name: str, encoding: str | None) -> dict[str, Columns] |
     try:
         found = _tracks(_tree(text))
     except ValueError as e:
-        raise ValueError(f"{name}: a project of Tracker's, but {e}") from None
+        raise ValueError(f"{name}: a Tracker project, but {e}") from None
     legible(name, [word for track in found.values() for pair in track.units.items() for word in pair])
     legible(name, found)
     return found
 
 
 def _decoded(raw: bytes, name: str, encoding: str | None) -> str:
-    """The text in the encoding that is given, marked or declared, if it is right; else as of any file."""
+    """The text in the given, marked or declared encoding, if that is right; else decoded like any file."""
     declared = _DECLARED.match(raw[:400])
     if encoding is not None:
         return as_told(raw, name, encoding)
@@ -77,13 +77,13 @@ def _decoded(raw: bytes, name: str, encoding: str | None) -> str:
 
 
 def _tree(text: str) -> Any:
-    """The root of a project; ValueError with the line where it is torn."""
+    """The root of a project; ValueError with the line at which the XML is damaged."""
     parser = ElementTree.XMLParser(target=_Builder())
     try:
         parser.feed(text.translate(_BARE))
         return parser.close()
     except ElementTree.ParseError as e:
-        raise ValueError(f"line {e.position[0]} is torn: {str(e).split(':')[0]}") from None
+        raise ValueError(f"line {e.position[0]} is damaged: {str(e).split(':')[0]}") from None
 
 
 def _own(of: Any) -> dict[str, Any]:
@@ -110,7 +110,7 @@ def _number(own: dict[str, Any], name: str, default: float = math.nan) -> float:
         found = math.nan
     if not math.isfinite(found):
         raise ValueError(
-            f"it has no number {name!r}" if name not in own else f"{name} = {said[:40]!r} is no number"
+            f"it has no number {name!r}" if name not in own else f"{name} = {said[:40]!r} is not a number"
         )
     return found
 
@@ -127,7 +127,7 @@ def _tracks(root: Any) -> dict[str, Columns]:
     """The tracks of the points of a project, in the units of its calibration and in seconds."""
     kind = root.get("class", root.tag)
     if kind != _PANEL:
-        raise ValueError(f"of another kind ({kind.rpartition('.')[2]}): open it in Tracker and save one tab")
+        raise ValueError(f"of the kind {kind.rpartition('.')[2]!r}: open it in Tracker and save a single tab")
     own = _own(root)
     moving = _text(own.get("referenceframe"))
     if moving:
@@ -145,8 +145,8 @@ def _tracks(root: Any) -> dict[str, Columns]:
     if not frames:
         there = ", ".join([*(f"PointMass {name!r}" for name in marks), *others]) or "no track"
         outside = sum(map(len, marks.values()))
-        told = f"; {outside} marks are outside of its clip" if outside else ""
-        raise ValueError(f"no point of it is marked in any frame: it has {there}{told}")
+        told = f"; {outside} marks are outside its clip" if outside else ""
+        raise ValueError(f"no point is marked in any frame: it has {there}{told}")
     begin, many = min(frames), (max(frames) - min(frames)) // step + 1
     if many * len(shown) > _MOST:
         raise ValueError(f"{len(shown)} tracks over {many} frames are too many")
@@ -154,7 +154,7 @@ def _tracks(root: Any) -> dict[str, Columns]:
     timing = _own(_inside(clip.get("video"))) | _own(_inside(own.get("clipcontrol")))
     milliseconds = _number(timing, "delta_t")
     if not milliseconds > 0:
-        raise ValueError(f"delta_t = {milliseconds!r}: a frame has to last")
+        raise ValueError(f"delta_t = {milliseconds!r}: expected a positive duration of a frame")
     t = (_number(clip, "starttime", 0.0) + (n - first) * milliseconds) / 1e3
     world, unit = _world(own, n)
     found: dict[str, Columns] = {}
@@ -168,7 +168,7 @@ def _tracks(root: Any) -> dict[str, Columns]:
 
 
 def _marks(own: dict[str, Any]) -> tuple[dict[str, dict[int, complex]], list[str]]:
-    """Where each point was marked, by track and frame; and what other tracks there are."""
+    """Positions of the marks by track and frame, and the names of other tracks."""
     marks: dict[str, dict[int, complex]] = {}
     others = []
     for one in own.get("tracks", ()):
@@ -187,7 +187,7 @@ def _marks(own: dict[str, Any]) -> tuple[dict[str, dict[int, complex]], list[str
 
 
 def _world(own: dict[str, Any], frames: Floats) -> tuple[Callable[[Any], tuple[Floats, Floats]], str]:
-    """How places in the picture, x + iy downward, become those of the axes; and their unit of length."""
+    """The map from positions in the picture, x + iy downward, to coordinates, and the unit of length."""
     keys = ("xorigin", "yorigin", "angle", "xscale", "yscale")
     system = _own(_inside(own.get("coords")))
     rows = sorted((n, *(_number(at, key) for key in keys)) for n, at in _frames(system))
@@ -196,7 +196,7 @@ def _world(own: dict[str, Any], frames: Floats) -> tuple[Callable[[Any], tuple[F
     n, x, y, angle, across, up = np.array(rows).T
     if not (across * up).all():
         raise ValueError("its scale of length is 0")
-    # axes stay where they are from a frame in which they were moved to the next such frame
+    # axes keep their position from a frame in which they were moved to the next such frame
     held = np.maximum(np.searchsorted(n, frames, side="right") - 1, 0)
     unit = "px" if (across == 1).all() and (up == 1).all() else _text(own.get("length_unit"))
     unit = unit and f" ({unit})"

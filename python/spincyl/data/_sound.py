@@ -1,7 +1,7 @@
-"""Sound and tables that a phone has recorded: exports of phyphox, and WAV files.
+"""Sound and tables recorded by a phone: exports of phyphox, and WAV files.
 
-Python's `wave` does not read floating-point samples, and SciPy's reader fails for a recording that breaks off
-within a frame; so the few fields of a WAV file are read here.
+Python's `wave` does not read floating-point samples, and SciPy's reader fails if a recording breaks off
+within a frame; therefore the few fields of a WAV file are read here.
 """
 
 import struct
@@ -21,37 +21,38 @@ _LOUDEST = 2.0**31  # largest sample; floating-point samples are usually below 1
 
 
 def read_phyphox(path: str | PathLike[str], *, encoding: str | None = None) -> dict[str, Columns]:
-    """The tables that the app phyphox exported, as CSV or as a zip file of CSV.
+    """Read the tables that the app phyphox exported, as a CSV file or a zip file of several.
 
     Parameters
     ----------
     path : path
-        With commas, semicolons or tabs between columns, decimal point or comma: found out.
+        A CSV or zip file. Separators (commas, semicolons or tabs) and decimal signs are detected.
     encoding : str, optional
-        Of the text, as of `read_table`; phyphox writes UTF-8.
+        Encoding of the text, as in `read_table`; phyphox writes UTF-8.
 
     Returns
     -------
     dict
-        By table (the name of its file without the suffix), by column, such as
-        ``{"Raw Data": {"Time": ..., "Recording": ...}}``: arrays, NaN where a cell is empty. The name in the
-        file, such as "Time (s)", is understood, too. What a zip file says of the phone, in its folder meta,
-        is left out. Tables in a zip file that differ in their folder or suffix only keep their whole names,
-        such as "first/Raw Data.csv".
+        For each table, by the name of its file without the suffix, a dict of its columns, such as
+        ``{"Raw Data": {"Time": ..., "Recording": ...}}``: arrays, NaN where a cell is empty. The full name of
+        a column, such as "Time (s)", is a key as well. Information on the phone, in the folder meta of a zip
+        file, is left out. Tables of a zip file whose names differ only in folder or suffix keep their full
+        names, such as "first/Raw Data.csv".
 
     Raises
     ------
     ValueError
-        If a table is none, naming the file and the line, as of `read_table`; if a zip file is torn, needs a
-        password, has two tables of one name, or unpacks to more than `MOST_BYTES` bytes in all.
+        If a file is not a table; the message names the file and the line, as in `read_table`. Also if a zip
+        file is damaged, needs a password, has two tables of the same name, or unpacks to more than
+        `MOST_BYTES` bytes in all.
     OSError
         If the file cannot be read.
     TypeError
-        If `path` is no path.
+        If `path` is not a path.
 
     Notes
     -----
-    The unit of a column is in the `units` of its table; the Audio Scope counts milliseconds in some versions.
+    `units` of a table gives the units of its columns: some versions of the Audio Scope write milliseconds.
     """
     raw, name = contents(path), str(path)
     if raw[:4] not in (b"PK\x03\x04", b"PK\x05\x06"):
@@ -59,7 +60,7 @@ def read_phyphox(path: str | PathLike[str], *, encoding: str | None = None) -> d
     found = unpacked(raw, name, _is_table)
     if not found:
         not_packed_project(raw, name)
-        raise ValueError(f"{name}: no CSV in this zip file; export from phyphox as CSV")
+        raise ValueError(f"{name}: this zip file contains no CSV; export from phyphox as CSV")
     paths = [PurePosixPath(inside) for inside, _ in found]
     stems = Counter(inside.stem for inside in paths)
     # tables in two folders may have the same name
@@ -73,17 +74,17 @@ def read_phyphox(path: str | PathLike[str], *, encoding: str | None = None) -> d
 
 
 def _is_table(inside: PurePosixPath) -> bool:
-    """Whether a file in a zip file is a table, and not about the phone."""
+    """Whether a file in a zip file is a table, not information on the phone."""
     return inside.suffix.lower() in (".csv", ".txt") and "meta" not in inside.parts
 
 
 def read_sound(path: str | PathLike[str]) -> tuple[Floats, Floats]:
-    """Times in seconds and the sound of a WAV file, -1 to 1, the mean of its channels.
+    """Read a WAV file: times in seconds, and the mean of the channels, from -1 to 1.
 
     Parameters
     ----------
     path : path
-        Of 8, 16, 24 or 32 bits, or of floating-point numbers, not compressed.
+        An uncompressed WAV file with samples of 8, 16, 24 or 32 bits, or floating-point samples.
 
     Returns
     -------
@@ -93,16 +94,16 @@ def read_sound(path: str | PathLike[str]) -> tuple[Floats, Floats]:
     Raises
     ------
     ValueError
-        If the file is none, or is compressed, naming it; if its head contradicts itself, if a sample is
-        infinite or NaN, and if the file holds more than `MOST_BYTES` bytes.
+        If the file is not an uncompressed WAV file, its header contradicts itself, a sample is infinite or
+        NaN, or the file has more than `MOST_BYTES` bytes. The message names the file.
     OSError
         If the file cannot be read.
     TypeError
-        If `path` is no path.
+        If `path` is not a path.
     """
     raw = contents(path)
     if raw[:4] != b"RIFF" or raw[8:12] != b"WAVE":
-        raise ValueError(f"{path}: not a WAV file; convert it to one")
+        raise ValueError(f"{path}: not a WAV file; convert the sound to WAV")
     form: bytes = b""
     place = 12
     while place + 8 <= len(raw):
@@ -119,17 +120,19 @@ def read_sound(path: str | PathLike[str]) -> tuple[Floats, Floats]:
 
 def _samples(raw: bytes, form: bytes, name: str) -> tuple[Floats, Floats]:
     if len(form) < 16:
-        raise ValueError(f"{name}: this WAV file does not say of what kind its samples are")
+        raise ValueError(f"{name}: this WAV file does not give the format of its samples")
     code, channels, hertz, pace, frame, bits = struct.unpack_from("<HHIIHH", form)
     if code == 0xFFFE and len(form) >= 26:  # extensible format: the code is the first field of the sub-format
         (code,) = struct.unpack_from("<H", form, 24)
     kinds = {(1, 8): "u1", (1, 16): "<i2", (1, 24): "u1", (1, 32): "<i4", (3, 32): "<f4", (3, 64): "<f8"}
     kind = kinds.get((code, bits))
     if kind is None or channels < 1 or hertz < 1:
-        raise ValueError(f"{name}: WAV of kind {code} with {bits} bits: expected plain samples")
+        raise ValueError(f"{name}: WAV format {code} with {bits} bits: expected uncompressed samples")
     if frame != channels * bits // 8 or pace != hertz * frame:
-        told = f"{channels} of {bits} bits are not {frame} bytes, or {hertz} of these not {pace} a second"
-        raise ValueError(f"{name}: the head of this WAV file contradicts itself: {told}; convert it anew")
+        told = (
+            f"{channels} x {bits} bits are not {frame} bytes, or {hertz} times that not {pace} bytes a second"
+        )
+        raise ValueError(f"{name}: the header of this WAV file contradicts itself: {told}; convert it again")
     raw = raw[: len(raw) // frame * frame]
     if not raw:
         raise ValueError(f"{name}: this WAV file has no samples")
@@ -143,7 +146,7 @@ def _samples(raw: bytes, form: bytes, name: str) -> tuple[Floats, Floats]:
         if not (np.abs(values) <= _LOUDEST).all():
             at = int(np.argmin(np.abs(values) <= _LOUDEST))
             raise ValueError(
-                f"{name}: sample {at // channels} of this WAV file is {values[at]}: it is damaged"
+                f"{name}: sample {at // channels} of this WAV file is {values[at]}: the file is damaged"
             )
         if code == 1:
             values = values / 128 - 1 if bits == 8 else values / 2.0 ** (bits - 1)

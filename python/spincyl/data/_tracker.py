@@ -39,38 +39,38 @@ _MISSING = frozenset(
 
 
 def read_table(path: str | PathLike[str], *, encoding: str | None = None) -> Columns:
-    """The columns of a text file: one line of names, and numbers below it.
+    """Read the columns of a text file: one line of names, and numbers below it.
 
     Parameters
     ----------
     path : path
-        Separated by tabs, semicolons, commas or spaces, decimal point or comma: found out. Lines above the
-        names are skipped, up to 10,000 of them.
+        A file with tabs, semicolons, commas or spaces between the columns, and decimal points or commas; both
+        are detected. Up to 10,000 lines above the names are skipped.
     encoding : str, optional
-        Of the text, such as "gbk" or "cp1250". Default: UTF-8, or UTF-16 with its mark, or Windows-1252 where
-        it can be nothing else, as in "Länge (m)", "T (°C)" or "fréquence".
+        Encoding of the text, such as "gbk" or "cp1250". Default: UTF-8, UTF-16 with a byte order mark, or
+        Windows-1252 if no other encoding is possible, as in "Länge (m)", "T (°C)" or "fréquence".
 
     Returns
     -------
     Columns
-        A dict by name of arrays of one length, NaN where a cell is empty or says "NA", "-" or the like. "t
-        (s)", "t [s]" and "# t" are called "t"; `units` has the unit.
+        Dict by name of arrays of equal length, NaN for cells that are empty or contain "NA", "-" or the like.
+        The columns "t (s)", "t [s]" and "# t" are called "t"; `units` gives the unit.
 
     Raises
     ------
     ValueError
-        If the file is no such table or holds more than `MOST_BYTES` bytes, naming the file and the line; if
-        the numbers can be read in two ways, as where a quote is not closed, where a decimal point stands
-        among decimal commas, or where every quoted number is like "1,234", which may have a thousand in it;
-        if the encoding of a name is not known, with what it may read.
+        If the file is not such a table, or has more than `MOST_BYTES` bytes; the message names the file and
+        the line. Also if numbers are ambiguous: a quote is not closed, a decimal point stands among decimal
+        commas, or all quoted numbers are like "1,234", where the comma may separate thousands. Also if the
+        encoding of a name is not known; the message lists possible readings.
     OSError
         If the file cannot be read.
     TypeError
-        If `path` is no path.
+        If `path` is not a path.
 
     Notes
     -----
-    No number is guessed: infinite ones are refused, and so are cells that no name stands above.
+    No number is guessed. Infinite numbers and cells without a name above them raise an error.
 
     Examples
     --------
@@ -82,57 +82,60 @@ def read_table(path: str | PathLike[str], *, encoding: str | None = None) -> Col
 
 
 def table(raw: bytes, name: str, encoding: str | None = None) -> Columns:
-    """The only table in a file; an error for several."""
+    """The single table in a file; ValueError for several."""
     tracks = _named(raw, name, encoding, "a table", 1)
     if len(tracks) > 1:
         legible(name, tracks)
-        raise ValueError(f"{name}: {len(tracks)} tracks: {', '.join(tracks)}; read_tracker reads them")
+        raise ValueError(
+            f"{name}: expected one table, not {len(tracks)} tracks ({', '.join(tracks)}); use read_tracker"
+        )
     (found,) = tracks.values()
     return found
 
 
 def read_tracker(path: str | PathLike[str], *, encoding: str | None = None) -> dict[str, Columns]:
-    """The tracks of a project that Tracker saved, or of a text file that it exported (File > Export > Data).
+    """Read the tracks of a Tracker project, or of a text file exported by Tracker (File > Export > Data).
 
     Parameters
     ----------
     path : path
-        A project (.trk, .trz), or a text with one track (its name, a line of column names, numbers) or
-        several ("#multi:", names above their columns), separated by tabs, semicolons, commas or spaces,
-        decimal point or comma: found out.
+        A project (.trk, .trz) or a text file: one track (its name, a line of column names, numbers), or
+        several ("#multi:", names of tracks above their columns). Separators and decimal signs are detected,
+        as in `read_table`.
     encoding : str, optional
-        Of the text, as of `read_table`; of a project, if it is not the one that it declares.
+        Encoding of the text, as in `read_table`; for a project, if it differs from the declared one.
 
     Returns
     -------
     dict
-        By track, by column: arrays of numbers of one length, NaN where a cell is empty. Columns before the
-        first name of a track, such as t, belong to every one. A track without a name is called "track". A
-        column "x (cm)" is called "x", and the `units` of its track say "cm". Of a project the columns are t,
-        x and y of each point mass, over the frames of its clip from the first to the last in which any point
-        was marked; the unit is that of its scale of length, "px" where none was set.
+        For each track by name a dict of its columns by name: arrays of equal length, NaN where a cell is
+        empty. Columns before the first name of a track, such as t, belong to all tracks. A track without a
+        name is called "track". A column "x (cm)" is called "x", and the `units` of its track are "cm". A
+        project gives t, x and y of each point mass, for the frames of its clip from the first to the last in
+        which a point was marked. The unit is that of its scale of length, "px" if none was set.
 
     Raises
     ------
     ValueError
-        If the file is no such table or project, naming it and the line, as of `read_table`; if its UTF-16 is
-        torn, the byte.
+        If the file is not such a table or project; the message names the file and the line, as in
+        `read_table`, or the byte at which UTF-16 is damaged.
     OSError
         If the file cannot be read.
     TypeError
-        If `path` is no path.
+        If `path` is not a path.
 
     Notes
     -----
     Tracker is the video analysis tool of Open Source Physics. Angles are in the unit that was chosen there.
-    A project has the places of the marks in the picture, its axes and its scale, from which x and y follow as
-    they do in Tracker; and how long a frame lasts on average, where a film with uneven frames has other times
-    in Tracker, and in what it exports. Tracks that Tracker computes, as of a model, are not in it.
+    A project contains the positions of the marks in the picture, the axes and the scale; x and y follow from
+    these as in Tracker. It also contains the average duration of a frame. If the frames of a film are uneven,
+    times therefore differ from those that Tracker shows and exports. Tracks that Tracker computes, such as
+    those of a model, are not in a project.
     """
     raw, name = contents(path), str(path)
     found = project(raw, name, encoding)
     if found is None:
-        found = _named(raw, name, encoding, "a table of Tracker's", 2)
+        found = _named(raw, name, encoding, "a table exported by Tracker", 2)
         legible(name, found)
     return found
 
@@ -166,7 +169,7 @@ def _read(text: str, least: int) -> dict[str, Columns]:
     none += f" of at least {least} columns" if least > 1 else ""
     if not lines:
         raise ValueError(f"it is empty: {none}")
-    # formats in which the last line is no row of numbers come last: they would fail there
+    # formats in which the last line is not a row of numbers come last: they would fail there
     kinds.sort(key=lambda kind: _numbers(lines[-1][1], *kind) is None)
     why = ""
     for kind in kinds:
@@ -188,13 +191,13 @@ def _read(text: str, least: int) -> dict[str, Columns]:
 
 
 class _Garbled(ValueError):
-    """The reason why a line cannot be one of names, in any format."""
+    """The reason why a line cannot be a line of names, in any format."""
 
 
 def _found(
     lines: list[tuple[int, str]], first: int, kind: tuple[str | None, bool], several: bool, least: int
 ) -> dict[str, Columns] | None:
-    """The tracks of lines in one format, of which line `first` has the first numbers; None without names."""
+    """The tracks of lines in one format; line `first` has the first numbers. None if names are missing."""
     delimiter, comma = kind
     at, line = lines[first - 1]
     columns, units = _names(at, line, delimiter), []
@@ -209,19 +212,17 @@ def _found(
         return None
     if all(numbers):
         below = lines[first][0]
-        raise ValueError(
-            f"line {at} has numbers that are not written as those of line {below}: {_shown(line)}"
-        )
-    if any(numbers):  # a row of numbers with a cell that is no number
-        raise _Garbled(f"line {at} has something that is no number: {_shown(line)}")
+        raise ValueError(f"line {at} has numbers in another format than line {below}: {_shown(line)}")
+    if any(numbers):  # a row of numbers with a cell that is not a number
+        raise _Garbled(f"line {at} has a cell that is not a number: {_shown(line)}")
     alone = delimiter is None or len(columns) == 1
     if not any(columns) or (
         alone and set(_BRACKETS.sub("", columns[0] if len(columns) == 1 else line)) & set(",;")
     ):
-        raise ValueError(f"line {at} has no names that are separated as the numbers are: {_shown(line)}")
+        raise ValueError(f"line {at} has no names separated in the same way as the numbers: {_shown(line)}")
     above = _above(lines[first - 2][1], delimiter, columns, several) if first > 1 else []
     if several and delimiter is None:
-        raise ValueError("several tracks between spaces cannot be told apart")
+        raise ValueError("several tracks cannot be told apart if columns are separated by spaces")
     rows = [(i, line) for i, line in lines[first + bool(units) :] if line.lstrip()[0] not in "#%"]
     numbers_ = _table(rows, delimiter, comma, len(columns))
     try:
@@ -255,7 +256,7 @@ def _above(line: str, delimiter: str | None, columns: list[str], several: bool) 
 
 
 def _split(line: str, delimiter: str | None) -> list[str]:
-    """The cells of a line without empty ones at its end; ValueError for an unclosed quote."""
+    """The cells of a line, without empty ones at the end; ValueError for an unclosed quote."""
     if delimiter is None:
         return line.split()
     if '"' not in line:
@@ -284,7 +285,7 @@ def _split(line: str, delimiter: str | None) -> list[str]:
 
 
 def _names(at: int, line: str, delimiter: str | None) -> list[str]:
-    """Names of columns in a line; between spaces, without comment marks and joined to their units."""
+    """Names of columns in a line; if separated by spaces, without comment marks and joined to their units."""
     if delimiter is None:
         names: list[str] = []
         for word in line.lstrip("#%\ufeff \t").split():
@@ -300,7 +301,7 @@ def _names(at: int, line: str, delimiter: str | None) -> list[str]:
 
 
 def _numbers(line: str, delimiter: str | None, comma: bool) -> list[float] | None:
-    """The numbers of a line, NaN for an empty cell; None if a cell is no number or all are empty."""
+    """The numbers of a line, NaN for an empty cell; None if a cell is not a number or all are empty."""
     if "_" in line:  # which float() would accept
         return None
     try:
@@ -309,7 +310,7 @@ def _numbers(line: str, delimiter: str | None, comma: bool) -> list[float] | Non
         return None
     if comma:
         if "." in line and any("." in cell and cell.strip().lower() not in _MISSING for cell in cells):
-            return None  # a point beside decimal commas is a thousands separator or an error
+            return None  # a point among decimal commas is a thousands separator or an error
         cells = [cell.replace(",", ".") for cell in cells]
     try:
         found = [float(cell) if cell and not cell.isspace() else math.nan for cell in cells]
@@ -331,7 +332,7 @@ def _number(cell: str) -> bool:
 
 
 def _missing(line: str, delimiter: str | None) -> list[float] | None:
-    """NaN for each cell, if every cell of the line says that there is no number; else None."""
+    """NaN for each cell if all cells of the line are marked as missing; else None."""
     try:
         cells = _split(line, delimiter)
     except ValueError:
@@ -343,11 +344,13 @@ def _table(lines: list[tuple[int, str]], delimiter: str | None, comma: bool, wid
     """The (n, width) numbers of lines, NaN where a cell is empty or missing at the end of a line."""
     # no complete table of a file has more cells than the file may have bytes
     if len(lines) * width > MOST_BYTES:
-        raise ValueError(f"{width} column names stand above {len(lines)} lines: these are too many cells")
+        raise ValueError(f"{width} column names above {len(lines)} lines are too many cells")
     if delimiter is not None:  # cells at the end may be missing in some lines, but not in all
         widest = max(line.count(delimiter) for _, line in lines) + 1
         if widest < width:
-            raise ValueError(f"{width} column names stand above {widest} numbers in line {lines[0][0]}")
+            raise ValueError(
+                f"line {lines[0][0]} has {widest} number{'s' * (widest != 1)} under {width} column names"
+            )
     if comma and delimiter == ",":
         _refuse_thousands(lines)
     plain = _plain([line for _, line in lines], delimiter, comma, width)
@@ -364,20 +367,22 @@ def _table(lines: list[tuple[int, str]], delimiter: str | None, comma: bool, wid
             raise ValueError(f"line {i} has {len(numbers)} cells under {width} column names")
         table.append(numbers + [math.nan] * (width - len(numbers)))
     widest = max(map(len, map(str.split, (line for _, line in lines)))) if delimiter is None else width
-    if widest < width:  # between spaces no cell can be empty
-        raise ValueError(f"{width} column names stand above {widest} numbers in line {lines[0][0]}")
+    if widest < width:  # if separated by spaces, no cell can be empty
+        raise ValueError(
+            f"line {lines[0][0]} has {widest} number{'s' * (widest != 1)} under {width} column names"
+        )
     return np.array(table)
 
 
 def _trouble(line: str, delimiter: str | None, comma: bool) -> str:
-    """The reason why a line is no row of numbers."""
+    """The reason why a line is not a row of numbers."""
     try:
         _split(line, delimiter)
     except ValueError as e:
         return str(e)
     if comma and _numbers(line.replace(".", ""), delimiter, True) is not None:
         return "a decimal point among decimal commas"
-    return "something that is no number"
+    return "a cell that is not a number"
 
 
 def _refuse_thousands(lines: list[tuple[int, str]]) -> None:
@@ -386,7 +391,7 @@ def _refuse_thousands(lines: list[tuple[int, str]]) -> None:
     if found and all(_THOUSANDS.fullmatch(cell) for _, cell in found):
         i, cell = found[0]
         readings = f"{cell.replace(',', '.')} or {cell.replace(',', '')}"
-        raise ValueError(f"line {i}: {cell!r} may be {readings}: write it as one of these")
+        raise ValueError(f"line {i}: {cell!r} may mean {readings}; write it as one of these")
 
 
 #: A number that reads as an integer with thousands separators, or as one with three decimals.
@@ -433,6 +438,6 @@ def _tracks(above: list[str], columns: list[str], table: Floats) -> dict[str, Co
         if name in found:
             raise ValueError(f"two tracks are called {name!r}")
         if len({columns[k] for k in own}) < len(own):
-            raise ValueError(f"two columns of {name!r} have one name")
+            raise ValueError(f"two columns of {name!r} have the same name")
         found[name] = Columns((columns[k], table[:, k]) for k in own)
     return found
