@@ -146,7 +146,7 @@ def test_powers_of_ten_are_whole_numbers_and_may_be_negative(capsys):
 
 def test_nothing_is_counted_where_nothing_turns(capsys):
     out = said(capsys, "steady", "--ell", "2.5", "--rate", "0", "--radius", "0.01").out
-    assert "nan" not in out and "contact circle         none: nothing turns" in out
+    assert "nan" not in out and "contact circle         none: the body does not turn" in out
     assert "symbols" not in out and "to the axis" not in out
     assert (
         json.loads(said(capsys, "steady", "--ell", "2.5", "--rate", "0", "--json").out)["states"][0][

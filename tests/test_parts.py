@@ -180,6 +180,6 @@ def test_the_command_line_takes_the_thickness_of_a_wall(capsys):
     assert main([*words, "--inner", "40mm"]) == 0
     assert capsys.readouterr().out == thick
     assert main([*words, "--inner", "40mm", "--wall", "5mm"]) == 2
-    assert "give one of --inner, --bore and --wall" in capsys.readouterr().err
+    assert "give only one of --inner, --bore and --wall" in capsys.readouterr().err
     assert main([*words, "--wall", "30mm"]) == 2
     assert "--wall 0.03: expected 0 to 0.025 (metres)" in capsys.readouterr().err

@@ -1,7 +1,7 @@
 """The command line: steady states as a table, motions as files, the map and other figures as pictures.
 
 Exit status: 0 for success, 1 for a failure of a valid command (a file, a missing extra, memory), 2 for an
-invalid command, 130 if interrupted. A reader that closes the pipe, as `head` does, is no failure.
+invalid command, 130 if interrupted. If a reader such as `head` closes the pipe, that is not a failure.
 """
 
 import contextlib
@@ -16,7 +16,7 @@ __all__ = ["main"]
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the command line; returns the exit status."""
+    """Run the command line and return the exit status."""
     try:
         try:
             return _run(sys.argv[1:] if argv is None else argv)

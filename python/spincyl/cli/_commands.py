@@ -39,7 +39,7 @@ _TUBE = "ell", "bore", "i1", "i3", "inner", "length", "fillet"
 
 
 def _refuse(args: Namespace, kind: str, names: Sequence[str], why: str) -> None:
-    """Refuse options that exclude a kind of body, naming the first of them."""
+    """Raise ValueError for options that do not go with a kind of body, naming the first of them."""
     for name in names:
         if getattr(args, name) is not None:
             raise ValueError(f"--{name} does not go with {kind}: {why}")
@@ -48,14 +48,14 @@ def _refuse(args: Namespace, kind: str, names: Sequence[str], why: str) -> None:
 def _ball_of(args: Namespace) -> Body:
     """One ball or two, from the options."""
     if args.balls is not None:
-        _refuse(args, "--balls", (*_TUBE, "ball"), "two balls are told by the distance of their centres")
+        _refuse(args, "--balls", (*_TUBE, "ball"), "two balls are given by the distance of their centres")
         with _naming("separation", "--balls"):
             return Body.balls(args.balls)
     _refuse(
         args,
         "--ball",
         [x for x in _TUBE if x not in ("i1", "i3")],
-        "a ball is told by its offset and moments",
+        "a ball is given by its offset and moments of inertia",
     )
     if args.i1 is None or args.i3 is None:
         raise ValueError("--ball needs both --i1 and --i3")
@@ -73,7 +73,7 @@ def _naming(name: str, option: str) -> Iterator[None]:
 
 
 def _measured(args: Namespace) -> Body:
-    """A tube from its measures, all of which are in metres."""
+    """A tube from its measures in metres."""
     if args.outer is None or args.length is None:
         raise ValueError("a measured tube needs --outer and --length")
     bore = args.bore if isinstance(args.bore, Metres) else None
@@ -81,7 +81,7 @@ def _measured(args: Namespace) -> Body:
     if any(x is not None for x in told):
         raise ValueError("give either measures in metres or --ell, not both")
     if sum(x is not None for x in (bore, args.inner, args.wall)) > 1:
-        raise ValueError("give one of --inner, --bore and --wall")
+        raise ValueError("give only one of --inner, --bore and --wall")
     inner = args.inner if bore is None else float(bore)
     if args.wall is not None:
         with _naming("wall", "--wall"):
@@ -106,14 +106,14 @@ def _told(args: Namespace) -> Body:
     fillet = 0.0 if args.fillet is None else args.fillet
     if isinstance(fillet, Metres):
         raise ValueError(
-            f"--fillet {fillet:g}m needs --outer and --length; beside --ell it is a number in outer radii"
+            f"--fillet {fillet:g}m needs --outer and --length; with --ell give it in outer radii"
         )
     if isinstance(args.bore, Metres):
         raise ValueError(
-            f"--bore {args.bore:g}m needs --outer and --length; beside --ell it is a number in outer radii"
+            f"--bore {args.bore:g}m needs --outer and --length; with --ell give it in outer radii"
         )
     if (args.i1 is None) != (args.i3 is None):
-        raise ValueError("a general body needs both --i1 and --i3")
+        raise ValueError("give both --i1 and --i3, or neither")
     if args.i1 is not None and args.bore is not None:
         raise ValueError("give either --bore or --i1 and --i3, not both")
     with _naming("fillet", "--fillet"):
@@ -250,7 +250,7 @@ def _start(args: Namespace, body: Body) -> State:
 
 
 def coulomb(args: Namespace, scale: Scale | None) -> Coulomb:
-    """The dry table of --mu, --static and --patch, in natural units."""
+    """Coulomb friction from --mu, --static and --patch, in natural units."""
     patch = 0.0 if args.patch is None else args.patch
     if isinstance(patch, Metres):
         if scale is None:
@@ -288,7 +288,7 @@ def natural(name: str, time: float | None, scale: Scale | None) -> float | None:
 
 
 def roll_(args: Namespace) -> None:
-    """Compute a motion; print it in words, or write a file."""
+    """Compute a motion; print a summary, or write a file."""
     body, scale = body_of(args)
     if args.points < 2:
         raise ValueError(f"--points {args.points}: expected at least 2")
@@ -311,7 +311,7 @@ def roll_(args: Namespace) -> None:
 
 
 def recipient(args: Namespace) -> Callable[[Motion, Scale | None, Path], None] | None:
-    """The function that writes the requested file, once the path has been checked; None without a file."""
+    """Check the path, and return the function that writes the requested file; None without a file."""
     if args.output is None or args.output == "-":
         return None
     writer = writer_of(Path(args.output))

@@ -1,4 +1,4 @@
-"""The command `drift`: the slow passage of a body that loses energy from one steady state to the next."""
+"""The command `drift`: the slow passage through steady states of a body that loses energy."""
 
 import math
 import sys
@@ -23,12 +23,12 @@ from spincyl.cli._output import Working, writable
 from spincyl.cli._tell import Row, body_numbers, print_json, table
 
 TEXT = f"""\
-How a body that loses energy slowly drifts from one steady state to the next, when it stops, and where.
+Compute how a body that loses energy slowly drifts through steady states, and when and where it stops.
 
-Two questions have two answers. --centre rest: friction of slip brings the centre to rest again and again, so
-that the body passes along the steady states with the centre at rest, the landscape of Jackson et al. 2019.
---centre rolling: it never slips, and its centre moves out onto a circle. The table says which friction
-coefficient that needs.
+There are two kinds of drift. With --centre rest, slip keeps the centre at rest, and the body passes through
+the steady states with the centre at rest, the landscape of Jackson et al. 2019. With --centre rolling, the
+body never slips, and its centre moves on growing circles; the table gives the coefficient of friction that
+this needs.
 
 {LAWS}
 
@@ -43,24 +43,27 @@ _ROWS = 11
 
 
 def options(sub: ArgumentParser) -> None:
-    """Add the options for the start, the losses and the output of a drift."""
+    """Add the options for the initial state, the losses and the output of a drift."""
     how = sub.add_argument_group("the drift")
-    how.add_argument("--theta", type=angle, required=True, metavar="ANGLE", help="inclination at the start")
+    how.add_argument("--theta", type=angle, required=True, metavar="ANGLE", help="initial inclination")
     option(how, "--law", required=True)
     how.add_argument(
         "--centre",
         choices=("rest", "rolling"),
         default="rest",
-        help="what becomes of the centre: it is kept at rest (default), or the body rolls without slip",
+        help="the centre is kept at rest (default), or the body rolls without slip",
     )
-    how.add_argument("--points", type=whole, help=f"rows (default {_ROWS}, of a file 401)")
+    how.add_argument("--points", type=whole, help=f"number of rows (default {_ROWS}, in a file 401)")
     how.add_argument(
-        "-o", "--output", metavar="FILE", help=".csv, a picture: .png, .pdf, .svg, or - for CSV on output"
+        "-o",
+        "--output",
+        metavar="FILE",
+        help="output file: table (.csv) or picture (.png, .pdf, .svg); - writes CSV to standard output",
     )
 
 
 def drift(args: Namespace) -> None:
-    """Compute a drift; print it in words, or write a file."""
+    """Compute a drift; print a summary, or write a file."""
     body, scale = body_of(args)
     if args.points is not None and args.points < 2:
         raise ValueError(f"--points {args.points}: expected at least 2")
@@ -100,7 +103,7 @@ _PICTURES = ".png", ".pdf", ".svg"
 
 
 def _suffix(output: str | None) -> str | None:
-    """The kind of output, by suffix; refused before any work if it is unknown or cannot be written."""
+    """The kind of output, by suffix; an error before any work if it is unknown or cannot be written."""
     if output is None or output == "-":
         return output
     suffix = Path(output).suffix.lower()
@@ -112,7 +115,7 @@ def _suffix(output: str | None) -> str | None:
 
 
 def _columns(found: Any, theta: float, scale: Scale | None, count: int) -> dict[str, Floats]:
-    """Columns at equal steps of inclination from the start to the end."""
+    """Columns at equal steps of inclination from the initial state to the end."""
     tilt = np.linspace(theta, float(found.ends_at_theta), count)
     t = np.append(found.time(tilt[:-1]), float(found.stops_at))  # inf if the end is only a limit
     rate = np.asarray(found.precession(t), np.float64)
@@ -124,7 +127,7 @@ def _columns(found: Any, theta: float, scale: Scale | None, count: int) -> dict[
 
 
 def _numbers(found: Any, scale: Scale | None) -> dict[str, Any]:
-    """When and where a drift ends, as numbers for JSON."""
+    """Time and inclination of the end of a drift, as numbers for JSON."""
     told = {name: float(getattr(found, name)) for name in ("stops_at", "ends_at_theta", "stable_until")}
     told["friction_coefficient"] = float(found.friction_coefficient(0.0))
     if scale is not None:
@@ -133,7 +136,7 @@ def _numbers(found: Any, scale: Scale | None) -> dict[str, Any]:
 
 
 def _rows(found: Any, losses: Any, centre: str, scale: Scale | None) -> Iterator[Row]:
-    """When and where a drift ends, as rows of a table."""
+    """Time and inclination of the end of a drift, as rows of a table."""
     n = _numbers(found, scale)
     yield "losses", repr(losses), ""
     yield "centre", {"rest": "kept at rest", "rolling": "on circles: rolling without slip"}[centre], ""

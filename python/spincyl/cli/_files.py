@@ -47,7 +47,7 @@ def needed(suffix: str) -> None:
     if suffix == ".nc":
         extra("xarray", "sweep")
         if not any(find_spec(name) for name in ("netCDF4", "h5netcdf", "scipy")):
-            raise ImportError("a .nc file needs netCDF4, h5netcdf or scipy: pip install scipy")
+            raise ImportError("a .nc file needs netCDF4, h5netcdf or scipy; install one: pip install scipy")
 
 
 def _write_csv(m: Motion, scale: Scale | None, path: Path) -> None:

@@ -28,18 +28,18 @@ from spincyl.cli._output import Working
 from spincyl.cli._tell import Row
 
 TEXT = f"""\
-A tube that lies on its side is flicked: it slips, and with luck it settles to rolling on one rim.
+Compute the motion of a tube that lies on its side and is flicked: it slips, and may then roll on one rim.
 
 The launch is one of
-  --precession 17Hz --launch-number 1.3   how fast it turns about the vertical, and I3 w1 w3/(M g l):
-                                          above 1 the end that was pressed rises
-  --precession 17Hz --spin 18Hz           the same, and how fast it turns about its axis
-  --w1 3 --launch-number 1.3              in sqrt(g/R), where no radius is known
-  --impulse 60mNs --angle 75deg           a finger that presses one end down and slides off: impulse, and
-                                          angle from the top of the rim
-The centre moves as a finger leaves it, -I1 w1/l across the axis, unless --centre says how fast.
-Positive spin is backspin against that. With --loss it loses energy also where it does not slip, and sinks
-back to its side.
+  --precession 17Hz --launch-number 1.3   turns per second about the vertical, and launch number
+                                          I3 w1 w3/(M g l); above 1 the end that was pressed rises
+  --precession 17Hz --spin 18Hz           turns per second about the vertical and about the axis
+  --w1 3 --launch-number 1.3              angular velocity in sqrt(g/R), if no radius is known
+  --impulse 60mNs --angle 75deg           push of a finger that presses one end down and slides off:
+                                          impulse, and angle from the top of the rim
+By default the centre moves across the axis with -I1 w1/l, the velocity that a finger gives it; --centre
+sets another velocity. Positive spin is backspin with respect to that. With --loss the tube also loses
+energy while it rolls, and sinks back to its side.
 
 {LAWS}
 
@@ -58,35 +58,57 @@ def options(sub: ArgumentParser) -> None:
     launch = sub.add_argument_group("the launch")
     hertz: dict[str, Any] = {"type": quantity("frequency"), "metavar": "HERTZ"}
     launch.add_argument("--precession", **hertz, help="turns per second about the vertical")
-    launch.add_argument("--w1", type=float, help="the same as an angular velocity in sqrt(g/R)")
+    launch.add_argument("--w1", type=float, help="the same as angular velocity in sqrt(g/R)")
     launch.add_argument("--spin", **hertz, help="turns per second about the axis; positive is backspin")
-    launch.add_argument("--launch-number", type=float, metavar="X", help="instead: I3 w1 w3/(M g l)")
+    launch.add_argument(
+        "--launch-number", type=float, metavar="X", help="I3 w1 w3/(M g l), instead of --spin"
+    )
     launch.add_argument(
         "--centre",
         type=speed,
         metavar="SPEED",
-        help="of the centre of mass, across the axis, in sqrt(g R), or as in 1.5m/s; negative as a finger"
-        " leaves it (the default: -I1 w1/l)",
+        help="velocity of the centre of mass across the axis, in sqrt(g R), or as in 1.5m/s (default:"
+        " -I1 w1/l, as a finger leaves it)",
     )
-    push = sub.add_argument_group("or the push")
-    push.add_argument("--impulse", type=impulse, help="in M sqrt(g R), or as in 40mNs with a mass")
-    push.add_argument("--angle", type=angle, metavar="ANGLE", help="from the top of the rim")
-    push.add_argument("--finger", type=float, metavar="MU", help="friction of the finger (default 0.6)")
-    push.add_argument("--table", type=float, metavar="MU", help="friction under that end (default: --mu)")
+    push = sub.add_argument_group("the push, instead of the launch")
+    push.add_argument(
+        "--impulse", type=impulse, help="impulse of the finger in M sqrt(g R), or as in 40mNs with a mass"
+    )
+    push.add_argument(
+        "--angle", type=angle, metavar="ANGLE", help="angle of the finger from the top of the rim"
+    )
+    push.add_argument(
+        "--finger", type=float, metavar="MU", help="coefficient of friction of the finger (default 0.6)"
+    )
+    push.add_argument(
+        "--table",
+        type=float,
+        metavar="MU",
+        help="coefficient of friction of the table under the pressed end (default: --mu)",
+    )
     how = sub.add_argument_group("the motion")
     how.add_argument("--mu", type=float, required=True, help="coefficient of friction of the table")
-    how.add_argument("--static", type=float, metavar="MU", help="up to which it is held (default: --mu)")
-    how.add_argument("--patch", type=part, metavar="RADIUS", help="of a patch of contact, or as in 0.3mm")
+    how.add_argument(
+        "--static", type=float, metavar="MU", help="coefficient of static friction (default: --mu)"
+    )
+    how.add_argument(
+        "--patch", type=part, metavar="RADIUS", help="radius of the contact patch, in R or as in 0.3mm"
+    )
     lasting = how.add_mutually_exclusive_group()
-    lasting.add_argument("--seconds", type=quantity("duration"), help="how long (default 3)")
-    lasting.add_argument("--t", type=time, metavar="TIME", help="the same in sqrt(R/g), or as in 2s")
-    how.add_argument("--points", type=whole, default=2001, help="times from 0 on (default 2001)")
-    how.add_argument("--tol", type=float, help="error that a step of slipping may make (default 1e-14)")
+    lasting.add_argument(
+        "--seconds",
+        type=quantity("duration"),
+        help="last time in seconds (default 3; without a radius: --t 100)",
+    )
+    lasting.add_argument("--t", type=time, metavar="TIME", help="last time in sqrt(R/g), or as in 2s")
+    how.add_argument("--points", type=whole, default=2001, help="number of times, from 0 on (default 2001)")
+    how.add_argument("--tol", type=float, help="tolerance of each step of slipping (default 1e-14)")
     how.add_argument(
         "--restitution",
         type=float,
         metavar="BOUNCE",
-        help="0 to 1: it goes on where it leaves the table, and on its side (default: it ends there)",
+        help="coefficient of restitution, 0 to 1: the motion continues after lift-off and after a landing of"
+        " the other rim (default: it ends there)",
     )
     option(how, "--loss")
 
@@ -126,12 +148,12 @@ def _launched(args: Namespace, body: Body, scale: Scale | None) -> State:
         if getattr(args, name) is not None:
             raise ValueError(f"--{name} goes with --impulse")
     if (args.w1 is None) == (args.precession is None):
-        raise ValueError("a launch needs --precession or --w1, one of them; or --impulse and --angle")
+        raise ValueError("a launch needs either --precession or --w1; or give --impulse and --angle")
     if (args.launch_number is None) == (args.spin is None):
-        raise ValueError("a launch needs --launch-number or --spin, one of them")
+        raise ValueError("a launch needs either --launch-number or --spin")
     if scale is None and not (args.precession is None and args.spin is None):
         name = "--spin" if args.precession is None else "--precession"
-        raise ValueError(f"{name} needs --radius, or a body measured in metres; --w1 does not")
+        raise ValueError(f"{name} needs --radius, or a body measured in metres; without one give --w1")
     if args.spin is None and 0 in (args.precession, args.w1):
         raise ValueError("--launch-number needs a precession that is not zero")
     centre = args.centre
@@ -148,7 +170,7 @@ def _pushed(args: Namespace, body: Body, scale: Scale | None) -> State:
     for name in ("precession", "w1", "spin", "launch_number", "centre"):
         if getattr(args, name) is not None:
             raise ValueError(
-                f"--{name.replace('_', '-')} does not go with --impulse: it tells the launch itself"
+                f"--{name.replace('_', '-')} does not go with --impulse, which already determines the launch"
             )
     if args.angle is None:
         raise ValueError("--impulse needs --angle, from the top of the rim, as in 45deg")

@@ -1,4 +1,4 @@
-"""Laws of loss on the command line: dry-contour=5e-3, rolling-resistance=0.2mm, air-film=18uPas."""
+"""Options for laws of loss: dry-contour=5e-3, rolling-resistance=0.2mm, air-film=18uPas."""
 
 import re
 from argparse import ArgumentTypeError, Namespace
@@ -23,15 +23,15 @@ _KINDS: dict[type[Law], str] = {
 _NAMES = {re.sub(r"\B(?=[A-Z])", "-", law.__name__).lower(): law for law in _KINDS}
 
 TEXT = """\
-A law of loss is one of these, in natural units of M, R and g, or in SI with --radius and --mass
+Laws of loss, with coefficients in natural units of M, R and g, or in SI with --radius and --mass:
   dry-contour=5e-3         or 0.2mm     dry friction along the rim
-  viscous-contour=1e-3     or 1e-6Nms   the same in proportion to the speed of the contact
-  rolling-resistance=1e-3  or 0.04mm    the arm of rolling friction
-  drilling=1e-3            or 0.04mm    turning about the vertical
-  air-linear=1e-4          or 1e-7Nms   air against all turning
-  air-quadratic=1e-5       or 1e-9Nms2  the same, when fast
-  air-film=1e-7            or 18uPas    a thin film under the face: the viscosity of air
-  boundary-layer=1e-6      or 0.1C      air pressed out below the face: a number of order 0.1"""
+  viscous-contour=1e-3     or 1e-6Nms   the same, proportional to the speed of the contact point
+  rolling-resistance=1e-3  or 0.04mm    rolling resistance: distance of the normal force ahead of the contact
+  drilling=1e-3            or 0.04mm    friction against rotation about the vertical
+  air-linear=1e-4          or 1e-7Nms   air resistance proportional to the angular velocity
+  air-quadratic=1e-5       or 1e-9Nms2  air resistance proportional to its square
+  air-film=1e-7            or 18uPas    thin film of air under the face: viscosity of the air
+  boundary-layer=1e-6      or 0.1C      air pressed out under the face: a number of order 0.1"""
 
 
 class Given(NamedTuple):
@@ -61,7 +61,7 @@ def option(sub: Any, *names: str, required: bool = False) -> None:
         action="append",
         required=required,
         metavar="LAW=VALUE",
-        help="what takes energy, such as dry-contour=5e-3; several laws add",
+        help="law of loss, such as dry-contour=5e-3; repeat the option to add several",
     )
 
 
@@ -85,5 +85,5 @@ def _made(given: Given, scale: Scale | None, *, weighed: bool) -> Law:
         found: Law = made(given.value)
     except ValueError as e:
         raise ValueError(f"{given.text}: {e}") from None
-    # as the help says, a number without a unit is in natural units, also for a measured body
+    # a number without a unit is in natural units, also for a measured body, as the help says
     return sized(found)

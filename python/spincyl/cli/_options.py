@@ -14,26 +14,26 @@ A body is one of
   --ell 6 --bore 0.8             tube whose inner radius is 0.8 of the outer
   --ell 1.2 --i1 0.7 --i3 0.5    any body of revolution: moments in M R^2 about its centre of mass
   --balls                        two balls, one on the other (Hurricane balls)
-  --balls 1.5                    the same on a light rod, their centres 1.5 diameters apart
-  --ball -0.3 --i1 0.4 --i3 0.4  a ball whose centre of mass lies 0.3 R below its middle, such as a tippe top
+  --balls 1.5                    two balls on a light rod, with centres 1.5 diameters apart
+  --ball -0.3 --i1 0.4 --i3 0.4  a ball with its centre of mass 0.3 R below its centre, such as a tippe top
   --outer 15.875mm --inner 12.7mm --length 95.25mm      a measured tube; --bore 12.7mm is the same
-  --balls --outer 16mm           the same two balls, each of which measures 16 mm
-R is the outer radius. --fillet 0.05 rounds the rim with a radius of 0.05 R, --fillet 2mm that of a
-measured tube. Then --ell is half the length over R all the same, but beside --i1 and --i3 it is the
-height of the centre of mass above the circle about which the rim is rounded.
-Angles are radians, or degrees as in 85deg, lengths metres, or as in 16mm, 1.6cm, 0.625in."""
+  --balls --outer 16mm           two balls with diameters of 16 mm
+R is the outer radius. --fillet 0.05 rounds the rim with a radius of 0.05 R; for a measured tube also
+--fillet 2mm. With a rounded rim --ell is still half the length over R, but with --i1 and --i3 it is the
+height of the centre of mass above the circle of the centres of the rounding.
+Angles are in radians, or in degrees as in 85deg; lengths in metres, or as in 16mm, 1.6cm, 0.625in."""
 
 _STEADY = f"""\
-Steady states of a body that spins on its rim with its centre at rest.
+Print the steady states of a body that spins on its rim with its centre at rest.
 
-The inclination theta is the angle between the vertical and the axis: 0 stands on its face, 90deg
-lies on its side. Given inclinations, it prints the rate that each needs; given rates, every
-inclination that has that rate (0 to 3 of them, of a rounded rim up to 5). The reduced rate is
-Omega sqrt(I3), in natural units of radius, mass and gravity; 1 is the critical rate. Stability is
-answered twice: rolling without slipping, and on a smooth table (the criterion of Jackson et al. 2019).
+The inclination theta is the angle between the vertical and the axis: at 0 the body stands on its
+face, at 90deg it lies on its side. For each inclination the table gives the rate; for each rate, all
+inclinations with that rate (up to 3, for a rounded rim up to 5). The reduced rate is Omega sqrt(I3),
+in natural units of radius, mass and gravity; 1 is the critical rate. Stability is given for rolling
+without slipping, and for a smooth table (the criterion of Jackson et al. 2019).
 
 {_BODY}
-With --radius (or a measured tube) the table is also in SI units, and --hertz can be given."""
+With --radius, or for a measured tube, the table also has SI units, and --hertz may be given."""
 
 _STEADY_EXAMPLES = """\
 spincyl steady --ell 6 --bore 0.8 --radius 8mm --theta 85deg
@@ -43,8 +43,8 @@ spincyl steady --balls --outer 16mm --theta 90deg
 spincyl steady --ell 2.5 --rate 1.5 --json"""
 
 _PORTRAIT = """\
-Sweep the map of steady states (inclination against aspect ratio) and draw which are
-forbidden, unstable, stable only when rolling, or stable. Needs spincyl[all]."""
+Draw a map of the steady states, inclination against aspect ratio: where they are forbidden,
+unstable, stable only when rolling, or stable. Needs spincyl[all]."""
 
 _PORTRAIT_EXAMPLES = """\
 spincyl portrait -o portrait.png
@@ -53,19 +53,20 @@ spincyl portrait --fillet 0.1 -o rounded.png
 spincyl portrait --points 50 -o - > map.csv"""
 
 _ROLL = f"""\
-How a body rolls, or slides on a smooth table, from a state.
+Compute the motion of a body that rolls or slides, from an initial state.
 
-The start is the steady state with its centre at rest at an inclination, kicked if wanted, or any
-state if w1, w2, w3 are given; with --contact coulomb or viscous it may slip. Times are in units of
-sqrt(R/g), or in seconds as in 2s or 20ms if the radius is known. Without --step or --tol the motion is
-exact (first integrals), with friction where it rolls. The file has t, theta, w1, w2, w3, energy, the
-angles phi and psi, the contact point and the centre, normal force and friction demand, with friction the
-slip, the heat and the phase (1 slips, 0 rolls), with losses the work lost, up to where the motion ends.
+The initial state is the steady state at --theta with the centre at rest, with --kick added to theta';
+or any state, given by --w1, --w2 and --w3. With --contact coulomb or viscous the body may slip. Times
+are in sqrt(R/g), or in seconds as in 2s or 20ms if the radius is known. Without --step and --tol rolling
+and frictionless motion are exact (first integrals). The file contains t, theta, w1, w2, w3, energy, the
+angles phi and psi, the contact point and the centre, the normal force and the friction coefficient; with
+friction also slip, heat and phase (1 slipping, 0 rolling), with losses the work lost. It ends with the
+motion.
 
 {_BODY}
 
 {_losses.TEXT}
-With --radius (or a measured tube) the file has a column of seconds, too."""
+With --radius, or for a measured tube, the file also has a column of seconds."""
 
 _ROLL_EXAMPLES = """\
 spincyl roll --ell 2.5 --theta 1.3 --kick 0.05 --t 20 -o roll.csv
@@ -79,26 +80,26 @@ spincyl roll --ell 2.5 --theta 1.3 --kick 0.02 --radius 20mm --mass 0.1 --t 1s -
 spincyl roll --ell 2.5 --theta 1.3 --t 20 -o - | head"""
 
 _FLICK = f"""{_flick.TEXT}{_BODY}
-With --radius (or a measured tube) the table and the file are in seconds, too."""
+With --radius, or for a measured tube, the table and the file also have times in seconds."""
 
 _DRIFT = f"""{_drift.TEXT}{_BODY}
-With --radius (or a measured tube) the table and the file are in seconds and turns a second, too."""
+With --radius, or for a measured tube, the table and the file also have seconds and turns per second."""
 
 _PLAY = f"{_play.TEXT}{_BODY}"
 
 _REPORT = """\
-Measure the error of the final state against the time that a trajectory takes, on this machine: RK4
-over steps, steps of eighth order within tolerances, the exact solution and, where SciPy is
-installed, its DOP853. With a folder, writes report.md, and report.png where matplotlib is installed."""
+Measure the error of the final state and the computing time of a trajectory on this machine: RK4 with
+several steps, an eighth-order method with several tolerances, the exact solution and, if SciPy is
+installed, its DOP853. Given a folder, write report.md and, if matplotlib is installed, report.png."""
 
 _REPORT_EXAMPLES = """\
 spincyl report
 spincyl report DIR --seconds 5min"""
 
 _FIGURES = """\
-Write the predictions that the paper of Jackson et al. discusses (fig4 to fig8: solid where
-stable, dashed where not, points A to G marked, each by the paper's criterion and rolling), and
-ours: tubes, where the two criteria disagree, the energy landscape. Needs spincyl[plot]."""
+Draw the figures of a lecture: the predictions in the paper of Jackson et al. (fig4 to fig8: solid if
+stable, dashed if not, points A to G marked; for the paper's criterion and for rolling), and figures
+of tubes, of disagreements of the two criteria, and of the energy landscape. Needs spincyl[plot]."""
 
 _FIGURES_EXAMPLES = "spincyl figures DIR"
 
@@ -133,7 +134,7 @@ def parser() -> ArgumentParser:
         "steady", _commands.steady, "steady states of one body, as a table", _STEADY, _STEADY_EXAMPLES
     )
     _shape_options(steady)
-    asked = steady.add_argument_group("what is asked (several of each may be given)")
+    asked = steady.add_argument_group("the steady states (one or more values for each option)")
     asked.add_argument("--theta", type=angle, nargs="+", default=[], metavar="ANGLE", help="inclinations")
     asked.add_argument("--rate", type=float, nargs="+", default=[], help="reduced rates")
     asked.add_argument(
@@ -144,12 +145,12 @@ def parser() -> ArgumentParser:
         help="turns per second (needs a radius)",
     )
     _scale_options(steady)
-    _json_option(steady, "numbers instead of a table")
+    _json_option(steady, "print JSON instead of a table")
 
     portrait = command(
         "portrait",
         _commands.portrait,
-        "the theta-ell map of all tubes of one bore, as a picture",
+        "map of inclination and aspect ratio for tubes of one bore, as a picture",
         _PORTRAIT,
         _PORTRAIT_EXAMPLES,
     )
@@ -158,65 +159,68 @@ def parser() -> ArgumentParser:
         "--output",
         required=True,
         metavar="FILE",
-        help="a picture: .png, .pdf, .svg, data: .nc, or - for CSV on standard output",
+        help="picture (.png, .pdf, .svg) or data (.nc); - writes CSV to standard output",
     )
     portrait.add_argument("--bore", type=float, default=0.0, help="inner over outer radius (default 0)")
     portrait.add_argument(
-        "--fillet", type=float, default=0.0, help="of the rim, in outer radii (default 0: sharp)"
+        "--fillet",
+        type=float,
+        default=0.0,
+        help="radius of the rounded rim, in outer radii (default 0: sharp)",
     )
-    portrait.add_argument("--ell-max", type=float, default=2.0, help="right edge (default 2)")
-    portrait.add_argument("--points", type=whole, default=1000, help="along each axis (default 1000)")
-    portrait.add_argument("--contact", choices=("smooth", "rolling"), help="one criterion (default: both)")
-    slides: dict[str, Any] = {"action": "store_true", "help": "16:9, as PNG 1920 x 1080 pixels"}
+    portrait.add_argument("--ell-max", type=float, default=2.0, help="largest aspect ratio (default 2)")
+    portrait.add_argument("--points", type=whole, default=1000, help="points along each axis (default 1000)")
+    portrait.add_argument("--contact", choices=("smooth", "rolling"), help="criterion (default: both)")
+    slides: dict[str, Any] = {"action": "store_true", "help": "draw in 16:9; PNG has 1920 x 1080 pixels"}
     portrait.add_argument("--slides", **slides)
-    _json_option(portrait, "with -o -: JSON instead of CSV")
+    _json_option(portrait, "with -o -, print JSON instead of CSV")
 
-    roll = command(
-        "roll", _commands.roll_, "how a body moves on from a state, as a file", _ROLL, _ROLL_EXAMPLES
-    )
+    roll = command("roll", _commands.roll_, "motion of a body from an initial state", _ROLL, _ROLL_EXAMPLES)
     _shape_options(roll)
     _roll_options(roll)
     _scale_options(roll)
-    _json_option(roll, "numbers instead of words; with -o -: JSON instead of CSV")
+    _json_option(roll, "print JSON instead of a table; with -o -, instead of CSV")
 
     flick = command(
-        "flick", _flick.flick, "a tube that is flicked: slipping, then rolling", _FLICK, _flick.EXAMPLES
+        "flick", _flick.flick, "motion of a flicked tube: slipping, then rolling", _FLICK, _flick.EXAMPLES
     )
     _shape_options(flick)
     _flick.options(flick)
     _output_option(flick)
     _scale_options(flick)
-    _json_option(flick, "numbers instead of words; with -o -: JSON instead of CSV")
+    _json_option(flick, "print JSON instead of a table; with -o -, instead of CSV")
 
     drift = command(
-        "drift", _drift.drift, "how it comes to rest: inclination over time", _DRIFT, _drift.EXAMPLES
+        "drift", _drift.drift, "slow spin-down of a body: inclination over time", _DRIFT, _drift.EXAMPLES
     )
     _shape_options(drift)
     _drift.options(drift)
     _scale_options(drift)
-    _json_option(drift, "numbers instead of words")
+    _json_option(drift, "print JSON instead of a table")
 
-    play = command("play", _play.run, "a page to play with, in one file", _PLAY, _play.EXAMPLES)
+    play = command("play", _play.run, "interactive page in one file", _PLAY, _play.EXAMPLES)
     _shape_options(play)
     _play.options(play)
     _scale_options(play)
 
-    report = command(
-        "report", _commands.report, "speed against error on this machine", _REPORT, _REPORT_EXAMPLES
+    report = command("report", _commands.report, "speed and error on this machine", _REPORT, _REPORT_EXAMPLES)
+    report.add_argument(
+        "folder", nargs="?", metavar="DIR", help="folder for the table and the figure (default: print)"
     )
     report.add_argument(
-        "folder", nargs="?", metavar="DIR", help="where a table and a figure go (default: print)"
+        "--seconds", type=_duration, default=60.0, help="approximate running time (default 60)"
     )
-    report.add_argument("--seconds", type=_duration, default=60.0, help="time to spend, about (default 60)")
     report.add_argument(
-        "--reference", metavar="CSV", help="high-precision motions to measure the exact one by"
+        "--reference", metavar="CSV", help="file of high-precision motions, to measure the exact solution"
     )
 
     figures = command(
-        "figures", _commands.figures, "the pictures of a lecture, as files", _FIGURES, _FIGURES_EXAMPLES
+        "figures", _commands.figures, "figures of a lecture, as files", _FIGURES, _FIGURES_EXAMPLES
     )
-    figures.add_argument("folder", metavar="DIR", help="made if it does not exist")
-    figures.add_argument("--suffix", choices=(".png", ".pdf", ".svg"), default=".png", help="default .png")
+    figures.add_argument("folder", metavar="DIR", help="output folder; created if it does not exist")
+    figures.add_argument(
+        "--suffix", choices=(".png", ".pdf", ".svg"), default=".png", help="format (default .png)"
+    )
     figures.add_argument("--slides", **slides)
     return top
 
@@ -226,7 +230,7 @@ def _examples(lines: str) -> str:
 
 
 def _json_option(sub: ArgumentParser, text: str) -> None:
-    sub.add_argument("--json", action="store_true", help=f"{text} (what is not finite is null)")
+    sub.add_argument("--json", action="store_true", help=f"{text} (numbers that are not finite are null)")
 
 
 def _shape_options(sub: ArgumentParser) -> None:
@@ -234,7 +238,9 @@ def _shape_options(sub: ArgumentParser) -> None:
     shape = sub.add_argument_group("the body")
     shape.add_argument("--ell", type=float, help="aspect ratio: half length over outer radius")
     shape.add_argument(
-        "--bore", type=part, help="inner over outer radius, 0 to 1 (default 0: solid), or as in 12.7mm"
+        "--bore",
+        type=part,
+        help="inner over outer radius, 0 to 1 (default 0: solid), or a diameter as in 12.7mm",
     )
     shape.add_argument("--i1", type=float, help="transverse moment of inertia, in M R^2")
     shape.add_argument("--i3", type=float, help="axial moment of inertia, in M R^2")
@@ -250,58 +256,85 @@ def _shape_options(sub: ArgumentParser) -> None:
         nargs="?",
         const=1.0,
         metavar="SEPARATION",
-        help="two balls, their centres so many diameters apart (default 1: they touch)",
+        help="two balls; distance of their centres in diameters (default 1: they touch)",
     )
     shape.add_argument(
-        "--ball", type=float, metavar="OFFSET", help="a ball: its centre of mass above its middle, in R"
+        "--ball",
+        type=float,
+        metavar="OFFSET",
+        help="a ball; height of its centre of mass above its centre, in R",
     )
     shape.add_argument(
         "--theta-end",
         type=angle,
         metavar="ANGLE",
-        help="inclination at which something else lands: a stem, a cap",
+        help="inclination at which another part, such as a stem or a cap, touches the table",
     )
-    shape.add_argument("--outer", type=_length, metavar="LENGTH", help="outer diameter (of one ball)")
+    shape.add_argument(
+        "--outer", type=_length, metavar="LENGTH", help="outer diameter (with --balls: that of one ball)"
+    )
     shape.add_argument("--inner", type=_length, metavar="LENGTH", help="inner diameter (default 0: solid)")
-    shape.add_argument("--wall", type=_length, metavar="LENGTH", help="or how thick the wall is")
+    shape.add_argument(
+        "--wall", type=_length, metavar="LENGTH", help="thickness of the wall, instead of --inner"
+    )
     shape.add_argument("--length", type=_length, metavar="LENGTH", help="length")
 
 
 def _roll_options(sub: ArgumentParser) -> None:
     """Add the options that define a motion and its output."""
-    start = sub.add_argument_group("the start")
+    start = sub.add_argument_group("the initial state")
     start.add_argument("--theta", type=angle, required=True, metavar="ANGLE", help="inclination")
-    start.add_argument("--kick", type=float, default=0.0, help="theta' given to it (default 0)")
+    start.add_argument("--kick", type=float, default=0.0, help="theta' added to the state (default 0)")
     for name in ("w1", "w2", "w3"):
-        start.add_argument(f"--{name}", type=float, help="instead of the steady state (others then 0)")
+        start.add_argument(
+            f"--{name}",
+            type=float,
+            help=f"{name} in sqrt(g/R); replaces the steady state, the others are then 0 by default",
+        )
     start.add_argument(
         "--slip",
         type=float,
         nargs=2,
         metavar=("ALONG", "ACROSS"),
-        help="velocity of the lowest point, in sqrt(g R): along the lean and across it (coulomb, viscous)",
+        help="slip of the contact point in sqrt(g R): in the vertical plane of the axis, and across it"
+        " (coulomb, viscous)",
     )
     how = sub.add_argument_group("the motion")
-    how.add_argument("--t", type=time, required=True, metavar="TIME", help="in sqrt(R/g), or as in 2s")
-    how.add_argument("--points", type=whole, default=2001, help="times from 0 on (default 2001)")
-    how.add_argument("--step", type=time, metavar="TIME", help="by RK4 with this step")
-    how.add_argument("--tol", type=float, help="by steps of eighth order within this tolerance")
+    how.add_argument(
+        "--t", type=time, required=True, metavar="TIME", help="last time, in sqrt(R/g), or as in 2s"
+    )
+    how.add_argument("--points", type=whole, default=2001, help="number of times, from 0 on (default 2001)")
+    how.add_argument("--step", type=time, metavar="TIME", help="use RK4 with this step")
+    how.add_argument("--tol", type=float, help="use an eighth-order method with this tolerance per step")
     laws = ("rolling", "smooth", "coulomb", "viscous")
     how.add_argument(
-        "--contact", choices=laws, default="rolling", help="the last two slip (default: rolling)"
+        "--contact",
+        choices=laws,
+        default="rolling",
+        help="contact with the table; with the last two the body may slip (default: rolling)",
     )
     how.add_argument(
         "--mu",
         type=float,
-        help="friction coefficient: where rolling needs more it ends (default: never), coulomb slips",
+        help="coefficient of friction: if rolling needs more, the motion ends, with coulomb the body slips"
+        " (default: no limit to rolling)",
     )
-    how.add_argument("--static", type=float, metavar="MU", help="of coulomb: up to which it is held (--mu)")
     how.add_argument(
-        "--patch", type=part, metavar="RADIUS", help="of coulomb: that of a patch, or as in 0.3mm"
+        "--static", type=float, metavar="MU", help="coulomb: coefficient of static friction (default: --mu)"
     )
-    how.add_argument("--viscosity", type=float, metavar="C", help="of viscous: friction C N times the slip")
+    how.add_argument(
+        "--patch",
+        type=part,
+        metavar="RADIUS",
+        help="coulomb: radius of the contact patch, in R or as in 0.3mm",
+    )
+    how.add_argument(
+        "--viscosity", type=float, metavar="C", help="viscous: friction is C times normal force times slip"
+    )
     _losses.option(how, "--loss")
-    how.add_argument("--beyond", action="store_true", help="go on beyond lift-off, slip or the side")
+    how.add_argument(
+        "--beyond", action="store_true", help="continue the solution past lift-off, slip or the side"
+    )
     _output_option(sub)
 
 
@@ -310,9 +343,9 @@ def _output_option(sub: ArgumentParser) -> None:
         "-o",
         "--output",
         metavar="FILE",
-        help=".csv, .npz, .nc (xarray), a picture: .png, .pdf, .svg, a page to watch it in: .html, an"
-        " animated body: .glb, a scene to check a contact engine with: .json, .xml (MuJoCo), or - for CSV"
-        " on standard output",
+        help="output file: table (.csv, .npz, .nc for xarray), picture (.png, .pdf, .svg), page that shows"
+        " the motion (.html), animated body (.glb), or scene that tests a contact engine (.json, .xml for"
+        " MuJoCo); - writes CSV to standard output",
     )
 
 
@@ -320,5 +353,7 @@ def _scale_options(sub: ArgumentParser) -> None:
     """Add the options that define a scale."""
     scale = sub.add_argument_group("SI units")
     scale.add_argument("--radius", type=_length, metavar="LENGTH", help="outer radius R")
-    scale.add_argument("--mass", type=_mass, help="in kg or as in 20g, for energies in joules")
-    scale.add_argument("--gravity", type=quantity("gravity"), help="default 9.80665 m/s2")
+    scale.add_argument("--mass", type=_mass, help="mass in kg, or as in 20g, for energies in joules")
+    scale.add_argument(
+        "--gravity", type=quantity("gravity"), help="gravitational acceleration (default 9.80665 m/s2)"
+    )

@@ -11,7 +11,7 @@ from typing import Self
 
 
 def writable(path: str | Path) -> Path:
-    """Return the path of a writable file, or raise OSError naming it; leaves nothing behind."""
+    """Return the path if the file can be written, or raise OSError naming it; nothing is created."""
     path = Path(path)
     if path.exists():
         if path.is_dir() or not os.access(path, os.W_OK):
@@ -37,9 +37,9 @@ def _try(place: Path, asked: Path) -> None:
 
 
 class Working:
-    """A line on a terminal with the time that work has taken and, if known, the share that is done.
+    """A line on a terminal with the time since the beginning and, if known, the share that is done.
 
-    Call it with the share. It shows nothing in the first second, or if stderr is no terminal.
+    Call the object with the share. Nothing is shown in the first second, or if stderr is not a terminal.
     """
 
     def __init__(self, what: str) -> None:

@@ -17,9 +17,10 @@ from spincyl.cli._losses import losses_of, option
 from spincyl.cli._output import writable
 
 TEXT = """\
-Write a page to play with: one file in which the core itself runs. Drag a point on the map of inclination over
-aspect ratio, take the body by hand, move a slider, and the exact motion answers, offline. What is set here is
-what the page begins with; without a body it is the tube of the paper, at 89.5 degrees.
+Write an interactive page: a single file that runs the core, also offline. Drag a point on the map of
+inclination and aspect ratio, take the body by hand, or move a slider, and the page computes the exact motion.
+The options set the body and the motion with which the page begins. The default body is the tube of the paper
+at 89.5 degrees.
 
 """
 
@@ -35,33 +36,45 @@ spincyl play --balls --theta 78deg --open -o balls.html"""
 
 def options(sub: ArgumentParser) -> None:
     """Add the options for the initial state and the output of the page."""
-    how = sub.add_argument_group("what the page begins with")
+    how = sub.add_argument_group("the motion with which the page begins")
     how.add_argument(
-        "--theta", type=angle, metavar="ANGLE", help="inclination (default: 1.3, of the tube 89.5deg)"
+        "--theta", type=angle, metavar="ANGLE", help="inclination (default 1.3, for the default tube 89.5deg)"
     )
-    how.add_argument("--kick", type=float, default=0.0, help="theta' given to it (default 0)")
+    how.add_argument("--kick", type=float, default=0.0, help="theta' added to the state (default 0)")
     tables = ("rolling", "smooth", "coulomb", "viscous")
-    how.add_argument("--contact", choices=tables, default="rolling", help="the table (default: rolling)")
-    how.add_argument("--mu", type=float, help="of coulomb: the coefficient of friction")
     how.add_argument(
-        "--patch", type=part, metavar="RADIUS", help="of coulomb: that of a patch, or as in 0.3mm"
+        "--contact", choices=tables, default="rolling", help="contact with the table (default: rolling)"
     )
-    how.add_argument("--viscosity", type=float, metavar="C", help="of viscous: friction C N times the slip")
-    bounce = "0 to 1: it goes on where it leaves a table with friction (default: it ends there)"
+    how.add_argument("--mu", type=float, help="coulomb: coefficient of friction")
+    how.add_argument(
+        "--patch",
+        type=part,
+        metavar="RADIUS",
+        help="coulomb: radius of the contact patch, in R or as in 0.3mm",
+    )
+    how.add_argument(
+        "--viscosity", type=float, metavar="C", help="viscous: friction is C times normal force times slip"
+    )
+    bounce = "coefficient of restitution, 0 to 1, with friction (default: the motion ends at lift-off)"
     how.add_argument("--restitution", type=float, metavar="BOUNCE", help=bounce)
     option(how, "--loss")
-    how.add_argument("--t", type=float, default=60.0, help="how long friction and losses are followed")
+    how.add_argument(
+        "--t",
+        type=float,
+        default=60.0,
+        help="last time of motions with friction or losses, in sqrt(R/g) (default 60)",
+    )
     how.add_argument(
         "--slow",
         type=float,
         default=20.0,
-        help="how many times slower than it moves (no size: R = 1 cm)",
+        help="factor of slow motion (default 20; for a body without a size, R = 1 cm)",
     )
-    sub.add_argument("-o", "--output", required=True, metavar="FILE", help="the page: .html")
+    sub.add_argument("-o", "--output", required=True, metavar="FILE", help="output file (.html)")
     sub.add_argument(
-        "--lean", action="store_true", help="without friction and losses: a smaller file, with rubber and ice"
+        "--lean", action="store_true", help="smaller page without friction and losses, only rubber and ice"
     )
-    sub.add_argument("--open", action="store_true", help="show it in the browser, too")
+    sub.add_argument("--open", action="store_true", help="open the page in the browser")
 
 
 def run(args: Namespace) -> None:
@@ -90,11 +103,11 @@ def run(args: Namespace) -> None:
     ).save(path)
     print(f"{made.stat().st_size / 1000:.0f} kB in {made}")
     if args.open and not webbrowser.open(Path(made).resolve().as_uri()):
-        print("spincyl play: no browser was found to open it", file=sys.stderr)
+        print("spincyl play: no browser was found to open the page", file=sys.stderr)
 
 
 def _table(args: Namespace, scale: Scale | None) -> AnyContact:
-    """The contact given by the options, with its coefficient; the page knows no static one."""
+    """The contact given by the options, with its coefficient; the page has no static friction."""
     if args.mu is not None and args.contact != "coulomb":
         raise ValueError("--mu goes with --contact coulomb")
     args.static = None

@@ -1,4 +1,4 @@
-"""Bodies, states and motions as output: numbers for JSON, and rows of a table."""
+"""Output of bodies, states and motions: numbers for JSON, and rows of a table."""
 
 import json
 import math
@@ -103,7 +103,7 @@ def state_rows(body: Body, state: State, scale: Scale | None, *, weighed: bool =
     yield "angular velocity", f"{n['angular_velocity']:.9g}", tilt("gamma")
     yield "angular momentum", f"{n['angular_momentum']:.9g}", tilt("beta")
     if math.isnan(n["contact_radius"]):
-        yield "contact circle", "none: nothing turns", ""
+        yield "contact circle", "none: the body does not turn", ""
     else:
         yield "contact circle", f"{n['contact_radius']:.9g}", si("contact_radius_metres", "m radius")
         yield "still symbols", f"{n['still_symbols']:.4g} a turn", ""
@@ -131,7 +131,7 @@ def _lasting(
 
 
 def motion_numbers(m: Motion, scale: Scale | None) -> Numbers:
-    """Properties of a motion: its start, nutation and end."""
+    """Properties of a motion: initial state, nutation and end."""
     found: Numbers = {"body": body_numbers(m.body, scale), "contact": named(m.contact)}
     found["start"] = {name: getattr(m.start, name) for name in ("theta", "w1", "w2", "w3")}
     found |= {"status": m.status.name, "message": m.message, "method": m.method, "error": m.error}
@@ -159,7 +159,7 @@ def motion_numbers(m: Motion, scale: Scale | None) -> Numbers:
 
 
 def motion_rows(m: Motion, scale: Scale | None, *, weighed: bool = False) -> Iterator[Row]:
-    """Properties of a motion, as rows; heat is in joules only with `weighed`."""
+    """Properties of a motion, as rows; heat is in joules only if `weighed`."""
 
     def seconds(t: float) -> str:
         return "" if scale is None else f"{scale.seconds(t):.6g} s"
@@ -196,7 +196,7 @@ def _swing_rows(m: Motion, contact: Contact, scale: Scale | None) -> Iterator[Ro
     early = m.event is not None and m.event.time < found.period
     if math.isfinite(found.period):
         yield (
-            "period" + (", if it got so far" if early else ""),
+            "period" + (", not completed" if early else ""),
             f"{found.period:.12g}",
             "" if scale is None else f"{scale.seconds(found.period):.6g} s",
         )
