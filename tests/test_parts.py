@@ -114,8 +114,8 @@ def test_it_says_what_lands():
 @pytest.mark.parametrize(
     ("why", "make"),
     [
-        ("mass, density: give one of them", lambda: parts.ball(diameter=0.01)),
-        ("mass, density: give one of them", lambda: parts.ball(diameter=0.01, mass=1, density=1)),
+        ("mass, density: give exactly one of them", lambda: parts.ball(diameter=0.01)),
+        ("mass, density: give exactly one of them", lambda: parts.ball(diameter=0.01, mass=1, density=1)),
         ("expected a Part", lambda: sc.assembled([3])),
         ("diameter", lambda: parts.ball(diameter=[1, 2], mass=1)),
     ],

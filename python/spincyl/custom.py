@@ -1,9 +1,9 @@
 """Custom laws: a couple that takes energy, and a coefficient of friction that depends on the speed.
 
-Each is a Python function, plain or compiled (``numba.njit``), which a motion calls some thousand times.
-Before the motion begins the law is checked: it must be finite and without jumps, and a couple must not give
-energy. Dry friction, which contains the sign of a speed, has to be smoothed: ``tanh(x/e)`` in place of
-``sign(x)``.
+Each is a Python function, plain or compiled (``numba.njit``), which is called some thousand times in a
+motion. Before the motion begins the law is checked: it must be finite and without jumps, and a couple must
+not add energy. Dry friction, which contains the sign of a speed, has to be smoothed: ``tanh(x/e)`` in place
+of ``sign(x)``.
 
 >>> import numpy as np
 >>> import spincyl as sc
@@ -54,14 +54,15 @@ class Couple(Loss):
     Raises
     ------
     TypeError
-        If `function` is not callable; on use for many motions, a drift or a stone, or with another law.
+        If `function` is not callable, or if the law is used for many motions, for a drift, for a stone, or
+        together with another law.
     ValueError
-        By `sc.roll`, with a value, if the couple gives energy, is not finite, or jumps.
+        In `sc.roll`, if the couple adds energy, is not finite, or jumps; the message gives a value.
 
     Notes
     -----
-    The motion is integrated within `tol` (default 1e-10 for each step). `Motion.error` estimates its error
-    from a second, rougher run.
+    The motion is integrated with the tolerance `tol` of `sc.roll` (default 1e-10 for each step).
+    `Motion.error` estimates its error from a second run with a larger tolerance.
     """
 
     function: CoupleFunction
@@ -122,9 +123,9 @@ class Friction(Coulomb):
     Raises
     ------
     TypeError
-        If `function` is not callable; on use for many motions, a stone, or a page.
+        If `function` is not callable, or if the law is used for many motions, for a stone, or on a page.
     ValueError
-        By `sc.roll`, if the coefficient is negative, not finite, or jumps.
+        In `sc.roll`, if the coefficient is negative, not finite, or jumps.
 
     Examples
     --------

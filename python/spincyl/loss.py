@@ -249,7 +249,7 @@ class BoundaryLayer(Law):
 
 
 def _told(kind: type[_Kind], coefficient: Reals, names: str, scale: Scale | Body) -> _Kind:
-    """A law with this coefficient; ValueError names the quantities from which it was computed."""
+    """A law with this coefficient; a ValueError names the quantities from which it was computed."""
     try:
         return sized(kind(coefficient), scale)
     except ValueError as e:

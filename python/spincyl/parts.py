@@ -29,7 +29,7 @@ from spincyl._scale import Scale
 
 __all__ = ["Part", "assembled", "ball", "cap", "cone", "cylinder", "disk", "point", "ring", "shell", "wall"]
 
-#: Codes of the forms, and the indices of heights among their numbers; the first is that of the lowest point.
+#: Codes of the forms, and the indices of heights among their numbers; the first is the lowest point.
 _SOLID, _BALL, _WALL, _SHELL, _RING = range(5)
 _HEIGHTS = {_SOLID: (4, 5), _BALL: (3, 2, 4), _WALL: (2, 3), _SHELL: (2, 1, 3), _RING: (1,)}
 
@@ -38,16 +38,16 @@ _HEIGHTS = {_SOLID: (4, 5), _BALL: (3, 2, 4), _WALL: (2, 3), _SHELL: (2, 1, 3), 
 class Part:
     """A part of a body, as made by the functions of this module."""
 
-    name: str  #: as that of the function, such as "cylinder"
+    name: str  #: name of the function that made the part, such as "cylinder"
     form: int  #: code of the form
     #: radii and heights in metres, from the lowest point of the part
     numbers: tuple[float, ...]
     amount: float  #: mass in kg, or density
     dense: bool  #: whether `amount` is a density
-    at: float | None  #: height of the lowest point in metres; None: on the part before
+    at: float | None  #: height of the lowest point in metres; None if the part stands on the one before
 
     def raised(self, by: float) -> "Part":
-        """The part with all heights increased by a length in metres."""
+        """Return the part with all heights increased by a length in metres."""
         heights = _HEIGHTS[self.form]
         return replace(self, numbers=tuple(x + by if i in heights else x for i, x in enumerate(self.numbers)))
 
@@ -67,7 +67,7 @@ def cylinder(
     mass: float | None = None,
     density: float | None = None,
 ) -> Part:
-    """Solid or hollow cylinder; a `fillet` rounds its outer edges but does not change mass and moments."""
+    """Solid or hollow cylinder. A `fillet` rounds the outer edges without changing mass and moments."""
     r, b = _metres("outer_diameter", outer_diameter) / 2, _metres("inner_diameter", inner_diameter) / 2
     rest = 0.0, _metres("length", length), _metres("fillet", fillet)
     return _part("cylinder", _SOLID, (r, r, b, b, *rest), at, mass, density)
@@ -150,7 +150,7 @@ def shell(
     mass: float | None = None,
     density: float | None = None,
 ) -> Part:
-    """Thin spherical wall, whole or its lowest `height`, with `upper` its highest; `density` in kg/m^2."""
+    """Thin spherical wall, whole or its lowest `height` (with `upper`, its highest); `density` in kg/m^2."""
     r = _metres("diameter", diameter) / 2
     h = 2 * r if height is None else _metres("height", height)
     return _part("shell", _SHELL, (r, h - r if upper else r, 0.0, h), at, mass, density)
@@ -181,16 +181,16 @@ def assembled(parts: Iterable[Part], *, gravity: float = Scale.gravity) -> Body:
     Returns
     -------
     Body
-        Body with its moments, its `scale` (R is the outer radius of its rim, the mass that of all parts) and
-        `theta_end`; `natural` is the same in natural units. Pictures, films and pages show its parts.
-        It stands on its lowest edge or ball, on the widest if edges are at the same height. `theta_end` is
-        the inclination at which another part lands. If the other rim is as wide and as far from the centre
-        of mass, the body has two equal rims, and may lie on both. Error: a few roundings.
+        Measured body: R of its `scale` is the outer radius of its rim, the mass that of all parts. `natural`
+        is the same body in natural units. Pictures, films and pages show the parts. The body stands on its
+        lowest edge or ball, or on the widest of several edges at the same height. `theta_end` is the
+        inclination at which another part lands. If the other rim is as wide and as far from the centre of
+        mass, the body has two equal rims, and may lie on both. Moments have errors of a few roundings.
 
     Raises
     ------
     ValueError
-        If a number of a part is impossible (the message names it), if there is no mass, or if no part can
+        If a number of a part is impossible (the message names it), if the mass is zero, or if no part can
         touch the table.
     TypeError
         If an element of `parts` is not a part.
@@ -203,7 +203,7 @@ def assembled(parts: Iterable[Part], *, gravity: float = Scale.gravity) -> Body:
     Warns
     -----
     UserWarning
-        If the body is larger than 5 m or smaller than 0.1 mm, as if millimetres had been taken for metres.
+        If the body is larger than 5 m or smaller than 0.1 mm, as if millimetres were given for metres.
 
     Examples
     --------
@@ -215,7 +215,7 @@ def assembled(parts: Iterable[Part], *, gravity: float = Scale.gravity) -> Body:
     try:
         given = list(parts)
     except TypeError:
-        raise TypeError(f"parts: expected parts in a list, not {type(parts).__name__}") from None
+        raise TypeError(f"parts: expected a list of parts, not {type(parts).__name__}") from None
     lows = [0.0]
     for i, part in enumerate(given):
         made(f"parts[{i}]", part, Part)
@@ -225,7 +225,7 @@ def assembled(parts: Iterable[Part], *, gravity: float = Scale.gravity) -> Body:
     placed = [part.raised(low - min(lows[:-1])) for part, low in zip(given, lows, strict=False)]
     found = _core.assembled([(part.form, list(part.numbers), part.amount, part.dense) for part in placed])
     (ell, i1, i3, fillet, theta_end), mass, radius, centre = found
-    # the core says pi/2 for two equal rims and for a body that has none to land on
+    # the core returns pi/2 for two equal rims, and for a body without another part that lands
     why = dubious("body", (max((part.top for part in placed), default=0.0), 2 * radius), math.nan, math.nan)
     if why:
         warnings.warn(why, UserWarning, stacklevel=2)
@@ -253,7 +253,7 @@ def _part(
     density: float | None,
 ) -> Part:
     if (mass is None) == (density is None):
-        raise TypeError(f"mass, density: give one of them for the {name}")
+        raise TypeError(f"mass, density: give exactly one of them for the {name}")
     if mass is not None:
         amount: Any = number("mass", si("mass", mass, "kilogram"))
     else:

@@ -1,7 +1,7 @@
-"""Speed against error on this machine: the cost and the accuracy of a trajectory by every method.
+"""Speed and error on this machine: computing time and accuracy of a trajectory for every method.
 
-The error of a final state is its distance from the exact one (the largest difference of its four numbers),
-plus the estimated error of the exact solution. With a file of high-precision motions
+The error of a final state is its distance from the exact solution (the largest difference of its four
+numbers) plus the estimated error of the exact solution. With a file of high-precision motions
 (tests/reference/motion.csv in the repository), the exact solution is compared with those.
 """
 
@@ -29,7 +29,7 @@ _TARGETS = (1e-6, 1e-9, 1e-12)
 
 
 class Scene(NamedTuple):
-    """A motion for measurements."""
+    """A motion to measure: body, initial state, and last time in sqrt(R/g)."""
 
     name: str
     body: Body
@@ -38,7 +38,7 @@ class Scene(NamedTuple):
 
 
 class Point(NamedTuple):
-    """One setting of a method: seconds per trajectory, error of its final state."""
+    """One setting of a method (step or tolerance), seconds per trajectory, and error of the final state."""
 
     setting: float
     seconds: float
@@ -47,18 +47,18 @@ class Point(NamedTuple):
 
 @dataclass(frozen=True)
 class Row:
-    """Measurements of a scene: points by method; estimated and (if known) true error of the exact one."""
+    """Measurements of a scene: points by method, and times and errors of the exact solution."""
 
     scene: Scene
-    curves: dict[str, list[Point]]
-    exact_seconds: float
-    call_seconds: float
-    claimed: float
-    true: float | None
+    curves: dict[str, list[Point]]  #: points of each method, from coarse to fine
+    exact_seconds: float  #: exact solution: seconds per state, in a call for 1000 states
+    call_seconds: float  #: exact solution: seconds of a call for the final state
+    claimed: float  #: estimated error of the exact solution
+    true: float | None  #: its true error, if a high-precision motion is known
 
 
 def scenes() -> list[Scene]:
-    """The scenes of the report: easy, fast, nearly flat, near a saddle, long."""
+    """Return the scenes of the report: easy, fast, nearly flat, near a saddle, long."""
     tube, can = Body.tube(6.0, 0.8), Body.solid(1.0)
     disk, critical = Body.solid(0.17043941411451397), Body.solid(math.sqrt(0.75))
     nutating = can.steady(0.5).kicked(0.3)
@@ -81,7 +81,21 @@ def measure(
     reference: str | None = None,
     progress: Callable[[float], object] = lambda share: None,
 ) -> list[Row]:
-    """Measure every scene by every method in about `seconds`; `progress` gets the share that is done."""
+    """Measure all scenes with all methods.
+
+    Parameters
+    ----------
+    seconds : float
+        Approximate running time, in seconds.
+    reference : str, optional
+        CSV file of high-precision motions. Default: the true error of the exact solution is not measured.
+    progress : callable
+        Called with the share of the work that is done, 0 to 1.
+
+    Returns
+    -------
+    list of Row
+    """
     known = _references(reference) if reference else {}
     found = [known.get((scene.name, scene.t), (scene, None)) for scene in scenes()]
     budget = seconds / (4 * len(found))
@@ -144,7 +158,7 @@ def _row(scene: Scene, budget: float, known: Floats | None) -> Row:
 
 
 def costs(steps: int = 20_000) -> list[tuple[str, float, float]]:
-    """Nanoseconds per RK4 step by outputs: name, with the last state only, with every state."""
+    """Measure nanoseconds per RK4 step: name of the outputs, for the last state only, for every state."""
     scene = scenes()[1]
     last = steps * 1e-3
     every = np.arange(steps + 1) * 1e-3
@@ -196,12 +210,12 @@ def _distance(a: Floats, b: Floats) -> float:
 
 
 def _best(run: Callable[[], object], budget: float) -> float:
-    """Least time of all runs that fit in the budget, at least two."""
+    """Shortest time of the runs that fit in the budget, at least two."""
     return _best_of(run, budget)[0]
 
 
 def _best_of(run: Callable[[], Any], budget: float) -> tuple[float, int, Any]:
-    """Least time of a run, the number of runs, and the result of a run."""
+    """Shortest time of a run, the number of runs, and the result of a run."""
     best, spent, count = math.inf, 0.0, 0
     while True:
         begun = time.perf_counter()
@@ -220,7 +234,7 @@ def _curve(
 ) -> list[Point]:
     """Points from coarse to fine settings, as long as the next one fits in the budget.
 
-    A point counts with its least time, so that short load on the machine does not end the curve.
+    The shortest time of a point counts, so that brief load on the machine does not end the curve.
     """
     import warnings
 
@@ -241,7 +255,7 @@ def _curve(
 
 
 def _references(path: str) -> dict[tuple[str, float], tuple[Scene, Floats]]:
-    """Rolling motions of the three-dimensional model by scene and time: start and final state."""
+    """Rolling motions of the three-dimensional model by scene and time: initial and final state."""
     found = {}
     with open(path, encoding="utf-8", newline="") as file:
         for kind, name, contact, *numbers in csv.reader(file):
@@ -266,7 +280,7 @@ def _time(seconds: float) -> str:
 
 
 def table(rows: list[Row]) -> str:
-    """Markdown: a table of all scenes, the points of every curve, the cost of each output."""
+    """Return Markdown: a table of all scenes, the points of all curves, and the cost of each output."""
     head = ["scene", "t", "exact: true error", "estimated", "one call", "a state of 1000"]
     methods = list(rows[0].curves)
     head += [f"{name} to {target:g}" for name in methods for target in _TARGETS]
@@ -279,7 +293,7 @@ def table(rows: list[Row]) -> str:
         lines.append("| " + " | ".join(cells) + " |")
     lines += [
         "",
-        "Every point: setting (step or tolerance), time per trajectory, error of the final state.",
+        "Each point: setting (step or tolerance), time per trajectory, error of the final state.",
         "",
     ]
     for row in rows:
@@ -289,14 +303,14 @@ def table(rows: list[Row]) -> str:
             listed = "; ".join(f"{p.setting:.2g}: {_time(p.seconds)}, {p.error:.1e}" for p in points)
             lines.append(f"- {name}: {listed}")
         lines.append("")
-    lines += ["| wanted of RK4 | ns a step, last state | ns a step, every state |", "| --- | --- | --- |"]
+    lines += ["| outputs of RK4 | ns a step, last state | ns a step, every state |", "| --- | --- | --- |"]
     lines += [f"| {name} | {last:.0f} | {every:.0f} |" for name, last, every in costs()]
     lines.append("")
     return "\n".join(lines)
 
 
 def figure(rows: list[Row], path: Path) -> bool:
-    """Draw error against time per trajectory, a panel for each scene; False if matplotlib is missing."""
+    """Draw error against time per trajectory, one panel for each scene; False if matplotlib is missing."""
     try:
         import matplotlib
     except ImportError:
