@@ -279,7 +279,7 @@ def test_a_picture_is_the_frame_of_a_film_at_its_time(tmp_path):
     for wrong, said in ((0.2, "t = 0.2: expected 0 to 0.1"), (float("nan"), "t = nan")):
         with pytest.raises(ValueError, match=said):
             view.save(tmp_path / "no.png", t=wrong)
-    with pytest.raises(ValueError, match="t: of a picture"):
+    with pytest.raises(ValueError, match="t: only for a picture"):
         view.save(tmp_path / "no.gif", t=0.0)
     with pytest.raises(ValueError, match="of a film"):
         view.save(tmp_path / "no.png", fps=10)
@@ -341,8 +341,8 @@ def test_films_that_no_file_can_hold_are_refused_with_what_would_be_right(tmp_pa
         ("film.mp4", {"size": (321, 180)}, "even numbers"),
         ("film.mp4", {"size": (32, 18)}, "width = 32: expected a whole number from 64"),
         ("film.mp4", {"fps": 0}, "fps = 0: expected a whole number from 1 to 240"),
-        ("page.html", {"fps": 30}, "fps, size, seconds, progress: of a film"),
-        ("scene.glb", {"size": (640, 360)}, "fps, size, seconds, progress: of a film"),
+        ("page.html", {"fps": 30}, "fps, size, seconds, progress: only for a film"),
+        ("scene.glb", {"size": (640, 360)}, "fps, size, seconds, progress: only for a film"),
     ):
         with pytest.raises(ValueError, match=said):
             view.save(tmp_path / name, **how)

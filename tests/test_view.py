@@ -223,7 +223,7 @@ def test_hostile_labels_stay_text(shown):
 @pytest.mark.parametrize("character", UNFIT, ids=ascii)
 def test_text_that_cannot_stand_in_html_is_refused_by_name(character):
     text, m = f"a {character} tube", sc.roll(CYLINDER, CYLINDER.steady(1.3), 1.0)
-    said = rf" = {re.escape(repr(text))}: expected text without U\+0*{ord(character):X}, which cannot stand"
+    said = rf" = {re.escape(repr(text))}: expected text without U\+0*{ord(character):X}, which HTML excludes"
     for name, wrong in (
         ("title", lambda: sc.view(m, title=text)),
         (r"labels\[1\]", lambda: sc.view(m, m, labels=["fine", text])),

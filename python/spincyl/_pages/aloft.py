@@ -1,4 +1,4 @@
-"""Data about a body that leaves the table or lies on both rims: phases by rim and in words, and forces."""
+"""Data about a body that leaves the table or lies on both rims: phases, their description, and forces."""
 
 from typing import Any
 
@@ -10,12 +10,12 @@ from spincyl._phases import KINDS, two_rims
 from spincyl._studio.aloft import FLIES, aloft
 from spincyl._studio.poses import span
 
-#: Phases shorter than this share of the time shown belong to the bounces before and after them, in words.
+#: In the description, phases shorter than this share of the time shown belong to the bounces around them.
 _BRIEF = 2e-3
 
 
 def flying(m: Motion) -> dict[str, Any]:
-    """Phases as (time, code, whether the other rim is down), and in words as (time, code, impacts)."""
+    """Phases as (time, code, whether the other rim is down), and as described: (time, code, impacts)."""
     first, last = span(m)
     begins = np.array([phase.time for phase in m.phases])
     ends = np.append(begins[1:], last)
@@ -26,7 +26,7 @@ def flying(m: Motion) -> dict[str, Any]:
 
 
 def _told(m: Motion, begins: Floats, ends: Floats, codes: list[int]) -> list[list[float]]:
-    """Phases in which many bounces, and brief phases between them, are one flight with impacts."""
+    """Phases with successive bounces, and brief phases between them, joined to one flight with impacts."""
     first, last = span(m)
     brief = ends - begins < _BRIEF * (last - first)
     found: list[list[float]] = []
@@ -52,21 +52,21 @@ def _told(m: Motion, begins: Floats, ends: Floats, codes: list[int]) -> list[lis
 def beside(m: Motion, t: Floats) -> dict[str, Any]:
     """Force on the other rim of a body that lies on both, as 16-bit integers between bounds: F_h, F_2, N.
 
-    Friction is against the slip. Where that rim does not slip while the body rolls on its side, friction has
-    the direction that it has on the first rim; while the body pivots about it, none is told, since its
-    direction is not known.
+    Friction is opposite to the slip. If that rim does not slip while the body rolls on its side, friction has
+    the same direction as on the first rim. While the body pivots about that rim, friction is left at zero,
+    since its direction is not known.
     """
     there = m.wanting("pose", "force", t=t)
     on_both = there.phase > FLIES
     if not on_both.any():
         return {}
     up = aloft(m, *span(m))
-    told = np.where(up.on_other(there.t), -1.0, 1.0)  # from which rim the lean is told
+    told = np.where(up.on_other(there.t), -1.0, 1.0)  # sign by the rim to which theta refers
     slip, own = there.slip_other @ [1, 1j], there.contact_force[:, :2] @ [1, 1j] * np.exp(-1j * there.phi)
     way = np.where(np.abs(slip) > 1e-9, -slip, np.where(there.phase == len(KINDS) - 1, own, 0.0))
     size = np.maximum(np.abs(way), 1e-300)
     push = told * np.where(on_both, there.friction_other * way / size, 0.0)
-    found = np.zeros((t.size, 3))  # one that ends a little earlier has no force there
+    found = np.zeros((t.size, 3))  # no force after the end, which may come a little earlier
     found[: there.t.size] = np.column_stack(
         [push.real, push.imag, np.where(on_both, there.normal_other, 0.0)]
     )

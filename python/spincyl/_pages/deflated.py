@@ -11,7 +11,7 @@ _UNFIT = 0, 13, 60
 def packed(first: bytes, second: bytes) -> str:
     """Two byte strings as text for a script element.
 
-    A header holds the length of the deflated stream, which a browser needs, and that of the first string.
+    A header contains the length of the deflated stream, which a browser needs, and of the first string.
     """
     stream = zlib.compress(first + second, 9)
     return characters(len(stream).to_bytes(4, "big") + len(first).to_bytes(4, "big") + stream)

@@ -24,7 +24,7 @@ def line(name: str, value: str) -> str:
         raise TypeError(f"{name}: expected text, not {type(value).__name__}")
     if unfit := _UNFIT.search(value):
         code = f"U+{ord(unfit[0]):04X}"
-        raise ValueError(f"{name} = {value!r}: expected text without {code}, which cannot stand in a page")
+        raise ValueError(f"{name} = {value!r}: expected text without {code}, which HTML excludes")
     return re.sub(r"[\t\n\f\r]+", " ", value)
 
 
@@ -92,13 +92,13 @@ light && this.contentWindow?.postMessage({ spincylNight: light === "false" }, "*
 tell(); new MutationObserver(tell).observe(b, { attributes: true });"""
 
 
-_UNTRUSTED = "Here is a page of spincyl. It is shown when this notebook is trusted, or its cell is run."
+_UNTRUSTED = "A page of spincyl: trust this notebook, or run the cell, to see it."
 
 
 def frame(page: str, sandbox: str, look: str, name: str = "") -> str:
-    """A page in a sandboxed frame; in a notebook with a theme, the frame is told whether it is dark.
+    """A page in a sandboxed frame; a notebook with a theme passes it on to the frame, light or dark.
 
-    The text inside the frame shows where a notebook that is not trusted removes the frame.
+    A notebook that is not trusted removes the frame and shows the text inside it.
     """
     told, called = html.escape(_TELLS.replace("\n", " ")), f' name="{name}"' if name else ""
     return (

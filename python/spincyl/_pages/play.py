@@ -46,7 +46,7 @@ if TYPE_CHECKING:
     #: Not defined at run time: completion by jedi fails for classes with a property of a Literal type.
     from spincyl._contact import AnyContact as Table
 
-#: The scripts in their order; the renderer is that of the recorded page.
+#: The scripts in their order; the renderer is shared with the recorded page.
 _SCRIPTS = (
     "play.core.js",
     "play.state.js",
@@ -81,18 +81,18 @@ FRAME = "width:100%;height:clamp(600px,100vh - 130px,900px);border:0"
 
 
 class Play:
-    """A page to play with; from `play`. Shows itself in a notebook.
+    """Interactive page; returned by `play`. A notebook displays it.
 
-    With the extra `widget` (anywidget) the page in a notebook and this object follow each other: what is set
-    here moves the body, and what a hand does there is read here, however often the page is shown. Without it
-    they part when the page is shown.
+    With the extra `widget` (anywidget) the page in a notebook and this object stay synchronised: setting an
+    attribute moves the body on the page, and the attributes follow the changes that a user makes there.
+    Without the extra, the page is independent of this object once it is shown.
 
     Attributes
     ----------
     html : str
-        The page: complete, and asking for nothing from anywhere.
+        The complete page, which loads nothing from elsewhere.
     friction : bool
-        Whether the page knows friction and losses.
+        Whether the page includes friction and losses.
     """
 
     def __init__(self, told: dict[str, Any], title: str, friction: bool, body: Body) -> None:
@@ -101,7 +101,7 @@ class Play:
 
     @property
     def body(self) -> Body:
-        """The body; another may be set, whose state is then that at the same inclination."""
+        """The body. Setting it starts the steady state at the same inclination."""
         self._of_revolution()
         found = body_of(self._told)
         return self._body if found == self._body else found  # the same one knows its parts
@@ -113,7 +113,7 @@ class Play:
 
     @property
     def theta(self) -> float:
-        """Inclination at the start, radians; another may be set."""
+        """Initial inclination, radians; may be set."""
         return float(self._told["theta"])
 
     @theta.setter
@@ -122,7 +122,7 @@ class Play:
 
     @property
     def kick(self) -> float:
-        """Theta' given to the body at the start, in sqrt(g/R); another may be set."""
+        """Theta' added to the initial state, in sqrt(g/R); may be set."""
         return float(self._told.get("kick", 0.0))
 
     @kick.setter
@@ -131,7 +131,7 @@ class Play:
 
     @property
     def state(self) -> State:
-        """Where the motion starts; another may be set."""
+        """Initial state; may be set."""
         self._of_revolution()
         return state_of(self._told)
 
@@ -141,7 +141,7 @@ class Play:
 
     @property
     def contact(self) -> "Table":
-        """The table; another may be set."""
+        """The contact; may be set."""
         return table_of(self._told)
 
     @contact.setter
@@ -152,7 +152,7 @@ class Play:
 
     @property
     def restitution(self) -> float | None:
-        """The restitution of impacts on a table with friction, or None; another may be set."""
+        """Coefficient of restitution, or None; used only with friction. May be set."""
         found: float | None = self._told.get("restitution")
         return found
 
@@ -163,7 +163,7 @@ class Play:
 
     @property
     def losses(self) -> Loss | None:
-        """The law of loss, or None; another may be set."""
+        """The law of loss, or None; may be set."""
         return losses_of(self._told)
 
     @losses.setter
@@ -173,9 +173,9 @@ class Play:
 
     @property
     def motion(self) -> Motion:
-        """The motion that is seen, as far as it is followed: exact where table and losses allow it.
+        """The motion on the page, as `roll` returns it, up to the last time that the page computes.
 
-        Of a measured body in SI, as from `roll`, and of the rattleback, which is followed for 20 s.
+        For a measured body it is in SI. The motion of the rattleback lasts 20 s.
         """
         if self._told.get("stone"):
             return _rattling(self._told)
@@ -188,7 +188,9 @@ class Play:
     def _of_revolution(self) -> None:
         """Raise ValueError if the page shows a stone."""
         if self._told.get("stone"):
-            raise ValueError("the page shows a rattleback, which is no body of revolution: see its motion")
+            raise ValueError(
+                "the page shows a rattleback, which is not a body of revolution; read its motion instead"
+            )
 
     def _set(self, words: dict[str, Any], gone: Iterable[str] = ()) -> None:
         """Change the state here and on the page; entries in `gone` are removed."""
@@ -216,20 +218,20 @@ class Play:
 
     @property
     def address(self) -> str:
-        """What follows the name of the page in its address, as in "#ell=2.5&theta=1.3"."""
+        """Fragment of the page's address, such as "#ell=2.5&theta=1.3", which holds all settings."""
         words = {k: ",".join(map(repr, v)) if isinstance(v, list) else v for k, v in self._told.items()}
         words.pop("parts", None)  # an address has no room for surfaces
         return "#" + "&".join(f"{name}={word}" for name, word in words.items())
 
     def save(self, path: str | PathLike[str]) -> Path:
-        """Write the page (.html) and return its path; a file that is there stays until it is complete.
+        """Write the page (.html) and return its path; an existing file is replaced when the page is complete.
 
         Raises
         ------
         ValueError
-            For any other suffix.
+            If the suffix is not .html.
         OSError
-            If it cannot be written.
+            If the file cannot be written.
         """
         path = path_of("path", path)
         if path.suffix.lower() != ".html":
@@ -273,57 +275,58 @@ def play(
     friction: bool = True,
     title: str = "spincyl: a page to play with",
 ) -> Play:
-    """A page in which the core itself runs: drag a point on the map, and the exact motion answers.
+    """Make an interactive page that runs the core: drag a point on a map, and see the exact motion.
 
     Parameters
     ----------
     body : Body, optional
-        A single one. Default: the tube of the paper, which is measured. Of a measured one (`measured`) the
-        page tells times in seconds and rates in hertz, too.
+        Single body. Default: the measured tube of the paper. For a measured body the page also gives times
+        in seconds and rates in hertz.
     theta : float, optional
-        Inclination in radians of the steady state that it begins with; where there is none the body is let go
-        at rest. Default: 1.3, of the tube of the paper 89.5 degrees, or of the `state`.
+        Inclination of the initial steady state, in radians. Where there is no steady state, the body starts
+        at rest. Default: that of `state`, else 1.3, for the tube of the paper 89.5 degrees.
     state : State, optional
-        Any other state to begin with.
+        Any other initial state.
     kick : float
-        theta' given to it, in sqrt(g/R), -3 to 3.
+        theta' added to the initial state, in sqrt(g/R), -3 to 3.
     contact : {"rolling", "smooth"}, Coulomb or Viscous
-        Of Coulomb's law the page knows one coefficient: static = mu, and a patch up to 0.5 R. Nothing
-        bounces on a patch.
+        Contact with the table. Coulomb's law needs static = mu on the page, and may have a patch up to 0.5 R,
+        but without `restitution`.
     restitution : float, optional
-        Of impacts, 0 to 1: on a table with friction a body that leaves it comes down again, and may lie on
-        its side. Default: the motion ends there.
+        Coefficient of restitution, 0 to 1. With friction a body that leaves the table comes down again, and
+        may lie on its side. Default: the motion ends there.
     losses : Loss, optional
         One law of `spincyl.loss`.
     t : float
-        How long a motion is followed that is stepped, by friction or losses: 1 to 2000 sqrt(R/g); of a
+        Last time of motions with friction or losses, which are integrated: 1 to 2000 sqrt(R/g), for a
         measured body in seconds. Default: 60 sqrt(R/g).
     slow : float
-        How many times slower than it moves it is shown, 1 to 1000; what is not measured moves as if R = 1 cm.
+        Factor of slow motion, 1 to 1000. A body without a size moves as if R = 1 cm.
     friction : bool
-        Whether the page is to know friction and losses. Without, it is a smaller file, with rubber and ice.
+        Whether the page includes friction and losses. Without them the file is smaller, and the table is of
+        rubber or ice.
     title : str
-        Of the page. A tab or a new line is shown as a space.
+        Title of the page. A tab or a new line is shown as a space.
 
     Returns
     -------
     Play
-        Shows itself in a notebook; `save("play.html")` writes one file that opens offline.
+        A notebook displays the page; `save("play.html")` writes one file, which works offline.
 
     Raises
     ------
     ValueError
-        For a family of bodies, a number out of range, several losses, a `state` beside `theta` or `kick`,
-        friction or losses where `friction` is False, a title with a control character, half a surrogate pair
-        or a noncharacter: none can stand in HTML.
+        For a family of bodies, a number out of range, several losses, a `state` together with `theta` or
+        `kick`, or friction or losses if `friction` is False. Also for a title with a control character, half
+        a surrogate pair or a noncharacter, which HTML excludes.
     TypeError
-        For what is no body, state, table or loss.
+        If an argument is of the wrong type; the message names it.
 
     Notes
     -----
-    Needs WebAssembly with SIMD, WebGL 2 and DecompressionStream (Chrome 91, Firefox 113, Safari 16.4, or
-    later); elsewhere the page says so beside a picture. All that is set stands in its address,
-    "#ell=2.5&theta=1.3".
+    The page needs WebAssembly with SIMD, WebGL 2 and DecompressionStream (Chrome 91, Firefox 113, Safari
+    16.4, or later). Other browsers show a picture and the reason. The address of the page holds all
+    settings, as in "#ell=2.5&theta=1.3".
 
     Examples
     --------
@@ -368,21 +371,23 @@ def _rattling(words: dict[str, Any]) -> EllipsoidMotion:
 
 
 def _needed(friction: bool, contact: AnyContact, losses: Loss | None, body: Body | None = None) -> None:
-    """Refuse friction or losses on a page without them, and numbers without a unit for a measured body."""
+    """Check that the page includes friction and losses if needed, and that numbers have a fitting unit."""
     if losses is not None:
         made_law(losses, body)
     if body is not None:
         fitting(contact, body.scale)
     if not friction and (losses is not None or not isinstance(contact, str)):
-        raise ValueError("friction = False: this table and losses need friction=True")
+        raise ValueError("friction = False: this contact or loss needs friction=True")
 
 
 def _bouncing(friction: bool, contact: AnyContact, restitution: float | None) -> None:
-    """Refuse a restitution on a page without friction, and on a patch."""
+    """Raise ValueError for a restitution on a page without friction, or with a contact patch."""
     if not friction and restitution is not None:
-        raise ValueError("friction = False: bounces need friction=True")
+        raise ValueError("friction = False: a restitution needs friction=True")
     if restitution is not None and has_patch(contact):
-        raise ValueError(f"restitution = {restitution}: no body bounces on a patch, contact = {contact!r}")
+        raise ValueError(
+            f"restitution = {restitution}: expected None for a contact with a patch, {contact!r}"
+        )
 
 
 def _json(what: Any) -> str:

@@ -16,12 +16,12 @@ from spincyl._studio.look import Look
 from spincyl._studio.poses import knots, packed, repeats, seen, span
 from spincyl._studio.shape import reach
 
-#: How many times slower a page may show a motion.
+#: Factors of slow motion on a page.
 SLOW = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 
 
 def shown(m: Motion, slips: bool) -> tuple[dict[str, Any], float]:
-    """The data of a motion for the page, and its largest number of turns per unit of time."""
+    """The data of a motion for the page, and the largest number of turns per unit of time."""
     first, last = sorted(span(m))
     again = repeats(m)
     found = knots(m) if again is None else knots(m, until=first + again.period)
@@ -53,12 +53,12 @@ def shown(m: Motion, slips: bool) -> tuple[dict[str, Any], float]:
 
 
 def slips_or_flies(m: Motion) -> bool:
-    """Whether the page tells of slip and contact forces."""
+    """Whether the page shows slip and contact forces."""
     return rubs(m.contact) or goes_up(m)
 
 
 def turns(look: Look) -> str:
-    """For how many turns a page opens the shutter at first, as it writes them."""
+    """Number of turns of the first exposure of a page, as text."""
     many = look.exposure or 0.0
     return "Infinity" if np.isinf(many) else f"{many:g}"
 
@@ -86,6 +86,6 @@ def edges(m: Motion) -> dict[str, Any]:
 
 
 def slow_motion(turning: float, scale: Scale | None) -> int:
-    """The slow-motion factor with which nothing turns much faster than once a second."""
+    """The factor of slow motion with which no body turns much faster than once a second."""
     second = 1.0 if scale is None else float(scale.seconds(1.0))
     return next((x for x in SLOW if turning / second <= 1.5 * x), SLOW[-1])

@@ -32,8 +32,8 @@ def rubbing(m: Motion) -> dict[str, Any]:
 def forces(m: Motion, t: Floats) -> Floats:
     """Slip, friction and normal force at ascending times: u_h, u_2, F_h, F_2, N along a last axis.
 
-    Without a law of friction the slip is left at zero. For a stone, slip and friction have components along x
-    and y of the laboratory.
+    Without a law of friction the slip is zero. For a stone, slip and friction have components along x and y
+    of the laboratory.
     """
     there = m.wanting("pose", "force", t=t)
     push = there.contact_force[:, :2] @ [1, 1j]
@@ -43,7 +43,7 @@ def forces(m: Motion, t: Floats) -> Floats:
         z, w = there.orientation[:, 2:].T
         slip = slip * np.exp(2j * np.arctan2(z, w))
     elif goes_up(m):
-        # the page has the lean as told from the first rim
+        # on the page theta and phi refer to the first rim
         lean = aloft(m, *span(m)).from_first(there.t, there.theta, there.phi, there.psi)[:, 1]
         turn = np.exp(1j * (there.phi - lean))
         slip, push = slip * turn, push * np.exp(-1j * lean)

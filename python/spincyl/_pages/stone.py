@@ -24,7 +24,7 @@ def stone(m: Motion) -> bool:
 
 
 def numbers(m: EllipsoidMotion, t: Floats) -> dict[str, Any]:
-    """Numbers of the stone and the times of its reversals; `ell` gives a cylinder the same reach."""
+    """Numbers of the stone, and times of its reversals; a cylinder with this `ell` has the same reach."""
     far = reach(m.body)
     return {
         "ell": max(0.0, far * far - 1) ** 0.5,
@@ -52,9 +52,9 @@ def _stretched(profile: Profile, **more: bool) -> dict[str, Any]:
 
 
 def turns_back(m: EllipsoidMotion, t: Floats) -> list[float]:
-    """The times at which the spin has crossed zero and reached a tenth of the first spin the other way.
+    """Times of zero spin after which the spin reaches a tenth of its first value in the other direction.
 
-    Samples the spin between times in order, which have to include a few per rocking.
+    The spin is sampled between ascending times, of which there have to be a few per rocking.
     """
     share = np.arange(_BETWEEN) / _BETWEEN
     t = np.append((t[:-1, np.newaxis] + np.diff(t)[:, np.newaxis] * share).ravel(), t[-1])

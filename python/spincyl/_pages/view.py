@@ -54,12 +54,12 @@ _STILLS = (".png", ".svg", ".pdf")
 
 
 class View:
-    """One or several motions side by side; from `view`. Shows itself in a notebook.
+    """Page that shows one or several motions side by side; returned by `view`. A notebook displays it.
 
     Attributes
     ----------
     html : str
-        The page: complete, and asking for nothing from anywhere.
+        The complete page, which loads nothing from elsewhere.
     """
 
     def __init__(
@@ -112,40 +112,40 @@ class View:
     ) -> Path:
         """Write a page (.html), a film (.mp4, .gif), a picture or an animated scene (.glb, glTF 2.0).
 
-        A picture is of pixels (.png) or a vector drawing (.svg, .pdf).
+        Pictures have pixels (.png) or are vector drawings (.svg, .pdf).
 
         Parameters
         ----------
         path : path
-            What is written follows from the suffix.
+            Path of the file; the suffix determines the format.
         fps : int, optional
-            Frames a second of a film. Default: 30, of a GIF 25; the frames of a GIF last whole hundredths of
-            a second.
+            Frames per second of a film. Default: 30, for a GIF 25. A frame of a GIF lasts a whole number of
+            hundredths of a second.
         size : (int, int), optional
-            Width and height of a film or a picture in pixels. Default: (1280, 720), of a GIF (640, 360).
+            Width and height of a film or a picture in pixels. Default: (1280, 720), for a GIF (640, 360).
         seconds : float, optional
-            How long a film may be, 0.1 to 600. Default: 10, with a warning where there is more to show.
+            Longest duration of a film, 0.1 to 600. Default: 10, with a warning if the film is cut.
         progress : callable, optional
-            Called with the share of a film that is done, 0 to 1, after each frame.
+            Called after each frame with the share of the film that is done, 0 to 1.
         t : float, optional
-            The time of a picture, in seconds of the scale, or in sqrt(R/g) without one. Default: the first.
-            A long exposure begins then.
+            Time of a picture, in seconds with a scale, else in sqrt(R/g). Default: the first time. A long
+            exposure begins at this time.
 
         Returns
         -------
         Path
-            That of the file.
+            Path of the file.
 
         Raises
         ------
         ValueError
-            For any other suffix, a motion too long to show, measures that no film can have or that are given
-            for what is none.
+            For any other suffix, a motion too long to show, impossible settings of a film, or settings that
+            do not go with the format.
         ImportError
-            For a film without spincyl[film]; an MP4 also takes the program ffmpeg where that is on the search
-            path, a GIF matplotlib alone.
+            For a film without spincyl[film]. An MP4 can also be made by the program ffmpeg on the search
+            path; a GIF needs only matplotlib.
         OSError
-            If it cannot be written.
+            If the file cannot be written.
 
         Warns
         -----
@@ -154,16 +154,16 @@ class View:
 
         Notes
         -----
-        A file that is there is replaced when the new one is complete; if anything fails, it stays as it is.
+        An existing file is replaced when the new one is complete; after an error it is unchanged.
 
-        A film begins at the first time and runs `slow` times slower than the motion, as the page does at
-        first: a second of it shows ``1/slow`` seconds of the scale, or of sqrt(R/g) without one. Films and
-        pictures look like the page in daylight; where a motion has ended, its last picture stays for a
-        second. With `exposure` each frame of a film is the photograph of the last turns: it builds up at
-        first. A vector drawing has no tint of the table, and of a long exposure only the words are vectors.
+        A film begins at the first time and runs `slow` times slower than the motion, like the page at first:
+        one second of the film shows ``1/slow`` seconds with a scale, else ``1/slow`` sqrt(R/g). Films and
+        pictures look like the page in daylight. At the end of a motion the last picture stays for a second.
+        With `exposure` each frame of a film is a photograph of the last turns, which builds up at first. A
+        vector drawing does not tint the table; in a long exposure only the text is drawn as vectors.
 
-        A scene is in metres and seconds of the scale; without one, R is a metre and sqrt(R/g) a second. Its
-        bodies stand side by side.
+        A scene is in metres and seconds; without a scale, R is one metre and sqrt(R/g) one second. The bodies
+        stand side by side.
         """
         path = path_of("path", path)
         suffix = path.suffix.lower()
@@ -171,7 +171,7 @@ class View:
             known = ".html, .mp4, .gif, .png, .svg, .pdf or .glb"
             raise ValueError(f"path = {str(path)!r}: expected a name that ends in {known}")
         if t is not None and suffix not in _STILLS:
-            raise ValueError(f"t: of a picture, {', '.join(_STILLS)}, and not of {suffix}")
+            raise ValueError(f"t: only for a picture ({', '.join(_STILLS)}), not for {suffix}")
         if suffix in _STILLS and all(x is None for x in (fps, seconds, progress)):
             from spincyl._studio.film import reel, still
 
@@ -186,7 +186,7 @@ class View:
             film(made_of, path, progress)
             return path
         if any(x is not None for x in (fps, size, seconds, progress)):
-            raise ValueError(f"fps, size, seconds, progress: of a film, .mp4 or .gif, and not of {suffix}")
+            raise ValueError(f"fps, size, seconds, progress: only for a film (.mp4, .gif), not for {suffix}")
         if suffix == ".html":
             made = self.html.encode()
         else:
@@ -282,77 +282,80 @@ def view(
     follow: bool | None = None,
     exposure: float | None = None,
 ) -> View:
-    """A page in which motions can be watched from all sides and slowly.
+    """Make a page that shows motions in slow motion, from all sides.
 
     Parameters
     ----------
     *motions : Motion
-        One, or several to run in step side by side. What they lack of the pose is computed.
+        One motion, or several that are shown side by side at the same time. Missing poses are computed.
     labels : sequence of str, optional
-        One for each, shown as plain text. Default: the kind of contact where there are several. A tab or a
-        new line, here and in the title, is shown as a space.
+        A label for each motion, shown as plain text. Default: none for a single motion, else the kind of
+        contact. A tab or a new line, here and in the title, is shown as a space.
     title : str
-        Of the page.
+        Title of the page.
     scale : Scale, optional
-        Time is then in seconds; else the page takes a second for sqrt(R/g). The radius 1e-6 to 1e6 m.
+        Size of the bodies, with a radius of 1e-6 to 1e6 m; times are then in seconds. Default: that of the
+        bodies; without one, sqrt(R/g) is shown as one second.
     slow : int, optional
-        How many times slower it starts: 1, 2, 5, 10, ... 1000. Default: so that nothing turns much
-        faster than once a second.
+        Factor of slow motion at first: 1, 2, 5, 10, ... 1000. Default: such that no body turns much faster
+        than once a second.
     upper : {"O", "X"}
-        The letter on the upper end: the one that is seen.
+        Symbol on the upper end, which is the visible one.
     drawn : str or sequence of str, optional
-        What is drawn besides the body, with a switch for each on the page: "path" of the contact point;
-        arrows of the angular velocity "omega", the angular "momentum" about the centre, the "velocity" of the
-        centre and the contact "force" (normal force N and friction F); "axis", the instantaneous axis and the
-        line P-C-O. Default: the path, and on a page the forces if there is a law of friction.
+        Additions to the picture, each with a switch on the page: "path" of the contact point; arrows for the
+        angular velocity "omega", the angular "momentum" about the centre, the "velocity" of the centre and
+        the contact "force" (normal force N and friction F); "axis", the instantaneous axis and the line
+        P-C-O. Default: the path, and on a page the forces if there is a law of friction.
     above : bool
-        Whether the camera is above the table, with x to the right.
+        If true, the camera is above the table, with x to the right.
     follow : bool, optional
         Whether the camera follows the body. Default: if there is a law of friction and the body moves far.
     exposure : float, optional
-        The long exposure from above: for how many turns about the vertical the shutter is open, 0.01 or more,
-        or inf for the rest of the motion. The page opens with it.
+        Number of turns about the vertical for which the shutter of a long exposure from above is open, at
+        least 0.01, or inf for the rest of the motion. The page opens with this exposure. Default: none.
 
     Returns
     -------
     View
-        Shows itself in a notebook; `save("spin.html")`, `save("spin.mp4")`, `save("spin.svg", t=1.5)` or
-        `save("spin.glb")`.
+        A notebook displays the page. `save("spin.html")`, `save("spin.mp4")`, `save("spin.svg", t=1.5)` and
+        `save("spin.glb")` write files.
 
     Raises
     ------
     ValueError
-        For no motion, labels that do not match, a motion with no duration or too long to show; for a title or
-        a label with a control character, half a surrogate pair or a noncharacter: none can stand in HTML.
+        If there is no motion, labels do not match, or a motion has no duration or is too long to show; for a
+        title or a label with a control character, half a surrogate pair or a noncharacter, which HTML
+        excludes.
     TypeError
-        For anything but motions, text and a scale.
+        If an argument is of the wrong type; the message names it.
 
     Notes
     -----
-    Where a contact has a law of friction, the path and the line under the slider are red while it slips,
-    arrows at the contact show the normal force N and the friction F, and the clock tells how fast it slips.
+    With a law of friction the path and the line under the slider are red while the body slips. Arrows at the
+    contact point show the normal force N and the friction F, and the clock shows the slip.
 
     With "#t=1.5" after its name the page opens paused at that time. A body whose motion has ended is grey,
-    and its clock says why and when. It has poses at few times and draws a cubic between them, which meets the
-    motion within 0.003 rad, and R for bodies of usual length. ω and L are computed from the drawn pose.
+    and its clock gives the reason and the time. The page contains poses at a few times and cubic polynomials
+    between them; for bodies of usual length they differ from the motion by at most 0.003 rad and 0.003 R. ω
+    and L are computed from the drawn pose.
 
-    An arrow has the same scale in all motions: forces that of the usual normal force, others that of their
-    largest value. The line P-C-O goes from the contact point P through the centre of mass C to the point O
-    opposite to P: if the body is symmetric top to bottom, the top of its upper rim, where the still symbols
-    are. The instantaneous axis is the line of the points whose velocity is along it, or zero; while the body
-    rolls it passes through P, and if the centre rests it is the line P-C-O.
+    An arrow has the same scale in all motions: that of the usual normal force for forces, that of the largest
+    value for all others. The line P-C-O goes from the contact point P through the centre of mass C to the
+    opposite point O; for a body that is symmetric top to bottom, O is the top of the upper rim, where the
+    still symbols are. The instantaneous axis is the line of the points whose velocity is along the line, or
+    zero. While the body rolls, the axis passes through P; if the centre is at rest, it is the line P-C-O.
 
-    Of a body that flies (`roll` with a `restitution`) the clock tells how high its lowest point is; in the
-    air there is neither path nor force.
+    For a body that flies (`roll` with a `restitution`), the clock shows the height of the lowest point; in
+    the air there is neither path nor force.
 
-    Of a stone the clock also tells the spin, and when it turns back: when it has passed zero and comes to a
-    tenth of its first value in the other direction. One whose edge lands is drawn as a hull with a needle on
-    its top, another one whole with a band and a dot; `upper` is the letter that gives its colour to the band,
-    or to the half of the needle that points along the positive axis.
+    For a stone the clock also shows the spin, and the time at which the spin reverses: when it has passed
+    zero and reached a tenth of its first value in the other direction. A stone with an edge that can land is
+    drawn as a hull with a needle on its top, any other stone with a band and a dot. `upper` determines the
+    colour of the band, or of the half of the needle that points along the positive axis.
 
-    What is not known of a general body is guessed. It is drawn solid and as long above its centre as below; a
-    ball that lands on something at pi/2 as two balls, one that lands elsewhere with a stem or a hat that
-    lands there.
+    The unknown shape of a general body is guessed: it is drawn solid, and as long above its centre of mass as
+    below. A ball with `theta_end` = pi/2 is drawn as two balls; with another `theta_end`, with a stem or a
+    cap that lands there.
 
     Examples
     --------
@@ -377,7 +380,7 @@ def view(
     elif isinstance(labels, str) or not isinstance(labels, Sequence):
         raise TypeError(f"labels: expected a list of texts, not {type(labels).__name__}")
     if len(labels) != len(motions):
-        raise ValueError(f"labels: expected {len(motions)}, one for each motion, not {len(labels)}")
+        raise ValueError(f"labels: expected {len(motions)} labels, one for each motion, not {len(labels)}")
     title, labels = line("title", title), [line(f"labels[{i}]", label) for i, label in enumerate(labels)]
     for m in motions:
         marks(m.body, upper)  # raises ValueError if `upper` is neither "O" nor "X"

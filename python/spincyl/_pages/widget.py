@@ -1,7 +1,7 @@
-"""The live page in a notebook: changes from Python move the body, and dragging is visible in Python.
+"""The live page in a notebook: changes in Python move the body, and changes on the page reach Python.
 
 The output of a cell is the page itself, in a frame with a name. The widget has no view: its script, which
-runs where its model is created, keeps the state of all frames of that name the same.
+runs where its model is created, keeps all frames of that name in the same state.
 """
 
 from collections.abc import Callable
@@ -53,7 +53,7 @@ def widget(state: dict[str, Any], heard: Callable[[Any], None]) -> Any:
 
 
 def watched() -> bool:
-    """Whether a user may be at the notebook.
+    """Whether a user may be present in the notebook.
 
     A program that runs a notebook, such as nbconvert, accepts no input. It would store the widget, and its
     page would load the script for widgets from a network.

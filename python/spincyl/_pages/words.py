@@ -1,4 +1,4 @@
-"""The words in which the live page describes bodies, starts, tables and losses, and its scenes."""
+"""The words in which the live page describes bodies, initial states, contacts and losses, and its scenes."""
 
 import re
 from collections.abc import Iterator, Mapping
@@ -22,15 +22,15 @@ from spincyl._throw import pressed, thrown
 
 
 def words_of_body(body: Body) -> dict[str, Any]:
-    """Words for a body: a tube by half length, bore and fillet; any other body by its numbers."""
+    """Words for a body: half length, bore and fillet of a tube; the numbers of any other body."""
     if isinstance(body, Ellipsoid):
         raise TypeError(
-            "body: of stones the page knows a rattleback, in its scenes; view(motion) shows any stone"
+            "body: expected a Body; the page has a stone only among its scenes, view(motion) shows any stone"
         )
     made("body", body, Body)
     numbers = body.ell, body.i1, body.i3, body.fillet, body.theta_end, body.bore
     if not is_scalar(*numbers):
-        raise ValueError("body: the page shows a single body, not a family")
+        raise ValueError("body: expected a single body, not a family")
     ell, i1, i3, fillet, most, bore = map(float, numbers)
     size = _words_of_scale(body.scale)
     if not np.isnan(bore):
@@ -40,7 +40,7 @@ def words_of_body(body: Body) -> dict[str, Any]:
 
 
 def _words_of_parts(body: Body) -> dict[str, Any]:
-    """Words for the surfaces of a body put together from parts: shade, stripes, and corners with normals."""
+    """Words for the surfaces of a body made from parts: shade, stripes, and corners with normals."""
     if not body._parts:
         return {}
     surfaces = parts_shape.profiles(body)
@@ -66,7 +66,7 @@ def words_of_state(state: State) -> dict[str, Any]:
     made("state", state, State)
     numbers = state.theta, state.w1, state.w2, state.w3
     if not is_scalar(*numbers):
-        raise ValueError("state: the page shows a single state, not a family")
+        raise ValueError("state: expected a single state, not a family")
     slip = (0.0, 0.0) if state.slip is None else state.slip
     return {"theta": float(state.theta), "w": [float(x) for x in (*numbers[1:], *slip)]}
 
@@ -74,12 +74,12 @@ def words_of_state(state: State) -> dict[str, Any]:
 def words_of_table(contact: AnyContact) -> dict[str, Any]:
     """Words for a contact, with its coefficient."""
     if not isinstance(contact, str) and isinstance(contact, Coulomb | Viscous):
-        table(contact, 0.0)  # refuses a law of the user's own
+        table(contact, 0.0)  # raises an error for a custom law
     if isinstance(contact, Coulomb | Viscous) and not is_scalar(*contact._numbers):
-        raise ValueError(f"contact = {contact!r}: the page knows single numbers, not arrays of them")
+        raise ValueError(f"contact = {contact!r}: expected single numbers, not arrays")
     if isinstance(contact, Coulomb):
         if contact.static != contact.mu:
-            raise ValueError(f"contact = {contact!r}: the page knows one coefficient, static = mu")
+            raise ValueError(f"contact = {contact!r}: expected static = mu on a page")
         patch = {"patch": within("patch", contact.patch, 0, 0.5)} if contact.patch else {}
         return {"contact": "coulomb", "mu": float(contact.mu)} | patch
     if isinstance(contact, Viscous):
@@ -89,7 +89,7 @@ def words_of_table(contact: AnyContact) -> dict[str, Any]:
 
 
 def words_of_restitution(restitution: float | None) -> dict[str, Any]:
-    """Words for a coefficient of restitution; none where the motion ends at lift-off."""
+    """Words for a coefficient of restitution; none if the motion ends at lift-off."""
     return {} if restitution is None else {"restitution": within("restitution", restitution, 0, 1)}
 
 
@@ -100,14 +100,14 @@ def words_of_loss(losses: Loss | None) -> dict[str, Any]:
     if not isinstance(losses, Loss):
         raise TypeError(f"losses: expected a law of spincyl.loss, not {type(losses).__name__}")
     if len(losses.laws) != 1 or not is_scalar(losses.laws[0].coefficient):
-        raise ValueError(f"losses = {losses!r}: the page knows one law with one coefficient")
+        raise ValueError(f"losses = {losses!r}: expected one law with one coefficient on a page")
     (law,) = losses.laws
     name = re.sub(r"\B(?=[A-Z])", "-", type(law).__name__).lower()
     return {"law": name, "loss": float(law.coefficient)}
 
 
 def body_of(words: Mapping[str, Any]) -> Body:
-    """The body that the words describe, with its size if they give one."""
+    """The body that the words describe, with its size if it is given."""
     natural, radius = _natural_of(words), words.get("radius")
     if radius is None:
         return natural
@@ -125,7 +125,7 @@ def _natural_of(words: Mapping[str, Any]) -> Body:
 
 
 def state_of(words: Mapping[str, Any]) -> State:
-    """The state that the words describe: given, steady, or at rest where no state is steady; then kicked."""
+    """The state that the words describe: given, steady, or at rest if no state is steady; then kicked."""
     theta, given, turning = words["theta"], words.get("w"), words.get("precession")
     if given:
         start = State(theta, *given[:3], slip=tuple(given[3:]) if any(given[3:]) else None)
@@ -151,7 +151,7 @@ def table_of(words: Mapping[str, Any]) -> AnyContact:
 
 
 def restitution_of(words: Mapping[str, Any]) -> float | None:
-    """The restitution that the words describe, on a table that the page lets a body bounce on."""
+    """The restitution that the words describe; None without friction, where the page has no bounces."""
     found: float | None = words.get("restitution")
     return found if words.get("contact") in ("coulomb", "viscous") else None
 
@@ -166,7 +166,7 @@ def losses_of(words: Mapping[str, Any]) -> Loss | None:
 
 
 def scenes(friction: bool = True) -> Iterator[tuple[str, dict[str, Any]]]:
-    """The scenes of the page: name and words. Without `friction`, only scenes that need none."""
+    """The scenes of the page: name and words. If `friction` is false, only scenes that need none."""
     for name, told in _all():
         if friction or not (
             "stone" in told or told.get("contact") in ("coulomb", "viscous") or "law" in told
@@ -175,7 +175,7 @@ def scenes(friction: bool = True) -> Iterator[tuple[str, dict[str, Any]]]:
 
 
 def paper_tube() -> Body:
-    """The tube of the paper: six diameters long, of PVC, with an O on one end and an X on the other."""
+    """The tube of the paper: a PVC tube, six diameters long, with an O on one end and an X on the other."""
     return measured(outer_diameter=15.875e-3, inner_diameter=12.7e-3, length=95.25e-3)
 
 
