@@ -227,7 +227,7 @@ def test_who_listens_is_told_of_an_end_and_of_an_exposure(shown):
     assert page.locator("#drawn").get_attribute("title") == ""
     page.select_option("#shutter", "1")
     page.wait_for_selector("html[data-exposed]")
-    assert "rest until the photograph is closed" in page.locator("#drawn").get_attribute("title")
+    assert "stay as they are until the photograph is closed" in page.locator("#drawn").get_attribute("title")
     assert page.get_by_role("progressbar").is_visible()
 
 
@@ -343,7 +343,10 @@ def test_an_exposure_is_seen_as_it_comes_says_what_rests_meanwhile_and_can_be_st
           return found;
         }"""
     ).json_value()
-    assert "of 720 pictures" in found["said"] and "rest until the photograph is closed" in found["said"]
+    assert (
+        "of 720 pictures" in found["said"]
+        and "stay as they are until the photograph is closed" in found["said"]
+    )
     assert found["whole"], "all of it is read on a phone"
     assert found["off"] == [True] * 4 and 0 < found["part"] < 1
     # after the stop the picture stays

@@ -56,11 +56,11 @@ def test_what_was_packed_is_unpacked(opened, kind):
 def test_what_is_torn_anywhere_is_refused(opened):
     whole = packed(KINDS["a script"], b"")
     for cut in (0.02, 0.3, 0.7, 0.99):
-        assert "not whole" in opened(whole[: int(cut * len(whole))]), cut
+        assert "incomplete or damaged" in opened(whole[: int(cut * len(whole))]), cut
     for place in CHANCE.integers(20, len(whole) - 10, 60).tolist():
         other = chr(ord(whole[place]) % 126 + 1)
         if other not in "\r<":
-            assert "not whole" in opened(whole[:place] + other + whole[place + 1 :]), place
+            assert "incomplete or damaged" in opened(whole[:place] + other + whole[place + 1 :]), place
 
 
 def test_a_page_with_a_torn_part_says_so_beside_its_picture(shown):
@@ -72,7 +72,7 @@ def test_a_page_with_a_torn_part_says_so_beside_its_picture(shown):
 
     page = shown(Torn(), script="window.torn = true")
     page.wait_for_selector("html[data-failed]")
-    assert page.locator("#reason").inner_text().startswith("This page is not whole. ")
+    assert page.locator("#reason").inner_text().startswith("This page is incomplete or damaged. ")
     assert page.locator("#missing svg").is_visible() and page.locator("main").count() == 0
 
 

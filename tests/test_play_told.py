@@ -24,7 +24,7 @@ SENTENCES = {
         "Stable because it rolls: on ice it falls",
         "a wet table is between",
     ),
-    "#ell=2.5&theta=1.3&precession=2.5": ("A circle of radius", "its centre runs round"),
+    "#ell=2.5&theta=1.3&precession=2.5": ("A circle of radius", "its centre goes round it"),
 }
 
 
@@ -47,9 +47,9 @@ def test_what_only_the_least_push_decides_is_not_told_to_the_last_digit(opened):
     page.evaluate("window.spincyl.set({ until: 41 })")
     settled(page)
     told = page.locator("#because").inner_text()
-    assert told.endswith("The least push grows until it decides: what is shown late is one way of many."), (
-        told
-    )
+    assert told.endswith(
+        "The least push grows until it decides: the last part shows one of many possible motions."
+    ), told
     page.evaluate("window.spincyl.set({ until: 20 })")
     settled(page)
     assert "decides" not in page.locator("#because").inner_text(), "so early nothing has grown"

@@ -197,7 +197,7 @@ def _all() -> Iterator[tuple[str, dict[str, Any]]]:
     )
     yield "the tube, flicked too hard: it hops", hard | words_of_restitution(0.5)
     weak = free(tube, pressed(tube.natural, 5.0, np.radians(80), finger=0.3), Coulomb(0.3), until=60, slow=20)
-    yield "the tube, flicked too gently: it lies", weak | words_of_restitution(0.5)
+    yield "the tube, flicked too gently: it stays down", weak | words_of_restitution(0.5)
     yield "a cylinder that nods", steady(Body.solid(2.5), np.degrees(1.3), kick=0.15)
     yield "a cylinder in the forbidden band", steady(Body.solid(2.5), 40.0, slow=10)
     yield "a disk on edge, on rubber", steady(Body.solid(0.375), 80.0, kick=-0.01)

@@ -22,7 +22,7 @@ function lit() {
   yielded = false;
   // the live page copies the canvas into films
   gl = canvas.getContext("webgl2", { antialias: true, stencil: true, alpha: false, preserveDrawingBuffer: !!window.spincyl });
-  if (!gl) { unlit("The body is drawn with WebGL 2, which this browser does not offer or has switched off."); return false; }
+  if (!gl) { unlit("The body is drawn with WebGL 2, which this browser lacks or has switched off."); return false; }
   era++;
   gl.vertexAttrib3f(1, 0, 0, 1); // meshes without normals lie on the table
   canvas.addEventListener("webglcontextlost", () => show());

@@ -4,7 +4,7 @@
 // next few are drawn when the graphics card, or the software in its place, has finished the previous ones.
 const PICTURES = 720, TOGETHER = 16;
 const exposing = { targets: null };
-const REST = "ω, L, path and view rest until the photograph is closed.";
+const REST = "ω, L, path and view stay as they are until the photograph is closed.";
 
 function target(width, height, kind) {
   const texture = gl.createTexture(), buffer = gl.createFramebuffer();

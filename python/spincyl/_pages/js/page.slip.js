@@ -33,7 +33,7 @@ for (const [id, text, before] of [["forces", '<i class="normal">N</i> <i class="
   label.innerHTML = `<input type="checkbox" id="${id}"> ${text}`;
   $("drawn").insertBefore(label, before);
 }
-document.querySelector("details p").append(" Where a body slips its path is red, and so is the line under the slider; N is the normal force on it and F the friction, on one scale. Follow keeps the bodies in the middle.");
+document.querySelector("details p").append(" While a body slips, its path and the line under the slider are red; N is the normal force and F the friction, on the same scale. Follow keeps the bodies in the middle.");
 $("forces").ariaLabel = "normal force and friction";
 $("forces").checked = true;
 let asPlanned = data.follow !== null;

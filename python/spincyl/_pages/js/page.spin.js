@@ -9,4 +9,4 @@ doing = (m, p) => {
   const past = m.back.filter(t => t <= now), back = past.at(-1) ?? m.back[0];
   return `\nspin ${spin} ${data.rates}`.replaceAll(" ", "\u00a0") + unspun(m, p) + (back === undefined ? "" : `\nturn${past.length ? "ed" : "s"} back at ${clock(back)}`);
 };
-document.querySelector("details p").append(" Of a stone θ is the inclination of its axis 3; its spin, the angular velocity about the vertical, is positive counterclockwise as seen from above.");
+document.querySelector("details p").append(" For a stone, θ is the inclination of its axis 3; its spin, the angular velocity about the vertical, is positive if counterclockwise as seen from above.");

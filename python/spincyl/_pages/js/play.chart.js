@@ -1,4 +1,4 @@
-// Inclination, normal force and friction demand against time, in tracks above a common time axis.
+// Inclination, normal force and friction coefficient against time, in tracks above a common time axis.
 
 const charted = $("chart");
 let kept = null, span = [0, 1];
@@ -7,7 +7,7 @@ const TRACKS = [
   { name: "N", unit: "", of: row => row[OF_ROW.kind] > FLIES ? 1 : row[OF_ROW.normal], colour: "normal", dash: [7, 4], zero: true, least: 0.5, line: 1 },
   { name: "μ", unit: "", of: row => row[OF_ROW.demand], colour: "friction", dash: [2, 3], zero: true, least: 0.05 },
 ];
-const MEANING = { "θ": "inclination", N: "normal force per weight", "μ": "friction it takes, F/N" };
+const MEANING = { "θ": "inclination", N: "normal force per weight", "μ": "friction coefficient, F/N" };
 
 // The upper end of an axis that begins at 0 is one of a few steps. While the user drags, it changes only to a
 // larger step, or to one below a third. It covers all values, except in a fall or a hop, whose peak would
@@ -32,7 +32,7 @@ function drawChart() {
   const write = (text, x, y, align, fill, bold = "") => { Object.assign(g, { font: `${bold} ${em}px system-ui, sans-serif`, textAlign: align, textBaseline: "middle", fillStyle: fill }); g.fillText(text, x, y); };
   const at = t => span[0] + (span[1] - span[0]) * (t - tracked.first) / Math.max(1e-9, tracked.last - tracked.first);
   const { rows: all } = tracked, moves = tracked.last > tracked.first;
-  if (!moves) write("nothing moves, so that nothing is plotted", w / 2, h / 2, "center", colour("ink"));
+  if (!moves) write("no motion, so nothing is plotted", w / 2, h / 2, "center", colour("ink"));
   if (moves) TRACKS.forEach((track, i) => {
     const top = low * i / 3 + 1.25 * em, bottom = low * (i + 1) / 3 - 0.2 * em, values = tracked.rows.map(track.of).filter(Number.isFinite).sort((a, b) => a - b);
     if (!values.length) return;

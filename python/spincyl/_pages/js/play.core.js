@@ -27,13 +27,13 @@ const labelled = (names, numbers) => Object.fromEntries(names.map((name, i) => [
 // reasons for a code without results
 const REFUSED = {
   2: "There is no such body: its axial moment of inertia is more than twice the transverse one.",
-  5: "This motion cannot be followed: its equations lose their digits here.",
+  5: "This motion cannot be followed: its equations lose all accuracy here.",
   6: "No contact force, or more than one, obeys the law of dry friction here (Painlevé's paradox).",
   7: "Slipping and rolling follow each other too often to be followed.",
-  13: "This motion hardly advances: something acts on it that changes ever faster.",
-  8: "There is too little memory for this.",
-  12: "This page was made without friction and losses: it knows rubber and ice.",
-  10: "This takes too much work for a page: it is shown for a shorter time only in Python.",
+  13: "This motion hardly advances, for it changes ever faster.",
+  8: "There is not enough memory for this.",
+  12: "This page was made without friction and losses: it has only rubber and ice.",
+  10: "This motion takes too much computing for a page; use Python.",
 };
 function refusal(code) {
   if (code !== 1) return REFUSED[code] || "The core has no answer here.";

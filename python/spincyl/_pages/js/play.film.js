@@ -30,7 +30,7 @@ function film() {
   if (recorder) { recorder.stop(); return; }
   compose();
   const kind = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm"].find(x => MediaRecorder.isTypeSupported(x)), pieces = [];
-  if (!kind) { $("said").textContent = "This browser writes no WebM."; return; }
+  if (!kind) { $("said").textContent = "This browser cannot record WebM."; return; }
   recorder = new MediaRecorder(page.captureStream(30), { mimeType: kind, videoBitsPerSecond: 8e6 });
   recorder.ondataavailable = e => pieces.push(e.data);
   recorder.onstop = () => { recorder = null; $("film").ariaPressed = false; $("film").textContent = "film"; keep(new Blob(pieces, { type: "video/webm" }), "spincyl.webm"); };

@@ -157,7 +157,7 @@ $("preset").onchange = () => { const found = presets.find(p => p.name === $("pre
 // one too hard hops; one too weak lies on its side
 function flick(hard = 1) {
   const { code, out } = isTube() && s.ell > 0 ? ask("flick", 1.2 * hard * Math.max(1, s.ell), 80 * deg, 0.3, 0) : { code: 9 };
-  if (code) { $("because").textContent = "What is to be flicked must have two ends: " + refusal(code); return; }
+  if (code) { $("because").textContent = "A flick needs a body with two ends: " + refusal(code); return; }
   const [theta, ...w] = out, patch = s.contact === "coulomb" ? s.patch : 0;
   scene({ ell: s.ell, bore: s.bore, fillet: s.fillet, radius: s.radius, mass: s.mass, gravity: s.gravity, slow: s.slow, theta, w: w.slice(0, 5), contact: s.contact === "viscous" ? s.contact : "coulomb", mu: s.mu, patch, c: s.c, restitution: patch > 0 ? NaN : s.restitution >= 0 ? s.restitution : 0.5, law: s.law, loss: s.loss });
 }

@@ -29,7 +29,7 @@ async function unpacked(text) {
     const stream = new Blob([packed.subarray(8, end)]).stream().pipeThrough(new DecompressionStream("deflate"));
     const all = new Uint8Array(await new Response(stream).arrayBuffer());
     return [all.subarray(0, size), all.subarray(size)];
-  } catch { throw Error("This page is not whole."); }
+  } catch { throw Error("This page is incomplete or damaged."); }
 }
 async function started(core) {
   try { return (await WebAssembly.instantiate(core, {})).instance.exports; }

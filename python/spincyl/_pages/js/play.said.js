@@ -3,7 +3,7 @@
 const decimal = (x, d = 2) => Number.isFinite(x) ? x.toFixed(d) : "–", degrees = (x, d = 1) => decimal(x / deg, d) + "°";
 // the reduced rate, and the rate in hertz if the size is known
 const rated = rate => decimal(rate, 3) + (sized() ? ` (${decimal(hertzOf(rate))} Hz)` : "");
-const ENDINGS = ["", "its face lands on the table", body => body.fillet === 1 ? "the other end lands" : "the other rim lands: it lies on its side", "it lifts off", "rolling needs more friction than there is", "", "no single force obeys the law of friction", "its contact point stops", "the computation gives up: something changes ever faster", "both rims land, and no impulse, or more than one, obeys the law of friction"];
+const ENDINGS = ["", "its face lands on the table", body => body.fillet === 1 ? "the other end lands" : "the other rim lands: it lies on its side", "it lifts off", "rolling needs more friction than there is", "", "no contact force, or more than one, obeys the law of friction", "its contact point stops", "the computation stops, for the motion changes ever faster", "both rims land, and no impulse, or more than one, obeys the law of friction"];
 // whether the later motion depends on a disturbance below the digits of the start
 const unsure = () => known() && !(head.error < 1e-3);
 const ending = () => { const e = ENDINGS[head.ending]; return typeof e === "function" ? e(body) : e; };
@@ -29,19 +29,19 @@ function slowed() {
 }
 function verdict() {
   const ice = s.contact === "smooth", wet = s.contact === "viscous", over = known() && head.ending > 0 && !lossy() && !unsure(), turning = Number.isFinite(s.precession) && !s.w;
-  if (s.w && !s.w.some(Boolean)) return ["Let go at rest", "it does not turn at all, and no steady state is like that."];
+  if (s.w && !s.w.some(Boolean)) return ["Let go at rest", "it does not turn, as it would in a steady state."];
   if (s.w && aloft()) return aloft();
-  if (s.w) return s.w[3] || s.w[4] ? ["Set free, slipping", slowed()] : ["Set free", "it starts with a turning of its own, not in a steady state."];
-  if (isTube() && s.ell > 0 && s.theta > Math.PI / 2 - 1e-9) return ["On its side", "lying on both rims every tube has the rate 1."];
+  if (s.w) return s.w[3] || s.w[4] ? ["Set free, slipping", slowed()] : ["Set free", "it does not start in a steady state."];
+  if (isTube() && s.ell > 0 && s.theta > Math.PI / 2 - 1e-9) return ["On its side", "lying on both rims, every tube has the rate 1."];
   if (s.theta > steep() - 1e-9 && known() && !lasting()) return ["On both ends", "it lies on the table."];
   switch (here.region) {
     case 1: return ["Forbidden: no rate holds it here", `${band()} its weight and its spin tip it the same way. Let go at rest, it falls.`];
     case 2: return ["Too close to decide", "at the edge of the forbidden band the rate is 0 or infinite. Let go at rest, it falls."];
-    case 0: return ["No question", turning ? "no such circle: nothing rolls round with this precession at this inclination." : "no steady state of this body is known here. Let go at rest, it falls."];
+    case 0: return ["No steady state", turning ? "no body rolls on a circle with this precession at this inclination." : "no steady state of this body is known here. Let go at rest, it falls."];
   }
-  if (turning) return [`A circle of radius ${decimal(here.circle)} R`, `its centre runs round, and rolling it is ${here.rolling > 0 ? "stable: pushed, it nods" : "unstable: the least push grows"}.`];
+  if (turning) return [`A circle of radius ${decimal(here.circle)} R`, `its centre goes round it, and rolling is ${here.rolling > 0 ? "stable: pushed, it nods" : "unstable: the least push grows"}.`];
   switch (here.region) {
-    case 7: return ["Stable", lossy() ? "a push makes it nod, on ice as on rubber; what it loses brings it down." : over ? "a small push makes it nod, on ice as on rubber; this one is too much." : wet ? "pushed, it nods, on ice as on rubber; here it slips as it nods, and loses energy." : "pushed, it nods and goes on, on ice as on rubber."];
+    case 7: return ["Stable", lossy() ? "a push makes it nod, on ice as on rubber; its losses bring it down." : over ? "a small push makes it nod, on ice as on rubber; this one is too much." : wet ? "pushed, it nods, on ice as on rubber; here it slips as it nods, and loses energy." : "pushed, it nods and goes on, on ice as on rubber."];
     case 5: return ["Stable because it rolls: on ice it falls", ice ? "now it is on ice, where the least push grows." : over ? "but this push is too much." : wet ? "a wet table is between the two: its rim slips, but not freely." : "the friction that keeps its rim from slipping turns it back."];
     case 6: return ["Stable on ice only", ice ? "pushed, it nods and goes on; on rubber the least push would grow." : wet ? "a wet table is between ice and rubber, where the least push grows." : "rolling, the least push grows; on ice it would nod and go on."];
     default: return ["Unstable", "the least push grows, on ice as on rubber."];
@@ -63,16 +63,16 @@ function details() {
   if (head.slipTime > 0) told.push(`slips for ${timed(head.slipTime)} in all`);
   if (head.impacts) told.push(`${head.impacts} impact${head.impacts > 1 ? "s" : ""} take${head.impacts > 1 ? "" : "s"} ${decimal(head.knocked, 3)} M g R`);
   if (head.lost > 1e-12) told.push(`loses ${decimal(head.lost, 3)} M g R${Number.isFinite(s.mass) ? `, ${(head.lost * s.mass * s.gravity * s.radius).toPrecision(3)} J` : ""}`);
-  if (least < 0.995 && !head.impacts) told.push(`the table carries at least ${decimal(least)} of its weight`);
+  if (least < 0.995 && !head.impacts) told.push(`normal force at least ${decimal(least)} of its weight`);
   if (head.error > 0 && head.error < 1) told.push(`error below ${head.error.toExponential(0)}`);
-  told.push(sized() ? `R = ${decimal(1e3 * s.radius, 1)} mm` : "slow motion as of R = 1 cm, for its size is not known");
+  told.push(sized() ? `R = ${decimal(1e3 * s.radius, 1)} mm` : "slow motion for R = 1 cm, as its size is not known");
   return told;
 }
 function say(on) {
-  const [what, why] = body.code ? ["No such body", body.why] : head?.code ? ["No answer", head.why + " The body is shown where it would begin."] : verdict();
+  const [what, why] = body.code ? ["No such body", body.why] : head?.code ? ["No answer", head.why + " The body is shown at its start."] : verdict();
   const at = digits => `t = ${sized() ? timed(head.ends, digits - 1) : decimal(head.ends, digits)}`;
-  const grown = " The least push grows until it decides", ends = !known() ? "" : !lasting() ? ` At the very start ${ending() || "it ends"}. There is no motion to follow, so the body stands still.`
-    : unsure() ? grown + (head.ending ? `. Here, at about ${at(1)}, ${ending()}.` : ": what is shown late is one way of many.")
+  const grown = " The least push grows until it decides", ends = !known() ? "" : !lasting() ? ` At the very start ${ending() || "it ends"}. There is no motion to show, so the body stands still.`
+    : unsure() ? grown + (head.ending ? `. Here, at about ${at(1)}, ${ending()}.` : ": the last part shows one of many possible motions.")
       : head.ending ? ` At ${at(3)} ${ending()}.` : "";
   const turns = sized() && !here.code && !s.w && here.rate > 0 ? ` It turns ${decimal(hertzOf(here.rate))} times a second.` : "";
   $("what").textContent = (on ? `On the ${on === "fold" || on === "ridge" ? on : "line " + on}. ` : "") + what;

@@ -104,12 +104,12 @@ clocked = row => {
 const senses = spin => spin < 0 ? "clockwise" : "counterclockwise";
 function turnsBack() {
   const [slow, fast] = head.growth.map(x => x / second()), when = head.back[0], way = s.spin ? "Spun " + senses(s.spin) : "Not spun";
-  if (!(Math.max(slow, fast) > 1e-6)) return ["Nothing turns back", Math.abs(s.twist) < 1e-6 ? "At a twist of 0 its mass lies as its shape does. No rocking grows, whichever way it is spun." : `${way}, no rocking grows.`];
+  if (!(Math.max(slow, fast) > 1e-6)) return ["Nothing turns back", Math.abs(s.twist) < 1e-6 ? "At a twist of 0 its axes of inertia are those of its shape. No rocking grows, whichever way it is spun." : `${way}, no rocking grows.`];
   const what = when === undefined ? `It does not turn back in ${SHOWN} s` : `It turns back after ${decimal(when * second(), 1)} s`;
   const name = fast > 0 ? 1 : 0, rate = decimal([slow, fast][name], Math.max(slow, fast) < 1 ? 2 : 1);
   return [what, name
     ? `${way}, its rocking end to end grows at a rate of ${rate} per second. It takes up the energy of the spin, and then drives the stone the other way round.`
-    : `${way}, only its rocking from side to side grows, at a rate of ${rate} per second. The one from end to end, which grows ${decimal(-fast / slow, 1)} times as fast if it is spun the other way, dies away.`];
+    : `${way}, only its rocking from side to side grows, at a rate of ${rate} per second. That from end to end dies away; spun the other way, it grows ${decimal(-fast / slow, 1)} times as fast.`];
 }
 say = on => {
   if (!s.stone) { plainly.say(on); return; }
@@ -121,7 +121,7 @@ say = on => {
   if (known()) {
     for (const i of [1, 0]) told.push(`${ROCKS[i]} ${decimal(head.frequency[i] / (TURN * second()))} Hz, growth ${decimal(head.growth[i] / second())} per second`);
     told.push(`half an ellipsoid, ${decimal(200 * Math.max(...s.stone), 1)} cm long`, `pushed by ${decimal(PUSH / deg)}° about both axes`);
-    told.push(head.error < 0.1 ? `error below ${head.error.toExponential(0)}` : "what is shown late is one way of many");
+    told.push(head.error < 0.1 ? `error below ${head.error.toExponential(0)}` : "the last part is one of many possible motions");
   }
   $("details").textContent = told.map(x => x.replaceAll(" ", "\u00a0").replaceAll("-", "−")).join(" · ");
   clearTimeout(say.later);
