@@ -70,6 +70,13 @@ class EllipsoidState:
     Initially ``State(theta, w1, w2, w3)`` equals
     ``EllipsoidState((sin(theta), 0, cos(theta)), (w1, w2, w3))``. Later `w` differs, since the axes of a
     `State` follow the inclination only, and the axes of the ellipsoid turn with the stone.
+
+    Examples
+    --------
+    >>> import spincyl as sc
+    >>> state = sc.EllipsoidState((0.6, 0.0, 0.8), (0.0, 0.0, 5.0))
+    >>> float(state.spin), float(state.theta.round(4))
+    (4.0, 0.6435)
     """
 
     vertical: Reals

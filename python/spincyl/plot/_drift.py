@@ -38,6 +38,14 @@ def drift(found: Drift, ax: "Axes | None" = None) -> "Axes":
         If `found` is not a Drift, or `ax` not an Axes.
     ValueError
         If `found` has several drifts.
+
+    Examples
+    --------
+    >>> import spincyl as sc
+    >>> coin = sc.Body.solid(0.1)
+    >>> found = sc.drift(coin, 0.3, sc.loss.DryContour(1e-3))
+    >>> sc.plot.drift(found).get_xlabel()[:4]
+    'time'
     """
     if made("found", found, Drift)._shape:
         raise ValueError(f"found: expected a single drift, not a family of shape {found._shape}")

@@ -28,6 +28,12 @@ def frame(*, ax: "Axes | None" = None) -> "Axes":
     -------
     Axes
         Parallel projection, in units of R.
+
+    Examples
+    --------
+    >>> import spincyl as sc
+    >>> sc.plot.frame().axison
+    False
     """
     ax = new_axes(ax)
     lean, across = _level(_PHI), _level(_PHI + np.pi / 2)

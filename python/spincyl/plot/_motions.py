@@ -337,6 +337,13 @@ def exposure(
     ------
     ValueError, TypeError
         As in `spincyl.exposure`; the message names the argument.
+
+    Examples
+    --------
+    >>> import spincyl as sc
+    >>> coin = sc.Body.solid(0.05)
+    >>> sc.plot.exposure(sc.roll(coin, coin.steady(0.3), 5.0), samples=1e5).get_xlabel()
+    '$x$ ($R$)'
     """
     made("m", m, Motion)
     gamma = within("gamma", gamma, 0.01, 100.0)
