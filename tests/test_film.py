@@ -281,7 +281,7 @@ def test_a_picture_is_the_frame_of_a_film_at_its_time(tmp_path):
             view.save(tmp_path / "no.png", t=wrong)
     with pytest.raises(ValueError, match="t: only for a picture"):
         view.save(tmp_path / "no.gif", t=0.0)
-    with pytest.raises(ValueError, match="of a film"):
+    with pytest.raises(ValueError, match="only for a film"):
         view.save(tmp_path / "no.png", fps=10)
     assert not list(tmp_path.glob("no.*"))
 

@@ -1,11 +1,11 @@
-// Bodies that leave the table or lie on both rims: their height, the rim that is down, its path, the forces on the other
-// rim, phases in words. Pages without them omit this file. It comes after page.slip.js and replaces some of its functions.
+// Bodies that leave the table or lie on both rims: their height, the lower rim and its path, the forces on the other
+// rim, names of phases. Pages without them omit this file. It comes after page.slip.js and replaces some of its functions.
 
 const KINDS = ["rolling", "slipping", "flying", "lying", "pivoting", "rolling on its side"], FLIES = 2;
 const rubbed = kind => kind % 2 === 1 && kind < 5 || kind === 4;
 for (const m of motions) if (m.aloft) {
   m.now = t => m.phases.findLast(([begin], i) => begin <= t || i === 0);
-  // only times on the table have a path, and what one rim draws does not go on from what the other has drawn
+  // only times on the table have a path, and the paths of the two rims are not connected
   m.runs = times => {
     const runs = m.phases.map(([begin, kind, rim], i, all) => [
       begin > m.first ? knot(begin, times) + (i && (all[i - 1][1] === FLIES || all[i - 1][2] !== rim)) : 0,
@@ -26,7 +26,7 @@ pose = (m, t) => {
   const p = ofTheLowerRim(m, t), none = [0, 0, 0];
   Object.assign(p, { normal2: none, friction2: none });
   if (!m.aloft) return p;
-  // theta goes on beyond the poles, and is told from the first rim
+  // theta continues beyond the poles, and refers to the first rim
   const [[theta, , , x, y, z]] = interpolate(m, t), [, kind, other] = m.now(t), ell = m.depth ?? m.ell, round = m.fillet || 0;
   const c = Math.cos(theta), s = Math.abs(Math.sin(theta)), [cp, sp] = [Math.cos(p.phi), Math.sin(p.phi)], side = Math.sin(theta) < 0 ? -1 : 1;
   const below = rim => { const off = side * (rim * ell * s - (1 - round) * c); return [x + off * cp, y + off * sp, 0]; };
@@ -42,14 +42,14 @@ pose = (m, t) => {
   return p;
 };
 
-// arrows on the rim that is down as well
+// arrows on the lower rim as well
 ARROWS.push("normal2", "friction2");
 Object.assign(letters, { normal2: "N", friction2: "F" });
 Object.assign(fastest, { normal2: 0, friction2: 0 });
 const ofOneRim = arrowOf;
 arrowOf = (p, v) => !v.endsWith("2") ? ofOneRim(p, v) : p.contact2 ? ofOneRim({ ...p, normal: p.normal2, friction: p.friction2, contact: p.contact2 }, v.slice(0, -1)) : null;
 
-// the view has room for the highest place; high above the table the shadows of few points of the lamp would be seen apart
+// the view has room for the highest position; high above the table the shadows from few points of the lamp would separate
 const onTheTable = trace, MORE = 24;
 trace = (m, times, poses) => {
   onTheTable(m, times, poses);

@@ -1,6 +1,6 @@
 // Draws one motion: camera, table, path, shadow, body and arrows.
 
-// one more arrow: the velocity of the centre
+// an additional arrow: the velocity of the centre
 ARROWS.push("velocity");
 letters.velocity = "v";
 fastest.velocity = 1e-9;
@@ -108,7 +108,7 @@ function arrowOf(p, v) {
 // the contact point, the centre, and the point opposite to the contact point
 const POINTS = ["P", "C", "O"], opposite = p => [p.contact, p.centre, along([2, p.centre], [-1, p.contact])];
 // rods with colour, root, direction, width, length and shape: the line through these points, with a bead at each, and
-// the axis about which the body turns now, a little longer; its points move along it, or rest
+// the instantaneous axis, a little longer; the velocity of its points is along the axis, or zero
 function rods(p) {
   if (!$("axis").checked) return [];
   const places = opposite(p), way = along([1, p.centre], [-1, p.contact]), long = Math.hypot(...way), square = dot(p.omega, p.omega), line = way.map(x => x / long), thick = 0.006 * half;

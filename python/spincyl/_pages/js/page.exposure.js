@@ -37,7 +37,7 @@ function forget() {
 }
 forget();
 
-// the time at which the body has made so many turns since t, at most the end of the motion
+// the time at which the body has made this number of turns since t, at most the end of the motion
 function closing(m, t, turns) {
   const end = m.last;
   if (turns === Infinity || t >= end) return end;

@@ -1,4 +1,4 @@
-// Arrows of the contact forces, N and F, beside those of the rotation. This file comes before the drawing,
+// Arrows of the contact forces, N and F, in addition to those of the rotation. This file comes before the drawing,
 // whose `arrowOf` it replaces.
 
 ARROWS.push("normal", "friction");

@@ -126,7 +126,7 @@ addEventListener("keydown", e => {
 dusk.onchange = show;
 new ResizeObserver(show).observe(stage);
 
-// what is set at first
+// initial settings
 const { drawn, above, exposure } = data.look, switched = { omega: "omega", momentum: "momentum", velocity: "velocity", force: "forces", path: "path", axis: "axis" };
 if (drawn) for (const name in switched) if ($(switched[name])) $(switched[name]).checked = drawn.includes(name);
 $("above").checked = above;

@@ -5,7 +5,7 @@
 for (const m of motions) if (m.forces) {
   const whole = new Uint16Array(bytes(m.forces)), n = whole.length / 5;
   const read = (i, k) => m.lows[k] + (m.highs[k] - m.lows[k]) * (whole[5 * i + k] / 0xffff);
-  // slip and friction along and across the lean, and normal force, interpolated between equally spaced times
+  // slip and friction along e_h and e2, and normal force, interpolated between equally spaced times
   m.rubs = t => {
     const x = Math.min(Math.max((t - m.first) / (m.last - m.first), 0), 1) * (n - 1), i = Math.min(Math.floor(x), n - 2);
     return [0, 1, 2, 3, 4].map(k => read(i, k) + (x - i) * (read(i + 1, k) - read(i, k)));

@@ -62,9 +62,9 @@ function knobs() {
     const off = knob.name === "mu" ? s.contact !== "coulomb" : knob.name === "c" ? s.contact !== "viscous" : knob.name === "loss" ? s.law === "none" : ["ell", "bore", "fillet"].includes(knob.name) && !isTube() || knob.name === "rate" && (s.w || !(here.rate > 0));
     // shows only the coefficient of the present law of friction
     if (["mu", "c"].includes(knob.name)) knob.label.hidden = (s.contact === "viscous") !== (knob.name === "c");
-    // a patch belongs to dry friction, and no body bounces on one
+    // a patch belongs to dry friction, and excludes a restitution
     if (knob.name === "patch") knob.label.hidden = s.contact !== "coulomb" || Number.isFinite(s.restitution);
-    // bounces are those of rims on a table with friction
+    // bounces need a rim and friction
     if (knob.name === "restitution") knob.label.hidden = !rubbing() || s.contact === "coulomb" && s.patch > 0 || body.most !== (body.ell > 0 && body.fillet < 1 ? Math.PI / 2 : Math.PI);
     knob.label.classList.toggle("off", off);
     knob.input.disabled = off && knob.name !== "rate";
@@ -154,7 +154,7 @@ $("preset").add(new Option("choose …", ""));
 for (const { name } of presets) $("preset").add(new Option(name, name));
 function scene(state, name = "") { change({ ...BLANK, ...state }, { restart: true, name }); play_(!still.matches); show(); }
 $("preset").onchange = () => { const found = presets.find(p => p.name === $("preset").value); if (found) scene(found.state, found.name); };
-// one too hard hops; one too weak lies on its side
+// after too hard a flick the body hops, after too weak a one it lies on its side
 function flick(hard = 1) {
   const { code, out } = isTube() && s.ell > 0 ? ask("flick", 1.2 * hard * Math.max(1, s.ell), 80 * deg, 0.3, 0) : { code: 9 };
   if (code) { $("because").textContent = "A flick needs a body with two ends: " + refusal(code); return; }

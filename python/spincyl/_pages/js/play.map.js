@@ -25,7 +25,7 @@ function context2d(c) {
   return [c.getContext("2d"), w, h, ratio];
 }
 
-// codes of the regions, in w columns of aspect ratio; for a body that is no tube all columns are equal
+// codes of the regions, in w columns of aspect ratio; for a body that is not a tube all columns are equal
 function codesOf(w, h) {
   if (isTube()) {
     core.map(w, h, 0, widest(), 0, Math.PI / 2, s.bore, s.fillet);

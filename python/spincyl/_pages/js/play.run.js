@@ -90,7 +90,7 @@ function frame(at) {
   document.documentElement.dataset.drawn ??= timing.first = performance.now();
   if (playing && seen || filming()) show();
 }
-// what it does, and in the air the height of its lower rim
+// the phase, and in the air the height of the lower rim
 const phased = row => { const kind = row[OF_ROW.kind], high = Math.max(0, row[OF_ROW.height] + Math.min(0, 2 * body.ell * Math.cos(row[1]))); return kind ? `\n${KINDS[kind]}${kind === FLIES ? sized() ? ` ${decimal(100 * high * size(), 1)} cm high` : ` ${decimal(high)} R high` : ""}` : ""; };
 function clocked(row) { return `t = ${timed(now, now < 100 ? 2 : 1)}\nθ = ${degrees(row[1])}${phased(row)}${live.over ? "\n" + ending() : ""}`; }
 function labels(p, width, height) {

@@ -4,18 +4,18 @@ const decimal = (x, d = 2) => Number.isFinite(x) ? x.toFixed(d) : "–", degrees
 // the reduced rate, and the rate in hertz if the size is known
 const rated = rate => decimal(rate, 3) + (sized() ? ` (${decimal(hertzOf(rate))} Hz)` : "");
 const ENDINGS = ["", "its face lands on the table", body => body.fillet === 1 ? "the other end lands" : "the other rim lands: it lies on its side", "it lifts off", "rolling needs more friction than there is", "", "no contact force, or more than one, obeys the law of friction", "its contact point stops", "the computation stops, for the motion changes ever faster", "both rims land, and no impulse, or more than one, obeys the law of friction"];
-// whether the later motion depends on a disturbance below the digits of the start
+// whether the later motion depends on a disturbance smaller than the rounding of the initial state
 const unsure = () => known() && !(head.error < 1e-3);
 const ending = () => { const e = ENDINGS[head.ending]; return typeof e === "function" ? e(body) : e; };
 
-// inclinations without a steady state: between both lines, or on one side of the only line; a ball balances
-// nowhere
+// inclinations without a steady state: between both lines, or on one side of a single line; a ball has no
+// inclination at which it balances
 function band() {
   const { theta0, limit } = body, two = Number.isFinite(theta0) && Number.isFinite(limit), line = two ? 0 : Number.isFinite(theta0) ? theta0 : limit;
   if (two) return `between θ₀ = ${degrees(theta0)} and θ∞ = ${degrees(limit)}`;
   return Number.isFinite(line) ? `${s.theta < line ? "below" : "above"} ${line === theta0 ? "θ₀" : "θ∞"} = ${degrees(line)}` : "here";
 }
-// what a free body does that leaves the table or lies on both rims; nothing of any other
+// text about a free body that leaves the table or lies on both rims; nothing for any other
 function aloft() {
   const last = tracked.rows.at(-1)?.[OF_ROW.kind], lies = last > FLIES, straight = last > FLIES + 2 ? ", and rolls straight on" : "";
   if (known() && head.impacts) return ["Set free, it hops", `it leaves the table and comes down again${lies ? `; at last it lies on its side${straight}` : ""}. Each impact takes energy.`];

@@ -91,7 +91,7 @@ function mark(b, letter, end) {
   }
   return { colour: letter === "O" ? BLUE : ORANGE, places, normals, triangles };
 }
-// surfaces of parts as Python tells them, with two stripes along the widest
+// surfaces of parts as given by Python, with two stripes along the widest
 function parted(parts) {
   const most = Math.max(...parts.flatMap(([, , corners]) => corners.map(c => c[0])));
   const stripe = (colour, side) => {

@@ -10,9 +10,9 @@ function placed(row) {
   const [, theta, w1, w2, w3, phi, psi, x, y] = row, [s, c, rim] = [Math.sin(theta), Math.cos(theta), 1 - body.fillet], out = rim * c - body.ell * s;
   const p = posed(live, theta, phi, psi, x + out * Math.cos(phi), y + out * Math.sin(phi), [w1, w2, w3]), lies = row[OF_ROW.kind] > FLIES, high = row[OF_ROW.height];
   p.centre[2] = p.matrix[14] = body.fillet + body.ell * c + rim * s + high;
-  // told from the rim that was the upper one: the body is turned about its first axis
+  // refers to the rim that was the upper one: the body is turned about its first axis
   if (row[OF_ROW.turned]) for (const i of [4, 5, 6, 8, 9, 10]) p.matrix[i] *= -1;
-  // of a body on both rims the sum of the forces is shown, in the middle
+  // for a body on both rims the sum of the forces is shown, in the middle
   const contact = lies ? [p.centre[0], p.centre[1], 0] : [x, y, 0];
   return Object.assign(p, { high, lies, contact, normal: [0, 0, lies ? 1 : row[OF_ROW.normal] || 0], friction: [0, 0, 0], usual: 1 });
 }
@@ -23,7 +23,7 @@ function pose(m, t) {
   const row = placeAt(t), p = placed(row), h = 2e-3;
   if (s.contact !== "smooth" && head.lasts > 2 * h) {
     const middle = Math.min(Math.max(h, t), head.lasts - h), near = [-h, 0, h].map(d => placeAt(middle + d)), [a, b, c] = near.map(row => placed(row).centre);
-    // there is none in the air, and what an impact does is no force
+    // no force is shown in the air or for an impact
     if (near.every(row => row[OF_ROW.kind] !== FLIES)) p.friction = [0, 1].map(k => (a[k] - 2 * b[k] + c[k]) / h ** 2).concat(0);
   }
   return p;
@@ -57,8 +57,8 @@ function windowed() {
   const nods = Number.isFinite(head.period) ? 4 * head.period : 0;
   return Math.min(head.lasts, Math.max(2, Math.min(60, Math.max(turns, nods))));
 }
-// above the table the view has room for the highest place of the body, and the lamp more points, whose shadows would be
-// seen apart
+// above the table the view has room for the highest position of the body, and the lamp has more points, since the
+// shadows from few points would separate
 function raised(poses) {
   if (!poses.some(p => p.high)) return;
   const top = Math.max(...poses.map(p => p.centre[2] + body.ell * Math.abs(Math.cos(p.theta)) + Math.sin(p.theta))), many = 24;
@@ -88,7 +88,7 @@ function look(first, many = STATES) {
   for (const v in fastest) fastest[v] = 1e-9;
   const poses = rows.map(row => placed(row));
   live.wide = 0.012 * Math.hypot(1, live.ell);
-  // what one rim draws does not go on from what the other has drawn, and in the air none draws
+  // the paths of the two rims are not connected, and in the air there is none
   live.runs = () => {
     const runs = [];
     rows.forEach((row, i) => {

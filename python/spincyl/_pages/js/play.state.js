@@ -9,7 +9,7 @@ const RANGE = {
 const CONTACTS = ["rolling", "smooth", "coulomb", "viscous"]; // in the order of the codes of the core
 // the laws of loss in the order of the core: name and label
 const LAWS = { none: "none", "dry-contour": "dry contour", "viscous-contour": "viscous contour", "rolling-resistance": "rolling resistance", drilling: "drilling", "air-linear": "air, linear", "air-quadratic": "air, quadratic", "air-film": "air film", "boundary-layer": "boundary layer" };
-// i1 and i3 belong to a body that is no tube, end is the inclination at which it lands, w is a state that is
+// i1 and i3 belong to a body that is not a tube, end is the inclination at which it lands, w is a state that is
 // not steady: w1, w2, w3 and the slip. radius, mass and gravity belong to a measured body, in metres,
 // kilograms and m/s^2. patch is the radius of the contact, in R. Without a restitution a motion ends where the body leaves the table. stone has the semi-axes of a rattleback in metres, twist is in radians and spin in
 // radians per second. parts are the surfaces of a body that was put together, from Python; an address that has the same body keeps them.

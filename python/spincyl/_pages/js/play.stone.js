@@ -1,7 +1,7 @@
 // A rattleback: drawing, controls and text. Pages without friction omit this file. It comes before the
 // controls and replaces some functions.
 
-// number of stored rows and the seconds that they cover, and the initial tilt about both axes
+// number of stored rows and the seconds that they cover, and the initial rotation about both axes
 const KEPT = 2401, SHOWN = 20, PUSH = 0.02 * deg;
 const usual = TRACKS.slice();
 let stone = null;
