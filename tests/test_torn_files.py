@@ -85,7 +85,7 @@ def test_names_that_look_like_each_other_lose_no_column(tmp_path):
     names = ["x (cm)", "x (m)", "x (cm) (s)", "# t", "t", "t (s)"]
     found = sc.data.read_table(written(tmp_path, ";".join(names) + "\n1;2;3;4;5;6\n"))
     assert [found[name].tolist() for name in names] == [[1.0], [2.0], [3.0], [4.0], [5.0], [6.0]]
-    with pytest.raises(ValueError, match="columns: two are called 't'"):
+    with pytest.raises(ValueError, match="columns: two columns are called 't'"):
         sc.data.Columns([("t", np.ones(1)), ("t", np.zeros(1))])
 
 

@@ -369,10 +369,10 @@ def view(
         raise ValueError("motions: expected at least one, as in view(m)")
     for m in motions:
         if not isinstance(m, Motion):
-            raise TypeError(f"motions: expected Motion, not {type(m).__name__}")
+            raise TypeError(f"motions: expected Motion objects, not {type(m).__name__}")
     scale = scale_of(scale, *(m.body for m in motions))
     if scale is not None and not (1e-6 <= scale.radius <= 1e6 and 1e-6 <= scale.seconds(1.0) <= 1e6):
-        raise ValueError(f"scale: expected 1e-6 to 1e6 metres and seconds to sqrt(R/g), not {scale!r}")
+        raise ValueError(f"scale: expected R from 1e-6 to 1e6 m, sqrt(R/g) from 1e-6 to 1e6 s, not {scale!r}")
     if slow is not None:
         one_of("slow", slow, SLOW)
     if labels is None:

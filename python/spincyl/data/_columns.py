@@ -70,7 +70,7 @@ class Columns(dict[str, Floats]):
         names, given = Counter(name for name, _ in bare), {name for name, _ in pairs}
         for (written, values), (name, unit) in zip(pairs, bare, strict=True):
             if written in self._written:
-                raise ValueError(f"columns: two are called {written!r}")
+                raise ValueError(f"columns: two columns are called {written!r}")
             # keep the written name if two columns differ only in unit, or if the bare name is another
             # column's
             if names[name] > 1 or not name or (name != written and name in given):

@@ -110,7 +110,7 @@ def fit_losses(
     odrpack = extra("odrpack", "lab")
     if hertz is not None or hertz_err is not None:
         if precession is not None or precession_err is not None:
-            raise TypeError("precession, hertz: give only one of them, with the error of the same name")
+            raise TypeError("precession, hertz: give one of them, with the error of the same name")
         if one_body(body).scale is None:
             raise ValueError("hertz: needs a measured body; for any other give precession=")
         precession, precession_err = (

@@ -133,7 +133,8 @@ def _recording(t: Reals, sound: Reals, low: float, high: float) -> tuple[Floats,
             raise ValueError(f"{name}: expected finite numbers; {bad} are NaN or infinite")
     least = _RUN * _TURNS / high
     if x.size < 2 or time[-1] - time[0] < least:
-        raise ValueError(f"sound: too short: expected at least {_RUN * _TURNS} turns, here {least:.2g} s")
+        told = f"expected at least {_RUN * _TURNS} turns, which take {least:.2g} s or more"
+        raise ValueError(f"sound: too short: {told}")
     step = (time[-1] - time[0]) / (x.size - 1)
     # times written with few digits may be off by some of these
     if not step > 0 or np.abs(time - time[0] - step * np.arange(x.size)).max() > 0.1 / high:
