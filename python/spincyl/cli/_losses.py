@@ -31,7 +31,7 @@ Laws of loss, with coefficients in natural units of M, R and g, or in SI with --
   air-linear=1e-4          or 1e-7Nms   air resistance proportional to the angular velocity
   air-quadratic=1e-5       or 1e-9Nms2  air resistance proportional to its square
   air-film=1e-7            or 18uPas    thin film of air under the face: viscosity of the air
-  boundary-layer=1e-6      or 0.1C      air pressed out under the face: a number of order 0.1"""
+  boundary-layer=1e-6      or 0.1C      boundary layer of air under the face; C is a number of order 0.1"""
 
 
 class Given(NamedTuple):
