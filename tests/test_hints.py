@@ -122,3 +122,36 @@ def test_what_a_short_motion_holds_are_arrays_like_any_other():
     assert m.to_xarray()["theta"].shape == plain.shape and len(m.to_dataframe()) == plain.size
     whole = sc.roll(BODY, STATE, [0.0, 1.0])
     assert type(whole.theta) is np.ndarray and type(whole.t) is np.ndarray
+
+
+@pytest.mark.parametrize(
+    ("contact", "told"),
+    [
+        (0.3, r"contact = 0.3: .*did you mean sc.Coulomb\(0.3\)\?"),
+        (lambda u: 0.3, r"did you mean sc.custom.Friction\(function\)\?"),
+        (sc.Coulomb, r"contact = .*: expected 'rolling', 'smooth', sc.Coulomb\(mu\)"),
+    ],
+)
+def test_a_contact_that_is_none_says_which_there_are_also_for_a_measured_body(contact, told):
+    coin = sc.measured(outer_diameter="25.75mm", length="2.2mm")
+    for call in (sc.roll, sc.sweep.roll):
+        with pytest.raises(ValueError, match=told):
+            call(coin, coin.steady(0.3), 1.0, contact=contact)
+
+
+@pytest.mark.parametrize(
+    ("want", "needs"),
+    [("work_lost", "losses="), ("dissipated", "contact=sc.Coulomb"), ("impacts", "restitution=")],
+)
+def test_an_output_of_other_motions_says_what_these_need(want, needs):
+    with pytest.raises(ValueError, match=f"want = '{want}': .*; this output needs {needs}"):
+        sc.sweep.roll(BODY, STATE, 1.0, want=want)
+    with pytest.raises(ValueError, match=r"'energy': expected some of \[[^]]*\]$"):
+        sc.sweep.roll(BODY, STATE, 1.0, want="energy")
+
+
+def test_a_motion_of_which_nothing_is_known_warns():
+    tube = sc.Body.tube(6.0, bore=0.8)
+    with pytest.warns(sc.ErrorWarning, match=r"estimated error of the motion is 1\.3"):
+        m = sc.roll(tube, tube.steady(1.4).kicked(0.05), 1e15)
+    assert m.error > 1

@@ -51,6 +51,15 @@ def test_every_time_in_an_error_of_the_core_is_told_in_seconds(text, value):
     assert spoken(said, None) == said
 
 
+def test_a_time_that_is_out_of_range_is_told_in_seconds():
+    for call, told in (
+        (lambda: sc.roll(TUBE, TUBE.steady(1.4), [0.0, 2.0, 1.0]), "t = 1 s: expected"),
+        (lambda: sc.roll(TUBE, TUBE.steady(1.4), 1.0, step=-1e-3), "step = -0.001 s: expected"),
+    ):
+        with pytest.raises(ValueError, match=told):
+            call()
+
+
 def test_a_range_is_that_of_natural_units_and_says_so():
     for call, said in (
         (lambda: sc.roll(TUBE, TUBE.steady(1.4), 1e20), "t = .*: expected"),
@@ -63,7 +72,7 @@ def test_a_range_is_that_of_natural_units_and_says_so():
         (lambda: sc.roll(STONE, STONE.spinning(1.0, pitch=0.1), 1e20), "t = .*: expected"),
     ):
         with pytest.raises(
-            ValueError, match=rf"^{said} .* \(natural units: sqrt\([Ra]/g\) is \S+ s of this body\)$"
+            ValueError, match=rf"^{said} .* \((?:limits in )?natural units: sqrt\([Ra]/g\) is \S+ s of this body\)$"
         ):
             call()
 

@@ -128,7 +128,7 @@ def ask(
     else:
         first = times.item(0)
         if times.size == 1 and first != 0 and math.isfinite(first):
-            raise ValueError(f"t = [{first!r}]: an array of one time needs t0=, or give the time as a number")
+            raise ValueError("t: an array of one time needs t0=, or give the time as a number")
         t0 = first if math.isfinite(first) else 0.0
     beyond = beyond if beyond is False else flag("beyond", beyond)
     word = isinstance(contact, str)

@@ -182,8 +182,14 @@ def _coefficient(name: str, value: Reals) -> Reals:
 def code(contact: object, rubs: bool = False) -> int:
     """Code of the contact "rolling" or "smooth"; with `rubs` the error also proposes laws of friction."""
     if not isinstance(contact, str) or contact not in ("rolling", "smooth"):
-        last = ", 'smooth', sc.Coulomb(mu) or sc.Viscous(c)" if rubs else " or 'smooth'"
-        raise ValueError(f"contact = {contact!r}: expected 'rolling'{last}")
+        last, instead = " or 'smooth'", ""
+        if rubs:
+            last = ", 'smooth', sc.Coulomb(mu) or sc.Viscous(c)"
+            if isinstance(contact, int | float):
+                instead = f"; did you mean sc.Coulomb({contact!r})?"
+            elif callable(contact) and not isinstance(contact, type):
+                instead = "; did you mean sc.custom.Friction(function)?"
+        raise ValueError(f"contact = {contact!r}: expected 'rolling'{last}{instead}")
     return TABLES[contact]
 
 
@@ -199,21 +205,30 @@ def table(contact: AnyContact, mu: float, own: bool = False) -> tuple[int, tuple
     """
     if isinstance(contact, str):
         return TABLES[contact], (mu, 0.0, 0.0)
-    if contact._function is not None and not own:
-        raise TypeError(f"contact = {contact!r}: a law of your own works only in sc.roll, for a single body")
+    if not own:
+        built_in(contact)
     if not is_scalar(*contact._numbers):
         raise ValueError(f"contact = {contact!r}: expected single numbers, not arrays of them")
     first, second, patch = map(float, contact._numbers)
     return law(contact), (first, second, patch)
 
 
+def built_in(contact: AnyContact) -> None:
+    """Raise TypeError for a law that the user wrote."""
+    if getattr(contact, "_function", None) is not None:
+        raise TypeError(f"contact = {contact!r}: a law of your own works only in sc.roll, for a single body")
+
+
 def kind(contact: AnyContact) -> AnyContact:
     """The same contact with coefficient 0, for many motions, whose coefficients are in columns."""
+    built_in(contact)
     return contact if isinstance(contact, str) else type(contact)(0.0)
 
 
 def fitting(contact: AnyContact, scale: Scale | None) -> None:
-    """Raise ValueError for a measured body if `c` or `patch` was not given in SI for the body's scale."""
+    """Raise an error for a measured body if `c` or `patch` was not given in SI for the body's scale."""
+    if not isinstance(contact, _Law):
+        code(contact, rubs=True)
     if scale is not None and isinstance(contact, Viscous) and not contact._sized:
         why = "expected SI for a measured body, sc.Viscous.from_si(..., scale=body)"
         raise ValueError(f"contact = {contact!r}: {why}; or take body.natural")

@@ -38,7 +38,7 @@ MESSAGES = {
 
 
 class ErrorWarning(UserWarning):
-    """From a time before the end of the motion on, the estimated error is too large."""
+    """The estimated error of a motion is too large, for a stone from a time before its end on."""
 
 
 class Event(NamedTuple):

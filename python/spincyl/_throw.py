@@ -286,7 +286,7 @@ def flicked(
     """
     scale = _known(body, scale)
     if (hertz is None) == (w1 is None) or (launch is None) == (spin_hertz is None):
-        raise TypeError("hertz, w1, launch, spin_hertz: give one of the first two and one of the last two")
+        raise TypeError("give hertz= or w1=, not both, and launch= or spin_hertz=, not both")
     if scale is None and not (hertz is None and spin_hertz is None):
         raise ValueError(f"{'spin_' * (hertz is None)}hertz: needs a measured body, or scale=; w1= does not")
     refuse("ell", body.ell, lambda x: x <= 0, "expected a body with two rims, ell > 0")

@@ -159,7 +159,7 @@ fn check_friction(law: &dyn FrictionLaw, fixed: f64) -> Result<(), Error> {
             return Err(Error::OutOfRange {
                 name: "mu",
                 value: mu(to),
-                expected: "a coefficient without a step",
+                expected: "a coefficient without a step; round a step, for example with tanh",
             });
         }
     }

@@ -247,7 +247,7 @@ def scene(motion: Motion, *, scale: Scale | None = None) -> Scene:
         If the motion has no time after its initial state, goes backward in time, continues beyond an event or
         is not known up to its last time; or if a measured body has no mass.
     TypeError
-        If `motion` is not a Motion.
+        If `motion` is not a Motion, or obeys a law of `spincyl.custom`.
 
     Notes
     -----
@@ -270,6 +270,9 @@ def scene(motion: Motion, *, scale: Scale | None = None) -> Scene:
     t0, t = m._asked.t0, m.t
     if not t.size or t[0] != t0:
         t = np.concatenate([[t0], t])
+    for law in (m.contact, m.losses):
+        if getattr(law, "_function", None) is not None:
+            raise TypeError(f"motion: a scene cannot contain {law!r}, a law of your own")
     if not (np.diff(t) > 0).all():
         raise ValueError("motion: expected ascending times, since an engine starts at the first of them")
     if m.event is not None and m._asked.beyond:

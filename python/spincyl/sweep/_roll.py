@@ -229,7 +229,7 @@ def roll(
         gripping(states, f"contact={contact!r} has no law of friction; give contact=sc.Coulomb(mu)")
     of = TABLES[contact] if isinstance(contact, str) else law(contact)
     summaries = _core.summaries(of, losses is not None, restitution is not None)
-    wanted = _wanted(want, several, tuple(summaries))
+    wanted = _wanted(want, several, tuple(summaries), (of, losses is not None, restitution is not None))
     asked = asked._replace(spread="states" in wanted)
     fields = _fields(bodies, states, contact, losses)
     slips = rubs(contact) or restitution is not None
@@ -307,9 +307,26 @@ def _times(t: Reals) -> tuple[Floats, bool]:
     return at, True
 
 
-def _wanted(want: str | Iterable[str] | None, several: bool, summaries: tuple[str, ...]) -> tuple[str, ...]:
+def _wanted(
+    want: str | Iterable[str] | None,
+    several: bool,
+    summaries: tuple[str, ...],
+    given: tuple[int, bool, bool],
+) -> tuple[str, ...]:
     kinds = ("final", "states", *summaries)
-    asked = words("want", ("states" if several else "final") if want is None else want, kinds)
+    try:
+        asked = words("want", ("states" if several else "final") if want is None else want, kinds)
+    except ValueError as e:
+        contact, losses, hits = given
+        needs = {
+            "losses=": (contact, True, hits),
+            "contact=sc.Coulomb(mu)": (TABLES["coulomb"], losses, hits),
+            "restitution=": (contact, losses, True),
+        }
+        for argument, others in needs.items():
+            if any(repr(name) in str(e).partition(":")[0] for name in _core.summaries(*others)):
+                raise ValueError(f"{e}; this output needs {argument}") from None
+        raise
     if "states" in asked and ("final" in asked or not several):
         raise ValueError('want: expected "states" only for an array of times t, and not with "final"')
     return tuple(name for name in kinds if name in asked)
