@@ -69,7 +69,7 @@ def main():
     print(
         f"Whirrs under every law of loss, {asked.count} of each, tol {asked.tol:g} (`benches/whirr_lanes.py`):\n"
     )
-    print("| law | us | times the best | endings | claim | off |\n" + "| --- " * 6 + "|")
+    print("| law | us | times the best | endings | estimated error | true error |\n" + "| --- " * 6 + "|")
     rows = []
     for name, mixture in LAWS.items():
         first, *more = [law(part * coefficient(law) * share) for law, part in mixture.items()]

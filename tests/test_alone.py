@@ -73,7 +73,7 @@ def everything():
 
 
 def at_random():
-    """For random scenes: whether ends at once and alone differ, and differences in units of the claims."""
+    """For random scenes: whether ends at once and alone differ, and differences in units of the estimated errors."""
     drawn = (scenes.draw(np.random.default_rng([25, family]), 10) for family in range(30))
     return np.array([(apart.kind, apart.ratio) for scene in drawn for apart in scenes.compare(scene)])
 

@@ -37,7 +37,7 @@ def test_every_constant_of_these_files_is_on_the_page_or_left_out_for_a_reason()
 
 
 def test_every_row_has_been_measured():
-    cell = re.compile(r"nothing|\d+ move(; [^;]+)*")
+    cell = re.compile(r"nothing|\d+ change(; [^;]+)*")
     for row in ROWS:
         halved, doubled, far = row.told
         assert cell.fullmatch(halved), row
@@ -90,7 +90,7 @@ def test_a_cell_says_what_was_seen_and_what_is_allowed():
     cell = thresholds.said(seen)
     assert (
         cell
-        == "4 move; 1 beyond the claims, by at most 1e-01; 1 with other phases; 1 end otherwise; 1 lose their claim"
+        == "4 change; 1 beyond the estimated errors, by at most 1e-01; 1 with other phases; 1 with another ending; 1 without an estimated error"
     )
     assert thresholds.allowed(cell) == [1, 1, 1]
     assert thresholds.allowed("nothing") == [0, 0, 0]
@@ -98,7 +98,7 @@ def test_a_cell_says_what_was_seen_and_what_is_allowed():
 
 def test_the_page_is_written_where_it_was_read():
     row = ROWS[0]
-    page = thresholds.written(PAGE, {(row.name, row.file): ["nothing", "3 move", "1, 2"]})
-    assert thresholds.thresholds(page)[0] == row._replace(told=("nothing", "3 move", "1, 2"))
+    page = thresholds.written(PAGE, {(row.name, row.file): ["nothing", "3 change", "1, 2"]})
+    assert thresholds.thresholds(page)[0] == row._replace(told=("nothing", "3 change", "1, 2"))
     assert thresholds.thresholds(page)[1:] == ROWS[1:]
     assert thresholds.written(PAGE, {}) == PAGE

@@ -20,7 +20,7 @@ WORDS = {
 ALLOWED = {
     "still symbols": "letters.md index.md",
     "inclination": "",
-    "estimated error": "letters.md benchmarks.md custom.md engines.md thresholds.md",
+    "estimated error": "letters.md custom.md engines.md",
     "contact": "custom.md",
 }
 

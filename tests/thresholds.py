@@ -6,24 +6,24 @@
     python3 tests/thresholds.py --scene 177 906
 
 Needs Rust and nothing else. A copy of the crate is made in a temporary folder, in which every threshold of the page
-becomes a number that is multiplied by a factor when the program starts. One build then serves all factors. At the
-factor 1 the program has to give the same bits as the unchanged crate, which is built beside it.
+becomes a number that is multiplied by a factor when the program starts. One build then serves all factors. With the
+factor 1 the program has to give the same bits as the unchanged crate, which is also built.
 
-The scenes are those of `benches/thresholds.rs`. Each of them has a result: how the motion ends and when, the number of
-its phases, its last numbers, and the error that it claims. Two results agree if the motions end in the same way, and
-their times and numbers differ by no more than both claims together. A motion that ends at the last time asked for may
-be one that ends just there. If a claim is infinite, anything agrees.
+The scenes are those of `benches/thresholds.rs`. The result of a scene has the ending of the motion and its time, the
+number of phases, the last numbers, and the estimated error. Two results agree if the motions have the same ending, and
+their times and numbers differ by no more than the sum of both estimated errors. A motion computed to the last requested
+time may have an ending just there. If an estimated error is infinite, any two results agree.
 
-    move                   any bit of the result is another one
-    of the claims          largest difference, in units of both claims together
-    beyond the claims      how many differ by more than that, and by how much
-    with other phases      how many have more or fewer phases
-    end otherwise          how many end in another way
-    lose their claim       how many claim an infinite error, and did not before
+    change                      any bit of the result differs
+    of the estimated errors     largest difference, in units of the sum of both estimated errors
+    beyond the estimated errors how many differ by more than that, and by how much
+    with other phases           how many have more or fewer phases
+    with another ending         how many have another ending
+    without an estimated error  how many have an infinite estimated error now, and did not before
 
-The command names every scene that ends otherwise or lies beyond the claims. It fails if there are more of them than the
-page says. The last column has the number of motions that move if the threshold is divided and multiplied by 1000: it
-shows that the scenes come near it at all.
+The command names every scene with another ending or beyond the estimated errors. It fails if there are more of them than
+on the page. The last column has the number of motions that change if the threshold is divided and multiplied by 1000: it
+shows whether any scene comes near the threshold.
 """
 
 import argparse
@@ -234,7 +234,7 @@ class Change(NamedTuple):
 
     moves: bool
     off: float  # the largest difference of a time or a number
-    ratio: float  # the same in units of both claims together
+    ratio: float  # the same in units of the sum of both estimated errors
     otherwise: bool
     phases: bool
     lost: bool
@@ -260,15 +260,15 @@ def said(changes):
     if not moved:
         return "nothing"
     beyond, most = [x.off for x in moved if x.ratio > 1], max(x.ratio for x in moved)
-    words = [f"{len(moved)} move"]
+    words = [f"{len(moved)} change"]
     if beyond:
-        words.append(f"{len(beyond)} beyond the claims, by at most {max(beyond):.0e}")
+        words.append(f"{len(beyond)} beyond the estimated errors, by at most {max(beyond):.0e}")
     elif most:
-        words.append(f"at most {most:.1g} of the claims")
+        words.append(f"at most {most:.1g} of the estimated errors")
     for count, what in (
         (sum(x.phases for x in moved), "with other phases"),
-        (sum(x.otherwise for x in moved), "end otherwise"),
-        (sum(x.lost for x in moved), "lose their claim"),
+        (sum(x.otherwise for x in moved), "with another ending"),
+        (sum(x.lost for x in moved), "without an estimated error"),
     ):
         if count:
             words.append(f"{count} {what}")
@@ -276,8 +276,8 @@ def said(changes):
 
 
 def allowed(cell):
-    """How many motions a cell says are beyond the claims, end otherwise or lose their claim."""
-    names = ("beyond the claims", "end otherwise", "lose their claim")
+    """Numbers of motions in a cell: beyond the estimated errors, with another ending, without an estimated error."""
+    names = ("beyond the estimated errors", "with another ending", "without an estimated error")
     return [sum(int(x) for x in re.findall(rf"(\d+) {name}", cell)) for name in names]
 
 
@@ -324,7 +324,7 @@ def main():
         endings = collections.Counter(x.ending for x in base)
         unknown = sum(not math.isfinite(x.error) for x in base)
         print(
-            f"{SCENES} scenes, {unknown} without a claim:",
+            f"{SCENES} scenes, {unknown} without an estimated error:",
             ", ".join(f"{n} {x}" for x, n in endings.most_common()),
         )
         failed = False
@@ -365,7 +365,7 @@ def main():
             if given.write:
                 PAGE.write_text(written(PAGE.read_text("utf-8"), found), "utf-8")
     if failed and not given.write:
-        print("more motions end otherwise, or lie beyond their claims, than the page says")
+        print("more motions than on the page have another ending or lie beyond their estimated errors")
         return 1
     return 0
 

@@ -358,7 +358,7 @@ def main():
     print(f"{np.abs(truth[at] - wider).max():.1e} (t, theta, w1, w2, w3, heat)")
     print(
         "\n| contestant | setting | us a launch | steps | ns a step | error 50 % | 99 % | max | wrong "
-        "| other end |"
+        "| other endings |"
     )
     print("| --- " * 10 + "|")
 
@@ -416,7 +416,9 @@ def main():
             row("SciPy DOP853", f"{tol:g}", us, steps, finish(first[few], last, mu[few]), wider, kind)
 
     print("\nOne launch, w1 = 3, launch number 1.3, mu = 0.3:\n")
-    print("| contestant | setting | us | steps | ns a step | error 50 % | 99 % | max | wrong | other end |")
+    print(
+        "| contestant | setting | us | steps | ns a step | error 50 % | 99 % | max | wrong | other endings |"
+    )
     print("| --- " * 10 + "|")
     state, slip, mu = launched(3.0, 1.3, 0.3)
     first = first_states(state, slip)

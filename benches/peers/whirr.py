@@ -181,7 +181,8 @@ def main():
             found[k] = job(state, eps) if name == "spincyl" else job(first, eps)
             seconds[k] = min(seconds[k], time.process_time() - start)
     print(
-        "\n| contestant | tolerance | us a whirr | steps | error 50 % | 99 % | max | over the claim | other end |"
+        "\n| contestant | tolerance | us a whirr | steps | error 50 % | 99 % | max "
+        "| over the estimated error | other endings |"
     )
     print("| --- " * 9 + "|")
     for (name, tol, _), spent, told in zip(jobs, seconds, found, strict=True):

@@ -281,7 +281,7 @@ def _time(seconds: float) -> str:
 
 def table(rows: list[Row]) -> str:
     """Return Markdown: a table of all scenes, the points of all curves, and the cost of each output."""
-    head = ["scene", "t", "exact: true error", "estimated", "one call", "a state of 1000"]
+    head = ["scene", "t", "exact: true error", "estimated error", "one call", "a state of 1000"]
     methods = list(rows[0].curves)
     head += [f"{name} to {target:g}" for name in methods for target in _TARGETS]
     lines = ["| " + " | ".join(head) + " |", "|" + " --- |" * len(head)]
