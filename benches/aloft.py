@@ -121,7 +121,7 @@ def scene(number, restitution):
 def hops():
     """Print the processor seconds of hops whose slip turns in the impact, and of other hops."""
     tube, ball = sc.Body.tube(6.0, bore=0.8), sc.Body.ball(0.0, 0.4, 0.4)
-    print("| hops | each | impacts | claim |\n| --- | --- | --- | --- |")
+    print("| hops | each | impacts | estimated error |\n| --- | --- | --- | --- |")
     for name, body, table in (
         ("a ball, friction", ball, sc.Coulomb(0.3)),
         ("the tube, no friction", tube, sc.Coulomb(0.0)),
@@ -163,14 +163,16 @@ def main():
     good = {e: 0 for e in values}
     for (end, e), many in ends.items():
         good[e] += many if end.startswith("at the end") or end in [x.name for x in SOUND] else 0
-    print("| followed | " + " | ".join(f"{100 * good[e] / given.count:.2f} %" for e in values) + " |")
+    print(
+        "| computed to the end | " + " | ".join(f"{100 * good[e] / given.count:.2f} %" for e in values) + " |"
+    )
     for e in values:
         here = [x for x in found if x[1] == e]
         seconds, off, claim, ratio = (np.array([x[i] for x in here]) for i in (4, 5, 6, 7))
         print(
             f"e = {e}: {1e3 * seconds.mean():.2f} ms each, at most {seconds.max():.2f} s; energy within "
-            f"{off.max():.0e}; claims: median {np.median(claim):.0e}, above 1e-9 {100 * (claim > 1e-9).mean():.1f} %, "
-            f"none {100 * np.isinf(claim).mean():.1f} %; beyond both claims {(ratio > 1).sum()}, "
+            f"{off.max():.0e}; estimated errors: median {np.median(claim):.0e}, above 1e-9 {100 * (claim > 1e-9).mean():.1f} %, "
+            f"none {100 * np.isinf(claim).mean():.1f} %; beyond both {(ratio > 1).sum()}, "
             f"beyond ten times both {(ratio > 10).sum()}"
         )
         worst = sorted(here, key=lambda x: -x[7])[:5]

@@ -85,7 +85,7 @@ def efficiency(client, blocks, count, rounds):
         )
         # without the scheduler, whose time the plan counts separately
         each[name] = used["workers"] - used["scheduler"]
-    told = "starts, one thread", "roll, two threads", "dask, two threads", "dask, two workers"
+    told = "initial states, one thread", "roll, two threads", "dask, two threads", "dask, two workers"
     head(
         "Efficiency: microseconds a motion by the clock",
         "job",
@@ -96,8 +96,8 @@ def efficiency(client, blocks, count, rounds):
     )
     for line in walls:
         row(*line)
-    title = "CPU time of all threads and processes, microseconds a motion: other work on the machine changes it less"
-    head(title, "job", *told, "of it client and scheduler", "efficiency")
+    title = "CPU time of all threads and processes, microseconds a motion; less affected by other work on the computer"
+    head(title, "job", *told, "of this, client and scheduler", "efficiency")
     for line in cpus:
         row(*line)
     return each
@@ -106,7 +106,7 @@ def efficiency(client, blocks, count, rounds):
 def graph(blocks):
     """The number and the size of the tasks that the scheduler receives."""
     head(
-        "Sent: what a block is described by",
+        "Sent: the description of a block",
         "job",
         "motions a block",
         "tasks a block",
@@ -128,7 +128,7 @@ def spread(client, blocks, count):
     """How much the times of blocks of one size differ, from dask's record of its tasks."""
     from distributed import get_task_stream
 
-    head("Time of a block on a worker", "job", "blocks", "s, median", "least", "most")
+    head("Time of a block on a worker", "job", "blocks", "median, s", "least", "most")
     for name, start in JOBS.items():
         with get_task_stream(client) as stream:
             counted(lazy(start, count * blocks[name], blocks[name])).compute()

@@ -30,8 +30,8 @@ def scheduler(folder, count):
         "saved": lambda n: sc.sweep.save(lazy(kicked, 2 * n, 2), pathlib.Path(folder) / f"small{n}.zarr"),
     }
     head(
-        "The scheduler: blocks of two motions, for one block more",
-        "what is done",
+        "The scheduler: cost of one more block, with blocks of two motions",
+        "results",
         "client and scheduler, ms a block",
         "two workers, ms a block by the clock",
     )
@@ -50,7 +50,7 @@ def scheduler(folder, count):
 
 def memory(blocks):
     """Peak memory of a worker less what it holds idle; each job has new workers."""
-    told = "its results, MB", "a worker idle, MB", "its peak over that, MB", "of the results"
+    told = "results, MB", "idle worker, MB", "peak above idle, MB", "peak over results"
     head("Memory of a worker", "job", "motions a block", *told)
     for name, start in JOBS.items():
         size = blocks[name]
@@ -82,7 +82,7 @@ def saved(cluster, folder, size, count):
     """A sweep that two workers write: undisturbed, with a worker killed, and run again when complete."""
     store, start = pathlib.Path(folder) / "sweep.zarr", any_start
     total = size * count
-    head("Saved by two workers", "what happens", "s", "bytes a motion", "files a block")
+    head("Saved by two workers", "case", "s", "bytes a motion", "files a block")
     plain, found = [], None
     for _ in range(2):
         remove(store)
@@ -108,7 +108,7 @@ def saved(cluster, folder, size, count):
     same = "the same bytes" if there == expected else "OTHER BYTES"
     row(f"a worker killed after {seen[0]} of {count} blocks: {same}", seconds, used / total, files / count)
     seconds, found = wall(lambda: sc.sweep.save(lazy(start, total, size), store))
-    row(f"run again with all {count} blocks there: only checked", seconds, used / total, files / count)
+    row(f"run again with all {count} blocks done: only checked", seconds, used / total, files / count)
     assert np.array_equal(
         np.bincount(found["status"].to_numpy(), minlength=7), counted(lazy(start, total, size)).compute()
     )

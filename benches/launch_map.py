@@ -24,7 +24,7 @@ def main():
     side = parser.parse_args().side
     axes = {"w1": np.linspace(0.5, 6, side), "launch": np.linspace(1, 3, side)}
     names = " | ".join(x.name.lower().replace("_", " ") for x in sc.sweep.Outcome if x)
-    print(f"| restitution | until | threads | s | impacts | claim | {names} |")
+    print(f"| restitution | until | threads | s | impacts | estimated error | {names} |")
     print("| --- |" + " --- |" * (5 + len(sc.sweep.Outcome) - 1))
     for e in (None, 0.0, 0.5):
         more = {} if e is None else {"want": ("end", "impacts")}

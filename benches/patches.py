@@ -51,7 +51,7 @@ def random_scenes(count, seed):
     print(f"{sum(ends.values())} motions: ends alone and at once")
     for pair, many in ends.most_common():
         print(f"  {many:6d}  {' / '.join(pair)}")
-    print(f"{len(apart)} differ by more than both claims, {wrong} of them in their ends")
+    print(f"{len(apart)} differ by more than both estimated errors, {wrong} of them in their endings")
     for found in sorted(apart, key=lambda x: -x.ratio)[:5]:
         print(f"  {found.ratio:.1f} of {found.claims}: {found.call}")
     print(f"{len(slow)} take more than {SLOW:g} s of the processor")
