@@ -111,11 +111,11 @@ if __name__ == "__main__":
         print(f"  creeps at k = {rolls.creep[later]:.4f} (closed form: {creep():.4f}).")
         if found.ends > found.stands:
             rest, closed = found.ends - found.stands, lasts(spin[-1], patch)
-            print(f"  It stands after {found.stands:.1f} s,", end=" ")
-            print(f"but spins at {spin[-1]:.1f} rad/s")
-            print(f"  and stops that {rest:.1f} s later (closed form: {closed:.1f} s).")
+            print(f"  Its centre stops after {found.stands:.1f} s,", end=" ")
+            print(f"but it spins at {spin[-1]:.1f} rad/s")
+            print(f"  for another {rest:.1f} s (closed form: {closed:.1f} s).")
         else:
             rolling = speed(rolls)[last]
             print(f"  Its spin ends after {found.ends:.1f} s,", end=" ")
             print(f"when it rolls at {rolling:.1f} m/s,")
-            print(f"  and it stands after {found.stands:.1f} s.")
+            print(f"  and its centre stops after {found.stands:.1f} s.")

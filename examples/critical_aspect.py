@@ -1,4 +1,4 @@
-"""A cylinder with equal moments balances at one inclination at any rate, and above a least rate this is stable in rolling."""
+"""A cylinder with equal moments balances at one inclination at any rate, and above a least rate this is stable for rolling."""
 
 from typing import Literal
 

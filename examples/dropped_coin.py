@@ -50,10 +50,10 @@ if __name__ == "__main__":
         after = next(
             p for p in motion.phases if p.kind != "flying" and p.time > first.time
         )
-        print(f"Restitution {bounces:g}: {len(motion.impacts)} blows,", end=" ")
+        print(f"Restitution {bounces:g}: {len(motion.impacts)} impacts,", end=" ")
         print(f"on the table after {scale.seconds(after.time):.3f} s;")
         lost = scale.joules(sum(impact.lost for impact in motion.impacts))
-        print(f"  {1000 * lost:.2f} mJ lost in blows;", end=" ")
+        print(f"  {1000 * lost:.2f} mJ lost in impacts;", end=" ")
         lean = np.degrees(min(end.state.theta, np.pi - end.state.theta))
         print(f"at rest after {scale.seconds(end.time):.2f} s,", end=" ")
-        print(f"leaning by {lean:.1f} degrees.")
+        print(f"inclined by {lean:.1f} degrees.")

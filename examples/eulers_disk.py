@@ -1,4 +1,4 @@
-"""Euler's disk leans at 17 degrees and nods while its contact point runs round the rounded rim, faster than its face turns."""
+"""Euler's disk nods about an inclination of 17 degrees while its contact point runs round the rounded rim, faster than its face turns."""
 
 import numpy as np
 

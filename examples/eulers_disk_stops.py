@@ -63,8 +63,8 @@ if __name__ == "__main__":
         motion = sc.roll(body, start, t, losses=losses)
         print(f"{law.__name__}, coefficient {losses.coefficient:.4g}:")
         stops = scale.seconds(slow.stops_at)
-        print(f"  The centre kept at rest, it stops after {stops:.1f} s;")
-        print(f"  halfway it leans by {halfway:.2f} degrees,", end=" ")
+        print(f"  With the centre at rest it stops after {stops:.1f} s;")
+        print(f"  halfway it is inclined by {halfway:.2f} degrees,", end=" ")
         print("and one second before the end")
         print(f"  its contact point goes round {last:.1f} times a second.")
         end = motion.event

@@ -1,4 +1,4 @@
-"""Euler's disk, tilted and turned about the vertical by hand, slides its edge round a circle, and rolls after a quarter of a second."""
+"""The edge of Euler's disk, tilted and turned about the vertical by hand, slides round a circle, and the disk rolls after a quarter of a second."""
 
 import numpy as np
 

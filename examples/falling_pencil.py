@@ -73,7 +73,8 @@ if __name__ == "__main__":
         np.argmax(np.where(np.cos(lean) > 2 / 3, pivots.friction_coefficient, 0.0))
     )
     needs, at = pivots.friction_coefficient[most], np.degrees(lean[most])
-    print(f"It needs a friction of {needs:.5f} at {at:.2f} degrees.")
+    print(f"Pivoting needs a coefficient of friction of {needs:.5f}", end=" ")
+    print(f"at {at:.2f} degrees.")
     for mu in (0.2, 0.3, 0.37, 0.371, 0.5, 1.0):
         motion = sc.roll(body, start, t, contact=sc.Coulomb(mu))
         first = next(phase for phase in motion.phases if phase.kind == "slipping")

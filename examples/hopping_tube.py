@@ -10,7 +10,7 @@ body = sc.Body.from_metres(
 )
 scale = sc.Scale(radius=0.015875 / 2, mass=0.0095)
 table = sc.Coulomb(0.3)
-# share of its speed that an end keeps in a blow without friction
+# share of its speed that an end keeps in an impact without friction
 RESTITUTION = 0.5
 # in M sqrt(g R): the launch number is 5.0, and 1.1 would be enough
 IMPULSE = 15.0
@@ -40,9 +40,9 @@ if __name__ == "__main__":
     for bounces in (0.0, RESTITUTION, 0.9):
         motion = sc.roll(body, start, t, contact=table, restitution=bounces)
         last = motion.phases[-1]
-        print(f"Restitution {bounces:g}: {len(motion.impacts)} blows,", end=" ")
+        print(f"Restitution {bounces:g}: {len(motion.impacts)} impacts,", end=" ")
         print(f"hops of up to {1000 * scale.metres(motion.height.max()):.1f} mm,")
         lost = scale.joules(motion.lost_in_impacts[-1])
         heat = scale.joules(motion.dissipated[-1])
-        print(f"  {1000 * lost:.1f} mJ lost in blows and {1000 * heat:.1f} to slip;")
+        print(f"  {1000 * lost:.1f} mJ lost in impacts and {1000 * heat:.1f} to slip;")
         print(f"  {last.kind} after {scale.seconds(last.time):.2f} s.")

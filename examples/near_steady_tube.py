@@ -32,5 +32,5 @@ if __name__ == "__main__":
     low, high = np.degrees([motion.theta.min(), motion.theta.max()])
     turns, steady = motion.phi[-1] / (2 * np.pi), start.contact_radius
     print(f"In {turns:.2f} turns it nods between {low:.2f} and {high:.2f} degrees.")
-    print(f"A letter comes by {shown:.3f} times a turn;", end=" ")
+    print(f"A symbol passes {shown:.3f} times a turn;", end=" ")
     print(f"in the steady state {steady:.3f} times.")

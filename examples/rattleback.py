@@ -117,10 +117,10 @@ if __name__ == "__main__":
         print(
             f"  It turns back after {turns:.2f} s, when it rocks by {most:.1f} degrees,"
         )
-        print(f"  and comes to spin at {fastest:.4f} rad/s the other way.")
+        print(f"  and then spins at {fastest:.4f} rad/s the other way.")
     # at rest, and tilted
     for pitch, roll, name in ((1, 0, "end"), (0, 5, "side")):
         state = body.spinning(0.0, pitch=np.radians(pitch), roll=np.radians(roll))
         spin = sc.roll(body, state, t[t < 2]).spin.mean()
         way = "counterclockwise" if spin > 0 else "clockwise"
-        print(f"Tilted by the {name} and let go, it begins to spin {way}.")
+        print(f"Pressed down at the {name} and released, it begins to spin {way}.")

@@ -112,10 +112,10 @@ if __name__ == "__main__":
     )
     faster = motion.spin[-1] / motion.spin[0]
     print(f"It spins {faster:.3f} times as fast;", end=" ")
-    print(f"the same number would give {standing():.3f}.")
+    print(f"a constant number would give {standing():.3f}.")
     first, heat = 1e3 * motion.energy[0], 1e3 * motion.dissipated[-1]
     print(f"Of {first:.1f} mJ it has lost {heat:.1f} mJ as heat,")
-    print(f"and both together stay what they are: {np.ptp(energy) < 1e-9 * energy[0]}")
+    print(f"and the sum of both is constant: {np.ptp(energy) < 1e-9 * energy[0]}")
     print(f"Below {least():.1f} turns a second it would not have the energy to stand.")
     for turns in (10.0, 13.0, 16.0, 22.0):
         other = sc.roll(body, lying(turns), t, contact=table)

@@ -41,6 +41,6 @@ if __name__ == "__main__":
     for w1 in (1e-2, start.w1, 1e-4):
         swing = sc.swing(body, sc.State(start.theta, w1, 0.0, 0.0))
         flat, turned = np.degrees([swing.theta_min, swing.precession_per_period])
-        print(f"w1 = {w1:g}: within {flat:.4f} degrees of flat it goes on", end=" ")
+        print(f"w1 = {w1:g}: within {flat:.4f} degrees of flat its lean turns", end=" ")
         print(f"by {turned:.2f} degrees.")
-    print(f"The limit of no turning is {np.degrees(limit):.2f} degrees.")
+    print(f"The limit for w1 = 0 is {np.degrees(limit):.2f} degrees.")

@@ -1,4 +1,4 @@
-"""A cylinder at an unstable steady state stays there the longer the less it is pushed, and the push decides where it goes."""
+"""A cylinder near an unstable steady state stays there longer if it is pushed less, and the push decides where it goes."""
 
 import numpy as np
 

@@ -63,8 +63,8 @@ if __name__ == "__main__":
     for name, contact in (("Wet", wet), ("A patch of 0.3 mm", patch)):
         over = sc.roll(body, start, t, contact=contact)
         level, head = (int(np.argmax(over.theta > lean)) for lean in (np.pi / 2, 3.0))
-        print(f"{name}: its axis is level after {scale.seconds(t[level]):.2f} s,")
-        print(f"and 172 degrees off after {scale.seconds(t[head]):.2f} s;", end=" ")
+        print(f"{name}: inclined by 90 degrees after {scale.seconds(t[level]):.2f} s,")
+        print(f"by 172 degrees after {scale.seconds(t[head]):.2f} s;", end=" ")
         print(f"Jellett's number: {kept(over, head)}.")
     # Dry friction at a point does not weaken with the slip, so that it stops the rim at
     # once. A top that rolls keeps its energy and two more constants (see tippe_top.py):
@@ -74,8 +74,8 @@ if __name__ == "__main__":
     rolling = stuck.t >= rolls.time
     first, most = np.degrees([rolls.state.theta, stuck.theta[rolling].max()])
     needs = stuck.friction_coefficient[rolling].max()
-    print(f"A point: it rolls from {scale.seconds(rolls.time):.5f} s on,", end=" ")
-    print(f"{first:.2f} degrees off,")
-    print(f"and leans by at most {most:.2f} degrees from then on, for it needs")
-    print(f"a friction of at most {needs:.4f} and has {dry.mu:g}.")
+    print(f"A point: rolling from {scale.seconds(rolls.time):.5f} s on,", end=" ")
+    print(f"inclined by {first:.2f} degrees,")
+    print(f"later by at most {most:.2f} degrees, since rolling needs a coefficient")
+    print(f"of friction of at most {needs:.4f}, and mu is {dry.mu:g}.")
     print(f"Jellett's number: {kept(stuck, -1)}.")
