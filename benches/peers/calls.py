@@ -62,9 +62,9 @@ def measure(quick):
     sine, rate = (
         next(us for who, _, us, _ in rows if who.startswith(name)) for name in ("np.sin", "body.rate")
     )
-    text += f"\n`body.rate(theta)` takes {rate / sine:.1f} times what `np.sin(x)` takes.\n\n"
-    text += "The first call of a process, in seconds of the processor:\n\n"
-    text += table(("what", "s"), first_calls()) + "\n"
+    text += f"\n`body.rate(theta)` takes {rate / sine:.1f} times as long as `np.sin(x)`.\n\n"
+    text += "First and second calls in a new process, in seconds of CPU time:\n\n"
+    text += table(("call", "s"), first_calls()) + "\n"
     text += table(("job", "number", "ns each, 1 thread", "2 threads", "ratio"), scaling(quick))
     best = compared("one motion", shown, (1e-6, 1e-10, 1e-12), "us")
     return {"panels": {"one call, us a motion": shown}, "text": text, "best": best}

@@ -197,22 +197,22 @@ def measure(quick):
         "setting",
         "us a motion",
         "motions",
-        "wrong kinds",
-        "error of end times: median",
+        "wrong endings",
+        "error of the time of the ending: median",
         "99 %",
         "worst",
     )
-    text = table((*head, "of states at t = 20: 99 %", "worst"), rows)
+    text = table((*head, "error of the state at t = 20: 99 %", "worst"), rows)
     share = np.bincount(truth[:, 0].astype(int), minlength=4) / n
-    names = ("go on", "land on the face", "on the other rim", "lift off")
+    names = ("go on to t = 20", "land on the face", "land on the other rim", "lift off")
     text += (
-        "\nOf the motions "
+        "\nOf the motions, "
         + ", ".join(f"{x:.1%} {name}" for x, name in zip(share, names, strict=True))
         + ".\n"
     )
     answers = found["spincyl", 1e-10]["method"].to_numpy()
     parts = np.bincount(answers, minlength=5) / n
-    text += "`spincyl` answers at 1e-10: " + ", ".join(
+    text += "Codes of the methods that `spincyl` used at 1e-10: " + ", ".join(
         f"{x:.2%} {sc.sweep.Answer(i).name}" for i, x in enumerate(parts) if x
     )
     return {
