@@ -72,7 +72,8 @@ def test_a_range_is_that_of_natural_units_and_says_so():
         (lambda: sc.roll(STONE, STONE.spinning(1.0, pitch=0.1), 1e20), "t = .*: expected"),
     ):
         with pytest.raises(
-            ValueError, match=rf"^{said} .* \((?:limits in )?natural units: sqrt\([Ra]/g\) is \S+ s of this body\)$"
+            ValueError,
+            match=rf"^{said} .* \((?:limits in )?natural units: sqrt\([Ra]/g\) is \S+ s of this body\)$",
         ):
             call()
 

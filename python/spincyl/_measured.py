@@ -127,7 +127,7 @@ def _in_seconds(scale: Scale, length: str) -> Iterator[None]:
     except ValueError as e:
         second, said = scale._units[1], str(e)
         told = _TIME.sub(lambda found: f"{found[1]}{_seconds(found[1], found[2], second)} s", said)
-        if found := _OUT_OF_RANGE.match(said):
+        if _OUT_OF_RANGE.match(said):
             told, which = (told, "limits in natural units") if told != said else (said, "natural units")
             told = f"{told} ({which}: sqrt({length}/g) is {second:.6g} s of this body)"
         if told == said:
