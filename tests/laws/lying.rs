@@ -92,6 +92,23 @@ fn a_cylinder_that_spins_on_its_side_stops_after_i1_w1_over_mu_ell() {
 }
 
 #[test]
+fn rolling_resistance_stops_the_rolling_of_what_spins_on_its_side_and_holds_it_while_the_rims_slip() {
+    for (ell, mu, delta) in [(0.1, 0.3, 0.004), (0.5, 0.2, 0.02), (0.09, 0.3, 0.0039)] {
+        let body = Body::solid(ell).unwrap();
+        let losses = Losses::of(Law::RollingResistance, delta);
+        for w3 in [3e-4, -2e-4] {
+            let start = lying(&body, 2.0, w3, [0.0; 2]);
+            let until = body.i1() * 2.0 / (mu * ell);
+            let m = losing(&body, start, Friction::coulomb(mu), losses, &[0.9 * until, 1.5 * until]);
+            assert_eq!(m.states[0].w3, 0.0, "{ell}");
+            let end = m.event.as_ref().unwrap();
+            assert_eq!(end.ending, Ending::Stops);
+            assert!((end.time - until).abs() < w3.abs() * until, "{ell} {}: {until}", end.time);
+        }
+    }
+}
+
+#[test]
 fn what_lies_on_ice_keeps_its_velocities_and_both_rims_share_the_weight_with_the_launch_number() {
     let body = Body::solid(1.2).unwrap();
     let (w1, w3) = (0.8, 0.9);
@@ -371,5 +388,18 @@ fn on_both_rims_the_lean_turns_no_faster_than_the_body_whichever_rim_sticks() {
             }
         }
         assert!(seen > 100, "{body:?} {seen}");
+    }
+}
+
+#[test]
+fn a_coin_that_spins_down_on_its_edge_rolls_to_and_fro_until_rolling_resistance_holds_it() {
+    let coin = Body::solid(2.2 / 25.75).unwrap();
+    let losses = Losses::of(Law::RollingResistance, 0.05 / 12.875);
+    for k in 0..10 {
+        let state = State { theta: FRAC_PI_2, w1: 1.5 + 0.01 * f64::from(k), w2: 0.0, w3: -0.0828 };
+        let start = Start::from(state).with_slip([0.0026, 0.2545]);
+        let m = losing(&coin, start, Friction::coulomb(0.3), losses, &[100.0]);
+        assert_eq!(m.event.map(|end| end.ending), Some(Ending::Stops));
+        assert!(m.evaluations < 50_000, "{}", m.evaluations);
     }
 }

@@ -101,6 +101,7 @@ impl<T: Real> Lying<T> {
         let one = w1.splat(1.0);
         let mut seen = losses.seen(&self.shape.rim, (one, zero), w1, [w1, zero, w3]);
         seen.signs = [w1.splat(ways[1]), w1.splat(ways[0])];
+        seen.only = Some([w1.splat(-ways[1]), zero]);
         let [m1, _, m3] = losses.at(&seen).under(one);
         [m1, m3]
     }

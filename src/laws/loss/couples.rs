@@ -23,8 +23,9 @@ pub(crate) struct Kinematics<T> {
     pub radius: T,
     /// The signs -1, 0 or 1 of psi' and of the drilling w_z.
     pub signs: [T; 2],
-    /// The sign of w2 of a body that only rocks, where a caller holds this sign fixed.
-    pub rocks: Option<T>,
+    /// The signs of w_h and w2 of a body that only rolls or only rocks, where a caller holds that sign fixed; the other
+    /// sign is 0.
+    pub only: Option<[T; 2]>,
 }
 
 impl<T: Real> Kinematics<T> {
@@ -34,7 +35,7 @@ impl<T: Real> Kinematics<T> {
         let (s, c) = angle;
         let spin = w[2] - c * precession;
         let (zero, one) = (s.splat(0.0), s.splat(1.0));
-        let mut seen = Self { angle, w, spin, radius: rim.radius(angle), signs: [zero; 2], rocks: None };
+        let mut seen = Self { angle, w, spin, radius: rim.radius(angle), signs: [zero; 2], only: None };
         let sign = here(
             #[inline(always)]
             |x: T| x.select_lt(zero, -one, zero.select_lt(x, one, zero)),
@@ -271,8 +272,8 @@ impl<T: Real, G: OwnCouple<T>> Couples<T, G> {
     pub fn seen(&self, rim: &Rim<T>, angle: (T, T), precession: T, w: [T; 3]) -> Kinematics<T> {
         let seen = Kinematics::of(rim, angle, precession, w);
         let Some(ways) = self.ways else { return seen };
-        let rocks = (ways.rocking != 0.0).then(|| angle.0.splat(ways.rocking));
-        Kinematics { signs: [ways.contour, ways.drilling], rocks, ..seen }
+        let only = (ways.rocking != 0.0).then(|| [0.0, ways.rocking].map(|x| angle.0.splat(x)));
+        Kinematics { signs: [ways.contour, ways.drilling], only, ..seen }
     }
 
     /// Which laws are present, in the order of [`Law::ALL`].
@@ -363,7 +364,7 @@ impl<T: Real, G: OwnCouple<T>> Couples<T, G> {
         let rolling = seen.rolling();
         [
             self.has_root(Speed::Spin).then(|| seen.spin * seen.spin),
-            (self.has_root(Speed::Rolling) && seen.rocks.is_none() && !paced)
+            (self.has_root(Speed::Rolling) && seen.only.is_none() && !paced)
                 .then(|| rolling.mac(rolling, seen.w[1] * seen.w[1])),
             self.has_root(Speed::Whole).then(|| seen.square()),
         ]

@@ -26,8 +26,8 @@ impl LossLaw for RollingResistance {
     #[inline(always)]
     fn couple<T: Real>(seen: &Kinematics<T>) -> [T; 3] {
         let (s, c) = seen.angle;
-        if let Some(way) = seen.rocks {
-            return [s.splat(0.0), -way, s.splat(0.0)];
+        if let Some([rolls, rocks]) = seen.only {
+            return [-(c * rolls), -rocks, s * rolls];
         }
         let (rolling, rocking) = (seen.rolling(), seen.w[1]);
         let speed = Self::power(seen).max(s.splat(SLOWEST));
@@ -39,8 +39,8 @@ impl LossLaw for RollingResistance {
     #[inline(always)]
     fn power<T: Real>(seen: &Kinematics<T>) -> T {
         let (rolling, rocking) = (seen.rolling(), seen.w[1]);
-        if let Some(way) = seen.rocks {
-            return way * rocking;
+        if let Some([rolls, rocks]) = seen.only {
+            return rolls.mac(rolling, rocks * rocking);
         }
         rolling.mac(rolling, rocking * rocking).sqrt()
     }

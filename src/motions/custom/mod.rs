@@ -85,7 +85,8 @@ fn check(body: &Body, start: &Start, ask: &Ask, custom: &Custom<'_>) -> Result<f
         Err(Error::OutOfRange { name, value, expected: "none together with a user-defined law" })
     };
     if let Some((law, value)) = ask.losses.iter().find(|(law, value)| law.presses() && *value > 0.0) {
-        let expected = "only laws without the normal force together with a user-defined law; add this one to it";
+        let expected =
+            "only laws without the normal force together with a user-defined law; add this one to it";
         return Err(Error::OutOfRange { name: law.parameter(), value, expected });
     }
     if ask.restitution.is_some() || start.aloft.is_some() {

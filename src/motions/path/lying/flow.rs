@@ -254,7 +254,7 @@ impl Flow<MARGINS> for LyingFlow {
         let dual = |i: usize| Dual { value: place.y[i], slope: place.rate[i] };
         let (one, zero) = (dual(2).splat(1.0), dual(2).splat(0.0));
         let w = [dual(2), zero, dual(4)];
-        most.min(losses.longest(&losses.seen(&self.sloped.shape.rim, (one, zero), w[0], w), false))
+        most.min(losses.longest(&losses.seen(&self.sloped.shape.rim, (one, zero), w[0], w), true))
     }
 
     /// The halt of an almost vanished slip, extrapolated linearly to zero.
