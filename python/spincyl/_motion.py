@@ -66,7 +66,8 @@ class Motion:
         "exact", "rk4" (a fixed step) or "dop853" (steps of eighth order within a tolerance, always with
         friction or losses).
     error : float
-        Estimated absolute error: the largest of theta, w1, w2, w3 at any time, and of the event.
+        Estimated absolute error: the largest over theta (radians), w1, w2, w3 at all times, and the time of
+        the event; for a measured body the largest in SI, so that it holds for rad, rad/s and seconds alike.
     pose_error : float
         Estimated error of phi and psi (radians) and of the contact point (R); NaN without want="pose".
     force_error : float

@@ -137,7 +137,7 @@ def inputs(rows: "xarray.Dataset") -> dict[str, Any]:
     ------
     TypeError, ValueError
         If `rows` is not a Dataset, or lacks the coordinates or attributes of a sweep; also for a single row
-        whose body or state is invalid, with the name of the number.
+        whose body is invalid, with the name of the number. A state that was NaN is returned as NaN.
 
     Notes
     -----
