@@ -232,9 +232,9 @@ def test_what_cannot_be_a_spin_down_is_refused_by_name():
         ({"theta": theta[::-1]}, "theta: rises, but .* drifts down"),
         ({"theta": None, "precession": 1e-3 * precession}, "precession: no drift of this body has"),
         ({"theta": rng.uniform(0.1, 0.3, 40)}, "theta: expected a drift"),
-        ({"theta": -theta}, "theta: expected positive"),
+        ({"theta": -theta}, r"^theta\[0\] = -0\.\d+: expected a positive number, or NaN if it is missing$"),
         ({"theta": np.degrees(theta)}, "theta: expected inclinations .* radians"),
-        ({"precession": 0 * precession}, "precession: expected positive"),
+        ({"precession": 0 * precession}, r"^precession\[0\] = 0: expected a positive number"),
         ({"theta_err": 0.0}, "theta_err: expected positive"),
         ({"theta_err": [0.1, 0.2]}, "theta_err: expected a number"),
         ({"t_err": np.nan}, "t_err: expected positive"),
@@ -258,6 +258,42 @@ def test_what_cannot_be_a_spin_down_is_refused_by_name():
     ):
         with pytest.raises(TypeError, match=said):
             sc.data.fit_losses(**({"t": t, "theta": theta, "body": EULER} | given))
+
+
+def test_noise_below_zero_near_the_end_is_refused_with_its_row_and_left_out_as_nan():
+    t, theta, _, _ = spun(sc.loss.DryContour(1e-3), share=0.9)
+    theta[93] = -0.0012
+    said = r"^theta\[93\] = -0.0012: expected a positive number.* near the end\? Leave out the last points"
+    with pytest.raises(ValueError, match=said):
+        sc.data.fit_losses(t, theta, body=EULER, laws=ALL[:1])
+    theta[93] = np.nan
+    assert len(sc.data.fit_losses(t, theta, body=EULER, laws=ALL[:1]).t) == 99
+
+
+def test_milliseconds_that_were_given_for_seconds_are_warned_of_by_the_typical_coefficients():
+    disk = sc.measured(outer_diameter="75mm", length="12.7mm", mass="440g")
+    t, theta, _, _ = spun(sc.loss.DryContour.from_si("0.01mm", scale=disk), disk)
+    laws = [sc.loss.AirLinear, sc.loss.DryContour]
+    right = sc.data.fit_losses(t, theta, body=disk, laws=laws).best
+    said = (
+        r"^eps = 1e-05 mm is far from the typical 0.003 to 0.1 mm of DryContour .* are the times in seconds"
+    )
+    with pytest.warns(UserWarning, match=said) as caught:
+        wrong = sc.data.fit_losses(1e3 * t, theta, body=disk, laws=laws).best
+    assert len(caught) == 1 and caught[0].filename == __file__
+    assert wrong.coefficient == pytest.approx(right.coefficient / 1e3, rel=1e-6)
+    # no typical coefficients are known for this law, or without the size of the body
+    sc.data.fit_losses(1e3 * t, theta, body=disk, laws=laws[:1])
+    sc.data.fit_losses(1e3 * t, theta, body=disk.natural, laws=laws)
+
+
+def test_a_small_second_loss_is_no_reason_to_doubt_the_unit_of_the_times():
+    disk = sc.measured(outer_diameter="75mm", length="12.7mm", mass="440g")
+    film = sc.loss.AirFilm.from_si(1.8e-5, scale=disk)
+    far, near = (sc.loss.DryContour.from_si(x, scale=disk) for x in ("1e-5mm", "0.01mm"))
+    assert sc.data._typical.far_from_typical(far + film, disk.scale) == ""
+    assert sc.data._typical.far_from_typical(near, disk.scale) == ""
+    assert "eps = 1e-05 mm" in sc.data._typical.far_from_typical(far, disk.scale)
 
 
 def test_a_spin_down_that_no_law_explains_is_warned_of():

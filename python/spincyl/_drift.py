@@ -178,9 +178,9 @@ class Drift:
         if single:
             found = [float(value) for value in out[0]]
             if np.isnan(found[0]) and name == "theta":
-                first, last = float(np.asarray(self.start.theta)), self.ends_at_theta
+                low, high = sorted((float(np.asarray(self.start.theta)), self.ends_at_theta))
                 raise ValueError(
-                    f"theta = {x!r}: expected an inclination of the drift, from {first!r} to {last!r}"
+                    f"theta = {x:.10g}: expected an inclination of the drift, from {low:.6g} to {high:.6g}"
                 )
             if np.isnan(found[0]) and question == 1:
                 raise ValueError(f"t = {x!r}: expected 0 <= t <= stops_at = {self.stops_at!r}")

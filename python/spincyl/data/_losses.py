@@ -12,8 +12,9 @@ from spincyl._input.numbers import Floats, Reals, extra, reals, turns_per_second
 from spincyl._single import one_body
 from spincyl.data._curve import Curve
 from spincyl.data._line import line
-from spincyl.data._lossfit import FittedLoss, LossFit, Refused, called, in_si
+from spincyl.data._lossfit import APART, FittedLoss, LossFit, Refused, called, in_si
 from spincyl.data._spindown import Several, SpinDown, asked, centres, measured
+from spincyl.data._typical import far_from_typical
 
 _RESTED = 0.02  #: First guess of the share in `Curve` that gives where the centre was at rest.
 _CORRELATED = 0.999  #: Two coefficients with a higher correlation cannot be told apart.
@@ -85,7 +86,8 @@ def fit_losses(
     UserWarning
         If chi2 exceeds 10 for every law; the message gives the points that contribute most. Also if the
         precession differs by a quarter or more from that of steady states at the same inclinations, as with
-        wrong units. Warnings of the fitted drift are passed on.
+        wrong units, or if the coefficient is more than 10 times outside the range of `spincyl.loss.typical`,
+        as with milliseconds given for seconds. Warnings of the fitted drift are passed on.
 
     Notes
     -----
@@ -155,7 +157,7 @@ def fit_losses(
     fits = [_told(f, _aic(f), (_aic(f) - _aic(best)) / spread) for f in whole]
     # only the best drift may issue warnings
     fits[0] = fits[0]._replace(drift=best.curve.drift(best.beta[:-1], float(best.beta[-1])))
-    said = _doubts(body, best, fits[0])
+    said = _doubts(body, best, fits)
     for doubt in said:
         warnings.warn(doubt, UserWarning, stacklevel=2)
     first = data.values[0]
@@ -200,9 +202,9 @@ class _Raw(NamedTuple):
         return 1.0 if self.data.estimated else max(self.chi2 / self.freedom, 1.0)
 
 
-def _doubts(body: Body, best: _Raw, fit: FittedLoss) -> list[str]:
+def _doubts(body: Body, best: _Raw, fits: list[FittedLoss]) -> list[str]:
     """Warnings about the best fit: inconsistent units, or points that no law explains."""
-    said, data = [], best.data
+    said, data, fit = [], best.data, fits[0]
     units = "natural units" if body.scale is None else "seconds and rad/s"
     factor = data.off_by(body)
     if not 0.8 < factor < 1.25:
@@ -219,7 +221,10 @@ def _doubts(body: Body, best: _Raw, fit: FittedLoss) -> list[str]:
         asks = f"do all points belong to the spin-down, and are times and precession in {units}?"
         told = f"chi2 = {fit.chi2:.3g}: no law explains these points within their errors"
         said.append(f"{told}; {weigh}: {asks}")
-    return said
+    # not every law has typical coefficients: take the best of those that have
+    far = [far_from_typical(one.law, body.scale) for one in fits if one.daic <= APART]
+    known = [why for why in far if why is not None]
+    return said + [why for why in known[:1] if why]
 
 
 def _fitted(odrpack: Any, data: SpinDown, curve: Curve, begin: Floats | None) -> _Raw:

@@ -142,8 +142,14 @@ def measured(
         row = np.asarray(reals(name, given[name][0]), np.float64)
         if row.shape != time.shape:
             raise ValueError(f"{name}: expected the shape of t, {time.shape}, not {row.shape}")
-        if np.isinf(row).any() or (row <= 0).any():
-            raise ValueError(f"{name}: expected positive numbers, or NaN for missing values")
+        bad = np.flatnonzero(np.isinf(row) | (row <= 0))
+        if bad.size:
+            told = (
+                f"{name}[{bad[0]}] = {row[bad[0]]:.6g}: expected a positive number, or NaN if it is missing"
+            )
+            late = bad[0] >= row.size / 2 and -np.inf < row[bad[0]] <= 0
+            hint = "; noise near the end? Leave out the last points, or set them to NaN" if late else ""
+            raise ValueError(told + hint)
         rows.append(row)
         errs.append(_errors(f"{name}_err", given[name][1], time, _SHARE * row))
     values, errors = np.stack(rows), np.stack(errs)

@@ -15,13 +15,12 @@ from spincyl._single import one_body
 from spincyl.data._lossfit import CENTRE, Refused
 from spincyl.data._report import section, student, variables
 from spincyl.data._spindown import centres, known_law
-from spincyl.data._typical import typical
+from spincyl.data._typical import far_from_typical
 
 _UNIT = 1e-9  #: Coefficient so small that the law holds at all inclinations of the drift.
 _ENDS = ("face lands", "lies down")  #: Ends at which the body is seen to stop.
 _FEW = 5.0  #: With fewer turns before the end the drift is not slow.
 _LONGEST = 1e9  #: Seconds.
-_FAR = 10.0  #: A coefficient beyond the typical ones by this factor causes a warning.
 _MIXED = 3.0  #: A larger ratio of the times causes a warning.
 
 
@@ -207,7 +206,9 @@ def fit_stop(
                 refused.append((one, e))
     if not fits:
         raise refused[0][1]
-    _doubt(fits[0])
+    far = far_from_typical(fits[0].law, body.scale)
+    if far:
+        warnings.warn(far, UserWarning, stacklevel=2)
     for kept in {one.category: one for one in said}.values():  # not once for each centre
         warnings.warn(kept.message, kept.category, stacklevel=2)
     if turns < _FEW:
@@ -227,20 +228,6 @@ def fit_stop(
         tuple(fits),
         tuple(Refused(kind.__name__, one, str(why)) for one, why in refused),
     )
-
-
-def _doubt(found: FittedStop) -> None:
-    """Warn of a coefficient that is far from all typical ones of its law."""
-    value, _, unit = found._printed
-    rows = [row for row in typical() if row.of.split()[0] == type(found.law).__name__]
-    if not unit or not rows:
-        return
-    low, high = min(row.low for row in rows), max(row.high for row in rows)
-    if not low / _FAR <= value <= high * _FAR:
-        known = " to ".join(dict.fromkeys(f"{x:.2g}" for x in (low, high)))
-        told = f"{found.law._parameter} = {value:.2g}{unit} is far from the typical {known}{unit}"
-        asks = "are the times in seconds, or does another law hold?"
-        warnings.warn(f"{told} (sc.loss.typical): {asks}", UserWarning, stacklevel=3)
 
 
 def _timed(seconds: Reals, error: float | None) -> tuple[Floats, float, float]:

@@ -10,6 +10,8 @@ from typing import Any, NamedTuple
 
 from spincyl.data._report import WIDE
 
+_FAR = 10.0  #: A coefficient beyond the typical ones by this factor causes a warning.
+
 
 class Typical(NamedTuple):
     """A published coefficient, or its range."""
@@ -68,3 +70,24 @@ def typical() -> Table:
         Typical(of, pair, float(low), float(high), unit, sure, sources[key])
         for of, pair, low, high, unit, sure, key in _read("typical.csv")
     )
+
+
+def far_from_typical(losses: Any, scale: Any) -> str | None:
+    """Why the coefficients of a fitted law, or of a sum of laws, are probably in another unit.
+
+    Empty if one of them is within a factor of 10 of the typical ones; None if no typical ones are known.
+    """
+    said = []
+    for law in losses.laws:
+        factor, unit = law._printed(scale)
+        name, value = type(law).__name__, factor * law.coefficient
+        rows = [row for row in typical() if row.of.split()[0] == name]
+        if not unit or not rows:
+            continue
+        low, high = min(row.low for row in rows), max(row.high for row in rows)
+        if low / _FAR <= value <= high * _FAR:
+            return ""
+        known = " to ".join(dict.fromkeys(f"{x:.2g}" for x in (low, high)))
+        told = f"{law._parameter} = {value:.2g}{unit} is far from the typical {known}{unit} of {name}"
+        said.append(f"{told} (sc.loss.typical): are the times in seconds, or does another law hold?")
+    return said[0] if said else None
