@@ -86,8 +86,9 @@ def fit_losses(
     UserWarning
         If chi2 exceeds 10 for every law; the message gives the points that contribute most. Also if the
         precession differs by a quarter or more from that of steady states at the same inclinations, as with
-        wrong units, or if the coefficient is more than 10 times outside the range of `spincyl.loss.typical`,
-        as with milliseconds given for seconds. Warnings of the fitted drift are passed on.
+        wrong units, or if the coefficient of every likely law is more than 10 times outside its range in
+        `spincyl.loss.typical`, as with milliseconds given for seconds. Warnings of the fitted drift are
+        passed on.
 
     Notes
     -----
@@ -221,10 +222,10 @@ def _doubts(body: Body, best: _Raw, fits: list[FittedLoss]) -> list[str]:
         asks = f"do all points belong to the spin-down, and are times and precession in {units}?"
         told = f"chi2 = {fit.chi2:.3g}: no law explains these points within their errors"
         said.append(f"{told}; {weigh}: {asks}")
-    # not every law has typical coefficients: take the best of those that have
+    # None for laws without typical coefficients, "" for a law with a usual one, which may be the right law
     far = [far_from_typical(one.law, body.scale) for one in fits if one.daic <= APART]
     known = [why for why in far if why is not None]
-    return said + [why for why in known[:1] if why]
+    return said + (known[:1] if all(known) else [])
 
 
 def _fitted(odrpack: Any, data: SpinDown, curve: Curve, begin: Floats | None) -> _Raw:
