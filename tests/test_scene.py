@@ -250,10 +250,14 @@ def test_what_lies_beyond_the_end_of_the_answer_is_left_out_and_what_is_no_traje
     for wrong, said in (
         (([0.01, 0.0], x, q), "^time: .*ascending"),
         (([-0.1, 0.0], x, q), "^time: .*since the initial state"),
-        (([], x, q), "^time: expected finite numbers"),
-        (([0.0, np.nan], x, q), "^time: expected finite numbers"),
+        (([], x, q), "^time: expected at least one number"),
+        (([0.0, np.nan], x, q), "^time: value 1 is NaN; expected finite numbers"),
         (([0.0, 0.01], x[:, :2], q), r"^position: expected finite numbers of shape \(2, 3\), not \(2, 2\)"),
-        (([0.0, 0.01], x + np.inf, q), "^position"),
+        (([0.0, 0.01], x + np.inf, q), "^position: row 0 has an infinite number; expected finite numbers"),
+        (
+            ([0.0, 0.01], x + np.array([[0.0], [np.nan]]), q),
+            "^position: row 1 has NaN; expected finite numbers",
+        ),
         (([0.0, 0.01], x, q[:1]), "^orientation"),
         (([0.0, 0.01], x, 1.1 * q), "^orientation: expected unit quaternions"),
     ):
@@ -267,6 +271,27 @@ def test_what_lies_beyond_the_end_of_the_answer_is_left_out_and_what_is_no_traje
         tube.compare([0.0, 0.01], x, np.roll(q, 1, axis=1))
     with pytest.raises(ValueError, match="^orientation"):
         tube.couple([0, 0, 0, 2.0], [0, 0, 1.0], 1.0)
+
+
+def test_an_engine_in_milliseconds_or_millimetres_is_doubted_and_one_that_falls_is_not():
+    coin = scene_of("dropped coin")
+    t = np.linspace(0, coin.data["expected"]["time"][-1], 5)[1:]  # an engine may tell its first step first
+    x, q = answer(coin, t)
+    with pytest.warns(
+        UserWarning, match=r"^position: .* at t = .* from the origin; .* in millimetres\?"
+    ) as said:
+        coin.compare(t, 1e3 * x, q)
+    assert len(said) == 1 and said[0].filename == __file__
+    tube = scene_of("tube")
+    t = np.linspace(0, tube.data["expected"]["time"][-1], 5)
+    x, q = answer(tube, t)
+    with pytest.warns(
+        UserWarning, match=r"^time: goes up to .* s, but the scene ends at .* in milliseconds\?"
+    ):
+        found = tube.compare(1e3 * t, x, q)
+    assert found.time[-1] == 1e3 * t[-1]
+    x[2:, 2] -= 1e4  # through the table, and in metres
+    assert tube.compare(t, x, q).position.max() > 9e3
 
 
 def test_energy_and_force_are_as_good_as_they_say():

@@ -26,6 +26,9 @@ from spincyl._studio.shape import profiles, rotations
 _PIECES, _AROUND = 4, 48
 #: Tolerance of unit quaternions; turn from the initial orientation, radians, above which there is a warning.
 _UNIT, _DOUBTED = 1e-3, 0.1
+#: Ratio of the last time to the end of the scene, and of the first deviation to the distance of the centre
+#: from the origin, above which there is a warning.
+_LONG, _AWAY = 10.0, 30.0
 #: Coefficients of the losses that act in the air.
 _IN_AIR = "b", "b2"
 
@@ -33,14 +36,30 @@ _IN_AIR = "b", "b2"
 @compared
 @dataclass(frozen=True, eq=False, repr=False)
 class Deviation:
-    """Deviation of an engine from the known answer at each time, in SI; the result of `Scene.compare`."""
+    """Deviation of an engine from the known answer at each time, in SI; the result of `Scene.compare`.
 
-    time: Floats  #: (n,) times that were compared, up to the end of the answer, seconds
-    position: Floats  #: (n,) distance between the centres of mass, metres
-    angle: Floats  #: (n,) angle between the orientations, radians
-    theta: Floats  #: (n,) inclination of axis 3 in the engine minus that in the answer, radians
-    position_error: float  #: estimated error of the answer, metres
-    angle_error: float  #: estimated error of the answer, radians
+    Attributes
+    ----------
+    time : ndarray, (n,)
+        Times that were compared, up to the end of the answer, in seconds.
+    position : ndarray, (n,)
+        Distance between the centres of mass of the engine and of the answer, in metres.
+    angle : ndarray, (n,)
+        Angle of the rotation from the orientation of the answer to that of the engine, in radians, 0 to pi.
+    theta : ndarray, (n,)
+        Inclination of axis 3 of the body in the engine minus that in the answer, in radians.
+    position_error : float
+        Estimated error of the positions of the answer, in metres. A smaller `position` means nothing.
+    angle_error : float
+        Estimated error of the orientations of the answer, in radians.
+    """
+
+    time: Floats
+    position: Floats
+    angle: Floats
+    theta: Floats
+    position_error: float
+    angle_error: float
 
     def __repr__(self) -> str:
         most = [np.abs(x).max() for x in (self.position, self.angle, self.theta)]
@@ -119,8 +138,9 @@ class Scene:
         Parameters
         ----------
         time : array_like, (n,)
-            Times since the initial state, in seconds, in ascending order. Times after the end of the answer
-            are left out.
+            Times since the initial state, in seconds, in ascending order. The answer is computed at these
+            times, also after the last time of the scene. Times after an event that ends the motion, such as
+            the landing of the face, are left out.
         position : array_like, (n, 3)
             Positions of the centre of mass, in metres.
         orientation : array_like, (n, 4)
@@ -142,12 +162,19 @@ class Scene:
         -----
         UserWarning
             If the orientation at time 0 is not the initial one; the order of the quaternions may be wrong.
+            If the times go on for more than ten times the scene, as with milliseconds; or if the first
+            position is more than 30 times as far from the answer as the answer is from the origin, as with
+            millimetres.
         """
         t = _shaped("time", si("time", time, "second"), ())
         x = _shaped("position", position, (t.size, 3))
         q = _shaped("orientation", orientation, (t.size, 4), scalar_first)
         if t[0] < 0 or (np.diff(t) < 0).any():
             raise ValueError("time: expected seconds since the initial state, in ascending order")
+        last = self.scale.seconds(float(self.motion.t[-1]) - self._began)
+        if t[-1] > _LONG * last:
+            told = f"time: goes up to {t[-1]:.4g} s, but the scene ends at {last:.4g} s"
+            warn(f"{told}; are the times in milliseconds?")
         m = self.motion.at(self._began + t / self.scale.seconds(1.0))
         n = m.t.size
         if not n:
@@ -159,6 +186,10 @@ class Scene:
             warn(f"orientation: at time 0 turned by {angle[0]:.2g} rad from that of the scene; {why}")
         metre, (off, turned) = self.scale.radius, pose_errors(m)
         away = np.linalg.norm(x[:n] - metre * m.centre, axis=1)
+        reach = metre * float(np.linalg.norm(m.centre[0]))
+        if away[0] > _AWAY * reach:
+            told = f"position: {away[0]:.2g} m from the answer at t = {t[0]:.4g} s, which is {reach:.2g} m"
+            warn(f"{told} from the origin; are the positions in millimetres?")
         theta = inclination(q[:n]) - inclination(m.orientation)
         return Deviation(t[:n], away, angle, theta, off * metre, turned)
 
@@ -298,8 +329,15 @@ def _shaped(name: str, value: Reals, shape: tuple[int, ...], scalar_first: bool 
     """Finite numbers of a shape, where () is any (n,); with `scalar_first`, unit quaternions x, y, z, w."""
     found = floats(reals(name, value))
     fits = found.shape == shape if shape else found.ndim == 1
-    if not fits or not found.size or not np.isfinite(found).all():
+    if not fits:
         raise ValueError(f"{name}: expected finite numbers of shape {shape or '(n,)'}, not {found.shape}")
+    if not found.size:
+        raise ValueError(f"{name}: expected at least one number, not an empty array")
+    bad = np.argwhere(~np.isfinite(found))
+    if bad.size:
+        place = f"value {bad[0, 0]} is" if found.ndim == 1 else f"row {bad[0, 0]} has"
+        what = "NaN" if np.isnan(found[tuple(bad[0])]) else "an infinite number"
+        raise ValueError(f"{name}: {place} {what}; expected finite numbers")
     if scalar_first is None:
         return found
     if (np.abs(np.linalg.norm(found, axis=-1) - 1) > _UNIT).any():
