@@ -399,8 +399,25 @@ def test_motions_in_si_can_be_copied_and_show_themselves(motion):
 def test_a_text_with_a_unit_beside_a_bare_number_is_refused():
     same = sc.Body.from_metres(outer_diameter="16 mm", inner_diameter=0, length="96mm")
     assert same.ell == sc.Body.from_metres(outer_diameter=16, length=96).ell
-    with pytest.raises(ValueError, match="^length = 96: expected a unit, as for the other lengths: '96 mm'"):
+    with pytest.raises(
+        ValueError, match="^length = 96: expected a text with a unit; .* all lengths, or to none$"
+    ):
         sc.Body.from_metres(outer_diameter="16 mm", length=96)
+
+
+@pytest.mark.parametrize(
+    ("text", "like"),
+    [
+        ("1,5 mm", r": '1\.5 mm'"),
+        ("1,5e-3m", r": '1\.5e-3m'"),
+        ("-0,5mm", r": '-0\.5mm'"),
+        ("1,500 mm", ""),
+        ("1,5.2mm", ""),
+    ],
+)
+def test_a_decimal_comma_is_refused_with_the_point_unless_it_may_separate_thousands(text, like):
+    with pytest.raises(ValueError, match=f"^length: '{text}': write a decimal point, not a comma{like}$"):
+        sc.measured(outer_diameter="16 mm", length=text)
 
 
 def test_a_wall_is_half_the_difference_of_the_diameters():
@@ -410,6 +427,9 @@ def test_a_wall_is_half_the_difference_of_the_diameters():
     for wrong in (0.0101, -1e-3, float("nan")):
         with pytest.raises(ValueError, match="^wall = "):
             sc.measured(outer_diameter=0.02, wall=wrong, length=0.06)
+    for wrong in (math.nan, -0.02, 0.0, math.inf):
+        with pytest.raises(ValueError, match=f"^outer_diameter = {wrong}: expected outer_diameter > 0$"):
+            sc.measured(outer_diameter=wrong, wall=1.5e-3, length=0.06)
     with pytest.raises(TypeError, match="^inner_diameter, wall: give one"):
         sc.measured(outer_diameter=0.02, inner_diameter=0.017, wall=1e-3, length=0.06)
 
@@ -493,7 +513,7 @@ def test_a_size_that_nobody_gave_is_asked_for():
 def test_the_lengths_of_a_stone_may_be_texts_and_all_of_them_are():
     assert sc.Ellipsoid.egg("22mm", "28.5mm").scale.radius == 0.0285
     assert sc.Ellipsoid.uniform(("3cm", "2cm", "1cm"), mass="15g").scale == sc.Scale(0.03, 0.015)
-    with pytest.raises(ValueError, match=r"^half_length = 28.5: expected a unit"):
+    with pytest.raises(ValueError, match=r"^half_length = 28.5: expected a text with a unit"):
         sc.Ellipsoid.egg("22mm", 28.5)
     with pytest.raises(TypeError, match=r"^axes\[1\]: expected real numbers"):
         sc.Ellipsoid.uniform(("3cm", "wide", "1cm"))

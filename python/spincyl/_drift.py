@@ -179,9 +179,8 @@ class Drift:
             found = [float(value) for value in out[0]]
             if np.isnan(found[0]) and name == "theta":
                 low, high = sorted((float(np.asarray(self.start.theta)), self.ends_at_theta))
-                raise ValueError(
-                    f"theta = {x:.10g}: expected an inclination of the drift, from {low:.6g} to {high:.6g}"
-                )
+                told = f"expected an inclination of the drift, from {low:.6g} to {high:.6g}"
+                raise ValueError(f"theta = {asked[0]:.10g}: {told}")
             if np.isnan(found[0]) and question == 1:
                 raise ValueError(f"t = {x!r}: expected 0 <= t <= stops_at = {self.stops_at!r}")
             return found

@@ -363,10 +363,10 @@ class Ellipsoid(Sized):
 
     def _spin(self, spin: Reals | None, hertz: Reals | None) -> Reals:
         """The spin in sqrt(g/a), given directly or in turns per second."""
+        if (spin is None) == (hertz is None):
+            raise TypeError("spin, hertz: give one of them; hertz= needs a measured stone")
         if hertz is None:
             return doubles(reals("spin", spin))
-        if spin is not None:
-            raise TypeError("spin, hertz: give one of them")
         if self.scale is None:
             raise ValueError("hertz: needs a measured stone, as from in_metres(); or give spin=")
         return doubles(reals("hertz", turns_per_second("hertz", hertz))) / self.scale._units[3]

@@ -13,7 +13,7 @@ import numpy as np
 
 from spincyl._body import Body
 from spincyl._input.hints import helpful
-from spincyl._input.numbers import Floats, Reals, metres, reals, si, within
+from spincyl._input.numbers import Floats, Reals, metres, reals, refuse, si, within
 from spincyl._scale import Scale, unit
 
 if TYPE_CHECKING:
@@ -89,10 +89,12 @@ def measured(
     given = metres({"outer_diameter": outer_diameter, "inner_diameter": inner_diameter})
     given |= metres({"length": length, "fillet": fillet})
     if wall is not None:
-        thick = within("wall", si("wall", wall, "metre"), 0.0, given["outer_diameter"] / 2, "metres")
+        outer = given["outer_diameter"]
+        refuse("outer_diameter", outer, lambda x: ~(x > 0) | np.isinf(x), "expected outer_diameter > 0")
+        thick = within("wall", si("wall", wall, "metre"), 0.0, outer / 2, "metres")
         if given["inner_diameter"]:
             raise TypeError("inner_diameter, wall: give one of them")
-        given["inner_diameter"] = given["outer_diameter"] - 2 * thick
+        given["inner_diameter"] = outer - 2 * thick
     body = Body.from_metres(**given)
     within("outer_diameter", given["outer_diameter"], 2e-100, 2e100, "metres")
     return body.in_metres(mass, gravity=gravity)

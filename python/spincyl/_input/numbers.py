@@ -157,7 +157,9 @@ def alike(measures: dict[str, Any]) -> None:
     bare = [(name, x) for name, x in measures.items() if isinstance(x, Real) and x != 0]
     if bare and any(isinstance(x, str) for x in measures.values()):
         name, x = bare[0]
-        raise ValueError(f"{name} = {x!r}: expected a unit, as for the other lengths: '{x!r} mm'")
+        raise ValueError(
+            f"{name} = {x!r}: expected a text with a unit; give units to all lengths, or to none"
+        )
 
 
 def turns_per_second(name: str, value: Reals) -> Reals:

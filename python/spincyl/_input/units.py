@@ -7,6 +7,8 @@ from collections.abc import Callable, Sequence
 from decimal import Decimal
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?", re.I)
+#: A decimal comma; the group matches if the comma may separate thousands.
+_COMMA = re.compile(r",(?=\d)(\d{3}(?!\d)|\d+[.,])?")
 _PLAIN_NEGATIVE = re.compile(r"-\d+|-\d*\.\d+")
 # factors to SI by quantity and unit; the first unit is that of a number without one
 _UNITS = {
@@ -77,7 +79,12 @@ def _parts(text: str) -> tuple[str, str]:
     found = _NUMBER.match(text.strip())
     if found is None:
         raise ArgumentTypeError(f"{text!r}: expected a number")
-    return found.group(), text.strip()[found.end() :].strip()
+    unit = text.strip()[found.end() :].strip()
+    comma = _COMMA.match(unit)
+    if comma:
+        like = "" if comma[1] else f": {text.replace(',', '.')!r}"
+        raise ArgumentTypeError(f"{text!r}: write a decimal point, not a comma{like}")
+    return found.group(), unit
 
 
 def has_unit(text: str) -> bool:
