@@ -35,11 +35,21 @@ def vectors(name: str, value: Reals, *last: int) -> Reals:
 
 
 class Rocking(NamedTuple):
-    """The two rocking modes of a stone that spins upright, slower mode first, in sqrt(g/a)."""
+    """The two rocking modes of a stone that spins upright, slower mode first, in sqrt(g/a).
 
-    growth: Floats  #: (..., 2) growth rate of each mode; negative if it decays
-    frequency: Floats  #: (..., 2) angular frequency; 0 if the mode departs from upright without rocking
-    eigenvalues: NDArray[np.complex128]  #: (..., 4) eigenvalues of the linearised motion
+    Attributes
+    ----------
+    growth : ndarray, (..., 2)
+        Growth rate of each mode; negative if it decays.
+    frequency : ndarray, (..., 2)
+        Angular frequency; 0 if the mode departs from upright without rocking.
+    eigenvalues : ndarray of complex, (..., 4)
+        Eigenvalues of the linearised motion.
+    """
+
+    growth: Floats
+    frequency: Floats
+    eigenvalues: NDArray[np.complex128]
 
 
 @compared

@@ -7,17 +7,39 @@ from spincyl._state import State
 
 
 class Ending(IntEnum):
-    """How a motion ended: the status of a `Motion`."""
+    """How a motion ended: the status of a `Motion`.
 
-    DONE = 0  #: the last time was reached
-    FACE = 1  #: the face landed on the table, theta = 0 or pi
-    SIDE = 2  #: the other rim landed, theta = pi/2 (not for a thin disk, ell = 0)
-    LIFT_OFF = 3  #: the normal force vanished
-    SLIP = 4  #: rolling needed more friction than mu N
-    PAINLEVE = 6  #: no contact force, or more than one, obeys the law of friction
-    STOPS = 7  #: with losses: the contact point stopped; the body may still spin about the vertical
-    LANDING = 9  #: a landing on both rims has no outcome, or more than one, that obeys the law of friction
-    BOUNDED = 8  #: given up: slipping and rolling alternate too often, or the motion hardly advances
+    Attributes
+    ----------
+    DONE
+        The last time was reached.
+    FACE
+        The face landed on the table, theta = 0 or pi.
+    SIDE
+        The other rim landed, theta = pi/2 (not for a thin disk, ell = 0).
+    LIFT_OFF
+        The normal force vanished.
+    SLIP
+        Rolling needed more friction than mu N.
+    PAINLEVE
+        No contact force, or more than one, obeys the law of friction.
+    STOPS
+        With losses: the contact point stopped; the body may still spin about the vertical.
+    LANDING
+        A landing on both rims has no outcome, or more than one, that obeys the law of friction.
+    BOUNDED
+        Given up: slipping and rolling alternate too often, or the motion hardly advances.
+    """
+
+    DONE = 0
+    FACE = 1
+    SIDE = 2
+    LIFT_OFF = 3
+    SLIP = 4
+    PAINLEVE = 6
+    STOPS = 7
+    LANDING = 9
+    BOUNDED = 8
 
     def __str__(self) -> str:
         return self.name
@@ -44,7 +66,14 @@ class ErrorWarning(UserWarning):
 class Event(NamedTuple):
     """The event that ended a motion: its ending, its time, and the state at that time.
 
-    The time is in sqrt(R/g), in seconds for a measured body; the state is in natural units.
+    Attributes
+    ----------
+    ending : Ending
+        How the motion ended.
+    time : float
+        Time in sqrt(R/g), for a measured body in seconds.
+    state : State
+        State at that time, in natural units.
     """
 
     ending: Ending

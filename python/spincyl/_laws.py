@@ -18,15 +18,33 @@ _ROLLS = "expected a state without slip, as dataclasses.replace(state, slip=None
 
 
 class Region(IntEnum):
-    """Existence and stability of a steady state with the centre at rest, as a code."""
+    """Existence and stability of a steady state with the centre at rest, as a code.
 
-    INVALID = 0  #: outside the domain: theta outside (0, pi/2], or an impossible body
-    FORBIDDEN = 1  #: no steady state, between theta_balance and theta_limit
-    UNDETERMINED = 2  #: too close to one of these for double precision to decide
-    UNSTABLE = 4  #: unstable on a smooth table and in rolling
-    STABLE_ROLLING = 5  #: unstable on a smooth table, stable in rolling
-    STABLE_SMOOTH = 6  #: stable on a smooth table, unstable in rolling
-    STABLE = 7  #: stable on a smooth table and in rolling
+    Attributes
+    ----------
+    INVALID
+        Outside the domain: theta outside (0, pi/2], or an impossible body.
+    FORBIDDEN
+        No steady state, between theta_balance and theta_limit.
+    UNDETERMINED
+        Too close to one of these for double precision to decide.
+    UNSTABLE
+        Unstable on a smooth table and in rolling.
+    STABLE_ROLLING
+        Unstable on a smooth table, stable in rolling.
+    STABLE_SMOOTH
+        Stable on a smooth table, unstable in rolling.
+    STABLE
+        Stable on a smooth table and in rolling.
+    """
+
+    INVALID = 0
+    FORBIDDEN = 1
+    UNDETERMINED = 2
+    UNSTABLE = 4
+    STABLE_ROLLING = 5
+    STABLE_SMOOTH = 6
+    STABLE = 7
 
 
 def _say_why(body: "Laws", state: State, kappa: Result) -> None:

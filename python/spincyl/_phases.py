@@ -22,30 +22,58 @@ HITS: tuple[Hit, ...] = ("slips", "sticks", "slips on", "smooth", "both rims")
 
 
 class Phase(NamedTuple):
-    """A phase of a motion, such as slipping or rolling: the time, kind and state with which it begins."""
+    """A phase of a motion, such as slipping or rolling: the time, kind and state with which it begins.
 
-    time: float  #: sqrt(R/g), in seconds for a measured body
-    kind: Kind  #: "slipping", "rolling", "flying"; on both rims "lying", "pivoting", "rolling on its side"
-    state: State  #: with its slip, in natural units
+    Attributes
+    ----------
+    time : float
+        Time at which the phase begins, in sqrt(R/g), for a measured body in seconds.
+    kind : str
+        "slipping", "rolling", "flying"; on both rims "lying", "pivoting", "rolling on its side".
+    state : State
+        State at that time, with its slip, in natural units.
+    """
+
+    time: float
+    kind: Kind
+    state: State
 
     def __repr__(self) -> str:
         return f"({self.time:.12g}, {self.kind!r})"
 
 
 class Impact(NamedTuple):
-    """An impact of a rim on the table; for a measured body time, impulse and energy are in SI."""
+    """An impact of a rim on the table; for a measured body time, impulse and energy are in SI.
 
-    time: float  #: sqrt(R/g), or seconds
-    rim: Literal["first", "other"]  #: the rim to which theta of the initial state refers, or the other rim
-    #: motion of the contact point: "slips" to the end, "sticks", stops and "slips on", "smooth" (without
-    #: friction); or "both rims": the other rim lands without a bounce
+    Attributes
+    ----------
+    time : float
+        Time in sqrt(R/g) or s.
+    rim : str
+        "first", the rim to which theta of the initial state refers, or "other".
+    kind : str
+        Motion of the contact point: "slips" to the end, "sticks", stops and "slips on", "smooth" (without
+        friction); or "both rims": the other rim lands without a bounce.
+    impulse : tuple of float
+        Impulse along e_h, along e2 and upward, in M sqrt(g R) or N s; for both rims together.
+    lost : float
+        Energy lost, in M g R or J.
+    before : State
+        State before the impact, whose theta refers to the rim that lands, with its slip and `lift` < 0.
+    after : State
+        State after the impact.
+    stays : bool
+        Whether the impact ends a sequence of ever smaller bounces, after which the rim stays on the table.
+    """
+
+    time: float
+    rim: Literal["first", "other"]
     kind: Hit
-    #: along e_h, along e2, upward, in M sqrt(g R) or N s; of both rims together
     impulse: tuple[float, float, float]
-    lost: float  #: energy lost, in M g R or J
-    before: State  #: state before, whose theta refers to the rim that lands, with its slip and `lift` < 0
-    after: State  #: state after
-    stays: bool  #: whether it ends a sequence of ever smaller bounces, after which the rim stays on the table
+    lost: float
+    before: State
+    after: State
+    stays: bool
 
 
 def impacts(found: Iterable[tuple[Any, ...]]) -> tuple[Impact, ...]:

@@ -19,17 +19,40 @@ class Swing(NamedTuple):
     """The nutation of a motion, as if no event ended the motion; the result of `swing`.
 
     In natural units; for a measured body in SI, times in s and lengths in m.
+
+    Attributes
+    ----------
+    period : float
+        Period of the nutation, in sqrt(R/g); infinite if the face lands.
+    theta_min : float
+        Least inclination, radians; 0 if the face lands.
+    theta_max : float
+        Greatest inclination, radians.
+    precession_per_period : float
+        Increase of phi in a period, radians; NaN without a period.
+    spin_per_period : float
+        Increase of psi in a period, radians.
+    drift : float
+        Displacement of the contact point in a period, in R.
+    drift_radius : float
+        Radius of the circle that passes through the contact points at whole periods, in R.
+    error : float
+        Estimated error of the period; NaN without a period.
+    scale : Scale or None
+        Scale of a measured body.
+    nutation : float
+        Angular frequency of the nutation, in sqrt(g/R) or rad/s.
     """
 
-    period: float  #: period of the nutation, in sqrt(R/g); infinite if the face lands
-    theta_min: float  #: least inclination, radians; 0 if the face lands
-    theta_max: float  #: greatest inclination, radians
-    precession_per_period: float  #: increase of phi in a period, radians; NaN without a period
-    spin_per_period: float  #: increase of psi in a period, radians
-    drift: float  #: displacement of the contact point in a period, in R
-    drift_radius: float  #: radius of the circle that passes through the contact points at whole periods, in R
-    error: float  #: estimated error of the period; NaN without a period
-    scale: Scale | None = None  #: scale of a measured body
+    period: float
+    theta_min: float
+    theta_max: float
+    precession_per_period: float
+    spin_per_period: float
+    drift: float
+    drift_radius: float
+    error: float
+    scale: Scale | None = None
 
     @property
     def nutation(self) -> float:

@@ -36,15 +36,30 @@ _HEIGHTS = {_SOLID: (4, 5), _BALL: (3, 2, 4), _WALL: (2, 3), _SHELL: (2, 1, 3), 
 
 @dataclass(frozen=True)
 class Part:
-    """A part of a body, as made by the functions of this module."""
+    """A part of a body, as made by the functions of this module.
 
-    name: str  #: name of the function that made the part, such as "cylinder"
-    form: int  #: code of the form
-    #: radii and heights in metres, from the lowest point of the part
+    Attributes
+    ----------
+    name : str
+        Name of the function that made the part, such as "cylinder".
+    form : int
+        Code of the form.
+    numbers : tuple of float
+        Radii and heights in metres, from the lowest point of the part.
+    amount : float
+        Mass in kg, or density.
+    dense : bool
+        Whether `amount` is a density.
+    at : float or None
+        Height of the lowest point in metres; None if the part stands on the one before.
+    """
+
+    name: str
+    form: int
     numbers: tuple[float, ...]
-    amount: float  #: mass in kg, or density
-    dense: bool  #: whether `amount` is a density
-    at: float | None  #: height of the lowest point in metres; None if the part stands on the one before
+    amount: float
+    dense: bool
+    at: float | None
 
     def raised(self, by: float) -> "Part":
         """Return the part with all heights increased by a length in metres."""

@@ -32,21 +32,55 @@ _WANDERS = 0.3  # radians: a direction that deviates more from uniform rotation 
 
 @compared
 class Filmed(NamedTuple):
-    """Steady state of a tube, measured in a film from above; returned by `from_above`."""
+    """Steady state of a tube, measured in a film from above; returned by `from_above`.
+
+    Method: ``report()``.
+
+    Attributes
+    ----------
+    body : Body
+        The tube.
+    scale : Scale
+        Size of the tube.
+    t : ndarray, (n,)
+        Times at which both ends were found, in seconds, ascending.
+    direction : ndarray, (n,)
+        Direction of the line from the second end to the first, in radians, unwrapped.
+    line : ndarray, (n,)
+        Length of this line, in metres.
+    hertz : float
+        Turns per second, positive for both senses of rotation.
+    hertz_err : float
+        Standard error of `hertz`.
+    rate : float
+        Reduced rate.
+    rate_err : float
+        Standard error of `rate`.
+    theta : float
+        Inclination, radians; NaN where the line is longer than the tube.
+    theta_err : float
+        Standard error of `theta`.
+    inclinations : ndarray, (k,)
+        Steady inclinations of the body at this rate, ascending.
+    unseen : int
+        Number of rows in which an end was not found.
+    predicted : float
+        Steady inclination at this rate that is nearest to the measured one; NaN if there is none.
+    """
 
     body: Body
     scale: Scale
-    t: Floats  #: (n,) seconds, ascending: the times at which both ends were found
-    direction: Floats  #: (n,) direction of the line from the second end to the first, radians, unwrapped
-    line: Floats  #: (n,) length of this line, metres
-    hertz: float  #: turns per second, positive for both senses of rotation
-    hertz_err: float  #: standard error of `hertz`
-    rate: float  #: reduced rate
+    t: Floats
+    direction: Floats
+    line: Floats
+    hertz: float
+    hertz_err: float
+    rate: float
     rate_err: float
-    theta: float  #: inclination, radians; NaN where the line is longer than the tube
+    theta: float
     theta_err: float
-    inclinations: Floats  #: (k,) steady inclinations of the body at this rate, ascending
-    unseen: int  #: number of rows in which an end was not found
+    inclinations: Floats
+    unseen: int
 
     @property
     def predicted(self) -> float:

@@ -23,26 +23,72 @@ if TYPE_CHECKING:
 
 @compared
 class Comparison(NamedTuple):
-    """Measured inclinations and rates compared with the steady states of a body; returned by `compare`."""
+    """Measured inclinations and rates compared with the steady states of a body; returned by `compare`.
+
+    Methods: ``report()`` and ``plot()``.
+
+    Attributes
+    ----------
+    body : Body
+        The body as built.
+    theta : ndarray, (n,)
+        Measured inclinations, radians, without missing points.
+    rate : ndarray, (n,)
+        Measured reduced rates.
+    theta_err : ndarray, (n,)
+        Standard errors of `theta`.
+    rate_err : ndarray, (n,)
+        Standard errors of `rate`.
+    residual : ndarray, (n,)
+        Measured rate minus that of the body; NaN in the forbidden band.
+    ratio : float
+        The inertia ratio I1/I3 that fits best.
+    ratio_err : float
+        Standard error of `ratio`.
+    expected : float
+        The ratio of the body as built.
+    chi2 : float
+        Sum of squares over the errors, per degree of freedom.
+    factor : float
+        Common factor of all measured rates, fitted if `common` was given.
+    factor_err : float
+        Standard error of `factor`; 0 if the factor was not fitted.
+    correlation : float
+        Correlation of ratio and factor; NaN if the factor was not fitted.
+    common : float
+        Standard error of the factor before the fit.
+    alone : float
+        Common factor of the rates that fits best with the ratio as built.
+    alone_err : float
+        Standard error of `alone`.
+    alone_chi2 : float
+        chi2 of this second fit, per degree of freedom.
+    unit : float
+        Turns per second of a reduced rate of 1; NaN unless `hertz` was given.
+    hertz, hertz_err : ndarray, (n,)
+        Measured turns per second and standard errors; NaN unless `hertz` was given.
+    fitted : Body
+        The body with the fitted ratio.
+    """
 
     body: Body
-    theta: Floats  #: (n,) measured inclinations, radians, without missing points
-    rate: Floats  #: (n,) measured reduced rates
-    theta_err: Floats  #: (n,) standard errors
+    theta: Floats
+    rate: Floats
+    theta_err: Floats
     rate_err: Floats
-    residual: Floats  #: (n,) measured rate minus that of the body; NaN in the forbidden band
-    ratio: float  #: the inertia ratio I1/I3 that fits best
-    ratio_err: float  #: its standard error
-    expected: float  #: the ratio of the body as built
-    chi2: float  #: sum of squares over the errors, per degree of freedom
-    factor: float = 1.0  #: common factor of all measured rates, fitted if `common` was given
-    factor_err: float = 0.0  #: its standard error; 0 if the factor was not fitted
-    correlation: float = math.nan  #: correlation of ratio and factor; NaN if the factor was not fitted
-    common: float = 0.0  #: standard error of the factor before the fit
-    alone: float = math.nan  #: common factor of the rates that fits best with the ratio as built
-    alone_err: float = math.nan  #: its standard error
-    alone_chi2: float = math.nan  #: chi2 of this second fit, per degree of freedom
-    unit: float = math.nan  #: turns per second of a reduced rate of 1; NaN unless `hertz` was given
+    residual: Floats
+    ratio: float
+    ratio_err: float
+    expected: float
+    chi2: float
+    factor: float = 1.0
+    factor_err: float = 0.0
+    correlation: float = math.nan
+    common: float = 0.0
+    alone: float = math.nan
+    alone_err: float = math.nan
+    alone_chi2: float = math.nan
+    unit: float = math.nan
 
     @property
     def hertz(self) -> Floats:

@@ -12,12 +12,24 @@ from spincyl._input.numbers import Floats
 
 
 class Line(NamedTuple):
-    """Power law of the time left, fitted in a log-log diagram: a quick, biased estimate."""
+    """Power law of the time left, fitted in a log-log diagram: a quick, biased estimate.
 
-    exponent: float  #: exponent of theta, or of the precession if theta was not measured
-    exponent_err: float  #: standard error from the scatter about the line, without the bias
-    stops_at: float  #: the stopping time that makes the line straightest
-    factor: float  #: value one unit of time before the end
+    Attributes
+    ----------
+    exponent : float
+        Exponent of theta, or of the precession if theta was not measured.
+    exponent_err : float
+        Standard error from the scatter about the line, without the bias.
+    stops_at : float
+        Stopping time that makes the line straightest.
+    factor : float
+        Value of the line one unit of time before the end.
+    """
+
+    exponent: float
+    exponent_err: float
+    stops_at: float
+    factor: float
 
 
 def line(t: Floats, y: Floats) -> Line | None:

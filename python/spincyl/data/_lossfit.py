@@ -25,25 +25,65 @@ APART = 6.0
 
 @compared
 class FittedLoss(NamedTuple):
-    """Fit of one law, or of the sum of two, to a spin-down; one of the results of `fit_losses`."""
+    """Fit of one law, or of the sum of two, to a spin-down; one of the results of `fit_losses`.
 
-    name: str  #: "DryContour", or "DryContour + AirLinear"
-    centre: str  #: "rest" or "rolling": the drift that was fitted
-    law: Any  #: the law, or the sum, with its fitted coefficients
-    coefficients: Floats  #: (1,) or (2,)
-    coefficient_errs: Floats  #: standard errors
-    theta: float  #: inclination at the first time
+    Attributes
+    ----------
+    name : str
+        "DryContour", or "DryContour + AirLinear".
+    centre : str
+        "rest" or "rolling": the drift that was fitted.
+    law : loss.Loss
+        The law, or the sum, with its fitted coefficients.
+    coefficients : ndarray, (1,) or (2,)
+        Coefficients of the law, or of the two laws of a sum, in natural units.
+    coefficient_errs : ndarray, (1,) or (2,)
+        Standard errors of the coefficients.
+    theta : float
+        Inclination at the first time, in radians.
+    theta_err : float
+        Standard error of `theta`.
+    rested : float
+        For rolling, inclination at which the centre was at rest, at the first time or before, in radians.
+    stops_at : float
+        Time of the measurement at which the drift ends, in the unit of `LossFit.t`; infinite if the drift
+        never ends.
+    stops_at_err : float
+        Standard error; NaN if the drift never ends.
+    correlation : float
+        Correlation of the coefficient with `stops_at` (with `theta` if infinite), or of the two coefficients.
+    residual : dict of ndarray
+        Measured minus fitted values, by "theta" and "precession".
+    chi2 : float
+        Sum of squares over the errors, per degree of freedom.
+    aic : float
+        Akaike's information criterion.
+    daic : float
+        AIC minus that of the best law, divided by chi2 of the best law if that exceeds 1.
+    drift : Drift
+        The fitted drift, from the first time on.
+    coefficient, coefficient_err : float
+        Coefficient of a single law and its standard error; ValueError for a sum.
+    coefficients_si, coefficient_errs_si : ndarray, (1,) or (2,)
+        Coefficients and standard errors in the units of `from_si`.
+    """
+
+    name: str
+    centre: str
+    law: Any
+    coefficients: Floats
+    coefficient_errs: Floats
+    theta: float
     theta_err: float
-    rested: float  #: for rolling, inclination at which the centre was at rest, at the first time or before
-    stops_at: float  #: time of the measurement at which the drift ends; infinite if it never does
-    stops_at_err: float  #: standard error; NaN if the drift never ends
-    #: correlation of the coefficient with `stops_at` (with `theta` if infinite), or of the two coefficients
+    rested: float
+    stops_at: float
+    stops_at_err: float
     correlation: float
-    residual: dict[str, Floats]  #: measured minus fitted values, by "theta" and "precession"
-    chi2: float  #: sum of squares over the errors, per degree of freedom
-    aic: float  #: Akaike's information criterion
-    daic: float  #: AIC minus that of the best law, divided by chi2 of the best law if that exceeds 1
-    drift: Any  #: the fitted drift, from the first time on
+    residual: dict[str, Floats]
+    chi2: float
+    aic: float
+    daic: float
+    drift: Any
 
     @property
     def coefficients_si(self) -> Floats:
@@ -75,7 +115,17 @@ class FittedLoss(NamedTuple):
 
 @compared
 class Refused(NamedTuple):
-    """A law that could not be fitted, and the reason."""
+    """A law that could not be fitted, and the reason.
+
+    Attributes
+    ----------
+    name : str
+        Name of the law, or of the sum.
+    centre : str
+        "rest" or "rolling": the drift.
+    why : str
+        The reason.
+    """
 
     name: str
     centre: str
@@ -84,20 +134,54 @@ class Refused(NamedTuple):
 
 @compared
 class LossFit(NamedTuple):
-    """A measured spin-down and the laws fitted to it, the best first; returned by `fit_losses`."""
+    """A measured spin-down and the laws fitted to it, the best first; returned by `fit_losses`.
+
+    Methods: ``of(law)``, ``table()``, ``report()`` and ``plot()``.
+
+    Attributes
+    ----------
+    body : Body
+        The body.
+    centre : str
+        Drifts that were fitted: "rest", "rolling" or, for both, "either".
+    t : ndarray, (n,)
+        Measured times, without missing points, in sqrt(R/g), for a measured body in seconds.
+    theta : ndarray or None, (n,)
+        Measured inclinations in radians; NaN where missing.
+    precession : ndarray or None, (n,)
+        Measured precession in sqrt(g/R), for a measured body in rad/s; NaN where missing.
+    t_err : ndarray, (n,)
+        Standard errors of the times; zero if they are exact.
+    theta_err : ndarray or None, (n,)
+        Standard errors of `theta`.
+    precession_err : ndarray or None, (n,)
+        Standard errors of `precession`.
+    estimated : tuple of str
+        Names, "theta" or "precession", of values with errors from the scatter.
+    fits : tuple of FittedLoss
+        The fitted laws by AIC, the best first.
+    line : Line or None
+        The log-log line: a quick, biased estimate; None if there is none.
+    refused : tuple of Refused
+        Laws that could not be fitted.
+    best : FittedLoss
+        The law with the least AIC, ``fits[0]``.
+    told_apart : bool
+        Whether every other fit is at least twenty times less likely than the best.
+    """
 
     body: Body
-    centre: str  #: drifts that were fitted: "rest", "rolling" or, for both, "either"
-    t: Floats  #: (n,) measured times, without missing points
-    theta: Floats | None  #: (n,) NaN where it was not measured
-    precession: Floats | None  #: (n,) NaN where it was not measured
-    t_err: Floats  #: (n,) standard errors of the times; zero if they are exact
+    centre: str
+    t: Floats
+    theta: Floats | None
+    precession: Floats | None
+    t_err: Floats
     theta_err: Floats | None
     precession_err: Floats | None
-    estimated: tuple[str, ...]  #: names, "theta" or "precession", of values with errors from the scatter
-    fits: tuple[FittedLoss, ...]  #: by AIC
-    line: Line | None  #: the log-log line: a quick, biased estimate; None if there is none
-    refused: tuple[Refused, ...] = ()  #: laws that could not be fitted
+    estimated: tuple[str, ...]
+    fits: tuple[FittedLoss, ...]
+    line: Line | None
+    refused: tuple[Refused, ...] = ()
 
     @property
     def best(self) -> FittedLoss:

@@ -26,15 +26,35 @@ _MIXED = 3.0  #: A larger ratio of the times causes a warning.
 
 @compared
 class FittedStop(NamedTuple):
-    """Coefficient of loss for one of the two drifts; from `fit_stop`."""
+    """Coefficient of loss for one of the two drifts; from `fit_stop`.
 
-    centre: str  #: "rest" or "rolling"
-    law: Any  #: the law with this coefficient
-    coefficient: float  #: in natural units, as in the law
-    coefficient_err: float  #: its standard error
-    by_times: float  #: part of the standard error that is due to the times
-    by_angle: float  #: part of the standard error that is due to the first inclination
-    drift: Drift  #: from the first inclination to the end, in the mean of the times
+    Attributes
+    ----------
+    centre : str
+        "rest" or "rolling".
+    law : loss.Loss
+        The law with this coefficient.
+    coefficient : float
+        Coefficient in natural units, as in the law.
+    coefficient_err : float
+        Standard error of `coefficient`.
+    by_times : float
+        Part of the standard error that is due to the times.
+    by_angle : float
+        Part of the standard error that is due to the first inclination.
+    drift : Drift
+        Drift from the first inclination to the end, in the mean of the times.
+    coefficient_si, coefficient_err_si : float
+        Coefficient and standard error in the unit of `from_si`.
+    """
+
+    centre: str
+    law: Any
+    coefficient: float
+    coefficient_err: float
+    by_times: float
+    by_angle: float
+    drift: Drift
 
     @property
     def coefficient_si(self) -> float:
@@ -59,17 +79,41 @@ class FittedStop(NamedTuple):
 
 @compared
 class StopFit(NamedTuple):
-    """Measured times until a body stops, and the coefficient of loss; returned by `fit_stop`."""
+    """Measured times until a body stops, and the coefficient of loss; returned by `fit_stop`.
+
+    Methods: ``of(centre)`` and ``report()``.
+
+    Attributes
+    ----------
+    body : Body
+        The measured body.
+    name : str
+        Name of the law.
+    theta : float
+        First inclination, in radians.
+    theta_err : float
+        Standard error of `theta`.
+    seconds : ndarray, (n,)
+        Measured times in seconds, without missing ones.
+    stops_at : float
+        Mean of the times, in seconds.
+    stops_at_err : float
+        Standard error of the mean.
+    fits : tuple of FittedStop
+        Fits for the drift with the centre at rest, the rolling drift, or both.
+    refused : tuple of Refused
+        Drifts that could not be fitted.
+    """
 
     body: Body
-    name: str  #: name of the law
-    theta: float  #: first inclination, radians
-    theta_err: float  #: its standard error
-    seconds: Floats  #: (n,) measured times, without missing ones
-    stops_at: float  #: mean of the times
-    stops_at_err: float  #: standard error of the mean
-    fits: tuple[FittedStop, ...]  #: for the drift with the centre at rest, the rolling drift, or both
-    refused: tuple[Refused, ...]  #: a drift that could not be fitted
+    name: str
+    theta: float
+    theta_err: float
+    seconds: Floats
+    stops_at: float
+    stops_at_err: float
+    fits: tuple[FittedStop, ...]
+    refused: tuple[Refused, ...]
 
     def of(self, centre: str) -> FittedStop:
         """Return the fit for the centre at "rest" or "rolling"; KeyError with the reason if there is none."""

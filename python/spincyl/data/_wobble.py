@@ -31,11 +31,21 @@ _BIAS = 1e-3  # relative systematic error of a window without noise
 
 @compared
 class Wobble(NamedTuple):
-    """Turns per second of a contact point over time; returned by `wobble`."""
+    """Turns per second of a contact point over time; returned by `wobble`.
 
-    t: Floats  #: (n,) seconds, the middles of windows of eight turns that do not overlap
-    turns: Floats  #: (n,) turns per second, Omega/(2 pi)
-    turns_err: Floats  #: (n,) standard errors
+    Attributes
+    ----------
+    t : ndarray, (n,)
+        Times in seconds: the middles of windows of eight turns that do not overlap.
+    turns : ndarray, (n,)
+        Turns per second, Omega/(2 pi).
+    turns_err : ndarray, (n,)
+        Standard errors of `turns`.
+    """
+
+    t: Floats
+    turns: Floats
+    turns_err: Floats
 
     def __repr__(self) -> str:
         return (

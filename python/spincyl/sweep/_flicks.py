@@ -25,14 +25,29 @@ class Outcome(IntEnum):
     Without a restitution the motion ends where the other rim lands (`LIES_DOWN`) or where the tube leaves the
     table (`LIFTS_OFF`). With a restitution it continues to the last time, and the outcome says how the tube
     then moves. The `status` of the sweep gives the reason for `NONE`.
+
+    Attributes
+    ----------
+    NONE
+        None of these; see `status`.
+    SETTLES
+        At the last time the tube goes round on one rim.
+    LIES_DOWN
+        The other rim lands, or does not rise.
+    LIFTS_OFF
+        The normal force vanishes; with a restitution the tube is in the air at the last time.
+    HOPS_AND_SETTLES
+        The tube hops, and then goes round on one rim.
+    HOPS_AND_LIES
+        The tube hops, and then lies on its side.
     """
 
-    NONE = 0  #: none of these; see `status`
-    SETTLES = 1  #: at the last time the tube goes round on one rim
-    LIES_DOWN = 2  #: the other rim lands, or does not rise
-    LIFTS_OFF = 3  #: the normal force vanishes; with a restitution the tube is in the air at the last time
-    HOPS_AND_SETTLES = 4  #: the tube hops, and then goes round on one rim
-    HOPS_AND_LIES = 5  #: the tube hops, and then lies on its side
+    NONE = 0
+    SETTLES = 1
+    LIES_DOWN = 2
+    LIFTS_OFF = 3
+    HOPS_AND_SETTLES = 4
+    HOPS_AND_LIES = 5
 
 
 _OUTCOMES = np.zeros(len(Status), np.uint8)

@@ -11,18 +11,42 @@ from spincyl.sweep._common import many_blocks
 
 
 class Status(IntEnum):
-    """How a motion of a sweep ended."""
+    """How a motion of a sweep ended.
 
-    DONE = 0  #: the last time was reached
-    FACE = 1  #: the face landed on the table
-    SIDE = 2  #: the other rim landed
-    LIFT_OFF = 3  #: the normal force vanished
-    SLIP = 4  #: rolling needed more friction than mu N
-    INVALID = 5  #: NaN: an invalid body, state or coefficient, or too long a step
-    PAINLEVE = 6  #: no contact force, or more than one, obeys the law of friction
-    STOPS = 7  #: with losses: the contact point stopped; the body may still spin about the vertical
-    LANDING = 9  #: a landing on both rims has no outcome, or more than one, that obeys the law of friction
-    BOUNDED = 8  #: NaN: given up, since phases alternate too often, or the motion hardly advances
+    Attributes
+    ----------
+    DONE
+        The last time was reached.
+    FACE
+        The face landed on the table.
+    SIDE
+        The other rim landed.
+    LIFT_OFF
+        The normal force vanished.
+    SLIP
+        Rolling needed more friction than mu N.
+    INVALID
+        Invalid body, state or coefficient, or too long a step; the results are NaN.
+    PAINLEVE
+        No contact force, or more than one, obeys the law of friction.
+    STOPS
+        With losses: the contact point stopped; the body may still spin about the vertical.
+    LANDING
+        A landing on both rims has no outcome, or more than one, that obeys the law of friction.
+    BOUNDED
+        Given up, since phases alternate too often, or the motion hardly advances; the results are NaN.
+    """
+
+    DONE = 0
+    FACE = 1
+    SIDE = 2
+    LIFT_OFF = 3
+    SLIP = 4
+    INVALID = 5
+    PAINLEVE = 6
+    STOPS = 7
+    LANDING = 9
+    BOUNDED = 8
 
 
 def flags(codes: type[IntEnum]) -> dict[str, object]:
