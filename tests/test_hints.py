@@ -1,5 +1,6 @@
 """Names that are not there: the error names the function and says what there is instead."""
 
+import dataclasses
 import inspect
 import pickle
 import re
@@ -65,6 +66,39 @@ def test_a_name_that_is_not_there_says_what_is(of, name, told):
     with pytest.raises(AttributeError, match=f"has no attribute '{name}': .*{told}"):
         getattr(of, name)
     assert not hasattr(of, "_nothing") and not hasattr(BODY, "cone")
+
+
+@pytest.mark.parametrize("name", ["still", "still_symbols", "symbols"])
+def test_still_symbols_are_found_under_their_name(name):
+    for of in (BODY, STATE):
+        with pytest.raises(AttributeError, match=f"has no attribute '{name}': contact_radius of a state is"):
+            getattr(of, name)
+    assert not hasattr(STATE, "stil") and not hasattr(STATE, "__len__")
+    with pytest.raises(AttributeError, match="^critical_hertz: needs a measured body"):
+        BODY.critical_hertz
+
+
+@pytest.mark.parametrize(
+    "family",
+    [
+        sc.roll(BODY, STATE.kicked(0.05), [0.0, 1.0]).states,
+        sc.State([1.2, 1.3], [0.1, 0.2], 0.0, 0.3, slip=([0.1, 0.2], [0.0, 0.3])),
+        sc.Body.tube([2.0, 2.5], bore=[0.2, 0.3]),
+    ],
+    ids=["states", "slip", "bodies"],
+)
+def test_the_error_about_an_index_says_how_to_take_one_of_many(family):
+    with pytest.raises(TypeError, match="is not subscriptable: index its fields, as in ") as caught:
+        family[1]
+    call = str(caught.value).split(" as in ")[1]
+    name = type(family).__name__.lower()
+    one = eval(call, {"dataclasses": dataclasses, name: family})
+    assert all(np.ndim(x) == 0 for x in one._numbers)
+    assert one.theta == family.theta[1] if name == "state" else one.ell == 2.5 and one.bore == 0.3
+    with pytest.raises(TypeError, match=r"theta\[i\]|ell\[i\]"):
+        family[:1]
+    with pytest.raises(TypeError, match="^'(State|Body)' object is not subscriptable$"):
+        one[0]
 
 
 def test_a_can_that_is_thrown_says_how_it_goes_on_with_two_rims():

@@ -7,6 +7,7 @@ import numpy as np
 
 from spincyl import _core
 from spincyl._input.equality import compared
+from spincyl._input.hints import Hinting
 from spincyl._input.numbers import (
     Reals,
     Result,
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
 
 @compared
 @dataclass(frozen=True, eq=False, repr=False)
-class State:
+class State(Hinting):
     """Inclination and angular velocity of a body, in natural units, also for a measured body.
 
     The axes follow the inclination, not the spin: e3 is the symmetry axis, e2 is horizontal, and the vertical

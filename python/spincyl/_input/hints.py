@@ -2,16 +2,23 @@
 
 import difflib
 from collections.abc import Callable, Iterable
+from dataclasses import fields
 from functools import wraps
 from inspect import signature
-from typing import Any, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 _Given = ParamSpec("_Given")
 _Found = TypeVar("_Found")
 _FEW = 24  #: More names than these are not listed.
 _LEVEL = "only a flat and level table is modelled"
+#: Proposals for attributes of bodies and states.
+_STILL = dict.fromkeys(
+    ("still", "still_symbols", "symbols"),
+    "contact_radius of a state is the number of still symbols in one turn, if the centre rests",
+)
 #: Proposals for names that the library does not have.
 _INSTEAD = {
+    **_STILL,
     **dict.fromkeys(("slope", "incline", "tilt", "bowl", "concave"), _LEVEL),
     "height": "give length= for the height of a body; sc.dropped(body, height, theta) starts in the air",
     **dict.fromkeys(("thickness", "width"), "give length= for the thickness of a disk"),
@@ -67,3 +74,32 @@ class Named(type):
     def __getattr__(cls, name: str) -> Any:
         more = "" if name.startswith("_") else instead(name, dir(cls))
         raise AttributeError(f"type object {cls.__name__!r} has no attribute {name!r}{more}")
+
+
+class Hinting:
+    """Base of bodies and states: the error about a missing attribute or index says what there is instead."""
+
+    if not TYPE_CHECKING:  # type checkers know that there is neither
+
+        def __getattr__(self, name: str) -> Any:
+            kind = type(self)
+            if any(
+                name in vars(base) for base in kind.__mro__
+            ):  # a property with an AttributeError of its own
+                return object.__getattribute__(self, name)
+            more = f": {_STILL[name]}" if name in _STILL else ""
+            told = f"{kind.__name__!r} object has no attribute {name!r}{more}"
+            raise AttributeError(told, name=name, obj=self)
+
+        def __getitem__(self, index: Any) -> Any:
+            kind, at = type(self).__name__, index if isinstance(index, int) else "i"
+            own, parts = kind.lower(), []
+            for name, value in ((x.name, getattr(self, x.name)) for x in fields(self)):
+                if isinstance(value, tuple) and any(getattr(one, "ndim", 0) for one in value):
+                    pair = ", ".join(f"{own}.{name}[{k}][{at}]" for k in range(len(value)))
+                    parts.append(f"{name}=({pair})")
+                elif getattr(value, "ndim", 0):
+                    parts.append(f"{name}={own}.{name}[{at}]")
+            how = f"dataclasses.replace({own}, {', '.join(parts)})"
+            more = f": index its fields, as in {how}" if parts else ""
+            raise TypeError(f"{kind!r} object is not subscriptable{more}")
