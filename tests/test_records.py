@@ -185,9 +185,11 @@ def test_records_of_another_sweep_are_no_ones_but_its_own(store, tmp_path):
     before = files(tmp_path)
     shutil.rmtree(beside(store))
     shutil.move(beside(tmp_path / "other.zarr"), beside(store))
-    with pytest.raises(ValueError, match=r"copy\.zarr\.sweep belongs to another sweep: ell is content"):
+    with pytest.raises(
+        ValueError, match=r"copy\.zarr\.sweep: this folder has the marks of another sweep \(ell differs\)"
+    ):
         sc.sweep.save(lazy(), store)
-    with pytest.raises(ValueError, match=r"copy\.zarr belongs to another sweep: ell is content"):
+    with pytest.raises(ValueError, match=r"copy\.zarr: this store holds another sweep \(ell differs\)"):
         sc.sweep.save(lazy(ELL + 1), store)
     shutil.move(beside(store), beside(tmp_path / "other.zarr"))
     assert all(file.read_bytes() == raw for file, raw in before.items() if file.exists())
@@ -213,7 +215,9 @@ def test_a_sweep_that_was_changed_by_hand_is_another_one(store):
         (lazy().astype("float32"), "variables"),
     ):
         changed.attrs = lazy().attrs
-        with pytest.raises(ValueError, match=f"belongs to another sweep: {what} is .* there, .* here"):
+        with pytest.raises(
+            ValueError, match=rf"holds another sweep \({what} is .* there, .* here\); use another path"
+        ):
             sc.sweep.save(changed, store)
 
 

@@ -222,7 +222,8 @@ def test_p3_a_full_disk_leaves_what_can_go_on(tmp_path):
 def test_p4_another_sweep_is_refused_by_its_first_difference(tmp_path, monkeypatch):
     store = tmp_path / "map.zarr"
     sc.sweep.save(lazy(), store)
-    with pytest.raises(ValueError, match="ell is content .* there"):
+    said = r"map.zarr: this store holds another sweep \(ell differs\); use another path, or delete the store$"
+    with pytest.raises(ValueError, match=said):
         sc.sweep.save(lazy(top=2.9), store)
     with pytest.raises(ValueError, match="want is .'rate', 'region'. there, .'rate',. here"):
         sc.sweep.save(lazy(want=("rate",)), store)
@@ -231,6 +232,22 @@ def test_p4_another_sweep_is_refused_by_its_first_difference(tmp_path, monkeypat
         sc.sweep.save(lazy(), store)
     with pytest.raises(TypeError, match="expected a lazy Dataset"):
         sc.sweep.save(xr.Dataset(), store)
+
+
+def test_a_sweep_in_memory_is_written_by_xarray_and_its_inputs_come_back(tmp_path):
+    body = sc.Body.solid(np.array([2.0, 2.5]))
+    motions = sc.sweep.roll(body, body.steady(1.3).kicked(0.05), [0.0, 1.0])
+    told = r"^result: expected a lazy .* in memory: result.to_zarr\(path\) writes it"
+    with pytest.raises(TypeError, match=f"{told}, and sweep.inputs makes its arguments again$"):
+        sc.sweep.save(motions, tmp_path / "motions.zarr")
+    motions.to_zarr(tmp_path / "motions.zarr", consolidated=False)
+    read = xr.open_zarr(tmp_path / "motions.zarr", consolidated=False).load()
+    assert sc.sweep.roll(**sc.sweep.inputs(read)).equals(motions)
+    for eager in (lazy().compute(), sc.sweep.portrait([1.2, 1.3], [2.0, 2.5])):
+        with pytest.raises(TypeError, match=f"{told}$"):
+            sc.sweep.save(eager, tmp_path / "map.zarr")
+        eager.to_zarr(tmp_path / "map.zarr", mode="w", consolidated=False)
+        assert xr.open_zarr(tmp_path / "map.zarr", consolidated=False).equals(eager)
 
 
 JOB = """

@@ -11,6 +11,9 @@ import numpy as np
 
 from spincyl._scale import Scale, si_of
 
+#: Begin of the hash of an array, or of another input, in the record of a sweep.
+CONTENT = "content "
+
 
 def is_lazy(*values: object) -> bool:
     """Whether any of these is backed by dask."""
@@ -83,4 +86,4 @@ def signature(job: str, inputs: dict[str, object], **parameters: object) -> dict
 
     told = {"spincyl": version("spincyl"), "job": job}
     told |= {name: repr(value) for name, value in parameters.items()}
-    return told | {name: f"content {tokenize(value)}" for name, value in inputs.items()}
+    return told | {name: f"{CONTENT}{tokenize(value)}" for name, value in inputs.items()}

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from spincyl._input.files import path_of, replaced
+from spincyl.sweep._common import CONTENT
 
 #: Names of the record in each array's folder, where zarr ignores it, and of its copy in the folder of marks.
 RECORD, BESIDE = "spincyl.json", "job.json"
@@ -107,7 +108,8 @@ def same(store: Store, record: Record) -> Record | None:
         if _differs(there, record) is None:
             return there
     if found:
-        raise ValueError(f"{store.said} belongs to another sweep: {_differs(found[0], record)}")
+        other = f"this store holds another sweep ({_differs(found[0], record)})"
+        raise ValueError(f"{store.said}: {other}; use another path, or delete the store")
     return None
 
 
@@ -124,9 +126,8 @@ def beside(store: Store, record: Record) -> None:
     there = _whole(store.marks / BESIDE)
     if there is not None:
         if (other := _differs(there, record)) is not None:
-            raise ValueError(
-                f"{store.marks} belongs to another sweep: {other}; remove it if the store is gone"
-            )
+            holds = f"this folder has the marks of another sweep ({other})"
+            raise ValueError(f"{store.marks}: {holds}; use another path, or delete the folder")
         return
     try:
         entries = sorted(os.scandir(store.marks), key=lambda entry: entry.name)
@@ -156,8 +157,9 @@ def _differs(there: Record, here: Record) -> str | None:
     ]
     pairs += [(name, there.get(name), here[name]) for name in here if name != "job"]
     for name, old, new in pairs:
-        if old != new:
-            return f"{name} is {old} there, {new} here"
+        if old != new:  # of arrays there are only hashes
+            hashes = all(str(x).startswith(CONTENT) for x in (old, new))
+            return f"{name} differs" if hashes else f"{name} is {old} there, {new} here"
     return None
 
 

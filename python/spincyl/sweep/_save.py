@@ -57,10 +57,11 @@ def save(
     Raises
     ------
     TypeError
-        If `result` is not a lazy result of this module.
+        If `result` is not a lazy result of this module. A result in memory needs no `save`:
+        ``result.to_zarr(path)`` writes it.
     ValueError
-        If the store at `path` or its ".sweep" belongs to another sweep or another version; the message names
-        the first difference. If all records in the store are damaged. If `path` has no name of its own, such
+        If the store at `path` or its ".sweep" holds another sweep, or one of another version; the message
+        names the first difference. If all records in the store are damaged. If `path` has no name of its own, such
         as ".".
     OSError
         If a file cannot be written; the message has the path. What has been written stays valid, and a later
@@ -94,10 +95,14 @@ def save(
     """
     xr, dask = extra("xarray", "sweep"), extra("dask", "sweep")
     extra("zarr", "sweep")
-    if not (isinstance(result, xr.Dataset) and isinstance(result.attrs.get("spincyl_sweep"), dict)) or all(
-        variable.chunks is None for variable in result.data_vars.values()
-    ):
-        raise TypeError("result: expected a lazy Dataset of spincyl.sweep, made of dask-backed inputs")
+    lazy = "expected a lazy Dataset of spincyl.sweep, made of dask-backed inputs"
+    if not isinstance(result, xr.Dataset) or not result.data_vars:
+        raise TypeError(f"result: {lazy}")
+    if all(variable.chunks is None for variable in result.data_vars.values()):
+        back = ", and sweep.inputs makes its arguments again" if "start_w3" in result.coords else ""
+        raise TypeError(f"result: {lazy}; this one is in memory: result.to_zarr(path) writes it{back}")
+    if not isinstance(result.attrs.get("spincyl_sweep"), dict):
+        raise TypeError(f"result: {lazy}")
     callback(progress)
     store = _records.place(path)
     record = _record(result)
