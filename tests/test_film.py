@@ -318,9 +318,13 @@ def test_what_ffmpeg_complains_of_is_told_and_leaves_no_file(tmp_path, monkeypat
 @pytest.mark.parametrize(
     ("name", "missing", "said"),
     [
-        ("film.mp4", "imageio_ffmpeg", r"needs ffmpeg: pip install 'spincyl\[film\]', or the program ffmpeg"),
-        ("film.mp4", "matplotlib", r"needs matplotlib: pip install 'spincyl\[film\]'"),
-        ("film.gif", "matplotlib", r"needs matplotlib: pip install 'spincyl\[film\]'"),
+        (
+            "film.mp4",
+            "imageio_ffmpeg",
+            r"needs ffmpeg: .*python.* -m pip install 'spincyl\[film\]', or the program ffmpeg",
+        ),
+        ("film.mp4", "matplotlib", r"needs matplotlib: .*python.* -m pip install 'spincyl\[film\]'"),
+        ("film.gif", "matplotlib", r"needs matplotlib: .*python.* -m pip install 'spincyl\[film\]'"),
     ],
 )
 def test_what_is_missing_for_a_film_is_named_with_what_installs_it(

@@ -4,6 +4,7 @@ import dataclasses
 import inspect
 import pickle
 import re
+import sys
 
 import numpy as np
 import pytest
@@ -118,6 +119,21 @@ def test_a_cup_cannot_be_thrown_and_says_why():
     wall = parts.wall(lower_diameter="50mm", upper_diameter="80mm", length="90mm", at=0, density=0.3)
     with pytest.raises(ValueError, match="theta_end = 1.4.*rolls in a circle, as a cup"):
         sc.thrown(sc.assembled([floor, wall]), 1.0, 2.0)
+
+
+def test_a_missing_extra_is_installed_for_the_python_that_runs(monkeypatch):
+    monkeypatch.setitem(sys.modules, "odrpack", None)
+    for prefix, python, how in (
+        ("/env", "/env/bin/python3", "/env/bin/python3"),
+        ("/my env", "/my env/bin/python", "'/my env/bin/python'"),
+        ("/usr", "/usr/bin/python3", "python"),
+    ):
+        monkeypatch.setattr(sys, "prefix", prefix)
+        monkeypatch.setattr(sys, "base_prefix", "/usr")
+        monkeypatch.setattr(sys, "executable", python)
+        with pytest.raises(ImportError) as caught:
+            sc.data.compare(BODY, [0.1, 0.2, 0.3], [1.0, 1.0, 1.0])
+        assert str(caught.value) == f"this needs odrpack: {how} -m pip install 'spincyl[lab]'"
 
 
 T = np.linspace(0.0, 60.0, 601)

@@ -1,6 +1,8 @@
 """Unknown names: the error proposes known ones."""
 
 import difflib
+import shlex
+import sys
 from collections.abc import Callable, Iterable
 from dataclasses import fields
 from functools import wraps
@@ -43,6 +45,12 @@ def instead(name: str, known: Iterable[str]) -> str:
     near = difflib.get_close_matches(name, names, 3, 0.7)
     told = f"did you mean {' or '.join(near)}?" if near else f"expected {', '.join(names)}"
     return f": {told}" if near or 0 < len(names) <= _FEW else ""
+
+
+def installs(what: str) -> str:
+    """The command that installs something for the Python that runs, by its path in a virtual environment."""
+    python = shlex.quote(sys.executable) if sys.prefix != sys.base_prefix and sys.executable else "python"
+    return f"{python} -m pip install {what}"
 
 
 def helpful(call: Callable[_Given, _Found]) -> Callable[_Given, _Found]:

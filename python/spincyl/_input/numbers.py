@@ -13,7 +13,7 @@ from typing import Any, ParamSpec, TypeAlias, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from spincyl._input.hints import explain
+from spincyl._input.hints import explain, installs
 
 #: A number or an array of numbers; NumPy, pandas, xarray and dask arrays keep their kind.
 Reals: TypeAlias = Any
@@ -431,8 +431,8 @@ def extra(module: str, name: str) -> ModuleType:
     try:
         return import_module(module)
     except ImportError as e:
-        message = f"this needs {module.split('.', maxsplit=1)[0]}: pip install 'spincyl[{name}]'"
-        raise ImportError(message) from e
+        how = installs(f"'spincyl[{name}]'")
+        raise ImportError(f"this needs {module.split('.', maxsplit=1)[0]}: {how}") from e
 
 
 def plain(value: Any) -> Any:

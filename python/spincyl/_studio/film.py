@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from spincyl._input.files import replaced
+from spincyl._input.hints import installs
 from spincyl._input.numbers import extra, whole, within
 from spincyl._input.threads import Progress
 from spincyl._studio.frames import Reel, frames, pictures, vector
@@ -19,7 +20,6 @@ from spincyl._studio.poses import span
 
 _LONG = 10.0  # seconds, the default length of a film
 _LARGE = 20e6  # bytes; a larger file causes a warning
-_NEEDS = "a film in MP4 needs ffmpeg: pip install 'spincyl[film]', or the program ffmpeg on the search path"
 
 
 def reel(
@@ -110,7 +110,8 @@ def _program() -> str:
     except (ImportError, RuntimeError):
         found = which("ffmpeg")
     if found is None:
-        raise ImportError(_NEEDS)
+        how = installs("'spincyl[film]'")
+        raise ImportError(f"a film in MP4 needs ffmpeg: {how}, or the program ffmpeg on the search path")
     return found
 
 

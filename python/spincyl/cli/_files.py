@@ -9,6 +9,7 @@ import numpy as np
 
 from spincyl._contact import named
 from spincyl._input.files import replaced
+from spincyl._input.hints import installs
 from spincyl._input.numbers import extra
 from spincyl._labelled import columns as labelled_columns
 from spincyl._loss import titled
@@ -47,7 +48,9 @@ def needed(suffix: str) -> None:
     if suffix == ".nc":
         extra("xarray", "sweep")
         if not any(find_spec(name) for name in ("netCDF4", "h5netcdf", "scipy")):
-            raise ImportError("a .nc file needs netCDF4, h5netcdf or scipy; install one: pip install scipy")
+            raise ImportError(
+                f"a .nc file needs netCDF4, h5netcdf or scipy; install one: {installs('scipy')}"
+            )
 
 
 def _write_csv(m: Motion, scale: Scale | None, path: Path) -> None:

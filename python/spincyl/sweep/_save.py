@@ -61,8 +61,8 @@ def save(
         ``result.to_zarr(path)`` writes it.
     ValueError
         If the store at `path` or its ".sweep" holds another sweep, or one of another version; the message
-        names the first difference. If all records in the store are damaged. If `path` has no name of its own, such
-        as ".".
+        names the first difference. If all records in the store are damaged. If `path` has no name of its own,
+        such as ".".
     OSError
         If a file cannot be written; the message has the path. What has been written stays valid, and a later
         call resumes. BlockingIOError if another process or thread is saving to the store now;
