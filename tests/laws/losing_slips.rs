@@ -4,7 +4,7 @@ use crate::common::{drawn, numbers, path_of};
 use crate::losses::{follow, quarters, total};
 use spincyl::contact::{Friction, Table, slip};
 use spincyl::loss::{Law, Losses};
-use spincyl::motion::{Ask, Ending, Method, Motion, path, roll_with};
+use spincyl::motion::{Ask, Ending, Method, Motion, Start, path, roll_with};
 use spincyl::{Body, State, steady};
 
 #[test]
@@ -219,4 +219,22 @@ fn a_slip_that_almost_ends_and_grows_again_costs_no_more_than_another() {
     let least = speeds.iter().copied().fold(f64::INFINITY, f64::min);
     assert!(least < 1e-6 && least < 1e-2 * speeds[0] && least < 1e-2 * speeds[139], "{least:e}");
     assert!(motion.evaluations < 1_000, "{}", motion.evaluations);
+}
+
+#[test]
+fn a_face_that_slips_under_losses_lands_also_where_no_step_is_short_enough() {
+    let body = Body::solid(0.3652304955035458).unwrap();
+    let state = State {
+        theta: 0.18883537546680693,
+        w1: 0.5396313067124467,
+        w2: 2.852595868959427,
+        w3: 1.0216215211876745,
+    };
+    let start = Start::from(state).with_slip([0.5800046804106632, 0.3565063080910994]);
+    let losses = Losses::of(Law::DryContour, 0.028950077627950384) + Losses::of(Law::AirQuadratic, 1e-3);
+    let ask = Ask::on(Friction::coulomb(0.6214365815671594)).with_restitution(0.0).with_losses(losses);
+    let m = roll_with(&body, start, &[1.0], &ask, || true).unwrap().unwrap();
+    let end = m.event.unwrap();
+    assert_eq!(end.ending, Ending::Face);
+    assert!((end.time - 0.0716).abs() < 1e-3, "{}", end.time);
 }

@@ -357,6 +357,11 @@ impl Flow<MARGINS> for Slide {
 
     /// The halt where the steps become short because the force grows without bound.
     fn stuck<const N: usize>(&self, place: &FlowPlace<N>, margins: &[Dual<f64>; MARGINS]) -> Option<Halt> {
+        let [s, c, _, w2] = core::array::from_fn(|i| place.y[i]);
+        // A face that lands within this time lands before any step that is short enough.
+        if !self.ball && s.abs() < 100.0 * FLAT * w2.abs().min(1.0) && c * w2 > 0.0 {
+            return Some(Halt::Face);
+        }
         // With dry friction this margin is proportional to the speed of the slip.
         let size = if self.law.dry { self.rubs(&place.y) } else { 1.0 };
         (margins[3].value < 0.1 * self.law.shape.i1 * size).then_some(Halt::Jam)
