@@ -133,7 +133,7 @@ def test_a_coefficient_that_is_not_positive_is_refused_by_name(law, name, value)
         (lambda: AirFilm(None), TypeError, "^viscosity: expected real numbers"),
         (lambda: BoundaryLayer(1j), TypeError, "^k: expected real numbers"),
         (lambda: Sum([]), ValueError, "^laws: expected at least one"),
-        (lambda: Sum([DryContour(0.1), 0.2]), TypeError, "^laws: expected laws of loss, not float 0.2"),
+        (lambda: Sum([DryContour(0.1), 0.2]), TypeError, "^laws: expected loss laws, not float 0.2"),
         (lambda: DryContour(0.1) + 1, TypeError, "unsupported operand"),
         (lambda: 1 + DryContour(0.1), TypeError, "unsupported operand"),
         (lambda: np.ones(2) + DryContour(0.1), TypeError, "NumPy arrays"),

@@ -127,7 +127,7 @@ def test_a_coefficient_without_a_unit_is_refused_of_a_measured_body():
 def test_a_mass_that_is_missing_is_asked_for_by_what_needs_it():
     with pytest.raises(ValueError, match="^an impulse in SI needs the mass"):
         sc.pressed(RULED, "60mNs", "75deg")
-    with pytest.raises(ValueError, match="^the coefficient of this law of loss in SI needs the mass"):
+    with pytest.raises(ValueError, match="^the coefficient of this loss law in SI needs the mass"):
         sc.loss.AirFilm.from_si(scale=RULED)
 
 

@@ -46,36 +46,36 @@ _rate_of_one, _float64 = _core.rate_of_one, np.float64
 class Body(Laws, Sized, Hinting, metaclass=Named):
     """A rigid body of revolution that touches the table with its lower rim.
 
-    With arrays as fields, which broadcast, this is a family of bodies, and every method broadcasts over it.
-    Impossible bodies of a family give NaN and `Region.INVALID`.
+    If fields are arrays, the object is a family of bodies; the arrays broadcast, and every method broadcasts
+    over the family. An impossible body in a family gives NaN and `Region.INVALID`.
 
     Parameters
     ----------
     ell : array_like
-        Height of the centre of mass above the circle of the lower rim, in R, 0 to 1e150: half the length of
-        a sharp tube. For a ball (`fillet=1`) height above the centre of the ball, greater than -1.
+        Height of the centre of mass above the circle of the lower rim, in R, from 0 to 1e150. For a tube with
+        sharp edges this is half the length. For a ball (`fillet=1`) it is the height above the centre of the
+        ball, and must exceed -1.
     i1, i3 : array_like
-        Transverse and axial moment of inertia about the centre of mass, in M R^2. A real body has
-        0 < i3 <= 2 i1.
+        Transverse and axial moments of inertia about the centre of mass, in M R^2, with 0 < i3 <= 2 i1.
     bore : array_like, optional
-        Inner over outer radius of a uniform tube, NaN for a general body. Set by `solid`, `tube`
-        and `from_metres`; the moments then follow from it.
+        Ratio of inner to outer radius of a uniform tube; NaN for any other body. `solid`, `tube` and
+        `from_metres` set the bore and compute the moments from it.
     fillet : array_like, optional
-        Radius of the fillet of the rim, 0 (sharp) to 1 (a ball), in units of the outer radius R. The circle
-        of the rim has the radius 1 - fillet.
+        Radius to which the edge of the rim is rounded, in units of the outer radius R: 0 (sharp) to 1 (a
+        ball). The circle of the rim, along the centres of the rounding, has the radius 1 - fillet.
     theta_end : array_like, optional
-        Inclination in (0, pi], radians, at which another part lands: a stem, a cap, a shoulder. NaN: pi/2
-        if ell > 0, since the body is taken to have an equal rim at its other end; none for a ball.
+        Inclination in radians, in (0, pi], at which another part lands: a stem, a cap, a shoulder. Default:
+        pi/2 if ell > 0, since the other end is assumed to have an equal rim; for a ball, no part lands.
     scale : Scale, optional
-        Size, mass and gravity: this makes a measured body (see `measured`), whose motions are in SI. Fields,
-        methods and every `State` stay in natural units, unless the name has a unit.
+        Size, mass and gravity. A body with a scale is a measured body (see `measured`): its motions are in
+        SI. Fields, methods and every `State` stay in natural units, except methods named after a unit.
 
     Raises
     ------
     ValueError
         If a single body is impossible; the message names the value and the inequality.
     TypeError
-        If an argument has no real numbers; the message names it.
+        If an argument is not real-valued; the message names it.
 
     Examples
     --------
@@ -119,7 +119,7 @@ class Body(Laws, Sized, Hinting, metaclass=Named):
 
     @classmethod
     def solid(cls, ell: Reals, fillet: Reals = 0.0) -> Self:
-        """Solid cylinder of half length `ell`, in R; 0 is a thin disk. `fillet` rounds the edges."""
+        """Solid cylinder of half length `ell` (0: thin disk), with edges of radius `fillet`, both in R."""
         return cls.tube(ell, bore=0.0, fillet=fillet)
 
     @classmethod
@@ -130,12 +130,12 @@ class Body(Laws, Sized, Hinting, metaclass=Named):
         Parameters
         ----------
         ell : array_like
-            Half the length over the outer radius. The field `ell` of the body is this minus `fillet`.
+            Half the length, in units of the outer radius. The field `ell` of the body is this minus `fillet`.
         bore : array_like
-            Inner over outer radius, 0 (solid) to 1 (a thin wall).
+            Ratio of inner to outer radius, 0 (solid) to 1 (a thin wall).
         fillet : array_like
-            Radius of the rounded outer edges, in units of the outer radius: at most half the length and the
-            thickness of the wall. With bore 0, fillet 1 is a capsule, or for ell = 1 a ball.
+            Radius of the rounded outer edges, in units of the outer radius: at most half the length, and at
+            most the thickness of the wall. A solid tube with fillet 1 is a capsule; if ell = 1, a ball.
         """
         ell, bore, fillet = reals("ell", ell), reals("bore", bore), reals("fillet", fillet)
         if is_scalar(ell, bore, fillet):
@@ -157,13 +157,13 @@ class Body(Laws, Sized, Hinting, metaclass=Named):
         Parameters
         ----------
         separation : float
-            Distance of their centres over their diameter: 1 (touching), or more on a light rod.
+            Distance between the centres, in diameters: 1 if the balls touch, more if a light rod joins them.
         diameter, mass : float, optional
-            Diameter of each ball in metres, mass of both in kilograms, for a measured body.
+            Diameter of each ball in metres and mass of both in kilograms; a diameter makes a measured body.
 
         Notes
         -----
-        Jackson, Mertens, Pearson, Am. J. Phys. 83, 959 (2015). The second ball lands at pi/2.
+        Jackson, Mertens, Pearson, Am. J. Phys. 83, 959 (2015). The upper ball lands at theta = pi/2.
         """
         separation = number("separation", separation)
         i1, theta_end = _core.check_balls(separation)
@@ -176,7 +176,8 @@ class Body(Laws, Sized, Hinting, metaclass=Named):
         """Ball whose centre of mass lies `offset` radii above its centre; negative for a tippe top.
 
         `i1` and `i3` are the transverse and axial moments of inertia about the centre of mass, in M R^2. The
-        ball may pass theta = 0 and pi. A `diameter` in metres, with a `mass`, makes a measured body.
+        axis of a ball may pass the vertical, theta = 0 or pi. A `diameter` in metres makes a measured body;
+        its `mass` is in kilograms.
         """
         numbers = number("offset", offset), number("i1", i1), number("i3", i3)
         _core.check_ball(*numbers)
@@ -186,9 +187,9 @@ class Body(Laws, Sized, Hinting, metaclass=Named):
     def from_metres(
         cls, *, outer_diameter: float, length: float, inner_diameter: float = 0.0, fillet: float = 0.0
     ) -> Self:
-        """Uniform tube from its dimensions (`fillet` is the radius of its rounded outer edges).
+        """Uniform tube from its dimensions; `fillet` is the radius of its rounded outer edges.
 
-        Single numbers, in metres or in any common unit, or texts such as "60 mm".
+        Numbers are in metres, or all in one other unit. Texts such as "60 mm" are also valid.
         """
         measures = {"outer_diameter": outer_diameter, "inner_diameter": inner_diameter, "length": length}
         if not (type(fillet) is float and fillet == 0):
@@ -206,11 +207,10 @@ class Body(Laws, Sized, Hinting, metaclass=Named):
     @staticmethod
     @elementwise
     def critical_aspect(bore: Reals = 0.0, fillet: Reals = 0.0) -> Result:
-        """Half length over outer radius of the tube with theta_balance = theta_limit (I1 = I3).
+        """Ratio of half length to outer radius at which a tube has I1 = I3, and theta_balance = theta_limit.
 
-        With sharp edges it is (sqrt(3)/2) sqrt(1 + bore^2).
-        An impossible bore or fillet raises ValueError, in an array it gives NaN. Relative error below 4 ulp
-        (2^-53).
+        With sharp edges the ratio is (sqrt(3)/2) sqrt(1 + bore^2). An impossible bore or fillet raises
+        ValueError; in an array it gives NaN. The relative error is below 4 * 2^-53.
         """
         bore, fillet = reals("bore", bore), reals("fillet", fillet)
         if is_scalar(bore, fillet):
@@ -220,9 +220,9 @@ class Body(Laws, Sized, Hinting, metaclass=Named):
 
     @property
     def critical_hertz(self) -> Result:
-        """Precession rate of the body lying on its side, Omega~ = 1, in turns per second.
+        """Precession rate at which the reduced rate Omega~ is 1, in turns per second; needs a measured body.
 
-        A rate in hertz divided by it is the reduced rate Omega~. Needs a measured body.
+        The body lying on its side is steady at this rate. Divide a rate in hertz by it to get Omega~.
         """
         return self._sized("critical_hertz").hertz(self, 1.0)
 
@@ -233,8 +233,8 @@ class Body(Laws, Sized, Hinting, metaclass=Named):
         Parameters
         ----------
         at : array_like or State
-            Inclination in (0, pi/2], radians, of the steady state with the centre at rest (NaN where there is
-            none); or any state.
+            Inclination in radians, in (0, pi/2], of a steady state with the centre at rest; or any `State`.
+            The rate is NaN where there is no steady state.
         """
         scale = self._sized("hertz")
         at = at if isinstance(at, State) else radians("at", at, self._leans)
@@ -253,12 +253,12 @@ class Body(Laws, Sized, Hinting, metaclass=Named):
     @overload
     def rate(self, theta: Reals, **ufunc: Any) -> Result: ...
     def rate(self, theta: Reals, **ufunc: Any) -> Result:
-        """Reduced rate Omega~ = Omega sqrt(I3) of the steady state at an inclination, the centre at rest.
+        """Reduced rate Omega~ = Omega sqrt(I3) of the steady state with the centre at rest.
 
         Parameters
         ----------
         theta : array_like
-            Inclination in radians, in (0, pi/2]; with a rounded rim up to `theta_end`.
+            Inclination of the state in radians, in (0, pi/2]; with a rounded rim, up to `theta_end`.
         **ufunc
             `out=`, `where=` and the other keywords of NumPy's ufuncs.
 
@@ -273,7 +273,7 @@ class Body(Laws, Sized, Hinting, metaclass=Named):
 
         Notes
         -----
-        Jackson et al., Am. J. Phys. 87, 85 (2019), Eq. 15, in a form without its cancellation.
+        Jackson et al., Am. J. Phys. 87, 85 (2019), Eq. 15, rearranged to avoid its cancellation.
         """
         if type(theta) is float and self._single and not ufunc:
             # one angle of one body: separate arguments are faster than unpacking a tuple
@@ -288,41 +288,40 @@ class Body(Laws, Sized, Hinting, metaclass=Named):
 
     @elementwise
     def region(self, theta: Reals, **ufunc: Any) -> Result:
-        """`Region` code (uint8) of each inclination: stable, unstable, forbidden, or outside the domain."""
+        """`Region` code (uint8) at each inclination: stable, unstable, forbidden, or outside the domain."""
         return _core.region(
             radians("theta", theta, self._leans), *self._numbers, **keywords(_core.region, ufunc)
         )
 
     @elementwise
     def inclinations(self, of: Reals = None, /, *, rate: Reals = None, hertz: Reals = None) -> Result:
-        """All inclinations at which the body is steady at a given rate, with the centre at rest.
+        """All inclinations at which steady states with the centre at rest have a given rate.
 
         Parameters
         ----------
         of, rate : array_like
-            Reduced rate Omega~ >= 0. A measured body needs the keyword, ``rate=``.
+            Reduced rate Omega~ >= 0. For a measured body, use the keyword ``rate=``.
         hertz : array_like
-            Precession rate of a measured body in turns per second; replaces `rate`.
+            Precession rate in turns per second, in place of `rate`; needs a measured body.
 
         Returns
         -------
         array
-            Broadcast shape with a last axis of 3, for rounded rims 5 (xarray: dimension "root"): angles in
-            (0, pi/2), for rounded rims up to `theta_end`, ascending, padded with NaN. The body lying on its
-            side, which is steady at rate 1, is not included. All NaN, as is `count`, if the rate is negative
-            or NaN, or if rate^2 times the larger of I1/I3 and ell exceeds 1e300. Error:
+            Angles in radians, ascending, in (0, pi/2), or for rounded rims up to `theta_end`. The last axis
+            (xarray: dimension "root") has 3 angles, for rounded rims 5, padded with NaN. The body lying on
+            its side, steady at rate 1, is not included. All angles are NaN if the rate is negative or NaN, or
+            if rate^2 times the larger of I1/I3 and ell exceeds 1e300. A pandas Series gives an array. Error:
             ``|rate(theta) - rate| <= 8 (1 + kappa_c) 2^-53 rate``, which is 8 ulp at a fold, where kappa_c
-            vanishes; where kappa_c exceeds 2^45, theta is within 3 ulp of the exact root. A pandas
-            Series gives an array.
+            vanishes. Where kappa_c exceeds 2^45, theta is within 3 ulp of the exact root.
         """
         return _core.inclination(*several(self._most, self._reduced(of, rate, hertz), *self._numbers))
 
     @elementwise
     def states(self, of: Reals = None, /, *, rate: Reals = None, hertz: Reals = None) -> State:
-        """Steady states at a given rate; parameters, order and shape as in `inclinations`.
+        """Steady states with a given rate; parameters, order and shape as in `inclinations`.
 
-        More accurate than `steady(inclinations(rate))` near theta_limit and at the critical aspect, where
-        the rate determines the state better than theta does.
+        They are more accurate than `steady(inclinations(rate))` near theta_limit and at the critical aspect,
+        where the rate determines the state better than theta does.
         """
         inputs = several(self._most, self._reduced(of, rate, hertz), *self._numbers)
         theta, w1, w3 = (law(*inputs) for law in (_core.inclination, _core.states_w1, _core.states_w3))
@@ -335,12 +334,13 @@ class Body(Laws, Sized, Hinting, metaclass=Named):
 
     @elementwise
     def steady(self, theta: Reals) -> State:
-        """Steady state with the centre at rest at an inclination in (0, pi/2], radians.
+        """Steady state with the centre at rest at an inclination theta in radians, in (0, pi/2].
 
         Raises
         ------
         ValueError
-            If there is none at a single inclination, with the forbidden band; arrays have NaN there.
+            If a single inclination has no steady state; the message gives the forbidden band. An array of
+            inclinations gives NaN there.
         """
         theta = radians("theta", theta, self._leans)
         numbers = self._numbers
@@ -352,24 +352,26 @@ class Body(Laws, Sized, Hinting, metaclass=Named):
     def circular(
         self, theta: Reals, precession: Reals = None, *, radius: Reals = None, w3: Reals = None
     ) -> State:
-        """Steady state of rolling with the centre on a circle; give one of the three optional numbers.
+        """Steady rolling with the centre on a circle, given by one of `precession`, `radius` and `w3`.
 
         Parameters
         ----------
         theta : array_like
-            Inclination in (0, pi/2], radians.
+            Inclination in radians, in (0, pi/2].
         precession : array_like, optional
-            phi' in sqrt(g/R), of absolute value 1e-100 to 1e100. The centre rests at `rate / sqrt(i3)`.
+            phi' in sqrt(g/R), of absolute value 1e-100 to 1e100. If it is `rate / sqrt(i3)`, the centre stays
+            at rest.
         radius : array_like, optional
-            Radius of the circle of the centre, in R: positive for a coin that leans inward, negative if the
-            centre moves the other way. The state returned precesses counterclockwise.
+            Radius of the circle of the centre, in R: positive if the body leans inward, as a rolling coin
+            does, negative if it leans outward. The resulting precession is counterclockwise.
         w3 : array_like, optional
-            Angular velocity about the axis, sqrt(g/R). Gives two states, slower first, on a last axis "root".
+            Angular velocity about the symmetry axis, in sqrt(g/R). The result has two states along its last
+            axis ("root"); the state with the slower precession is first.
 
         Raises
         ------
         ValueError
-            If a single state does not exist; arrays have NaN there.
+            If no state has the given single numbers; arrays give NaN there.
         """
         return _circular(self, theta, precession, radius, w3)
 

@@ -48,22 +48,23 @@ class _Law:
 @compared
 @dataclass(frozen=True, eq=False, repr=False)
 class Coulomb(_Law):
-    """Dry friction of the contact point.
+    """Dry friction at the contact point, as a contact for `roll`.
 
-    While the contact point slips, the force of friction is mu N, opposite to the slip. The body rolls as long
-    as rolling needs a force of at most static N.
+    While the contact point slips, the force of friction is mu N, opposite to the slip; N is the normal force.
+    The body rolls as long as rolling needs a friction force of at most `static` times N.
 
     Parameters
     ----------
     mu : array_like
         Coefficient of kinetic friction, 0 (a smooth table) or more.
     static : array_like, optional
-        Coefficient of static friction, at least `mu`; infinite if a rolling body must never slip. Default:
-        `mu`.
+        Coefficient of static friction, at least `mu`. With an infinite value a rolling body never slips.
+        Default: `mu`.
     patch : array_like, optional
-        Radius of a round patch of contact, in R, below 1, with the pressure of Hertz. Slip and drilling (the
-        rotation about the vertical) then share the friction (Contensou), and the contact does not stick while
-        the body drills. Measured bodies need `from_si`. Default: 0, a contact point.
+        Radius of the round patch on which the body touches the table, in R, below 1. Default: 0, a contact
+        point. The pressure in the patch is that of a Hertz contact. Slip and drilling (the rotation about the
+        vertical) share the friction of the patch (Contensou), so the contact does not stick while the body
+        drills. For a measured body, make the law with `from_si`.
 
     Raises
     ------
@@ -71,7 +72,7 @@ class Coulomb(_Law):
         If a coefficient is negative or NaN, `mu` is infinite, `static` is less than `mu`, or `patch` is 1 or
         more.
     TypeError
-        If a coefficient is not a real number; the message names it.
+        If a coefficient is not real-valued; the message names it.
 
     Examples
     --------
@@ -86,7 +87,10 @@ class Coulomb(_Law):
 
     @classmethod
     def from_si(cls, mu: Reals, static: Reals = None, *, patch: Reals, scale: "Scale | Body") -> Self:
-        """Coulomb friction with a `patch` in metres, or a text such as "0.3mm", for a body of this scale."""
+        """Coulomb friction for a measured body: `patch` is in metres, or a text such as "0.3mm".
+
+        `scale` is the measured body, or its `Scale`.
+        """
         of = scale_of(scale)
         return cls(mu, static, reals("patch", si("patch", patch, "metre")) / of._units[0])._known(of)
 
@@ -117,15 +121,15 @@ class Coulomb(_Law):
 @compared
 @dataclass(frozen=True, eq=False, repr=False)
 class Viscous(_Law):
-    """Friction proportional to the slip, c N u, as on a wet table or for the peg of a tippe top.
+    """Viscous friction, c N u, proportional to the slip u: a wet table, or the peg of a tippe top.
 
-    It never sticks: the body slips for ever, though less and less.
+    N is the normal force. The contact never sticks: the slip decays, but never becomes zero.
 
     Parameters
     ----------
     c : array_like
-        Coefficient of friction over speed, in 1/sqrt(g R): 0 (a smooth table) or more. Measured bodies need
-        `from_si`.
+        Coefficient of friction per unit of slip, in 1/sqrt(g R): 0 (a smooth table) or more. For a measured
+        body, make the law with `from_si`.
 
     Raises
     ------
@@ -146,7 +150,7 @@ class Viscous(_Law):
 
     @classmethod
     def from_si(cls, c: Reals, *, scale: "Scale | Body") -> Self:
-        """Viscous friction with `c` in s/m, for a body of this scale."""
+        """Viscous friction for a measured body: `c` is in s/m, `scale` is the body or its `Scale`."""
         of = scale_of(scale)
         speed = of.metres_per_second(1.0)
         return cls(_coefficient("c", si("c", c, "second/metre")) * speed)._known(of)

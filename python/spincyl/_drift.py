@@ -44,43 +44,43 @@ _NO_COUPLE = "dry contour friction has no meaning below theta = eps, and this dr
 
 
 class DriftWarning(UserWarning):
-    """A drift leaves the range in which its law of loss is valid."""
+    """A drift leaves the range in which its loss law is valid."""
 
 
 @compared
 @dataclass(frozen=True, eq=False, repr=False)
 class Drift:
-    """Slow drift of one body, or of many, from the time 0 on; the result of `drift`.
+    """Slow drift of one body or of many, which starts at the time 0; the result of `drift`.
 
-    Times are in sqrt(R/g), angles in radians; for a measured body times are in s, `precession` in rad/s.
-    Each `State` is in natural units. Methods broadcast their argument against the shape of the drift: with
-    ``t[:, np.newaxis]`` a row of drifts is evaluated at all times. Outside the drift, single values raise
-    ValueError, and arrays have NaN.
+    Angles are in radians. Times are in sqrt(R/g), for a measured body in seconds; `precession` is then in
+    rad/s. Each `State` is in natural units. Methods broadcast their argument against the shape of the drift:
+    ``t[:, np.newaxis]`` evaluates each drift of a row at all times. A single value outside the drift raises
+    ValueError; an array gives NaN there.
 
     Attributes
     ----------
     body : Body
         Body or family.
     losses : loss.Loss
-        Laws of loss.
+        Loss law, or sum of loss laws.
     centre : {"rest", "rolling"}
-        Whether the centre is held at rest, or the body rolls.
+        Whether slip keeps the centre at rest, or the body rolls.
     start : State
         State at the time 0; NaN in arrays where there is no drift.
     stops_at : float or array
-        Time at which the drift ends; inf if it never ends, NaN where there is no drift. Relative error below
-        1e-12 with centre="rest", 1e-10 with centre="rolling". States and precessions have the same relative
-        error up to 0.99 of that time (w3 relative to the larger of w1 and w3), however small they become.
-        Where theta falls as a high power n of the remaining time, rounding the time adds 100 n 2^-52 at 0.99
-        of that time.
+        Time at which the drift ends; inf if it never ends, NaN where there is no drift. The relative error is
+        below 1e-12 with centre="rest", and below 1e-10 with centre="rolling". Up to 0.99 of that time, states
+        and precessions have the same relative error, however small they become; the error of w3 is relative
+        to the larger of w1 and w3. Where theta falls as a high power n of the remaining time, rounding the
+        time adds an error of 100 n 2^-52 at 0.99 of that time.
     ends_at_theta : float or array
-        Inclination at the end, or the limit of a drift that never ends.
+        Inclination at the end, or the limit of the inclination if the drift never ends.
     ended : str or array of str
-        How the drift ended: "face lands", "lies down", "lowest state" (the energy is least along the branch),
-        "balanced" (on a point of the rim), "stands upright" (a ball on its pole), "no drift". With
-        centre="rolling" also "stability lost" (kappa of `Body.stability` reaches 0), "contact stops"
-        (psi' = 0 with dry contour friction or rolling resistance), "drilling stops" (w_z = 0 with drilling
-        friction).
+        How the drift ended: "face lands", "lies down", "lowest state" (no steady state nearby has less
+        energy), "balanced" (on a point of the rim), "stands upright" (a ball on its pole), or "no drift".
+        With centre="rolling" also "stability lost" (kappa of `Body.stability` reaches 0), "contact stops"
+        (psi' = 0 with dry contour friction or rolling resistance), or "drilling stops" (with drilling
+        friction: the angular velocity about the vertical reaches 0).
     """
 
     body: Body
@@ -99,7 +99,7 @@ class Drift:
         Raises
         ------
         ValueError
-            If a single drift never has this single inclination; arrays have NaN there.
+            If a single drift never has this single inclination; an array gives NaN there.
         """
         return self._asked("theta", si("theta", theta, "radian"), 0)[0] * self.body._second
 
@@ -109,36 +109,36 @@ class Drift:
         Raises
         ------
         ValueError
-            If a single time is before 0 or after the end; arrays have NaN there.
+            If a single time is before 0 or after the end; an array gives NaN there.
         """
         return self._asked("t", t, 1)[0]
 
     def precession(self, t: Reals) -> Result:
-        """Precession phi' at a time, in sqrt(g/R) or rad/s; errors as `theta`.
+        """Precession phi' at a time, in sqrt(g/R), for a measured body in rad/s; error as for `theta`.
 
-        With centre="rest" it is the positive rate Omega.
+        With centre="rest" the precession is positive.
         """
         return self._asked("t", t, 1)[3] / self.body._second
 
     def state(self, t: Reals) -> State:
-        """Steady state at a time, in natural units; errors as `theta`."""
+        """Steady state at a time, in natural units; error as for `theta`."""
         theta, w1, w3, *_ = self._asked("t", t, 1)
         return State(theta, w1, 0.0 if is_scalar(theta) else np.zeros_like(theta), w3)
 
     def friction_coefficient(self, t: Reals) -> Result:
-        """Coefficient of friction that the steady state at a time needs; errors as `theta`.
+        """Coefficient of friction that the steady state at a time needs; error as for `theta`.
 
-        It is 0 with centre="rest", and ``|V|`` Omega with centre="rolling", where V is the velocity of the
-        centre.
+        The coefficient is 0 with centre="rest". With centre="rolling" it is ``|V|`` Omega, where V is the
+        velocity of the centre and Omega the precession.
         """
         return self._asked("t", t, 1)[4]
 
     @cached_property
     def stable_until(self) -> Result:
-        """Time at which rolling becomes unstable, in sqrt(R/g), in seconds for a measured body.
+        """Time at which rolling becomes unstable, in sqrt(R/g), for a measured body in seconds.
 
-        There kappa of `Body.stability` is 0. inf if the drift stays stable, 0 if it begins unstable. A drift
-        with centre="rest" continues after that time; one with centre="rolling" ends there.
+        At this time kappa of `Body.stability` reaches 0. The time is inf if the drift stays stable, and 0 if
+        it begins unstable. A drift with centre="rest" continues; a drift with centre="rolling" ends.
         """
         return self._asked("t", np.zeros(self._shape), 2)[0] * self.body._second
 
@@ -192,20 +192,21 @@ def drift(
 ) -> Drift:
     """Compute the slow drift of a body along its steady states until it rests.
 
-    The drift is the motion to first order in the losses of a body without nutation. With centre="rest" the
-    centre of mass stays at rest, kept there by enough slip, and the energy E(theta) of the steady states
-    falls: theta' = -P/E'(theta). Above a ridge of the energy the inclination increases. With centre="rolling"
-    the body never slips: the losses move its centre from rest onto circles, and the centre does not return.
+    The drift is the motion of a body without nutation, to first order in the losses. With centre="rest" there
+    is enough slip to keep the centre of mass at rest. The losses, of power P, lower the energy E(theta) of
+    the steady state: theta' = -P/E'(theta). The inclination increases where E' < 0, beyond `Body.ridge`. With
+    centre="rolling" the body never slips: its losses set the centre in motion on a circle, and the centre
+    does not come to rest again.
 
     Parameters
     ----------
     body : Body
         Single body or family; a measured body drifts in seconds.
     theta : array_like or State
-        Inclination in radians of the initial steady state, whose centre rests; or a steady state, with
-        centre="rolling" also one whose centre moves on a circle.
+        Inclination, in radians, of an initial steady state with the centre at rest; or the initial steady
+        state itself. With centre="rolling" the centre of this state may move on a circle.
     losses : loss.Loss
-        Law of `spincyl.loss`, or several added with `+`; their coefficients may be arrays.
+        Law of `spincyl.loss`, or several added with `+`. Coefficients may be arrays.
     centre : {"rest", "rolling"}
         Whether slip keeps the centre at rest, or the body rolls.
     threads : int, optional
@@ -214,28 +215,30 @@ def drift(
     Returns
     -------
     Drift
-        Broadcast shape of bodies, initial states and coefficients; single numbers for single arguments.
+        Its shape is the broadcast shape of bodies, initial states and coefficients. Single arguments give
+        single numbers.
 
     Raises
     ------
     ValueError
-        If a single drift is impossible: no steady state at a forbidden inclination, a state that is not
-        steady to six digits, with centre="rest" a state whose centre moves, with centre="rolling" an unstable
-        state (kappa <= 0). The message names the argument. Arrays have NaN and "no drift" there.
+        If a single drift is impossible; the message names the argument. The inclination may be forbidden, or
+        the state not steady to six digits. With centre="rest" the centre of the state must be at rest. With
+        centre="rolling" the state must be stable (kappa > 0). Arrays have NaN and "no drift" there.
 
     Warns
     -----
     DriftWarning
-        If a drift with dry contour friction starts, or is evaluated before its end, at theta below eps, where
-        the couple has no meaning. If a measured body starts at an inclination at which the film of `AirFilm`
-        does not fill the gap; without a scale this is not known.
+        If a drift with dry contour friction starts at theta below eps, or is evaluated there before its end:
+        the couple has no meaning below eps. If a measured body starts at an inclination at which the film of
+        `AirFilm` does not fill the gap. A body without a scale gives no such warning.
 
     Notes
     -----
-    centre="rest": Jackson et al., Am. J. Phys. 87, 85 (2019), Eq. 15, and t = -int E'/P dtheta by Gaussian
-    quadrature. centre="rolling": theta' = -(S_w1 a1 + S_w3 a3)/(J kappa) by steps of eighth order on the
-    surface of circular steady states, where S = J w2' for the rolling body, and a1, a3 are the parts of w1'
-    and w3' that are due to the couple.
+    With centre="rest" the steady states are those of Jackson et al., Am. J. Phys. 87, 85 (2019), Eq. 15. The
+    time is t = -int E'/P dtheta, by Gaussian quadrature. With centre="rolling" the equation
+    theta' = -(S_w1 a1 + S_w3 a3)/(J kappa) is integrated by steps of eighth order on the surface of circular
+    steady states. Here S = J w2' for the rolling body, S_w1 and S_w3 are its derivatives, J is the inertia
+    for changes of theta, and a1, a3 are the parts of w1' and w3' that are due to the couple.
 
     Examples
     --------

@@ -41,38 +41,40 @@ from spincyl._weights import weighted
 class Ellipsoid(Sized):
     """An ellipsoid with any inertia on a table, called a stone: a rattleback, an egg, a pebble.
 
-    Natural units: the mass M, gravity g and the largest semi-axis a are 1. Lengths may be given in any common
-    unit. Arrays that broadcast over their leading axes make a family of stones, and all fields get its shape.
-    Impossible stones of a family are NaN, and `Status.INVALID` in a sweep. With arrays of dask the family is
-    lazy, for a lazy sweep; all other methods compute it.
+    In natural units the mass M, gravity g and the largest semi-axis a are 1. Lengths may be given in any one
+    unit. Arrays, which broadcast over their leading axes, make a family of stones; all fields get the shape
+    of the family. An impossible stone of a family is NaN, and `Status.INVALID` in a sweep. Dask arrays make a
+    lazy family. A sweep of it is lazy; all other methods compute it at once.
 
     Parameters
     ----------
     axes : array_like, (..., 3)
-        Semi-axes, in any unit of length: half the length, half the width, and half the depth, or for half an
-        ellipsoid its whole depth. Each is at least a millionth of the largest.
+        Semi-axes of the ellipsoid, in any unit of length. A stone that is only the lower half of an ellipsoid
+        has its whole depth as third semi-axis. Each semi-axis is at least a millionth of the largest.
     inertia : array_like, (..., 3, 3) or (..., 3)
-        Tensor of inertia about the centre of mass, per mass, in that unit squared, along the axes of the
-        ellipsoid; or its diagonal, as three numbers. An array (3, 3) is one tensor. Each principal moment is
-        at most the sum of the two others.
+        Tensor of inertia about the centre of mass, along the axes of the ellipsoid, divided by the mass; its
+        unit is the unit of the semi-axes squared. Three numbers are the diagonal of the tensor. An array of
+        shape (3, 3) is one tensor. Each principal moment is at most the sum of the two others.
     offset : array_like, (..., 3), optional
-        Vector from the centre of the ellipsoid to the centre of mass, inside the ellipsoid. Default: zero.
+        Vector from the centre of the ellipsoid to the centre of mass, which lies inside, in the unit of the
+        semi-axes. Default: zero.
     theta_end : array_like, optional
-        Inclination of axis 3 in (0, pi], radians, at which an edge lands. NaN: there is no edge.
+        Inclination of axis 3 at which an edge of the stone lands, in radians, in (0, pi]. NaN (the default):
+        there is no edge.
     scale : Scale, optional
-        Size, mass and gravity, with the largest semi-axis as radius: motions are then in SI. See `in_metres`.
+        Size, mass and gravity; the radius is the largest semi-axis. Motions are then in SI. See `in_metres`.
 
     Raises
     ------
     ValueError
         If a single stone is impossible; the message names the number or gives the principal moments.
     TypeError
-        If an argument has no real numbers; the message names it.
+        If an argument is not real-valued; the message names it.
 
     Warns
     -----
     UserWarning
-        If the moments are so large that a part of the mass lies outside the ellipsoid.
+        If the moments of inertia are so large that part of the mass must lie outside the ellipsoid.
 
     Notes
     -----
@@ -135,9 +137,10 @@ class Ellipsoid(Sized):
 
     @classmethod
     def uniform(cls, axes: Reals, *, mass: float | None = None) -> Self:
-        """Uniform ellipsoid with semi-axes (..., 3).
+        """Uniform ellipsoid with the semi-axes `axes`, (..., 3).
 
-        A `mass` (kg), or lengths such as "8cm", make a measured stone. Errors are those of `Ellipsoid`.
+        A `mass` in kilograms, or lengths such as "8cm", make a measured stone. Raises the same errors as
+        `Ellipsoid`.
         """
         axes, told = lengths("axes", axes)
         return cls._of(_core.uniform_stone, axes=(vectors("axes", axes, 3), True))._measured(told, mass)
@@ -158,17 +161,19 @@ class Ellipsoid(Sized):
         ----------
         axes : array_like, (..., 3)
             Semi-axes; the stone stands on the end of the third. A stone 16 cm long, 3.2 cm wide and 1.4 cm
-            deep has (0.08, 0.016, 0.014), or ("8cm", "16mm", "14mm"), which makes a measured stone.
+            deep, the lower half of an ellipsoid, has the semi-axes (0.08, 0.016, 0.014). Texts such as
+            ("8cm", "16mm", "14mm") make a measured stone.
         twist : array_like
-            Angle of the rotation about axis 3, in radians, counterclockwise as seen from above.
+            Angle about axis 3 from the axes of the shape to the axes of inertia, in radians, counterclockwise
+            as seen from above.
         moments : array_like, (..., 3), optional
-            Principal moments per mass about the centre of mass. Default: those of the lower half of a uniform
-            ellipsoid, whose edge lands at an inclination of pi/2.
+            Principal moments of inertia about the centre of mass, divided by the mass. Default: the stone is
+            the lower half of a uniform ellipsoid, and its edge lands at an inclination of pi/2.
         offset : array_like, (..., 3), optional
-            Vector from the centre of the ellipsoid to the centre of mass. Default: zero with `moments`, else
-            that of the lower half, downward by 3/8 of the third semi-axis.
+            Vector from the centre of the ellipsoid to the centre of mass. Default: zero with `moments`;
+            without them the offset of the lower half, downward by 3/8 of the third semi-axis.
         mass : float, optional
-            Mass in kilograms, which makes a measured stone with `axes` in metres; see also `in_metres`.
+            Mass in kilograms; makes a measured stone, with `axes` in metres. See also `in_metres`.
 
         Raises
         ------
@@ -203,10 +208,10 @@ class Ellipsoid(Sized):
     def egg(
         cls, radius: Reals, half_length: Reals, offset: Reals = 0.0, *, mass: float | None = None
     ) -> Self:
-        """Uniform spheroid about axis 3 whose centre of mass lies `offset` above the centre of the spheroid.
+        """Spheroid about axis 3 with the moments of a uniform one, centre of mass `offset` above its centre.
 
-        Lengths are in any common unit. A `mass` (kg), or lengths such as "22mm", make a measured stone.
-        Errors are those of `Ellipsoid`.
+        `half_length` is the semi-axis along axis 3. Lengths are in any one unit. A `mass` in kilograms, or
+        lengths such as "22mm", make a measured stone. Raises the same errors as `Ellipsoid`.
         """
         given = {"radius": radius, "half_length": half_length, "offset": offset}
         given, told = lengths("", given)
@@ -214,16 +219,17 @@ class Ellipsoid(Sized):
         return found._measured(told, mass)
 
     def with_weights(self, weights: Iterable[Any]) -> Self:
-        """Fix point masses to a single stone: clay on a rattleback, or an unbalanced disk.
+        """Fix point masses to a single stone, such as clay to a rattleback.
 
-        ValueError for a family or a stone of unknown mass; UserWarning if a weight is outside the ellipsoid.
+        Raises ValueError for a family, and for a measured stone of unknown mass. Warns with UserWarning if a
+        weight is outside the ellipsoid.
 
         Parameters
         ----------
         weights : list of (mass, (x, y, z))
-            Masses in units of the mass of the stone, and positions from the centre of the ellipsoid along its
-            axes, in units of the largest semi-axis. For a measured stone in kilograms and metres, or texts
-            such as "5g" and "12mm".
+            Mass of each weight, in units of the mass of the stone. Position of the weight from the centre of
+            the ellipsoid, along its axes, in units of the largest semi-axis. For a measured stone: kilograms
+            and metres, or texts such as "5g" and "12mm".
 
         Examples
         --------
@@ -242,7 +248,7 @@ class Ellipsoid(Sized):
 
     @property
     def moments(self) -> Floats:
-        """(..., 3) principal moments of inertia about the centre of mass, in M a^2, ascending."""
+        """Principal moments of inertia about the centre of mass, (..., 3), in M a^2, ascending."""
         return self._each(lambda x: _core.stone_moments(x), 3)
 
     def spinning(
@@ -255,10 +261,10 @@ class Ellipsoid(Sized):
         spin : array_like
             Angular velocity about the vertical, sqrt(g/a), counterclockwise as seen from above.
         hertz : array_like
-            Turns per second of a measured stone; replaces `spin`.
+            Turns per second about the vertical, in place of `spin`; needs a measured stone.
         pitch, roll : array_like
-            Angles of rotation from upright, in radians: first `pitch` about axis 2, then `roll` about axis 1.
-            If both are 0, the motion is steady, even if it is unstable: nothing disturbs it.
+            Angles in radians by which the stone is rotated from upright: first by `pitch` about axis 2, then
+            by `roll` about axis 1. If both are 0, nothing disturbs the upright spin, even if it is unstable.
         """
         spin = self._spin(spin, hertz)
         pitch, roll = _tilt("pitch", pitch), _tilt("roll", roll)
@@ -268,14 +274,15 @@ class Ellipsoid(Sized):
             return EllipsoidState(n, n * spin[..., None])
 
     def with_centre_velocity(self, state: EllipsoidState, x: Reals, y: Reals) -> EllipsoidState:
-        """The state with the slip that follows from a horizontal velocity of the centre of mass.
+        """Return the state with the slip that a given velocity of the centre of mass implies.
 
         Parameters
         ----------
         state : EllipsoidState
             State whose slip, if it has one, is replaced.
         x, y : array_like
-            Velocity of the centre of mass in sqrt(g a), along the axes x and y of `EllipsoidState.slip`.
+            Horizontal velocity of the centre of mass, in sqrt(g a), along the axes x and y that
+            `EllipsoidState.slip` describes.
 
         Examples
         --------
@@ -298,7 +305,7 @@ class Ellipsoid(Sized):
         return replace(state, slip=slip)
 
     def hertz(self, state: EllipsoidState) -> Result:
-        """(...) turns per second about the vertical in a state; needs a measured stone."""
+        """Turns per second about the vertical in a state, (...); needs a measured stone."""
         scale = self._sized("hertz")
         return scale.turns(made("state", state, EllipsoidState).spin)
 
@@ -308,15 +315,15 @@ class Ellipsoid(Sized):
         Parameters
         ----------
         spin : array_like
-            Spin about the vertical in sqrt(g/a), up to 1e6; broadcasts with a family.
+            Angular velocity about the vertical in sqrt(g/a), up to 1e6; broadcasts with a family.
         hertz : array_like
-            Turns per second of a measured stone; replaces `spin`.
+            Turns per second about the vertical, in place of `spin`; needs a measured stone.
 
         Returns
         -------
         Rocking
-            Growth rates and frequencies of both modes, and the four eigenvalues; error 1e-13 of the largest.
-            NaN for stones of a family that cannot spin upright.
+            Growth rates and frequencies of both modes, and the four eigenvalues, with errors below 1e-13 of
+            the largest eigenvalue. NaN for a stone of a family that cannot spin upright.
 
         Raises
         ------
@@ -329,11 +336,11 @@ class Ellipsoid(Sized):
         return Rocking(found[..., :2], found[..., 2:4], eigenvalues)
 
     def growth_rates(self, spin: Reals | None = None, *, hertz: Reals | None = None) -> Floats:
-        """(..., 2) growth rates of the slow and the fast mode of rocking, in sqrt(g/a); see `rocking`."""
+        """Growth rates of the slow and the fast rocking mode, (..., 2), in sqrt(g/a); see `rocking`."""
         return self.rocking(spin, hertz=hertz).growth
 
     def stable(self, spin: Reals | None = None, *, hertz: Reals | None = None) -> Any:
-        """(...) whether neither mode of rocking grows at a spin; see `rocking`."""
+        """Whether neither rocking mode grows at a spin, (...); arguments as for `rocking`."""
         return np.all(self.rocking(spin, hertz=hertz).growth <= 0, axis=-1)
 
     def _measured(self, told: bool, mass: float | None) -> Self:
@@ -372,11 +379,11 @@ class Ellipsoid(Sized):
         return doubles(reals("hertz", turns_per_second("hertz", hertz))) / self.scale._units[3]
 
     def spin_limits(self) -> Floats:
-        """Spins in sqrt(g/a) at which upright spinning of a single stone becomes stable or unstable."""
+        """Spins, in sqrt(g/a), at which a single stone that spins upright becomes stable or unstable."""
         return np.array(_core.spin_limits(self._numbers))
 
     def energy(self, state: EllipsoidState, contact: AnyContact = "rolling") -> Result:
-        """(...) kinetic and potential energy of a single stone, in M g a, with heights above the table."""
+        """Kinetic plus potential energy of a single stone, (...), in M g a; heights are above the table."""
         made("state", state, EllipsoidState)
         smooth = not isinstance(contact, Coulomb | Viscous) and code(contact) == code("smooth")
         n, w, u = (np.asarray(x) for x in (state.vertical, state.w, state._pair))

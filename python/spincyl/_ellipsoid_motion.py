@@ -23,10 +23,10 @@ from spincyl._phases import phases, rubs
 class EllipsoidMotion(Motion):
     """Motion of a stone: times, states, and how the motion ended; the result of `roll` for an `Ellipsoid`.
 
-    Attributes, optional outputs and units are those of `Motion`, with the largest semi-axis a in place of R.
-    Here `theta` is the inclination of axis 3, and `w` (n, 3) has components along the axes of the
-    ellipsoid. There are no angles phi and psi; `orientation` has the rotation of the stone. With `tol` above
-    1e-7 the error may be twice the estimated error. The errors of a rattling stone grow fast; see
+    Attributes, optional outputs and units are the same as for `Motion`, with the largest semi-axis a in place
+    of R. Differences: `theta` is the inclination of axis 3, and `w`, (n, 3), has components along the axes of
+    the ellipsoid. There are no angles phi and psi; `orientation` gives the rotation of the stone. With `tol`
+    above 1e-7 the error may be twice the estimated error. The errors of a stone that rattles grow fast; see
     `known_until`.
     """
 
@@ -41,7 +41,7 @@ class EllipsoidMotion(Motion):
         FRICTION,
         """(n, 2) velocity of the contact point over the table, sqrt(g a) or m/s. Needs a law of friction.
 
-        Along x and y, as in `EllipsoidState`.
+        The components are along x and y of the laboratory, as described in `EllipsoidState`.
         """,
     )
 
@@ -53,7 +53,7 @@ class EllipsoidMotion(Motion):
 
     @property
     def spin(self) -> Floats:
-        """(n,) angular velocity about the vertical; the spin of a rattleback changes its sign."""
+        """(n,) angular velocity about the vertical, sqrt(g/a) or rad/s; a rattleback reverses it."""
         found: Floats = _core.stone_spin(*components(self.vertical), *components(self.w))
         return found
 
@@ -64,11 +64,12 @@ class EllipsoidMotion(Motion):
 
     @property
     def known_until(self) -> float:
-        """Time up to which the motion is known: its end, unless the estimated error is too large before.
+        """Time until which the motion is known, in the unit of `t`.
 
-        Up to this time the estimated error of the states is at most 1 % of the largest angular velocity, or
-        0.01 in natural units for a slow motion. The motion is also unknown after an event, or a narrow
-        passage without one, if the error decides whether the event occurs; `error` is then infinite.
+        This is the end of the motion, unless the estimated error becomes too large before: more than 1 % of
+        the largest angular velocity, or more than 0.01 in natural units if the motion is slow. The motion is
+        also unknown from the time at which the stone passes so close to an event that the error decides
+        whether the event occurs; `error` is then infinite.
         """
         until: float | None = self.natural._known_until  # type: ignore[attr-defined]
         if until is None:
@@ -106,9 +107,10 @@ class EllipsoidMotion(Motion):
         return np.vstack([self.vertical.T, self.w.T])
 
     def wanting(self, *want: Want | Iterable[Want], t: Reals | None = None) -> "EllipsoidMotion":
-        """The same motion with further outputs, or at other times `t`, computed again.
+        """Compute the motion again with further outputs, or at other times `t`.
 
-        `want` names outputs as in `roll`, in one or several arguments; those of this motion are kept.
+        Each argument `want` is "pose", "force", or a list of both, as in `roll`. Outputs that this motion
+        already has are kept.
         """
         a = self._asked
         return roll(

@@ -35,16 +35,16 @@ def vectors(name: str, value: Reals, *last: int) -> Reals:
 
 
 class Rocking(NamedTuple):
-    """The two rocking modes of a stone that spins upright, slower mode first, in sqrt(g/a).
+    """The two rocking modes of a stone that spins upright, in sqrt(g/a); the slower mode is first.
 
     Attributes
     ----------
     growth : ndarray, (..., 2)
-        Growth rate of each mode; negative if it decays.
+        Growth rate of each mode; negative if the mode decays.
     frequency : ndarray, (..., 2)
-        Angular frequency; 0 if the mode departs from upright without rocking.
+        Angular frequency of each mode; 0 if the stone does not oscillate in this mode.
     eigenvalues : ndarray of complex, (..., 4)
-        Eigenvalues of the linearised motion.
+        The four eigenvalues of the linearised motion.
     """
 
     growth: Floats
@@ -57,29 +57,30 @@ class Rocking(NamedTuple):
 class EllipsoidState:
     """State of a stone, in natural units: vertical and angular velocity along the axes of the ellipsoid.
 
-    Vectors have their components along the last axis of an array. Arrays broadcast; those of dask stay lazy.
+    The last axis of an array holds the components of a vector; the other axes broadcast. Dask arrays stay
+    lazy.
 
     Parameters
     ----------
     vertical : array_like, (..., 3)
-        Unit vector that points upward: (0, 0, 1) if axis 3 stands upright.
+        Unit vector that points upward, along the axes of the ellipsoid; (0, 0, 1) if axis 3 is upright.
     w : array_like, (..., 3)
-        Angular velocity in sqrt(g/a), where a is the largest semi-axis.
+        Angular velocity along the axes of the ellipsoid, in sqrt(g/a), where a is the largest semi-axis.
     slip : array_like, (..., 2), optional
-        Velocity of the contact point over the table, sqrt(g a), along the axes x and y of the laboratory.
-        Axes 1 and 2 of the upright stone are along x and y; the smallest rotation takes it to this state
-        (upside down, half a turn about axis 1). Default: none, the stone rolls.
+        Velocity of the contact point over the table, in sqrt(g a), along the axes x and y of the laboratory.
+        These are axes 1 and 2 of the stone after the smallest rotation that makes axis 3 upright (for a stone
+        that is upside down: half a turn about axis 1). Default: no slip, the stone rolls.
 
     Raises
     ------
     TypeError, ValueError
-        If a field has no real numbers or the wrong shape; the message names it.
+        If a field is not real-valued or has the wrong shape; the message names it.
 
     Notes
     -----
-    Initially ``State(theta, w1, w2, w3)`` equals
-    ``EllipsoidState((sin(theta), 0, cos(theta)), (w1, w2, w3))``. Later `w` differs, since the axes of a
-    `State` follow the inclination only, and the axes of the ellipsoid turn with the stone.
+    As an initial state ``State(theta, w1, w2, w3)`` equals
+    ``EllipsoidState((sin(theta), 0, cos(theta)), (w1, w2, w3))``. Later `w` differs: the axes of the
+    ellipsoid turn with the stone, and the axes e1, e2, e3 of a `State` do not follow the spin.
 
     Examples
     --------
@@ -96,7 +97,7 @@ class EllipsoidState:
 
     @classmethod
     def from_si(cls, vertical: Reals, w: Reals, *, slip: Reals | None = None, scale: Any) -> "EllipsoidState":
-        """State from angular velocities in rad/s and a slip in m/s; `scale` may be a measured stone."""
+        """State from `w` in rad/s and `slip` in m/s; `scale` is a measured stone, or its `Scale`."""
         metre, second, *_ = scale_of(scale)._units
         w, slip = vector_in("radian/second", "w", w), vector_in("metre/second", "slip", slip)
         found = cls(vertical, w, slip)
@@ -105,7 +106,7 @@ class EllipsoidState:
             return cls(found.vertical, found.w * second, faster)
 
     def in_si(self, scale: Any) -> dict[str, Any]:
-        """Arguments of `from_si` as a dict: the vertical, w (rad/s), and the slip (m/s), if any."""
+        """Return the arguments of `from_si` as a dict: vertical, w (rad/s), and slip (m/s), if any."""
         metre, second, *_ = scale_of(scale)._units
         slip = {} if self.slip is None else {"slip": self.slip * (metre / second)}
         return {"vertical": self.vertical, "w": self.w / second} | slip
@@ -122,18 +123,18 @@ class EllipsoidState:
 
     @property
     def spin(self) -> Result:
-        """(...) spin: angular velocity about the vertical, in sqrt(g/a)."""
+        """Spin, (...): the angular velocity about the vertical, in sqrt(g/a)."""
         return _core.stone_spin(*components(self.vertical), *components(self.w))
 
     @property
     def theta(self) -> Result:
-        """(...) inclination: angle from the vertical to axis 3, in radians."""
+        """Inclination, (...): the angle from the vertical to axis 3, in radians."""
         found: Floats = self.inclinations[..., 2]
         return found[()]
 
     @property
     def inclinations(self) -> Floats:
-        """(..., 3) angles from the vertical to the axes of the ellipsoid, in radians."""
+        """Angles from the vertical to the three axes of the ellipsoid, (..., 3), in radians."""
         found: Floats = _core.stone_inclinations(*several(3, *components(self.vertical)))
         return found
 

@@ -16,19 +16,20 @@ class Ending(IntEnum):
     FACE
         The face landed on the table, theta = 0 or pi.
     SIDE
-        The other rim landed, theta = pi/2 (not for a thin disk, ell = 0).
+        The other rim landed at theta = pi/2, or another part at `theta_end`. A thin disk (ell = 0) has no
+        other rim.
     LIFT_OFF
         The normal force vanished.
     SLIP
         Rolling needed more friction than mu N.
     PAINLEVE
-        No contact force, or more than one, obeys the law of friction.
+        The law of friction allows no contact force, or more than one.
     STOPS
-        With losses: the contact point stopped; the body may still spin about the vertical.
+        In a motion with losses, the contact point stopped. The body may still spin about the vertical.
     LANDING
-        A landing on both rims has no outcome, or more than one, that obeys the law of friction.
+        The law of friction allows no outcome of a landing on both rims, or more than one.
     BOUNDED
-        Given up: slipping and rolling alternate too often, or the motion hardly advances.
+        The computation gave up: slipping and rolling alternate too often, or the motion hardly advances.
     """
 
     DONE = 0
@@ -60,19 +61,19 @@ MESSAGES = {
 
 
 class ErrorWarning(UserWarning):
-    """The estimated error of a motion is too large, for a stone from a time before its end on."""
+    """The estimated error of a motion is too large, or for a stone becomes too large before the end."""
 
 
 class Event(NamedTuple):
-    """The event that ended a motion: its ending, its time, and the state at that time.
+    """The event that ended a motion: its kind, its time, and the state at that time.
 
     Attributes
     ----------
     ending : Ending
-        How the motion ended.
+        Kind of the event, which is also the status of the motion.
     time : float
-        Time in sqrt(R/g), for a measured body in seconds.
-    state : State
+        Time of the event in sqrt(R/g), for a measured body in seconds.
+    state : State or EllipsoidState
         State at that time, in natural units.
     """
 

@@ -18,16 +18,16 @@ _ROLLS = "expected a state without slip, as dataclasses.replace(state, slip=None
 
 
 class Region(IntEnum):
-    """Existence and stability of a steady state with the centre at rest, as a code.
+    """Code for the existence and stability of a steady state with the centre at rest.
 
     Attributes
     ----------
     INVALID
         Outside the domain: theta outside (0, pi/2], or an impossible body.
     FORBIDDEN
-        No steady state, between theta_balance and theta_limit.
+        No steady state: theta is between theta_balance and theta_limit.
     UNDETERMINED
-        Too close to one of these for double precision to decide.
+        Too close to theta_balance or theta_limit for double precision to decide.
     UNSTABLE
         Unstable on a smooth table and in rolling.
     STABLE_ROLLING
@@ -90,12 +90,12 @@ class Laws:
 
     @property
     def theta_balance(self) -> Result:
-        """Inclination theta0, radians, at which the body balances at rest on its rim; NaN for a ball."""
+        """Inclination theta0 in radians at which the body balances at rest on its rim; NaN for a ball."""
         return _core.theta_balance(*self._numbers)
 
     @property
     def theta_limit(self) -> Result:
-        """Inclination thetaInf, radians, at which the steady rate tends to infinity."""
+        """Inclination thetaInf in radians at which the rate of the steady state tends to infinity."""
         return _core.theta_limit(*self._numbers)
 
     @property
@@ -117,23 +117,23 @@ class Laws:
         Parameters
         ----------
         at : array_like or State
-            Inclination in (0, pi/2], radians, of the steady state with the centre at rest; or any steady
-            state. A state of `circular` is steady in rolling, but not on a smooth table, where no friction
-            keeps the centre on its circle.
+            Inclination in radians, in (0, pi/2], of a steady state with the centre at rest; or any steady
+            `State`. A state from `circular` is steady in rolling. It is not steady on a smooth table, where
+            no friction keeps the centre on its circle.
         contact : {"rolling", "smooth"}
-            "rolling": the linearised motion without slipping. "smooth": the energy criterion of
-            Jackson et al. (Appendix), exact on a frictionless table. They disagree on about an
-            eighth of the steady states of cylinders and disks (11.8 % of those with ell up to 3).
+            "rolling": stability of the linearised motion without slipping. "smooth": the energy criterion of
+            Jackson et al. (Appendix), which is exact on a frictionless table. The two disagree on about an
+            eighth of the steady states of cylinders and disks (11.8 % for ell up to 3).
         **ufunc
             `out=`, `where=` and the other keywords of NumPy's ufuncs.
 
         Returns
         -------
         float or array
-            NaN where there is no steady state, or where a `State` is not steady to six digits. Error for an
-            inclination: 16 (1 + cond) ulp (2^-53) of the larger term, where
-            ``cond = cos/|n| + (a cos + ell sin)/|m|``. Error for a `State`: 64 ulp of the largest term, for
-            theta above 1e-100.
+            NaN where there is no steady state, or where a `State` is not steady to six digits. For an
+            inclination the error is at most 16 (1 + cond) 2^-53 of the larger of the two terms of kappa, with
+            ``cond = cos/|n| + (a cos + ell sin)/|m|``, a = 1 - fillet, and n and m as for `rate`. For a
+            `State` with theta above 1e-100 it is at most 64 * 2^-53 of the largest term.
         """
         rolling = rolls(contact)
         if isinstance(at, State):
@@ -146,14 +146,14 @@ class Laws:
     def stable(self, at: Reals | State, contact: Contact = "rolling") -> Result:
         """Whether a small disturbance stays small (kappa > 0); False where the state is not steady.
 
-        This is the stability of a body on one point of one rim. At theta = pi/2 a body with two rims stands
-        on both, and at theta = 0 on its whole face. A `State` there may be False because it is not steady on
-        one point, although two rims or a face support it.
+        Parameters are those of `stability`. The result holds for a body that stands on one point of one rim.
+        At theta = pi/2 a body with two rims stands on both, and at theta = 0 a body stands on its whole face.
+        For such a `State` the result may be False, because the body would not be steady on one point alone.
 
         Warns
         -----
         UserWarning
-            For such states. `launch_number` tells whether one of two rims rises.
+            If the body stands on two rims or on its face. `launch_number` says whether one rim rises.
         """
         kappa = self.stability(at, contact)
         if isinstance(at, State):
@@ -162,18 +162,19 @@ class Laws:
 
     @elementwise
     def nutation(self, at: Reals | State, contact: Contact = "rolling") -> Result:
-        """Angular frequency of the nutation, in sqrt(g/R); 0 where unstable, NaN where not steady."""
+        """Angular frequency of a small nutation, sqrt(g/R); 0 for unstable states, NaN for unsteady ones."""
         return _core.nutation(self.stability(at, contact))
 
     @elementwise
     def growth_rate(self, at: Reals | State, contact: Contact = "rolling") -> Result:
-        """Growth rate of a small disturbance, in sqrt(g/R); 0 where stable, NaN where not steady."""
+        """Growth rate of a small disturbance, sqrt(g/R); 0 for stable states, NaN for unsteady ones."""
         return _core.growth_rate(self.stability(at, contact))
 
     def standing_spin(self, contact: Contact = "rolling") -> Result:
-        """Least w3, in sqrt(g/R), at which a ball stands upright on its pole, like a sleeping top.
+        """Least w3, in sqrt(g/R), with which a ball stands stably on its pole, like a sleeping top.
 
-        0 for a ball that stands at rest, NaN for other bodies. Error 4 ulp (2^-53).
+        The result is 0 for a ball that is stable at rest, and NaN for other bodies. Its relative error is at
+        most 4 * 2^-53.
         """
         law = _core.standing_rolling if rolls(contact) else _core.standing_smooth
         return law(*self._numbers)
@@ -182,9 +183,10 @@ class Laws:
     def painleve(self, theta: Reals) -> Result:
         """Painleve limit mu_P: least coefficient of friction at which the contact force may not be unique.
 
-        From mu_P on there may be no contact force, or more than one. This is for a slip along e_h of `State`
-        that moves the contact point away from below the centre, as of pushed chalk. Infinite where the body
-        is balanced; at least sqrt(5)/2 = 1.118 for uniform tubes.
+        With a larger coefficient the law of friction may allow no contact force, or more than one. The limit
+        is for a slip along e_h of `State` that moves the contact point away from below the centre, as when
+        chalk is pushed over a blackboard. `theta` is in radians. The limit is infinite at theta_balance, and
+        at least sqrt(5)/2 = 1.118 for uniform tubes.
         """
         return _core.painleve(radians("theta", theta, self._leans), *self._numbers)
 
@@ -194,26 +196,26 @@ class Laws:
         return law(*several(self._most, *self._numbers))
 
     def folds(self) -> Result:
-        """Inclinations of extrema of the rate along the branch, where two steady states of one rate meet.
+        """Inclinations at which the rate is an extremum, so that two steady states of equal rate merge.
 
-        Radians, on a last axis of 3 or 5 ("root"; see `inclinations`), ascending, padded with NaN. NaN for
-        ell above 1e30 or I1/I3 above 1e60. Error 16 ulp (2^-53) times the conditioning. The same holds for
-        `ridge` and `boundaries`.
+        The inclinations are in radians, ascending, along a last axis of length 3 or 5 ("root"; see
+        `inclinations`), padded with NaN. All are NaN for ell above 1e30 or I1/I3 above 1e60. The error is
+        16 * 2^-53 times the conditioning. The same holds for `ridge` and `boundaries`.
         """
         return _core.fold(*several(self._most, *self._numbers))
 
     def ridge(self) -> Result:
-        """Inclinations of extrema of the energy along the branch; unit, shape and errors as for `folds`."""
+        """Inclinations at which the energy of the steady state is an extremum; details as for `folds`."""
         return _core.ridge(*several(self._most, *self._numbers))
 
     # Quantities of a state.
 
     @elementwise
     def energy(self, state: State, contact: AnyContact = "rolling") -> Result:
-        """Kinetic and potential energy, in M g R, with heights above the table.
+        """Kinetic plus potential energy of a state, in M g R; heights are above the table.
 
-        The kinetic energy includes the slip. On a smooth table (`contact="smooth"`) the centre moves only up
-        and down, and a state with a slip raises ValueError.
+        The velocity of the centre follows from rolling and the slip of the state. With `contact="smooth"` the
+        centre moves only up and down; a state with a slip then raises ValueError.
         """
         if not isinstance(contact, Coulomb | Viscous) and not rolls(contact):
             why = "on a smooth table the centre moves only up and down; contact=sc.Coulomb(0.0) lets it slide"
@@ -233,21 +235,21 @@ class Laws:
     def centre_velocity(self, state: State) -> tuple[Result, Result]:
         """Horizontal velocity of the centre of mass along e_h and e2 of `State`, in sqrt(g R).
 
-        A state without a slip rolls.
+        A state without `slip` is taken as rolling.
         """
         numbers(state)
         return velocity_of(self, state)
 
     @elementwise
     def with_centre_velocity(self, state: State, along: Reals, across: Reals) -> State:
-        """The state with the slip that follows from a horizontal velocity of the centre of mass.
+        """Return the state with the slip that a given velocity of the centre of mass implies.
 
         Parameters
         ----------
         state : State
             State whose slip, if it has one, is replaced.
         along, across : array_like
-            Velocity of the centre of mass in sqrt(g R), along the horizontal vector
+            Horizontal components of the velocity of the centre of mass, in sqrt(g R): along the vector
             e_h = cos(theta) e1 - sin(theta) e3, and along e2.
 
         Examples
@@ -280,21 +282,23 @@ class Laws:
 
     @elementwise
     def speed_o(self, state: State) -> Result:
-        """Speed of O, the point opposite to the contact point through the centre of mass, in sqrt(g R).
+        """Speed of the point O, in sqrt(g R).
 
-        0 if the centre rests. For a tube with sharp rims O is the uppermost point of the upper rim.
+        O is the mirror image of the contact point in the centre of mass; for a tube with sharp rims, the
+        uppermost point of the upper rim. Its speed is 0 if the centre is at rest.
         """
         return _core.speed_o(*gripping(state, _ROLLS), *self._numbers)
 
     @elementwise
     def speed_x(self, state: State) -> Result:
-        """Speed of X, the top of the contact point's circle on the body, in sqrt(g R).
+        """Speed of the point X, in sqrt(g R).
 
-        2 ell w1 if the rim is sharp and the centre rests.
+        X is the highest point of the circle of the body along which it touches the table. With a sharp rim
+        and the centre at rest its speed is 2 ell w1.
         """
         return _core.speed_x(*gripping(state, _ROLLS), *self._numbers)
 
     @elementwise
     def centre_radius(self, state: State) -> Result:
-        """Radius of the circle on which the centre moves, in R; 0 at rest, infinite along a line."""
+        """Radius of the circle on which the centre moves, in R; 0 at rest, infinite for a straight line."""
         return _core.centre_radius(*gripping(state, _ROLLS), *self._numbers)

@@ -1,4 +1,4 @@
-"""The base of the laws of loss, each with one positive coefficient, and sums of laws."""
+"""The base of the loss laws, each with one positive coefficient, and sums of laws."""
 
 import warnings
 from dataclasses import dataclass, fields
@@ -35,7 +35,7 @@ _EXPECTED = "expected a positive number: a loss takes energy"
 
 
 class Loss:
-    """A law of loss, or a sum of laws: a couple on the body, and the power it takes."""
+    """A loss law, or a sum of loss laws: a couple on the body that takes energy from its motion."""
 
     __array_ufunc__ = None  # so that NumPy does not add the law to each element of an array
     #: The function of a law that a user wrote.
@@ -58,32 +58,36 @@ class Loss:
 
     @elementwise
     def power(self, body: Body, state: State, normal: Reals = 1.0) -> Result:
-        """Power lost, in M g R sqrt(g/R): P = -m.w >= 0, so that dE/dt = -P.
+        """Power lost, in M g R sqrt(g/R).
+
+        With the couple m and the angular velocity w it is P = -m.w >= 0, and the energy falls as dE/dt = -P.
 
         Parameters
         ----------
         body : Body
             Body or family.
         state : State
-            State; its slip has no effect, since the friction of slipping is a separate loss.
+            Single state or array of states. The slip has no effect, since sliding friction is not part of the
+            loss laws.
         normal : array_like
-            Normal force N in M g, to which dry laws are proportional: 1 in steady states, `Motion.normal`
-            in a motion.
+            Normal force N in M g; dry laws are proportional to it. N is 1 in a steady state, and
+            `Motion.normal` in a motion.
 
         Returns
         -------
         float or array
-            Broadcast shape of body, state, normal force and coefficients; NaN for impossible bodies or
-            coefficients of an array. Error: a few roundings.
+            Broadcast shape of body, state, normal force and coefficients; NaN where an element of an array is
+            an impossible body or coefficient. Error: a few roundings.
         """
         return _core.loss_power(*self._given(body, state, normal))
 
     @elementwise
     def couple(self, body: Body, state: State, normal: Reals = 1.0) -> Result:
-        """Couple m on the body along e1, e2, e3 of `State`, in M g R.
+        """Couple m on the body, in M g R, with components along e1, e2, e3 of `State`.
 
-        Parameters, shape and errors are those of `power`, with a last axis of 3 (xarray: dimension "axis").
-        Dry friction of a rotation that is at rest is undetermined up to its largest value; it is 0 here.
+        Parameters, shape and errors are those of `power`. The components are on a further last axis of length
+        3 (xarray: dimension "axis"). For a rotation at rest a dry law sets only the largest possible couple;
+        the couple returned is then 0.
         """
         return _core.loss_couple(*several(3, *self._given(body, state, normal), name="axis"))
 
@@ -110,7 +114,7 @@ class Loss:
 
 
 class Law(Loss):
-    """Base of the laws of loss that have one coefficient."""
+    """Base class of the loss laws, each of which has one coefficient."""
 
     #: False for a coefficient in natural units; True, or the scale, if it was given in SI.
     _sized: "Scale | bool" = False
@@ -140,7 +144,7 @@ class Law(Loss):
         return getattr(self, self._parameter)
 
     def in_si(self, scale: "Scale | Body") -> Reals:
-        """The coefficient in the unit of SI that `from_si` of this law takes."""
+        """The coefficient in SI, in the unit that the method `from_si` of this law expects."""
         small = 2.0**-40  # no law warns of so small a coefficient
         law = type(self).from_si(small, scale=scale)  # type: ignore[attr-defined]
         return self.coefficient / law.coefficient * small
@@ -158,7 +162,7 @@ class Law(Loss):
 
     @property
     def exponent(self) -> float | None:
-        """Exponent n: theta of a thin disk falls as the n-th power of the remaining time; None: no stop."""
+        """Exponent n: theta of a thin disk falls as (remaining time)^n. None if the disk never stops."""
         return _LAWS[self._parameter]
 
     @property
@@ -172,12 +176,12 @@ class Law(Loss):
 
 @dataclass(frozen=True, eq=False, repr=False, init=False)
 class Sum(Loss):
-    """Sum of laws of loss, whose couples and powers add; the result of `+`.
+    """Sum of loss laws, the result of `+`: the couples of the laws add, and so do the powers.
 
     Parameters
     ----------
     laws : iterable of Loss
-        At least one law. The coefficients of a law that is given twice are added.
+        One or more laws. If a law is given twice, its coefficients are added.
 
     Examples
     --------
@@ -195,10 +199,10 @@ class Sum(Loss):
         try:
             given = list(laws)
         except TypeError:
-            raise TypeError(f"laws: expected a list of laws of loss, not {type(laws).__name__}") from None
+            raise TypeError(f"laws: expected a list of loss laws, not {type(laws).__name__}") from None
         for loss in given:
             if not isinstance(loss, Loss):
-                raise TypeError(f"laws: expected laws of loss, not {type(loss).__name__} {loss!r}")
+                raise TypeError(f"laws: expected loss laws, not {type(loss).__name__} {loss!r}")
             for law in loss.laws:
                 kind = type(law)
                 before = found.get(kind)
@@ -268,10 +272,10 @@ def sized(law: _Kind, of: "Scale | Body | bool" = True) -> _Kind:
 
 
 def made_law(losses: object, body: Body | None = None) -> Loss:
-    """Return a law of loss, or TypeError; ValueError if it is not in SI and the body is measured."""
+    """Return a loss law, or raise TypeError; ValueError if the body is measured and the law is not in SI."""
     if not isinstance(losses, Loss):
-        like = "sc.loss.DryContour(1e-3), or laws added with +"
-        raise TypeError(f"losses: expected a law of loss, as {like}, not {type(losses).__name__}")
+        like = "such as sc.loss.DryContour(1e-3), or several added with +"
+        raise TypeError(f"losses: expected a loss law, {like}, not {type(losses).__name__}")
     if losses._function is not None:
         return losses
     bare = [] if body is None or body.scale is None else [law for law in losses.laws if not law._sized]
@@ -288,9 +292,10 @@ def units(scale: "Scale | Body", weighed: bool = False) -> tuple[float, float, f
     """Metres, seconds and joules of the natural units; with `weighed`, an error if the mass is unknown."""
     found = scale_of(scale)
     if weighed and found.mass == 1.0 and isinstance(scale, Scale):
-        message = f"scale = {found!r}: the law of loss needs the mass, and 1 kg is the default; give mass="
+        why = "this loss law needs the mass of the body, and the mass has its default of 1 kg"
+        message = f"scale = {found!r}: {why}; give Scale(..., mass=...)"
         warnings.warn(message, UserWarning, stacklevel=4)
     if weighed:
-        found._joule("the coefficient of this law of loss")  # raises ValueError if the mass is unknown
+        found._joule("the coefficient of this loss law")  # raises ValueError if the mass is unknown
     metres, seconds, joules, _ = found._units
     return metres, seconds, joules

@@ -30,7 +30,7 @@ def check(losses: object, times: Floats, t0: float, settings: dict[str, Any]) ->
 
 
 def of_stone(losses: object, body: Any) -> Loss:
-    """Return a law of loss that acts on stones, or an error that names the law."""
+    """Return a loss law that acts on stones, or an error that names the law."""
     found = made_law(losses, body)
     for law in found.laws:
         if law._parameter not in _core.stone_losses():

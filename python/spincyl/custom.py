@@ -1,9 +1,9 @@
 """Custom laws: a couple that takes energy, and a coefficient of friction that depends on the speed.
 
-Each is a Python function, plain or compiled (``numba.njit``), which is called some thousand times in a
-motion. Before the motion begins the law is checked: it must be finite and without jumps, and a couple must
-not add energy. Dry friction, which contains the sign of a speed, has to be smoothed: ``tanh(x/e)`` in place
-of ``sign(x)``.
+Each law is a Python function, plain or compiled (``numba.njit``); a motion calls it thousands of times.
+`sc.roll` checks the law before the motion begins: its values must be finite and without jumps, and a couple
+must not add energy. A dry law contains the sign of a speed, which jumps. Smooth it: ``tanh(x/e)`` in place of
+``sign(x)``.
 
 >>> import numpy as np
 >>> import spincyl as sc
@@ -31,7 +31,7 @@ __all__ = ["Couple", "Friction"]
 
 #: A couple from theta, w along e1, e2, e3 (an array of 3), and the normal force.
 CoupleFunction = Callable[[float, Floats, float], Sequence[float] | Floats]
-_ALONE = "a law of your own works only in sc.roll, for a single body of revolution, as its only law of loss"
+_ALONE = "a law of your own works only in sc.roll, for a single body of revolution, as its only loss law"
 
 
 def _called(name: str, function: object, arguments: str) -> None:
@@ -41,28 +41,29 @@ def _called(name: str, function: object, arguments: str) -> None:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Couple(Loss):
-    """Law of loss given by a function: a couple from inclination, angular velocity and normal force.
+    """Loss law given by a function of inclination, angular velocity and normal force.
 
     Parameters
     ----------
     function : callable
-        ``function(theta, w, normal)`` returns the three components of the couple along e1, e2, e3 of `State`,
-        in M g R. Its arguments are `theta` in radians, the array `w` of the angular velocity along the same
-        axes in sqrt(g/R), and the normal force `normal` in M g, 0 or more. For a measured body the units are
-        N m, rad/s and N. The power ``-couple @ w`` must not be negative.
+        ``function(theta, w, normal)`` returns the couple on the body, in M g R: its three components along
+        e1, e2, e3 of `State`. The arguments of the function are the inclination `theta` in radians, the
+        angular velocity `w` in sqrt(g/R) (an array of its components along the same axes), and the normal
+        force `normal` in M g, 0 or more. For a measured body the units are N m, rad/s and N. The power that
+        the couple takes, ``-couple @ w``, must not be negative.
 
     Raises
     ------
     TypeError
-        If `function` is not callable, or if the law is used for many motions, for a drift, for a stone, or
-        together with another law.
+        If `function` is not callable. Also if the law is used for many motions, for a drift, for a stone, or
+        together with another loss law.
     ValueError
         In `sc.roll`, if the couple adds energy, is not finite, or jumps; the message gives a value.
 
     Notes
     -----
-    The motion is integrated with the tolerance `tol` of `sc.roll` (default 1e-10 for each step).
-    `Motion.error` estimates its error from a second run with a larger tolerance.
+    The motion is integrated with the tolerance `tol` of `sc.roll`, by default 1e-10 for each step.
+    `Motion.error` is estimated from a second run with a larger tolerance.
     """
 
     function: CoupleFunction
@@ -76,7 +77,7 @@ class Couple(Loss):
 
     @property
     def laws(self) -> tuple[Law, ...]:
-        """Raises TypeError, since a function has no coefficient that could be listed."""
+        """Raises TypeError, since a law that is a function has no coefficients to list."""
         raise TypeError(f"losses = {self!r}: {_ALONE}")
 
     def _natural(self, scale: Scale | None) -> Loss:
@@ -91,12 +92,12 @@ class Couple(Loss):
         return type(self)(natural)
 
     def couple(self, body: Body, state: State, normal: Reals = 1.0) -> Result:
-        """Couple along e1, e2, e3 in a single state, as returned by the function."""
+        """Couple in a single state, along e1, e2, e3, as the function returns it; `body` is not used."""
         w = np.array([state.w1, state.w2, state.w3], dtype=float)
         return np.asarray(self.function(float(state.theta), w, float(normal)), dtype=float)
 
     def power(self, body: Body, state: State, normal: Reals = 1.0) -> Result:
-        """Power ``-couple @ w`` in a single state."""
+        """Power that the law takes in a single state, ``-couple @ w``; `body` is not used."""
         return -float(self.couple(body, state, normal) @ np.array([state.w1, state.w2, state.w3]))
 
     def __eq__(self, other: object) -> bool:
@@ -110,7 +111,7 @@ class Couple(Loss):
 
 
 class Friction(Coulomb):
-    """Dry friction whose coefficient depends on the speed of the slip, such as Stribeck's.
+    """Dry friction whose coefficient depends on the speed of the slip, such as Stribeck friction.
 
     Parameters
     ----------
@@ -118,18 +119,19 @@ class Friction(Coulomb):
         ``function(speed)`` returns the coefficient of friction, 0 or more. `speed` is the magnitude of the
         slip, in sqrt(g R), or in m/s for a measured body.
     static : float, optional
-        Coefficient of static friction, at least ``function(0.0)``, which is the default.
+        Coefficient of static friction, at least ``function(0.0)``. Default: ``function(0.0)``.
 
     Raises
     ------
     TypeError
-        If `function` is not callable, or if the law is used for many motions, for a stone, or on a page.
+        If `function` is not callable. Also if the law is used for many motions, for a stone, or on a page.
     ValueError
-        In `sc.roll`, if the coefficient is negative, not finite, or jumps.
+        In `sc.roll`, if the coefficient is negative, is not finite, or jumps.
 
     Examples
     --------
-    A hoop thrown with backspin slips until friction has stopped its slip of 5, u' = -2 mu(u):
+    A hoop thrown with backspin begins with a slip of 5. It slips until friction, u' = -2 mu(u), has stopped
+    the slip:
 
     >>> import numpy as np
     >>> import spincyl as sc

@@ -1,12 +1,14 @@
-"""Laws of loss, which take the energy of a body that spins, rolls and comes to rest.
+"""Loss laws, which take energy from a body as it spins and rolls, until it comes to rest.
 
-Each law is a couple on the body with one positive coefficient; laws are added with `+`. Which law stops a
-coin has been debated for twenty-five years; fit and compare them, since none is preferred here.
+Each law is a couple on the body, with one positive coefficient. Laws are added with `+`. Which law stops a
+coin has been debated for twenty-five years. The library prefers none: fit the laws and compare them.
 
-Symbols: s and c are the sine and cosine of theta, psi' = w3 - w1 c/s the spin, w_h = -s psi' the rolling, w2
-the rocking, w_z = s w1 + c w3 the drilling, N the normal force, A the radius of the contact point's circle on
-the body (1 for a sharp rim), and h = c e1 - s e3. The table gives the power P of each law, and its
-`exponent` n: theta of a thin disk falls as the n-th power of the remaining time::
+Symbols: w is the angular velocity of the body, with the components w1, w2, w3 along e1, e2, e3 of `State`.
+The letters s and c are the sine and cosine of theta, z is the vertical, and h = c e1 - s e3 is horizontal.
+The spin is psi' = w3 - w1 c/s. The component of w along h is the rolling, w_h = -s psi'; along e2, the
+rocking, w2; along z, the drilling, w_z = s w1 + c w3. N is the normal force. A is the radius of the circle of
+the body along which it touches the table (1 for a sharp rim). The table gives the power P that each law
+takes, and its `exponent` n: theta of a thin disk falls as (remaining time)^n::
 
     DryContour(eps)           P = eps N A |psi'|                      2/3
     ViscousContour(c)         P = c (A psi')^2                        1/2
@@ -69,9 +71,9 @@ _AIR, _DENSITY = 1.8e-5, 1.2  # Pa s, kg/m^3
 class DryContour(Law):
     """Dry friction along the contour of the rim: ``P = eps N A |psi'|``.
 
-    The couple is m = eps N A sgn(psi') h/s. It means that the normal force acts ahead of the contact point by
-    eps/s. This is impossible beyond the rim, at theta below about eps. Source: Le Saux, Leine and Glocker,
-    J. Nonlinear Sci. 15, 27 (2005).
+    The couple is m = eps N A sgn(psi') h/s, as if the normal force acted ahead of the contact point by eps/s.
+    At theta below about eps it would act outside the rim, which is impossible. Source: Le Saux, Leine and
+    Glocker, J. Nonlinear Sci. 15, 27 (2005).
 
     Parameters
     ----------
@@ -83,16 +85,17 @@ class DryContour(Law):
 
     @classmethod
     def from_si(cls, eps: Reals, *, scale: Scale | Body) -> Self:
-        """Law with `eps` in metres, or a text such as "0.1mm", for a body of this scale."""
+        """Law with `eps` in metres or as a text, "0.1mm"; `scale` is a measured body or a `Scale`."""
         return sized(cls(arm("eps", eps, scale)), scale)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ViscousContour(Law):
-    """Viscous friction along the contour of the rim: P = c (A psi')^2, m = c A^2 psi' h/s.
+    """Viscous friction along the contour of the rim: P = c (A psi')^2.
 
-    Source: Leine, Arch. Appl. Mech. 79, 1063 (2009). McDonald and McDonald, arXiv physics/0008227, observed a
-    loss that grows as the square of the rate.
+    The couple is m = c A^2 psi' h/s; here c is the coefficient, not the cosine. Source: Leine, Arch. Appl.
+    Mech. 79, 1063 (2009). McDonald and McDonald, arXiv physics/0008227, observed a power that grows as the
+    square of the rate.
 
     Parameters
     ----------
@@ -104,28 +107,29 @@ class ViscousContour(Law):
 
     @classmethod
     def from_si(cls, c: Reals, *, scale: Scale | Body) -> Self:
-        """Law with `c` in N m s, for a body of this scale, which needs the mass."""
+        """Law with `c` in N m s. `scale` is a measured body with a known mass, or a `Scale`."""
         return sized(cls(over(positive("c", c, "newton*metre*second"), _newton_metre_seconds(scale))), scale)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class RollingResistance(Law):
-    """Rolling friction with the classical arm delta: P = delta N sqrt(w_h^2 + w2^2).
+    """Rolling resistance with the classical arm delta: P = delta N sqrt(w_h^2 + w2^2).
 
-    The couple is m = -delta N (c w_h, w2, -s w_h)/sqrt(w_h^2 + w2^2), since w_h is along h and w2 along e2.
-    This law alone stops a coin in a finite time, but after infinitely many turns.
+    The normal force acts ahead of the contact point by the arm delta. The couple is
+    m = -delta N (c w_h, w2, -s w_h)/sqrt(w_h^2 + w2^2), since w_h is along h and w2 along e2. This law alone
+    stops a coin in a finite time, but after infinitely many turns.
 
     Parameters
     ----------
     delta : array_like
-        Arm in R, positive.
+        Arm of the normal force, in R, positive.
     """
 
     delta: Reals
 
     @classmethod
     def from_si(cls, delta: Reals, *, scale: Scale | Body) -> Self:
-        """Law with `delta` in metres, or a text such as "0.1mm", for a body of this scale."""
+        """Law with `delta` in metres or as a text, "0.1mm"; `scale` is a measured body or a `Scale`."""
         return sized(cls(arm("delta", delta, scale)), scale)
 
 
@@ -133,27 +137,29 @@ class RollingResistance(Law):
 class Drilling(Law):
     """Friction of the patch of contact as it rotates on the table: ``P = length N |w_z|``.
 
-    The couple is m = -length N sgn(w_z) z. Source: Contensou (1963); Leine, Arch. Appl. Mech. 79, 1063
-    (2009). This law alone never stops a thin disk; it does stop a disk of finite height.
+    The couple is m = -length N sgn(w_z) z. This law alone never stops a thin disk; it does stop a disk of
+    finite height. Source: Contensou (1963); Leine, Arch. Appl. Mech. 79, 1063 (2009).
 
     Parameters
     ----------
     length : array_like
-        Coefficient in R, positive. With uniform pressure, two thirds of the coefficient of friction times the
-        radius of the patch.
+        Coefficient in R, positive. If the pressure is uniform, this is two thirds of the product of the
+        coefficient of friction and the radius of the patch.
     """
 
     length: Reals
 
     @classmethod
     def from_si(cls, length: Reals, *, scale: Scale | Body) -> Self:
-        """Law with `length` in metres, or a text such as "0.1mm", for a body of this scale."""
+        """Law with `length` in metres or as a text, "0.1mm"; `scale` is a measured body or a `Scale`."""
         return sized(cls(arm("length", length, scale)), scale)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class AirLinear(Law):
-    """Linear drag of the air on all rotation (Stokes): P = b w.w, m = -b w.
+    """Air drag linear in the angular velocity (Stokes): P = b w.w.
+
+    The couple is m = -b w.
 
     Parameters
     ----------
@@ -165,25 +171,28 @@ class AirLinear(Law):
 
     @classmethod
     def from_si(cls, b: Reals, *, scale: Scale | Body) -> Self:
-        """Law with `b` in N m s, for a body of this scale, which needs the mass."""
+        """Law with `b` in N m s. `scale` is a measured body with a known mass, or a `Scale`."""
         return sized(cls(over(positive("b", b, "newton*metre*second"), _newton_metre_seconds(scale))), scale)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class AirQuadratic(Law):
-    """Quadratic drag of the air on all rotation (Newton): ``P = b2 |w|^3, m = -b2 |w| w``.
+    """Air drag quadratic in the angular velocity (Newton): ``P = b2 |w|^3``.
+
+    The couple is ``m = -b2 |w| w``.
 
     Parameters
     ----------
     b2 : array_like
-        Coefficient in M R^2, positive: about (Cd/2) (density R^3/M) ell^4 for a long rod in air.
+        Coefficient in M R^2, positive. For a long rod in air it is about (Cd/2) (density R^3/M) ell^4, with
+        the drag coefficient Cd.
     """
 
     b2: Reals
 
     @classmethod
     def from_si(cls, b2: Reals, *, scale: Scale | Body) -> Self:
-        """Law with `b2` in N m s^2, for a body of this scale, which needs the mass."""
+        """Law with `b2` in N m s^2. `scale` is a measured body with a known mass, or a `Scale`."""
         _, seconds, joules = units(scale, weighed=True)
         return sized(cls(over(positive("b2", b2, "newton*metre*second**2"), joules * seconds**2)), scale)
 
@@ -193,23 +202,23 @@ class AirFilm(Law):
     """A viscous film of air between a flat face and the table: P = (pi/4) viscosity psi'^2/s.
 
     The couple is m = (pi/4) viscosity psi' h/s^2. Source: Moffatt, Nature 404, 833 (2000). The film fills the
-    gap only if theta^(3/4) is below nu^(1/2) (R/(4 g))^(1/4)/R, nu the kinematic viscosity of air: below
-    0.005 rad for Euler's disk. Above that see `BoundaryLayer`; the drift of a measured body that starts
-    there issues a warning.
+    gap only where theta^(3/4) is below nu^(1/2) (R/(4 g))^(1/4)/R, with the kinematic viscosity nu of air;
+    for Euler's disk, below 0.005 rad. At larger inclinations use `BoundaryLayer`. The drift of a measured
+    body that starts at a larger inclination issues a warning.
 
     Parameters
     ----------
     viscosity : array_like
         Viscosity in M g^(1/2)/R^(3/2), positive: 9.5e-8 for air under Euler's disk. The factor pi/4 is
-        Moffatt's estimate. Lubrication theory without pressure at the rim gives 1.2811 instead: for that,
-        multiply `viscosity` by 1.63.
+        Moffatt's estimate. Lubrication theory without pressure at the rim gives 1.2811 in its place: multiply
+        `viscosity` by 1.63 to use it.
     """
 
     viscosity: Reals
 
     @classmethod
     def from_si(cls, viscosity: Reals = _AIR, *, scale: Scale | Body) -> Self:
-        """Law with the viscosity in Pa s (default: air), for a body of this scale, which needs the mass."""
+        """Law with `viscosity` in Pa s (default: air). `scale` is a body with a known mass, or a `Scale`."""
         unit = _newton_metre_seconds(scale)
         with np.errstate(over="ignore"):
             found = positive("viscosity", viscosity, "pascal*second") * units(scale)[0] ** 3 / unit
@@ -218,15 +227,16 @@ class AirFilm(Law):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class BoundaryLayer(Law):
-    """Boundary layers of the air that is pressed out below a flat face: ``P = k |psi'|^(5/2)``.
+    """Boundary layers of the air that a flat face presses out below it: ``P = k |psi'|^(5/2)``.
 
-    The couple is ``m = k |psi'|^(3/2) sgn(psi') h/s``. Source: Bildsten, Phys. Rev. E 66, 056309 (2002). It
-    holds at inclinations above those at which the film of `AirFilm` fills the gap.
+    The couple is ``m = k |psi'|^(3/2) sgn(psi') h/s``. Source: Bildsten, Phys. Rev. E 66, 056309 (2002). The
+    law holds at inclinations so large that the film of `AirFilm` does not fill the gap.
 
     Parameters
     ----------
     k : array_like
-        Coefficient in M g^(1/4) R^(7/4), positive: C sqrt(density viscosity) R^(9/4)/(M g^(1/4)).
+        Coefficient in M g^(1/4) R^(7/4), positive. It is C sqrt(density viscosity) R^(9/4)/(M g^(1/4)), with
+        density and viscosity of the air, and a number C of order 0.1.
     """
 
     k: Reals
@@ -235,9 +245,9 @@ class BoundaryLayer(Law):
     def from_si(
         cls, C: Reals, *, scale: Scale | Body, density: Reals = _DENSITY, viscosity: Reals = _AIR
     ) -> Self:
-        """Law with the number `C`, of order 0.1, and the density and viscosity of air in kg/m^3 and Pa s.
+        """Law with the number `C`, of order 0.1, and the density (kg/m^3) and viscosity (Pa s) of the air.
 
-        For a body of this scale, which needs the mass.
+        `scale` is a measured body with a known mass, or a `Scale`.
         """
         metres, seconds, joules = units(scale, weighed=True)
         density = positive("density", density, "kilogram/metre**3")

@@ -1,8 +1,9 @@
 """Parts on one axis, from which `assembled` makes a body: cylinders, cones, balls, thin walls, rings, points.
 
-Diameters, lengths and heights are in metres, or texts such as "18mm". Each part has a `mass` (kg) or a
-`density`: in kg/m^3 for a solid part, kg/m^2 for a thin wall, kg/m for a ring. `at` is the height of its
-lowest point; by default a part stands on the part before it, and the first part at height 0.
+Diameters, lengths and heights are numbers in metres, or texts such as "18mm". Give each part its `mass` (kg)
+or its `density`: in kg/m^3 for a solid part, in kg/m^2 for a thin wall, in kg/m for a ring. `at` is the
+height of the lowest point of the part. By default the first part is at height 0, and each further part stands
+on the part before it.
 
 >>> import spincyl as sc
 >>> from spincyl import parts
@@ -43,15 +44,15 @@ class Part:
     name : str
         Name of the function that made the part, such as "cylinder".
     form : int
-        Code of the form.
+        Code of the geometric form; parts of different names may have the same form.
     numbers : tuple of float
-        Radii and heights in metres, from the lowest point of the part.
+        Radii and heights of the part, in metres; heights are above its lowest point.
     amount : float
-        Mass in kg, or density.
+        Mass in kg, or density in kg/m^3, kg/m^2 or kg/m.
     dense : bool
         Whether `amount` is a density.
     at : float or None
-        Height of the lowest point in metres; None if the part stands on the one before.
+        Height of the lowest point, in metres. None if the part stands on the part before it.
     """
 
     name: str
@@ -62,7 +63,7 @@ class Part:
     at: float | None
 
     def raised(self, by: float) -> "Part":
-        """Return the part with all heights increased by a length in metres."""
+        """Return the part with all its heights increased by the length `by`, in metres."""
         heights = _HEIGHTS[self.form]
         return replace(self, numbers=tuple(x + by if i in heights else x for i, x in enumerate(self.numbers)))
 
@@ -82,7 +83,7 @@ def cylinder(
     mass: float | None = None,
     density: float | None = None,
 ) -> Part:
-    """Solid or hollow cylinder. A `fillet` rounds the outer edges without changing mass and moments."""
+    """Solid or hollow cylinder. A `fillet` rounds the outer edges; mass and moments ignore it."""
     r, b = _metres("outer_diameter", outer_diameter) / 2, _metres("inner_diameter", inner_diameter) / 2
     rest = 0.0, _metres("length", length), _metres("fillet", fillet)
     return _part("cylinder", _SOLID, (r, r, b, b, *rest), at, mass, density)
@@ -97,7 +98,7 @@ def cone(
     mass: float | None = None,
     density: float | None = None,
 ) -> Part:
-    """Solid cone or frustum; one of the diameters may be 0."""
+    """Solid cone or frustum. One of the two diameters may be 0."""
     r, s = _metres("lower_diameter", lower_diameter) / 2, _metres("upper_diameter", upper_diameter) / 2
     return _part("cone", _SOLID, (r, s, 0.0, 0.0, 0.0, _metres("length", length), 0.0), at, mass, density)
 
@@ -124,7 +125,7 @@ def cap(
     mass: float | None = None,
     density: float | None = None,
 ) -> Part:
-    """Solid cap of the given height from the bottom of a ball; with `upper`, from its top."""
+    """Solid cap of a ball: its lowest part, of the given `height`; with `upper`, its highest part."""
     r, h = _metres("diameter", diameter) / 2, _metres("height", height)
     return _part("cap", _BALL, (r, 0.0, h - r if upper else r, 0.0, h), at, mass, density)
 
@@ -138,7 +139,7 @@ def wall(
     mass: float | None = None,
     density: float | None = None,
 ) -> Part:
-    """Thin wall, open at both ends: a tube, a paper cone, a cup; `density` in kg/m^2."""
+    """Thin wall, open at both ends, such as a paper cone. The `density` is in kg/m^2."""
     r, s = _metres("lower_diameter", lower_diameter) / 2, _metres("upper_diameter", upper_diameter) / 2
     return _part("wall", _WALL, (r, s, 0.0, _metres("length", length)), at, mass, density)
 
@@ -151,7 +152,7 @@ def disk(
     mass: float | None = None,
     density: float | None = None,
 ) -> Part:
-    """Thin disk, with or without a hole: a floor, a lid; `density` in kg/m^2."""
+    """Thin disk, with or without a hole, such as a floor or a lid. The `density` is in kg/m^2."""
     r, b = _metres("outer_diameter", outer_diameter) / 2, _metres("inner_diameter", inner_diameter) / 2
     return _part("disk", _WALL, (b, r, 0.0, 0.0), at, mass, density)
 
@@ -165,7 +166,10 @@ def shell(
     mass: float | None = None,
     density: float | None = None,
 ) -> Part:
-    """Thin spherical wall, whole or its lowest `height` (with `upper`, its highest); `density` in kg/m^2."""
+    """Thin spherical wall; the `density` is in kg/m^2.
+
+    Default: the whole sphere. With `height`, only its lowest part of this height; with `upper`, the highest.
+    """
     r = _metres("diameter", diameter) / 2
     h = 2 * r if height is None else _metres("height", height)
     return _part("shell", _SHELL, (r, h - r if upper else r, 0.0, h), at, mass, density)
@@ -174,7 +178,7 @@ def shell(
 def ring(
     *, diameter: float, at: float | None = None, mass: float | None = None, density: float | None = None
 ) -> Part:
-    """Thin ring, such as a tyre or a weight, which can touch the table; `density` in kg/m."""
+    """Thin ring, such as a tyre, which can touch the table. The `density` is in kg/m."""
     return _part("ring", _RING, (_metres("diameter", diameter) / 2, 0.0), at, mass, density)
 
 
@@ -189,18 +193,19 @@ def assembled(parts: Iterable[Part], *, gravity: float = Scale.gravity) -> Body:
     Parameters
     ----------
     parts : iterable of Part
-        Parts from the lowest to the highest, or in any order with `at`.
+        Parts, from the lowest to the highest. Parts with `at` may be in any order.
     gravity : float
         Acceleration of gravity, in m/s^2.
 
     Returns
     -------
     Body
-        Measured body: R of its `scale` is the outer radius of its rim, the mass that of all parts. `natural`
-        is the same body in natural units. Pictures, films and pages show the parts. The body stands on its
-        lowest edge or ball, or on the widest of several edges at the same height. `theta_end` is the
-        inclination at which another part lands. If the other rim is as wide and as far from the centre of
-        mass, the body has two equal rims, and may lie on both. Moments have errors of a few roundings.
+        Measured body. Its `scale` has the outer radius of its rim and the mass of all parts together;
+        `natural` is the same body in natural units. Pictures, films and pages show the parts. The body stands
+        on its lowest edge or ball; if several edges are equally low, on the widest. `theta_end` is the
+        inclination at which another part lands. If the upper rim is as wide as the lower and as far from the
+        centre of mass, the body has two equal rims, and may lie on both. Moments have errors of a few
+        roundings.
 
     Raises
     ------
