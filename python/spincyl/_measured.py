@@ -31,21 +31,21 @@ def measured(
     fillet: float = 0.0,
     gravity: float = Scale.gravity,
 ) -> Body:
-    """Make a measured body: a uniform tube with dimensions in metres and motions in SI.
+    """Make a measured body: a uniform tube with dimensions in metres, whose motions are in SI.
 
-    Each argument is a single number, a text such as "120mm", or a quantity of pint in any unit of its kind.
+    Each argument is a single number, a text such as "120mm", or a pint quantity in any suitable unit.
 
     Parameters
     ----------
     outer_diameter, length : float
         Outer diameter and length of the tube, in metres.
     inner_diameter : float
-        Inner diameter in metres; 0 is a solid cylinder.
+        Inner diameter in metres; 0 for a solid cylinder.
     wall : float, optional
-        Thickness of the wall in metres, instead of `inner_diameter`.
+        Thickness of the wall in metres, in place of `inner_diameter`.
     mass : float, optional
-        Mass in kilograms. Rates, times and lengths do not need it; forces and energies do, else they raise an
-        error.
+        Mass in kilograms. Rates, times and lengths do not need the mass. Without a mass, forces and energies
+        raise an error.
     fillet : float
         Radius of the rounded outer edges, in metres.
     gravity : float
@@ -54,23 +54,23 @@ def measured(
     Returns
     -------
     Body
-        Body with a `scale`. `roll`, `swing`, `drift` and sweeps of it return SI: s, m, J, N and rad/s;
-        `thrown`, `pressed` and `dropped` take SI. Methods of the body and every `State` stay in natural
-        units, unless the name has a unit: `critical_hertz`, `hertz(theta)`, `inclinations(hertz=7.3)`.
-        `natural` is the same body without its scale.
+        Body with a `scale`. For this body `roll`, `swing`, `drift` and sweeps return SI units: s, m, J, N and
+        rad/s. `thrown`, `pressed` and `dropped` take SI units. Methods of the body and every `State` stay in
+        natural units. Exceptions have a unit in the name: `critical_hertz`, `hertz(theta)`,
+        `inclinations(hertz=7.3)`. The property `natural` is the same body without its scale.
 
     Raises
     ------
     ValueError
-        If there is no such tube; the message names the value and the inequality.
+        If such a tube is impossible; the message names the value and the inequality.
     TypeError
-        If an argument is not a single real number, or has another dimension; the message names it.
+        If an argument is not a single real number, or its unit has a wrong dimension; the message names it.
 
     Warns
     -----
     UserWarning
-        If the tube is larger than 5 m, smaller than 0.1 mm or, with a mass, lighter than foam or heavier than
-        osmium, as if millimetres had been taken for metres.
+        If the tube is larger than 5 m or smaller than 0.1 mm, or its density is below that of foam or above
+        that of osmium. Probably millimetres were given for metres.
 
     See Also
     --------

@@ -45,41 +45,44 @@ _Four: TypeAlias = tuple[float, float, float, float]
 class Motion:
     """Motion of a body: times, states, and how the motion ended; the result of `roll`.
 
-    Similar to the result of SciPy's `solve_ivp`; n is the number of times reached. Units are the natural ones
-    named below. For a measured body everything here is in SI: times in s, w in rad/s, lengths in m, `slip` in
-    m/s, forces in N, energies in J. Each `State` is in natural units even then: `start`, `states`, and those
-    of `event` and `phases`. `natural` is the whole motion in natural units.
+    The object is similar to the result of SciPy's `solve_ivp`. Arrays have a row for each of the n times that
+    the motion reached. Outputs are in natural units; for a measured body they are in SI: times in s, w in
+    rad/s, lengths in m, `slip` in m/s, forces in N, energies in J. But each `State` is always in natural
+    units: `start`, `states`, and the states of `event` and `phases`. `natural` is the whole motion in natural
+    units.
 
-    Optional outputs that were not computed raise AttributeError; the message says how to get them.
+    An optional output that was not computed raises AttributeError; the message says how to get it.
 
     Attributes
     ----------
     body, start, contact : Body, State, str or Coulomb or Viscous
-        Arguments of `roll`; `start` is the initial state.
+        Arguments of `roll`; `start` is its argument `state`, the initial state.
     t, theta, w : ndarray
-        Times (n,), inclination (n,), angular velocity along e1, e2, e3 of `State` (n, 3).
+        Times, (n,), in sqrt(R/g) or s. Inclination, (n,), in radians. Angular velocity along e1, e2, e3 of
+        `State`, (n, 3), in sqrt(g/R) or rad/s.
     status : Ending
-        How the motion ended: 0 (`Ending.DONE`) if the last time was reached; see also `success`.
+        How the motion ended: 0 (`Ending.DONE`) if the motion reached the last time; see also `success`.
     event : Event or None
         The event that ended the motion: its `ending`, `time` and `state`.
     method : str
-        "exact", "rk4" (a fixed step) or "dop853" (steps of eighth order within a tolerance, always with
+        "exact", "rk4" (a fixed step) or "dop853" (steps of eighth order within a tolerance; always used with
         friction or losses).
     error : float
-        Estimated absolute error: the largest over theta (radians), w1, w2, w3 at all times, and the time of
-        the event; for a measured body the largest in SI, so that it holds for rad, rad/s and seconds alike.
+        Estimated absolute error: the largest error of theta, w1, w2 and w3 at any time, and of the time of
+        the event. For a measured body this number bounds the errors in rad, in rad/s and in s.
     pose_error : float
-        Estimated error of phi and psi (radians) and of the contact point (R); NaN without want="pose".
+        Estimated error of phi and psi (radians) and of the contact point (R or m); NaN without want="pose".
     force_error : float
-        Estimated error of the normal force and of the components of the friction, in their unit, to first
-        order in the errors of the state; NaN without want="force". `pose_error` is the error of the direction
-        in the laboratory.
+        Estimated error of the normal force and of the two components of the friction along e_h and e2 (M g or
+        N), to first order in the errors of the state; NaN without want="force". The directions of e_h and e2
+        in the laboratory have the error `pose_error`.
     step_loss : float
-        Share of the nutation's amplitude that a fixed step is predicted to damp.
+        Predicted fraction of the nutation's amplitude that a fixed step damps.
     advice : float
-        Step that damps less than a thousandth and needs no warning; infinite unless `step` was given.
+        Recommended step, which damps less than a thousandth of the amplitude and gives no `StepWarning`;
+        infinite unless `step` was given.
     nfev : int
-        Evaluations of the equations of motion; 0 for an exact motion.
+        Number of evaluations of the equations of motion; 0 for an exact motion.
     coarse : bool
         Whether a fixed step is so large that `StepWarning` was issued.
     """
@@ -110,7 +113,7 @@ class Motion:
 
     @property
     def scale(self) -> Scale | None:
-        """Scale of the measured body, whose motion is in SI; None if the motion is in natural units."""
+        """Scale of a measured body, whose motion is in SI; None if the motion is in natural units."""
         return self.body.scale
 
     @property
@@ -135,9 +138,9 @@ class Motion:
 
     @property
     def energy(self) -> Floats:
-        """(n,) energy in M g R (measured: J).
+        """(n,) kinetic plus potential energy, M g R or J.
 
-        The sum with `dissipated`, `lost_in_impacts` and `work_lost` is constant.
+        The sum of `energy`, `dissipated`, `lost_in_impacts` and `work_lost` is constant.
         """
         free = self.contact == "smooth" and self._phases is not None
         energy: Floats = self.body.energy(self.states, Coulomb(0.0) if free else self.contact)
@@ -151,7 +154,7 @@ class Motion:
 
     @property
     def success(self) -> bool:
-        """Whether the last time was reached."""
+        """Whether the motion reached the last time."""
         return self.status == Ending.DONE
 
     @property
@@ -161,19 +164,19 @@ class Motion:
 
     @property
     def phi(self) -> Floats:
-        """(n,) precession angle from the initial state on, radians. Needs want="pose"."""
+        """(n,) precession angle phi, in radians, 0 in the initial state. Needs want="pose"."""
         return self._angle("phi")
 
     @property
     def psi(self) -> Floats:
-        """(n,) spin angle from the initial state on, radians. Needs want="pose"."""
+        """(n,) spin angle psi, in radians, 0 in the initial state. Needs want="pose"."""
         return self._angle("psi")
 
     @property
     def turns(self) -> tuple[Floats, Floats]:
-        """Phi and psi, each (n, 2): whole turns, and the remaining angle in radians. Needs want="pose".
+        """Phi and psi, each as an array (n, 2) of whole turns and remaining angle. Needs want="pose".
 
-        The remaining angle keeps its digits after any number of turns.
+        The remaining angle is in radians, and keeps its digits after any number of turns.
         """
         return output(self, "phi", POSE), output(self, "psi", POSE)
 
@@ -181,22 +184,23 @@ class Motion:
         POSE,
         '(n, 2) position of the contact point on the table, R or m; initially (0, 0). Needs want="pose".',
     )
-    centre = Number(POSE, '(n, 3) position of the centre of mass, in R (measured: m). Needs want="pose".')
+    centre = Number(POSE, '(n, 3) position of the centre of mass, R or m. Needs want="pose".')
     orientation = Number(
         POSE,
-        """(n, 4) rotation from axes fixed in the body (e3 third) to the laboratory. Needs want="pose".
+        """(n, 4) rotation from the axes of the body to those of the laboratory. Needs want="pose".
 
-        Unit quaternions (x, y, z, w), as `scipy.spatial.transform.Rotation.from_quat` takes them.
+        The third axis of the body is e3. Rotations are unit quaternions (x, y, z, w), as in SciPy's
+        `Rotation.from_quat`.
         """,
     )
-    normal = Number(FORCE, '(n,) normal force N in M g (measured: N). Needs want="force".')
+    normal = Number(FORCE, '(n,) normal force, M g or N. Needs want="force".')
     friction = Number(
         FORCE,
         '(n,) magnitude of the horizontal force of the table, M g or N. Needs want="force".',
     )
     friction_coefficient = Number(
         FORCE,
-        '(n,) coefficient of friction needed; infinite where N <= 0, NaN in the air. Needs want="force".',
+        '(n,) coefficient of friction needed; infinite if N <= 0, NaN in the air. Needs want="force".',
     )
     contact_force = Number(
         BOTH,
@@ -204,9 +208,9 @@ class Motion:
     )
     slip = Number(
         FRICTION,
-        """(n, 2) velocity of the contact point over the table, sqrt(g R) or m/s. Needs a law of friction.
+        """(n, 2) velocity of the contact point over the table, sqrt(g R) or m/s, along e_h and e2 of `State`.
 
-        Along e_h and along e2, as in `State`.
+        Needs a law of friction or `restitution=`.
         """,
     )
     dissipated = Number(
@@ -223,13 +227,13 @@ class Motion:
         PATCH, "(n,) angular velocity about the vertical, sqrt(g/R) or rad/s. Needs a patch of contact."
     )
     creep = Number(
-        PATCH, "(n,) slip over `drilling` times the radius of the patch; 0 in rolling. Needs a patch."
+        PATCH, "(n,) slip over the product of `drilling` and patch radius; 0 in rolling. Needs a patch."
     )
     couple = Number(
         COUPLE,
         """(n,) couple of the patch about the vertical, M g R or J. Needs a patch and want="force".
 
-        NaN in rolling, where static friction holds the drilling.
+        NaN in rolling, where static friction prevents drilling.
         """,
     )
     lift = Number(
@@ -246,7 +250,10 @@ class Motion:
 
     @property
     def impacts(self) -> tuple[Impact, ...]:
-        """All impacts of a rim on the table; a summed sequence of bounces is one. Needs `restitution=`."""
+        """All impacts of a rim on the table. Needs `restitution=`.
+
+        An infinite sequence of bounces that is summed counts as one impact.
+        """
         if self._impacts is None:
             raise AttributeError(ALOFT.format("impacts", ""))
         return self._impacts
@@ -260,9 +267,10 @@ class Motion:
 
     @property
     def phases(self) -> tuple[Phase, ...]:
-        """Phases of the motion: time, kind and state at the beginning of each. Needs a law of friction.
+        """Phases of the motion, each with the time, kind and state with which it begins.
 
-        Empty if the motion ends at its initial state: a body on its side that stays lying, or leaps.
+        Needs a law of friction or `restitution=`. There are none if the motion ends at its initial state: if
+        a body on its side stays lying, or leaps.
         """
         if self._phases is None:
             raise AttributeError(FRICTION.format("phases", named(self.contact)))
@@ -270,7 +278,7 @@ class Motion:
 
     @property
     def losses(self) -> "Loss | None":
-        """The `losses` given to `roll`, or None. The friction of slipping is not among them."""
+        """The `losses` given to `roll`, or None. They do not include sliding friction."""
         return self._asked.losses
 
     def to_xarray(self) -> "xarray.Dataset":
@@ -278,16 +286,18 @@ class Motion:
         return labelled(self)
 
     def to_dataframe(self) -> "pandas.DataFrame":
-        """All computed outputs as a table indexed by time, a column per component; needs spincyl[sweep].
+        """All computed outputs as a table indexed by time; needs spincyl[sweep].
 
-        ``attrs["units"]`` has the unit of each column and of the index.
+        Each component of a vector has its own column. ``attrs["units"]`` has the unit of each column and of
+        the index.
         """
         return frame(self)
 
     def wanting(self, *want: Want | Iterable[Want], t: Reals | None = None) -> "Motion":
         """The same motion with further outputs, or at other times `t`; computed again if necessary.
 
-        `want` names outputs as in `roll`, in one or several arguments; those of this motion are kept.
+        Each argument `want` is "pose", "force", or a list of both, as in `roll`. Outputs that this motion
+        already has are kept.
         """
         more = chosen(want)
         if self._natural is not None:
@@ -310,8 +320,8 @@ class Motion:
         Parameters
         ----------
         t : array_like, 1-D, or a number
-            Times as in `roll`, in sqrt(R/g), or in seconds for a measured body. The initial state keeps its
-            time.
+            Times as in `roll`, in sqrt(R/g), or in seconds for a measured body. The time of the initial state
+            does not change.
 
         Returns
         -------
@@ -321,7 +331,7 @@ class Motion:
         Raises
         ------
         ValueError, TypeError
-            As `roll` for `t`.
+            If `t` is invalid, as in `roll`.
 
         Examples
         --------
@@ -351,11 +361,12 @@ class Motion:
         Parameters
         ----------
         path : path-like
-            Name of the file, which ends in .wav: one channel of 16 bits.
+            Name of the file, which must end in .wav. The file has one channel of 16 bits.
         seconds : float, optional
-            Duration, from the first time of the motion on. Default: the whole motion, at most 180 s.
+            Duration of the sound, which starts at the first time of the motion. Default: the whole motion, at
+            most 180 s.
         scale : Scale, optional
-            Converts times to seconds; a measured body has its own.
+            Scale that converts times to seconds. Not needed for a measured body, which has its own.
         rate : int
             Samples per second.
 
@@ -363,7 +374,7 @@ class Motion:
         -------
         Path
             Path of the file. The beat has the frequency phi'/(2 pi) of the motion; the pitch of the ring is
-            invented.
+            arbitrary.
 
         Raises
         ------

@@ -29,7 +29,8 @@ class Phase(NamedTuple):
     time : float
         Time at which the phase begins, in sqrt(R/g), for a measured body in seconds.
     kind : str
-        "slipping", "rolling", "flying"; on both rims "lying", "pivoting", "rolling on its side".
+        "rolling", "slipping" or "flying". For a body on both rims: "lying" (both rims slip), "pivoting" or
+        "rolling on its side".
     state : State
         State at that time, with its slip, in natural units.
     """
@@ -43,23 +44,28 @@ class Phase(NamedTuple):
 
 
 class Impact(NamedTuple):
-    """An impact of a rim on the table; for a measured body time, impulse and energy are in SI.
+    """An impact of a rim on the table.
+
+    Both states are in natural units. For a measured body, time, impulse and energy are in SI; without a mass,
+    impulse and energy stay in natural units.
 
     Attributes
     ----------
     time : float
         Time in sqrt(R/g) or s.
     rim : str
-        "first", the rim to which theta of the initial state refers, or "other".
+        Rim that lands: "first" is the rim to which theta of the initial state refers, "other" the other rim.
     kind : str
-        Motion of the contact point: "slips" to the end, "sticks", stops and "slips on", "smooth" (without
-        friction); or "both rims": the other rim lands without a bounce.
+        What the contact point does during the impact. "slips": it slips to the end. "sticks": it stops.
+        "slips on": it stops, then slips again. "smooth": there is no friction. "both rims": the other rim
+        lands without a bounce, and both rims touch the table.
     impulse : tuple of float
-        Impulse along e_h, along e2 and upward, in M sqrt(g R) or N s; for both rims together.
+        Impulse of the table on the body along e_h, along e2 and upward, in M sqrt(g R) or N s; if both rims
+        touch the table, the sum of their impulses.
     lost : float
-        Energy lost, in M g R or J.
+        Energy lost in the impact, in M g R or J.
     before : State
-        State before the impact, whose theta refers to the rim that lands, with its slip and `lift` < 0.
+        State before the impact, with its slip and `lift` < 0. Its theta refers to the rim that lands.
     after : State
         State after the impact.
     stays : bool

@@ -9,44 +9,49 @@ from spincyl._input.numbers import Result, number
 
 
 def rising_spin(egg: Ellipsoid, contact: Coulomb | Viscous | None = None, *, lean: float = 0.1) -> Result:
-    """Least spin at which an egg on its side rises to an end: by an estimate, or by a search with a contact.
+    """Least spin with which an egg on its side rises to stand on an end.
+
+    Without `contact` the spin is an estimate. With `contact` it is found by a search among motions.
 
     Parameters
     ----------
     egg : Ellipsoid
-        Single spheroid with a long third semi-axis and a mass that is symmetric about it, as from
-        `Ellipsoid.egg`.
+        Single spheroid whose third semi-axis is the longest, with its mass symmetric about this axis, as made
+        by `Ellipsoid.egg`.
     contact : Coulomb or Viscous, optional
-        Law of friction, with single numbers. Default: the estimate, which is exact for no law of friction.
+        Law of friction, with single numbers. Default: the estimate, which needs no law of friction and is not
+        exact for any.
     lean : float, optional
-        Initial angle between the axis and its position at rest on the side, in radians, from 1e-6 to 1.
-        Used only with a contact.
+        Initial angle between the axis and its position when the egg rests on its side, in radians, from 1e-6
+        to 1. Used only with a contact.
 
     Returns
     -------
     float
-        Initial spin about the vertical, in sqrt(g/a), with the centre at rest. inf if no spin makes the egg
-        stable on an end, or if ten times the estimate does not raise it with this contact. Error: a few
-        roundings for the estimate, else 1e-3 of the spin. Never less than half of the estimate.
+        Initial spin about the vertical, in sqrt(g/a), for a centre at rest. The result is inf if no spin
+        makes the egg stable on an end, or if ten times the estimate does not raise the egg with this contact.
+        Error of the estimate: a few roundings. Error of a search: 1e-3 of the spin. The search begins at half
+        of the estimate and finds no smaller spin.
 
     Raises
     ------
     ValueError
-        If the stone is not an egg or stands on an end without spin (the message names the number), if it is a
-        family, or if a number of the contact is an array.
+        If the stone is not an egg, or stands on an end without spin; the message names the number. If `egg`
+        is a family, or a number of the contact is an array.
     TypeError
         If an argument has another type.
 
     Notes
     -----
-    A force at the contact point does not change Jellett's number J. For an egg on its side, J is the spin
-    about the vertical times the moment of inertia about the vertical times the height of the centre of mass
-    (H. K. Moffatt and Y. Shimomura, Nature 416, 385 (2002)). On an end at the distance h from the centre of
-    mass, with the radius of curvature rho, the least energy with this J has a minimum for
+    A force at the contact point does not change Jellett's number J. For an egg on its side, J is the product
+    of the spin about the vertical, the moment of inertia about the vertical and the height of the centre of
+    mass (H. K. Moffatt and Y. Shimomura, Nature 416, 385 (2002)). Let h be the distance from the centre of
+    mass to an end, and rho the radius of curvature there. Among all motions with this J, standing on that end
+    has the least energy nearby if
 
         J^2 > I3^2 h^4 (h - rho)/(rho (I3 h - I1 rho)).
 
-    The search computes motions. An egg has risen if its axis comes within 0.2 rad of the vertical.
+    In the search an egg has risen if its axis comes within 0.2 rad of the vertical.
 
     Examples
     --------

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 class StepWarning(UserWarning):
-    """The fixed step of RK4 is so long that it damps the nutation or makes the precession inaccurate."""
+    """The fixed step of RK4 is so long that RK4 damps the nutation or computes a wrong precession."""
 
 
 def is_stone(body: object) -> TypeGuard["Ellipsoid"]:
@@ -91,28 +91,29 @@ def roll(
     body : Body or Ellipsoid
         Single body with ell at most 1e6 and moments of inertia from 1e-6 to 1e12, or a single stone.
     state : State or EllipsoidState
-        Initial state, in natural units, also for a measured body: theta in [1e-8, pi - 1e-8], speeds up to
-        1e6 sqrt(g/R). A stone needs an `EllipsoidState`.
+        Initial state, in natural units, also for a measured body. theta is in [1e-8, pi - 1e-8], and angular
+        velocities are at most 1e6 sqrt(g/R). A stone needs an `EllipsoidState`.
     t : array_like, 1-D, or a number
         Times at which the motion is returned, in sqrt(R/g), in ascending order, or descending to go backward
-        in time. For a measured body `t`, `t0` and `step` are in seconds, or quantities of pint.
+        in time. For a measured body `t`, `t0` and `step` are in seconds, or are pint quantities.
     t0 : float, optional
         Time of the initial state. Default: `t[0]` if `t` is an array of two or more times, else 0. An array
         of one time other than 0 needs `t0`.
     step : float, optional
         Fixed step of RK4, in sqrt(R/g). Backward in time it may have either sign.
     tol : float, optional
-        Tolerance of each step of an eighth-order method (absolute, 1e-14 to 0.1); `Motion.error` estimates
-        the error of the result. With friction only slipping is integrated, with losses the whole motion;
-        there the default is 1e-14.
+        Absolute tolerance of each step of an eighth-order method, 1e-14 to 0.1. `Motion.error` estimates the
+        error of the result. In a motion with friction only the slipping is integrated with such steps, in a
+        motion with losses everything; the default is then 1e-14.
     method : {"exact", "rk4"}, optional
-        Default: RK4 if `step` is given, steps of eighth order if `tol` is given, else "exact": the first
-        integrals, which give the state at any time for the same cost. Where the first integrals lose all
-        their digits, steps of eighth order with a tolerance of 1e-12 replace them; `Motion.method` says so.
+        Default: RK4 if `step` is given, steps of eighth order if `tol` is given, else "exact". The exact
+        method uses the first integrals, and a late time costs no more than an early one. Where rounding
+        leaves the first integrals no correct digit, steps of eighth order with a tolerance of 1e-12 replace
+        them; `Motion.method` is then "dop853".
     contact : {"rolling", "smooth"}, Coulomb or Viscous
         Rolling without slipping, a frictionless table, or a law of friction. With a law of friction the body
-        starts with the `slip` of the state, or rolling if there is none. The law decides when slipping turns
-        into rolling and back.
+        starts with the `slip` of the state; without a slip it starts rolling. The law decides when slipping
+        turns into rolling and back.
     mu : float
         Largest coefficient of friction that rolling may need. The motion ends with `Ending.SLIP` where
         rolling needs more. Only for `contact="rolling"`; with `contact=Coulomb(mu)` the body slips instead.
@@ -123,24 +124,24 @@ def roll(
         If true, continue the solution past the event, although it no longer describes the real body.
         `Motion.event` is still set. The solution cannot continue past a landing of the face.
     restitution : float, optional
-        Coefficient of restitution of impacts, 0 to 1: its square is the share of the work of compression that
-        an impact returns (Stronge). Default: the motion ends where the body leaves the table or its other rim
-        lands. With a restitution the motion continues: the body flies, bounces, lies on both rims and rises
-        again. An initial state in the air (`dropped`) needs one. While the other rim carries the body, theta
-        refers to that rim, and phi is turned by pi. With `contact="rolling"` a landing on both rims ends the
-        motion (`Ending.SIDE`), unless the body only rocks from one rim to the other.
+        Coefficient of restitution of impacts, 0 to 1. Its square is the fraction of the work of compression
+        that an impact returns (Stronge). Default: the motion ends where the body leaves the table or its
+        other rim lands. With a restitution the motion continues: the body may fly, bounce, lie on both rims
+        and rise again. An initial state in the air (`dropped`) needs a restitution. While the other rim
+        carries the body, theta refers to that rim, and phi is turned by pi. With `contact="rolling"` a
+        landing on both rims ends the motion (`Ending.SIDE`), unless the body only rocks from rim to rim.
     losses : Loss, optional
-        Law of `spincyl.loss` that takes energy, or several added with `+`. The motion is then integrated
-        with steps of eighth order, forward in time only. It may end where the contact point stops
-        (`Ending.STOPS`).
+        Loss law of `spincyl.loss`, or several added with `+`. The motion is then integrated with steps of
+        eighth order, forward in time only. It may end where the contact point stops (`Ending.STOPS`).
 
     Returns
     -------
     Motion
-        States at the times `t` up to the first event: a landing of the face or of the other rim, lift-off, or
-        slip. With a restitution the events are a landing of the face and an undetermined continuation. If
-        `t` is a number and the motion ends before, the arrays are empty; `status`, `event` and `message`
-        give the reason. For a measured body, in SI.
+        States at the times `t` up to the event that ends the motion: a landing of the face or of the other
+        rim, lift-off, or slip. With a restitution a motion ends only if the face lands, or if the laws of
+        impact and friction do not determine how the motion continues. If `t` is a number and the motion ends
+        before `t`, the arrays are empty; `status`, `event` and `message` give the reason. For a measured body
+        the motion is in SI.
 
     Raises
     ------
@@ -149,29 +150,30 @@ def roll(
         Also if the step is so large that fast precession or nutation would come out wrong without notice; the
         message proposes a step.
     TypeError
-        If an argument is not a real number; the message names it.
+        If an argument has a wrong type; the message names it.
     KeyboardInterrupt
-        Within 0.1 s of Ctrl-C.
+        Within 0.1 s after Ctrl-C.
 
     Warns
     -----
     RuntimeWarning
         If the computation gives up (`Ending.BOUNDED`); the motion is returned up to that time. This happens
-        only with friction or losses: if slipping, rolling and the sticking of dry losses alternate more than
-        20 times per unit of time (at least 5,000, at most 10,000 times in all), if 600,000 steps hardly
-        advance the time, or after 8 million evaluations (40,000 per unit of time if the time exceeds 200).
+        only with friction or losses: if slipping, rolling and sticking alternate more than 20 times per unit
+        of time (the limit is at least 5,000 and at most 10,000 times in all), if 600,000 steps hardly advance
+        the time, or after 8 million evaluations (40,000 per unit of time if the time exceeds 200).
     StepWarning
         If RK4 damps the nutation by more than a thousandth of its amplitude, or if the precession advances by
         more than 0.3 rad or the nutation by more than 0.5 rad in a step.
     ErrorWarning
-        If the estimated error of a motion without `step` exceeds 0.1 in natural units. If that of a stone
-        becomes too large before its end; the message gives the time, `EllipsoidMotion.known_until`.
+        If the estimated error of a motion without `step` exceeds 0.1 in natural units. For a stone, if the
+        estimated error becomes too large before the motion ends; the message gives the time until which the
+        motion is known (`EllipsoidMotion.known_until`).
 
     Notes
     -----
     Chaplygin, Appell and Korteweg found the first integrals; docs/physics.md has the equations. The error of
-    the exact motion is 1e-14 times its conditioning. `Motion.error` estimates it for each motion; in the
-    tests the estimate is never below a tenth of the true error.
+    an exact motion is 1e-14 times the condition number of the motion. `Motion.error` estimates the error of
+    each motion; in the tests the estimate is never below a tenth of the true error.
 
     Examples
     --------
@@ -188,7 +190,7 @@ def roll(
     >>> sc.roll(hoop, thrown, 20.0, contact=sc.Coulomb(0.25)).phases
     ((0, 'slipping'), (10, 'rolling'))
 
-    A dropped ball bounces ever lower, and rolls from the time at which the bounces have ended:
+    A dropped ball bounces lower and lower. It begins to roll when the bounces have ended:
 
     >>> ball = sc.Body.ball(0.0, i1=0.4, i3=0.4)
     >>> m = sc.roll(ball, sc.dropped(ball, 0.5, 1.0), 10.0, contact=sc.Coulomb(0.3), restitution=0.5)

@@ -32,17 +32,17 @@ _WEIGHED = ("J", "N")
 @compared
 @dataclass(frozen=True)
 class Scale:
-    """Size, mass and gravity of a body in SI, which convert results from natural units.
+    """Size, mass and gravity of a body in SI; methods convert results from natural units to SI.
 
-    Each is a number, a text such as "12mm", or a quantity of pint in any unit of its kind.
+    Each argument is a number, a text such as "12mm", or a pint quantity in any suitable unit.
 
     Parameters
     ----------
     radius : float
-        Outer radius R of the rim, in metres.
+        Outer radius R of the rim, in metres; for a stone, the largest semi-axis.
     mass : float
-        Mass M in kilograms. Forces, energies, and the coefficients of some losses depend on it. NaN means
-        unknown; results that depend on the mass then raise an error.
+        Mass M in kilograms. Forces, energies, and the coefficients of some loss laws depend on it. NaN means
+        that the mass is unknown; results that depend on it then raise an error.
     gravity : float
         Acceleration of gravity g, in m/s^2.
 
@@ -92,7 +92,7 @@ class Scale:
 
     @elementwise
     def hertz(self, body: "Body", rate: Reals) -> Result:
-        """Convert a reduced rate Omega~ = Omega sqrt(I3) of `body` to turns per second."""
+        """Convert a reduced rate Omega~ = Omega sqrt(I3) of `body` to a precession in turns per second."""
         if not hasattr(body, "angular_rate"):  # `_body` imports this module, so `Body` is not known here
             raise TypeError(f"body: expected a Body, not {type(body).__name__}")
         return body.angular_rate(rate) * self._units[3]

@@ -23,37 +23,38 @@ class Sized:
     def in_metres(
         self, mass: float | None = None, *, radius: float | None = None, gravity: float | None = None
     ) -> Self:
-        """Make a measured body of this body: its motions take seconds and are in SI.
+        """Return this body as a measured body, whose motions are in SI.
 
         Parameters
         ----------
         mass : float, optional
-            Mass in kilograms, or a text such as "20g". Default: the mass of a measured body, else unknown;
-            results that depend on an unknown mass raise an error.
+            Mass in kilograms, or a text such as "20g". Default: the mass that the body already has. If it
+            has none, the mass is unknown, and results that depend on the mass raise an error.
         radius : float, optional
             Outer radius R of the rim, or largest semi-axis of an `Ellipsoid`, in metres, or a text. Default:
-            the radius of a measured body, else that of the lengths given to `Body.from_metres` or
-            `Ellipsoid`, taken as metres.
+            the radius that the body already has. For a body made from lengths without a unit, by
+            `Body.from_metres` or as an `Ellipsoid`, the default takes these lengths as metres.
         gravity : float, optional
-            Acceleration of gravity, in m/s^2. Default: that of a measured body, else 9.80665.
+            Acceleration of gravity, in m/s^2. Default: the gravity that the body already has, else 9.80665.
 
         Returns
         -------
         Body or Ellipsoid
-            The body with a `scale`. States and methods of the body stay in natural units, unless the name has
-            a unit.
+            The body with a `scale`. States and methods of the body stay in natural units, except methods
+            named after a unit.
 
         Raises
         ------
         TypeError, ValueError
-            If an argument is invalid, or if `radius` is missing for a body without a size; the message names
+            If an argument is invalid, or if the body has no size and `radius` is missing; the message names
             the argument.
 
         Warns
         -----
         UserWarning
-            If the body is larger than 5 m, smaller than 0.1 mm or, where the volume is known, lighter than
-            foam or heavier than osmium, as if millimetres or grams had been taken for metres or kilograms.
+            If the body is larger than 5 m or smaller than 0.1 mm, or, where the volume is known, its density
+            is below that of foam or above that of osmium. Probably millimetres or grams were given for metres
+            or kilograms.
 
         Examples
         --------

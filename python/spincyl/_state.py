@@ -34,28 +34,29 @@ if TYPE_CHECKING:
 class State(Hinting):
     """Inclination and angular velocity of a body, in natural units, also for a measured body.
 
-    The axes follow the inclination, not the spin: e3 is the symmetry axis, e2 is horizontal, and the vertical
-    is z = sin(theta) e1 + cos(theta) e3. Fields may be arrays that broadcast. Source: Jackson et al., Am. J.
-    Phys. 87, 85 (2019), Sec. II.
+    Components are along axes that follow the inclination and the precession, but not the spin. e3 is the
+    symmetry axis, e2 is horizontal, and the vertical is z = sin(theta) e1 + cos(theta) e3. Fields may be
+    arrays, which broadcast. Source: Jackson et al., Am. J. Phys. 87, 85 (2019), Sec. II.
 
     Parameters
     ----------
     theta : array_like
         Inclination in radians: angle from the vertical to the symmetry axis.
     w1, w2, w3 : array_like
-        Angular velocity in sqrt(g/R): phi' sin(theta), -theta', phi' cos(theta) + psi'.
+        Angular velocity along e1, e2, e3, in sqrt(g/R): w1 = phi' sin(theta), w2 = -theta',
+        w3 = phi' cos(theta) + psi', with the precession phi' and the spin psi'.
     slip : pair of array_like, optional
-        Velocity of the contact point over the table, in sqrt(g R): along the horizontal vector
-        e_h = cos(theta) e1 - sin(theta) e3, and across it, along e2. Default: none, the body rolls.
-        `Body.with_centre_velocity` computes the slip from the velocity of the centre.
+        Velocity of the contact point over the table, in sqrt(g R). Its first component is along the
+        horizontal vector e_h = cos(theta) e1 - sin(theta) e3, the second along e2. Default: no slip, the body
+        rolls. `Body.with_centre_velocity` computes the slip from the velocity of the centre.
     height, lift : array_like, optional
         For a body in the air: height of the lowest point of its rim above the table, in R, and the upward
-        velocity of that point, in sqrt(g R). If only one is given, the other is 0. `dropped` computes both.
+        velocity of that point, in sqrt(g R). If you give only one, the other is 0. `dropped` computes both.
 
     Raises
     ------
     TypeError
-        If a field has no real numbers, or the slip is not a pair; the message names the field.
+        If a field is not real-valued, or the slip is not a pair; the message names the field.
     """
 
     theta: Reals
@@ -100,7 +101,7 @@ class State(Hinting):
         slip: tuple[Reals, Reals] | None = None,
         scale: "Scale | Body",
     ) -> "State":
-        """State from angular velocities in rad/s and a slip in m/s; `scale` may be a measured body."""
+        """State from w1, w2, w3 in rad/s and `slip` in m/s; `scale` is a measured body, or its `Scale`."""
         metre, second, *_ = scale_of(scale)._units
         given = (("w1", w1), ("w2", w2), ("w3", w3))
         w = (reals(name, radians_per_second(name, x)) * second for name, x in given)
@@ -112,7 +113,7 @@ class State(Hinting):
 
     @elementwise
     def in_si(self, scale: "Scale | Body") -> dict[str, Any]:
-        """Arguments of `from_si` as a dict: theta (rad), w1, w2, w3 (rad/s), and the slip (m/s), if any."""
+        """Return the arguments of `from_si` as a dict: theta (rad), w1, w2, w3 (rad/s), any slip (m/s)."""
         metre, second, *_ = scale_of(scale)._units
         found = {name: getattr(self, name) / second for name in ("w1", "w2", "w3")}
         slip = None if self.slip is None else tuple(x * (metre / second) for x in self.slip)
@@ -120,7 +121,7 @@ class State(Hinting):
 
     @elementwise
     def kicked(self, thetadot: Reals) -> "State":
-        """The state with `thetadot` (sqrt(g/R)) added to its rate theta'; the slip stays the same."""
+        """Return the state with `thetadot`, in sqrt(g/R), added to theta'; the slip does not change."""
         return replace(self, w2=self.w2 - reals("thetadot", thetadot))
 
     @property
@@ -145,10 +146,10 @@ class State(Hinting):
 
     @property
     def contact_radius(self) -> Result:
-        """Radius of the contact point's circle on the table over the radius of its circle on the body.
+        """Ratio of two radii: of the circle of the contact point on the table, and of that on the body.
 
-        With a sharp rim, whose circle has the radius R, this is the radius in R. If the centre rests, it is
-        also the number of still symbols in one turn.
+        With a sharp rim, whose circle on the body has the radius R, this is the radius on the table in R. If
+        the centre is at rest, it is also the number of still symbols in one turn.
         """
         return _core.contact_radius(*self._numbers)
 

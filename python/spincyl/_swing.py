@@ -16,28 +16,28 @@ from spincyl._upward import above
 
 @compared
 class Swing(NamedTuple):
-    """The nutation of a motion, as if no event ended the motion; the result of `swing`.
+    """The nutation of a motion, computed as if no event ended the motion; the result of `swing`.
 
-    In natural units; for a measured body in SI, times in s and lengths in m.
+    Numbers are in natural units. For a measured body they are in SI: times in s, lengths in m.
 
     Attributes
     ----------
     period : float
-        Period of the nutation, in sqrt(R/g); infinite if the face lands.
+        Period of the nutation, in sqrt(R/g) or s; infinite if the face lands.
     theta_min : float
-        Least inclination, radians; 0 if the face lands.
+        Least inclination, in radians; 0 if the face lands.
     theta_max : float
-        Greatest inclination, radians.
+        Greatest inclination, in radians.
     precession_per_period : float
-        Increase of phi in a period, radians; NaN without a period.
+        Increase of phi in one period, in radians; NaN if the period is infinite.
     spin_per_period : float
-        Increase of psi in a period, radians.
+        Increase of psi in one period, in radians; NaN if the period is infinite.
     drift : float
-        Displacement of the contact point in a period, in R.
+        Displacement of the contact point in one period, in R or m.
     drift_radius : float
-        Radius of the circle that passes through the contact points at whole periods, in R.
+        Radius of the circle on which the contact point lies after each whole period, in R or m.
     error : float
-        Estimated error of the period; NaN without a period.
+        Estimated error of the period, in sqrt(R/g) or s; NaN if the period is infinite.
     scale : Scale or None
         Scale of a measured body.
     nutation : float
@@ -66,28 +66,28 @@ class Swing(NamedTuple):
 def swing(body: Body, state: State, contact: Contact = "rolling") -> Swing:
     """Compute the nutation of a motion: period, turning points, and rotation and drift per period.
 
-    Events are ignored. The other rim may land before the period is over (if theta_max exceeds pi/2), or the
-    body may lift off; `roll` finds such events.
+    Events are ignored. In the real motion the other rim may land before the period is over (if theta_max
+    exceeds pi/2), or the body may lift off; `roll` finds such events.
 
     Parameters
     ----------
     body : Body
-        Single body in the range of `roll`.
+        Single body, with numbers in the range of `roll`.
     state : State
-        Any state of the motion, single, in the range of `roll`.
+        Any single state of the motion, with numbers in the range of `roll`.
     contact : {"rolling", "smooth"}
         Rolling without slipping, or a frictionless table.
 
     Returns
     -------
     Swing
-        Named numbers, for a measured body in SI. Relative error 1e-14 times the conditioning of the motion;
-        `error` estimates that of the period.
+        Named numbers, for a measured body in SI. Their relative error is 1e-14 times the condition number of
+        the motion. `Swing.error` estimates the error of the period.
 
     Raises
     ------
     ValueError
-        If the body or the state is out of range, or if the equations lose all their digits.
+        If the body or the state is out of range, or if rounding errors leave no correct digit.
     """
     of, start = single(body, state)
     gripping(state, f"contact={contact!r} has no law of friction; take roll with contact=sc.Coulomb(mu)")

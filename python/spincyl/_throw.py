@@ -33,32 +33,34 @@ def thrown(body: Body, velocity: Reals, backspin: Reals, *, scale: Scale | None 
     Parameters
     ----------
     body : Body
-        Single body or family whose rim touches the table at theta = pi/2. A can or a coin touches it with
-        both rims; `roll` then needs ``restitution=0.0`` to continue until the body rolls on its side.
+        Single body or family that can touch the table with its rim at theta = pi/2. A can or a coin touches
+        the table with both rims; `roll` then needs ``restitution=0.0`` to compute how the body slips, and
+        rolls, on its side.
     velocity : array_like
         Velocity of the centre, in sqrt(g R); for a measured body, or with `scale`, in m/s.
     backspin : array_like
-        Angular velocity in sqrt(g/R), positive if the top moves backward; for a measured body, or with
-        `scale`, in rad/s.
+        Angular velocity about the axis, in sqrt(g/R), positive if the top of the body moves backward relative
+        to the centre; for a measured body, or with `scale`, in rad/s.
     scale : Scale, optional
-        Scale for arguments in SI; a measured body has its own. The result is in natural units.
+        Scale, if arguments are in SI and the body is not a measured body.
 
     Returns
     -------
     State
-        State with w1 = w2 = 0, w3 = -backspin and slip = (0, velocity + backspin). Broadcast shape; NaN for
-        bodies of a family that cannot stand on edge. Exact to a rounding.
+        State with w1 = w2 = 0, w3 = -backspin and slip = (0, velocity + backspin), in natural units. It has
+        the broadcast shape of the arguments, and is NaN where a body of a family cannot stand on edge. Exact
+        to a rounding.
 
     Raises
     ------
     ValueError
         If a single throw is impossible; the message names the value and the range.
     TypeError
-        If an argument has no real numbers; the message names it.
+        If an argument is not real-valued; the message names it.
 
     Examples
     --------
-    A hula-hoop comes back if R times its backspin exceeds its velocity:
+    A hula hoop comes back if its backspin times R exceeds its velocity:
 
     >>> import spincyl as sc
     >>> hoop, size = sc.Body.tube(0.0, bore=0.97), sc.Scale(radius=0.4)
@@ -105,22 +107,24 @@ def dropped(
     body : Body
         Single body or family.
     height : array_like
-        Height of its lowest point above the table, 0 or more, in R; for a measured body, or with `scale`, in
-        metres.
+        Height of the lowest point of the body above the table, 0 or more, in R; for a measured body, or with
+        `scale`, in metres.
     theta : array_like
         Inclination in radians.
     w1, w2, w3 : array_like, optional
-        Angular velocity as in `State`, in sqrt(g/R); for a measured body, or with `scale`, in rad/s.
+        Components of the angular velocity, as in `State`, in sqrt(g/R); for a measured body, or with `scale`,
+        in rad/s.
     velocity : three of array_like, optional
-        Velocity of the centre of mass along e_h and e2 of `State`, and upward, in sqrt(g R); for a measured
-        body, or with `scale`, in m/s.
+        Velocity of the centre of mass in sqrt(g R), for a measured body, or with `scale`, in m/s. The three
+        components are along e_h and e2 of `State`, and upward.
     scale : Scale, optional
-        Scale for arguments in SI; a measured body has its own. The result is in natural units.
+        Scale, if arguments are in SI and the body is not a measured body.
 
     Returns
     -------
     State
-        State with `slip`, `height` and `lift`. Broadcast shape. Error 4 ulp (2^-53) of the largest term.
+        State with `slip`, `height` and `lift`, in natural units. It has the broadcast shape of the arguments.
+        Error: 4 * 2^-53 of the largest term.
 
     Raises
     ------
@@ -163,10 +167,10 @@ def pressed(
     table: Reals = 0.0,
     scale: Scale | None = None,
 ) -> State:
-    """Initial state of a body on its side after a finger has pressed one end until the body shot out.
+    """Initial state of a body on its side, after a finger has pressed on one end until the body shot out.
 
-    The finger acts on the upper rim at theta = pi/2, the end that rises if `launch_number` exceeds 1. The
-    other end carries the body; the slip of the state is the slip of that end.
+    The body lies on both rims, theta = pi/2, and the finger presses on its upper rim. This end rises if
+    `launch_number` exceeds 1. The slip of the state is the slip of the lower rim.
 
     Parameters
     ----------
@@ -176,34 +180,35 @@ def pressed(
         Impulse of the finger toward the axis, 0 or more, in M sqrt(g R); for a measured body, or with
         `scale`, in N s.
     angle : array_like
-        Angle from the top of the rim to the point that the finger presses, in (0, pi/2], radians.
+        Angle along the rim from its top to the point that the finger presses, in radians, in (0, pi/2].
     finger : array_like, optional
         Coefficient of friction of the finger, which drags the surface downward as it slips off.
     table : array_like, optional
-        Coefficient of friction of the table under the pressed end; 0: that end slips freely.
+        Coefficient of friction of the table under the pressed end. With 0 that end slips freely.
     scale : Scale, optional
-        Scale for an impulse in SI; a measured body has its own. The result is in natural units.
+        Scale, if the impulse is in SI and the body is not a measured body.
 
     Returns
     -------
     State
-        State at theta = pi/2 with w2 = 0 and the slip (0, u_2) of the carrying end. For any press, the
-        velocity of the centre is -(I1/ell) w1, so the centre does not start at rest. Broadcast shape; NaN for
-        impossible elements. Error 8 ulp (2^-53) of the largest term.
+        State at theta = pi/2, in natural units, with w2 = 0 and the slip (0, u_2) of the lower rim. The
+        velocity of the centre is always -(I1/ell) w1; the centre does not start at rest. The state has the
+        broadcast shape of the arguments, and is NaN where they are impossible. Error: 8 * 2^-53 of the
+        largest term.
 
     Raises
     ------
     ValueError
         If a single press is impossible; the message names the value and the range.
     TypeError
-        If an argument has no real numbers; the message names it.
+        If an argument is not real-valued; the message names it.
 
     Notes
     -----
-    The launch of Jackson et al., Am. J. Phys. 87, 85 (2019), as an impulse J. With the velocity v_2 of the
-    centre, the coefficient f of the finger, and the sine and cosine of `angle`:
-    v_2 = J (f cos - sin) + Q, I1 w1 = -ell v_2, I3 w3 = f J - Q. Q is the impulse of the friction of the
-    table, at most mu J (cos + f sin), and less if the pressed end then rolls.
+    This is the launch of Jackson et al., Am. J. Phys. 87, 85 (2019), as an impulse J. Let v_2 be the velocity
+    of the centre along e2, f the coefficient `finger`, mu the coefficient `table`, and cos and sin the cosine
+    and sine of `angle`. Then v_2 = J (f cos - sin) + Q, I1 w1 = -ell v_2 and I3 w3 = f J - Q. Q is the
+    impulse of the friction of the table: mu J (cos + f sin), or less if the pressed end then rolls.
 
     Examples
     --------
@@ -242,9 +247,9 @@ def flicked(
     centre: Reals = None,
     scale: Scale | None = None,
 ) -> State:
-    """Initial state of a body flicked on its side, from its rates; see `pressed` for the finger's impulse.
+    """Initial state of a body that a finger has launched on its side, from the rates of its rotation.
 
-    Give `hertz` or `w1`, and `launch` or `spin_hertz`.
+    Give `hertz` or `w1`, and `launch` or `spin_hertz`. To give the impulse of the finger, see `pressed`.
 
     Parameters
     ----------
@@ -255,21 +260,21 @@ def flicked(
     w1 : array_like
         Angular velocity about the vertical, in sqrt(g/R).
     launch : array_like
-        The `launch_number`: if it exceeds 1, the end that was pressed rises.
+        The `launch_number` of the state. If it exceeds 1, the end that was pressed rises.
     spin_hertz : array_like
-        Turns per second about the axis, positive for backspin against the direction in which the body leaves;
-        needs a measured body or `scale`.
+        Turns per second about the axis, positive for backspin relative to the direction in which the body
+        leaves; needs a measured body or `scale`.
     centre : array_like, optional
         Velocity of the centre at right angles to the axis, in sqrt(g R); for a measured body, or with
-        `scale`, in m/s. Default: -(I1/ell) w1, as after the press of a finger.
+        `scale`, in m/s. Default: -(I1/ell) w1, as after a press by a finger.
     scale : Scale, optional
-        Scale for arguments in SI; a measured body has its own.
+        Scale, if arguments are in SI and the body is not a measured body.
 
     Returns
     -------
     State
-        State at theta = pi/2 with its slip, in natural units. Broadcast shape; NaN for NaN arguments. With
-        `launch` and w1 = 0, w3 is not finite.
+        State at theta = pi/2 with its slip, in natural units. It has the broadcast shape of the arguments,
+        and is NaN where they are NaN. If w1 is 0 in an array and `launch` is given, w3 is not finite.
 
     Raises
     ------
@@ -315,14 +320,14 @@ def flicked(
 def launch_number(body: Body, state: State) -> Result:
     """Launch number I3 w1 w3 / ell of a body on its side, at theta = pi/2 with w2 = 0.
 
-    Above 1 the body rises on the rim that carries it, below -1 on the other rim. In between it stays lying,
-    as long as no friction acts along its axis. An array for arrays; NaN where the body is not on its side,
-    infinite or NaN if ell = 0.
+    If the number exceeds 1, the body rises on the rim to which theta refers; below -1, on the other rim. In
+    between the body stays lying, as long as no friction acts along its axis. In an array the number is NaN
+    where the body is not on its side. It is infinite or NaN if ell = 0.
 
     Raises
     ------
     ValueError
-        If a single state is not at theta = pi/2 with w2 = 0.
+        If a single state does not have theta = pi/2 and w2 = 0.
     """
     made("body", body, Body)
     found = _core.launch_number(*numbers(state), *body._numbers)

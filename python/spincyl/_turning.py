@@ -11,31 +11,35 @@ from spincyl._throw import six
 
 @elementwise
 def turning_spin(top: Body, contact: Coulomb | Viscous | None = None, *, lean: float = 0.1) -> Result:
-    """Least spin at which a tippe top turns over: by an estimate, or by a search with a contact.
+    """Least spin with which a tippe top turns over.
+
+    Without `contact` the spin is an estimate. With `contact` it is found by a search among motions.
 
     Parameters
     ----------
     top : Body
-        Ball with its centre of mass below its centre, `Body.ball(offset, ...)` with offset < 0. A single
-        body, or without a contact a family.
+        Ball whose centre of mass is below its centre: `Body.ball(offset, ...)` with offset < 0. A single
+        body; without a contact, also a family.
     contact : Coulomb or Viscous, optional
-        Law of friction, with single numbers. Default: the estimate, which is exact for no law of friction.
+        Law of friction, with single numbers. Default: the estimate, which needs no law of friction and is not
+        exact for any.
     lean : float, optional
         Initial inclination, in radians, from 1e-6 to 1. Used only with a contact.
 
     Returns
     -------
     float or array
-        Initial w3, in sqrt(g/R), with the centre at rest. inf if no spin makes the top stable upside down, or
-        if ten times the estimate does not turn it over with this contact, as with a contact point unless the
-        table is very slippery. Error: a few roundings for the estimate, else 1e-3 of the spin. With large
-        friction the boundary is ragged (a larger spin may fail where a smaller one does not), and the result
-        is one point of it. Never less than half of the estimate.
+        Initial w3, in sqrt(g/R), for a centre at rest. The result is inf if no spin makes the top stable
+        upside down, or if ten times the estimate does not turn the top over with this contact. With
+        `patch=0` this is so unless the table is very slippery. Error of the estimate: a few roundings. Error
+        of a search: 1e-3 of the spin. If friction is large, the boundary is ragged: a larger spin may fail
+        where a smaller one succeeds, and the result is one point of the boundary. The search begins at half
+        of the estimate and finds no smaller spin.
 
     Raises
     ------
     ValueError
-        If a single body is not a tippe top (the message names the number), or a number of the contact is an
+        If a single body is not a tippe top; the message names the number. If a number of the contact is an
         array.
     TypeError
         If an argument has another type.
@@ -49,9 +53,9 @@ def turning_spin(top: Body, contact: Coulomb | Viscous | None = None, *, lean: f
 
         w3 = (1 + l)^2/(1 - l) sqrt(l/(I3 (1 + l) - I1))
 
-    On a patch the couple of drilling reduces J. The reduction is the same on the smallest patch, since there
-    the rise is as slow as the loss. A top needs 1.25 times the estimate at mu = 0.1, 1.7 times at 0.3, 2.1
-    times at 0.6. The search computes motions. A top has turned over if its axis comes within 0.14 rad of the
+    On a patch of contact the couple of drilling reduces J. A smaller patch does not help: it reduces J more
+    slowly, but the top also rises more slowly. A top needs 1.25 times the estimate at mu = 0.1, 1.7 times at
+    0.3, 2.1 times at 0.6. In the search a top has turned over if its axis comes within 0.14 rad of the
     vertical.
 
     Examples
