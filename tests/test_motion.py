@@ -138,7 +138,7 @@ def test_time_may_fall_or_be_a_number_or_start_elsewhere():
     assert np.allclose(later.y, sc.roll(CYLINDER, START, [2.0, 3.0], t0=0.0).y, atol=1e-13)
     assert np.array_equal(sc.roll(CYLINDER, START, [0.0]).y[:, 0], start)
     assert np.array_equal(sc.roll(CYLINDER, START, [5.0], t0=5.0).y[:, 0], start)
-    with pytest.raises(ValueError, match=r"^t = .*: an array of one time needs t0="):
+    with pytest.raises(ValueError, match=r"^t: an array of one time needs t0="):
         sc.roll(CYLINDER, START, [5.0])
 
 
@@ -254,7 +254,7 @@ def test_a_step_that_would_lie_is_refused_and_a_doubtful_one_warned_of():
         ({"want": None}, TypeError, "want: expected"),
         ({"beyond": "no"}, TypeError, "beyond: expected True or False, not str"),
         ({"t": [0, 2, 1]}, ValueError, "t = 1.0: expected at least one time, in order"),
-        ({"t": [[0, 1]]}, ValueError, r"t: expected a number or one dimension, not shape \(1, 2\)"),
+        ({"t": [[0, 1]]}, ValueError, r"t: expected a number or a one-dimensional array, not shape \(1, 2\)"),
         ({"t": "now"}, TypeError, "t: expected real numbers"),
         ({"t": 1j}, TypeError, "t: expected real numbers"),
         ({"t": [0, np.nan]}, ValueError, "t = NaN"),

@@ -83,7 +83,7 @@ def times_of(t: Reals) -> Floats:
         return t.copy()
     times = reals("t", t)
     if np.ndim(times) > 1:
-        raise ValueError(f"t: expected a number or one dimension, not shape {np.shape(times)}")
+        raise ValueError(f"t: expected a number or a one-dimensional array, not shape {np.shape(times)}")
     found = np.array(floats(times)).reshape(-1)  # a copy, so that the caller's array can change
     if found.size == 0:
         raise ValueError("t: expected at least one time")

@@ -61,8 +61,8 @@ class Body(Laws, Sized, Hinting, metaclass=Named):
         Ratio of inner to outer radius of a uniform tube; NaN for any other body. `solid`, `tube` and
         `from_metres` set the bore and compute the moments from it.
     fillet : array_like, optional
-        Radius to which the edge of the rim is rounded, in units of the outer radius R: 0 (sharp) to 1 (a
-        ball). The circle of the rim, along the centres of the rounding, has the radius 1 - fillet.
+        Radius of the rounded edge of the rim, in units of the outer radius R: 0 (sharp) to 1 (a ball). The
+        centres of the rounding lie on the circle of the rim, of radius 1 - fillet.
     theta_end : array_like, optional
         Inclination in radians, in (0, pi], at which another part lands: a stem, a cap, a shoulder. Default:
         pi/2 if ell > 0, since the other end is assumed to have an equal rim; for a ball, no part lands.
@@ -268,8 +268,8 @@ class Body(Laws, Sized, Hinting, metaclass=Named):
             Broadcast shape of `theta` and the body. NaN where there is no steady state; `region` gives
             the reason. Relative error at most 2 (1 + kappa_c) 2^-53, where kappa_c is
             ``|dlog rate/dlog theta|``. A rounded rim adds 2^-100 n/m, where n = (1 - fillet) cos - ell sin,
-            m = n + (I1/I3 - 1) A cos, A = 1 - fillet + fillet sin; this is less than the first term unless
-            m is below 2^-47 n.
+            m = n + (I1/I3 - 1) A cos and A = 1 - fillet + fillet sin, with cos and sin of theta. This is less
+            than the first term unless m is below 2^-47 n.
 
         Notes
         -----
@@ -288,7 +288,7 @@ class Body(Laws, Sized, Hinting, metaclass=Named):
 
     @elementwise
     def region(self, theta: Reals, **ufunc: Any) -> Result:
-        """`Region` code (uint8) at each inclination: stable, unstable, forbidden, or outside the domain."""
+        """`Region` code (uint8) at theta (radians): stable, unstable, forbidden, or outside the domain."""
         return _core.region(
             radians("theta", theta, self._leans), *self._numbers, **keywords(_core.region, ufunc)
         )

@@ -48,7 +48,7 @@ class _Law:
 @compared
 @dataclass(frozen=True, eq=False, repr=False)
 class Coulomb(_Law):
-    """Dry friction at the contact point, as a contact for `roll`.
+    """Dry friction at the contact point, a law of friction for `contact=`.
 
     While the contact point slips, the force of friction is mu N, opposite to the slip; N is the normal force.
     The body rolls as long as rolling needs a friction force of at most `static` times N.

@@ -206,7 +206,7 @@ def drift(
         Inclination, in radians, of an initial steady state with the centre at rest; or the initial steady
         state itself. With centre="rolling" the centre of this state may move on a circle.
     losses : loss.Loss
-        Law of `spincyl.loss`, or several added with `+`. Coefficients may be arrays.
+        Loss law of `spincyl.loss`, or several added with `+`. Coefficients may be arrays.
     centre : {"rest", "rolling"}
         Whether slip keeps the centre at rest, or the body rolls.
     threads : int, optional

@@ -305,7 +305,7 @@ class Ellipsoid(Sized):
         return replace(state, slip=slip)
 
     def hertz(self, state: EllipsoidState) -> Result:
-        """Turns per second about the vertical in a state, (...); needs a measured stone."""
+        """Turns per second about the vertical, one number for each state; needs a measured stone."""
         scale = self._sized("hertz")
         return scale.turns(made("state", state, EllipsoidState).spin)
 
@@ -340,7 +340,7 @@ class Ellipsoid(Sized):
         return self.rocking(spin, hertz=hertz).growth
 
     def stable(self, spin: Reals | None = None, *, hertz: Reals | None = None) -> Any:
-        """Whether neither rocking mode grows at a spin, (...); arguments as for `rocking`."""
+        """Whether neither rocking mode grows, a bool for each spin; arguments as for `rocking`."""
         return np.all(self.rocking(spin, hertz=hertz).growth <= 0, axis=-1)
 
     def _measured(self, told: bool, mass: float | None) -> Self:
@@ -383,7 +383,7 @@ class Ellipsoid(Sized):
         return np.array(_core.spin_limits(self._numbers))
 
     def energy(self, state: EllipsoidState, contact: AnyContact = "rolling") -> Result:
-        """Kinetic plus potential energy of a single stone, (...), in M g a; heights are above the table."""
+        """Kinetic plus potential energy of a single stone in each state, in M g a, above the table."""
         made("state", state, EllipsoidState)
         smooth = not isinstance(contact, Coulomb | Viscous) and code(contact) == code("smooth")
         n, w, u = (np.asarray(x) for x in (state.vertical, state.w, state._pair))

@@ -123,12 +123,12 @@ class EllipsoidState:
 
     @property
     def spin(self) -> Result:
-        """Spin, (...): the angular velocity about the vertical, in sqrt(g/a)."""
+        """Spin: the angular velocity about the vertical, in sqrt(g/a)."""
         return _core.stone_spin(*components(self.vertical), *components(self.w))
 
     @property
     def theta(self) -> Result:
-        """Inclination, (...): the angle from the vertical to axis 3, in radians."""
+        """Inclination: the angle from the vertical to axis 3, in radians."""
         found: Floats = self.inclinations[..., 2]
         return found[()]
 

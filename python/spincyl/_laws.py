@@ -200,7 +200,7 @@ class Laws:
 
         The inclinations are in radians, ascending, along a last axis of length 3 or 5 ("root"; see
         `inclinations`), padded with NaN. All are NaN for ell above 1e30 or I1/I3 above 1e60. The error is
-        16 * 2^-53 times the conditioning. The same holds for `ridge` and `boundaries`.
+        16 * 2^-53 times the condition number. The same holds for `ridge` and `boundaries`.
         """
         return _core.fold(*several(self._most, *self._numbers))
 
@@ -233,7 +233,7 @@ class Laws:
 
     @elementwise
     def centre_velocity(self, state: State) -> tuple[Result, Result]:
-        """Horizontal velocity of the centre of mass along e_h and e2 of `State`, in sqrt(g R).
+        """Horizontal components of the velocity of the centre, along e_h and e2 of `State`, in sqrt(g R).
 
         A state without `slip` is taken as rolling.
         """

@@ -270,7 +270,7 @@ class Motion:
         """Phases of the motion, each with the time, kind and state with which it begins.
 
         Needs a law of friction or `restitution=`. There are none if the motion ends at its initial state: if
-        a body on its side stays lying, or leaps.
+        a body on its side stays lying, or lifts off.
         """
         if self._phases is None:
             raise AttributeError(FRICTION.format("phases", named(self.contact)))

@@ -200,8 +200,12 @@ def scale_of(scale: "Scale | Body | None", *bodies: "Body") -> Scale | None:
     for body in bodies:
         own = body.scale
         if own is not None and given is not None and own != given:
-            raise ValueError(f"scale = {given!r}: the measured body has another, {own!r}; leave out scale=")
+            raise ValueError(
+                f"scale = {given!r}: the measured body has another scale, {own!r}; leave out scale="
+            )
     owns = [body.scale for body in bodies]
     if given is None and any(own != owns[0] for own in owns):
-        raise ValueError(f"scale: the bodies have different scales, {owns}; give bodies of one, or scale=")
+        raise ValueError(
+            f"scale: the bodies have different scales, {owns}; give bodies of one scale, or scale="
+        )
     return given if given is not None or not owns else owns[0]

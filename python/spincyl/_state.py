@@ -113,7 +113,7 @@ class State(Hinting):
 
     @elementwise
     def in_si(self, scale: "Scale | Body") -> dict[str, Any]:
-        """Return the arguments of `from_si` as a dict: theta (rad), w1, w2, w3 (rad/s), any slip (m/s)."""
+        """Return the arguments of `from_si` as a dict: theta (rad), w1, w2, w3 (rad/s), slip (m/s)."""
         metre, second, *_ = scale_of(scale)._units
         found = {name: getattr(self, name) / second for name in ("w1", "w2", "w3")}
         slip = None if self.slip is None else tuple(x * (metre / second) for x in self.slip)
@@ -146,10 +146,10 @@ class State(Hinting):
 
     @property
     def contact_radius(self) -> Result:
-        """Ratio of two radii: of the circle of the contact point on the table, and of that on the body.
+        """Ratio of the radii of the two circles of the contact point: on the table, and on the body.
 
-        With a sharp rim, whose circle on the body has the radius R, this is the radius on the table in R. If
-        the centre is at rest, it is also the number of still symbols in one turn.
+        On a body with a sharp rim the circle has the radius R, and the ratio is the radius on the table in R.
+        If the centre is at rest, the ratio is also the number of still symbols in one turn.
         """
         return _core.contact_radius(*self._numbers)
 

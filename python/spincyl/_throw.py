@@ -80,7 +80,7 @@ def thrown(body: Body, velocity: Reals, backspin: Reals, *, scale: Scale | None 
     given = velocity, backspin, *body._numbers
     if is_scalar(*given):
         if body.theta_end < np.pi / 2:
-            why = "a body that can stand on edge; for one that rolls in a circle, as a cup, give a State"
+            why = "since the body must stand on edge; a cup, which rolls in a circle, needs a State"
             raise ValueError(f"theta_end = {body.theta_end!r}: expected at least pi/2, {why}")
         state, slip = _core.thrown(float(velocity), float(backspin), six(body))
         return State(*state, slip=(slip[0], slip[1]))
@@ -291,7 +291,9 @@ def flicked(
     """
     scale = _known(body, scale)
     if (hertz is None) == (w1 is None) or (launch is None) == (spin_hertz is None):
-        raise TypeError("give hertz= or w1=, not both, and launch= or spin_hertz=, not both")
+        raise TypeError(
+            "hertz, w1, launch, spin_hertz: give one of hertz= and w1=, and one of launch= and spin_hertz="
+        )
     if scale is None and not (hertz is None and spin_hertz is None):
         raise ValueError(f"{'spin_' * (hertz is None)}hertz: needs a measured body, or scale=; w1= does not")
     refuse("ell", body.ell, lambda x: x <= 0, "expected a body with two rims, ell > 0")

@@ -223,7 +223,7 @@ def assembled(parts: Iterable[Part], *, gravity: float = Scale.gravity) -> Body:
     Warns
     -----
     UserWarning
-        If the body is larger than 5 m or smaller than 0.1 mm, as if millimetres were given for metres.
+        If the body is larger than 5 m or smaller than 0.1 mm. Probably millimetres were given for metres.
 
     Examples
     --------
