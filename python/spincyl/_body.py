@@ -222,7 +222,7 @@ class Body(Laws, Sized, Hinting, metaclass=Named):
     def critical_hertz(self) -> Result:
         """Precession rate at which the reduced rate Omega~ is 1, in turns per second; needs a measured body.
 
-        The body lying on its side is steady at this rate. Divide a rate in hertz by it to get Omega~.
+        On its side the body is steady at this rate. Divide a rate in hertz by `critical_hertz` to get Omega~.
         """
         return self._sized("critical_hertz").hertz(self, 1.0)
 

@@ -208,10 +208,11 @@ class Ellipsoid(Sized):
     def egg(
         cls, radius: Reals, half_length: Reals, offset: Reals = 0.0, *, mass: float | None = None
     ) -> Self:
-        """Spheroid about axis 3 with the moments of a uniform one, centre of mass `offset` above its centre.
+        """Egg: a spheroid about axis 3 with its centre of mass `offset` above its geometric centre.
 
-        `half_length` is the semi-axis along axis 3. Lengths are in any one unit. A `mass` in kilograms, or
-        lengths such as "22mm", make a measured stone. Raises the same errors as `Ellipsoid`.
+        The moments of inertia are those of a uniform spheroid; `half_length` is its semi-axis along axis 3.
+        Lengths are in any one unit. A `mass` in kilograms, or lengths such as "22mm", make a measured stone.
+        Raises the same errors as `Ellipsoid`.
         """
         given = {"radius": radius, "half_length": half_length, "offset": offset}
         given, told = lengths("", given)

@@ -12,9 +12,9 @@ class Ending(IntEnum):
     Attributes
     ----------
     DONE
-        The last time was reached.
+        The motion reached the last time.
     FACE
-        The face landed on the table, theta = 0 or pi.
+        The face landed on the table, at theta = 0 or pi.
     SIDE
         The other rim landed at theta = pi/2, or another part at `theta_end`. A thin disk (ell = 0) has no
         other rim.
@@ -61,7 +61,10 @@ MESSAGES = {
 
 
 class ErrorWarning(UserWarning):
-    """The estimated error of a motion is too large, or for a stone becomes too large before the end."""
+    """The estimated error of a motion is too large.
+
+    For a stone, the message gives the time at which the estimated error becomes too large.
+    """
 
 
 class Event(NamedTuple):

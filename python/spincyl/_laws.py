@@ -100,7 +100,7 @@ class Laws:
 
     @property
     def excess(self) -> Result:
-        """I1/I3 - 1: positive for a long cylinder, negative for a disk, 0 at the critical aspect."""
+        """Inertia excess I1/I3 - 1: positive for a long cylinder, 0 at the critical aspect, else negative."""
         return _core.excess(*self._numbers)
 
     @elementwise
@@ -131,7 +131,7 @@ class Laws:
         -------
         float or array
             NaN where there is no steady state, or where a `State` is not steady to six digits. For an
-            inclination the error is at most 16 (1 + cond) 2^-53 of the larger of the two terms of kappa, with
+            inclination the error is at most 16 (1 + cond) 2^-53 of the larger term of kappa, with
             ``cond = cos/|n| + (a cos + ell sin)/|m|``, a = 1 - fillet, and n and m as for `rate`. For a
             `State` with theta above 1e-100 it is at most 64 * 2^-53 of the largest term.
         """
@@ -196,7 +196,7 @@ class Laws:
         return law(*several(self._most, *self._numbers))
 
     def folds(self) -> Result:
-        """Inclinations at which the rate is an extremum, so that two steady states of equal rate merge.
+        """Inclinations at which the steady rate is an extremum, so that two states of equal rate merge.
 
         The inclinations are in radians, ascending, along a last axis of length 3 or 5 ("root"; see
         `inclinations`), padded with NaN. All are NaN for ell above 1e30 or I1/I3 above 1e60. The error is

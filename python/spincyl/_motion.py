@@ -47,9 +47,9 @@ class Motion:
 
     The object is similar to the result of SciPy's `solve_ivp`. Arrays have a row for each of the n times that
     the motion reached. Outputs are in natural units; for a measured body they are in SI: times in s, w in
-    rad/s, lengths in m, `slip` in m/s, forces in N, energies in J. But each `State` is always in natural
-    units: `start`, `states`, and the states of `event` and `phases`. `natural` is the whole motion in natural
-    units.
+    rad/s, lengths in m, `slip` in m/s, forces in N, energies in J. "R or m" below names the natural unit and
+    the unit for a measured body. Each `State` is always in natural units: `start`, `states`, and the states
+    of `event` and `phases`. `natural` is the whole motion in natural units.
 
     An optional output that was not computed raises AttributeError; the message says how to get it.
 
@@ -240,7 +240,7 @@ class Motion:
         ALOFT, "(n,) upward velocity of the lowest point of the rim, sqrt(g R) or m/s. Needs `restitution=`."
     )
     slip_other = Number(
-        ALOFT, "(n, 2) `slip` of the other rim; NaN unless both rims touch. Needs `restitution=`."
+        ALOFT, "(n, 2) `slip` of the other rim; NaN unless both rims touch the table. Needs `restitution=`."
     )
     normal_other = Number(ALOFT, '(n,) `normal` of the other rim. Needs `restitution=` and want="force".')
     friction_other = Number(ALOFT, '(n,) `friction` of the other rim. Needs `restitution=` and want="force".')

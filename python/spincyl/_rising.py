@@ -11,7 +11,7 @@ from spincyl._input.numbers import Result, number
 def rising_spin(egg: Ellipsoid, contact: Coulomb | Viscous | None = None, *, lean: float = 0.1) -> Result:
     """Least spin with which an egg on its side rises to stand on an end.
 
-    Without `contact` the spin is an estimate. With `contact` it is found by a search among motions.
+    Without `contact` the spin is an estimate. With `contact` a search computes motions to find it.
 
     Parameters
     ----------
@@ -28,7 +28,7 @@ def rising_spin(egg: Ellipsoid, contact: Coulomb | Viscous | None = None, *, lea
     Returns
     -------
     float
-        Initial spin about the vertical, in sqrt(g/a), for a centre at rest. The result is inf if no spin
+        Initial spin about the vertical, in sqrt(g/a), with the centre at rest. The result is inf if no spin
         makes the egg stable on an end, or if ten times the estimate does not raise the egg with this contact.
         Error of the estimate: a few roundings. Error of a search: 1e-3 of the spin. The search begins at half
         of the estimate and finds no smaller spin.

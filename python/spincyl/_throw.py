@@ -34,8 +34,8 @@ def thrown(body: Body, velocity: Reals, backspin: Reals, *, scale: Scale | None 
     ----------
     body : Body
         Single body or family that can touch the table with its rim at theta = pi/2. A can or a coin touches
-        the table with both rims; `roll` then needs ``restitution=0.0`` to compute how the body slips, and
-        rolls, on its side.
+        the table with both rims; `roll` then needs ``restitution=0.0`` to continue until the body rolls on
+        its side.
     velocity : array_like
         Velocity of the centre, in sqrt(g R); for a measured body, or with `scale`, in m/s.
     backspin : array_like

@@ -13,7 +13,7 @@ from spincyl._throw import six
 def turning_spin(top: Body, contact: Coulomb | Viscous | None = None, *, lean: float = 0.1) -> Result:
     """Least spin with which a tippe top turns over.
 
-    Without `contact` the spin is an estimate. With `contact` it is found by a search among motions.
+    Without `contact` the spin is an estimate. With `contact` a search computes motions to find it.
 
     Parameters
     ----------
@@ -29,12 +29,12 @@ def turning_spin(top: Body, contact: Coulomb | Viscous | None = None, *, lean: f
     Returns
     -------
     float or array
-        Initial w3, in sqrt(g/R), for a centre at rest. The result is inf if no spin makes the top stable
-        upside down, or if ten times the estimate does not turn the top over with this contact. With
-        `patch=0` this is so unless the table is very slippery. Error of the estimate: a few roundings. Error
-        of a search: 1e-3 of the spin. If friction is large, the boundary is ragged: a larger spin may fail
-        where a smaller one succeeds, and the result is one point of the boundary. The search begins at half
-        of the estimate and finds no smaller spin.
+        Initial w3, in sqrt(g/R), with the centre at rest. The result is inf if no spin makes the top stable
+        upside down, or if ten times the estimate does not turn the top over with this contact. With a contact
+        point (`patch=0`) the top turns over only if the table is very slippery. Error of the estimate: a few
+        roundings. Error of a search: 1e-3 of the spin. If friction is large, the boundary is ragged: a larger
+        spin may fail where a smaller one succeeds, and the result is one point of the boundary. The search
+        begins at half of the estimate and finds no smaller spin.
 
     Raises
     ------

@@ -210,8 +210,8 @@ class AirFilm(Law):
     ----------
     viscosity : array_like
         Viscosity in M g^(1/2)/R^(3/2), positive: 9.5e-8 for air under Euler's disk. The factor pi/4 is
-        Moffatt's estimate. Lubrication theory without pressure at the rim gives 1.2811 in its place: multiply
-        `viscosity` by 1.63 to use it.
+        Moffatt's estimate. Lubrication theory without pressure at the rim gives the factor 1.2811; to use it,
+        multiply `viscosity` by 1.63.
     """
 
     viscosity: Reals

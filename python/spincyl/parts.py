@@ -83,7 +83,7 @@ def cylinder(
     mass: float | None = None,
     density: float | None = None,
 ) -> Part:
-    """Solid or hollow cylinder. A `fillet` rounds the outer edges; mass and moments ignore it."""
+    """Solid or hollow cylinder. A `fillet` rounds the outer edges, but does not change mass and moments."""
     r, b = _metres("outer_diameter", outer_diameter) / 2, _metres("inner_diameter", inner_diameter) / 2
     rest = 0.0, _metres("length", length), _metres("fillet", fillet)
     return _part("cylinder", _SOLID, (r, r, b, b, *rest), at, mass, density)
@@ -168,7 +168,8 @@ def shell(
 ) -> Part:
     """Thin spherical wall; the `density` is in kg/m^2.
 
-    Default: the whole sphere. With `height`, only its lowest part of this height; with `upper`, the highest.
+    Default: the whole sphere. With `height`, only its lowest part, of this height; with `upper` as well, only
+    its highest part.
     """
     r = _metres("diameter", diameter) / 2
     h = 2 * r if height is None else _metres("height", height)
@@ -183,7 +184,7 @@ def ring(
 
 
 def point(*, mass: float, at: float | None = None) -> Part:
-    """Point mass on the axis, which touches nothing."""
+    """Point mass on the axis, which never touches the table."""
     return _part("point", _RING, (0.0, 0.0), at, mass, None)
 
 
