@@ -117,7 +117,7 @@ def test_a_cup_cannot_be_thrown_and_says_why():
     parts = sc.parts
     floor = parts.disk(outer_diameter="50mm", density=0.3)
     wall = parts.wall(lower_diameter="50mm", upper_diameter="80mm", length="90mm", at=0, density=0.3)
-    with pytest.raises(ValueError, match="theta_end = 1.4.*rolls in a circle, as a cup"):
+    with pytest.raises(ValueError, match="theta_end = 1.4.*a cup, which rolls in a circle"):
         sc.thrown(sc.assembled([floor, wall]), 1.0, 2.0)
 
 
