@@ -17,15 +17,15 @@ _MANY = 401
 
 @sized
 def drift(found: Drift, ax: "Axes | None" = None) -> "Axes":
-    """Draw a drift: inclination (left) and precession (right) against time, up to its end.
+    """Draw the inclination (left axis) and the precession (right axis) of a drift against time.
 
     Parameters
     ----------
     found : Drift
-        Single drift, from `spincyl.drift`. In natural units; for a measured body in seconds and turns per
-        second.
+        Single drift, from `spincyl.drift`. It is drawn in natural units; for a measured body in seconds and
+        turns per second.
     ax : matplotlib Axes, optional
-        Axes to draw on. Default: new axes. A second vertical axis has the precession.
+        Axes to draw on. Default: new axes. A second vertical axis is added for the precession.
 
     Returns
     -------

@@ -37,7 +37,7 @@ def figures(
     slides: bool = False,
     progress: Callable[[float], object] | None = None,
 ) -> list[Path]:
-    """Write the figures of a lecture as files: the predictions of Jackson et al. (fig4 to fig8), and more.
+    """Write figures for a lecture as files: the predictions of Jackson et al. (fig4 to fig8), and others.
 
     Parameters
     ----------
@@ -46,7 +46,8 @@ def figures(
     suffix : {".png", ".pdf", ".svg"}
         Format of the files.
     slides : bool
-        If true, all figures are 16:9 (PNG: 1920 x 1080 pixels). Default: each has a shape that suits it.
+        If true, all figures have the shape 16:9 (PNG: 1920 x 1080 pixels). If false, each figure has a shape
+        that suits it.
     progress : callable, optional
         Function that is called after each figure with the finished share, 0 to 1.
 
@@ -66,8 +67,8 @@ def figures(
 
     Notes
     -----
-    fig4 to fig8 show the steady states that Jackson et al., Am. J. Phys. 87, 85 (2019), discuss: by their
-    criterion (smooth table) and for rolling.
+    fig4 to fig8 show the steady states of Jackson et al., Am. J. Phys. 87, 85 (2019), with their stability
+    on a smooth table, as in the paper, and for rolling.
     """
     folder, slides = path_of("folder", folder), flag("slides", slides)
     callback(progress)

@@ -29,10 +29,11 @@ _MEDIANS = 2.0
 
 @sized
 def flicks(found: "xarray.Dataset", ax: "Axes | None" = None) -> "Axes":
-    """Draw a map of the outcomes of flicks; for tubes that settle, colours show the time until they roll.
+    """Draw a map of the outcomes of flicks.
 
-    Tubes that slip until the last time, or in every nod until shortly before it, have one colour. With a
-    `restitution`, tubes that hop first are hatched.
+    For tubes that settle on one rim, colours show the time until they roll. Tubes that slip until the last
+    time, or in every nod until shortly before it, have a colour of their own. If the flicks were computed
+    with a `restitution`, the area of the tubes that hop first is hatched.
 
     Parameters
     ----------
@@ -40,11 +41,12 @@ def flicks(found: "xarray.Dataset", ax: "Axes | None" = None) -> "Axes":
         Result of `spincyl.sweep.flicks` with two dimensions: the first is the horizontal axis, the second the
         vertical axis.
     ax : matplotlib Axes, optional
-        Axes to draw on. Default: new axes. A bar of colours is added to its figure.
+        Axes to draw on. Default: new axes. A colour bar is added to the figure.
 
     Returns
     -------
     Axes
+        The axes of the map.
 
     Raises
     ------

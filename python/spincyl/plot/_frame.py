@@ -17,7 +17,10 @@ _GREY = "#8A8A8A"
 
 @sized
 def frame(*, ax: "Axes | None" = None) -> "Axes":
-    """Draw a body with theta, phi, psi, the axes e1, e2, e3, the points O and X, and the contact point P.
+    """Draw an inclined body with its angles, axes and points, as a key to the equations.
+
+    The angles are theta, phi and psi, the axes e1, e2 and e3. The points are the contact point P, the top O
+    of the upper rim, and the top X of the lower rim.
 
     Parameters
     ----------
@@ -27,7 +30,7 @@ def frame(*, ax: "Axes | None" = None) -> "Axes":
     Returns
     -------
     Axes
-        Parallel projection, in units of R.
+        Axes with a parallel projection of the body, in units of R.
 
     Examples
     --------

@@ -21,10 +21,11 @@ _MOST = 4  # number of laws that are drawn
 
 @sized
 def losses(found: "LossFit", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
-    """Draw a fitted spin-down: data with fitted drifts, residuals of the best fit, and the log-log line.
+    """Draw a fitted spin-down: the data with fits, the residuals of the best fit, and a log-log diagram.
 
-    The fits of the four best laws are drawn. If both inclination and precession were measured, the curves are
-    those of the inclination, and the residuals are those of both.
+    The fits of the four best laws are drawn. The log-log diagram shows the data against the time that is
+    left until the body stops. If both inclination and precession were measured, the curves show the
+    inclination, and the residuals of both are drawn.
 
     Parameters
     ----------

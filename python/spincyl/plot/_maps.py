@@ -47,7 +47,7 @@ class Landmark(NamedTuple):
 
 
 def landmarks(body: Body, contact: Contact = "rolling") -> list[Landmark]:
-    """List the points A to G of the branches of one body: where they begin, turn, change stability and end.
+    """List the points A to G of one body: where its branches begin, turn, change stability and end.
 
     Parameters
     ----------
@@ -59,9 +59,9 @@ def landmarks(body: Body, contact: Contact = "rolling") -> list[Landmark]:
     Returns
     -------
     list of Landmark
-        A: balanced at rest; B: on its side, at rate 1; C: limit of high rates, thetaInf; D: flat on its face;
-        E: folds; F: changes of stability; G: ridges of the energy. C and D are at infinite rate. For a body
-        of critical aspect ratio, points that coincide with theta0 are left out.
+        A: balanced at rest, at theta0; B: on its side, at rate 1; C: limit thetaInf of high rates; D: flat on
+        its face; E: folds (extrema of the rate); F: changes of stability; G: ridges (extrema of the energy).
+        C and D have an infinite rate. If I1 = I3, points that coincide with theta0 are left out.
 
     Raises
     ------
@@ -106,24 +106,24 @@ def branches(
     marks: bool | None = None,
     hertz: bool = False,
 ) -> "Axes":
-    """Draw inclination against reduced rate for the steady states: solid if stable, dashed if unstable.
+    """Draw the inclination of steady states against their reduced rate: solid if stable, dashed if not.
 
     Parameters
     ----------
     ells : iterable of float or Body
-        Aspect ratios of tubes, or bodies; each gives a curve. For a single one the regions of stability are
-        shaded and the points A to G are marked (see `landmarks`).
+        Aspect ratios of tubes, or bodies; each gives a curve. If there is only one, the regions of stability
+        are shaded, and the points A to G are marked (see `landmarks`).
     bore : float
-        Inner over outer radius of the tubes in `ells`, 0 to 1; a body has its own.
+        Inner over outer radius of the tubes, 0 to 1. Bodies in `ells` keep their own bore.
     contact : {"rolling", "smooth"}
         Contact for the stability (see `Body.stability`); "smooth" is the criterion of Jackson et al.
     ax : matplotlib Axes, optional
         Axes to draw on. Default: new axes.
     rate_max : float, optional
-        Right edge, as a reduced rate or in turns per second. Default: a reduced rate of 3 of the fastest
-        body.
+        Right edge of the axes, as a reduced rate, or in turns per second if `hertz` is true. Default: 3, or
+        the turns per second at which the fastest body has the reduced rate 3.
     marks : bool, optional
-        Whether to mark the points A to G. Default: for a single body only.
+        If true, mark the points A to G. Default: only for a single body.
     hertz : bool
         If true, draw turns per second instead of the reduced rate; the bodies must be measured, or from
         `Body.from_metres`.
@@ -185,7 +185,9 @@ def portrait(
     ax: "Axes | None" = None,
     ell_max: float = 3.0,
 ) -> "Axes":
-    """Draw the map of theta and ell: forbidden, unstable and stable steady states with the centre at rest.
+    """Draw where the steady states with the centre at rest are stable, unstable or forbidden.
+
+    The axes are the aspect ratio ell and the inclination theta.
 
     Parameters
     ----------
@@ -194,8 +196,8 @@ def portrait(
     bore, fillet : float
         Bore and fillet of all tubes, 0 to 1; only without `data`.
     contact : {"rolling", "smooth"}, optional
-        Contact for the stability. Default: both; states that are stable for one contact only have colours of
-        their own.
+        Contact for the stability. Default: both. States that are stable only for rolling then have one
+        colour, and states that are stable only on a smooth table have another.
     ax : matplotlib Axes, optional
         Axes to draw on. Default: new axes.
     ell_max : float
@@ -287,8 +289,8 @@ def energy(*, bore: float = 0.0, ax: "Axes | None" = None, ell_max: float = 3.0)
     Returns
     -------
     Axes
-        Contours are in M g R above the energy of the body balanced at rest, sqrt(1 + ell^2). On the dashed
-        ridge the energy is stationary along the branch of one body.
+        Contours show the energy above that of the body balanced at rest, sqrt(1 + ell^2), in M g R. The
+        dashed line is the ridge, where the energy is stationary along the branch of one body.
 
     Raises
     ------

@@ -35,10 +35,10 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
     Parameters
     ----------
     m : Motion
-        Motion of a body or a stone; pose and contact force are computed if it lacks them. A motion with
-        `step` or `tol` is drawn at its times. Any other is drawn at times close enough for its nutation and
-        precession, from the first time (the initial state, if `t` was a number) to the last; if 100,000 times
-        are not close enough, dots replace the curves.
+        Motion of a body or a stone. Its pose and contact force are computed if it does not contain them. A
+        motion that was computed with `step` or `tol` is drawn at its own times. Any other motion is computed
+        again at times that resolve its nutation and precession, from the first time (the initial state, if
+        `t` was a number) to the last. If 100,000 times are not enough, dots replace the curves.
     axes : sequence of three matplotlib Axes, optional
         Axes to draw on. Default: three new ones side by side.
 
@@ -52,22 +52,22 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
     TypeError
         If `m` is not a Motion, or `axes` are not three Axes.
     ValueError
-        If there is no curve to draw: the motion has no duration, or was computed with `step` or `tol` at less
-        than two times.
+        If there is no curve to draw: the motion has no duration, or was computed with `step` or `tol` at
+        fewer than two times.
 
     Notes
     -----
-    Units are natural; for a measured body they are seconds, newtons (weights if its mass is unknown) and
-    millimetres, or metres from R = 0.1 m on. The time after the end of a motion is grey.
+    Natural units are used. For a measured body the units are seconds, newtons (the weight if the mass is
+    unknown), and millimetres (metres if R is at least 0.1 m). The time after the end of a motion is grey.
 
-    - *A law of friction*: the path is red and the time is tinted where the body slips.
-    - *A restitution*: the height of the lowest point is drawn with the inclination, impacts are marked, and
-      times in the air and on both rims are tinted, too.
-    - *A body that rolls straight at constant inclination*: the distance of its centre replaces the
-      inclination.
-    - *A stone*: the spin about the vertical is drawn with the inclination. If the stone stays within 60
-      degrees of upright, the envelopes of both rockings are drawn: the largest angles of its longer and its
-      shorter axis from the horizontal. The unit of length is the largest semi-axis.
+    - With a law of friction, the path is red and the time is tinted while the body slips.
+    - With `restitution`, the height of the lowest point is drawn together with the inclination. Impacts are
+      marked, and the times in the air and on both rims are tinted, too.
+    - For a body that rolls straight at constant inclination, the distance of its centre from the first
+      position is drawn instead of the inclination.
+    - For a stone, the spin about the vertical is drawn together with the inclination. If the stone stays
+      within 60 degrees of upright, the envelopes of both rockings are drawn: the largest angles between its
+      longer and its shorter axis and the horizontal. The unit of length is the largest semi-axis.
 
     Examples
     --------
@@ -323,20 +323,20 @@ def exposure(
     ax : matplotlib Axes, optional
         Axes to draw on. Default: new axes.
     gamma : float
-        Exponent of the brightness, 0.01 to 100; a smaller one shows faint parts better.
+        Exponent of the brightness, 0.01 to 100; a smaller value shows faint parts better.
     **how
         `scale`, `upper`, `size`, `samples` and `width`, as in `spincyl.exposure`.
 
     Returns
     -------
     Axes
-        Axes in R, for a measured body in millimetres (in metres from R = 0.1 m on). The origin is the middle
-        of the path of the centre.
+        Axes in units of R; for a measured body in millimetres (metres if R is at least 0.1 m). The origin is
+        the middle of the path of the centre.
 
     Raises
     ------
     ValueError, TypeError
-        As in `spincyl.exposure`; the message names the argument.
+        If an argument is invalid, as in `spincyl.exposure`; the message names it.
 
     Examples
     --------
@@ -368,7 +368,7 @@ def exposure(
 
 @sized
 def comparison(found: "Comparison", ax: "Axes | None" = None) -> "Axes":
-    """Draw measured steady states with error bars, and the branches of the body as built and as fitted.
+    """Draw measured steady states with error bars, and the branches of the given and of the fitted body.
 
     Parameters
     ----------
@@ -380,7 +380,8 @@ def comparison(found: "Comparison", ax: "Axes | None" = None) -> "Axes":
     Returns
     -------
     Axes
-        Inclination in degrees against the reduced rate, or turns per second if they were measured.
+        Axes of the inclination in degrees against the reduced rate, or against turns per second if these
+        were measured.
 
     Raises
     ------

@@ -24,29 +24,30 @@ def block_size(
     seconds: float = 1.0,
     path: str | os.PathLike[str] | None = None,
 ) -> int:
-    """Compute how many motions, or points of a map, a block of dask should hold, by timing a sample.
+    """Compute the number of motions, or of points of a map, for one block of dask, by timing a sample.
 
     Parameters
     ----------
     job : callable
         Function that takes the arrays of the sweep and returns the result of `roll` or `portrait` for them.
     *sample : array_like
-        Arguments for `job`: a thousand motions or more, from all parts of the sweep, in memory. Numbers are
-        passed on unchanged.
+        Arguments for `job`: arrays in memory for a thousand motions or more, from all parts of the sweep.
+        Arguments that are numbers are passed on unchanged.
     seconds : float
-        Time that a block should take on a core like this one without other work; more than 0. The measured
-        time of the sample is CPU time, less that of a block of one motion: the first of the sample, or the
-        last if that is faster.
+        Time in seconds, more than 0, that a block should take on a core like this one without other work.
+        The CPU time of the sample is measured. The time of a block with a single motion is subtracted from
+        it; this motion is the first or the last of the sample, whichever is faster.
     path : path, optional
-        Path of the store for `save`. If a sweep has begun there, the result is the size of its blocks and
-        nothing is measured, so that a script that is run again continues with the same blocks. A path that
+        Path of the store for `save`. If a sweep has begun there, nothing is measured and the result is the
+        size of its blocks. So a script that is run again continues with the same blocks. A path that
         `save` would not accept, such as a folder that is not a sweep, raises the same error here.
 
     Returns
     -------
     int
-        1, 2 or 5 times a power of ten. A block takes at most `seconds` if its motions are like the sample,
-        and its results need at most ``dask.config.get("array.chunk-size")``, 128 MiB by default.
+        Number of motions or points in a block: 1, 2 or 5 times a power of ten. A block takes at most
+        `seconds` if its motions are like those of the sample. The results of a block need at most the memory
+        ``dask.config.get("array.chunk-size")``, 128 MiB by default.
 
     Raises
     ------
@@ -54,13 +55,13 @@ def block_size(
         If an argument is invalid, or `job` does not return a lazy result for lazy arguments; the message
         names the argument.
     OSError
-        As in `save`.
+        If the store at `path` cannot be used, as in `save`.
 
     Notes
     -----
-    A scheduler needs some milliseconds for each block, and a store some tens. Blocks of a tenth of a second
-    therefore lose a tenth of the time or more; if a worker dies, a block of an hour loses up to an hour. See
-    docs/cluster.md.
+    For each block a scheduler needs a few milliseconds, and writing to a store a few tens of milliseconds.
+    If a block takes a tenth of a second, a tenth of the time or more is therefore lost. If a block takes an
+    hour and its worker dies, up to an hour of work is lost. See docs/cluster.md.
 
     Examples
     --------

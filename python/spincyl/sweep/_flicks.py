@@ -22,24 +22,24 @@ if TYPE_CHECKING:
 class Outcome(IntEnum):
     """Outcome of a flick of a tube.
 
-    Without a restitution the motion ends where the other rim lands (`LIES_DOWN`) or where the tube leaves the
-    table (`LIFTS_OFF`). With a restitution it continues to the last time, and the outcome says how the tube
-    then moves. The `status` of the sweep gives the reason for `NONE`.
+    Without ``restitution=`` the motion ends where the other rim lands (`LIES_DOWN`) or where the tube leaves
+    the table (`LIFTS_OFF`). With ``restitution=`` the motion continues to the last time, and the outcome says
+    how the tube moves at that time.
 
     Attributes
     ----------
     NONE
-        None of these; see `status`.
+        None of the outcomes below; the `status` of the motion gives the reason.
     SETTLES
         At the last time the tube goes round on one rim.
     LIES_DOWN
-        The other rim lands, or does not rise.
+        The rim that rose has landed again, or it never rose.
     LIFTS_OFF
-        The normal force vanishes; with a restitution the tube is in the air at the last time.
+        The normal force vanishes. With ``restitution=``: the tube is in the air at the last time.
     HOPS_AND_SETTLES
-        The tube hops, and then goes round on one rim.
+        The tube hops. At the last time it goes round on one rim.
     HOPS_AND_LIES
-        The tube hops, and then lies on its side.
+        The tube hops. At the last time it lies on its side.
     """
 
     NONE = 0
@@ -97,30 +97,34 @@ def flicks(
     contact: AnyContact,
     **how: Any,
 ) -> "xarray.Dataset":
-    """Compute the outcomes of many flicks of a tube: every rate with every launch number or spin.
+    """Compute the outcomes of many flicks of a tube that lies on its side.
+
+    A flick is a push on one end of the tube. The result contains every combination of the given rates with
+    the given launch numbers or spins.
 
     Parameters
     ----------
     body : Body
         Single body with two rims, as for `spincyl.flicked`. For a measured body all numbers are in SI.
     t : float
-        Time at which the motions end, in sqrt(R/g), for a measured body in seconds. 200 sqrt(R/g), which is
-        5.7 s for the tube below, is long enough to lie down, to lift off, or to roll for the first time.
+        Time at which the motions end, in sqrt(R/g); for a measured body in seconds. In 200 sqrt(R/g), which
+        is 5.7 s for the tube below, a tube has lain down, lifted off, or rolled for the first time.
     hertz, w1, launch, spin_hertz, centre : array_like, 1-D, or float
-        Arguments of `spincyl.flicked`: `hertz` or `w1`, and `launch` or `spin_hertz`; `centre` is optional.
-        Each array is a dimension of the result with the name of the argument ("precession" for `w1`).
+        Arguments of `spincyl.flicked`. Give `hertz` or `w1`, and `launch` or `spin_hertz`; `centre` is
+        optional. Each array becomes a dimension of the result with the name of the argument; the dimension
+        of `w1` is named "precession".
     contact : Coulomb or Viscous
-        Law of friction. Its coefficients are numbers or labelled arrays.
+        Law of friction. Its coefficients are numbers or labelled arrays (of xarray).
     **how
-        Keyword arguments of `roll`; here the default of `want` is "end" and "rolling_time". With
-        ``restitution=`` each motion continues to `t` through hops and on both rims.
+        Other keyword arguments of `roll`. The default of `want` is ("end", "rolling_time") here. With
+        ``restitution=`` each motion continues to `t`, also while the tube hops or lies on both rims.
 
     Returns
     -------
     xarray.Dataset
-        The result of `roll`, and "outcome" (`Outcome`), which `plot.flicks` draws. A tube that settles may
-        slip for a moment in every nod; "rolling_time" is then the beginning of the last rolling, and with
-        ``stop_at="rolling"`` that of the first.
+        The result of `roll`, and "outcome" with the codes of `Outcome`, which `plot.flicks` draws. A tube
+        that settles may slip for a moment in every nod. "rolling_time" is then the time at which the last
+        phase of rolling begins; with ``stop_at="rolling"`` it is the time at which the first one begins.
 
     Raises
     ------

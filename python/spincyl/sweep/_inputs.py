@@ -122,28 +122,29 @@ def inputs(rows: "xarray.Dataset") -> dict[str, Any]:
     Parameters
     ----------
     rows : xarray.Dataset
-        Result of `roll` or `flicks`, or a stored result that was opened again, or a part of one, for example
-        by `isel`.
+        Result of `roll` or `flicks`, in memory or opened from a store; or some of its rows, selected for
+        example by ``isel``.
 
     Returns
     -------
     dict
-        Keyword arguments of `roll`: "bodies", "states", "t", "contact" and "tol", and "losses",
-        "restitution", "mu", "step", "beyond" and "stop_at" if they were given. `roll` with these arguments
-        repeats the results bit by bit. Lazy coordinates give lazy bodies and states; ``rows.load()`` reads
-        the rows first.
+        Keyword arguments of `roll`: "bodies", "states", "t", "contact" and "tol"; also "losses",
+        "restitution", "mu", "step", "beyond" and "stop_at" if they were given. A call of `roll` with these
+        arguments repeats the results bit by bit. Lazy coordinates give lazy bodies and states; call
+        ``rows.load()`` first to get bodies and states in memory.
 
     Raises
     ------
     TypeError, ValueError
-        If `rows` is not a Dataset, or lacks the coordinates or attributes of a sweep; also for a single row
-        whose body is invalid, with the name of the number. A state that was NaN is returned as NaN.
+        If `rows` is not a Dataset, or lacks the coordinates or attributes of a sweep. If `rows` is a single
+        row whose body is invalid; the message names the number. (A state with NaN is returned with NaN.)
 
     Notes
     -----
-    The coordinates are ``body_*``, ``start_*``, ``contact_*`` and ``loss_*``. Their names end with those of
-    the fields of bodies (for an `Ellipsoid` a1, i11, i23, d1, ...), states, `Coulomb`, `Viscous` and laws of
-    loss. These coordinates are in natural units, also for measured bodies.
+    The arguments are stored in the coordinates ``body_*``, ``start_*``, ``contact_*`` and ``loss_*``. The
+    names end with the names of the fields of `Body`, `State`, `Coulomb`, `Viscous` and the laws of
+    `spincyl.loss`; for an `Ellipsoid` they end with a1, i11, i23, d1 and so on. These coordinates are in
+    natural units, also for measured bodies.
 
     Examples
     --------

@@ -24,17 +24,18 @@ class Status(IntEnum):
     LIFT_OFF
         The normal force vanished.
     SLIP
-        Rolling needed more friction than mu N.
+        Rolling needed more friction than mu N, where N is the normal force.
     INVALID
-        Invalid body, state or coefficient, or too long a step; the results are NaN.
+        The body, the state or a coefficient is invalid, or the step is too long; the results are NaN.
     PAINLEVE
         No contact force, or more than one, obeys the law of friction.
     STOPS
-        With losses: the contact point stopped; the body may still spin about the vertical.
+        The contact point stopped because of a loss; the body may still spin about the vertical.
     LANDING
-        A landing on both rims has no outcome, or more than one, that obeys the law of friction.
+        For a landing on both rims no impulse, or more than one, obeys the law of friction.
     BOUNDED
-        Given up, since phases alternate too often, or the motion hardly advances; the results are NaN.
+        The computation was given up, since the phases alternate too often or the motion hardly advances;
+        the results are NaN.
     """
 
     DONE = 0

@@ -55,41 +55,41 @@ def portrait(
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> "xarray.Dataset":
-    """Map the steady states whose centre is at rest, for every inclination and every tube.
+    """Compute the steady states with the centre at rest, for every inclination and every tube.
 
     Parameters
     ----------
     theta : float or array_like, 1-D
         Inclinations, in radians.
     ell, bore, fillet : float or array_like, 1-D
-        Half lengths over the outer radius, bores and fillets of uniform tubes, as in `Body.tube`. `ell` may
-        also be a `Body`: a tube, or tubes that differ in one of the three; the map of measured tubes is in
-        SI, with lengths in metres. If an axis is backed by dask, the result is lazy: nothing is computed
-        before a call of `compute` or `save`.
+        Uniform tubes, as in `Body.tube`: half length, inner radius and fillet, each over the outer radius.
+        `ell` may also be a `Body`: one tube, or tubes that differ in one of the three parameters. The map of
+        measured tubes is in SI, with lengths in metres. If an axis is backed by dask, the result is lazy:
+        nothing is computed before a call of `compute` or `save`.
     want : str or iterable of str
-        Quantities to compute; others cost nothing: "rate", "kappa_rolling", "kappa_smooth", "energy" (see
-        `Body.rate`, `Body.stability`, `Body.energy`) and "region" (see `Region`).
+        Quantities to compute: "rate" (see `Body.rate`), "kappa_rolling" and "kappa_smooth" (see
+        `Body.stability`), "energy" (see `Body.energy`) and "region" (see `Region`).
     out : xarray.Dataset, optional
-        Earlier result on axes of the same lengths, whose arrays are filled again. This saves time for
-        repeated maps: to get new memory takes the system several times as long as the rates take to compute.
+        Earlier result on axes of the same lengths, whose arrays are filled again. This makes repeated maps
+        faster, since the allocation of new memory takes several times as long as the computation of rates.
     dtype : {"float64", "float32"}
-        Type of the numbers. In single precision the rate for a sharp rim has a relative error of at most
+        Type of the numbers. In float32 the rate for a sharp rim has a relative error of at most
         1.51 * 2^-24, and a map of the rate alone takes about 0.6 of the time. Other numbers are computed in
-        double precision and rounded once; regions are the same.
+        float64 and then rounded; regions are the same.
     threads : int, optional
-        Number of threads. Default: RAYON_NUM_THREADS, else every core that this process may use; in a dask
-        block, 1.
+        Number of threads. Default: the environment variable RAYON_NUM_THREADS, else every core that this
+        process may use; 1 in a block of dask.
     progress : callable, optional
         Function that is called with the finished share, 0 to 1, about fifty times a second.
 
     Returns
     -------
     xarray.Dataset
-        One array per quantity with its `units`, and with those of the dimensions theta, ell, bore and fillet
-        whose arguments are arrays. "rate" is the reduced rate; for measured tubes there is also "hertz". NaN
-        and `Region.INVALID` where theta or the tube is out of range. In double precision the numbers are
-        those of the methods of `Body`, bit by bit, for any number of threads; the energy agrees to
-        32 (1 + kappa_c) 2^-53.
+        One array per quantity, with its `units`. Each of theta, ell, bore and fillet that was given as an
+        array is a dimension. "rate" is the reduced rate; for measured tubes there is also "hertz". Where
+        theta or the tube is out of range, numbers are NaN and the region is `Region.INVALID`. In float64 the
+        numbers equal those of the methods of `Body` bit by bit, for any number of threads; only the energy
+        may differ, by 32 (1 + kappa_c) 2^-53.
 
     Raises
     ------
@@ -170,22 +170,22 @@ def points(
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> dict[str, np.ndarray]:
-    """Compute the quantities of `portrait` at scattered points, each an inclination of one tube.
+    """Compute the quantities of `portrait` at single points: for each point one inclination and one tube.
 
     Parameters
     ----------
     theta, ell, bore, fillet : float or array_like
-        Inclinations and tubes as in `portrait`, of shapes that broadcast. Numbers and contiguous arrays of
-        float64 of one shape are not copied.
+        Inclinations and tubes as in `portrait`; their shapes have to broadcast. Numbers, and contiguous
+        arrays of float64 that have the same shape, are not copied.
     want, dtype, threads, progress
         As in `portrait`.
     out : dict of str to ndarray, optional
-        Contiguous arrays to fill, which is much faster than new ones; see `portrait`.
+        Contiguous arrays to fill; this is much faster than new arrays (see `portrait`).
 
     Returns
     -------
     dict of str to ndarray
-        Array of the broadcast shape for each quantity; the numbers are those of `portrait`, bit by bit.
+        An array of the broadcast shape for each quantity. The numbers equal those of `portrait` bit by bit.
 
     Raises
     ------
@@ -225,15 +225,15 @@ def survey(
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> dict[str, Any]:
-    """Compute counts, areas and extrema of a `portrait` on these axes without the map itself.
+    """Compute counts, areas and extrema of a `portrait` on these axes without storing the map.
 
     Parameters
     ----------
     theta, ell, bore, fillet : float or array_like, 1-D
         As in `portrait`, but not a `Body`; theta ascending.
     want : str or iterable of str
-        "region": number of points and share of the area of each `Region`. "rate", "kappa_rolling",
-        "kappa_smooth", "energy": least and greatest value, and their places.
+        "region" gives the number of points and the share of the area of each `Region`. "rate",
+        "kappa_rolling", "kappa_smooth" and "energy" give the least and the greatest value and where they are.
     threads, progress
         As in `portrait`.
 
@@ -241,9 +241,9 @@ def survey(
     -------
     dict
         For "region" two entries: "count", {Region: number of points}, and "area", {Region: share of the area
-        of the map}. Each point has the area of its cell, by the trapezoid rule along every axis of at least
-        two points. For each other quantity {"min": (value, {axis: place}), "max": (value, {axis: place})},
-        or None if no point has a steady state.
+        of the map}. A point stands for the area of its cell, by the trapezoid rule along axes of two or more
+        points. For each other quantity {"min": (value, {axis: place}), "max": (value, {axis: place})}, or
+        None if no point has a steady state.
 
     Raises
     ------
@@ -254,10 +254,10 @@ def survey(
 
     Notes
     -----
-    Regions change only at theta0, thetaInf and the zeros of both kappas. For sharp tubes bisection finds
-    these among the inclinations, for rounded tubes they are computed; points far from them are not evaluated.
-    Extrema need no memory for the map. If only the rate is wanted, sixteen inclinations at a time are skipped
-    where they cannot contain an extremum.
+    Regions change only at theta0, thetaInf and the zeros of both kappas. Only points near these inclinations
+    are evaluated; they are found by bisection for sharp tubes, and computed for rounded tubes. Extrema need
+    no memory for the map. If only the rate is wanted, groups of sixteen inclinations that cannot contain an
+    extremum are skipped.
 
     Examples
     --------
@@ -305,9 +305,9 @@ def boundaries(ell: Reals, bore: Reals = 0.0, fillet: Reals = 0.0) -> "xarray.Da
     Returns
     -------
     xarray.Dataset
-        Inclinations in radians: "theta_balance" and "theta_limit" (theta0 and thetaInf); "rolling" and
-        "smooth" (zeros of the kappas), "fold" and "ridge" (turning points of rate and energy). The last four
-        have a dimension "root" of three numbers, or five for rounded rims, with NaN after the last root.
+        Inclinations in radians: "theta_balance" (theta0), "theta_limit" (thetaInf), "rolling" and "smooth"
+        (zeros of kappa: changes of stability), "fold" and "ridge" (extrema of rate and energy). The last four
+        have a dimension "root" of length 3 (5 for rounded rims); entries after the last root are NaN.
 
     Raises
     ------

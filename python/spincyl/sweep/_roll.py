@@ -81,110 +81,117 @@ def roll(
     Parameters
     ----------
     bodies : Body or Ellipsoid
-        Family of bodies, or of stones (see the Notes). The fields of bodies and states broadcast against each
-        other: NumPy arrays by shape, xarray's by the names of their dimensions. If any field is backed by
-        dask, the result is lazy: nothing is computed before a call of `compute` or `save`.
+        Bodies, or stones (see the Notes), whose parameters may be arrays. These arrays and those of `states`
+        broadcast with each other: NumPy arrays by shape, xarray's by the names of their dimensions. If any
+        array is backed by dask, the result is lazy: nothing is computed before a call of `compute` or `save`.
     states : State or EllipsoidState
         Initial states at time 0, in natural units, also for measured bodies. Stones need an `EllipsoidState`.
     t : float or array_like, 1-D
-        Time of the final state, or an array of the times of all states: at least 0 and ascending, or at most
-        0 and descending to go backward in time. In sqrt(R/g); for measured bodies `t` and `step` are in
-        seconds.
+        Time of the final state, or an array of the times at which states are returned. The times are at
+        least 0 and ascending; to go backward in time they are at most 0 and descending. The unit is
+        sqrt(R/g); for measured bodies `t` and `step` are in seconds.
     want : str or iterable of str, optional
         Outputs to compute. Default: "final" if `t` is a number, "states" if `t` is an array.
 
-        - Always: "states" (theta, w1, w2, w3 at all times of an array; NaN after the end of a motion),
-          "final" (theta, w1, w2, w3 at the last time, or at the end of a motion that ends before), "end"
-          (time of the end).
-        - Without friction, losses and restitution: "theta_min", "theta_max", "normal_min" (per weight) and
-          "friction_coefficient_max" (the largest that rolling needs; infinite if the normal force vanishes),
-          from time 0 to the end; "period", "precession_per_period" (radians).
-        - With a law of friction, or a restitution: "slip_time", "dissipated" (M g R), "phases" (their
-          number), and for the beginning of the last rolling "rolling_time", "rolling_theta", "rolling_w1",
-          "rolling_w2", "rolling_w3" (NaN if the body never rolls). States then include
-          `slip_along` and `slip_across`.
-        - With losses: "work_lost" (M g R).
-        - With a restitution: "impacts" and "landings" (their numbers), "air_time", "lost_in_impacts" (M g R)
-          and "last_phase" (code of `Motion.phase`).
+        - For every motion: "states" (theta, w1, w2, w3 at all times of an array; NaN after the end of a
+          motion), "final" (theta, w1, w2, w3 at the last time, or at the end of a motion that ends before),
+          and "end" (time of the end).
+        - Without friction, losses and restitution: "period" and "precession_per_period" (radians) of the
+          nutation. For the time from 0 to the end: "theta_min", "theta_max", "normal_min" (least normal
+          force, in units of the weight) and "friction_coefficient_max" (largest coefficient of friction that
+          rolling needs; infinite if the normal force vanishes).
+        - With a law of friction or with `restitution`: "slip_time" (total time of slip), "dissipated" (heat
+          of the slip, M g R) and "phases" (number of phases). For the time at which the last phase of rolling
+          begins: "rolling_time", "rolling_theta", "rolling_w1", "rolling_w2", "rolling_w3" (NaN if the body
+          never rolls). "states" and "final" then include `slip_along` and `slip_across`.
+        - With losses: "work_lost" (energy that the losses have taken, M g R).
+        - With `restitution`: "impacts" (number of impacts), "landings" (number of landings), "air_time"
+          (total time in the air), "lost_in_impacts" (energy, M g R) and "last_phase" (code of
+          `Motion.phase`).
     contact : {"rolling", "smooth"}, Coulomb or Viscous
         Rolling without slipping, a frictionless table, or a law of friction. The coefficients of a law, and
-        the slips of the states, may be arrays that broadcast with the rest.
+        the slips of the states, may be arrays that broadcast with the other arrays.
     tol : float
-        Error that a motion may have (absolute, 1e-15 to 0.1); a smaller one costs more. If eight motions at a
-        time cannot reach it, a motion is computed alone, as accurately as the first integrals allow. With
-        friction or losses `tol` is the tolerance of each step of the integrator. `error` has the estimated
-        errors.
+        Largest allowed error of a motion (absolute, 1e-15 to 0.1); a smaller value needs more time. Eight
+        motions are computed at a time; a motion that does not reach `tol` in this way is computed alone, as
+        accurately as the first integrals allow. With friction or losses `tol` is the tolerance of each step
+        of the integrator. The output `error` contains the estimated errors.
     step : float, optional
-        Fixed step of RK4, in sqrt(R/g), which replaces the first integrals. `error` is then the difference
-        from the first integrals.
+        Fixed step of RK4, in sqrt(R/g). RK4 is then used instead of the first integrals, and the output
+        `error` is the difference from the motion by the first integrals.
     mu : float
         Largest coefficient of friction that rolling may need. A motion ends with `Status.SLIP` where rolling
         needs more. Only for `contact="rolling"`.
     beyond : bool
-        If true, skip the search for lift-off, slip and a landing of the other rim. This is cheaper, but after
-        such an event the solution no longer describes the real body.
+        If true, do not search for lift-off, for slip and for a landing of the other rim. This takes less
+        time, but after such an event the solution no longer describes the real body.
     restitution : float, optional
         Coefficient of restitution of impacts, 0 to 1, as in `spincyl.roll`. Default: a motion ends where the
         body leaves the table or its other rim lands.
     stop_at : {"rolling"}, optional
-        End each motion where the contact point first comes to rest for good and the body rolls; the time
-        after that costs nothing. Only with a law of friction.
+        End each motion at the first time at which the slip stops and the body goes on rolling. The rest of
+        the motion is not computed. Only with a law of friction.
     losses : Loss, optional
-        Law of `spincyl.loss` that takes energy, or several added with ``+``, with any contact; coefficients
-        may be arrays that broadcast with the rest. Motions continue until the contact point stops
-        (`Status.STOPS`) or the face lands (`Status.FACE`). Motions that roll or slide without friction are
-        computed eight at a time, each with its own steps; motions that slip with friction, one at a time.
+        Law of `spincyl.loss` that takes energy, or a sum of several laws, with any contact. Coefficients
+        may be arrays that broadcast with the other arrays. A motion with losses ends where the contact point
+        stops (`Status.STOPS`) or the face lands (`Status.FACE`). Motions that roll or slide without friction
+        are computed eight at a time, each with its own steps; motions with friction are computed one at a
+        time.
     threads : int, optional
-        Number of threads. Default: RAYON_NUM_THREADS, else every core that this process may use; in a dask
-        block, 1.
+        Number of threads. Default: the environment variable RAYON_NUM_THREADS, else every core that this
+        process may use; 1 in a block of dask.
     progress : callable, optional
         Function that is called with the finished share, 0 to 1, about fifty times a second.
 
     Returns
     -------
     xarray.Dataset
-        The wanted outputs, `error` (estimated error of a motion: the largest over its states, and over
-        "period" and "precession_per_period" if these are wanted and exist), `method` (`Answer`) and `status`
-        (`Status`). Dimensions are those of the inputs, "motion" for plain arrays ("motion_0", "motion_1", ...
-        if they have several), and "t" for "states". In natural units, for measured bodies in SI; each array
-        has its `units`. The body, state and laws of each motion are coordinates (see `sweep.inputs`). The
-        bits of a result depend neither on the number of threads nor on the other motions, and are the same on
-        AVX2, AVX-512 and NEON.
+        The wanted outputs; `error`, the estimated error of each motion; `method`, with the codes of `Answer`;
+        and `status`, with the codes of `Status`. `error` is the largest estimated error of the states, and
+        of "period" and "precession_per_period" if these are wanted and exist. The dimensions are those of the
+        labelled inputs; plain arrays have the dimension "motion", or "motion_0", "motion_1" and so on if
+        they have several. "states" has the additional dimension "t". Numbers are in natural units, for
+        measured bodies in SI; each array has its `units`. The body, the initial state and the laws of each
+        motion are coordinates (see `sweep.inputs`). The bits of a result depend neither on the number of
+        threads nor on the other motions, and are the same on AVX2, AVX-512 and NEON.
 
     Raises
     ------
     ValueError, TypeError
-        If an argument is invalid, or an input has a coordinate with the name of a result; before any work,
-        and the message names the argument. A body or state of a family that is out of the range of
-        `spincyl.roll` raises no error: its motion has NaN and `Status.INVALID`.
+        If an argument is invalid, or an input has a coordinate with the name of an output. The error is
+        raised before any computation, and the message names the argument. An element of an array that is out
+        of the range of `spincyl.roll` raises no error: its motion has NaN and `Status.INVALID`.
     KeyboardInterrupt
         Within 0.1 s of Ctrl-C.
 
     Warns
     -----
     RuntimeWarning
-        If motions with friction or losses are given up; the message gives their number. The limits are
-        600,000 steps that hardly advance the time, 20 phases per unit of time (at least 5,000, at most
-        10,000), and 8 million evaluations (40,000 per unit of time if the time exceeds 200). Such a motion
-        has NaN, `Status.BOUNDED` and, as its "end", the time at which it was given up.
+        If the computation of motions with friction or losses is given up; the message gives the number of
+        motions. The limits are 600,000 steps that hardly advance the time, 20 phases per unit of time (at
+        least 5,000, at most 10,000), and 8 million evaluations (40,000 per unit of time if the time exceeds
+        200). Such a motion has NaN and `Status.BOUNDED`; its "end" is the time at which it was given up.
     ErrorWarning
-        If the estimated errors of stones become too large before the end (see the Notes); the message gives
-        their number.
+        If the estimated errors of stones become too large before the last time (see the Notes); the message
+        gives the number of stones.
 
     Notes
     -----
-    Chaplygin, Appell and Korteweg found the first integrals; docs/physics.md has the equations. Each motion
-    is computed from a power series about its initial state, with as many terms as the width of the swing
-    needs; the cost does not grow with time. docs/benchmarks.md has measured times and errors.
+    A rolling or smooth motion without losses has first integrals, which Chaplygin, Appell and Korteweg found;
+    docs/physics.md has the equations. Each such motion is computed from a power series about its initial
+    state, with as many terms as the width of the swing needs. The cost does not grow with time.
+    docs/benchmarks.md has measured times and errors.
 
-    Stones have no first integrals. Each is integrated alone, twice, to estimate its error. `t` is a number,
-    at least 0, in sqrt(a/g); `step`, `beyond`, `restitution` and `stop_at` are not available. The outputs are
-    "spin" (about the vertical, at the end), "reversals" (their number), "first_reversal" (its time), "end",
-    "dissipated", "work_lost" (with losses) and "final" (n1, n2, n3, w1, w2, w3); the default is the first
-    three. A reversal counts when the spin has passed zero and reached a tenth of the initial spin in the
-    other direction; its time is that of the last zero before. An initial spin below 1e-12 has no direction.
-    `known_until` is the time up to which each motion is known, as in `EllipsoidMotion`. Reversals are counted
-    up to there; if they are wanted, the motion counts as known only while its error is at most that tenth.
+    A stone has no first integrals. The motion of each stone is integrated twice, to estimate its error. For
+    stones `t` is a number, at least 0, in sqrt(a/g) with the largest semi-axis a; `step`, `beyond`,
+    `restitution` and `stop_at` are not available. The outputs are "spin" (about the vertical, at the end),
+    "reversals" (number of reversals of the spin), "first_reversal" (time of the first one), "end",
+    "dissipated", "work_lost" (with losses) and "final" (n1, n2, n3, w1, w2, w3). The default is the first
+    three. A reversal counts if the spin passes zero and then reaches a tenth of the initial spin in the other
+    direction. The time of the reversal is the time of the last zero of the spin before that. An initial spin
+    below 1e-12 has no direction, and reversals are not counted. `known_until` is the time up to which the
+    motion is known, as in `EllipsoidMotion`. Reversals are counted only up to this time. If they are wanted,
+    the motion counts as known while its error is at most a tenth of the initial spin.
 
     Examples
     --------

@@ -36,23 +36,23 @@ def _zarr(folder: str | os.PathLike[str]) -> Any:
 def save(
     result: "xarray.Dataset", path: str | os.PathLike[str], *, progress: Progress | None = None
 ) -> "xarray.Dataset":
-    """Compute a lazy sweep and write it to zarr, block by block; or resume an interrupted call.
+    """Compute a lazy sweep and write it to a zarr store, block by block; resume an interrupted save.
 
     Parameters
     ----------
     result : xarray.Dataset
-        Result of `portrait`, `roll` or `flicks` for dask-backed inputs. Each block of dask becomes one block
-        on disk. Coordinates are saved, too (see `inputs`); to save without some, drop them first.
+        Result of `portrait`, `roll` or `flicks` for inputs backed by dask. Each block of dask becomes one
+        block on disk. Coordinates are saved, too (see `inputs`); drop the coordinates that you do not need.
     path : path
-        Directory for the store: a new one, or one that this function began for the same sweep. The completed
-        blocks are marked in a second directory, `path` with ".sweep" at its end.
+        Directory for the store: a new one, or one that an earlier call began for the same sweep. A second
+        directory, named `path` with ".sweep" at its end, has a mark for each completed block.
     progress : callable, optional
         Function that is called with the finished share of the blocks, 0 to 1, after each pass.
 
     Returns
     -------
     xarray.Dataset
-        The stored result, opened with xarray.
+        The stored result, opened with xarray; its arrays are read from the store when they are used.
 
     Raises
     ------
@@ -60,27 +60,28 @@ def save(
         If `result` is not a lazy result of this module. A result in memory needs no `save`:
         ``result.to_zarr(path)`` writes it.
     ValueError
-        If the store at `path` or its ".sweep" holds another sweep, or one of another version; the message
-        names the first difference. If all records in the store are damaged. If `path` has no name of its own,
-        such as ".".
+        If the store at `path` or its ".sweep" directory belongs to another sweep, or to another version of
+        spincyl; the message names the first difference. If all records in the store are damaged. If `path`
+        does not end with a name (for example ".").
     OSError
-        If a file cannot be written; the message has the path. What has been written stays valid, and a later
-        call resumes. BlockingIOError if another process or thread is saving to the store now;
-        FileExistsError if `path` has something that this function has not written.
+        If a file cannot be written; the message has the path. Completed blocks stay valid, and a later call
+        resumes the save. BlockingIOError if another process or thread is saving to the store at the same
+        time; FileExistsError if `path` has files that this function has not written.
 
     Warns
     -----
     UserWarning
-        If completed blocks, coordinates or metadata are missing or damaged, once; they are computed again. If
-        files cannot be locked, so that two processes could save to one store unnoticed.
+        If completed blocks, coordinates or metadata are missing or damaged; there is one warning, and they
+        are computed again. If files cannot be locked; two processes could then save to one store unnoticed.
 
     Notes
     -----
-    Any scheduler of dask computes the blocks, also a distributed one. A block is complete when its checksum
-    has been recorded, after its arrays are on disk; writing a block again gives the same bytes. A kill
-    therefore costs at most the blocks that were being computed. Each array in a store has a record, which
-    identifies the sweep: a store can be copied, moved and renamed, and resumes together with its ".sweep".
-    This function overwrites only what it has written; other files in the store stay.
+    Any scheduler of dask can compute the blocks, also a distributed one. The arrays of a block are written
+    first, then its checksum; with the checksum the block is complete. A block that is written again has the
+    same bytes. So a kill costs at most the blocks that were being computed. Each array in a store has a
+    record that identifies the sweep. A store can be copied, moved and renamed; to resume the save, keep its
+    ".sweep" directory with it. This function overwrites only files that it has written; other files in the
+    store stay.
 
     Examples
     --------
