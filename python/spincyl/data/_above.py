@@ -43,11 +43,12 @@ class Filmed(NamedTuple):
     scale : Scale
         Size of the tube.
     t : ndarray, (n,)
-        Times at which both ends were found, in seconds, ascending.
+        Times of the frames in which both ends were tracked, in seconds, ascending.
     direction : ndarray, (n,)
-        Direction of the line from the second end to the first, in radians, unwrapped.
+        Direction of the line from the second end of the tube to the first, as seen from above, in radians,
+        unwrapped.
     line : ndarray, (n,)
-        Length of this line, in metres.
+        Length of this line in the film, in metres.
     hertz : float
         Turns per second, positive for both senses of rotation.
     hertz_err : float
@@ -57,15 +58,15 @@ class Filmed(NamedTuple):
     rate_err : float
         Standard error of `rate`.
     theta : float
-        Inclination, radians; NaN where the line is longer than the tube.
+        Measured inclination, in radians; NaN if the line is longer than the tube.
     theta_err : float
         Standard error of `theta`.
     inclinations : ndarray, (k,)
         Steady inclinations of the body at this rate, ascending.
     unseen : int
-        Number of rows in which an end was not found.
+        Number of frames in which one of the ends was not tracked.
     predicted : float
-        Steady inclination at this rate that is nearest to the measured one; NaN if there is none.
+        The one of `inclinations` that is nearest to `theta`; NaN if there is none.
     """
 
     body: Body
@@ -91,7 +92,7 @@ class Filmed(NamedTuple):
         return float(self.inclinations[np.abs(self.inclinations - near).argmin()])
 
     def report(self) -> str:
-        """Measured values with their errors, and the steady inclination, as a report in lmfit's style."""
+        """Return the measured values with their errors, and the steady inclination, in lmfit's style."""
         turns = float(np.ptp(self.direction)) / (2 * math.pi)
         rows = [
             ("body", repr(self.body)),
@@ -131,17 +132,18 @@ def from_above(
     Parameters
     ----------
     tracks : mapping or path
-        The tracks by name: for each end its columns t, x and y in seconds and metres, as `read_tracker`
-        returns them; or the path of a file for `read_tracker`. Units in brackets, such as "x (cm)", are
-        converted. Rows without a position are left out.
+        Tracks by name, as `read_tracker` returns them, or the path of a file for `read_tracker`. The track
+        of each end has the columns t, x and y, in seconds and metres. Units in brackets, such as "x (cm)",
+        are converted. Rows without a position are left out.
     tube : Body
-        A single body with a known size: from `Body.from_metres`, measured, or any other with `scale`.
+        Single body of a known size: a measured body, a body from `Body.from_metres`, or any other body
+        together with `scale`.
     scale : Scale, optional
-        Size of `tube`, for a body without one.
+        Size of `tube`, for a body without a size of its own.
     ends : two names, optional
         Names of the tracks of the two ends. Default: O and X, or the only two tracks.
     ruler : float
-        Relative standard error of the film's scale of length, 0.01 for one per cent. Near 90 degrees this
+        Relative standard error of the film's scale of length; 0.01 means one per cent. Near 90 degrees this
         error limits the accuracy of the inclination.
     encoding : str, optional
         Encoding of the file, as in `read_table`.
@@ -154,8 +156,9 @@ def from_above(
     Raises
     ------
     ValueError
-        For fewer than three frames, missing tracks or columns, two positions at one time, a line much longer
-        or very much shorter than the tube, a tube that turns too fast for the frames, or has no known size.
+        If there are fewer than three frames, a track or column is missing, or an end has two positions at
+        one time. If the line is much longer or very much shorter than the tube. If the tube turns too fast
+        for the frame rate, or its size is unknown.
     TypeError
         If an argument is of the wrong type; the message names it.
     OSError
@@ -164,15 +167,16 @@ def from_above(
     Warns
     -----
     UserWarning
-        If the line is a little longer than the tube, so that the distance from 90 degrees is not known; if
-        the direction does not turn evenly; or if the inclination is far from every steady state at this rate.
+        If the line is a little longer than the tube; the inclination is then near 90 degrees but not known
+        exactly. If the direction does not turn evenly. If the inclination is far from every steady state at
+        this rate.
 
     Notes
     -----
-    The rate is the slope of the direction, by least squares. Its error follows from the scatter, and is
-    larger if the errors of neighbouring frames are correlated. The inclination follows from the median of the
-    lengths. From frame to frame the tube has to turn by less than half a turn, since a faster rotation looks
-    like a slow one backwards.
+    The rate is the slope of the direction over time, by least squares. Its error follows from the scatter,
+    and is larger if the errors of neighbouring frames are correlated. The inclination follows from the median
+    length of the line. From frame to frame the tube has to turn by less than half a turn, since a faster
+    rotation looks like a slow one backwards.
 
     Examples
     --------

@@ -46,13 +46,13 @@ def cleaned(name: str) -> tuple[str, str]:
 
 
 class Columns(dict[str, Floats]):
-    """Dict of columns of numbers by name, without the unit; the full name in the file is a key as well.
+    """Dict of columns of numbers; each has two keys, its name without the unit and its full name in the file.
 
     Attributes
     ----------
     units : dict
-        Unit of each column by name, as the file gives it in brackets; "" if there is none. Numbers are not
-        converted.
+        Unit of each column, by its name, as the file gives it in brackets; "" if there is none. The numbers
+        are not converted.
     """
 
     def __init__(self, columns: Iterable[tuple[str, Floats]] = ()) -> None:

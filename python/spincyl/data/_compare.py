@@ -40,15 +40,16 @@ class Comparison(NamedTuple):
     rate_err : ndarray, (n,)
         Standard errors of `rate`.
     residual : ndarray, (n,)
-        Measured rate minus that of the body; NaN in the forbidden band.
+        Measured rate minus the rate of the steady state at the measured inclination; NaN in the forbidden
+        band.
     ratio : float
         The inertia ratio I1/I3 that fits best.
     ratio_err : float
         Standard error of `ratio`.
     expected : float
-        The ratio of the body as built.
+        Inertia ratio of `body`, the body as built.
     chi2 : float
-        Sum of squares over the errors, per degree of freedom.
+        Sum of the squared deviations in units of their errors, per degree of freedom.
     factor : float
         Common factor of all measured rates, fitted if `common` was given.
     factor_err : float
@@ -56,15 +57,15 @@ class Comparison(NamedTuple):
     correlation : float
         Correlation of ratio and factor; NaN if the factor was not fitted.
     common : float
-        Standard error of the factor before the fit.
+        Standard error of the factor before the fit, as given.
     alone : float
-        Common factor of the rates that fits best with the ratio as built.
+        Common factor of the rates that fits best if the ratio is `expected`.
     alone_err : float
         Standard error of `alone`.
     alone_chi2 : float
-        chi2 of this second fit, per degree of freedom.
+        `chi2` of the fit that gives `alone`.
     unit : float
-        Turns per second of a reduced rate of 1; NaN unless `hertz` was given.
+        Turns per second at the reduced rate 1; NaN unless `hertz` was given.
     hertz, hertz_err : ndarray, (n,)
         Measured turns per second and standard errors; NaN unless `hertz` was given.
     fitted : Body
@@ -126,7 +127,7 @@ class Comparison(NamedTuple):
 
     @property
     def fitted(self) -> Body:
-        """The body with the fitted ratio, at least 1/2, the limit for real bodies; all else is unchanged."""
+        """The body with the fitted ratio, or with 1/2, the limit for real bodies, if the ratio is smaller."""
         return with_ratio(self.body, max(self.ratio, 0.5))
 
     def plot(self, ax: "Axes | None" = None) -> "Axes":
@@ -138,7 +139,7 @@ class Comparison(NamedTuple):
         return drawn
 
     def report(self) -> str:
-        """Fitted values with errors and correlation, as a report in lmfit's style."""
+        """Return the fitted values with their errors and correlation, as a report in lmfit's style."""
         varied = 1 + (self.factor_err > 0)
         rows = [
             ("body", repr(self.body)),
@@ -183,20 +184,22 @@ def compare(
     Parameters
     ----------
     body : Body
-        A single body with the aspect ratio and the moments of inertia as built.
+        Single body with the aspect ratio and the moments of inertia as built.
     theta : array_like, 1-D
-        Inclinations in radians, up to pi/2; beyond for balls, and for bodies with steady states there.
+        Measured inclinations in radians, up to pi/2; also larger for balls, and for bodies with steady states
+        there.
     rate : array_like, 1-D
-        Reduced rates: turns per second over `body.critical_hertz`.
+        Measured reduced rates: turns per second divided by `body.critical_hertz`.
     hertz : array_like, 1-D
         Turns per second instead of `rate`, for a measured body or one from `Body.from_metres`.
     theta_err, rate_err or hertz_err : array_like, optional
-        Standard errors, both or none. Default: the points have weights for errors of one degree and two per
-        cent, and their scatter gives the error of the ratio.
+        Standard errors of the inclinations and of the rates; give both or none. Default: the points are
+        weighted for errors of one degree and two per cent, and the error of the ratio follows from their
+        scatter.
     common : float
-        Standard error of a factor common to all rates, for example because of the radius or the frame rate of
-        the film: 0.03 for three per cent. The factor is then fitted as well, and the error of the ratio
-        includes its uncertainty. Use inf if nothing is known of the factor. Default: 0, no such factor.
+        Relative standard error that all rates have in common, for example from the radius or the frame rate
+        of the film; 0.03 means three per cent. A common factor of the rates is then fitted as well, and the
+        error of the ratio includes its uncertainty. Use inf if the factor is unknown. Default: 0, no factor.
 
     Returns
     -------
@@ -206,8 +209,9 @@ def compare(
     Raises
     ------
     ValueError
-        For fewer than three different points, shapes that differ, or rates and errors that are not positive;
-        if the fit fails; if the points do not determine the ratio, or cannot tell it from a common factor.
+        If there are fewer than three different points, shapes differ, or rates or errors are not positive. If
+        the fit fails. If the points do not determine the ratio, or cannot distinguish it from a common
+        factor.
     TypeError
         If an argument is not a body or real numbers; the message names it.
     ImportError
@@ -216,14 +220,14 @@ def compare(
     Warns
     -----
     UserWarning
-        If chi2 exceeds 10; if all rates seem to be off by a common factor; or if the ratio is more than three
-        errors from that of the body as built, while a common factor of the rates fits the points as well.
+        If chi2 exceeds 10. If all rates seem to be wrong by a common factor. If the fitted ratio is more than
+        three errors from the ratio as built, but a common factor of the rates fits the points equally well.
 
     Notes
     -----
     The fit is an orthogonal distance regression (Boggs and Donaldson 1989) by odrpack, which takes account of
-    the errors of both variables. The curve is implicit, theta'' = 0, so that it may have forbidden bands and
-    folds. Points with NaN as theta or rate are left out.
+    the errors of both variables. The curve has the implicit equation theta'' = 0, so it may have forbidden
+    bands and folds. Points with NaN as theta or rate are left out.
 
     Examples
     --------

@@ -19,15 +19,17 @@ def example(name: str) -> Path:
     Parameters
     ----------
     name : {"tube_from_above", "tube_project", "flicks", "spin_down", "whirr"}
-        "tube_from_above" and "tube_project": both ends of a tube on film, exported by Tracker and as a
-        project (`read_tracker`, `from_above`). "flicks": ten flicks of this tube, degrees and turns per
-        second (`read_table`, `compare`). "spin_down" and "whirr": a disk that spins down, on film
-        (`read_table`, `fit_losses`) and its sound (`read_sound`, `wobble`). The tube has diameters of 0.625
-        and 0.5 inches and a length of 3.75 inches; the disk is 75.1 mm wide and 12.8 mm thick.
+        "tube_from_above" has both ends of a tube, tracked in a film and exported by Tracker; "tube_project"
+        is the project of Tracker (for `read_tracker` and `from_above`). "flicks" has the inclination in
+        degrees and the turns per second of ten flicks of this tube (for `read_table` and `compare`).
+        "spin_down" is a disk that spins down on film (for `read_table` and `fit_losses`), and "whirr" is its
+        sound (for `read_sound` and `wobble`). The tube has diameters of 0.625 and 0.5 inches and a length of
+        3.75 inches; the disk has a diameter of 75.1 mm and a thickness of 12.8 mm.
 
     Returns
     -------
     Path
+        Path of the file, which is installed with the package.
 
     Raises
     ------

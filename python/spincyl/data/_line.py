@@ -12,18 +12,20 @@ from spincyl._input.numbers import Floats
 
 
 class Line(NamedTuple):
-    """Power law of the time left, fitted in a log-log diagram: a quick, biased estimate.
+    """Power law of the time that is left until the body stops, fitted in a log-log diagram.
+
+    The fit is quick, but its exponent is biased.
 
     Attributes
     ----------
     exponent : float
-        Exponent of theta, or of the precession if theta was not measured.
+        Exponent of the power law for theta, or for the precession if theta was not measured.
     exponent_err : float
-        Standard error from the scatter about the line, without the bias.
+        Standard error of `exponent` from the scatter about the line; the bias is not included.
     stops_at : float
-        Stopping time that makes the line straightest.
+        Stopping time for which the points are closest to a straight line.
     factor : float
-        Value of the line one unit of time before the end.
+        Theta, or the precession, one unit of time before the end.
     """
 
     exponent: float

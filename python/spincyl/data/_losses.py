@@ -35,47 +35,51 @@ def fit_losses(
     hertz_err: Reals | None = None,
     start: float | None = None,
 ) -> LossFit:
-    """Fit laws of loss to a measured spin-down: coefficients, stopping times, and a ranking of the laws.
+    """Fit laws of loss to a measured spin-down, and rank the laws.
+
+    A spin-down is the inclination or the precession of a spinning body at several times while it slows down.
 
     Parameters
     ----------
     t : array_like, 1-D
-        Times in ascending order, possibly repeated, in sqrt(R/g); for a measured body in seconds.
+        Times in ascending order, in sqrt(R/g); for a measured body in seconds. A time may be repeated.
     theta : array_like, optional
-        Inclinations in radians.
+        Inclinations at these times, in radians. Use NaN for missing values.
     precession : array_like, optional
-        Precession phi' in sqrt(g/R); for a measured body in rad/s. Give `theta`, or `precession` (or
-        `hertz`), or both. Missing values are NaN.
+        Precession phi' at these times, in sqrt(g/R); for a measured body in rad/s. Give `theta`, or
+        `precession` (or `hertz`), or both. Use NaN for missing values.
     body : Body
         Single body. For a measured body all times are in seconds and precessions in rad/s, in the arguments
         and in the result. Coefficients are in natural units; `coefficients_si` gives them in SI.
     hertz : array_like, optional
         Precession in turns per second, instead of `precession`, for a measured body.
     laws : sequence, optional
-        Classes of `spincyl.loss`; a tuple or list of two stands for their sum. Default: all eight.
+        Laws to fit: classes of `spincyl.loss`. A tuple or list of two classes means the sum of two laws.
+        Default: all eight classes.
     centre : {"rest", "rolling"}, optional
-        Drift with the centre held at rest, or rolling after the centre was at rest, at the first time or
-        before. Default: both, so that each law is fitted twice.
+        Kind of drift (see `spincyl.drift`): with the centre held at rest, or rolling, after the centre was at
+        rest at the first time or before. Default: both, so that each law is fitted twice.
     t_err : array_like, optional
         Standard errors of the times. Default: times are exact.
     theta_err, precession_err or hertz_err : array_like, optional
-        Standard errors. Default: the same relative error for all values, estimated from the scatter about
-        the best law.
+        Standard errors of the values. Default: the same relative error for all values, estimated from the
+        scatter about the best law.
     start : float, optional
-        Approximate inclination at the first time, in radians. Needed if only the precession is given and
-        several inclinations have it.
+        Approximate inclination at the first time, in radians. Needed if only the precession is given, and
+        steady states at several inclinations have this precession.
 
     Returns
     -------
     LossFit
-        The laws by AIC, the best first; ``.report()`` and ``.table()`` summarise them.
+        The fitted laws in the order of Akaike's information criterion (AIC), the best first; ``.report()``
+        and ``.table()`` summarise them.
 
     Raises
     ------
     ValueError
-        For fewer than five points, or shapes that differ; for values that are not positive, do not drift,
-        drift in the sense of growing energy, or lie in the forbidden band. Also if no law can be fitted: for
-        instance a sum of two laws that the points cannot tell apart.
+        If there are fewer than five points, or shapes differ. If values are not positive, do not change with
+        time, change as if the body gained energy, or are in the forbidden band. If no law can be fitted; for
+        instance if the points cannot distinguish the two laws of a sum.
     TypeError
         If an argument is not a body, a law or real numbers; the message names it.
     ImportError
@@ -84,20 +88,18 @@ def fit_losses(
     Warns
     -----
     UserWarning
-        If chi2 exceeds 10 for every law; the message gives the points that contribute most. Also if the
-        precession differs by a quarter or more from that of steady states at the same inclinations, as with
-        wrong units, or if the coefficient of every likely law is more than 10 times outside its range in
-        `spincyl.loss.typical`, as with milliseconds given for seconds. Warnings of the fitted drift are
-        passed on.
+        If chi2 exceeds 10 for every law; the message names the points that contribute most. If the precession
+        differs by a quarter or more from the precession of steady states at the same inclinations, for
+        example because of wrong units. If the coefficient of every likely law is more than 10 times outside
+        its range in `spincyl.loss.typical`, for example because milliseconds were given for seconds. Warnings
+        of the fitted drift are passed on.
 
-    Notes
-    -----
-    The drift itself is fitted, by orthogonal distance regression (Boggs and Donaldson 1989, odrpack), not a
-    line in a log-log diagram, whose exponent has a bias larger than its error. If laws cannot be told apart,
-    the table says so. A law that cannot hold, such as a film of air below a ball, is listed with the reason
-    (`refused`). From the precession alone a coefficient depends on `centre`. If points scatter by more than
-    their given errors, errors and differences of AIC are scaled accordingly (QAIC; Burnham and Anderson
-    2002).
+    Notes ----- The drift itself is fitted, by orthogonal distance regression (Boggs and Donaldson 1989,
+    odrpack). A line in a log-log diagram is not used for this, since the bias of its exponent is larger than
+    its error. If the data cannot distinguish some laws, the table says so. A law that is impossible for the
+    body, such as a film of air below a ball, is listed with the reason (`LossFit.refused`). If only the
+    precession is given, a coefficient depends on `centre`. If points scatter by more than their given errors,
+    errors and differences of AIC are scaled accordingly (QAIC; Burnham and Anderson 2002).
 
     Examples
     --------

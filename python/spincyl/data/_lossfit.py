@@ -30,9 +30,9 @@ class FittedLoss(NamedTuple):
     Attributes
     ----------
     name : str
-        "DryContour", or "DryContour + AirLinear".
+        Name of the law, such as "DryContour", or of the sum, such as "DryContour + AirLinear".
     centre : str
-        "rest" or "rolling": the drift that was fitted.
+        Kind of drift that was fitted, "rest" or "rolling".
     law : loss.Loss
         The law, or the sum, with its fitted coefficients.
     coefficients : ndarray, (1,) or (2,)
@@ -44,22 +44,25 @@ class FittedLoss(NamedTuple):
     theta_err : float
         Standard error of `theta`.
     rested : float
-        For rolling, inclination at which the centre was at rest, at the first time or before, in radians.
+        Only for a rolling drift: inclination in radians at which the centre was at rest, at the first time or
+        before.
     stops_at : float
-        Time of the measurement at which the drift ends, in the unit of `LossFit.t`; infinite if the drift
-        never ends.
+        Time at which the drift ends, on the clock and in the unit of `LossFit.t`; infinite if the drift never
+        ends.
     stops_at_err : float
-        Standard error; NaN if the drift never ends.
+        Standard error of `stops_at`; NaN if the drift never ends.
     correlation : float
-        Correlation of the coefficient with `stops_at` (with `theta` if infinite), or of the two coefficients.
+        For one law, correlation of the coefficient with `stops_at`, or with `theta` if `stops_at` is
+        infinite. For a sum, correlation of the two coefficients.
     residual : dict of ndarray
-        Measured minus fitted values, by "theta" and "precession".
+        Measured minus fitted values; the keys are "theta" and "precession".
     chi2 : float
-        Sum of squares over the errors, per degree of freedom.
+        Sum of the squared residuals in units of their errors, per degree of freedom.
     aic : float
-        Akaike's information criterion.
+        Akaike's information criterion (AIC); the smaller, the better the law.
     daic : float
-        AIC minus that of the best law, divided by chi2 of the best law if that exceeds 1.
+        Difference between `aic` and the `aic` of the best law. If chi2 of the best law exceeds 1, the
+        difference is divided by it.
     drift : Drift
         The fitted drift, from the first time on.
     coefficient, coefficient_err : float
@@ -87,7 +90,7 @@ class FittedLoss(NamedTuple):
 
     @property
     def coefficients_si(self) -> Floats:
-        """The coefficients in the units of `from_si`; ValueError if that needs a mass and there is none."""
+        """The coefficients in the units of `from_si`; ValueError if they need a mass that is unknown."""
         return self.coefficients * _units(self)
 
     @property
@@ -122,7 +125,7 @@ class Refused(NamedTuple):
     name : str
         Name of the law, or of the sum.
     centre : str
-        "rest" or "rolling": the drift.
+        Kind of drift, "rest" or "rolling".
     why : str
         The reason.
     """
@@ -143,7 +146,7 @@ class LossFit(NamedTuple):
     body : Body
         The body.
     centre : str
-        Drifts that were fitted: "rest", "rolling" or, for both, "either".
+        Kinds of drift that were fitted: "rest", "rolling", or "either" if both were fitted.
     t : ndarray, (n,)
         Measured times, without missing points, in sqrt(R/g), for a measured body in seconds.
     theta : ndarray or None, (n,)
@@ -157,11 +160,11 @@ class LossFit(NamedTuple):
     precession_err : ndarray or None, (n,)
         Standard errors of `precession`.
     estimated : tuple of str
-        Names, "theta" or "precession", of values with errors from the scatter.
+        Names ("theta", "precession") of the values whose errors were estimated from the scatter.
     fits : tuple of FittedLoss
-        The fitted laws by AIC, the best first.
+        The fitted laws in the order of their AIC, the best first.
     line : Line or None
-        The log-log line: a quick, biased estimate; None if there is none.
+        Power law from a log-log diagram, which is a quick, biased estimate; None if no line fits.
     refused : tuple of Refused
         Laws that could not be fitted.
     best : FittedLoss
@@ -196,8 +199,8 @@ class LossFit(NamedTuple):
     def of(self, law: Any, centre: str | None = None) -> FittedLoss:
         """Return the fit of a law, given by its class, or of a sum, given by a tuple or list of two classes.
 
-        Without `centre`, "rest" or "rolling", it is the better of the two fits. Raises KeyError if the law
-        was not fitted, TypeError if it is not a law.
+        `centre` is "rest" or "rolling"; without it the better of the two fits is returned. Raises KeyError if
+        the law was not fitted, and TypeError if the argument is not a class of `spincyl.loss`.
         """
         classes = tuple(law) if isinstance(law, tuple | list) else (law,)
         if not classes or not all(isinstance(one, type) and issubclass(one, Loss) for one in classes):
@@ -210,7 +213,7 @@ class LossFit(NamedTuple):
         raise KeyError(f"law: {called(classes)} was not fitted{why}; expected one of {known}")
 
     def table(self) -> str:
-        """Table of the laws by AIC: coefficients, stopping times, chi2, and laws close to the best."""
+        """Return a table of the laws in the order of AIC: coefficients, stopping times, chi2 and remarks."""
         either = self.centre == "either"
         head: tuple[str, ...] = ("law", "centre", "coefficient", "stops at", "chi2", "dAIC")
         if self.body.scale is not None:
@@ -228,7 +231,7 @@ class LossFit(NamedTuple):
         return "\n".join([*lines, *notes(self)])
 
     def report(self) -> str:
-        """The best law with errors and correlation, and the table of laws, as a report in lmfit's style."""
+        """Return a report in lmfit's style: the best law with its errors, and the table of all laws."""
         best = self.best
         names = best.name.split(" + ")
         second = "the other" if len(names) > 1 else "stops at" if math.isfinite(best.stops_at) else "theta"
@@ -254,7 +257,7 @@ class LossFit(NamedTuple):
         return "\n".join([*lines, "[[Laws]]", *("    " + line for line in self.table().splitlines())])
 
     def plot(self, axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
-        """Draw data and fits, residuals, and the log-log line: see `spincyl.plot.losses`."""
+        """Draw the data with the fits, the residuals and the log-log diagram; see `spincyl.plot.losses`."""
         drawn: list[Axes] = above("LossFit.plot")(self, axes)
         return drawn
 

@@ -33,11 +33,11 @@ def read_phyphox(path: str | PathLike[str], *, encoding: str | None = None) -> d
     Returns
     -------
     dict
-        For each table, by the name of its file without the suffix, a dict of its columns, such as
-        ``{"Raw Data": {"Time": ..., "Recording": ...}}``: arrays, NaN where a cell is empty. The full name of
-        a column, such as "Time (s)", is a key as well. Information on the phone, in the folder meta of a zip
-        file, is left out. Tables of a zip file whose names differ only in folder or suffix keep their full
-        names, such as "first/Raw Data.csv".
+        Tables by the names of their files without the suffix. Each table is a dict of columns, as in
+        ``{"Raw Data": {"Time": ..., "Recording": ...}}``. A column is an array, with NaN where a cell is
+        empty. The full name of a column, such as "Time (s)", is a key as well. Information on the phone, in
+        the folder meta of a zip file, is left out. Tables of a zip file whose names differ only in folder or
+        suffix keep their full names, such as "first/Raw Data.csv".
 
     Raises
     ------
@@ -79,7 +79,7 @@ def _is_table(inside: PurePosixPath) -> bool:
 
 
 def read_sound(path: str | PathLike[str]) -> tuple[Floats, Floats]:
-    """Read a WAV file: times in seconds, and the mean of the channels, from -1 to 1.
+    """Read the sound in a WAV file.
 
     Parameters
     ----------
@@ -88,8 +88,10 @@ def read_sound(path: str | PathLike[str]) -> tuple[Floats, Floats]:
 
     Returns
     -------
-    t, sound : array
-        Both (n,).
+    t : ndarray, (n,)
+        Times in seconds, from 0.
+    sound : ndarray, (n,)
+        Mean of the channels at these times, from -1 to 1.
 
     Raises
     ------

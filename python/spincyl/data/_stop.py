@@ -26,12 +26,12 @@ _MIXED = 3.0  #: A larger ratio of the times causes a warning.
 
 @compared
 class FittedStop(NamedTuple):
-    """Coefficient of loss for one of the two drifts; from `fit_stop`.
+    """Coefficient of a loss for one of the two kinds of drift; returned by `fit_stop`.
 
     Attributes
     ----------
     centre : str
-        "rest" or "rolling".
+        Kind of drift (see `spincyl.drift`): "rest" or "rolling".
     law : loss.Loss
         The law with this coefficient.
     coefficient : float
@@ -43,7 +43,7 @@ class FittedStop(NamedTuple):
     by_angle : float
         Part of the standard error that is due to the first inclination.
     drift : Drift
-        Drift from the first inclination to the end, in the mean of the times.
+        Drift from the first inclination to the end, with this coefficient; it lasts the mean of the times.
     coefficient_si, coefficient_err_si : float
         Coefficient and standard error in the unit of `from_si`.
     """
@@ -58,7 +58,7 @@ class FittedStop(NamedTuple):
 
     @property
     def coefficient_si(self) -> float:
-        """The coefficient in the unit of `from_si`; ValueError if that needs a mass and there is none."""
+        """The coefficient in the unit of `from_si`; ValueError if it needs a mass that is unknown."""
         return float(self.law.in_si(self.drift.body))
 
     @property
@@ -100,9 +100,9 @@ class StopFit(NamedTuple):
     stops_at_err : float
         Standard error of the mean.
     fits : tuple of FittedStop
-        Fits for the drift with the centre at rest, the rolling drift, or both.
+        One fit for each kind of drift: with the centre at rest, or rolling.
     refused : tuple of Refused
-        Drifts that could not be fitted.
+        Kinds of drift that could not be fitted, with the reason.
     """
 
     body: Body
@@ -116,7 +116,7 @@ class StopFit(NamedTuple):
     refused: tuple[Refused, ...]
 
     def of(self, centre: str) -> FittedStop:
-        """Return the fit for the centre at "rest" or "rolling"; KeyError with the reason if there is none."""
+        """Return the fit for the drift "rest" or "rolling"; KeyError with the reason if there is none."""
         for found in self.fits:
             if found.centre == centre:
                 return found
@@ -135,7 +135,7 @@ class StopFit(NamedTuple):
         ]
 
     def report(self) -> str:
-        """The times and the coefficient with its error and the sources of this, a report in lmfit's style."""
+        """Return a report in lmfit's style: the times, and the coefficient with the parts of its error."""
         told = []
         for found in self.fits:
             value, error, unit = found._printed
@@ -175,18 +175,18 @@ def fit_stop(
     law : class of `spincyl.loss`
         For instance ``sc.loss.DryContour``. A stopwatch cannot tell which law holds (`fit_losses` can).
     from_ : float
-        Inclination at which the watch is started, in radians, or a text such as "20deg".
+        Inclination at which the stopwatch is started, in radians, or a text such as "20deg".
     seconds : array_like
-        One or more times from there to the end, in seconds; NaN for missing ones.
+        Measured times from the start of the stopwatch until the body stops, in seconds; NaN if missing.
     error : float, optional
-        Standard error of each time in seconds, such as 0.2 for a watch started by hand. Default: from the
-        scatter of the times, which needs at least two different ones.
+        Standard error of each time in seconds, such as 0.2 for a watch started by hand. Default: the error is
+        estimated from the scatter of the times, which needs at least two different times.
     from_err : float
-        Standard error of `from_`, in radians or as "2deg". It is assumed to be the same in all trials, like
-        the error of a mark, so that further trials do not reduce it.
+        Standard error of `from_`, in radians or as a text such as "2deg". The error is assumed to be the same
+        in all trials, like the error of a mark, so that more trials do not reduce it.
     centre : {"rest", "rolling"}, optional
-        Drift with the centre held at rest by slip, or of the body rolling all the time. A stopwatch cannot
-        tell which. Default: both.
+        Kind of drift: with the centre held at rest by slip, or of a body that rolls all the time. A stopwatch
+        cannot distinguish them. Default: both.
 
     Returns
     -------
@@ -196,9 +196,9 @@ def fit_stop(
     Raises
     ------
     ValueError
-        For times that are not positive; without `error` for a single time, or for equal times; for a law
-        under which the body never stops, or stops within its first turn; for a first inclination without a
-        steady state; for a body of unknown size.
+        If times are not positive. If `error` is missing and there is only one time, or all times are equal.
+        If the body never stops under the law, or stops within its first turn. If there is no steady state at
+        the first inclination. If the size of the body is unknown.
     TypeError
         If an argument is not a body, a law or a number; the message names it.
 
@@ -207,16 +207,17 @@ def fit_stop(
     DriftWarning
         Warnings of the fitted drift are passed on.
     UserWarning
-        If the body turns less than five times, if one time is three times another, or if the coefficient is
-        far from all in `spincyl.loss.typical`, as when minutes are given for seconds.
+        If the body turns less than five times. If the longest time is three times the shortest or more. If
+        the coefficient is far from all values in `spincyl.loss.typical`, for example because minutes were
+        given for seconds.
 
     Notes
     -----
-    The times of a drift are inversely proportional to the coefficient, so that the mean of the times gives
-    the coefficient. Errors are propagated to first order; for the inclination, with drifts from both ends of
-    its error interval. Errors from the scatter of few times are widened by Student's t, so that they hold for
-    two of three coefficients. The drift is of first order in the loss; to see how accurate that is, compute
-    the motion with `roll` and this coefficient.
+    The duration of a drift is inversely proportional to the coefficient, so the mean of the times gives the
+    coefficient. Errors are propagated to first order. The part from the inclination follows from drifts that
+    begin at both ends of its error interval. An error from the scatter of only a few times is widened by
+    Student's t, so that the error interval contains the true coefficient in two of three cases. The drift is
+    of first order in the loss; to see how accurate this is, compute the motion with `roll` and the law.
 
     Examples
     --------

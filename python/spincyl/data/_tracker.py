@@ -44,25 +44,26 @@ def read_table(path: str | PathLike[str], *, encoding: str | None = None) -> Col
     Parameters
     ----------
     path : path
-        A file with tabs, semicolons, commas or spaces between the columns, and decimal points or commas; both
-        are detected. Up to 10,000 lines above the names are skipped.
+        Text file. The separators (tabs, semicolons, commas or spaces) and the decimal signs (points or
+        commas) are detected. Up to 10,000 lines above the names are skipped.
     encoding : str, optional
         Encoding of the text, such as "gbk" or "cp1250". Default: UTF-8, UTF-16 with a byte order mark, or
-        Windows-1252 if no other encoding is possible, as in "Länge (m)", "T (°C)" or "fréquence".
+        Windows-1252 if only this gives sensible text, such as "Länge (m)", "T (°C)" or "fréquence".
 
     Returns
     -------
     Columns
-        Dict by name of arrays of equal length, NaN for cells that are empty or contain "NA", "-" or the like.
-        The columns "t (s)", "t [s]" and "# t" are called "t"; `units` gives the unit.
+        Dict of the columns by name. They are arrays of equal length, with NaN for a cell that is empty or
+        contains "NA", "-" or the like. Columns "t (s)", "t [s]" and "# t" have the name "t"; `units` has the
+        unit.
 
     Raises
     ------
     ValueError
         If the file is not such a table, or has more than `MOST_BYTES` bytes; the message names the file and
-        the line. Also if numbers are ambiguous: a quote is not closed, a decimal point stands among decimal
-        commas, or all quoted numbers are like "1,234", where the comma may separate thousands. Also if the
-        encoding of a name is not known; the message lists possible readings.
+        the line. If numbers are ambiguous: a quote is not closed, some numbers have decimal points and others
+        decimal commas, or all quoted numbers are like "1,234", where the comma may separate thousands. If the
+        encoding of a name cannot be determined; the message lists possible readings.
     OSError
         If the file cannot be read.
     TypeError
@@ -70,7 +71,7 @@ def read_table(path: str | PathLike[str], *, encoding: str | None = None) -> Col
 
     Notes
     -----
-    No number is guessed. Infinite numbers and cells without a name above them raise an error.
+    Nothing is guessed. Infinite numbers, and cells without a name of their column, raise an error.
 
     Examples
     --------
@@ -99,20 +100,21 @@ def read_tracker(path: str | PathLike[str], *, encoding: str | None = None) -> d
     Parameters
     ----------
     path : path
-        A project (.trk, .trz) or a text file: one track (its name, a line of column names, numbers), or
-        several ("#multi:", names of tracks above their columns). Separators and decimal signs are detected,
-        as in `read_table`.
+        Project (.trk, .trz) or text file. A text file has one track (its name, a line of column names,
+        numbers), or several (a line "#multi:", and the names of the tracks above their columns). Separators
+        and decimal signs are detected, as in `read_table`.
     encoding : str, optional
-        Encoding of the text, as in `read_table`; for a project, if it differs from the declared one.
+        Encoding of the text, as in `read_table`. For a project: encoding to use instead of the declared one.
 
     Returns
     -------
     dict
-        For each track by name a dict of its columns by name: arrays of equal length, NaN where a cell is
-        empty. Columns before the first name of a track, such as t, belong to all tracks. A track without a
-        name is called "track". A column "x (cm)" is called "x", and the `units` of its track are "cm". A
-        project gives t, x and y of each point mass, for the frames of its clip from the first to the last in
-        which a point was marked. The unit is that of its scale of length, "px" if none was set.
+        Tracks by name. Each track is a dict of its columns by name: arrays of equal length, with NaN where a
+        cell is empty. Columns to the left of the first track's name, such as t, belong to all tracks. A track
+        without a name gets the name "track". A column "x (cm)" gets the name "x" and the unit "cm" in
+        `units`. For a project, the columns are t, x and y of each point mass, from the first to the last
+        frame in which a point was marked. The unit of length is the one of the project's scale, or "px" if
+        none was set.
 
     Raises
     ------

@@ -31,7 +31,7 @@ class Table(tuple[Typical, ...]):
     __slots__ = ()
 
     def of(self, law: Any) -> "Table":
-        """Return the rows of a law or contact, by class (``sc.loss.DryContour``) or name ("restitution")."""
+        """Return the rows of one law, given by its class (``sc.loss.DryContour``) or name ("restitution")."""
         name = law if isinstance(law, str) else getattr(law, "__name__", "")
         found = Table(row for row in self if name and name in (row.of, row.of.split()[0]))
         if not found:

@@ -36,9 +36,9 @@ class Wobble(NamedTuple):
     Attributes
     ----------
     t : ndarray, (n,)
-        Times in seconds: the middles of windows of eight turns that do not overlap.
+        Times in seconds. Each is the middle of a window of eight turns; the windows do not overlap.
     turns : ndarray, (n,)
-        Turns per second, Omega/(2 pi).
+        Turns of the contact point per second, Omega/(2 pi), in each window.
     turns_err : ndarray, (n,)
         Standard errors of `turns`.
     """
@@ -64,19 +64,21 @@ def wobble(t: Reals, sound: Reals, *, between: tuple[float, float] = (2.0, 200.0
     sound : array_like, 1-D
         The recording, in any unit.
     between : (float, float)
-        Expected range of the turns per second. The ringing is sought above twice the larger number.
+        Least and greatest turns per second that you expect. Only sound of more than twice the greatest
+        frequency is used.
 
     Returns
     -------
     Wobble
-        Turns per second while the whirr is audible, without its first and last turn and without windows that
-        contain a knock. For a measured body `fit_losses` takes `t`, and `turns` as `hertz`.
+        Turns per second while the whirr is audible. Its first and last turn, and windows that contain a
+        knock, are left out. For a measured body, pass `t` and ``hertz=turns`` to `fit_losses`.
 
     Raises
     ------
     ValueError
-        For silence, NaN, or times that are not evenly spaced; for a recording or whirr of fewer than 32
-        turns; if the sampling rate is too low; if no whirr stands out from the noise.
+        If the recording is silent or contains NaN, or the times are not evenly spaced. If the recording or
+        the whirr has fewer than 32 turns. If the sampling rate is too low, or no whirr is louder than the
+        noise.
     TypeError
         If an argument is not real numbers; the message names it.
 
