@@ -83,16 +83,16 @@ FRAME = "width:100%;height:clamp(600px,100vh - 130px,900px);border:0"
 class Play:
     """Interactive page; returned by `play`. A notebook displays it.
 
-    With the extra `widget` (anywidget) the page in a notebook and this object stay synchronised: setting an
-    attribute moves the body on the page, and the attributes follow the changes that a user makes there.
-    Without the extra, the page is independent of this object once it is shown.
+    With the extra `widget` (anywidget) the page in a notebook and this object stay synchronised. If you set
+    an attribute, the page shows the new motion; if you change something on the page, the attributes change.
+    Without the extra, a page that is shown no longer depends on this object.
 
     Attributes
     ----------
     html : str
         The complete page, which loads nothing from elsewhere.
     friction : bool
-        Whether the page includes friction and losses.
+        True if the page includes friction and losses.
     """
 
     def __init__(self, told: dict[str, Any], title: str, friction: bool, body: Body) -> None:
@@ -101,7 +101,7 @@ class Play:
 
     @property
     def body(self) -> Body:
-        """The body. Setting it starts the steady state at the same inclination."""
+        """The body; can be set. The page then starts with its steady state at the same inclination."""
         self._of_revolution()
         found = body_of(self._told)
         return self._body if found == self._body else found  # the same one knows its parts
@@ -113,7 +113,7 @@ class Play:
 
     @property
     def theta(self) -> float:
-        """Initial inclination, radians; may be set."""
+        """Inclination of the initial state, in radians; can be set."""
         return float(self._told["theta"])
 
     @theta.setter
@@ -122,7 +122,7 @@ class Play:
 
     @property
     def kick(self) -> float:
-        """Theta' added to the initial state, in sqrt(g/R); may be set."""
+        """Rate of change theta' that is added to the initial state, in sqrt(g/R), -3 to 3; can be set."""
         return float(self._told.get("kick", 0.0))
 
     @kick.setter
@@ -131,7 +131,7 @@ class Play:
 
     @property
     def state(self) -> State:
-        """Initial state; may be set."""
+        """Initial state of the motion; can be set."""
         self._of_revolution()
         return state_of(self._told)
 
@@ -141,7 +141,7 @@ class Play:
 
     @property
     def contact(self) -> "Table":
-        """The contact; may be set."""
+        """Contact with the table, as in `roll`; can be set."""
         return table_of(self._told)
 
     @contact.setter
@@ -152,7 +152,7 @@ class Play:
 
     @property
     def restitution(self) -> float | None:
-        """Coefficient of restitution, or None; used only with friction. May be set."""
+        """Coefficient of restitution, or None. It is used only with a law of friction. It can be set."""
         found: float | None = self._told.get("restitution")
         return found
 
@@ -163,7 +163,7 @@ class Play:
 
     @property
     def losses(self) -> Loss | None:
-        """The law of loss, or None; may be set."""
+        """Loss of energy on the page, as in `roll`, or None; can be set to one law of `spincyl.loss`."""
         return losses_of(self._told)
 
     @losses.setter
@@ -173,9 +173,9 @@ class Play:
 
     @property
     def motion(self) -> Motion:
-        """The motion on the page, as `roll` returns it, up to the last time that the page computes.
+        """The motion that the page shows, as `roll` returns it, up to the last time that the page computes.
 
-        For a measured body it is in SI. The motion of the rattleback lasts 20 s.
+        For a measured body the motion is in SI. If the page shows the rattleback, the motion lasts 20 s.
         """
         if self._told.get("stone"):
             return _rattling(self._told)
@@ -218,7 +218,7 @@ class Play:
 
     @property
     def address(self) -> str:
-        """Fragment of the page's address, such as "#ell=2.5&theta=1.3", which holds all settings."""
+        """End of the page's address, such as "#ell=2.5&theta=1.3", which contains all settings."""
         words = {k: ",".join(map(repr, v)) if isinstance(v, list) else v for k, v in self._told.items()}
         words.pop("parts", None)  # an address has no room for surfaces
         return "#" + "&".join(f"{name}={word}" for name, word in words.items())
@@ -283,49 +283,51 @@ def play(
         Single body. Default: the measured tube of the paper. For a measured body the page also gives times
         in seconds and rates in hertz.
     theta : float, optional
-        Inclination of the initial steady state, in radians. Where there is no steady state, the body starts
-        at rest. Default: that of `state`, else 1.3, for the tube of the paper 89.5 degrees.
+        Inclination of the initial steady state, in radians. If there is no steady state at this inclination,
+        the body starts at rest. Default: 1.3; for the tube of the paper 89.5 degrees.
     state : State, optional
-        Any other initial state.
+        Initial state, instead of the steady state at `theta`.
     kick : float
-        theta' added to the initial state, in sqrt(g/R), -3 to 3.
+        Rate of change theta' that is added to the steady state, in sqrt(g/R), -3 to 3.
     contact : {"rolling", "smooth"}, Coulomb or Viscous
-        Contact with the table. Coulomb's law needs static = mu on the page, and may have a patch up to 0.5 R,
-        but without `restitution`.
+        Contact with the table. For Coulomb friction on this page, the coefficients of static and sliding
+        friction have to be equal. A contact patch may have a radius of up to 0.5 R; a patch excludes
+        `restitution`.
     restitution : float, optional
-        Coefficient of restitution, 0 to 1. With friction a body that leaves the table comes down again, and
-        may lie on its side. Default: the motion ends there.
+        Coefficient of restitution, 0 to 1. It is used only with a law of friction: a body that leaves the
+        table then comes down again, and may lie on its side. Default: the motion ends when the body leaves
+        the table or its other rim lands.
     losses : Loss, optional
-        One law of `spincyl.loss`.
+        One law of `spincyl.loss`, which takes energy from the body.
     t : float
-        Last time of motions with friction or losses, which are integrated: 1 to 2000 sqrt(R/g), for a
-        measured body in seconds. Default: 60 sqrt(R/g).
+        Last time of a motion with friction or losses: 1 to 2000 sqrt(R/g), for a measured body in seconds.
+        Default: 60 sqrt(R/g). Such motions are integrated by steps.
     slow : float
-        Factor of slow motion, 1 to 1000. A body without a size moves as if R = 1 cm.
+        Factor of slow motion, 1 to 1000. A body without a size is shown as if R = 1 cm.
     friction : bool
-        Whether the page includes friction and losses. Without them the file is smaller, and the table is of
-        rubber or ice.
+        If false, the page has no friction and no losses, and the file is smaller. The body then only rolls
+        (on "rubber") or slides without friction (on "ice").
     title : str
         Title of the page. A tab or a new line is shown as a space.
 
     Returns
     -------
     Play
-        A notebook displays the page; `save("play.html")` writes one file, which works offline.
+        A notebook displays the page; ``.save("play.html")`` writes one file, which works offline.
 
     Raises
     ------
     ValueError
-        For a family of bodies, a number out of range, several losses, a `state` together with `theta` or
-        `kick`, or friction or losses if `friction` is False. Also for a title with a control character, half
-        a surrogate pair or a noncharacter, which HTML excludes.
+        If `body` is a family, a number is out of range, or there are several losses. If `state` is given
+        together with `theta` or `kick`. If a law of friction or losses are given but `friction` is False. If
+        the title has a control character, half a surrogate pair or a noncharacter, which HTML excludes.
     TypeError
         If an argument is of the wrong type; the message names it.
 
     Notes
     -----
     The page needs WebAssembly with SIMD, WebGL 2 and DecompressionStream (Chrome 91, Firefox 113, Safari
-    16.4, or later). Other browsers show a picture and the reason. The address of the page holds all
+    16.4, or later). Other browsers show a picture and the reason. The address of the page contains all
     settings, as in "#ell=2.5&theta=1.3".
 
     Examples

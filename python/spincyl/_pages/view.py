@@ -110,26 +110,26 @@ class View:
         progress: "Progress | None" = None,
         t: float | None = None,
     ) -> Path:
-        """Write a page (.html), a film (.mp4, .gif), a picture or an animated scene (.glb, glTF 2.0).
-
-        Pictures have pixels (.png) or are vector drawings (.svg, .pdf).
+        """Write the page, a film, a picture or an animated scene to a file.
 
         Parameters
         ----------
         path : path
-            Path of the file; the suffix determines the format.
+            Path of the file. The suffix determines the format: page (.html), film (.mp4, .gif), picture
+            (.png with pixels; .svg or .pdf as a vector drawing), or animated scene (.glb, glTF 2.0).
         fps : int, optional
             Frames per second of a film. Default: 30, for a GIF 25. A frame of a GIF lasts a whole number of
             hundredths of a second.
         size : (int, int), optional
             Width and height of a film or a picture in pixels. Default: (1280, 720), for a GIF (640, 360).
         seconds : float, optional
-            Longest duration of a film, 0.1 to 600. Default: 10, with a warning if the film is cut.
+            Longest duration of a film in seconds, 0.1 to 600. Default: 10, with a warning if the film would
+            be longer.
         progress : callable, optional
-            Called after each frame with the share of the film that is done, 0 to 1.
+            Function that is called after each frame with the finished share of the film, 0 to 1.
         t : float, optional
-            Time of a picture, in seconds with a scale, else in sqrt(R/g). Default: the first time. A long
-            exposure begins at this time.
+            Time of a picture, or first time of a picture with `exposure`; in seconds if the view has a scale,
+            else in sqrt(R/g). Default: the first time of the motion.
 
         Returns
         -------
@@ -139,31 +139,32 @@ class View:
         Raises
         ------
         ValueError
-            For any other suffix, a motion too long to show, impossible settings of a film, or settings that
-            do not go with the format.
+            If the suffix is none of these, the motion is too long to show, a setting is out of range, or a
+            setting does not apply to the format.
         ImportError
-            For a film without spincyl[film]. An MP4 can also be made by the program ffmpeg on the search
-            path; a GIF needs only matplotlib.
+            If spincyl[film] is needed for the film and not installed. For an MP4 the program ffmpeg on the
+            search path is enough; a GIF needs only matplotlib.
         OSError
             If the file cannot be written.
 
         Warns
         -----
         UserWarning
-            If a film is cut at ten seconds, or is larger than 20 MB.
+            If the film is cut at ten seconds, or is larger than 20 MB.
 
         Notes
         -----
         An existing file is replaced when the new one is complete; after an error it is unchanged.
 
-        A film begins at the first time and runs `slow` times slower than the motion, like the page at first:
-        one second of the film shows ``1/slow`` seconds with a scale, else ``1/slow`` sqrt(R/g). Films and
-        pictures look like the page in daylight. At the end of a motion the last picture stays for a second.
-        With `exposure` each frame of a film is a photograph of the last turns, which builds up at first. A
-        vector drawing does not tint the table; in a long exposure only the text is drawn as vectors.
+        A film begins at the first time and runs `slow` times slower than the motion, like the page when it
+        opens. One second of the film shows ``1/slow`` seconds of the motion if the view has a scale, else
+        ``1/slow`` sqrt(R/g). Films and pictures have the colours of the page in daylight. If the motion ends,
+        the last picture stays for a second. With `exposure` each frame of a film is a photograph of the last
+        turns; at the beginning the photograph builds up. A vector drawing does not tint the table, and a long
+        exposure in it consists of pixels, except for the text.
 
-        A scene is in metres and seconds; without a scale, R is one metre and sqrt(R/g) one second. The bodies
-        stand side by side.
+        An animated scene is in metres and seconds. If the view has no scale, R is one metre and sqrt(R/g) one
+        second. The bodies stand side by side.
         """
         path = path_of("path", path)
         suffix = path.suffix.lower()
@@ -282,50 +283,53 @@ def view(
     follow: bool | None = None,
     exposure: float | None = None,
 ) -> View:
-    """Make a page that shows motions in slow motion, from all sides.
+    """Make a page that shows motions of bodies in slow motion, from all sides.
 
     Parameters
     ----------
     *motions : Motion
-        One motion, or several that are shown side by side at the same time. Missing poses are computed.
+        One motion, or several motions, which are shown side by side at the same time. Poses are computed if a
+        motion does not contain them.
     labels : sequence of str, optional
         A label for each motion, shown as plain text. Default: none for a single motion, else the kind of
-        contact. A tab or a new line, here and in the title, is shown as a space.
+        contact. In labels and in the title, a tab or a new line is shown as a space.
     title : str
         Title of the page.
     scale : Scale, optional
-        Size of the bodies, with a radius of 1e-6 to 1e6 m; times are then in seconds. Default: that of the
-        bodies; without one, sqrt(R/g) is shown as one second.
+        Size of the bodies, with a radius of 1e-6 to 1e6 m; times are then in seconds. Default: the scale of
+        the bodies. Without any scale, sqrt(R/g) is shown as one second.
     slow : int, optional
-        Factor of slow motion at first: 1, 2, 5, 10, ... 1000. Default: such that no body turns much faster
-        than once a second.
+        Factor of slow motion when the page opens: 1, 2, 5, 10, ... 1000. Default: chosen so that no body
+        turns much faster than once a second.
     upper : {"O", "X"}
-        Symbol on the upper end, which is the visible one.
+        Symbol on the upper end. This is the symbol that the eye sees on a spinning tube.
     drawn : str or sequence of str, optional
-        Additions to the picture, each with a switch on the page: "path" of the contact point; arrows for the
-        angular velocity "omega", the angular "momentum" about the centre, the "velocity" of the centre and
-        the contact "force" (normal force N and friction F); "axis", the instantaneous axis and the line
-        P-C-O. Default: the path, and on a page the forces if there is a law of friction.
+        Additions to the picture, each with a switch on the page. "path" is the path of the contact point on
+        the table. "omega", "momentum", "velocity" and "force" are arrows: angular velocity, angular momentum
+        about the centre of mass, velocity of the centre of mass, and contact force (normal force N and
+        friction F). "axis" is the instantaneous axis and the line P-C-O. Default: the path; on a page also
+        the forces if there is a law of friction.
     above : bool
         If true, the camera is above the table, with x to the right.
     follow : bool, optional
-        Whether the camera follows the body. Default: if there is a law of friction and the body moves far.
+        If true, the camera follows the body. Default: true if there is a law of friction and the body moves
+        far.
     exposure : float, optional
-        Number of turns about the vertical for which the shutter of a long exposure from above is open, at
-        least 0.01, or inf for the rest of the motion. The page opens with this exposure. Default: none.
+        Duration of a long exposure from above, in turns of the body about the vertical: at least 0.01, or inf
+        for the rest of the motion. The page then opens with this photograph. Default: no exposure.
 
     Returns
     -------
     View
-        A notebook displays the page. `save("spin.html")`, `save("spin.mp4")`, `save("spin.svg", t=1.5)` and
-        `save("spin.glb")` write files.
+        A notebook displays the page. ``.save("spin.html")``, ``.save("spin.mp4")``,
+        ``.save("spin.svg", t=1.5)`` and ``.save("spin.glb")`` write files.
 
     Raises
     ------
     ValueError
-        If there is no motion, labels do not match, or a motion has no duration or is too long to show; for a
-        title or a label with a control character, half a surrogate pair or a noncharacter, which HTML
-        excludes.
+        If there is no motion, the numbers of labels and motions differ, or a motion has no duration or is too
+        long to show. If a title or a label has a control character, half a surrogate pair or a noncharacter,
+        which HTML excludes.
     TypeError
         If an argument is of the wrong type; the message names it.
 
@@ -334,28 +338,30 @@ def view(
     With a law of friction the path and the line under the slider are red while the body slips. Arrows at the
     contact point show the normal force N and the friction F, and the clock shows the slip.
 
-    With "#t=1.5" after its name the page opens paused at that time. A body whose motion has ended is grey,
-    and its clock gives the reason and the time. The page contains poses at a few times and cubic polynomials
-    between them; for bodies of usual length they differ from the motion by at most 0.003 rad and 0.003 R. ω
-    and L are computed from the drawn pose.
+    If "#t=1.5" is added to the address of the page, the page opens at this time and is paused. A body whose
+    motion has ended is grey, and its clock shows the reason and the time. The page contains poses at a few
+    times, with cubic polynomials between them. For bodies of usual length they differ from the motion by at
+    most 0.003 rad and 0.003 R. ω and L are computed from the drawn pose.
 
-    An arrow has the same scale in all motions: that of the usual normal force for forces, that of the largest
-    value for all others. The line P-C-O goes from the contact point P through the centre of mass C to the
-    opposite point O; for a body that is symmetric top to bottom, O is the top of the upper rim, where the
-    still symbols are. The instantaneous axis is the line of the points whose velocity is along the line, or
-    zero. While the body rolls, the axis passes through P; if the centre is at rest, it is the line P-C-O.
+    All motions on a page have the same scale for their arrows. The longest arrow of each kind shows the
+    largest value; for forces the scale is set by the usual normal force instead. The line P-C-O goes from the
+    contact point P through the centre of mass C to the opposite point O. For a body that is symmetric top to
+    bottom, O is the top of the upper rim, where the still symbols are. The instantaneous axis is the line of
+    all points whose velocity is zero or along this line. While the body rolls, the axis passes through P; if
+    the centre is at rest, it is the line P-C-O.
 
-    For a body that flies (`roll` with a `restitution`), the clock shows the height of the lowest point; in
-    the air there is neither path nor force.
+    For a body that flies (`roll` with a `restitution`), the clock shows the height of the lowest point. While
+    the body is in the air, no path and no force are drawn.
 
-    For a stone the clock also shows the spin, and the time at which the spin reverses: when it has passed
-    zero and reached a tenth of its first value in the other direction. A stone with an edge that can land is
-    drawn as a hull with a needle on its top, any other stone with a band and a dot. `upper` determines the
-    colour of the band, or of the half of the needle that points along the positive axis.
+    For a stone the clock also shows the spin, and the time at which the spin reverses. A reversal counts when
+    the spin has passed zero and reached a tenth of its first value in the other direction. A stone with an
+    edge that can land is drawn as a hull with a needle on its top; any other stone is drawn with a band and a
+    dot. `upper` determines the colour of the band, or of the half of the needle that points along the
+    positive axis.
 
-    The unknown shape of a general body is guessed: it is drawn solid, and as long above its centre of mass as
-    below. A ball with `theta_end` = pi/2 is drawn as two balls; with another `theta_end`, with a stem or a
-    cap that lands there.
+    The shape of a body that was made from its moments of inertia is unknown. It is drawn solid, and as long
+    above its centre of mass as below. A ball with `theta_end` = pi/2 is drawn as two balls. A ball with
+    another `theta_end` is drawn with a stem or a cap that touches the table at this inclination.
 
     Examples
     --------

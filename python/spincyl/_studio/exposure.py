@@ -33,42 +33,42 @@ def exposure(
     Parameters
     ----------
     motion : Motion
-        Motion of a single body; poses at further times are computed.
+        Motion of a single body. Its poses are computed at as many times as the photograph needs.
     seconds : float, optional
         Duration of the exposure from the first time of the motion on, in seconds. Default: the whole motion.
     scale : Scale, optional
-        Scale for `seconds`; the motion of a measured body has its own.
+        Size of the body, for `seconds`; a measured body has its own scale.
     upper : {"O", "X"}
-        Symbol on the upper end, which is the end that was pressed when the tube was flicked.
+        Symbol on the upper end. If the tube was flicked, this is the end that the finger pressed.
     size : int
         Number of pixels along each side, at most 20,000.
     samples : float
-        Number of samples, each a time and a point of the ink, 1e3 to 1e9. The noise decreases with its square
-        root.
+        Number of samples, 1e3 to 1e9. Each sample is an instant and a point of the ink. The noise is
+        inversely proportional to the square root of their number.
     width : float, optional
-        Width of the picture in R, for a measured body in metres; its middle is that of the path of the
-        centre. Default: wide enough for the whole motion.
+        Width of the picture in R, for a measured body in metres. The middle of the picture is the middle of
+        the path of the centre. Default: wide enough for the whole motion.
 
     Returns
     -------
     ndarray, shape (size, size)
-        Share of the time during which each pixel shows ink, from 0 to 1 up to noise, which is largest where
-        the body rests. The first row is the far side (largest y); columns run along x. `plot.exposure` draws
-        the picture.
+        Share of the time, 0 to 1, during which each pixel shows ink, with noise. The noise is largest where
+        the body rests. The first row has the largest y; x increases along a row. `plot.exposure` draws the
+        picture.
 
     Raises
     ------
     ValueError
-        If `seconds` has no scale or exceeds the motion, or a number is out of range; the message names the
-        argument.
+        If `seconds` is given for a body without a scale, or is longer than the motion. If a number is out of
+        range. The message names the argument.
     TypeError
         If an argument has the wrong type; the message names it.
 
     Notes
     -----
-    The ink of both marks is sampled evenly in space and time. A point is visible if its normal points up,
-    which is exact for the outside of a convex body; of two balls, the upper one also hides parts of the lower
-    one. The camera is far above.
+    The camera is far above the table. The ink of both symbols is sampled evenly in space and time. A point is
+    visible if its normal points up, which is exact for the outside of a convex body. If the body is two
+    balls, the upper ball also hides parts of the lower ball.
 
     Examples
     --------

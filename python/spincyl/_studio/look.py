@@ -16,7 +16,7 @@ DRAWN = ("path", "omega", "momentum", "velocity", "force", "axis")
 
 
 class Look(NamedTuple):
-    """The look of a view."""
+    """The settings of a view: additions to the picture, camera and exposure."""
 
     drawn: tuple[str, ...] | None  #: names in `DRAWN`; None: the path, and on a page with friction the forces
     above: bool  #: whether the camera looks straight down

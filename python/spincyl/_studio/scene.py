@@ -36,22 +36,23 @@ _IN_AIR = "b", "b2"
 @compared
 @dataclass(frozen=True, eq=False, repr=False)
 class Deviation:
-    """Deviation of an engine from the known answer at each time, in SI; the result of `Scene.compare`.
+    """Deviation of a contact engine from the known motion; returned by `Scene.compare`. All in SI.
 
     Attributes
     ----------
     time : ndarray, (n,)
-        Times that were compared, up to the end of the answer, in seconds.
+        Times that were compared, up to the end of the known motion, in seconds.
     position : ndarray, (n,)
-        Distance between the centres of mass of the engine and of the answer, in metres.
+        Distance between the engine's centre of mass and the known one at each time, in metres.
     angle : ndarray, (n,)
-        Angle of the rotation from the orientation of the answer to that of the engine, in radians, 0 to pi.
+        Angle of the rotation from the known orientation to the engine's orientation, in radians, 0 to pi.
     theta : ndarray, (n,)
-        Inclination of axis 3 of the body in the engine minus that in the answer, in radians.
+        Inclination of the body's axis 3 in the engine minus the known inclination, in radians.
     position_error : float
-        Estimated error of the positions of the answer, in metres. A smaller `position` means nothing.
+        Estimated error of the known positions, in metres. A `position` below it is no deviation of the
+        engine.
     angle_error : float
-        Estimated error of the orientations of the answer, in radians.
+        Estimated error of the known orientations, in radians.
     """
 
     time: Floats
@@ -71,20 +72,20 @@ class Deviation:
 
 
 class Scene:
-    """A body on a table, its initial state and its known motion; the result of `scene`.
+    """A body on a table, its initial state and its known motion; returned by `scene`.
 
     Attributes
     ----------
     motion : Motion
-        The known answer, in natural units.
+        The known motion (the "answer"), in natural units.
     scale : Scale
-        Scale that converts the answer to SI.
+        Scale that converts the known motion to SI.
     data : dict
-        Content of the JSON file: body, table, initial state and known answer, in SI. docs/engines.md has its
-        keys.
+        Content of the JSON file: body, table, initial state and known motion, in SI. docs/engines.md lists
+        its keys.
     mjcf : str
-        The scene for MuJoCo, with the initial state as the keyframe "start". A comment at its top names the
-        laws that MuJoCo does not have.
+        The scene in the format of MuJoCo (MJCF), with the initial state as the keyframe "start". A comment at
+        its top names the laws that MuJoCo does not have.
     """
 
     def __init__(self, motion: Motion, scale: Scale) -> None:
@@ -92,13 +93,13 @@ class Scene:
 
     @cached_property
     def data(self) -> dict[str, Any]:
-        """Body, table, initial state and known answer: numbers, lists and text; None for NaN and infinity."""
+        """Body, table, initial state and known motion, as for JSON; None replaces NaN and infinity."""
         found: dict[str, Any] = plain(scene_data(self.motion, self.scale, self._began))
         return found
 
     @property
     def mjcf(self) -> str:
-        """The scene for MuJoCo, with contacts as stiff and friction as steady as its solver allows."""
+        """The scene as MJCF for MuJoCo, with contacts as stiff and friction as steady as its solver allows."""
         return mjcf(self.data, self.scale.radius * _outside(self.motion.body))
 
     def save(self, path: str | PathLike[str]) -> list[Path]:
@@ -107,13 +108,13 @@ class Scene:
         Parameters
         ----------
         path : path-like
-            Path that ends in .json or .xml (MJCF), for one file. For any other path both files are written,
-            with these endings added.
+            Path that ends with .json or .xml (MJCF); this file is written. For any other path both files are
+            written, and these endings are added to their names.
 
         Returns
         -------
         list of Path
-            The files.
+            Paths of the files.
 
         Raises
         ------
@@ -133,25 +134,26 @@ class Scene:
     def compare(
         self, time: Reals, position: Reals, orientation: Reals, *, scalar_first: bool = False
     ) -> Deviation:
-        """Compare the trajectory of an engine with the known answer, computed at the times of the engine.
+        """Compare the trajectory of a contact engine with the known motion at the times of the engine.
 
         Parameters
         ----------
         time : array_like, (n,)
-            Times since the initial state, in seconds, in ascending order. The answer is computed at these
-            times, also after the last time of the scene. Times after an event that ends the motion, such as
-            the landing of the face, are left out.
+            Times of the engine since the initial state, in seconds, in ascending order. The known motion is
+            computed at these times, also after the last time of the scene. Times after an event that ends the
+            motion, such as the landing of the face, are left out.
         position : array_like, (n, 3)
-            Positions of the centre of mass, in metres.
+            Positions of the centre of mass in the engine, in metres.
         orientation : array_like, (n, 4)
-            Unit quaternions x, y, z, w, from the axes of the body to those of the laboratory, of either sign.
+            Unit quaternions x, y, z, w in the engine. They rotate vectors from the axes of the body to the
+            axes of the laboratory; their sign does not matter.
         scalar_first : bool
             If true, the quaternions are w, x, y, z, as in MuJoCo and Drake.
 
         Returns
         -------
         Deviation
-            Distances and angles at the times up to the end of the answer.
+            Distances and angles at the times up to the end of the known motion.
 
         Raises
         ------
@@ -161,10 +163,10 @@ class Scene:
         Warns
         -----
         UserWarning
-            If the orientation at time 0 is not the initial one; the order of the quaternions may be wrong.
-            If the times go on for more than ten times the scene, as with milliseconds; or if the first
-            position is more than 30 times as far from the answer as the answer is from the origin, as with
-            millimetres.
+            If the orientation at time 0 is not the initial one; the numbers of the quaternions may be in the
+            wrong order. If the last time is more than ten times that of the scene; the times may be in
+            milliseconds. If the first position is more than 30 times as far from the known position as that
+            is from the origin; the positions may be in millimetres.
         """
         t = _shaped("time", si("time", time, "second"), ())
         x = _shaped("position", position, (t.size, 3))
@@ -201,7 +203,7 @@ class Scene:
         *,
         scalar_first: bool = False,
     ) -> Floats:
-        """Couple of the losses on the body, for an engine without these laws.
+        """Compute the couple with which the losses act on the body, for an engine without these losses.
 
         Parameters
         ----------
@@ -213,12 +215,13 @@ class Scene:
             Normal force of the table, in newtons. In the air it is 0, and only the resistance of the air
             acts.
         scalar_first : bool
-            As in `compare`.
+            If true, the quaternion is w, x, y, z.
 
         Returns
         -------
         ndarray, (3,)
-            Couple along the axes of the laboratory, in N m; zero without losses. Error: a few roundings.
+            Components of the couple along the axes of the laboratory, in N m; zero without losses. They are
+            exact to a few rounding errors.
 
         Raises
         ------
@@ -255,22 +258,22 @@ class Scene:
 
 
 def scene(motion: Motion, *, scale: Scale | None = None) -> Scene:
-    """Make a scene with a known answer, with which an engine that simulates contacts can be checked.
+    """Make a scene with a known motion, to check an engine that simulates contacts.
 
     Parameters
     ----------
     motion : Motion
-        Motion of a body or a stone with any contact, from `roll`: the answer that the engine should reproduce
-        at the times of the motion. Poses and forces are computed if the motion lacks them.
+        Motion of a body or a stone with any contact, from `roll`. The engine should reproduce it at the times
+        of the motion. Poses and forces are computed if the motion does not contain them.
     scale : Scale, optional
-        Scale that converts a motion in natural units to SI; a measured body has its own. Default: a radius
-        (for a stone, a largest semi-axis) of 1 m, 1 kg, and 9.80665 m/s^2.
+        Scale that converts a motion in natural units to SI; a measured body has its own. Default: R (for a
+        stone, the largest semi-axis) is 1 m, the mass is 1 kg, and g is 9.80665 m/s^2.
 
     Returns
     -------
     Scene
-        ``save("scene")`` writes scene.json and scene.xml (MJCF); `compare` computes the deviations of the
-        engine.
+        ``.save("scene")`` writes scene.json and scene.xml (MJCF, for MuJoCo). `Scene.compare` computes the
+        deviations of an engine.
 
     Raises
     ------
@@ -282,9 +285,9 @@ def scene(motion: Motion, *, scale: Scale | None = None) -> Scene:
 
     Notes
     -----
-    The answer includes the estimated errors of the motion. If the motion ends, for example because the face
-    lands, the scene ends at the same time and names the ending. For a body on both rims the scene has only
-    the sum of the normal forces.
+    The scene contains the estimated errors of the motion. If the motion ends, for example because the face
+    lands, the scene ends at the same time and names the ending. For a body on both rims the scene contains
+    only the sum of the normal forces.
 
     Examples
     --------

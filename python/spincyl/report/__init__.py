@@ -29,7 +29,7 @@ _TARGETS = (1e-6, 1e-9, 1e-12)
 
 
 class Scene(NamedTuple):
-    """A motion to measure: body, initial state, and last time in sqrt(R/g)."""
+    """A motion whose computation is measured: body, initial state, and last time in sqrt(R/g)."""
 
     name: str
     body: Body
@@ -38,7 +38,7 @@ class Scene(NamedTuple):
 
 
 class Point(NamedTuple):
-    """One setting of a method (step or tolerance), seconds per trajectory, and error of the final state."""
+    """Measurement of one method: its step or tolerance, seconds per trajectory, error of the final state."""
 
     setting: float
     seconds: float
@@ -47,7 +47,7 @@ class Point(NamedTuple):
 
 @dataclass(frozen=True)
 class Row:
-    """Measurements of a scene: points by method, and times and errors of the exact solution."""
+    """Measurements of one scene: points for each method, and times and errors of the exact solution."""
 
     scene: Scene
     curves: dict[str, list[Point]]  #: points of each method, from coarse to fine
@@ -58,7 +58,7 @@ class Row:
 
 
 def scenes() -> list[Scene]:
-    """Return the scenes of the report: easy, fast, nearly flat, near a saddle, long."""
+    """Return the scenes of the report: easy, fast, nearly flat, near an unstable steady state, long."""
     tube, can = Body.tube(6.0, 0.8), Body.solid(1.0)
     disk, critical = Body.solid(0.17043941411451397), Body.solid(math.sqrt(0.75))
     nutating = can.steady(0.5).kicked(0.3)
@@ -81,20 +81,22 @@ def measure(
     reference: str | None = None,
     progress: Callable[[float], object] = lambda share: None,
 ) -> list[Row]:
-    """Measure all scenes with all methods.
+    """Measure the computing time and the error of all methods for all scenes.
 
     Parameters
     ----------
     seconds : float
         Approximate running time, in seconds.
     reference : str, optional
-        CSV file of high-precision motions. Default: the true error of the exact solution is not measured.
+        Path of a CSV file with high-precision motions. Default: the true error of the exact solution is not
+        measured.
     progress : callable
-        Called with the share of the work that is done, 0 to 1.
+        Function that is called with the finished share of the work, 0 to 1.
 
     Returns
     -------
     list of Row
+        Measurements of each scene.
     """
     known = _references(reference) if reference else {}
     found = [known.get((scene.name, scene.t), (scene, None)) for scene in scenes()]
@@ -158,7 +160,11 @@ def _row(scene: Scene, budget: float, known: Floats | None) -> Row:
 
 
 def costs(steps: int = 20_000) -> list[tuple[str, float, float]]:
-    """Measure nanoseconds per RK4 step: name of the outputs, for the last state only, for every state."""
+    """Measure the nanoseconds per RK4 step.
+
+    Each row has the name of the outputs, the time if only the last state is returned, and the time if every
+    state is returned.
+    """
     scene = scenes()[1]
     last = steps * 1e-3
     every = np.arange(steps + 1) * 1e-3
@@ -310,7 +316,7 @@ def table(rows: list[Row]) -> str:
 
 
 def figure(rows: list[Row], path: Path) -> bool:
-    """Draw error against time per trajectory, one panel for each scene; False if matplotlib is missing."""
+    """Draw error against time per trajectory, one panel for each scene. Return False without matplotlib."""
     try:
         import matplotlib
     except ImportError:
