@@ -185,7 +185,10 @@ def test_what_the_library_warns_of_is_said_in_one_line(capsys):
     ("asked", "match"),
     [
         (["drift", "--ell", "0.1", "--theta", "0.3"], "the following arguments are required: --law"),
-        ([*DRIFT, "--law", "sticky=1"], "'sticky=1': expected NAME=VALUE with one of dry-contour, "),
+        (
+            [*DRIFT, "--law", "sticky=1"],
+            "'sticky=1': expected NAME=VALUE, such as dry-contour=5e-3, NAME one of dry-contour, ",
+        ),
         ([*DRIFT, "--law", "drilling"], "'drilling': expected NAME=VALUE"),
         ([*DRIFT, "--law", "drilling=x"], "'x': expected a number"),
         ([*DRIFT, "--law", "drilling=1kg"], "expected a length, without unit or in m, cm"),

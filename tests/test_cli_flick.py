@@ -145,7 +145,7 @@ def test_a_tube_that_is_flicked_too_gently_stays_on_its_side_and_it_is_said(caps
     assert "at most 1: the end does not rise" in out and "the body lies on its side at t = 0" in out
     err = said(capsys, *FLICK[:-1], "0.9", "-o", tmp_path / "flick.html", status=2).err
     assert err.startswith(
-        "spincyl flick: launch number 0.9: there is no motion to write; the other rim does not rise"
+        "spincyl flick: launch number 0.9: the motion ends at once, nothing to write; the other rim does not rise"
     )
     assert not (tmp_path / "flick.html").exists()
 
@@ -153,17 +153,17 @@ def test_a_tube_that_is_flicked_too_gently_stays_on_its_side_and_it_is_said(caps
 @pytest.mark.parametrize(
     ("words", "match"),
     [
-        ([*PIPE, "--w1", "3"], "a launch needs either --launch-number or --spin"),
-        ([*PIPE, "--launch-number", "1.3"], "a launch needs either --precession or --w1; or give --impulse"),
-        ([*FLICK, "--w1", "3"], "a launch needs either --precession or --w1"),
-        ([*FLICK, "--spin", "3Hz"], "a launch needs either --launch-number or --spin"),
+        ([*PIPE, "--w1", "3"], "give exactly one of --launch-number and --spin"),
+        ([*PIPE, "--launch-number", "1.3"], "give exactly one of --precession and --w1; or give --impulse"),
+        ([*FLICK, "--w1", "3"], "give exactly one of --precession and --w1"),
+        ([*FLICK, "--spin", "3Hz"], "give exactly one of --launch-number and --spin"),
         ([*PIPE, "--precession", "17Hz", "--launch-number", "1.3"], "--precession needs --radius"),
         ([*PIPE, "--w1", "3", "--spin", "17Hz"], "--spin needs --radius"),
-        ([*PIPE, "--w1", "0", "--launch-number", "1.3"], "--launch-number needs a precession that is not zero"),
+        ([*PIPE, "--w1", "0", "--launch-number", "1.3"], "--launch-number needs a precession other than zero"),
         ([*PIPE, "--w1", "3", "--launch-number", "1.3", "--centre", "1m/s"], "--centre in m/s needs --radius"),
         ([*PIPE, "--w1", "3", "--launch-number", "1.3", "--seconds", "3"], "--seconds 3s needs --radius"),
-        ([*FLICK, "--impulse", "3", "--angle", "45deg"], "--precession does not go with --impulse"),
-        ([*FLICK, "--angle", "45deg"], "--angle goes with --impulse"),
+        ([*FLICK, "--impulse", "3", "--angle", "45deg"], "--precession cannot be combined with --impulse"),
+        ([*FLICK, "--angle", "45deg"], "--angle needs --impulse"),
         ([*PIPE, "--impulse", "8"], "--impulse needs --angle"),
         ([*PIPE, "--impulse", "40mNs", "--angle", "1"], "--impulse in newton seconds needs --mass and --radius"),
         ([*PIPE[:-1], "-0.3", "--w1", "3", "--launch-number", "1.3"], "mu = -0.3: expected 0 <= mu"),
@@ -234,10 +234,10 @@ def test_a_hoop_is_thrown_with_backspin_by_roll(capsys):
             ["--contact", "coulomb", "--mu", "0.3", "--beyond"],
             "beyond = True does not go with contact=Coulomb",
         ),
-        (["--contact", "rolling", "--static", "0.3"], "--static goes with --contact coulomb"),
+        (["--contact", "rolling", "--static", "0.3"], "--static needs --contact coulomb"),
         (
             ["--contact", "coulomb", "--mu", "0.3", "--viscosity", "1"],
-            "--viscosity goes with --contact viscous",
+            "--viscosity needs --contact viscous",
         ),
     ],
 )

@@ -133,7 +133,11 @@ def test_a_coefficient_that_is_not_positive_is_refused_by_name(law, name, value)
         (lambda: AirFilm(None), TypeError, "^viscosity: expected real numbers"),
         (lambda: BoundaryLayer(1j), TypeError, "^k: expected real numbers"),
         (lambda: Sum([]), ValueError, "^laws: expected at least one"),
-        (lambda: Sum([DryContour(0.1), 0.2]), TypeError, "^laws: expected loss laws, not float 0.2"),
+        (
+            lambda: Sum([DryContour(0.1), 0.2]),
+            TypeError,
+            "^laws: expected losses from sc.loss, not float 0.2",
+        ),
         (lambda: DryContour(0.1) + 1, TypeError, "unsupported operand"),
         (lambda: 1 + DryContour(0.1), TypeError, "unsupported operand"),
         (lambda: np.ones(2) + DryContour(0.1), TypeError, "NumPy arrays"),
@@ -302,13 +306,13 @@ def test_a_whirring_coin_loses_what_the_page_says():
 
 
 def test_a_law_of_air_asks_for_the_mass_of_the_body():
-    with pytest.warns(UserWarning, match="needs the mass"):
+    with pytest.warns(UserWarning, match="depends on the mass of the body"):
         sc.loss.AirFilm.from_si(scale=sc.Scale(radius=0.01))
     assert sc.loss.DryContour.from_si(2e-5, scale=sc.Scale(radius=0.01)).eps == pytest.approx(2e-3)
 
 
 @pytest.mark.parametrize("law", [DryContour, RollingResistance, Drilling])
 def test_an_arm_in_millimetres_is_warned_of(law):
-    with pytest.warns(UserWarning, match="is it in metres"):
+    with pytest.warns(UserWarning, match="more than half the radius"):
         law.from_si(0.06, scale=EULER)
     law.from_si("0.06mm", scale=EULER)

@@ -157,7 +157,10 @@ def test_the_command_line_takes_a_patch(capsys):
         told = json.loads(capsys.readouterr().out)
         assert told["contact"].startswith("Coulomb(0.3, patch=0.0")
         assert abs(told["dissipated"] - m.dissipated[-1]) < 1e-9
-    for wrong, why in (([*dry, "--patch", "0.3mm"], "needs --radius"), (["--patch", "0.02"], "goes with")):
+    for wrong, why in (
+        ([*dry, "--patch", "0.3mm"], "needs --radius"),
+        (["--patch", "0.02"], "needs --contact coulomb"),
+    ):
         assert cli.main([*top, *wrong]) != 0
         assert why in capsys.readouterr().err
 

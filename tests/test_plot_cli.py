@@ -180,7 +180,7 @@ def test_steady_prints_natural_and_si_numbers(capsys):
         ("--ell 1 --i1 2", "both --i1 and --i3"),
         ("--ell 1 --i1 2 --i3 1 --bore 0.5", "not both"),
         ("--outer 1", "--outer and --length"),
-        ("--ell 1 --outer 1 --length 1", "not both"),
+        ("--ell 1 --outer 1 --length 1", "leave out --ell"),
         ("--ell 1 --hertz 3", "--hertz needs --radius"),
         ("--ell 1 --rate -1", "expected 0 <= rate"),
         ("--ell 1 --radius 0", "radius"),

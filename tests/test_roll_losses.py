@@ -53,10 +53,10 @@ def rolled(start="disk", losses=DRY, t=T, **how):
         (
             {"losses": 5e-3},
             TypeError,
-            r"^losses: expected a loss law, such as sc.loss.DryContour\(1e-3\), or several added .*, not float",
+            r"^losses: expected a loss from sc.loss, such as sc.loss.DryContour\(1e-3\), .*, not float",
         ),
         ({"losses": [DRY, DRY]}, TypeError, ", not list$"),
-        ({"losses": loss.DryContour}, TypeError, "^losses: expected a loss law, .* not type"),
+        ({"losses": loss.DryContour}, TypeError, "^losses: expected a loss from sc.loss, .* not type"),
         ({"losses": loss.DryContour([1e-3, 2e-3])}, ValueError, "expected single numbers, not arrays"),
         ({"losses": loss.DryContour([1e-3])}, ValueError, r"^losses = DryContour\(\[0.001\]\): expected"),
         ({"step": 1e-3}, ValueError, r"^step = 0.001 does not go with losses=DryContour\(0.005\): .* tol="),

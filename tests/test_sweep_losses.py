@@ -161,8 +161,8 @@ def test_odd_starts_have_an_end_or_a_status():
 def test_what_makes_no_sense_with_losses_is_refused_before_any_work():
     state, dry = DISK.steady(0.3), loss.DryContour(1e-3)
     for kw, kind, text in [
-        ({"losses": 1e-3}, TypeError, "^losses: expected a loss law"),
-        ({"losses": loss.DryContour}, TypeError, "^losses: expected a loss law"),
+        ({"losses": 1e-3}, TypeError, "^losses: expected a loss from sc.loss"),
+        ({"losses": loss.DryContour}, TypeError, "^losses: expected a loss from sc.loss"),
         ({"losses": dry, "step": 1e-3}, ValueError, "^step, mu, beyond: not available with"),
         ({"losses": dry, "beyond": True}, ValueError, "^step, mu, beyond: not available with"),
         ({"losses": dry, "restitution": 1.1}, ValueError, "^restitution = 1.1: expected 0 to 1"),

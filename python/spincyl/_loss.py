@@ -121,14 +121,16 @@ class Law(Loss):
 
     def __init__(self, coefficient: Reals) -> None:
         raise TypeError(
-            "Law(coefficient) is only a base: expected one of the laws, such as sc.loss.DryContour(1e-3)"
+            "Law is only a base class: use one of its subclasses, such as sc.loss.DryContour(1e-3)"
         )
 
     def __post_init__(self) -> None:
         name, value = self._parameter, self.coefficient
         if isinstance(value, str):
             unit = f"{type(self).__name__}.from_si({value!r}, scale=body)"
-            raise TypeError(f"{name}: expected real numbers, not {value!r}; {unit} reads units")
+            raise TypeError(
+                f"{name}: expected real numbers, not {value!r}; for a number with a unit use {unit}"
+            )
         found = positive(name, value)
         refuse(name, found, lambda x: x > _MOST, f"expected at most {_MOST:g}")
         object.__setattr__(self, name, kept(found))
@@ -199,10 +201,12 @@ class Sum(Loss):
         try:
             given = list(laws)
         except TypeError:
-            raise TypeError(f"laws: expected a list of loss laws, not {type(laws).__name__}") from None
+            raise TypeError(
+                f"laws: expected a list of losses from sc.loss, not {type(laws).__name__}"
+            ) from None
         for loss in given:
             if not isinstance(loss, Loss):
-                raise TypeError(f"laws: expected loss laws, not {type(loss).__name__} {loss!r}")
+                raise TypeError(f"laws: expected losses from sc.loss, not {type(loss).__name__} {loss!r}")
             for law in loss.laws:
                 kind = type(law)
                 before = found.get(kind)
@@ -215,7 +219,7 @@ class Sum(Loss):
                     law = sized(law, before._sized) if both else law
                 found[kind] = law
         if not found:
-            raise ValueError("laws: expected at least one")
+            raise ValueError("laws: expected at least one loss, such as sc.loss.DryContour(1e-3)")
         object.__setattr__(self, "_laws", tuple(found.values()))
 
     @property
@@ -260,7 +264,7 @@ def arm(name: str, value: Reals, scale: "Scale | Body") -> Reals:
     """Convert an arm from metres to R; warn if it exceeds R/2, since millimetres were probably meant."""
     found = over(positive(name, value, "metre"), units(scale)[0])
     if np.any(np.asarray(found) > 0.5):
-        told = f"{name}: exceeds half the radius of the body; is it in metres? Or give a text such as '0.1mm'"
+        told = f"{name}: more than half the radius of the body; give metres, or a text such as '0.1mm'"
         warnings.warn(told, UserWarning, stacklevel=3)
     return found
 
@@ -274,14 +278,14 @@ def sized(law: _Kind, of: "Scale | Body | bool" = True) -> _Kind:
 def made_law(losses: object, body: Body | None = None) -> Loss:
     """Return a loss law, or raise TypeError; ValueError if the body is measured and the law is not in SI."""
     if not isinstance(losses, Loss):
-        like = "such as sc.loss.DryContour(1e-3), or several added with +"
-        raise TypeError(f"losses: expected a loss law, {like}, not {type(losses).__name__}")
+        like = "such as sc.loss.DryContour(1e-3), or a sum of them"
+        raise TypeError(f"losses: expected a loss from sc.loss, {like}, not {type(losses).__name__}")
     if losses._function is not None:
         return losses
     bare = [] if body is None or body.scale is None else [law for law in losses.laws if not law._sized]
     if bare:
         made = f"sc.loss.{type(bare[0]).__name__}.from_si(..., scale=body)"
-        why = f"expected SI for a measured body, {made}; or take body.natural"
+        why = f"expected a coefficient in SI for a measured body: use {made}, or pass body.natural"
         raise ValueError(f"losses = {losses!r}: {why}")
     for law in losses.laws:
         other(f"losses = {law!r}", law._sized, None if body is None else body.scale)
@@ -292,8 +296,7 @@ def units(scale: "Scale | Body", weighed: bool = False) -> tuple[float, float, f
     """Metres, seconds and joules of the natural units; with `weighed`, an error if the mass is unknown."""
     found = scale_of(scale)
     if weighed and found.mass == 1.0 and isinstance(scale, Scale):
-        why = "this loss law needs the mass of the body, and the mass has its default of 1 kg"
-        message = f"scale = {found!r}: {why}; give Scale(..., mass=...)"
+        message = f"scale = {found!r}: this loss depends on the mass of the body, taken as 1 kg; give mass="
         warnings.warn(message, UserWarning, stacklevel=4)
     if weighed:
         found._joule("the coefficient of this loss law")  # raises ValueError if the mass is unknown

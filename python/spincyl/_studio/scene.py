@@ -99,7 +99,7 @@ class Scene:
 
     @property
     def mjcf(self) -> str:
-        """The scene as MJCF for MuJoCo, with contacts as stiff and friction as steady as its solver allows."""
+        """The scene as MJCF, with contacts as stiff and friction as steady as MuJoCo's solver allows."""
         return mjcf(self.data, self.scale.radius * _outside(self.motion.body))
 
     def save(self, path: str | PathLike[str]) -> list[Path]:

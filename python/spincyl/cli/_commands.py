@@ -42,7 +42,7 @@ def _refuse(args: Namespace, kind: str, names: Sequence[str], why: str) -> None:
     """Raise ValueError for options that do not go with a kind of body, naming the first of them."""
     for name in names:
         if getattr(args, name) is not None:
-            raise ValueError(f"--{name} does not go with {kind}: {why}")
+            raise ValueError(f"--{name} cannot be combined with {kind}: {why}")
 
 
 def _ball_of(args: Namespace) -> Body:
@@ -58,7 +58,7 @@ def _ball_of(args: Namespace) -> Body:
         "a ball is given by its offset and moments of inertia",
     )
     if args.i1 is None or args.i3 is None:
-        raise ValueError("--ball needs both --i1 and --i3")
+        raise ValueError("--ball needs both --i1 and --i3, the moments of inertia of the ball")
     with _naming("offset", "--ball"), _naming("ell", "--ball"):
         return Body.ball(args.ball, args.i1, args.i3)
 
@@ -75,11 +75,13 @@ def _naming(name: str, option: str) -> Iterator[None]:
 def _measured(args: Namespace) -> Body:
     """A tube from its measures in metres."""
     if args.outer is None or args.length is None:
-        raise ValueError("a measured tube needs --outer and --length")
+        raise ValueError("a tube measured in metres needs both --outer and --length")
     bore = args.bore if isinstance(args.bore, Metres) else None
     told = args.ell, None if bore is not None else args.bore, args.i1, args.i3, args.radius
     if any(x is not None for x in told):
-        raise ValueError("give either measures in metres or --ell, not both")
+        raise ValueError(
+            "--outer and --length give the tube: leave out --ell, --radius, --i1, --i3, --bore without unit"
+        )
     if sum(x is not None for x in (bore, args.inner, args.wall)) > 1:
         raise ValueError("give only one of --inner, --bore and --wall")
     inner = args.inner if bore is None else float(bore)
@@ -106,11 +108,11 @@ def _told(args: Namespace) -> Body:
     fillet = 0.0 if args.fillet is None else args.fillet
     if isinstance(fillet, Metres):
         raise ValueError(
-            f"--fillet {fillet:g}m needs --outer and --length; with --ell give it in outer radii"
+            f"--fillet {fillet:g}m needs --outer and --length; with --ell give fillet / outer radius"
         )
     if isinstance(args.bore, Metres):
         raise ValueError(
-            f"--bore {args.bore:g}m needs --outer and --length; with --ell give it in outer radii"
+            f"--bore {args.bore:g}m needs --outer and --length; with --ell give inner / outer radius"
         )
     if (args.i1 is None) != (args.i3 is None):
         raise ValueError("give both --i1 and --i3, or neither")
@@ -141,7 +143,7 @@ def body_of(args: Namespace) -> tuple[Body, Scale | None]:
     given = {name: getattr(args, name) for name in ("mass", "gravity")}
     given = {name: x for name, x in given.items() if x is not None}
     if radius is None and given:
-        raise ValueError("--mass and --gravity need --radius, or a body measured in metres")
+        raise ValueError("--mass and --gravity need --radius, or --outer and --length in metres")
     return body, None if radius is None else Scale(radius, **given)
 
 
@@ -149,7 +151,7 @@ def steady(args: Namespace) -> None:
     """Print steady states as a table."""
     body, scale = body_of(args)
     if args.hertz and scale is None:
-        raise ValueError("--hertz needs --radius, or a body measured in metres")
+        raise ValueError("--hertz needs --radius, or --outer and --length in metres")
     rates = list(args.rate)
     if scale is not None:
         rates += [hertz / float(scale.hertz(body, 1.0)) for hertz in args.hertz]
@@ -254,7 +256,7 @@ def coulomb(args: Namespace, scale: Scale | None) -> Coulomb:
     patch = 0.0 if args.patch is None else args.patch
     if isinstance(patch, Metres):
         if scale is None:
-            raise ValueError(f"--patch {float(patch):g}m needs --radius, or a body measured in metres")
+            raise ValueError(f"--patch {float(patch):g}m needs --radius, or --outer and --length in metres")
         patch = float(patch) / scale.metres(1.0)
     with _naming("patch", "--patch"):
         return Coulomb(args.mu, args.static, patch)._known()  # in natural units here
@@ -264,14 +266,14 @@ def contact_of(args: Namespace, scale: Scale | None) -> AnyContact:
     """The contact given by the options, with its coefficients."""
     for name, law in (("static", "coulomb"), ("patch", "coulomb"), ("viscosity", "viscous")):
         if getattr(args, name) is not None and args.contact != law:
-            raise ValueError(f"--{name} goes with --contact {law}")
+            raise ValueError(f"--{name} needs --contact {law}")
     if args.contact == "coulomb":
         if args.mu is None:
-            raise ValueError("--contact coulomb needs --mu")
+            raise ValueError("--contact coulomb needs --mu, the coefficient of friction")
         return coulomb(args, scale)
     if args.contact == "viscous":
         if args.viscosity is None:
-            raise ValueError("--contact viscous needs --viscosity")
+            raise ValueError("--contact viscous needs --viscosity, the coefficient of viscous friction")
         with _naming("c", "--viscosity"):
             return Viscous(args.viscosity)._known()  # in natural units here
     found: AnyContact = args.contact
@@ -283,7 +285,7 @@ def natural(name: str, time: float | None, scale: Scale | None) -> float | None:
     if not isinstance(time, Seconds):
         return time
     if scale is None:
-        raise ValueError(f"{name} {float(time):g}s needs --radius, or a body measured in metres")
+        raise ValueError(f"{name} {float(time):g}s needs --radius, or --outer and --length in metres")
     return float(time) / float(scale.seconds(1.0))
 
 

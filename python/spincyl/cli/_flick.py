@@ -119,7 +119,7 @@ def flick(args: Namespace) -> None:
     if args.points < 2:
         raise ValueError(f"--points {args.points}: expected at least 2")
     if not body.ell > 0:
-        raise ValueError(f"ell = {body.ell:g}: a flick needs a body with two rims, ell > 0")
+        raise ValueError(f"ell = {body.ell:g}: expected ell > 0, since a flick needs a body with two rims")
     seconds = None if args.seconds is None else Seconds(args.seconds)
     lasting = args.t if seconds is None else seconds
     if lasting is None:
@@ -136,7 +136,9 @@ def flick(args: Namespace) -> None:
             m = roll(body, start, t, want=("pose", "force"), contact=contact, **how)
         if args.output is not None and m.event is not None and m.event.time == 0:
             number = launch_numbers(body, start)["number"]
-            raise ValueError(f"launch number {number:.6g}: there is no motion to write; {m.message}")
+            raise ValueError(
+                f"launch number {number:.6g}: the motion ends at once, nothing to write; {m.message}"
+            )
         if writer is not None:
             writer(m, scale, Path(args.output))
     delivered(args, m, scale, launch_rows(body, start, scale), {"launch": launch_numbers(body, start)})
@@ -146,19 +148,19 @@ def _launched(args: Namespace, body: Body, scale: Scale | None) -> State:
     """The state of a launch given by speeds."""
     for name in ("angle", "finger", "table"):
         if getattr(args, name) is not None:
-            raise ValueError(f"--{name} goes with --impulse")
+            raise ValueError(f"--{name} needs --impulse; a launch by speeds does not use it")
     if (args.w1 is None) == (args.precession is None):
-        raise ValueError("a launch needs either --precession or --w1; or give --impulse and --angle")
+        raise ValueError("give exactly one of --precession and --w1; or give --impulse and --angle instead")
     if (args.launch_number is None) == (args.spin is None):
-        raise ValueError("a launch needs either --launch-number or --spin")
+        raise ValueError("give exactly one of --launch-number and --spin")
     if scale is None and not (args.precession is None and args.spin is None):
         name = "--spin" if args.precession is None else "--precession"
-        raise ValueError(f"{name} needs --radius, or a body measured in metres; without one give --w1")
+        raise ValueError(f"{name} needs --radius, or --outer and --length in metres; without them give --w1")
     if args.spin is None and 0 in (args.precession, args.w1):
-        raise ValueError("--launch-number needs a precession that is not zero")
+        raise ValueError("--launch-number needs a precession other than zero; for zero give --spin instead")
     centre = args.centre
     if isinstance(centre, MetresPerSecond) and scale is None:
-        raise ValueError("--centre in m/s needs --radius, or a body measured in metres")
+        raise ValueError("--centre in m/s needs --radius, or --outer and --length in metres")
     if centre is not None and scale is not None and not isinstance(centre, MetresPerSecond):
         centre = scale.metres_per_second(centre)
     told = {"hertz": args.precession, "w1": args.w1, "launch": args.launch_number, "spin_hertz": args.spin}
@@ -170,16 +172,18 @@ def _pushed(args: Namespace, body: Body, scale: Scale | None) -> State:
     for name in ("precession", "w1", "spin", "launch_number", "centre"):
         if getattr(args, name) is not None:
             raise ValueError(
-                f"--{name.replace('_', '-')} does not go with --impulse, which already determines the launch"
+                f"--{name.replace('_', '-')} cannot be combined with --impulse, which gives the whole launch"
             )
     if args.angle is None:
-        raise ValueError("--impulse needs --angle, from the top of the rim, as in 45deg")
+        raise ValueError(
+            "--impulse needs --angle, the angle of the finger from the top of the rim, such as 45deg"
+        )
     finger = 0.6 if args.finger is None else args.finger
     table = args.mu if args.table is None else args.table
     impulse = args.impulse
     if isinstance(impulse, NewtonSeconds):
         if scale is None or args.mass is None:
-            raise ValueError("--impulse in newton seconds needs --mass and --radius, or a measured body")
+            raise ValueError("--impulse in newton seconds needs --mass and --radius (or --outer, --length)")
         impulse = float(impulse) / (scale.mass * scale.metres_per_second(1.0))
     return pressed(body, impulse, args.angle, finger=finger, table=table)
 

@@ -47,7 +47,9 @@ def law(text: str) -> Given:
     """Read a law and its coefficient."""
     name, equals, number = text.partition("=")
     if name not in _NAMES or not equals:
-        raise ArgumentTypeError(f"{text!r}: expected NAME=VALUE with one of {', '.join(_NAMES)}")
+        raise ArgumentTypeError(
+            f"{text!r}: expected NAME=VALUE, such as dry-contour=5e-3, NAME one of {', '.join(_NAMES)}"
+        )
     found = _NAMES[name]
     return Given(text, found, quantity(_KINDS[found])(number), has_unit(number))
 
@@ -77,9 +79,9 @@ def _made(given: Given, scale: Scale | None, *, weighed: bool) -> Law:
     made: Any = given.law
     if given.si:
         if scale is None:
-            raise ValueError(f"{given.text} needs --radius, or a body measured in metres")
+            raise ValueError(f"{given.text} needs --radius, or --outer and --length in metres")
         if _KINDS[given.law] != "length" and not weighed:
-            raise ValueError(f"{given.text} needs --mass")
+            raise ValueError(f"{given.text} needs --mass, the mass of the body")
         made = partial(given.law.from_si, scale=scale)
     try:
         found: Law = made(given.value)

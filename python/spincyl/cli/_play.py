@@ -88,7 +88,7 @@ def run(args: Namespace) -> None:
     if body is None:
         args.t *= paper_tube()._second
     if args.restitution is not None and args.contact not in ("coulomb", "viscous"):
-        raise ValueError("--restitution goes with --contact coulomb or viscous")
+        raise ValueError("--restitution needs --contact coulomb or --contact viscous")
     path = writable(args.output)
     made = play(
         body,
@@ -109,6 +109,6 @@ def run(args: Namespace) -> None:
 def _table(args: Namespace, scale: Scale | None) -> AnyContact:
     """The contact given by the options, with its coefficient; the page has no static friction."""
     if args.mu is not None and args.contact != "coulomb":
-        raise ValueError("--mu goes with --contact coulomb")
+        raise ValueError("--mu needs --contact coulomb")
     args.static = None
     return contact_of(args, scale)
