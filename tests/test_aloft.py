@@ -132,12 +132,12 @@ def test_the_outcome_of_a_flick_that_goes_on_is_what_the_motion_says():
 @pytest.mark.parametrize(
     ("how", "why"),
     [
-        ({"restitution": None}, "^state: in the air, height = 0.5: give restitution"),
+        ({"restitution": None}, "^state: the body is in the air, height = 0.5: give restitution"),
         ({"restitution": -0.1}, "^restitution = -0.1: expected None, or 0 <= restitution <= 1"),
         ({"restitution": np.nan}, "^restitution = nan: expected None, or"),
         (
             {"restitution": 0.5, "contact": "rolling", "step": 1e-3},
-            "^step = 0.001 does not go with restitution=",
+            "^step = 0.001 cannot be combined with restitution=",
         ),
         ({"restitution": 0.5, "t": [0.0, -1.0]}, "^t = -1.0: expected times after t0"),
         (
@@ -167,7 +167,9 @@ def test_a_start_in_the_air_that_makes_no_sense_is_refused_by_name(how, why):
 
 def test_numbers_of_a_body_on_the_table_refuse_a_state_in_the_air():
     state = sc.dropped(COIN, 1.0, 1.2)
-    with pytest.raises(ValueError, match="^state: in the air, height = 1.0: expected a body on the table"):
+    with pytest.raises(
+        ValueError, match="^state: the body is in the air, height = 1.0: expected a body on the table"
+    ):
         COIN.acceleration(state)
     assert COIN.energy(state) == pytest.approx(COIN.energy(sc.State(1.2, 0, 0, 0)) + 1.0, abs=1e-15)
     m = sc.roll(COIN, COIN.steady(1.3), 1.0)

@@ -25,7 +25,7 @@ def test_a_coin_rolls_round_a_circle_of_the_radius_or_with_the_spin_that_is_aske
     spins = coin.circular(1.4, w3=named)
     assert spins.w1.dims == ("spin", "root") and abs(spins.precession[0, 0] - wide.precession) < 1e-13
     for wrong in ({}, {"radius": 1.0, "w3": 1.0}, {"precession": 1.0, "radius": 2.0}):
-        with pytest.raises(TypeError, match="precession, radius, w3: give one of them"):
+        with pytest.raises(TypeError, match="precession, radius, w3: give exactly one of them"):
             coin.circular(1.4, **wrong)
     with pytest.raises(ValueError, match="radius = -0.1: no steady state at theta"):
         sc.Body.solid(5.0).circular(1.0, radius=-0.1)

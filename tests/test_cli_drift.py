@@ -176,7 +176,7 @@ def test_a_pipe_gets_the_table_alone(capsys):
 def test_what_the_library_warns_of_is_said_in_one_line(capsys):
     found = said(capsys, "drift", "--ell", "0.0852", "--theta", "0.004", "--law", "dry-contour=5e-3")
     assert re.fullmatch(
-        r"spincyl drift: dry contour friction has no meaning below .* starts there\n", found.err
+        r"spincyl drift: the law of dry contour friction is not valid below .* starts there\n", found.err
     )
     assert "DryContour(0.005)" in found.out
 
@@ -201,7 +201,7 @@ def test_what_the_library_warns_of_is_said_in_one_line(capsys):
         ([*DRIFT, "--theta", "1.48"], "forbidden"),
         (
             "roll --ell 1 --theta 1 --t 1 --loss drilling=1e-3 --step 0.1".split(),
-            "does not go with losses",
+            "cannot be combined with losses",
         ),
     ],
 )

@@ -216,23 +216,26 @@ def test_a_hoop_is_thrown_with_backspin_by_roll(capsys):
 @pytest.mark.parametrize(
     ("words", "match"),
     [
-        ([], "state: slips, slip = (0.0, 5.0): contact='rolling' has no law of friction"),
-        (["--contact", "smooth"], "state: slips, slip = (0.0, 5.0): contact='smooth' has no law of friction"),
+        ([], "state: the body slips, slip = (0.0, 5.0): contact='rolling' has no law of friction"),
+        (
+            ["--contact", "smooth"],
+            "state: the body slips, slip = (0.0, 5.0): contact='smooth' has no law of friction",
+        ),
         (["--contact", "coulomb"], "--contact coulomb needs --mu"),
         (["--contact", "viscous"], "--contact viscous needs --viscosity"),
         (["--contact", "viscous", "--viscosity", "-1"], "--viscosity -1.0: expected 0 <= c"),
         (
             ["--contact", "viscous", "--viscosity", "1", "--mu", "0.3"],
-            "mu = 0.3 does not go with contact=Viscous",
+            "mu = 0.3 cannot be combined with contact=Viscous",
         ),
         (["--contact", "coulomb", "--mu", "nan"], "mu = nan: expected 0 <= mu"),
         (
             ["--contact", "coulomb", "--mu", "0.3", "--step", "0.1"],
-            "step = 0.1 does not go with contact=Coulomb",
+            "step = 0.1 cannot be combined with contact=Coulomb",
         ),
         (
             ["--contact", "coulomb", "--mu", "0.3", "--beyond"],
-            "beyond = True does not go with contact=Coulomb",
+            "beyond = True cannot be combined with contact=Coulomb",
         ),
         (["--contact", "rolling", "--static", "0.3"], "--static needs --contact coulomb"),
         (

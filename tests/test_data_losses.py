@@ -139,7 +139,7 @@ def test_two_laws_that_add_are_found_beside_each_other():
 def test_a_sum_of_laws_that_cannot_be_told_apart_is_refused_by_name():
     t, theta, _, _ = spun(sc.loss.DryContour(1e-3), points=12, share=0.2)
     for second in (sc.loss.ViscousContour, sc.loss.BoundaryLayer):
-        said = f"cannot tell DryContour from {second.__name__}"
+        said = f"cannot distinguish DryContour from {second.__name__}"
         with pytest.raises(ValueError, match=said):
             sc.data.fit_losses(t, theta, body=EULER, laws=[(sc.loss.DryContour, second)])
 
@@ -148,7 +148,7 @@ def test_coefficients_that_only_their_sum_is_known_of_are_refused_however_exact_
     laws = sc.loss.DryContour, sc.loss.ViscousContour
     t, theta, _, _ = spun(laws[0](1e-3) + laws[1](1e-4), points=60, share=0.2, noise=1e-8)
     with pytest.raises(
-        ValueError, match=r"cannot tell .*, since the correlation of their coefficients is -0\.999"
+        ValueError, match=r"cannot distinguish .*, since the correlation of their coefficients is -0\.999"
     ):
         sc.data.fit_losses(t, theta, body=EULER, laws=[laws])
 
@@ -191,7 +191,8 @@ def test_rates_that_several_inclinations_could_have_need_a_start():
     law, can = sc.loss.DryContour, sc.Body.solid(0.9)
     t, _, precession, _ = spun(law(1e-3), can, 1.2, noise=0.0)
     with pytest.raises(
-        ValueError, match=r"precession: the drift may start from 0\.\d+ or 1\.2 rad; give theta, or start="
+        ValueError,
+        match=r"precession: the drift may start at 0\.\d+ or 1\.2 rad; give theta=, or the right one",
     ):
         sc.data.fit_losses(t, precession=precession, body=can, laws=[law])
     found = sc.data.fit_losses(t, precession=precession, body=can, laws=[law], start=1.0, centre="rest").best
@@ -238,7 +239,7 @@ def test_what_cannot_be_a_spin_down_is_refused_by_name():
         ({"theta_err": 0.0}, "theta_err: expected positive"),
         ({"theta_err": [0.1, 0.2]}, "theta_err: expected a number"),
         ({"t_err": np.nan}, "t_err: expected positive"),
-        ({"precession_err": 0.1}, "precession_err: given without precession"),
+        ({"precession_err": 0.1}, "precession_err: give precession as well"),
         ({"centre": "slipping"}, "centre = 'slipping'"),
         ({"start": 0.0}, "start = 0.0"),
         ({"laws": []}, "laws: expected at least one"),

@@ -162,7 +162,7 @@ def test_drilling_stops_no_thin_disk_and_a_coin_only_while_its_centre_rests():
     [
         (
             {"seconds": 7.1},
-            "^seconds: a single time has no scatter; give the error of a time, as in error=0.2",
+            "^seconds: a single time has no scatter; give the standard error of a time in seconds, such as error=0.2",
         ),
         ({"seconds": [7.1]}, "^seconds: a single time"),
         ({"seconds": [7.1, math.nan]}, "^seconds: a single time"),
@@ -185,7 +185,7 @@ def test_drilling_stops_no_thin_disk_and_a_coin_only_while_its_centre_rests():
         ({"from_err": -0.1}, "^from_err = -0.1: expected at least 0, less than from_"),
         ({"from_err": "25deg"}, "^from_err = .*: expected at least 0, less than from_"),
         ({"centre": "moving"}, "^centre = 'moving': expected 'rest' or 'rolling'"),
-        ({"body": COIN.natural}, "^body: its size is not known"),
+        ({"body": COIN.natural}, "^body: the size of the body is unknown"),
         ({"body": sc.measured(outer_diameter=0.02, length=0.05), "from_": "40deg"}, "^from_: .* forbidden"),
     ],
 )

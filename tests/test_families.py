@@ -156,7 +156,7 @@ def test_shapes_that_do_not_fit_are_named(family):
 
 def test_a_slip_on_a_table_without_a_law_for_it_is_refused_also_where_it_is_not_known():
     for x in (np.ones(3), da.ones(3, chunks=2)):
-        with pytest.raises(ValueError, match="^states: slip, and contact='rolling' has no law"):
+        with pytest.raises(ValueError, match="^states: the stones slip, and contact='rolling' has no law"):
             sc.sweep.roll(*eggs(x), 1.0)
 
 

@@ -33,8 +33,8 @@ def test_a_comparison_of_turns_a_second_is_that_of_the_reduced_rates(body):
 @pytest.mark.parametrize(
     ("given", "error", "told"),
     [
-        ({}, TypeError, "^rate, hertz: give one of them"),
-        ({"rate": HERTZ, "hertz": HERTZ}, TypeError, "^rate, hertz: give one of them"),
+        ({}, TypeError, "^rate, hertz: give exactly one of them"),
+        ({"rate": HERTZ, "hertz": HERTZ}, TypeError, "^rate, hertz: give exactly one of them"),
         ({"hertz": HERTZ, "theta_err": 0.1, "rate_err": 0.1}, TypeError, "^rate_err: .* give hertz_err="),
         ({"rate": HERTZ, "theta_err": 0.1, "hertz_err": 0.1}, TypeError, "^hertz_err: .* give rate_err="),
         ({"hertz": HERTZ, "hertz_err": 0.1}, ValueError, "^theta_err and hertz_err: give both or none"),
@@ -44,7 +44,7 @@ def test_a_comparison_of_turns_a_second_is_that_of_the_reduced_rates(body):
         (
             {"body": sc.Body.solid(6.0), "hertz": HERTZ},
             ValueError,
-            "^body: its size is not known; make it with sc.measured",
+            "^body: the size of the body is unknown; make the body with sc.measured",
         ),
     ],
 )
@@ -99,7 +99,7 @@ def test_the_picture_of_a_comparison_in_hertz_is_in_hertz():
     assert ax.get_xlabel() == "turns per second"
     (bars,) = ax.containers
     np.testing.assert_allclose(bars.lines[0].get_xdata(), HERTZ, rtol=1e-14)
-    with pytest.raises(ValueError, match="^ells: its size is not known"):
+    with pytest.raises(ValueError, match="^ells: the size of the body is unknown"):
         sc.plot.branches([2.5], hertz=True)
     plt.close("all")
 
@@ -164,8 +164,8 @@ def test_a_spin_down_in_turns_a_second_is_that_in_radians_a_second():
     two = sc.data.fit_losses(t, precession=2 * np.pi * hertz, precession_err=2 * np.pi * 0.1, **how)
     assert one == two and one.best.coefficients_si == pytest.approx(1.5e-6, rel=1e-6)
     for more, error, told in (
-        ({"precession": hertz, "hertz": hertz}, TypeError, "^precession, hertz: give one of them"),
-        ({"precession": hertz, "hertz_err": 0.1}, TypeError, "^precession, hertz: give one of them"),
+        ({"precession": hertz, "hertz": hertz}, TypeError, "^precession, hertz: give only one of them"),
+        ({"precession": hertz, "hertz_err": 0.1}, TypeError, "^precession, hertz: give only one of them"),
         ({"hertz": hertz, "body": disk.natural}, ValueError, "^hertz: needs a measured body"),
         ({"hertz": "fast"}, TypeError, "^hertz: "),
     ):

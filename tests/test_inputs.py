@@ -242,7 +242,7 @@ def test_what_is_no_sweep_has_no_inputs():
         sc.sweep.inputs({})
     found = sc.sweep.roll(sc.Body.solid(2.5), sc.State(1.3, 1, 0, 1), 1.0)
     for lacks in (found.drop_vars("start_w3"), found.drop_vars("body_ell"), found.drop_attrs()):
-        with pytest.raises(ValueError, match="^rows: expected a result of sweep.roll; these have no '"):
+        with pytest.raises(ValueError, match="^rows: expected a result of sweep.roll, but '"):
             sc.sweep.inputs(lacks)
 
 

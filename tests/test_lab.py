@@ -154,7 +154,7 @@ def test_what_is_no_film_of_both_ends_is_refused_with_what_would_be_right():
         ((changed(tracks, lambda v: 1e-3 * v), TUBE), "is the tube in metres"),
         ((twice, TUBE), "two positions at t = 0"),
         (({"O": tracks["O"], "X": tracks["O"]}, TUBE), "the same place"),
-        ((filmed(hertz=TURNS * 2.05), TUBE), "film more frames a second"),
+        ((filmed(hertz=TURNS * 2.05), TUBE), "film with more frames per second"),
         ((tracks, CYLINDER), "give scale="),
     ):
         with pytest.raises(ValueError, match=said):

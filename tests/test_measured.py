@@ -339,9 +339,11 @@ def test_a_body_without_a_size_says_how_it_gets_one(motion, tmp_path):
         sc.loss.DryContour.from_si(1e-5, scale=body)
     with pytest.raises(TypeError, match="^scale: expected a Scale or a measured body, not None"):
         sc.State.from_si(1.0, 1.0, 0.0, 0.0, scale=None)
-    with pytest.raises(TypeError, match="^rate, hertz: give one"):
+    with pytest.raises(TypeError, match="^rate, hertz: give exactly one"):
         TUBE.inclinations(1.0, hertz=1.0)
-    with pytest.raises(TypeError, match="^rate, hertz: give one of them; hertz= needs a measured body"):
+    with pytest.raises(
+        TypeError, match="^rate, hertz: give exactly one of them; hertz= needs a measured body"
+    ):
         TUBE.inclinations()
     with pytest.raises(TypeError, match="^scale: expected a Scale, not float"):
         dataclasses.replace(body, scale=0.01)
@@ -430,7 +432,7 @@ def test_a_wall_is_half_the_difference_of_the_diameters():
     for wrong in (math.nan, -0.02, 0.0, math.inf):
         with pytest.raises(ValueError, match=f"^outer_diameter = {wrong}: expected outer_diameter > 0$"):
             sc.measured(outer_diameter=wrong, wall=1.5e-3, length=0.06)
-    with pytest.raises(TypeError, match="^inner_diameter, wall: give one"):
+    with pytest.raises(TypeError, match="^inner_diameter, wall: give only one"):
         sc.measured(outer_diameter=0.02, inner_diameter=0.017, wall=1e-3, length=0.06)
 
 

@@ -99,9 +99,9 @@ def test_a_map_of_measured_tubes_is_in_hertz_and_joules(bodies):
 def test_a_map_takes_tubes_and_no_other_body():
     with pytest.raises(ValueError, match="^ell: expected a tube"):
         sc.sweep.portrait([0.1], sc.Body.balls())
-    with pytest.raises(ValueError, match="^ell: expected tubes that differ in one"):
+    with pytest.raises(ValueError, match="^ell: expected tubes that differ in only one"):
         sc.sweep.portrait([0.1], sc.Body.tube([1.0, 2.0], [0.1, 0.2]))
-    with pytest.raises(TypeError, match="^bore, fillet: the body has its own"):
+    with pytest.raises(TypeError, match="^bore, fillet: leave them out if ell is a Body"):
         sc.sweep.portrait([0.1], TUBE, 0.5)
 
 

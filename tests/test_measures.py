@@ -42,10 +42,10 @@ def test_inclinations_are_found_from_hertz_and_have_these():
 
 def test_a_bare_rate_of_a_measured_body_is_none():
     for ask in (TUBE.inclinations, TUBE.states, TUBE.count):
-        with pytest.raises(TypeError, match="^rate: a measured body needs a keyword, hertz= or rate="):
+        with pytest.raises(TypeError, match="^rate: for a measured body write hertz=... or rate="):
             ask(9.0)
         for given in ({}, {"rate": 1.0, "hertz": 1.0}):
-            with pytest.raises(TypeError, match="^rate, hertz: give one of them"):
+            with pytest.raises(TypeError, match="^rate, hertz: give exactly one of them"):
                 ask(**given)
     assert TUBE.count(rate=1.2) == TUBE.natural.count(1.2) == TUBE.natural.count(rate=1.2) == 2
     assert TUBE.count(hertz=1.2 * TUBE.critical_hertz) == 2

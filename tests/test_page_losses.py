@@ -139,7 +139,7 @@ def test_what_makes_no_sound_is_refused(ask, error, match, tmp_path):
 
 
 def test_backward_in_time_there_is_nothing_to_hear(tmp_path):
-    with pytest.raises(ValueError, match="^motion: runs backward"):
+    with pytest.raises(ValueError, match="^motion: expected ascending times for a sound"):
         sc.roll(DISK, DISK.steady(0.2), [0.0, -5.0]).sound(tmp_path / "x.wav", scale=SIZE)
 
 

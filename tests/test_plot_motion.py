@@ -99,7 +99,7 @@ def test_one_found_by_steps_is_drawn_at_its_own_times_or_refused():
     assert np.array_equal(drawn, np.degrees(m.theta))
     with pytest.raises(ValueError, match=r"^m: expected at least two times, not 1 time; give roll more"):
         sc.plot.motion(sc.roll(CYLINDER, START, 20.0, step=1e-2))
-    with pytest.raises(ValueError, match="no duration to show from t = 20 on"):
+    with pytest.raises(ValueError, match="has no duration from t = 20 on"):
         sc.plot.motion(sc.roll(CYLINDER, START, [20.0], t0=20.0))
     with pytest.raises(TypeError, match="m: expected a Motion, not State"):
         sc.plot.motion(START)

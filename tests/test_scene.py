@@ -177,7 +177,7 @@ def test_what_has_no_answer_is_refused_and_says_why():
         (
             sc.roll(can, sc.State(0.3, 0.9, 0.0, 0.0), 9.0, mu=0.01, beyond=True),
             {},
-            "^motion: goes on beyond",
+            "^motion: continues beyond",
         ),
         (sc.roll(weightless, weightless.steady(1.4), 1.0), {}, "^a force in SI needs the mass"),
         (
@@ -263,11 +263,11 @@ def test_what_lies_beyond_the_end_of_the_answer_is_left_out_and_what_is_no_traje
     ):
         with pytest.raises(ValueError, match=said):
             tube.compare(*wrong)
-    with pytest.raises(ValueError, match="^time = .*the answer ends before: the face landed"):
+    with pytest.raises(ValueError, match="^time = .*the known motion ends before this time: the face landed"):
         fall.compare([3 * end], x[:1], q[:1])
     with pytest.raises(TypeError, match="^scalar_first"):
         tube.compare([0.0, 0.01], x, q, scalar_first=1)
-    with pytest.warns(UserWarning, match="turned by .* scalar_first=True"):
+    with pytest.warns(UserWarning, match="at time 0 it differs by .* scalar_first=True"):
         tube.compare([0.0, 0.01], x, np.roll(q, 1, axis=1))
     with pytest.raises(ValueError, match="^orientation"):
         tube.couple([0, 0, 0, 2.0], [0, 0, 1.0], 1.0)

@@ -154,10 +154,12 @@ def test_the_unit_of_a_stone_stays_with_its_copies_and_a_spin_may_be_in_hertz():
     ).all()
     with pytest.raises(ValueError, match="hertz"):
         stone.spinning(hertz=0.5)
-    with pytest.raises(TypeError, match="give one of them"):
+    with pytest.raises(TypeError, match="give exactly one of them"):
         measured.spinning(1.0, hertz=0.5)
     for none in (stone.spinning, stone.rocking, measured.growth_rates):
-        with pytest.raises(TypeError, match="^spin, hertz: give one of them; hertz= needs a measured stone$"):
+        with pytest.raises(
+            TypeError, match="^spin, hertz: give exactly one of them; hertz= needs a measured stone$"
+        ):
             none()
 
 

@@ -107,7 +107,7 @@ def test_a6_what_is_masked_is_nan_on_an_axis_and_no_time():
 def test_mistakes_are_named():
     with pytest.raises(ValueError, match=r"want = 'speed': expected some of"):
         sc.sweep.portrait(THETA, ELL, want=["speed"])
-    with pytest.raises(ValueError, match="theta: expected a number or one dimension"):
+    with pytest.raises(ValueError, match="theta: expected a number or a one-dimensional array"):
         sc.sweep.portrait(np.ones((2, 2)), ELL)
     for threads in (0, -1, 10**6):
         with pytest.raises(ValueError, match="threads"):

@@ -163,10 +163,10 @@ def test_what_makes_no_sense_with_losses_is_refused_before_any_work():
     for kw, kind, text in [
         ({"losses": 1e-3}, TypeError, "^losses: expected a loss from sc.loss"),
         ({"losses": loss.DryContour}, TypeError, "^losses: expected a loss from sc.loss"),
-        ({"losses": dry, "step": 1e-3}, ValueError, "^step, mu, beyond: not available with"),
-        ({"losses": dry, "beyond": True}, ValueError, "^step, mu, beyond: not available with"),
+        ({"losses": dry, "step": 1e-3}, ValueError, "^step, mu, beyond: cannot be combined with"),
+        ({"losses": dry, "beyond": True}, ValueError, "^step, mu, beyond: cannot be combined with"),
         ({"losses": dry, "restitution": 1.1}, ValueError, "^restitution = 1.1: expected 0 to 1"),
-        ({"losses": dry, "stop_at": "rolling"}, ValueError, "^stop_at: only with"),
+        ({"losses": dry, "stop_at": "rolling"}, ValueError, "^stop_at: needs contact"),
         ({"losses": dry, "contact": "sticky"}, ValueError, "^contact = 'sticky'"),
         ({"losses": dry, "want": "theta_max"}, ValueError, "^want = 'theta_max': expected some of"),
         ({"losses": dry, "want": "dissipated"}, ValueError, "^want = 'dissipated': expected some of"),

@@ -174,14 +174,18 @@ def test_a_finger_that_leaves_at_the_same_rates_has_flicked():
 @pytest.mark.parametrize(
     ("how", "error", "why"),
     [
-        ({"hertz": 17}, TypeError, "^hertz, w1, launch, spin_hertz: give one"),
-        ({"hertz": 17, "w1": 3.0, "launch": 1.3}, TypeError, "^hertz, w1, launch, spin_hertz: give one"),
+        ({"hertz": 17}, TypeError, "^hertz, w1, launch, spin_hertz: give exactly one"),
+        (
+            {"hertz": 17, "w1": 3.0, "launch": 1.3},
+            TypeError,
+            "^hertz, w1, launch, spin_hertz: give exactly one",
+        ),
         (
             {"w1": 3.0, "launch": 1.3, "spin_hertz": 3.0},
             TypeError,
-            "^hertz, w1, launch, spin_hertz: give one",
+            "^hertz, w1, launch, spin_hertz: give exactly one",
         ),
-        ({"w1": 0.0, "launch": 1.3}, ValueError, "^launch: needs w1 or hertz other than 0"),
+        ({"w1": 0.0, "launch": 1.3}, ValueError, "^launch: needs a w1 or hertz other than 0"),
         ({"hertz": "17mm", "launch": 1.3}, ValueError, "^hertz: '17mm': expected a frequency"),
         ({"w1": "x", "launch": 1.3}, TypeError, "^w1: expected real numbers"),
     ],
@@ -231,5 +235,5 @@ def test_flicks_by_turns_about_both_axes_are_those_of_their_launch_numbers():
             launch = float(sc.launch_number(PVC, start))
             one = sc.sweep.flicks(PVC, 5.0, hertz=hertz, launch=launch, contact=table)
             assert int(one["outcome"]) == int(found["outcome"].sel(hertz=hertz, spin_hertz=spin))
-    with pytest.raises(TypeError, match="^hertz, w1, launch, spin_hertz: give one"):
+    with pytest.raises(TypeError, match="^hertz, w1, launch, spin_hertz: give exactly one"):
         sc.sweep.flicks(PVC, 5.0, hertz=rates, launch=1.2, spin_hertz=spins, contact=table)

@@ -86,7 +86,7 @@ def times_of(t: Reals) -> Floats:
         raise ValueError(f"t: expected a number or a one-dimensional array, not shape {np.shape(times)}")
     found = np.array(floats(times)).reshape(-1)  # a copy, so that the caller's array can change
     if found.size == 0:
-        raise ValueError("t: expected at least one time")
+        raise ValueError("t: expected at least one time, not an empty array")
     return found
 
 
@@ -128,7 +128,7 @@ def ask(
     else:
         first = times.item(0)
         if times.size == 1 and first != 0 and math.isfinite(first):
-            raise ValueError("t: an array of one time needs t0=, or give the time as a number")
+            raise ValueError("t: for an array of one time give t0= as well, or give a number instead")
         t0 = first if math.isfinite(first) else 0.0
     beyond = beyond if beyond is False else flag("beyond", beyond)
     word = isinstance(contact, str)
@@ -142,16 +142,18 @@ def ask(
     if method is not None:
         one_of("method", method, ("exact", "rk4"))
     if step is not None and tol is not None:
-        raise ValueError(f"step = {step!r} and tol = {tol!r}: give one of them")
+        raise ValueError(f"step = {step!r} and tol = {tol!r}: give only one of them")
     if step is not None or tol is not None:
         if method == "exact":
-            raise ValueError("method = 'exact' takes neither step= nor tol=")
+            raise ValueError(
+                "method = 'exact': leave out step= and tol=, which the exact method does not use"
+            )
         if method == "rk4" and step is None:
-            raise ValueError("method = 'rk4' takes step=; tol= is for steps of eighth order")
+            raise ValueError("method = 'rk4': give step= instead of tol=, which is for steps of eighth order")
         step = None if step is None else number("step", step)
         tol = None if tol is None else number("tol", tol)
     elif method == "rk4":
-        raise ValueError("method = 'rk4' needs step=, as in step=1e-3")
+        raise ValueError("method = 'rk4': give the step, for example step=1e-3")
     mu = mu if type(mu) is float else number("mu", mu)
     plain = word and state.slip is None and state.height is None and restitution is None and losses is None
     if not plain:  # otherwise no combination of the arguments is invalid

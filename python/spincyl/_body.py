@@ -113,7 +113,9 @@ class Body(Laws, Sized, Hinting, metaclass=Named):
             # the moments of a tube follow from its bore and must agree; values of a lazy array are not
             # computed
             if getattr(own, "chunks", None) is None and np.any(np.abs(own - value) > 1e-15 * own):
-                raise ValueError(f"{name} = {value!r}: a tube of this bore has {own!r}")
+                raise ValueError(
+                    f"{name} = {value!r}: expected {own!r}, which follows from the bore of the tube"
+                )
         for name, value in zip(FIELDS, (given[0], *moments, *given[3:]), strict=True):
             object.__setattr__(self, name, kept(value))
 
@@ -420,12 +422,12 @@ class Body(Laws, Sized, Hinting, metaclass=Named):
     def _reduced(self, of: Reals, rate: Reals, hertz: Reals) -> Reals:
         """The reduced rate, from a reduced rate or from turns per second."""
         if sum(x is not None for x in (of, rate, hertz)) != 1:
-            raise TypeError("rate, hertz: give one of them; hertz= needs a measured body")
+            raise TypeError("rate, hertz: give exactly one of them; hertz= needs a measured body")
         if hertz is None and (of is None or self.scale is None):
             return reals("rate", rate if of is None else of)
         scale = self._sized("hertz")
         if hertz is None:
-            raise TypeError("rate: a measured body needs a keyword, hertz= or rate= (the reduced rate)")
+            raise TypeError("rate: for a measured body write hertz=... or rate=... (the reduced rate)")
         return reals("hertz", turns_per_second("hertz", hertz)) / scale.hertz(self, 1.0)
 
     @property

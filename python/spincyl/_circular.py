@@ -17,7 +17,7 @@ def circular(body: "Body", theta: Reals, precession: Reals, radius: Reals, w3: R
     given = {"precession": precession, "radius": radius, "w3": w3}
     chosen = [name for name, x in given.items() if x is not None]
     if len(chosen) != 1:
-        raise TypeError("precession, radius, w3: give one of them")
+        raise TypeError("precession, radius, w3: give exactly one of them")
     (name,) = chosen
     theta, number = radians("theta", theta, body._leans), reals(name, given[name])
     numbers: Any = body._numbers
@@ -33,7 +33,7 @@ def circular(body: "Body", theta: Reals, precession: Reals, radius: Reals, w3: R
         if np.isnan(asked):
             raise ValueError(f"{name} = nan: expected a number")
         if np.isnan(number):
-            raise ValueError(f"{name} = {given[name]!r}: no steady state at theta = {theta!r} has it")
+            raise ValueError(f"{name} = {given[name]!r}: no steady state at theta = {theta!r} has this value")
         return State(*_core.circular_state(float(theta), float(number), numbers))
     w1, w3 = (f(theta, number, *numbers) for f in (_core.circular_w1, _core.circular_w3))
     return State(theta, w1, w1 * 0.0, w3)

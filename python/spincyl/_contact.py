@@ -212,7 +212,7 @@ def table(contact: AnyContact, mu: float, own: bool = False) -> tuple[int, tuple
     if not own:
         built_in(contact)
     if not is_scalar(*contact._numbers):
-        raise ValueError(f"contact = {contact!r}: expected single numbers, not arrays of them")
+        raise ValueError(f"contact = {contact!r}: expected single coefficients, not arrays")
     first, second, patch = map(float, contact._numbers)
     return law(contact), (first, second, patch)
 
@@ -234,11 +234,11 @@ def fitting(contact: AnyContact, scale: Scale | None) -> None:
     if not isinstance(contact, _Law):
         code(contact, rubs=True)
     if scale is not None and isinstance(contact, Viscous) and not contact._sized:
-        why = "expected SI for a measured body, sc.Viscous.from_si(..., scale=body)"
-        raise ValueError(f"contact = {contact!r}: {why}; or take body.natural")
+        why = "expected SI for a measured body: use sc.Viscous.from_si(..., scale=body)"
+        raise ValueError(f"contact = {contact!r}: {why}, or pass body.natural")
     if scale is not None and has_patch(contact) and not contact._sized:  # type: ignore[union-attr]
-        why = 'expected SI for a measured body, sc.Coulomb.from_si(mu, patch="0.3mm", scale=body)'
-        raise ValueError(f"contact = {contact!r}: {why}; or take body.natural")
+        why = 'expected SI for a measured body: use sc.Coulomb.from_si(mu, patch="0.3mm", scale=body)'
+        raise ValueError(f"contact = {contact!r}: {why}, or pass body.natural")
     if isinstance(contact, Viscous) or has_patch(contact):
         other(f"contact = {contact!r}", contact._sized, scale)  # type: ignore[union-attr]
 

@@ -40,7 +40,7 @@ _ROLLS = "expected a state without slip, as dataclasses.replace(state, slip=None
 _NOBODY = "no drift"
 
 
-_NO_COUPLE = "dry contour friction has no meaning below theta = eps, and this drift "
+_NO_COUPLE = "the law of dry contour friction is not valid below theta = eps, and this drift "
 
 
 class DriftWarning(UserWarning):
@@ -179,7 +179,7 @@ class Drift:
             found = [float(value) for value in out[0]]
             if np.isnan(found[0]) and name == "theta":
                 low, high = sorted((float(np.asarray(self.start.theta)), self.ends_at_theta))
-                told = f"expected an inclination of the drift, from {low:.6g} to {high:.6g}"
+                told = f"expected an inclination through which the drift passes, {low:.6g} to {high:.6g}"
                 raise ValueError(f"theta = {asked[0]:.10g}: {told}")
             if np.isnan(found[0]) and question == 1:
                 raise ValueError(f"t = {x!r}: expected 0 <= t <= stops_at = {self.stops_at!r}")

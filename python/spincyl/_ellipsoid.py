@@ -372,11 +372,11 @@ class Ellipsoid(Sized):
     def _spin(self, spin: Reals | None, hertz: Reals | None) -> Reals:
         """The spin in sqrt(g/a), given directly or in turns per second."""
         if (spin is None) == (hertz is None):
-            raise TypeError("spin, hertz: give one of them; hertz= needs a measured stone")
+            raise TypeError("spin, hertz: give exactly one of them; hertz= needs a measured stone")
         if hertz is None:
             return doubles(reals("spin", spin))
         if self.scale is None:
-            raise ValueError("hertz: needs a measured stone, as from in_metres(); or give spin=")
+            raise ValueError("hertz: needs a measured stone, made with in_metres(); for any other give spin=")
         return doubles(reals("hertz", turns_per_second("hertz", hertz))) / self.scale._units[3]
 
     def spin_limits(self) -> Floats:

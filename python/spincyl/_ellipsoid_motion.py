@@ -153,9 +153,11 @@ def roll(
     made("state", state, EllipsoidState)
     if not rubs(contact) and state._slips:
         why = f"contact={contact!r} has no law of friction; give contact=sc.Coulomb(mu)"
-        raise ValueError(f"state: slips, slip = {state.slip!r}; {why}")
+        raise ValueError(f"state: the stone slips, slip = {state.slip!r}; {why}")
     if step is not None or method is not None:
-        raise ValueError("step, method: only for bodies of revolution; for a stone give tol=, or nothing")
+        raise ValueError(
+            "step, method: only for bodies of revolution; for a stone leave them out, or give tol="
+        )
     if restitution is not None:
         why = "the motion of a stone ends where the stone leaves the table"
         raise ValueError(f"restitution: only for bodies of revolution; {why}")

@@ -19,9 +19,13 @@ _WHY = {
 def check(losses: object, times: Floats, t0: float, settings: dict[str, Any]) -> None:
     """Raise ValueError for arguments that exclude losses; `settings` are the settings given, by name."""
     if made_law(losses)._function is None and not is_scalar(*losses._coefficients):  # type: ignore[attr-defined]
-        raise ValueError(f"losses = {losses!r}: expected single numbers, not arrays; sc.drift takes arrays")
+        raise ValueError(
+            f"losses = {losses!r}: expected single coefficients, not arrays; sc.drift accepts arrays"
+        )
     for name in filter(settings.__contains__, _WHY):
-        raise ValueError(f"{name} = {settings[name]!r} does not go with losses={losses!r}: {_WHY[name]}")
+        raise ValueError(
+            f"{name} = {settings[name]!r} cannot be combined with losses={losses!r}: {_WHY[name]}"
+        )
     if np.any(times < t0):
         raise ValueError(
             f"t = {float(times[times < t0][0])!r}: expected at least t0 = {t0!r};"

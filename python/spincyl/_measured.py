@@ -93,7 +93,7 @@ def measured(
         refuse("outer_diameter", outer, lambda x: ~(x > 0) | np.isinf(x), "expected outer_diameter > 0")
         thick = within("wall", si("wall", wall, "metre"), 0.0, outer / 2, "metres")
         if given["inner_diameter"]:
-            raise TypeError("inner_diameter, wall: give one of them")
+            raise TypeError("inner_diameter, wall: give only one of them")
         given["inner_diameter"] = outer - 2 * thick
     body = Body.from_metres(**given)
     within("outer_diameter", given["outer_diameter"], 2e-100, 2e100, "metres")

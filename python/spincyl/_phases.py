@@ -117,10 +117,12 @@ def check(state: State, contact: AnyContact, restitution: object, settings: dict
         if restitution is None:
             return
         for name in filter(settings.__contains__, ("step", "method", "beyond")):
-            raise ValueError(f"{name} = {settings[name]!r} does not go with restitution=: {_WHY[name]}")
+            raise ValueError(
+                f"{name} = {settings[name]!r} cannot be combined with restitution=: {_WHY[name]}"
+            )
         return
     for name, value in settings.items():
-        raise ValueError(f"{name} = {value!r} does not go with contact={contact!r}: {_WHY[name]}")
+        raise ValueError(f"{name} = {value!r} cannot be combined with contact={contact!r}: {_WHY[name]}")
 
 
 _WHY = {

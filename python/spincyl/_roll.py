@@ -242,8 +242,8 @@ def roll(
         m = in_si(m, one, times_of(seconds), step)
     if m.status == Ending.BOUNDED:
         at = f"t = {m.event.time:.6g}" + (" s" if scale is not None else "") if m.event else "its start"
-        told = f"given up at {at}: slipping and rolling alternate too often, or the motion hardly advances"
-        warn(f"{told}; the result ends there (Ending.BOUNDED)", RuntimeWarning)
+        told = f"given up at {at}, since slipping and rolling alternate too often, or time hardly advances"
+        warn(f"{told}; the motion ends there (Ending.BOUNDED)", RuntimeWarning)
     if m.coarse:
         why = f"RK4 damps the nutation by {100 * m.step_loss:.3g} % of its amplitude"
         if m.step_loss <= 1e-3:

@@ -183,14 +183,14 @@ def numbers(state: object) -> tuple[Reals, Reals, Reals, Reals]:
 def landed(state: State, remedy: str) -> None:
     """Raise ValueError with a remedy for a state in the air."""
     if state.height is not None:
-        raise ValueError(f"state: in the air, height = {text(state.height)}: {remedy}")
+        raise ValueError(f"state: the body is in the air, height = {text(state.height)}: {remedy}")
 
 
 def gripping(state: object, why: str) -> tuple[Reals, Reals, Reals, Reals]:
     """The four numbers of a state without slip, or ValueError with the remedy `why`."""
     found = numbers(state)
     if isinstance(state, State) and state._slips:
-        raise ValueError(f"state: slips, slip = {text(state._slip)}: {why}")
+        raise ValueError(f"state: the body slips, slip = {text(state._slip)}: {why}")
     if isinstance(state, State):
         landed(state, "expected a body on the table")
     return found

@@ -291,9 +291,8 @@ def flicked(
     """
     scale = _known(body, scale)
     if (hertz is None) == (w1 is None) or (launch is None) == (spin_hertz is None):
-        raise TypeError(
-            "hertz, w1, launch, spin_hertz: give one of hertz= and w1=, and one of launch= and spin_hertz="
-        )
+        why = "give exactly one of hertz and w1, and exactly one of launch and spin_hertz"
+        raise TypeError(f"hertz, w1, launch, spin_hertz: {why}")
     if scale is None and not (hertz is None and spin_hertz is None):
         raise ValueError(f"{'spin_' * (hertz is None)}hertz: needs a measured body, or scale=; w1= does not")
     refuse("ell", body.ell, lambda x: x <= 0, "expected a body with two rims, ell > 0")
@@ -305,7 +304,7 @@ def flicked(
     with np.errstate(divide="ignore", invalid="ignore"):
         if spin_hertz is None:
             if is_scalar(w1) and w1 == 0:
-                raise ValueError("launch: needs w1 or hertz other than 0")
+                raise ValueError("launch: needs a w1 or hertz other than 0; for 0 give spin_hertz=")
             w3 = _core.launch_spin(w1, reals("launch", launch), *body._numbers)
         else:
             w3 = turns("spin_hertz", spin_hertz)

@@ -31,7 +31,7 @@ __all__ = ["Couple", "Friction"]
 
 #: A couple from theta, w along e1, e2, e3 (an array of 3), and the normal force.
 CoupleFunction = Callable[[float, Floats, float], Sequence[float] | Floats]
-_ALONE = "a law of your own works only in sc.roll, for a single body of revolution, as its only loss law"
+_ALONE = "a law of your own works only in sc.roll, for a single body of revolution, as the only loss"
 
 
 def _called(name: str, function: object, arguments: str) -> None:

@@ -343,7 +343,7 @@ def play(
     told = words_of_body(body)
     if state is not None:
         if theta is not None or not (type(kick) in (int, float) and kick == 0):
-            raise ValueError("state: give either a state or theta and kick, not both")
+            raise ValueError("state: cannot be combined with theta or kick; give one or the other")
         told |= words_of_state(state)
     else:
         theta = within("theta", steep if theta is None else theta, 1e-3, np.pi, "radians")
@@ -379,7 +379,7 @@ def _needed(friction: bool, contact: AnyContact, losses: Loss | None, body: Body
     if body is not None:
         fitting(contact, body.scale)
     if not friction and (losses is not None or not isinstance(contact, str)):
-        raise ValueError("friction = False: this contact or loss needs friction=True")
+        raise ValueError("friction = False: a law of friction or losses need friction=True")
 
 
 def _bouncing(friction: bool, contact: AnyContact, restitution: float | None) -> None:
@@ -388,7 +388,7 @@ def _bouncing(friction: bool, contact: AnyContact, restitution: float | None) ->
         raise ValueError("friction = False: a restitution needs friction=True")
     if restitution is not None and has_patch(contact):
         raise ValueError(
-            f"restitution = {restitution}: expected None for a contact with a patch, {contact!r}"
+            f"restitution = {restitution}: expected None, since the contact has a patch, {contact!r}"
         )
 
 

@@ -372,7 +372,7 @@ def view(
     <View of a motion; .save('spin.html') writes the page>
     """
     if not motions:
-        raise ValueError("motions: expected at least one, as in view(m)")
+        raise ValueError("motions: expected at least one Motion, as in view(m)")
     for m in motions:
         if not isinstance(m, Motion):
             raise TypeError(f"motions: expected Motion objects, not {type(m).__name__}")

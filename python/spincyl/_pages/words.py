@@ -24,9 +24,7 @@ from spincyl._throw import pressed, thrown
 def words_of_body(body: Body) -> dict[str, Any]:
     """Words for a body: half length, bore and fillet of a tube; the numbers of any other body."""
     if isinstance(body, Ellipsoid):
-        raise TypeError(
-            "body: expected a Body; the page has a stone only among its scenes, view(motion) shows any stone"
-        )
+        raise TypeError("body: expected a Body, not a stone; for the motion of a stone use sc.view")
     made("body", body, Body)
     numbers = body.ell, body.i1, body.i3, body.fillet, body.theta_end, body.bore
     if not is_scalar(*numbers):
@@ -79,7 +77,9 @@ def words_of_table(contact: AnyContact) -> dict[str, Any]:
         raise ValueError(f"contact = {contact!r}: expected single numbers, not arrays")
     if isinstance(contact, Coulomb):
         if contact.static != contact.mu:
-            raise ValueError(f"contact = {contact!r}: expected static = mu on a page")
+            raise ValueError(
+                f"contact = {contact!r}: expected static = mu, since a page has no separate static friction"
+            )
         patch = {"patch": within("patch", contact.patch, 0, 0.5)} if contact.patch else {}
         return {"contact": "coulomb", "mu": float(contact.mu)} | patch
     if isinstance(contact, Viscous):
@@ -98,9 +98,11 @@ def words_of_loss(losses: Loss | None) -> dict[str, Any]:
     if losses is None:
         return {}
     if not isinstance(losses, Loss):
-        raise TypeError(f"losses: expected a law of spincyl.loss, not {type(losses).__name__}")
+        raise TypeError(f"losses: expected a loss from sc.loss, not {type(losses).__name__}")
     if len(losses.laws) != 1 or not is_scalar(losses.laws[0].coefficient):
-        raise ValueError(f"losses = {losses!r}: expected one law with one coefficient on a page")
+        raise ValueError(
+            f"losses = {losses!r}: expected one loss with a single coefficient, since a page has only one"
+        )
     (law,) = losses.laws
     name = re.sub(r"\B(?=[A-Z])", "-", type(law).__name__).lower()
     return {"law": name, "loss": float(law.coefficient)}

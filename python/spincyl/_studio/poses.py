@@ -58,7 +58,9 @@ def span(m: "Motion") -> tuple[float, float]:
     elif m.t.size < times.size:  # after the landing of a face there are no states
         last = float(m.t[-1]) if m.t.size else first
     if not (last - first) * (times[-1] - start) > 0:
-        raise ValueError(f"motion: no duration to show from t = {first:.6g} on: {m.message}")
+        raise ValueError(
+            f"motion: has no duration from t = {first:.6g} on, so there is nothing to show: {m.message}"
+        )
     return first, last
 
 
@@ -140,8 +142,8 @@ def repeats(m: "Motion") -> Repeat | None:
     period = pace(m)
     if last - first > _LONGEST * period:
         many = (last - first) / period
-        told = f"motion: {many:.0f} nutations, too many to show"
-        raise ValueError(f"{told}; expected at most {_LONGEST}: use a shorter time")
+        told = f"motion: has {many:.0f} nutations, too many to show"
+        raise ValueError(f"{told}; expected at most {_LONGEST}; use a shorter time")
     if m.method != "exact" or not period < last - first:
         return None
     phi, psi, centre = seen(m, np.array([first, first + period]), "phi", "psi", "centre")

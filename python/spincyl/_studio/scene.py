@@ -180,17 +180,19 @@ class Scene:
         m = self.motion.at(self._began + t / self.scale.seconds(1.0))
         n = m.t.size
         if not n:
-            raise ValueError(f"time = {t[0]!r}: the answer ends before: {m.message.split(';')[0]}")
+            raise ValueError(
+                f"time = {t[0]!r}: the known motion ends before this time: {m.message.split(';')[0]}"
+            )
         apart = [np.linalg.norm(q[:n] + sign * m.orientation, axis=1) for sign in (-1, 1)]
         angle = 4 * np.arcsin(np.minimum(np.minimum(*apart) / 2, 1.0))
         if t[0] == 0 and angle[0] > _DOUBTED:
             why = "expected quaternions x, y, z, w, or w, x, y, z with scalar_first=True"
-            warn(f"orientation: at time 0 turned by {angle[0]:.2g} rad from that of the scene; {why}")
+            warn(f"orientation: at time 0 it differs by {angle[0]:.2g} rad from the initial one; {why}")
         metre, (off, turned) = self.scale.radius, pose_errors(m)
         away = np.linalg.norm(x[:n] - metre * m.centre, axis=1)
         reach = metre * float(np.linalg.norm(m.centre[0]))
         if away[0] > _AWAY * reach:
-            told = f"position: {away[0]:.2g} m from the answer at t = {t[0]:.4g} s, which is {reach:.2g} m"
+            told = f"position: {away[0]:.2g} m from the known one at t = {t[0]:.4g} s, which is {reach:.2g} m"
             warn(f"{told} from the origin; are the positions in millimetres?")
         theta = inclination(q[:n]) - inclination(m.orientation)
         return Deviation(t[:n], away, angle, theta, off * metre, turned)
@@ -306,12 +308,12 @@ def scene(motion: Motion, *, scale: Scale | None = None) -> Scene:
         t = np.concatenate([[t0], t])
     for law in (m.contact, m.losses):
         if getattr(law, "_function", None) is not None:
-            raise TypeError(f"motion: a scene cannot contain {law!r}, a law of your own")
+            raise TypeError(f"motion: expected built-in laws for a scene, not {law!r}")
     if not (np.diff(t) > 0).all():
         raise ValueError("motion: expected ascending times, since an engine starts at the first of them")
     if m.event is not None and m._asked.beyond:
         why = "expected a motion that ends at its event; leave out beyond=True"
-        raise ValueError(f"motion: goes on beyond an event: {m.message}; {why}")
+        raise ValueError(f"motion: continues beyond an event: {m.message}; {why}")
     if t.size < 2:
         raise ValueError(f"motion: expected a time after the initial state: {motion.message}")
     if m._doubt or not math.isfinite(m.error):

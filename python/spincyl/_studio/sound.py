@@ -57,7 +57,7 @@ def sound(
     rate = whole("rate", rate, 8000, 192_000)
     first, last = span(m)
     if last < first:
-        raise ValueError("motion: runs backward in time; expected ascending times for a sound")
+        raise ValueError("motion: expected ascending times for a sound, not a motion backward in time")
     unit = float(scale.seconds(1.0))
     lasting = (last - first) * unit
     if seconds is not None:

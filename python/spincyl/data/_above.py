@@ -189,7 +189,7 @@ def from_above(
     body, scale = with_size("tube", tube, scale)
     ruler = number("ruler", ruler)
     if not 0 <= ruler < 0.5:
-        raise ValueError(f"ruler = {ruler!r}: expected 0 or more, less than 0.5; 0.01 is one per cent")
+        raise ValueError(f"ruler = {ruler!r}: expected at least 0 and less than 0.5; 0.01 means one per cent")
     if isinstance(tracks, str | PathLike):
         tracks = read_tracker(tracks, encoding=encoding)
     if not isinstance(tracks, Mapping):
@@ -244,7 +244,7 @@ def with_size(name: str, body: Any, scale: Scale | None) -> tuple[Body, Scale]:
         found = Scale(radius=float(body._measured["outer_diameter"]) / 2)
     if found is None:
         more = ", or give scale=" if name == "tube" else ""
-        raise ValueError(f"{name}: its size is not known; make it with sc.measured{more}")
+        raise ValueError(f"{name}: the size of the body is unknown; make the body with sc.measured{more}")
     return body, found
 
 
@@ -312,7 +312,7 @@ def _between(first: tuple[Floats, Floats], second: tuple[Floats, Floats]) -> tup
         many = counted(t.size)
         raise ValueError(f"tracks: expected at least three frames with both ends, not {many}{rest}")
     if not (np.abs(between) > 0).all():
-        raise ValueError("tracks: both ends are at the same place; are they two tracks of one mark?")
+        raise ValueError("tracks: both ends are at the same place; are these two tracks of the same mark?")
     return t, between, unseen
 
 
@@ -353,8 +353,8 @@ def _share(shares: Floats, ruler: float) -> tuple[float, float]:
         )
     if share > 1:
         warnings.warn(
-            f"the line between the ends is longer than the tube by {100 * (share - 1):.2g} %, so that the"
-            " distance from 90 degrees is not known; film from the side as well",
+            f"the line between the ends is {100 * (share - 1):.2g} % longer than the tube: the inclination is"
+            " near 90 degrees but not known exactly; film from the side as well",
             UserWarning,
             stacklevel=3,
         )
@@ -369,8 +369,8 @@ def _turning(t: Floats, between: Floats) -> tuple[float, float, Floats]:
     most = abs(slope) * float(np.median(gaps))
     if most > 0.9 * math.pi:
         raise ValueError(
-            f"tracks: the tube turns by {most / (2 * math.pi):.2g} of a turn from frame to frame, too much to"
-            " tell the two senses of rotation apart; film more frames a second"
+            f"tracks: the tube turns by {most / (2 * math.pi):.2g} of a turn from frame to frame, so that"
+            " the sense of rotation is not clear; film with more frames per second"
         )
     direction = np.empty_like(t)
     direction[0] = np.angle(between[0])
@@ -387,7 +387,7 @@ def _turning(t: Floats, between: Floats) -> tuple[float, float, Floats]:
     spread = float(rest @ rest) / max(t.size - 2, 1)
     if math.sqrt(spread) > _WANDERS:
         warnings.warn(
-            f"the direction deviates from uniform rotation by {math.sqrt(spread):.2g} rad: the tube is not"
+            f"the line deviates from uniform rotation by {math.sqrt(spread):.2g} rad: the tube is not"
             " steady, or the two marks were exchanged",
             UserWarning,
             stacklevel=3,

@@ -276,7 +276,7 @@ def compare(
     # a real body has I3 <= 2 I1; measurement errors may bring the ratio slightly below 1/2
     if not found.success or not ratio + 5 * ratio_err >= 0.5:
         raise ValueError(
-            f"theta and rate: no real body fits: I1/I3 = {ratio:.3g}; give turns a second as hertz="
+            f"theta and rate: no real body has I1/I3 = {ratio:.3g}; give turns a second as hertz="
         )
     said = _doubts(found, alone, both, own, known, fitted=common > 0)
     if said:
@@ -309,13 +309,13 @@ def _reduced(
 ) -> tuple[Reals, Reals | None, float]:
     """Reduced rates, their errors, and turns per second of a reduced rate of 1; NaN if rates were given."""
     if (rate is None) == (hertz is None):
-        raise TypeError("rate, hertz: give one of them")
+        raise TypeError("rate, hertz: give exactly one of them")
     if hertz is None:
         if hertz_err is not None:
-            raise TypeError("hertz_err: goes with hertz=; for reduced rates give rate_err=")
+            raise TypeError("hertz_err: use it only with hertz=; for reduced rates give rate_err=")
         return rate, rate_err, math.nan
     if rate_err is not None:
-        raise TypeError("rate_err: goes with reduced rates; for hertz= give hertz_err=")
+        raise TypeError("rate_err: use it only with rate=; for hertz= give hertz_err=")
     found, scale = with_size("body", body, None)
     unit = float(scale.hertz(found, 1.0))
     given = (("hertz", hertz), ("hertz_err", hertz_err))

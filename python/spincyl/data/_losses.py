@@ -115,9 +115,9 @@ def fit_losses(
     odrpack = extra("odrpack", "lab")
     if hertz is not None or hertz_err is not None:
         if precession is not None or precession_err is not None:
-            raise TypeError("precession, hertz: give one of them, with the error of the same name")
+            raise TypeError("precession, hertz: give only one of them, and the error of the same name")
         if one_body(body).scale is None:
-            raise ValueError("hertz: needs a measured body; for any other give precession=")
+            raise ValueError("hertz: needs a measured body; for any other body give precession=")
         precession, precession_err = (
             None if x is None else 2 * np.pi * reals(name, turns_per_second(name, x))
             for name, x in (("hertz", hertz), ("hertz_err", hertz_err))
@@ -290,7 +290,9 @@ def _guess(odrpack: Any, data: SpinDown, curve: Curve) -> Floats:
     steep = np.abs(more - less) / 0.002
     seen = np.isfinite(clock) & (steep > 0)
     if seen.sum() < 2:
-        raise ValueError(f"theta: a drift of {curve.laws[0].__name__} does not pass these inclinations")
+        raise ValueError(
+            f"theta: a drift under {curve.laws[0].__name__} does not pass through these inclinations"
+        )
     slope, begun = np.polyfit(clock[seen], t[seen], 1, w=1 / steep[seen])
     coefficient = 1 / slope if slope > 0 else np.ptp(clock[seen]) / np.ptp(t[seen])
     first = float(inclinations[0])
@@ -323,7 +325,7 @@ def _refuse_degenerate(found: _Raw) -> None:
         if not abs(correlation) <= _CORRELATED:
             why = f"the correlation of their coefficients is {correlation:.5f}"
     if why:
-        told = f"these points cannot tell {names[0]} from {names[1]}"
+        told = f"these points cannot distinguish {names[0]} from {names[1]}"
         raise ValueError(f"laws: {told}, since {why}; fit them one by one")
 
 

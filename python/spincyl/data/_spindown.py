@@ -130,7 +130,7 @@ def measured(
     given = {"theta": (theta, theta_err), "precession": (precession, precession_err)}
     for name, (values, errors) in given.items():
         if values is None and errors is not None:
-            raise ValueError(f"{name}_err: given without {name}")
+            raise ValueError(f"{name}_err: give {name} as well")
     names = tuple(name for name, (values, _) in given.items() if values is not None)
     if not names:
         raise ValueError("theta, precession: give at least one of them")
@@ -216,7 +216,7 @@ def _rises(name: str, t: Floats, values: Floats) -> bool:
     correlation = float(np.corrcoef(first.astype(np.float64), second.astype(np.float64))[0, 1])
     if not abs(correlation) > 0.5:
         raise ValueError(
-            f"{name}: expected a drift; the rank correlation with t is {correlation:.2f}, at least 0.5 needed"
+            f"{name}: expected a drift; the rank correlation with t is {correlation:.2f}, below 0.5"
         )
     return correlation > 0
 
@@ -295,5 +295,7 @@ def _from_precession(
         return min(found, key=lambda f: abs(float(f[0][0]) - start))
     if len(found) > 1:
         several = " or ".join(f"{float(f[0][0]):.3g}" for f in found)
-        raise Several(f"precession: the drift may start from {several} rad; give theta, or start=")
+        raise Several(
+            f"precession: the drift may start at {several} rad; give theta=, or the right one as start="
+        )
     return found[0]

@@ -230,7 +230,9 @@ def fit_stop(
     """
     one_body(body)
     if body.scale is None:
-        raise ValueError("body: its size is not known; make it with sc.measured, or give it a scale")
+        raise ValueError(
+            "body: the size of the body is unknown; make the body with sc.measured, or give it a scale"
+        )
     kind = known_law("law", law)
     theta, theta_err = (
         number(name, radians(name, x)) for name, x in (("from_", from_), ("from_err", from_err))
@@ -294,7 +296,9 @@ def _timed(seconds: Reals, error: float | None) -> tuple[Floats, float, float]:
         )
     elif times.size < 2 or np.ptp(times) == 0:
         what = "a single time has" if times.size < 2 else "equal times have"
-        raise ValueError(f"seconds: {what} no scatter; give the error of a time, as in error=0.2")
+        raise ValueError(
+            f"seconds: {what} no scatter; give the standard error of a time in seconds, such as error=0.2"
+        )
     if times.max() > _MIXED * times.min():
         told = f"the times range from {times.min():.4g} to {times.max():.4g} s: are all of them in seconds?"
         warnings.warn(told, UserWarning, stacklevel=3)

@@ -92,7 +92,7 @@ def block_size(
         )
     count = math.prod(n for name, n in found.sizes.items() if name != "t")
     if count == 0:
-        raise ValueError("sample: expected at least one motion")
+        raise ValueError("sample: expected arrays with at least one motion")
     taken = _cost(found, asked)
     if count > 1:
         # The fixed cost of a block matters in a small sample, but hardly in a large block. It is measured
@@ -127,7 +127,7 @@ def _one_block(x: Any, array: Any) -> Any:
         return x.chunk()
     kept = reals("sample", x)
     if np.ndim(kept) and not np.size(kept):
-        raise ValueError("sample: expected at least one motion")
+        raise ValueError("sample: expected arrays with at least one motion")
     return kept if np.ndim(kept) == 0 else array.from_array(np.asarray(kept), chunks=-1)
 
 

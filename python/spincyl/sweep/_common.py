@@ -36,7 +36,9 @@ def targets(out: Any, want: Iterable[str]) -> dict[str, Any]:
         raise TypeError(f"out: expected an earlier result, not {type(out).__name__}")
     for name in want:
         if name not in out:
-            raise ValueError(f"out: expected an array {name!r}, as in want=; out has {list(out)}")
+            raise ValueError(
+                f"out: expected an array named {name!r}, which want= contains; out has only {list(out)}"
+            )
         if not hasattr(out[name], "__array__"):
             raise TypeError(f"out[{name!r}]: expected an array to fill, not {type(out[name]).__name__}")
     return {name: out[name] for name in want}

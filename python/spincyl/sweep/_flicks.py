@@ -171,6 +171,6 @@ def _axis(lib: Any, name: str, value: Reals) -> Any:
     if is_scalar(given) or hasattr(given, "dims"):
         return given
     if np.ndim(given) != 1:
-        raise ValueError(f"{name}: expected a number or one dimension, not shape {np.shape(given)}")
+        raise ValueError(f"{name}: expected a number or a one-dimensional array, not shape {np.shape(given)}")
     axis = "precession" if name == "w1" else name  # for a body on its side, w1 is the precession
     return lib.DataArray(floats(given), dims=axis, coords={axis: floats(given)})

@@ -164,7 +164,7 @@ def inputs(rows: "xarray.Dataset") -> dict[str, Any]:
     missing = [name for name in ("start_w3", "body_a1" if stones else "body_ell") if name not in rows.coords]
     missing += [name for name in ("contact", "t", "tol") if name not in at]
     if missing:
-        raise ValueError(f"rows: expected a result of sweep.roll; these have no {missing[0]!r}")
+        raise ValueError(f"rows: expected a result of sweep.roll, but {missing[0]!r} is missing")
     given: dict[str, Any] = {name: _input(rows[name]) for name in _UNITS if name in rows.coords}
     scale = Scale(*(at[name] for name in ("radius", "mass", "gravity"))) if "radius" in at else None
     known: Any = True if scale is None else scale

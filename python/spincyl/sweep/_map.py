@@ -406,12 +406,12 @@ def _ends(name: str, ends: list[tuple[float, int, int]], axes: dict[str, Floats]
 def _tube(body: Body, bore: Reals, fillet: Reals) -> tuple[Reals, Reals, Reals]:
     """Half length, bore and fillet of tubes; an error if bore or fillet is given as well."""
     if not (is_scalar(bore, fillet) and bore == 0.0 == fillet):
-        raise TypeError("bore, fillet: the body has its own; leave them out")
+        raise TypeError("bore, fillet: leave them out if ell is a Body, which has its own")
     found = body.ell + body.fillet if np.any(body.fillet != 0) else body.ell, body.bore, body.fillet
     if np.isnan(body.bore).any():
         raise ValueError("ell: expected a tube from sc.measured or Body.tube; a general body has no bore")
     if sum(not is_scalar(x) for x in found) > 1:
-        raise ValueError("ell: expected tubes that differ in one of ell, bore and fillet")
+        raise ValueError("ell: expected tubes that differ in only one of ell, bore and fillet")
     return found
 
 
@@ -444,5 +444,5 @@ def _axis(name: str, value: Reals) -> Any:
     else:
         axis = floats(kept)
     if axis.ndim > 1:
-        raise ValueError(f"{name}: expected a number or one dimension, not shape {axis.shape}")
+        raise ValueError(f"{name}: expected a number or a one-dimensional array, not shape {axis.shape}")
     return axis

@@ -208,7 +208,9 @@ def roll(
         from spincyl.sweep import _stones
 
         if step is not None or beyond or restitution is not None or stop_at is not None:
-            raise ValueError("step, beyond, restitution, stop_at: only for bodies, not for stones")
+            raise ValueError(
+                "step, beyond, restitution, stop_at: only for bodies of revolution; leave them out for stones"
+            )
         stones = _stones.question(bodies, states, t, want, contact, tol, mu, losses)
         labels = LABELS | _stones.LABELS
         found = swept(_stones.fill, stones, labels, threads=threads, progress=progress, length="a")
@@ -263,7 +265,7 @@ def _checked(asked: Asked, losses: Loss | None) -> Asked:
         made_law(losses)
         narrow(losses, contact)
     if not rubs(contact) and asked.stop_at is not None:
-        raise ValueError("stop_at: only with contact=sc.Coulomb(...) or sc.Viscous(...)")
+        raise ValueError("stop_at: needs contact=sc.Coulomb(...) or contact=sc.Viscous(...)")
     if asked.restitution is not None:
         within("restitution", number("restitution", asked.restitution), 0.0, 1.0, "or None")
     one_of("stop_at", asked.stop_at, (None, "rolling"))
@@ -275,7 +277,7 @@ def _checked(asked: Asked, losses: Loss | None) -> Asked:
             )
         if step is not None or asked.beyond or (rubs(contact) and asked.mu != np.inf):
             given = f"contact={contact!r}, losses={losses!r}, restitution={asked.restitution!r}"
-            raise ValueError(f"step, mu, beyond: not available with {given}")
+            raise ValueError(f"step, mu, beyond: cannot be combined with {given}")
     return asked._replace(step=None if step is None else number("step", step))
 
 
@@ -305,12 +307,12 @@ def _times(t: Reals) -> tuple[Floats, bool]:
         return np.array([within("t", given, -1e15, 1e15, "sqrt(R/g)") + 0.0]), False
     at = floats(given) + 0.0
     if at.ndim != 1 or at.size == 0:
-        like = "a number, for the final state only, or an array of times, with one dimension and not empty"
-        raise ValueError(f"t: expected {like}; not shape {at.shape}")
+        like = "a number (time of the final state) or a one-dimensional array of at least one time"
+        raise ValueError(f"t: expected {like}, not an array of shape {at.shape}")
     ordered = any((np.diff(x, prepend=0.0) >= 0).all() for x in (at, -at))
     if not ordered or not np.abs(at).max() <= 1e15:
         order = "all >= 0 and ascending, or all <= 0 and descending"
-        raise ValueError(f"t: expected times in order, {order}, at most 1e15 in size")
+        raise ValueError(f"t: expected times that are {order}, and at most 1e15 in absolute value")
     return at, True
 
 
@@ -335,7 +337,7 @@ def _wanted(
                 raise ValueError(f"{e}; this output needs {argument}") from None
         raise
     if "states" in asked and ("final" in asked or not several):
-        raise ValueError('want: expected "states" only for an array of times t, and not with "final"')
+        raise ValueError('want: "states" needs an array of times t, and cannot be combined with "final"')
     return tuple(name for name in kinds if name in asked)
 
 

@@ -96,12 +96,12 @@ def save(
     """
     xr, dask = extra("xarray", "sweep"), extra("dask", "sweep")
     extra("zarr", "sweep")
-    lazy = "expected a lazy Dataset of spincyl.sweep, made of dask-backed inputs"
+    lazy = "expected a lazy Dataset of spincyl.sweep, computed from inputs backed by dask"
     if not isinstance(result, xr.Dataset) or not result.data_vars:
         raise TypeError(f"result: {lazy}")
     if all(variable.chunks is None for variable in result.data_vars.values()):
-        back = ", and sweep.inputs makes its arguments again" if "start_w3" in result.coords else ""
-        raise TypeError(f"result: {lazy}; this one is in memory: result.to_zarr(path) writes it{back}")
+        back = "; sweep.inputs gives back its arguments" if "start_w3" in result.coords else ""
+        raise TypeError(f"result: {lazy}; this one is in memory, so save it with result.to_zarr(path){back}")
     if not isinstance(result.attrs.get("spincyl_sweep"), dict):
         raise TypeError(f"result: {lazy}")
     callback(progress)
@@ -184,7 +184,7 @@ def _chunks(result: "xarray.Dataset") -> Chunks:
     for dim, sizes in result.chunksizes.items():
         if len(set(sizes[:-1])) > 1 or (len(sizes) > 1 and sizes[-1] > sizes[0]):
             raise ValueError(
-                f"result: expected blocks of one size along {dim}, not {list(sizes)}; rechunk it"
+                f"result: expected blocks of one size along {dim}, not {list(sizes)}; use result.chunk"
             )
         chunks[str(dim)] = int(sizes[0]), int(sum(sizes))
     return chunks

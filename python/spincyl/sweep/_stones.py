@@ -49,7 +49,7 @@ def question(
         code(contact, rubs=True)
         if states._slips:
             why = f"contact={contact!r} has no law of friction; give contact=sc.Coulomb(mu)"
-            raise ValueError(f"states: slip, and {why}")
+            raise ValueError(f"states: the stones slip, and {why}")
     names = [name for name in _TOLD if name in (*wanted, "error", "known_until")]
     names += [*(_FINAL if "final" in wanted else ()), "status"]
     slip = ("slip_x", "slip_y")
