@@ -287,7 +287,7 @@ def test_what_says_nothing_of_the_ratio_is_refused_and_what_fits_badly_is_warned
     for points in ((theta, 6.2 * rate), forbidden):
         with pytest.warns(UserWarning, match="chi2"):
             sc.data.compare(CYLINDER, *points)
-    with pytest.raises(ValueError, match="no real body fits"):
+    with pytest.raises(ValueError, match="no real body has"):
         sc.data.compare(CYLINDER, *forbidden, theta_err=1e-3, rate_err=1e-3)
     assert repr(sc.data.compare(CYLINDER, theta, rate)).startswith("<Comparison: I1/I3 = 4.")
 

@@ -72,7 +72,7 @@ def test_shapes_broadcast_by_rule_and_by_name():
 def test_mistakes_are_refused_before_any_work():
     for kw, text in [
         ({"t": []}, r"t: expected a number .* final state.* or a one-dimensional array .* shape \(0,\)"),
-        ({"t": [[1.0, 2.0]]}, r"t: expected a number, .* not shape \(1, 2\)"),
+        ({"t": [[1.0, 2.0]]}, r"t: expected a number .* shape \(1, 2\)"),
         ({"t": [2.0, 1.0]}, "t: expected times that are all >= 0 and ascending"),
         ({"t": [1.0, np.nan]}, "t: expected times that are all >= 0 and ascending"),
         ({"t": np.nan}, "t = nan"),
