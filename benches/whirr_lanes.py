@@ -1,4 +1,4 @@
-"""Whirrs in SIMD lanes under each law of loss and three mixtures: time, end and error, one table.
+"""Whirrs in SIMD lanes under each loss law and three mixtures: time, end and error, one table.
 
     python benches/whirr_lanes.py [--count 512] [--tol 1e-8]
 
@@ -67,7 +67,7 @@ def main():
     state, share = starts(asked.count)
     body = sc.Body.solid(np.full(asked.count, ELL))
     print(
-        f"Whirrs under every law of loss, {asked.count} of each, tol {asked.tol:g} (`benches/whirr_lanes.py`):\n"
+        f"Whirrs under every loss law, {asked.count} of each, tol {asked.tol:g} (`benches/whirr_lanes.py`):\n"
     )
     print("| law | us | times the best | endings | estimated error | true error |\n" + "| --- " * 6 + "|")
     rows = []

@@ -1,4 +1,4 @@
-"""Euler's disk stops under three laws of loss at once, and whirrs differently."""
+"""Euler's disk stops under three loss laws at once, and whirrs differently."""
 
 import matplotlib.pyplot as plt
 import numpy as np

@@ -84,7 +84,7 @@ pub mod drift {
 }
 
 pub mod custom {
-    //! User-defined laws of loss and of friction, and the motions of bodies under them.
+    //! User-defined laws of loss and friction, and the motions of bodies under them.
     //!
     //! ```text
     //! m(theta, w, N)     a couple along e1, e2, e3, in M g R, that takes the power -m.w >= 0

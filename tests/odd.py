@@ -325,7 +325,7 @@ def motions():
 
 
 def laws():
-    """Laws of loss."""
+    """Loss laws."""
     body, state = BODY, STATE
     found = {}
     laws = {name: getattr(sc.loss, name) for name in sc.loss.__all__ if name not in ("Law", "Loss", "Sum")}

@@ -1,6 +1,6 @@
 """Random unusual scenes, to compare many motions at once with each of them alone.
 
-A scene is a family of motions with the same kind of contact, laws of loss and times: `sc.sweep.roll` computes
+A scene is a family of motions with the same kind of contact, loss laws and times: `sc.sweep.roll` computes
 it at once, `sc.roll` one motion after the other. Bodies, coefficients and starts differ within a family.
 """
 

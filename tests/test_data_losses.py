@@ -1,4 +1,4 @@
-"""Measured spin-downs: drifts are fitted, and laws of loss are told apart where the data allow."""
+"""Measured spin-downs: drifts are fitted, and loss laws are told apart where the data allow."""
 
 import warnings
 from functools import cache

@@ -1,4 +1,4 @@
-"""Laws of loss: arithmetic, power, refusals, and SI units."""
+"""Loss laws: arithmetic, power, refusals, and SI units."""
 
 import copy
 import math

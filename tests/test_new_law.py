@@ -1,4 +1,4 @@
-"""Files that list all laws of loss by name: a failure names the law and the file that lacks it.
+"""Files that list all loss laws by name: a failure names the law and the file that lacks it.
 
 The table of the core comes first; other lists are derived from it where possible. CONTRIBUTING.md describes
 how to add a law.
@@ -63,9 +63,7 @@ def test_every_law_of_loss_stands_in(path):
             wanted := pattern.format(name=name, parameter=parameter, typed=typed(name)), text, re.M
         )
     ]
-    assert not lacking, f"{path} lacks a law of loss (CONTRIBUTING.md, To add a law of loss)\n" + "\n".join(
-        lacking
-    )
+    assert not lacking, f"{path} lacks a loss law (CONTRIBUTING.md, To add a loss law)\n" + "\n".join(lacking)
 
 
 def test_the_page_has_the_laws_in_the_order_of_the_core():

@@ -299,7 +299,7 @@ def drift(
     return Drift(body, losses, centre, state, *reshaped, known, columns, shape)
 
 
-#: The columns of drifts: bodies, states, and the coefficients of the laws of loss.
+#: The columns of drifts: bodies, states, and the coefficients of the loss laws.
 _COLUMNS: tuple[str, ...] = (
     *("ell", "i1", "i3", "bore", "fillet", "theta_end", "theta", "w1", "w2", "w3"),
     *(name for name, _ in _core.loss_laws()),

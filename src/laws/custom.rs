@@ -1,11 +1,11 @@
-//! User-defined laws of loss and of friction, and the check of each law before a motion begins.
+//! User-defined laws of loss and friction, and the check of each law before a motion begins.
 
 use super::body::Body;
 use super::state::State;
 use crate::error::{Error, within};
 use core::f64::consts::PI;
 
-/// A law of loss: a couple on the body that takes energy.
+/// A loss law: a couple on the body that takes energy.
 ///
 /// A closure `|body: &Body, y: &State, normal: f64| -> [f64; 3]` is such a law.
 pub trait CoupleLaw {

@@ -91,12 +91,12 @@ impl Scale {
         Ok(Self { radius, mass, gravity })
     }
 
-    /// The coefficient of a law of loss in natural units, from its value in SI, in the unit of that law ([`Law`]).
+    /// The coefficient of a loss law in natural units, from its value in SI, in the unit of that law ([`Law`]).
     pub fn coefficient(&self, law: Law, in_si: f64) -> f64 {
         in_si / self.unit_of(law)
     }
 
-    /// The coefficient of a law of loss in SI, from its value in natural units.
+    /// The coefficient of a loss law in SI, from its value in natural units.
     pub fn coefficient_in_si(&self, law: Law, coefficient: f64) -> f64 {
         coefficient * self.unit_of(law)
     }

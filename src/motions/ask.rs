@@ -49,7 +49,7 @@ pub enum Method {
 pub struct Ask {
     /// The law of the contact with the table.
     pub table: Table,
-    /// The laws of loss, in addition to the friction of a slip.
+    /// The loss laws, in addition to the friction of a slip.
     pub losses: Losses,
     /// The method that computes the motion.
     pub method: Method,

@@ -25,7 +25,7 @@ fn constant(value: &impl Debug) -> String {
 }
 
 /// Names and codes of every enumeration, in the order of the codes. Tables and ends of drifts have their own names; a
-/// law of loss has the name of its class.
+/// loss law has the name of its class.
 #[pyfunction]
 pub fn codes() -> [(&'static str, Codes); 8] {
     let status: Codes = Ending::ALL.iter().map(|x| (constant(x), *x as u8)).collect();

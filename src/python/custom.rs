@@ -1,4 +1,4 @@
-//! Laws of loss and of friction that are Python functions.
+//! Laws of loss and friction that are Python functions.
 
 use crate::laws::body::Body;
 use crate::laws::custom::{CoupleLaw, FrictionLaw};

@@ -167,7 +167,7 @@ pub fn stone_energies(stone: [f64; STONE], states: Vec<[f64; 8]>, smooth: bool) 
     Ok(states.iter().map(energy).collect())
 }
 
-/// The coefficients of the laws of loss that act on stones.
+/// The coefficients of the loss laws that act on stones.
 #[pyfunction]
 pub fn stone_losses() -> Vec<&'static str> {
     let acts = |law: &Law| Losses::of(*law, 1.0).check_for_stone().is_ok();

@@ -94,7 +94,7 @@ def words_of_restitution(restitution: float | None) -> dict[str, Any]:
 
 
 def words_of_loss(losses: Loss | None) -> dict[str, Any]:
-    """Words for a law of loss: its name on the command line, and its coefficient."""
+    """Words for a loss law: its name on the command line, and its coefficient."""
     if losses is None:
         return {}
     if not isinstance(losses, Loss):
@@ -159,7 +159,7 @@ def restitution_of(words: Mapping[str, Any]) -> float | None:
 
 
 def losses_of(words: Mapping[str, Any]) -> Loss | None:
-    """The law of loss that the words describe."""
+    """The loss law that the words describe."""
     name = words.get("law", "none")
     if name == "none" or not words.get("loss"):
         return None

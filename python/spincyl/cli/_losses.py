@@ -1,4 +1,4 @@
-"""Options for laws of loss: dry-contour=5e-3, rolling-resistance=0.2mm, air-film=18uPas."""
+"""Options for loss laws: dry-contour=5e-3, rolling-resistance=0.2mm, air-film=18uPas."""
 
 import re
 from argparse import ArgumentTypeError, Namespace
@@ -23,7 +23,7 @@ _KINDS: dict[type[Law], str] = {
 _NAMES = {re.sub(r"\B(?=[A-Z])", "-", law.__name__).lower(): law for law in _KINDS}
 
 TEXT = """\
-Laws of loss, with coefficients in natural units of M, R and g, or in SI with --radius and --mass:
+Loss laws, with coefficients in natural units of M, R and g, or in SI with --radius and --mass:
   dry-contour=5e-3         or 0.2mm     dry friction along the rim
   viscous-contour=1e-3     or 1e-6Nms   the same, proportional to the speed of the contact point
   rolling-resistance=1e-3  or 0.04mm    rolling resistance: distance of the normal force ahead of the contact
@@ -35,7 +35,7 @@ Laws of loss, with coefficients in natural units of M, R and g, or in SI with --
 
 
 class Given(NamedTuple):
-    """A law of loss from the command line."""
+    """A loss law from the command line."""
 
     text: str
     law: Any
@@ -55,7 +55,7 @@ def law(text: str) -> Given:
 
 
 def option(sub: Any, *names: str, required: bool = False) -> None:
-    """Add an option for laws of loss, which may be repeated."""
+    """Add an option for loss laws, which may be repeated."""
     sub.add_argument(
         *names,
         dest="losses",
@@ -63,7 +63,7 @@ def option(sub: Any, *names: str, required: bool = False) -> None:
         action="append",
         required=required,
         metavar="LAW=VALUE",
-        help="law of loss, such as dry-contour=5e-3; repeat the option to add several",
+        help="loss law, such as dry-contour=5e-3; repeat the option to add several",
     )
 
 

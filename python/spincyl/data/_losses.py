@@ -1,4 +1,4 @@
-"""Fits of drifts to a measured spin-down, and comparison of laws of loss by AIC."""
+"""Fits of drifts to a measured spin-down, and comparison of loss laws by AIC."""
 
 import math
 import warnings
@@ -35,7 +35,7 @@ def fit_losses(
     hertz_err: Reals | None = None,
     start: float | None = None,
 ) -> LossFit:
-    """Fit laws of loss to a measured spin-down, and rank the laws.
+    """Fit loss laws to a measured spin-down, and rank the laws.
 
     A spin-down is the inclination or the precession of a spinning body at several times while it slows down.
 

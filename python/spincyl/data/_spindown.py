@@ -72,14 +72,14 @@ def centres(centre: str | None) -> tuple[str, ...]:
 
 
 def known_laws() -> list[Any]:
-    """All classes of laws of loss."""
+    """All classes of loss laws."""
     from spincyl import loss
 
     return [getattr(loss, name) for name in LAWS]
 
 
 def known_law(name: str, law: Any) -> Any:
-    """A class of laws of loss, or TypeError naming the argument."""
+    """A class of loss laws, or TypeError naming the argument."""
     if not any(law is one for one in known_laws()):
         raise TypeError(f"{name}: expected a class of sc.loss such as sc.loss.DryContour, not {law!r}")
     return law

@@ -16,7 +16,7 @@ _FAR = 10.0  #: A coefficient beyond the typical ones by this factor causes a wa
 class Typical(NamedTuple):
     """A published coefficient, or its range."""
 
-    of: str  #: a law of loss or a contact with the name of its coefficient, or "restitution"
+    of: str  #: a loss law or a contact with the name of its coefficient, or "restitution"
     pair: str  #: the two materials
     low: float  #: the coefficient, or the lower end of its range
     high: float  #: upper end of the range; equal to `low` for a single figure

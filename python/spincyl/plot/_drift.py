@@ -50,7 +50,7 @@ def drift(found: Drift, ax: "Axes | None" = None) -> "Axes":
     if made("found", found, Drift)._shape:
         raise ValueError(f"found: expected a single drift, not a family of shape {found._shape}")
     first, last = float(np.asarray(found.start.theta)), float(found.ends_at_theta)
-    # equal steps of inclination; inclinations where the law of loss is no longer valid are left out
+    # equal steps of inclination; inclinations where the loss law is no longer valid are left out
     low = float(found._columns["eps"][0])
     tilt = np.linspace(first, last, _MANY)[:-1]
     tilt = tilt[(tilt >= low) | (tilt == first)]

@@ -26,7 +26,7 @@ _NORMAL = ("n1", "n2", "n3")
 _LAWS: dict[str, type[Law]] = {
     name: getattr(loss, kind) for kind, (name, _) in zip(CODES["Law"], _core.loss_laws(), strict=True)
 }
-#: The natural unit of the coefficient of each law of loss.
+#: The natural unit of the coefficient of each loss law.
 _COEFFICIENTS = {
     loss.DryContour: "R",
     loss.ViscousContour: "M R sqrt(g R)",

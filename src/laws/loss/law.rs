@@ -1,4 +1,4 @@
-//! The properties of a law of loss: its coefficient, its couple, its power, and all else that depends on the law.
+//! The properties of a loss law: its coefficient, its couple, its power, and all else that depends on the law.
 //!
 //! ```text
 //! m = C u,   P = C p = -m.w          the couple u and the power p of a unit coefficient C, and of N = 1
@@ -47,7 +47,7 @@ pub(crate) struct EndPowers {
     pub upright: f64,
 }
 
-/// A law of loss. Every law is linear in its one coefficient.
+/// A loss law. Every law is linear in its one coefficient.
 pub(crate) trait LossLaw {
     /// The name of the coefficient.
     const PARAMETER: &'static str;

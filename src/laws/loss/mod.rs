@@ -1,4 +1,4 @@
-//! Laws of loss: each law gives a couple on the body and the power that the couple takes.
+//! Loss laws: each law gives a couple on the body and the power that the couple takes.
 //!
 //! ```text
 //! s, c = sine, cosine of theta,   h = c e1 - s e3 horizontal in the leaning plane,   A as in `body::rim`
@@ -167,7 +167,7 @@ macro_rules! laws {
 // The table: a law, its number, and the file in which the type of the same name implements it. CONTRIBUTING.md explains
 // how to add a law.
 laws! {
-    /// A law of loss. The number of a law is its index among the coefficients, which are in natural units;
+    /// A loss law. The number of a law is its index among the coefficients, which are in natural units;
     /// [`Scale::coefficient`](crate::Scale::coefficient) converts them from SI.
     pub enum Law {
         /// Dry friction along the contour of the rim, with the power eps N A |psi'|. Unit of eps: R, in SI metres.
@@ -241,7 +241,7 @@ impl Law {
     }
 }
 
-/// The coefficients of all laws of loss; the coefficient of an absent law is 0.
+/// The coefficients of all loss laws; the coefficient of an absent law is 0.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(
     feature = "serde",

@@ -124,7 +124,7 @@ impl<T: Real> StoneLaw<T> {
         Touching { n, r, r_rate, lost: None, holds: false }
     }
 
-    /// The arguments of the laws of loss for a stone with the angular velocity `w`: those of an upright disk, whose e1 is
+    /// The arguments of the loss laws for a stone with the angular velocity `w`: those of an upright disk, whose e1 is
     /// the vertical, and whose e2 and e3 are the axes x and y of the laboratory.
     #[inline(always)]
     pub fn kinematics(losses: &Couples<T>, lab: &[[T; 3]; 3], w: [T; 3]) -> Kinematics<T> {

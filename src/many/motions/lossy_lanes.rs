@@ -1,4 +1,4 @@
-//! Bodies in SIMD lanes that roll, or slide freely, and lose energy; all lanes have the same laws of loss.
+//! Bodies in SIMD lanes that roll, or slide freely, and lose energy; all lanes have the same loss laws.
 
 use crate::laws::body::Shape;
 use crate::laws::contact::Contact;

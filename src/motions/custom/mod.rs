@@ -1,4 +1,4 @@
-//! A body under user-defined laws of loss and of friction ([`custom`](crate::custom)).
+//! A body under user-defined laws of loss and friction ([`custom`](crate::custom)).
 //!
 //! ```text
 //! slips   until u = 0: then it rolls if |F_roll| <= mu_s N, else it slips in another direction

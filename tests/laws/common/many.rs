@@ -5,7 +5,7 @@ use spincyl::ensemble::{Job, LossColumns, MotionOutput, MotionStarts, SUMMARIES,
 use spincyl::loss::Law;
 use spincyl::{Body, State};
 
-/// The number of laws of loss.
+/// The number of loss laws.
 pub const LAWS: usize = Law::ALL.len();
 
 /// The columns of losses, law by law.
