@@ -113,9 +113,7 @@ class Body(Laws, Sized, Hinting, metaclass=Named):
             # the moments of a tube follow from its bore and must agree; values of a lazy array are not
             # computed
             if getattr(own, "chunks", None) is None and np.any(np.abs(own - value) > 1e-15 * own):
-                raise ValueError(
-                    f"{name} = {value!r}: expected {own!r}, which follows from the bore of the tube"
-                )
+                raise ValueError(f"{name} = {value!r}: expected {own!r} for a tube of this bore")
         for name, value in zip(FIELDS, (given[0], *moments, *given[3:]), strict=True):
             object.__setattr__(self, name, kept(value))
 
