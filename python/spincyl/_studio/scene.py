@@ -308,7 +308,7 @@ def scene(motion: Motion, *, scale: Scale | None = None) -> Scene:
         t = np.concatenate([[t0], t])
     for law in (m.contact, m.losses):
         if getattr(law, "_function", None) is not None:
-            raise TypeError(f"motion: expected built-in laws for a scene, not {law!r}")
+            raise TypeError(f"motion: a scene cannot contain a law of your own, such as {law!r}")
     if not (np.diff(t) > 0).all():
         raise ValueError("motion: expected ascending times, since an engine starts at the first of them")
     if m.event is not None and m._asked.beyond:

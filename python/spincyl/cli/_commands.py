@@ -39,7 +39,7 @@ _TUBE = "ell", "bore", "i1", "i3", "inner", "length", "fillet"
 
 
 def _refuse(args: Namespace, kind: str, names: Sequence[str], why: str) -> None:
-    """Raise ValueError for options that do not go with a kind of body, naming the first of them."""
+    """Raise ValueError for options that exclude a kind of body, naming the first of them."""
     for name in names:
         if getattr(args, name) is not None:
             raise ValueError(f"--{name} cannot be combined with {kind}: {why}")

@@ -14,19 +14,19 @@ _FAR = 10.0  #: A coefficient beyond the typical ones by this factor causes a wa
 
 
 class Typical(NamedTuple):
-    """A published coefficient, or its range."""
+    """A row of `loss.typical`: a published coefficient, or a range of published coefficients."""
 
-    of: str  #: a loss law or a contact with the name of its coefficient, or "restitution"
+    of: str  #: name of the law and of its coefficient, or "restitution"
     pair: str  #: the two materials
     low: float  #: the coefficient, or the lower end of its range
     high: float  #: upper end of the range; equal to `low` for a single figure
     unit: str  #: unit of `from_si`; "" for a pure number
-    sure: str  #: "handbook", "measured", "rule", "standard", or "order" for an order of magnitude
+    sure: str  #: how it is known: "handbook", "measured", "rule", "standard", or "order" for an order of magnitude
     source: str
 
 
 class Table(tuple[Typical, ...]):
-    """All rows; printed as a table with its sources."""
+    """All rows of published coefficients; it prints as a table with the sources."""
 
     __slots__ = ()
 
