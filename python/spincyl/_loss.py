@@ -121,7 +121,7 @@ class Law(Loss):
 
     def __init__(self, coefficient: Reals) -> None:
         raise TypeError(
-            "coefficient: Law is only a base class; use a subclass, such as sc.loss.DryContour(1e-3)"
+            "Law(coefficient) is only a base class: use one of the laws, such as sc.loss.DryContour(1e-3)"
         )
 
     def __post_init__(self) -> None:

@@ -21,7 +21,9 @@ class Typical(NamedTuple):
     low: float  #: the coefficient, or the lower end of its range
     high: float  #: upper end of the range; equal to `low` for a single figure
     unit: str  #: unit of `from_si`; "" for a pure number
-    sure: str  #: how it is known: "handbook", "measured", "rule", "standard", or "order" for an order of magnitude
+    sure: (
+        str  #: "handbook", "measured", "rule", "standard", or "order" if only the order of magnitude is known
+    )
     source: str
 
 
