@@ -165,9 +165,9 @@ def roll(
         If RK4 damps the nutation by more than a thousandth of its amplitude, or if the precession advances by
         more than 0.3 rad or the nutation by more than 0.5 rad in a step.
     ErrorWarning
-        If the estimated error of a motion without `step` exceeds 0.1 in natural units. For a stone, if the
-        estimated error becomes too large before the motion ends; the message gives the time until which the
-        motion is known (`EllipsoidMotion.known_until`).
+        If the estimated error of a motion without `step` and `restitution` exceeds 0.1 in natural units. With
+        `restitution`, look at `Motion.error`. For a stone, if the estimated error becomes too large before the
+        motion ends; the message gives the time until which it is known (`EllipsoidMotion.known_until`).
 
     Notes
     -----
@@ -235,7 +235,7 @@ def roll(
     with speaking(scale):
         asked = ask(start, t, t0, step, tol, method, contact, mu, beyond, want, restitution, losses)
         m = rolled(one if scale is None else one.natural, start, asked, numbers)
-    if step is None and not m.error <= 0.1:
+    if step is None and restitution is None and not m.error <= 0.1:
         warn(f"the estimated error of the motion is {m.error:.2g}, in natural units", ErrorWarning)
     if scale is not None:
         step = None if step is None else number("step", si("step", given_step, "second"))
