@@ -11,8 +11,6 @@ import spincyl as sc
 
 #: A result whose attributes are those of another class.
 AS = {"EllipsoidMotion": "Motion"}
-#: Codes that are explained where they are defined, and not in the help.
-APART = (sc.sweep.Answer,)
 
 
 def parts(kind):
@@ -27,9 +25,7 @@ CLASSES = [
     kind
     for module in (sc, sc.data, sc.sweep, sc.parts)
     for kind in (getattr(module, name) for name in module.__all__)
-    if inspect.isclass(kind)
-    and kind not in APART
-    and (dataclasses.is_dataclass(kind) or issubclass(kind, enum.Enum | tuple))
+    if inspect.isclass(kind) and (dataclasses.is_dataclass(kind) or issubclass(kind, enum.Enum | tuple))
 ]
 
 

@@ -166,8 +166,8 @@ def roll(
         more than 0.3 rad or the nutation by more than 0.5 rad in a step.
     ErrorWarning
         If the estimated error of a motion without `step` and `restitution` exceeds 0.1 in natural units. With
-        `restitution`, look at `Motion.error`. For a stone, if the estimated error becomes too large before the
-        motion ends; the message gives the time until which it is known (`EllipsoidMotion.known_until`).
+        `restitution`, look at `Motion.error`. For a stone, if it becomes too large before the motion ends;
+        the message gives the time until which the motion is known (`EllipsoidMotion.known_until`).
 
     Notes
     -----

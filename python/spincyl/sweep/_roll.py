@@ -44,14 +44,30 @@ if TYPE_CHECKING:
 
 
 class Answer(IntEnum):
-    """Method that computed a motion of a sweep."""
+    """Method that computed a motion of a sweep.
 
-    NONE = 0  #: none: see `Status.INVALID`
-    LANES = 1  #: the first integrals, eight motions at a time
-    SINGLE = 2  #: the first integrals, one motion at a time
-    TOLERANCE = 3  #: steps of eighth order, where the first integrals lose their digits
-    STEP = 4  #: RK4 with the fixed step `step`
-    FLOW = 5  #: an integrator of eighth order, with friction or losses
+    Attributes
+    ----------
+    NONE
+        None: see `Status.INVALID`.
+    LANES
+        The first integrals, eight motions at a time.
+    SINGLE
+        The first integrals, one motion at a time.
+    TOLERANCE
+        Steps of eighth order, where the first integrals lose their digits.
+    STEP
+        RK4 with the fixed step `step`.
+    FLOW
+        An integrator of eighth order, with friction or losses.
+    """
+
+    NONE = 0
+    LANES = 1
+    SINGLE = 2
+    TOLERANCE = 3
+    STEP = 4
+    FLOW = 5
 
 
 _STATE = ("theta", "w1", "w2", "w3")
