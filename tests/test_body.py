@@ -65,7 +65,7 @@ def test_a1_a_single_number_that_makes_no_body_is_refused_by_name_and_range(bad)
 def test_a1_moments_of_no_body_name_the_inequality():
     with pytest.raises(ValueError, match=r"i3 = 0.5, i1 = 0.2: expected i3 <= 2 i1, as for every real body"):
         sc.Body(ell=1.0, i1=0.2, i3=0.5)
-    with pytest.raises(ValueError, match="expected .* from the bore of the tube"):
+    with pytest.raises(ValueError, match="expected .* for a tube of this bore"):
         sc.Body(ell=1.0, i1=0.7, i3=0.5, bore=0.5)
     with pytest.raises(ValueError, match="inner_diameter"):
         sc.Body.from_metres(outer_diameter=1.0, inner_diameter=2.0, length=1.0)
@@ -78,7 +78,7 @@ def test_a1_a_bore_or_moments_that_contradict_are_refused_also_in_a_family():
     with pytest.raises(ValueError, match="bore = -1.0"):
         sc.Body.critical_aspect(-1.0)
     assert same(np.isnan(sc.Body.critical_aspect([-1.0, 0.0])), [True, False])
-    with pytest.raises(ValueError, match="i1 = .*: expected .* from the bore of the tube"):
+    with pytest.raises(ValueError, match="i1 = .*: expected .* for a tube of this bore"):
         sc.Body(ell=np.array([1.0, 2.0]), i1=np.array([0.5, 5.0]), i3=0.5, bore=0.0)
     with pytest.raises(TypeError, match=r"radius: expected a number, not an array of shape \(2,\)"):
         sc.Scale([1.0, 2.0])
