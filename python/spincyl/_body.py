@@ -371,7 +371,7 @@ class Body(Laws, Sized, Hinting, metaclass=Named):
         Raises
         ------
         ValueError
-            If no state has the given single numbers; arrays give NaN there.
+            If the arguments are numbers and no such state exists; in arrays it is NaN.
         """
         return _circular(self, theta, precession, radius, w3)
 

@@ -86,8 +86,8 @@ class Loss:
         """Couple m on the body, in M g R, with components along e1, e2, e3 of `State`.
 
         Parameters, shape and errors are those of `power`. The components are on a further last axis of length
-        3 (xarray: dimension "axis"). For a rotation at rest a dry law sets only the largest possible couple;
-        the couple returned is then 0.
+        3 (xarray: dimension "axis"). If a rotation has stopped, dry friction sets only the largest couple
+        that can hold it; the couple returned is then 0.
         """
         return _core.loss_couple(*several(3, *self._given(body, state, normal), name="axis"))
 

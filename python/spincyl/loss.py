@@ -85,7 +85,7 @@ class DryContour(Law):
 
     @classmethod
     def from_si(cls, eps: Reals, *, scale: Scale | Body) -> Self:
-        """Law with `eps` in metres or as a text, "0.1mm"; `scale` is a measured body or a `Scale`."""
+        """Law with `eps` in metres, or a text such as "0.1mm"; `scale` is a measured body or a `Scale`."""
         return sized(cls(arm("eps", eps, scale)), scale)
 
 
@@ -129,7 +129,7 @@ class RollingResistance(Law):
 
     @classmethod
     def from_si(cls, delta: Reals, *, scale: Scale | Body) -> Self:
-        """Law with `delta` in metres or as a text, "0.1mm"; `scale` is a measured body or a `Scale`."""
+        """Law with `delta` in metres, or a text such as "0.1mm"; `scale` is a measured body or a `Scale`."""
         return sized(cls(arm("delta", delta, scale)), scale)
 
 
@@ -151,7 +151,7 @@ class Drilling(Law):
 
     @classmethod
     def from_si(cls, length: Reals, *, scale: Scale | Body) -> Self:
-        """Law with `length` in metres or as a text, "0.1mm"; `scale` is a measured body or a `Scale`."""
+        """Law with `length` in metres, or a text such as "0.1mm"; `scale` is a measured body or a `Scale`."""
         return sized(cls(arm("length", length, scale)), scale)
 
 

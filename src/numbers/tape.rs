@@ -287,7 +287,7 @@ impl Player {
         self.at_first(self.first.clone());
     }
 
-    /// Computes the coefficient `n` > 0 of the `first` results of [`Tape::player`] from the coefficients below it.
+    /// Computes coefficient `n` > 0 of the series of the first results of [`Tape::player`], from the coefficients before it.
     pub fn go_on(&mut self, n: usize) {
         self.order(self.first.clone(), n);
     }

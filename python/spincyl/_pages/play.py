@@ -275,7 +275,7 @@ def play(
     friction: bool = True,
     title: str = "spincyl: a page to play with",
 ) -> Play:
-    """Make an interactive page that runs the core: drag a point on a map, and see the exact motion.
+    """Make an interactive page that computes motions itself: drag a point on a map, and see the exact motion.
 
     Parameters
     ----------

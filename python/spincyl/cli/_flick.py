@@ -148,7 +148,7 @@ def _launched(args: Namespace, body: Body, scale: Scale | None) -> State:
     """The state of a launch given by speeds."""
     for name in ("angle", "finger", "table"):
         if getattr(args, name) is not None:
-            raise ValueError(f"--{name} needs --impulse; a launch by speeds does not use it")
+            raise ValueError(f"--{name} needs --impulse; it has no effect on a launch given by speeds")
     if (args.w1 is None) == (args.precession is None):
         raise ValueError("give exactly one of --precession and --w1; or give --impulse and --angle instead")
     if (args.launch_number is None) == (args.spin is None):

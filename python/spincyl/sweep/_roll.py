@@ -55,7 +55,7 @@ class Answer(IntEnum):
     SINGLE
         The first integrals, one motion at a time.
     TOLERANCE
-        Steps of eighth order, where the first integrals lose their digits.
+        Steps of eighth order, where rounding errors in the first integrals are too large.
     STEP
         RK4 with the fixed step `step`.
     FLOW

@@ -8,7 +8,7 @@ use crate::many::columns::{LossColumns, Split, at, fit, rows};
 use crate::motions::drift::rest::Rest;
 use crate::motions::drift::{Drift, End, check};
 
-/// The motion of the centre during a drift. The number is its code in arrays.
+/// The motion of the centre during a drift. Arrays hold the number of the variant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Centre {

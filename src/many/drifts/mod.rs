@@ -107,8 +107,8 @@ pub enum Question {
 /// Number of values that [`ask`] writes for each element.
 pub const WIDTH: usize = 5;
 
-/// Computes a quantity of drifts: for each k, of the drift `of[k]` at the inclination or time `x[k]`. Writes [`WIDTH`]
-/// numbers for each k; those without a value are NaN. Elements with the same drift should follow one another, so that
+/// Computes one quantity of many drifts: for each k that of the drift number `of[k]`, at the inclination or time `x[k]`.
+/// Writes [`WIDTH`] numbers for each k, with NaN where there is no value. Elements with the same drift should follow one another, so that
 /// the drift is computed only once.
 ///
 /// # Panics

@@ -154,7 +154,7 @@ impl StoneFlow<'_> {
         self.law.patch().map_or(slip_over(self.law.dry, self.law.strength), rests_below)
     }
 
-    /// The margins at these numbers.
+    /// The quantities whose zeros end the phase, in the state with the numbers `y`.
     pub fn margins_at<const N: usize>(&self, y: &[f64; N]) -> [f64; STONE_MARGINS] {
         let (seen, w) = (self.seen_at(y), [y[4], y[5], y[6]]);
         self.on_patch(self.margins_of::<_, N>(&self.law, &seen, w), (&seen, w), self.grips(y))
