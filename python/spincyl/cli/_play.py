@@ -17,10 +17,10 @@ from spincyl.cli._losses import losses_of, option
 from spincyl.cli._output import writable
 
 TEXT = """\
-Write an interactive page: a single file that computes motions itself, also offline. Drag a point on the
-map of inclination and aspect ratio, take the body by hand, or move a slider, and the page computes the exact motion.
-The options set the body and the motion with which the page begins. The default body is the tube of the paper
-at 89.5 degrees.
+Write an interactive page: a single file that computes motions itself, also offline. Drag a point on
+the map of inclination and aspect ratio, take the body by hand, or move a slider, and the page
+computes the exact motion. The options set the body and the motion with which the page begins. The
+default body is the tube of the paper at 89.5 degrees.
 
 """
 
