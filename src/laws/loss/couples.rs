@@ -272,7 +272,7 @@ impl<T: Real, G: OwnCouple<T>> Couples<T, G> {
     pub fn seen(&self, rim: &Rim<T>, angle: (T, T), precession: T, w: [T; 3]) -> Kinematics<T> {
         let seen = Kinematics::of(rim, angle, precession, w);
         let Some(ways) = self.ways else { return seen };
-        let only = (ways.rocking != 0.0).then(|| [0.0, ways.rocking].map(|x| angle.0.splat(x)));
+        let only = (ways.rocking != 0.0).then(|| [angle.0.splat(0.0), angle.0.splat(ways.rocking)]);
         Kinematics { signs: [ways.contour, ways.drilling], only, ..seen }
     }
 
