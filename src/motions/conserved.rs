@@ -17,6 +17,7 @@ use crate::methods::SHORT_CODE;
 const FALLBACK: f64 = 1e-12;
 
 /// The motion of a body that conserves energy, by the method of `ask`.
+#[inline(never)] // its frame is not on the stack of the walks
 pub(super) fn conserved(
     body: &Body,
     start: &Start,

@@ -147,6 +147,7 @@ impl Told for StoneState {
 }
 
 /// The arrays of a motion for Python; None if `go_on` returns false.
+#[inline(never)] // its frame is not on the stack of the motion
 fn columns<S: Told>(
     m: &Motion<S>,
     body: &S::Body,
@@ -342,6 +343,7 @@ where
 }
 
 /// The dictionary for Python: the arrays, the end of the motion, the method and the error estimates.
+#[inline(never)]
 fn dictionary<'py, S: Moving>(
     py: Python<'py>,
     m: &Motion<S>,

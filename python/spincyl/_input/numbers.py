@@ -383,8 +383,13 @@ def one_of(name: str, value: Any, known: Sequence[object]) -> Any:
     return value
 
 
-def words(name: str, value: str | Iterable[str], known: Sequence[str]) -> tuple[str, ...]:
-    """One or several of the known words, as a tuple, or an error naming the argument."""
+def words(
+    name: str,
+    value: str | Iterable[str],
+    known: Sequence[str],
+    hint: Callable[[str], str] = lambda word: "",
+) -> tuple[str, ...]:
+    """One or several of the known words, as a tuple, or an error naming the argument; `hint` ends its message."""
     try:
         found = (value,) if isinstance(value, str) else tuple(value)
     except TypeError:
@@ -393,7 +398,7 @@ def words(name: str, value: str | Iterable[str], known: Sequence[str]) -> tuple[
         ) from None
     for word in found:
         if not isinstance(word, str) or word not in known:
-            raise ValueError(f"{name} = {word!r}: expected some of {list(known)}")
+            raise ValueError(f"{name} = {word!r}: expected some of {list(known)}{hint(str(word))}")
     return found
 
 

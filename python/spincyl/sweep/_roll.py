@@ -339,19 +339,20 @@ def _wanted(
     given: tuple[int, bool, bool],
 ) -> tuple[str, ...]:
     kinds = ("final", "states", *summaries)
-    try:
-        asked = words("want", ("states" if several else "final") if want is None else want, kinds)
-    except ValueError as e:
+
+    def needs(name: str) -> str:
         contact, losses, hits = given
-        needs = {
+        others = {
             "losses=": (contact, True, hits),
             "contact=sc.Coulomb(mu)": (TABLES["coulomb"], losses, hits),
             "restitution=": (contact, losses, True),
         }
-        for argument, others in needs.items():
-            if any(repr(name) in str(e).partition(":")[0] for name in _core.summaries(*others)):
-                raise ValueError(f"{e}; this output needs {argument}") from None
-        raise
+        for argument, other in others.items():
+            if name in _core.summaries(*other):
+                return f"; this output needs {argument}"
+        return ""
+
+    asked = words("want", ("states" if several else "final") if want is None else want, kinds, needs)
     if "states" in asked and ("final" in asked or not several):
         raise ValueError('want: "states" needs an array of times t, and cannot be combined with "final"')
     return tuple(name for name in kinds if name in asked)

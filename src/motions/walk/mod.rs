@@ -201,6 +201,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
     }
 
     /// Continues through the phases up to one that is integrated, or to the end.
+    #[inline(never)] // its frame is not on the stack of the flows
     pub fn advance(&mut self, go_on: &mut dyn FnMut() -> bool) -> Result<WalkStep<N>, Error> {
         while let Some(next) = self.next.take() {
             let next = self.goes_on(next);
