@@ -384,12 +384,9 @@ def one_of(name: str, value: Any, known: Sequence[object]) -> Any:
 
 
 def words(
-    name: str,
-    value: str | Iterable[str],
-    known: Sequence[str],
-    hint: Callable[[str], str] = lambda word: "",
+    name: str, value: str | Iterable[str], known: Sequence[str], hint: Callable[[str], str] = lambda _: ""
 ) -> tuple[str, ...]:
-    """One or several of the known words, as a tuple, or an error naming the argument; `hint` ends its message."""
+    """One or several of the known words, as a tuple, or an error naming the argument, with a `hint`."""
     try:
         found = (value,) if isinstance(value, str) else tuple(value)
     except TypeError:
