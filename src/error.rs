@@ -153,6 +153,14 @@ pub(crate) fn room<T>(count: usize) -> Result<Vec<T>, Error> {
     Ok(things)
 }
 
+/// Adds an element to a list, or returns an error if the memory does not suffice.
+pub(crate) fn grow<T>(list: &mut Vec<T>, thing: T) -> Result<(), Error> {
+    let bytes = (2 * list.len() + 1).saturating_mul(size_of::<T>());
+    list.try_reserve(1).map_err(|_| Error::Memory { bytes })?;
+    list.push(thing);
+    Ok(())
+}
+
 /// A copy of the elements, or the error of [`room`].
 pub(crate) fn copied<T: Copy>(things: &[T]) -> Result<Vec<T>, Error> {
     let mut copy = room(things.len())?;

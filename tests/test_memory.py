@@ -62,6 +62,29 @@ def test_a8_a_motion_at_more_times_than_memory_holds_is_a_memory_error(count, ho
 
 
 @pytest.mark.parametrize(
+    ("start", "until"),
+    [
+        ("sc.dropped(can, 5.0, 1.0, w3=1.0)", 1.0),
+        ("sc.State(np.pi / 2, 1.0, 0.0, 2.0, slip=(0.3, 0.4))", 0.02),
+        ("sc.State(1.2, 1.0, 0.2, 1.0, slip=(0.3, 0.4))", 0.02),
+    ],
+    ids=["in the air", "on both rims", "on one rim"],
+)
+@pytest.mark.parametrize("more", ["", ", losses=sc.loss.Drilling(0.01), want=('pose', 'force')"])
+def test_a8_a_motion_with_restitution_at_more_times_than_memory_holds_is_a_memory_error(start, until, more):
+    count, how = 100_000, "contact=sc.Coulomb(0.3), restitution=0.5, tol=1e-8"
+    job = f"def job(): sc.roll(can, start, t, {how}{more})"
+    head = f"can, t = sc.Body.solid(1.5), np.linspace(0, {until}, {count})\nstart = {start}\n"
+    survives(head + job, (600 if more else 250) * count)
+
+
+def test_a8_more_impacts_than_memory_holds_are_a_memory_error():
+    ball = "ball = sc.Body.ball(0.0, i1=0.4, i3=0.4)\nstart = sc.dropped(ball, 1e-4, 1.0)\n"
+    job = "def job(): sc.roll(ball, start, [0.0, 800.0], contact=sc.Coulomb(0.3), restitution=1.0)"
+    survives(ball + job, 128 << 20)
+
+
+@pytest.mark.parametrize(
     ("job", "most"),
     few(
         [

@@ -4,10 +4,9 @@
 //! The estimated error is the difference of the two runs, scaled by the ratio of the tolerances, times
 //! [`Moving::SAFETY`].
 
-use super::{Ending, Kind, Motion, Moving, Path, Phase};
+use super::{Ending, Motion, Moving, Path, Phase};
 use crate::error::Error;
 use crate::laws::state::State;
-use crate::numbers::larger;
 
 /// A motion and its path, before the path becomes a part of the motion.
 #[derive(Debug, Clone, PartialEq)]
@@ -121,34 +120,6 @@ impl<S: Moving> Followed<S> {
         self.motion.event.is_some_and(|event| event.ending == Ending::Bounded)
     }
 
-    /// Adds a point to the outputs.
-    pub(crate) fn put(
-        &mut self,
-        y: S,
-        slip: [f64; 2],
-        heat: f64,
-        kind: Kind,
-        pose: Option<S::Pose>,
-        force: Option<(S::Force, f64)>,
-    ) {
-        self.motion.states.push(y);
-        self.path.slip.push(slip);
-        self.path.dissipated.push(heat);
-        self.path.kinds.push(kind);
-        if self.path.goes_on {
-            self.path.aloft.push([0.0; 2]);
-            self.path.other_rim.push([f64::NAN; 5]);
-        }
-        if let Some((poses, pose)) = self.motion.poses.as_mut().zip(pose) {
-            poses.push(pose);
-            self.path.turned.push(self.path.upside_down);
-        }
-        if let Some((forces, (force, doubt))) = self.motion.forces.as_mut().zip(force) {
-            forces.push(force);
-            self.motion.force_error = larger(self.motion.force_error, doubt);
-        }
-    }
-
     /// Estimates the errors of this motion from its difference from a rougher run.
     pub(crate) fn judge(&mut self, rough: &Self, tol: f64) {
         let claimed = (S::SAFETY * tol / rougher(tol)).min(1.0);
@@ -231,6 +202,7 @@ impl<S: Moving> Followed<S> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::motions::Kind;
 
     /// Phases that alternately roll and slip; the first one rolls.
     fn phases(times: &[f64]) -> Vec<Phase> {

@@ -52,6 +52,11 @@ pub(crate) const fn loses(count: usize) -> bool {
     count == 10 || count == 14
 }
 
+/// The lost energy among the numbers; 0 if it is not computed.
+pub(crate) fn lost<const N: usize>(y: &[f64; N]) -> f64 {
+    if loses(N) { y[N - 1] } else { 0.0 }
+}
+
 /// Whether the pose is among the numbers, from number 9 on.
 pub(crate) const fn poses(count: usize) -> bool {
     count >= 13

@@ -21,6 +21,7 @@ mod moving;
 pub mod path;
 mod result;
 mod rk4;
+pub(crate) mod row;
 mod sample;
 pub(crate) mod stone;
 pub mod turning;

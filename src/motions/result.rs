@@ -238,9 +238,10 @@ pub struct Path<S = State> {
     /// motions); infinite if this holds up to the end.
     #[cfg_attr(feature = "serde", serde(with = "crate::numbers::file"))]
     pub known_until: f64,
-    /// Whether the motion continues in the air and on both rims.
+    /// Whether the rows have the lost energy, and whether the motion continues in the air and on both rims.
+    pub(super) loses: bool,
     pub(crate) goes_on: bool,
-    /// Whether the body stands on its other rim, now and, if poses were requested, at each time.
+    /// Whether the body stands on its other rim, now and, if the motion goes on, at each time.
     pub(super) upside_down: bool,
     pub(super) turned: Vec<bool>,
     /// Whether the computation stopped where the body began to roll.
@@ -254,8 +255,10 @@ pub struct Path<S = State> {
 }
 
 impl<S> Path<S> {
-    /// A path with space for `count` outputs, and for `losing` numbers of lost energy.
-    pub(crate) fn empty(count: usize, losing: usize) -> Result<Self, Error> {
+    /// A path with space for `count` rows; `loses` if they have the lost energy, and `goes_on` if they have what bodies
+    /// in the air and on both rims need.
+    pub(super) fn empty(count: usize, loses: bool, goes_on: bool) -> Result<Self, Error> {
+        let (losing, going) = (if loses { count } else { 0 }, if goes_on { count } else { 0 });
         Ok(Self {
             slip: room(count)?,
             dissipated: room(count)?,
@@ -265,14 +268,15 @@ impl<S> Path<S> {
             heat: 0.0,
             lost: 0.0,
             slipping: 0.0,
-            aloft: Vec::new(),
+            aloft: room(going)?,
             impacts: Vec::new(),
-            other_rim: Vec::new(),
-            goes_on: false,
+            other_rim: room(going)?,
+            loses,
+            goes_on,
             last_slip: [0.0; 2],
             known_until: f64::INFINITY,
             upside_down: false,
-            turned: Vec::new(),
+            turned: room(going)?,
             rolls_on: false,
             leaves_turns: false,
             erred: 0.0,

@@ -5,7 +5,7 @@ use super::custom::PythonLaw;
 use super::options::{MotionAsked, contact_of, table_of};
 use super::stone::{STONE, stone_of};
 use super::watch::Watch;
-use crate::error::room;
+use crate::error::{room, spare_for};
 use crate::laws::contact::patch;
 use crate::laws::custom::{CoupleLaw, Custom, FrictionLaw};
 use crate::laws::stone::{Ellipsoid, StoneState};
@@ -393,7 +393,10 @@ fn dictionary<'py, S: Moving>(
     if let Some(path) = &m.path
         && rubs
     {
-        let codes = path.kinds.iter().map(|kind| *kind as u8).collect();
+        // Python's own objects take up to a kilobyte for each phase and each impact.
+        spare_for((path.phases.len() + path.impacts.len()) << 10)?;
+        let mut codes = room(path.kinds.len())?;
+        codes.extend(path.kinds.iter().map(|kind| *kind as u8));
         extra.set_item(intern!(py, "phase"), PyArray1::<u8>::from_vec(py, codes))?;
         let phases: Vec<(f64, u8, Vec<f64>, [f64; 2])> = path
             .phases

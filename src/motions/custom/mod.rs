@@ -12,13 +12,14 @@ mod flow;
 
 use super::ask::{check_flow, check_times_after};
 use super::followed::{Followed, judged};
-use super::halt::{Halt, TIME};
+use super::halt::{Halt, TIME, lost};
 use super::judge::doubted;
 use super::path::without_slip;
 use super::path::write::{pose, state, state_errors};
+use super::row::OutputRow;
 use super::walk::{MOMENT, STILL, ending, most_phases, slip_over};
-use super::{Ask, Ending, Event, Method, Motion, Path, Phase, Start, exact};
-use crate::error::{Error, room};
+use super::{Ask, Ending, Event, Method, Motion, Phase, Start, exact};
+use crate::error::{Error, copied, grow, room};
 use crate::laws::body::Body;
 use crate::laws::contact::Table;
 use crate::laws::contact::slip::Friction;
@@ -142,10 +143,7 @@ struct CustomRun<'a> {
 impl<'a> CustomRun<'a> {
     fn new(flow: CustomFlow<'a>, start: &'a Start, times: &'a [f64]) -> Result<Self, Error> {
         let (count, ask) = (times.len(), flow.ask);
-        let mut made = Followed { motion: Motion::empty(count, ask.pose)?, path: Path::empty(count, count)? };
-        if ask.force {
-            (made.motion.forces, made.motion.force_error) = (Some(room(count)?), 0.0);
-        }
+        let mut made = Followed::empty(count, ask, true)?;
         made.motion.method = Method::Tolerance(flow.tol);
         let (State { theta, w1, w2, w3 }, [along, across]) = (start.state, start.slip);
         let ((s, c), mut at) = (theta.sin_cos(), [0.0; CUSTOM_NUMBERS]);
@@ -185,23 +183,23 @@ impl<'a> CustomRun<'a> {
     }
 
     /// Begins a phase; returns the ending of the motion if the motion is over at once.
-    fn begins(&mut self, next: Beginning) -> Option<Ending> {
+    fn begins(&mut self, next: Beginning) -> Result<Option<Ending>, Error> {
         let (angle, w) = ((self.at[0], self.at[1]), [self.at[2], self.at[3], self.at[4]]);
         self.flow.slips = !matches!(next, Beginning::Rolls);
         let at = match next {
-            Beginning::Ends(ending) => return Some(ending),
+            Beginning::Ends(ending) => return Ok(Some(ending)),
             Beginning::SlipsOff(way, _) => self.flow.slides(angle, w, [0.0; 2], Some(way)),
             _ => self.flow.answer(&self.at),
         };
         if let Some(ending) = self.flow.at_start(&self.at, &at) {
-            return Some(ending);
+            return Ok(Some(ending));
         }
         let phases = &mut self.made.path.phases;
         let (time, slip) = (self.start.time + self.at[TIME], [self.at[5], self.at[6]]);
-        phases.push(Phase { time, kind: self.flow.kind(), state: state(&self.at), slip });
+        grow(phases, Phase { time, kind: self.flow.kind(), state: state(&self.at), slip })?;
         let still = phases.iter().rev().take_while(|phase| phase.time >= time).count();
         if still > STILL as usize || phases.len() > most_phases(&self.since) {
-            return Some(Ending::Bounded);
+            return Ok(Some(Ending::Bounded));
         }
         if let Beginning::SlipsOff(way, lasts) = next {
             self.way = way;
@@ -212,7 +210,7 @@ impl<'a> CustomRun<'a> {
             }
             self.at = self.slipped(&from, lasts);
         }
-        None
+        Ok(None)
     }
 
     /// The numbers at the time `lasts` after a slip has begun, by the rates at the middle of that time.
@@ -238,7 +236,7 @@ impl<'a> CustomRun<'a> {
     fn run(mut self, go_on: &mut dyn FnMut() -> bool) -> Result<Option<Followed>, Error> {
         let mut next = self.first();
         loop {
-            if let Some(ending) = self.begins(next) {
+            if let Some(ending) = self.begins(next)? {
                 let (now, state) = (self.at[TIME], state(&self.at));
                 while self.due(now).is_some() {
                     self.writes();
@@ -261,7 +259,7 @@ impl<'a> CustomRun<'a> {
                 halt => Beginning::Ends(ending(halt)),
             };
         }
-        self.made.motion.times = self.times[..self.made.motion.states.len()].to_vec();
+        self.made.motion.times = copied(&self.times[..self.made.motion.states.len()])?;
         (self.made.path.heat, self.made.path.lost) = (self.at[8], self.at[CUSTOM_NUMBERS - 1]);
         Ok(Some(self.made))
     }
@@ -308,7 +306,6 @@ impl Followed {
         });
         let force =
             ask.force.then(|| doubted(&now, state_errors(&now, flow.tol), |y| flow.force(y, slip, way)));
-        self.put(now, slip, y[8], flow.kind(), pose, force);
-        self.path.work_lost.push(y[CUSTOM_NUMBERS - 1]);
+        self.push(OutputRow { pose, force, ..OutputRow::on_table(now, slip, [y[8], lost(y)], flow.kind()) });
     }
 }

@@ -10,12 +10,23 @@ use super::flight::air::{AirFlight, in_air};
 use super::flight::{Aloft, Flies, Flight, Takeoff};
 use super::phases::{BodyPhases, BodyWalk};
 use super::strikes::{RATTLED, ROUNDED};
+use crate::laws::body::Shape;
 use crate::laws::contact::{Force, Table};
 use crate::laws::state::State;
-use crate::motions::halt::{TIME, loses, poses};
+use crate::motions::halt::{TIME, loses, lost, poses};
+use crate::motions::row::OutputRow;
 use crate::motions::walk::{Next, Phases};
 use crate::motions::{Ending, Kind};
 use core::f64::consts::{FRAC_PI_2, TAU};
+
+/// A pose as seen from the other rim; `over` if it is that of the other rim. Applied twice it returns the same pose.
+pub(super) fn pose_from(at: &Aloft, shape: &Shape<f64>, over: bool, pose: [f64; 4]) -> [f64; 4] {
+    let mut other = Aloft { pose, ..*at }.on_other_rim(shape).pose;
+    if over {
+        other[0] -= TAU;
+    }
+    other
+}
 
 impl<const N: usize> BodyWalk<'_, N> {
     pub(super) fn has_two_rims(&self) -> bool {
@@ -52,19 +63,10 @@ impl<const N: usize> BodyWalk<'_, N> {
 
     /// Changes to the view from the other rim.
     pub(super) fn turns_over(&mut self) {
-        let from = self.aloft();
-        let pose = self.pose_on_other_rim(from.pose);
+        let (from, shape) = (self.aloft(), self.of.slide.law.shape);
+        let pose = pose_from(&from, &shape, self.made.path.upside_down, from.pose);
         self.made.path.upside_down = !self.made.path.upside_down;
-        self.sets(&Aloft { pose, ..from.on_other_rim(&self.of.slide.law.shape) });
-    }
-
-    /// The pose as seen from the other rim; applied twice it returns the same pose.
-    pub(super) fn pose_on_other_rim(&self, pose: [f64; 4]) -> [f64; 4] {
-        let mut other = Aloft { pose, ..self.aloft() }.on_other_rim(&self.of.slide.law.shape).pose;
-        if self.made.path.upside_down {
-            other[0] -= TAU;
-        }
-        other
+        self.sets(&Aloft { pose, ..from.on_other_rim(&shape) });
     }
 
     /// The flight of a body that starts in the air, or its landing if it starts on the table and comes down.
@@ -147,7 +149,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             self.next = Some(Next::Ends(Ending::Bounded));
             return;
         };
-        let before = if loses(N) { self.at[N - 1] } else { 0.0 };
+        let before = lost(&self.at);
         let end = landing.map_or(f64::INFINITY, |(t, _)| t);
         while let Some(t) = self.until().filter(|t| *t <= now + end) {
             let at = self.flown(&*course, t - now, before);
@@ -188,12 +190,7 @@ impl<const N: usize> BodyWalk<'_, N> {
     pub(super) fn writes_with(&mut self, at: &Aloft, kind: Kind, force: f64) {
         let force = self.ask.force.then_some((Force { normal: force, along: force, across: force }, 0.0));
         let pose = poses(N).then(|| at.pose());
-        self.made.put(at.state(), at.slip, self.at[8], kind, pose, force);
-        if let Some(last) = self.made.path.aloft.last_mut() {
-            *last = [at.height.max(0.0), at.lift];
-        }
-        if loses(N) {
-            self.made.path.work_lost.push(self.at[N - 1]);
-        }
+        let row = OutputRow::on_table(at.state(), at.slip, [self.at[8], lost(&self.at)], kind);
+        self.made.push(OutputRow { pose, force, aloft: [at.height.max(0.0), at.lift], ..row });
     }
 }

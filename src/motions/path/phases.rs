@@ -16,8 +16,9 @@ use crate::laws::contact::{Contact, Table, force, lossy};
 use crate::laws::loss::Losses;
 use crate::laws::state::State;
 use crate::methods::flow::{Flow, FlowPlace, Steps};
-use crate::motions::halt::{Halt, loses, poses};
+use crate::motions::halt::{Halt, loses, lost, poses};
 use crate::motions::judge::doubted;
+use crate::motions::row::OutputRow;
 use crate::motions::walk::slow::clear_until;
 use crate::motions::walk::{Next, Pause, Phases, STILL, SlowSeries, Walk, WalkStep};
 use crate::motions::{Ask, Ending, Kind, Start};
@@ -246,10 +247,8 @@ impl<const N: usize> Phases<N> for BodyPhases {
         };
         let force = walk.ask.force.then(|| doubted(y, [0.0; 2], press));
         let pose = poses(N).then(|| write::pose(at));
-        walk.made.put(*y, slip, at[8], kind, pose, force);
-        if loses(N) {
-            walk.made.path.work_lost.push(at[N - 1]);
-        }
+        let row = OutputRow::on_table(*y, slip, [at[8], lost(at)], kind);
+        walk.made.push(OutputRow { pose, force, ..row });
     }
 
     fn ends_slip(walk: &mut BodyWalk<'_, N>) -> Option<Halt> {

@@ -9,8 +9,9 @@ use crate::laws::pose::{Angle, Pose};
 use crate::laws::state::State;
 use crate::motions::Kind;
 use crate::motions::conserved::by_first_integrals;
-use crate::motions::halt::loses;
+use crate::motions::halt::lost;
 use crate::motions::judge::doubted;
+use crate::motions::row::OutputRow;
 use crate::motions::walk::{Next, Phases, WalkStep, after_rest};
 use crate::motions::{Ask, Ending, Start};
 use core::f64::consts::{PI, TAU};
@@ -54,7 +55,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         };
         self.claims(rolled.error);
         self.made.motion.pose_error = self.made.motion.pose_error.max(rolled.pose_error);
-        let heat = self.at[8];
+        let spent = [self.at[8], lost(&self.at)];
         if self.of.planar {
             rolled.states.iter_mut().chain(rolled.event.iter_mut().map(|e| &mut e.state)).for_each(|y| {
                 (y.w1, y.w3) = (0.0, 0.0);
@@ -64,10 +65,8 @@ impl<const N: usize> BodyWalk<'_, N> {
             let pose = rolled.poses.as_ref().map(|poses| self.moved(&poses[i]));
             let at = |y: &State| force(Contact::Rolling, &body, y);
             let force = self.ask.force.then(|| doubted(y, [rolled.error; 2], at));
-            self.made.put(*y, [0.0; 2], heat, Kind::Rolling, pose, force);
-            if loses(N) {
-                self.made.path.work_lost.push(self.at[N - 1]);
-            }
+            let row = OutputRow::on_table(*y, [0.0; 2], spent, Kind::Rolling);
+            self.made.push(OutputRow { pose, force, ..row });
         }
         let Some(event) = rolled.event else { return Ok(None) };
         // The pose at the event is computed separately, since `rolled` has poses at the requested times only.

@@ -185,7 +185,7 @@ impl<const N: usize> BodyWalk<'_, N> {
     ) {
         let velocities = both.map(|at| [at.slip[0], at.slip[1], at.lift]);
         let (time, states) = (self.t0 + self.at[TIME], both.map(Aloft::state));
-        self.made.path.impacts.push(Strike { time, other, hit, states, velocities, impulse, lost, stays });
+        self.records_impact(Strike { time, other, hit, states, velocities, impulse, lost, stays });
     }
 
     /// Computes the impacts of both rims in turn, the faster rim first, until no rim comes down.

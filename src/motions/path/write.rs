@@ -7,10 +7,11 @@ use crate::laws::state::State;
 use crate::motions::Ask;
 use crate::motions::Kind;
 use crate::motions::followed::Followed;
-use crate::motions::halt::{loses, poses};
+use crate::motions::halt::{lost, poses};
 use crate::motions::judge::doubted;
 use crate::motions::path::lossy::LossyFlow;
 use crate::motions::path::slide::Slide;
+use crate::motions::row::OutputRow;
 use core::f64::consts::{PI, TAU};
 use nalgebra::Point2;
 
@@ -53,10 +54,11 @@ impl Followed {
         let towards = if slip == [0.0, 0.0] && slide.law.dry { self.path.way } else { slip };
         let force =
             ask.force.then(|| doubted(&now, state_errors(&now, slide.tol), |y| slide.law.force(y, towards)));
-        self.put(now, slip, y[8], Kind::Slipping, pose, force);
-        if loses(N) {
-            self.path.work_lost.push(y[N - 1]);
-        }
+        self.push(OutputRow {
+            pose,
+            force,
+            ..OutputRow::on_table(now, slip, [y[8], lost(y)], Kind::Slipping)
+        });
     }
 
     /// Adds a point of a phase that loses energy without a slip to the outputs.
@@ -79,9 +81,6 @@ impl Followed {
             }
         });
         let force = ask.force.then(|| doubted(&now, state_errors(&now, flow.tol), |y| flow.force(y)));
-        self.put(now, [0.0; 2], y[8], kind, pose, force);
-        if loses(N) {
-            self.path.work_lost.push(y[N - 1]);
-        }
+        self.push(OutputRow { pose, force, ..OutputRow::on_table(now, [0.0; 2], [y[8], lost(y)], kind) });
     }
 }

@@ -6,8 +6,9 @@ use crate::methods::flow::Flow;
 use crate::motions::Ask;
 use crate::motions::Kind;
 use crate::motions::followed::Followed;
-use crate::motions::halt::loses;
+use crate::motions::halt::lost;
 use crate::motions::judge::doubted_of;
+use crate::motions::row::OutputRow;
 use nalgebra::Vector3;
 
 /// Adds a point to the outputs.
@@ -31,8 +32,6 @@ pub(super) fn write<const N: usize>(
         (Vector3::from(force), off)
     });
     let kind = if flow.rests() { Kind::Rolling } else { Kind::Slipping };
-    made.put(state(y), output_slip(y), y[10], kind, pose, force);
-    if loses(N) {
-        made.path.work_lost.push(y[N - 1]);
-    }
+    let row = OutputRow::on_table(state(y), output_slip(y), [y[10], lost(y)], kind);
+    made.push(OutputRow { pose, force, ..row });
 }

@@ -18,9 +18,9 @@ pub(crate) mod slow;
 use super::ask::Ask;
 use super::followed::Followed;
 use super::halt::{Halt, TIME};
-use super::result::{Ending, Event, Kind, Motion, Path, Phase};
+use super::result::{Ending, Event, Kind, Phase, Strike};
 use super::{Method, Moving};
-use crate::error::{Error, copied, room};
+use crate::error::{Error, copied, grow};
 use crate::laws::contact::Table;
 use crate::laws::contact::slip::Friction;
 use crate::laws::contact::standstill::Standstill;
@@ -114,6 +114,8 @@ pub(crate) struct Walk<'a, P: Phases<N>, const N: usize> {
     pub since: Vec<f64>,
     times: &'a [f64],
     pub made: Followed<P::State>,
+    /// Whether the memory has sufficed for all phases and impacts; an error ends the walk before its next phase.
+    grown: Result<(), Error>,
     /// The numbers at the beginning of the current phase, or at its end once it has ended.
     pub at: [f64; N],
     pub next: Option<Next>,
@@ -147,14 +149,9 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         let mut since = copied(times)?;
         // The sum turns -0 into 0.
         since.iter_mut().for_each(|t| *t = *t - t0 + 0.0);
-        let (count, tol) = (times.len(), of.tol());
-        let mut motion = Motion::empty(count, ask.pose)?;
-        if ask.force {
-            (motion.forces, motion.force_error) = (Some(room(count)?), 0.0);
-        }
-        motion.method = Method::Tolerance(tol);
-        let mut path = Path::empty(count, if ask.losses.is_none() { 0 } else { count })?;
-        path.goes_on = ask.restitution.is_some();
+        let tol = of.tol();
+        let mut made = Followed::empty(times.len(), ask, !ask.losses.is_none())?;
+        made.motion.method = Method::Tolerance(tol);
         Ok(Self {
             // The estimated error is SAFETY fine/tol times the difference of the runs, to which this share adds one
             // rounding.
@@ -164,7 +161,8 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
             t0,
             since,
             times,
-            made: Followed { motion, path },
+            made,
+            grown: Ok(()),
             at,
             next: None,
             began: f64::NEG_INFINITY,
@@ -204,6 +202,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
     #[inline(never)] // its frame is not on the stack of the flows
     pub fn advance(&mut self, go_on: &mut dyn FnMut() -> bool) -> Result<WalkStep<N>, Error> {
         while let Some(next) = self.next.take() {
+            self.grown?;
             let next = self.goes_on(next);
             let now = self.at[TIME];
             self.still = if now > self.began { 0 } else { self.still + 1 };
@@ -343,7 +342,13 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
             return;
         }
         let (time, state, slip) = (self.t0 + self.at[TIME], P::state(self), P::slip(self));
-        self.made.path.phases.push(Phase { time, kind, state, slip });
+        let phase = Phase { time, kind, state, slip };
+        self.grown = self.grown.and(grow(&mut self.made.path.phases, phase));
+    }
+
+    /// Records an impact.
+    pub fn records_impact(&mut self, impact: Strike) {
+        self.grown = self.grown.and(grow(&mut self.made.path.impacts, impact));
     }
 
     /// Allows more crawling steps after a change of the motion.
@@ -366,6 +371,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
 
     /// The finished motion and its path.
     pub fn done(mut self) -> Result<Followed<P::State>, Error> {
+        self.grown?;
         let count = self.made.motion.states.len();
         self.made.motion.times = copied(&self.times[..count])?;
         self.made.motion.evaluations = self.spent.evaluations;

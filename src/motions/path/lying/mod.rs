@@ -12,6 +12,8 @@
 
 pub(crate) mod flow;
 
+use super::flies::pose_from;
+use super::flight::Aloft;
 use super::phases::BodyWalk;
 use crate::error::Error;
 use crate::laws::contact::landing::mirrored;
@@ -23,10 +25,11 @@ use crate::laws::loss::GRACE;
 use crate::laws::state::State;
 use crate::methods::flow::{Flow, Steps};
 use crate::methods::search::crossing;
-use crate::motions::halt::{Halt, TIME, loses, poses};
+use crate::motions::halt::{Halt, TIME, lost, poses};
 use crate::motions::path::write;
+use crate::motions::row::OutputRow;
 use crate::motions::walk::{Next, Pause, Phases, STILL, WalkStep, after_rest, ending, most_phases};
-use crate::motions::{Ending, Kind};
+use crate::motions::{Ask, Ending, Kind};
 use core::f64::consts::{FRAC_PI_2, PI};
 use flow::{LyingFlow, LyingPhase, Stance};
 
@@ -295,14 +298,11 @@ impl<const N: usize> BodyWalk<'_, N> {
     ) -> Result<Pause<N>, Error> {
         let Some(flow) = self.of.lying.as_ref().map(|phase| phase.flow) else { return Ok(Pause::No) };
         let first = self.made.motion.states.len();
-        let mut points = Vec::new();
-        let mut write = |y: &[f64; N]| points.push(*y);
+        let (ask, over, made) = (self.ask, self.over(), &mut self.made);
+        let mut write = |y: &[f64; N]| made.push(row_of(&ask, &flow, over.as_ref(), y));
         let Some(flown) = flow.run(flow.place(y), steps, &self.since[first..], &mut write, go_on)? else {
             return Ok(Pause::Interrupted);
         };
-        for point in &points {
-            self.writes_lying(&flow, point);
-        }
         self.has_spent(flown.spent);
         // Where a dry loss stops w1 or w3, the acceleration changes at a time as uncertain as that of an end.
         let stops = matches!(flown.halt, Halt::Drilling | Halt::Contour);
@@ -386,39 +386,51 @@ impl<const N: usize> BodyWalk<'_, N> {
         if over { mirrored(&self.of.body, &y, slip) } else { (y, slip) }
     }
 
-    /// Writes a body on both rims to the outputs, as seen from the first rim.
+    /// Writes a body on both rims to the outputs.
     pub(super) fn writes_lying(&mut self, flow: &LyingFlow, y: &[f64; N]) {
-        let over = self.made.path.upside_down;
-        let mut slips = [[y[5], y[6]], flow.law.other_slip([y[2], y[4], y[5], y[6]])];
-        let (mut forces, mut w3, mut seen) = (flow.lain(y).force, y[4], *y);
-        if over {
-            let back = |x: f64| 0.0 - x;
-            slips = [slips[1].map(back), slips[0].map(back)];
-            let turned = |[n, across, along]: [f64; 3]| [n, back(across), back(along)];
-            (forces, w3) = ([turned(forces[1]), turned(forces[0])], back(w3));
-            if poses(N) {
-                seen[9..13].copy_from_slice(&self.pose_on_other_rim(core::array::from_fn(|i| y[9 + i])));
-            }
-        }
-        let force = |[normal, along, across]: [f64; 3]| Force { normal, along, across };
-        let doubt = flow.tol * (1.0 + y[2].abs().max(y[4].abs()));
-        let asked = self.ask.force.then(|| (force(forces[0]), doubt));
-        let pose = poses(N).then(|| write::pose(&seen));
-        let state = State { theta: FRAC_PI_2, w1: y[2], w2: 0.0, w3 };
-        self.made.path.upside_down = false;
-        self.made.put(state, slips[0], y[8], flow.stance.kind(), pose, asked);
-        self.made.path.upside_down = over;
-        if let Some(last) = self.made.path.other_rim.last_mut() {
-            let ([u, v], [normal, across, along]) = (slips[1], forces[1]);
-            *last = [u, v, normal, across, along];
-        }
-        if loses(N) {
-            self.made.path.work_lost.push(y[N - 1]);
-        }
+        let row = row_of(&self.ask, flow, self.over().as_ref(), y);
+        self.made.push(row);
+    }
+
+    /// The current numbers, if they are seen from the other rim.
+    fn over(&self) -> Option<Aloft> {
+        self.made.path.upside_down.then(|| self.aloft())
     }
 
     /// The kind of a slip from rest; for a body that lies, the kind with both rims slipping.
     pub(super) fn kind_of_slip(&self) -> Kind {
         if self.of.lying.is_some() { Kind::Lying } else { Kind::Slipping }
+    }
+}
+
+/// The outputs of a body on both rims, as seen from the first rim; `over` are numbers of the same phase if these and `y`
+/// are seen from the other rim.
+fn row_of<const N: usize>(
+    ask: &Ask,
+    flow: &LyingFlow,
+    over: Option<&Aloft>,
+    y: &[f64; N],
+) -> OutputRow<State> {
+    let mut slips = [[y[5], y[6]], flow.law.other_slip([y[2], y[4], y[5], y[6]])];
+    let (mut forces, mut w3, mut seen) = (flow.lain(y).force, y[4], *y);
+    if let Some(over) = over {
+        let back = |x: f64| 0.0 - x;
+        slips = [slips[1].map(back), slips[0].map(back)];
+        let turned = |[n, across, along]: [f64; 3]| [n, back(across), back(along)];
+        (forces, w3) = ([turned(forces[1]), turned(forces[0])], back(w3));
+        if poses(N) {
+            let pose = core::array::from_fn(|i| y[9 + i]);
+            seen[9..13].copy_from_slice(&pose_from(over, &flow.law.shape, true, pose));
+        }
+    }
+    let force = |[normal, along, across]: [f64; 3]| Force { normal, along, across };
+    let doubt = flow.tol * (1.0 + y[2].abs().max(y[4].abs()));
+    let ([u, v], [normal, across, along]) = (slips[1], forces[1]);
+    let state = State { theta: FRAC_PI_2, w1: y[2], w2: 0.0, w3 };
+    OutputRow {
+        pose: poses(N).then(|| write::pose(&seen)),
+        force: ask.force.then(|| (force(forces[0]), doubt)),
+        other_rim: Some([u, v, normal, across, along]),
+        ..OutputRow::on_table(state, slips[0], [y[8], lost(y)], flow.stance.kind())
     }
 }
