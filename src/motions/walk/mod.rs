@@ -205,6 +205,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
     pub fn advance(&mut self, go_on: &mut dyn FnMut() -> bool) -> Result<WalkStep<N>, Error> {
         while let Some(next) = self.next.take() {
             let next = self.goes_on(next);
+            P::audits(self);
             let now = self.at[TIME];
             self.still = if now > self.began { 0 } else { self.still + 1 };
             self.short = if now > self.began + SHORT { 0 } else { self.short + 1 };
