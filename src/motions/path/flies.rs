@@ -7,6 +7,7 @@
 //! factor. [`strikes`](super::strikes) has the impacts.
 
 use super::flight::air::{AirFlight, in_air};
+use super::flight::lands::TOUCH;
 use super::flight::{Aloft, Flies, Flight, Takeoff};
 use super::phases::{BodyPhases, BodyWalk};
 use super::strikes::{RATTLED, ROUNDED};
@@ -17,9 +18,6 @@ use crate::motions::halt::{TIME, loses, poses};
 use crate::motions::walk::{Next, Phases};
 use crate::motions::{Ending, Kind};
 use core::f64::consts::{FRAC_PI_2, TAU};
-
-/// A rim at a height below this, in R (1 + ell), touches the table.
-const TOUCHES: f64 = 2e-15;
 
 impl<const N: usize> BodyWalk<'_, N> {
     pub(super) fn has_two_rims(&self) -> bool {
@@ -144,7 +142,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             None => Box::new(Flight::new(&shape, &from)),
         };
         let other = from.on_other_rim(&shape);
-        let touches = other.height.abs() <= TOUCHES * (1.0 + shape.rim.ell.abs());
+        let touches = other.height.abs() <= 2.0 * TOUCH;
         let leaves = [leaves, touches.then_some(if other.lift == 0.0 { 2 } else { 1 })];
         let left = self.since.last().map_or(0.0, |t| t - now);
         let Ok(landing) = course.lands(leaves, self.has_two_rims(), left) else {

@@ -52,11 +52,8 @@ const JAM_TAKES: f64 = 1e-9;
 /// Largest number of impacts of both rims in turn.
 const MOST_IN_TURN: u32 = 10_000;
 
-/// A body that rolls may slip by this share of its fall after both of its rims have struck; more is a slip that friction
-/// cannot stop.
-const SLIPS_ON: f64 = 1e-9;
 /// The coefficient of friction of a table on which a body rolls, in an impact of both rims.
-const ROUGH: f64 = 1e100;
+const PERFECTLY_ROUGH: f64 = 1e100;
 
 /// The momentum that the centre of mass has gained, which is the impulse of both rims together, at theta = pi/2.
 fn gained(shape: &Shape<f64>, [old, new]: [&Aloft; 2]) -> [f64; 3] {
@@ -275,7 +272,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         let before = State { theta: FRAC_PI_2, w1, w2, w3 };
         let (friction, rolls) = match self.ask.table {
             Table::Rubs(friction) => (friction, false),
-            Table::Rolling { mu } => (Friction::coulomb(mu.min(ROUGH)), true),
+            Table::Rolling { mu } => (Friction::coulomb(mu.min(PERFECTLY_ROUGH)), true),
             Table::Smooth => (Friction::coulomb(0.0), false),
         };
         let (y, slip, lift, lost) =
@@ -283,7 +280,8 @@ impl<const N: usize> BodyWalk<'_, N> {
         let mut after = Aloft { w: [y.w1, y.w2, y.w3], slip, lift, ..at };
         if rolls {
             let slips = [slip, after.on_other_rim(&shape).slip].into_iter().flatten();
-            if slips.fold(0.0, |most: f64, u| most.max(u.abs())) > SLIPS_ON * at.lift.abs() {
+            // What is left is rounding, or a slip that friction cannot stop.
+            if slips.fold(0.0, |most: f64, u| most.max(u.abs())) > RATTLE_OVER * at.lift.abs() {
                 return Err(Ending::Slip);
             }
             after.slip = [0.0; 2];
@@ -327,7 +325,7 @@ impl<const N: usize> BodyWalk<'_, N> {
     pub(super) fn lands_on_both(&mut self) -> Next {
         let friction = match self.ask.table {
             Table::Rubs(friction) => friction,
-            _ if self.at[2] == 0.0 && self.at[4] == 0.0 => Friction::coulomb(ROUGH),
+            _ if self.at[2] == 0.0 && self.at[4] == 0.0 => Friction::coulomb(PERFECTLY_ROUGH),
             _ => return Next::Ends(Ending::Side),
         };
         if self.at[3] > 0.0 {

@@ -13,7 +13,7 @@
 //! belongs to the leading terms of its height, so that the power series there includes it. Error: the tolerance of the
 //! steps.
 
-use super::lands::{Falling, Leaves, NoLanding, RIM_TERMS, Swung, TOUCH};
+use super::lands::{Falling, Leaves, NoLanding, RIM_TERMS, AngleSeries, TOUCH};
 use super::{Aloft, Flies, Flight};
 use crate::laws::body::Shape;
 use crate::laws::loss::{Couples, Kinematics, Law, Losses};
@@ -188,7 +188,7 @@ impl AirFlight {
         while size(near, TERMS - 2..TERMS) > LAST_SHARE * size(near, 1..TERMS) {
             near *= 0.5;
         }
-        let swung = |near: f64, terms: usize| -> Swung {
+        let swung = |near: f64, terms: usize| -> AngleSeries {
             series.map(|at| {
                 let known = |k: usize| if k < terms.min(TERMS) { at[k] * near.powi(k as i32) } else { 0.0 };
                 core::array::from_fn::<f64, RIM_TERMS, _>(known)

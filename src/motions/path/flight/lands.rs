@@ -26,7 +26,7 @@ const EARLY: f64 = 0.5;
 const DIGITS: f64 = 36.0;
 /// A cell shorter than this, in units of the time since the start, in which the height is below `TOUCH` counts as a touch.
 const SHORT_CELL: f64 = 1e-9;
-pub(super) const TOUCH: f64 = 1e-15;
+pub(crate) const TOUCH: f64 = 1e-15;
 /// Largest number of evaluations of the height.
 const HEIGHTS: u32 = 1_000_000;
 
@@ -34,7 +34,7 @@ const HEIGHTS: u32 = 1_000_000;
 pub(crate) type Leaves = Option<usize>;
 
 /// Sine and cosine of theta as power series in the time since the start.
-pub(super) type Swung = [[f64; RIM_TERMS]; 2];
+pub(super) type AngleSeries = [[f64; RIM_TERMS]; 2];
 
 /// A function of time with its derivative, whose second derivative is at most `bend`, and its rounding error.
 pub(super) struct Falling<F: FnMut(f64) -> [f64; 2]> {
@@ -155,7 +155,7 @@ impl Flight {
             }
             from = near;
         }
-        let noise = 4.0 * self.doubt_of_height(from);
+        let noise = touch + 4.0 * self.doubt_of_height(from);
         let mut falling = Falling { of: |t: f64| self.rim(side, t), bend, touch, noise };
         // While the centre is too high no rim lands.
         let parts = if rises > 0.0 {
@@ -190,7 +190,7 @@ impl Flight {
         side: f64,
         order: usize,
         near: f64,
-        swung: &dyn Fn(f64, usize) -> Swung,
+        swung: &dyn Fn(f64, usize) -> AngleSeries,
     ) -> Result<Option<f64>, NoLanding> {
         // A bounce that is over much earlier needs few terms, up to twice the time that the first two give.
         let first = self.heights(side, near, &swung(near, order + 2));
@@ -211,7 +211,7 @@ impl Flight {
         side: f64,
         order: usize,
         near: f64,
-        (terms, swung): (usize, &dyn Fn(f64, usize) -> Swung),
+        (terms, swung): (usize, &dyn Fn(f64, usize) -> AngleSeries),
     ) -> Result<Option<f64>, NoLanding> {
         let series = &self.heights(side, near, &swung(near, terms))[order..terms];
         if series[0] <= 0.0 {
@@ -229,7 +229,7 @@ impl Flight {
     }
 
     /// The series of the inclination in units of the time `near`.
-    fn swung(&self, near: f64, terms: usize) -> Swung {
+    fn swung(&self, near: f64, terms: usize) -> AngleSeries {
         let ((s, c), [p, q]) = (self.from.angle, self.swing);
         let (mut cosines, mut sines) = ([0.0; RIM_TERMS], [0.0; RIM_TERMS]);
         let mut scale = 1.0;
@@ -250,7 +250,7 @@ impl Flight {
     }
 
     /// The series of the height of a rim that touches at the start, in units of the time `near`.
-    fn heights(&self, side: f64, near: f64, [sines, cosines]: &Swung) -> [f64; RIM_TERMS] {
+    fn heights(&self, side: f64, near: f64, [sines, cosines]: &AngleSeries) -> [f64; RIM_TERMS] {
         let rim = &self.shape.rim;
         let mut all = core::array::from_fn(|k| -rim.slope((sines[k], side * cosines[k])));
         // The first coefficient is the normal velocity, which is known without a difference.
