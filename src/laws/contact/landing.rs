@@ -17,10 +17,11 @@
 //! of Moreau (Unilateral contact and dry friction in finite freedom dynamics, 1988): the impulse at a rim opposes the
 //! slip after the impact, Q = -mu P u/|u|, or it is just large enough to stop the slip. Therefore no landing gains
 //! energy. The law is exact where the slip keeps its direction during the impact or stops and sticks; where the slip
-//! turns it is a model. If both rims come down at once and bounce, the table gives back the share e of the normal impulse
-//! of compression at each rim (Poisson). For these normal impulses Moreau's friction leaves the least energy, not more
-//! than if e Q were given back, which would leave at most e^2 of the energy taken: no bounce of both rims gains energy.
-//! One rim bounces as in [`impact`](super::impact). Without friction both rims stay if ell^2 >= I1; with friction if ell^2 - ell Q_up,h/P_up >= I1.
+//! turns it is a model. If both rims come down at once and bounce, the table gives back the share e of the normal
+//! impulse of compression at each rim (Poisson). For these normal impulses Moreau's friction leaves the least energy,
+//! not more than if e Q were given back, which would leave at most e^2 of the energy taken: no bounce of both rims
+//! gains energy. One rim bounces as in [`impact`](super::impact). Without friction both rims stay if ell^2 >= I1; with
+//! friction if ell^2 - ell Q_up,h/P_up >= I1.
 //!
 //! Error: 1e-12 of the largest velocity; a test of `throw` compares with the three-dimensional model.
 
@@ -151,8 +152,8 @@ pub(crate) fn land_at(
     })
 }
 
-/// A landing of both rims at once that bounce with the restitution `e`: the state, the slip and the vertical velocity of
-/// the lower rim, which comes down at `lift` < 0, and the energy lost. Arguments and errors as for [`land_at`].
+/// A landing of both rims at once that bounce with the restitution `e`: the state, the slip and the vertical velocity
+/// of the lower rim, which comes down at `lift` < 0, and the energy lost. Arguments and errors as for [`land_at`].
 pub(crate) fn bounced(
     body: &Body,
     y: &State,
@@ -284,7 +285,8 @@ struct Impact<'a> {
     rims: Rims,
 }
 
-/// The state, the slip and the vertical velocity of the lower rim after an impact, and the normal impulses of both rims.
+/// The state, the slip and the vertical velocity of the lower rim after an impact, and the normal impulses of both
+/// rims.
 struct Pushed {
     y: State,
     slip: [f64; 2],
@@ -343,8 +345,8 @@ impl Impact<'_> {
         let step = 1.0 / across.max(along);
         // This velocity, as an impulse, is the scale of the rounding errors of the slips.
         let other = (2.0 * ell * self.y.w1).abs();
-        let velocity =
-            step * self.slip[0].abs().max(self.slip[1].abs()).max(other).max(-self.y.w2).max(-self.lift).max(given);
+        let speeds = [self.slip[0].abs(), self.slip[1].abs(), other, -self.y.w2, -self.lift, given];
+        let velocity = step * speeds.into_iter().fold(0.0, f64::max);
         let mut q: Impulses = [[0.0; 2]; 2];
         for _ in 0..STEPS {
             let (p, w2) = self.pushed(&q);

@@ -196,7 +196,8 @@ impl<const N: usize> BodyWalk<'_, N> {
         let [v_h, v_2] = law.centre(from.angle, from.w, from.slip);
         let v_z = from.lift + law.shape.rim.lever(from.angle) * from.w[1];
         let has = newton::energy(&law.shape, from.angle, from.w, [v_h, v_2, v_z]) + from.height;
-        let whole = has + self.at[8] + self.of.struck + if loses(N) { self.at[N - 1] } else { 0.0 };
+        let last = self.made.path.impacts.last().map_or(0.0, |hit| hit.lost);
+        let whole = has + self.at[8] + self.of.struck + last + if loses(N) { self.at[N - 1] } else { 0.0 };
         let fastest = [v_h, v_2, v_z].into_iter().chain(from.w).fold(1.0, |most: f64, x| most.max(x.abs()));
         let first = *self.of.energy.get_or_insert(whole);
         self.claims((whole - first).abs() / fastest);

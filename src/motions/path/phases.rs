@@ -54,7 +54,8 @@ pub(crate) struct BodyPhases {
     pub(crate) lying: Option<Box<LyingPhase>>,
     /// The beginning of the next flight, or the height and the vertical velocity of a body in the air.
     pub(super) takeoff: Takeoff,
-    /// The energy that impacts have taken so far, and the sum of energy, heat and all that was lost at the start.
+    /// The energy that the impacts before the last one have taken, and the sum of energy, heat and all that was lost
+    /// at the start.
     pub(super) struck: f64,
     pub(super) energy: Option<f64>,
     /// Whether only theta changes, so that rounding must not make the body turn.

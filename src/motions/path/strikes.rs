@@ -210,7 +210,7 @@ impl<const N: usize> BodyWalk<'_, N> {
     ) {
         let velocities = both.map(|at| [at.slip[0], at.slip[1], at.lift]);
         let (time, states) = (self.t0 + self.at[TIME], both.map(Aloft::state));
-        self.of.struck += lost;
+        self.of.struck += self.made.path.impacts.last().map_or(0.0, |before| before.lost);
         self.made.path.impacts.push(Strike { time, other, hit, states, velocities, impulse, lost, stays });
     }
 
@@ -262,8 +262,8 @@ impl<const N: usize> BodyWalk<'_, N> {
         Next::Own(Kind::Flying)
     }
 
-    /// The numbers after both rims have struck at once, and whether they are seen from the other rim; `other` says so of
-    /// the numbers before.
+    /// The numbers after both rims have struck at once, and whether they are seen from the other rim; `other` says so
+    /// of the numbers before.
     fn bounces_on_both(&mut self, at: Aloft, other: bool, e: f64) -> Result<(Aloft, bool), Ending> {
         let shape = self.of.slide.law.shape;
         // As seen from the rim that comes down more slowly.

@@ -9,11 +9,11 @@
 //! in the air; the others need a contact or a gap under the face. In these axes the poles are ordinary points. The
 //! height of a rim and cos theta are numbers of their own, since near zero their changes have more digits than they
 //! themselves. The landing is computed as in [`lands`](super::lands), step by step, with the initial K = (|l| + a)
-//! (|L|^2/I1^2 + |m|/I1) - 1, since each component of w along the body's axes only falls. Where a rim touches at the start, the couple of the air
-//! belongs to the leading terms of its height, so that the power series there includes it. Error: the tolerance of the
-//! steps.
+//! (|L|^2/I1^2 + |m|/I1) - 1, since w3 and the size of w across the axis only fall. Where a rim touches at the start,
+//! the couple of the air belongs to the leading terms of its height, so that the power series there includes it. Error:
+//! the tolerance of the steps.
 
-use super::lands::{Falling, Leaves, NoLanding, RIM_TERMS, AngleSeries, TOUCH};
+use super::lands::{AngleSeries, Falling, Leaves, NoLanding, RIM_TERMS, TOUCH};
 use super::{Aloft, Flies, Flight};
 use crate::laws::body::Shape;
 use crate::laws::loss::{Couples, Kinematics, Law, Losses};
@@ -211,7 +211,12 @@ impl AirFlight {
 }
 
 impl Flies for AirFlight {
-    fn lands(&mut self, leaves: [Leaves; 2], two: bool, until: f64) -> Result<Option<(f64, bool)>, NoLanding> {
+    fn lands(
+        &mut self,
+        leaves: [Leaves; 2],
+        two: bool,
+        until: f64,
+    ) -> Result<Option<(f64, bool)>, NoLanding> {
         let (rim, i1, [w1, w2, w3]) = (self.shape.rim, self.shape.i1, self.from.w);
         let reach = rim.ell.abs() + rim.a;
         let [m1, m2, m3] = self.couple(self.from.w);

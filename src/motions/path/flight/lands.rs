@@ -24,7 +24,8 @@ pub(super) const RIM_TERMS: usize = 30;
 const NARROWS: f64 = 3.0;
 const EARLY: f64 = 0.5;
 const DIGITS: f64 = 36.0;
-/// A cell shorter than this, in units of the time since the start, in which the height is below `TOUCH` counts as a touch.
+/// A cell shorter than this, in units of the time since the start, in which the height is below `TOUCH` counts as a
+/// touch.
 const SHORT_CELL: f64 = 1e-9;
 pub(crate) const TOUCH: f64 = 1e-15;
 /// Largest number of evaluations of the height.
@@ -45,8 +46,8 @@ pub(super) struct Falling<F: FnMut(f64) -> [f64; 2]> {
 }
 
 impl<F: FnMut(f64) -> [f64; 2]> Falling<F> {
-    /// The first zero in [from, to], where the function is known to be positive up to `from`. An error if it is negative
-    /// there, and after too many evaluations.
+    /// The first zero in [from, to], where the function is known to be positive up to `from`. An error if it is
+    /// negative there, and after too many evaluations.
     pub fn first_zero(&mut self, from: f64, to: f64) -> Result<Option<f64>, NoLanding> {
         let (mut t, [mut here, mut rate]) = (from, (self.of)(from));
         if here <= 0.0 {
@@ -125,13 +126,7 @@ impl Flight {
         ]
     }
 
-    fn lands_on(
-        &self,
-        side: f64,
-        leaves: Leaves,
-        two: bool,
-        until: f64,
-    ) -> Result<Option<f64>, NoLanding> {
+    fn lands_on(&self, side: f64, leaves: Leaves, two: bool, until: f64) -> Result<Option<f64>, NoLanding> {
         let Shape { rim, .. } = self.shape;
         let [.., up] = self.velocity;
         let reach = rim.ell.hypot(rim.a) + rim.rho;
@@ -144,7 +139,8 @@ impl Flight {
         };
         let end = (passes(lowest).map_or(up, |(_, end)| end) + 1e-6).min(until);
         let (rises, comes) = passes(reach).unwrap_or((end, end));
-        let bend = (self.rate * self.rate * (rim.ell.abs() * self.wide + rim.a * self.b.sin()) - 1.0).max(1e-9);
+        let bend =
+            (self.rate * self.rate * (rim.ell.abs() * self.wide + rim.a * self.b.sin()) - 1.0).max(1e-9);
         let touch = TOUCH * (1.0 + reach + self.height);
         let mut from = 0.0;
         if let Some(order) = leaves {
@@ -223,8 +219,7 @@ impl Flight {
             [value, rate]
         };
         let bend: f64 = (2..series.len()).map(|k| (k * (k - 1)) as f64 * series[k].abs()).sum();
-        let mut falling =
-            Falling { of: power, bend: bend.max(1e-9 * series[0]), touch: 0.0, noise: 0.0 };
+        let mut falling = Falling { of: power, bend: bend.max(1e-9 * series[0]), touch: 0.0, noise: 0.0 };
         Ok(falling.first_zero(0.0, 1.0)?.map(|x| x * near))
     }
 
@@ -261,7 +256,12 @@ impl Flight {
 }
 
 impl Flies for Flight {
-    fn lands(&mut self, leaves: [Leaves; 2], two: bool, until: f64) -> Result<Option<(f64, bool)>, NoLanding> {
+    fn lands(
+        &mut self,
+        leaves: [Leaves; 2],
+        two: bool,
+        until: f64,
+    ) -> Result<Option<(f64, bool)>, NoLanding> {
         let mut first = None;
         for (i, side) in [1.0, -1.0].into_iter().enumerate().take(if two { 2 } else { 1 }) {
             // Of two rims that land at the same time the first one counts; an impact looks at both.
@@ -281,5 +281,21 @@ impl Flies for Flight {
 
     fn free(&self) -> &Flight {
         self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_search_that_begins_below_the_table_by_more_than_rounding_finds_no_landing() {
+        let from = |height: f64| {
+            let of = move |t: f64| [height - t, -1.0];
+            Falling { of, bend: 1e-9, touch: 1e-15, noise: 1e-12 }.first_zero(0.0, 1.0)
+        };
+        assert!(from(-0.1).is_err() && from(-2e-12).is_err());
+        assert_eq!(from(-1e-13).unwrap(), Some(0.0));
+        assert!((from(0.1).unwrap().unwrap() - 0.1).abs() < 1e-15);
     }
 }
