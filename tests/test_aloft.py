@@ -259,3 +259,35 @@ def test_the_height_is_that_of_the_lowest_point_whichever_rim_it_is_on():
     for height in (-0.1, np.nan, np.inf, [0.1, -1.0]):
         with pytest.raises(ValueError, match="height = .*expected 0 <= height, finite"):
             sc.dropped(tube, height, 1.0)
+
+
+@pytest.mark.parametrize("e", [0.0, 0.5])
+def test_a_body_that_turns_as_it_starts_on_both_rims_loses_what_it_has_in_a_sweep_too(e):
+    body = sc.Body.solid(1.0)
+    level = np.pi / 2
+    for w2, lift in ((2.0, -2.0), (-0.7, -0.3), (1.0, -2.5)):
+        start = sc.State(level, 0.3, w2, -0.4, slip=(0.1, 0.2), height=0.0, lift=lift)
+        m = sc.roll(body, start, np.linspace(0, 5, 51), contact=GRIP, restitution=e)
+        whole = m.energy + m.dissipated + m.lost_in_impacts
+        assert np.ptp(whole) < 1e-12
+        hit = m.impacts[0]
+        assert hit.before.lift == pytest.approx(min(lift, lift + 2 * w2), abs=1e-15)
+        found = sc.sweep.roll(
+            body, start, 5.0, contact=GRIP, restitution=e, tol=1e-11, want=("final", "lost_in_impacts")
+        )
+        doubt = 10 * (m.error + float(found.error)) + 1e-10
+        assert float(found.lost_in_impacts) == pytest.approx(m.lost_in_impacts[-1], abs=doubt)
+
+
+def test_a_can_dropped_exactly_on_its_side_bounces_level_over_its_spot():
+    can = sc.measured(outer_diameter="12cm", length="12cm", mass=1.357)
+    t = np.linspace(0, 2, 401)
+    for e in (0.0, 0.5, 1.0):
+        m = sc.roll(
+            can, sc.dropped(can, 0.24, np.pi / 2), t, contact=sc.Coulomb(0.5), restitution=e, want="pose"
+        )
+        assert np.ptp(m.centre[:, :2], axis=0) == pytest.approx(0, abs=1e-15)
+        assert (m.theta == np.pi / 2).all()
+        again = m.t > m.impacts[0].time
+        assert m.height[again].max() == pytest.approx(0.24 * e * e, abs=2e-4)
+        assert m.height.min() >= 0

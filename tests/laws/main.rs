@@ -18,6 +18,7 @@ mod exact;
 mod files;
 mod flight;
 mod hard_cases;
+mod hopping;
 mod impacts;
 mod integrators;
 mod leaving;

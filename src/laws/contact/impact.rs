@@ -37,7 +37,7 @@ coded! {
         SlipsOn = 2,
         /// Without friction.
         Smooth = 3,
-        /// The other rim lands without a bounce, and the impulse is the sum over both rims.
+        /// Both rims land at once, or the other rim lands without a bounce; the impulse is the sum over both rims.
         BothRims = 4,
     }
 }
@@ -211,7 +211,7 @@ impl RimImpact {
         }
         let lost = -0.5
             * ((self.slip[0] + slip[0]) * p_h + (self.slip[1] + slip[1]) * p_2 + (self.lift + lift) * p_n);
-        Some(Struck { impulse: [p_h, p_2, p_n], slip, lift, hit, lost: lost.max(0.0) })
+        Some(Struck { impulse: [p_h, p_2, p_n], slip, lift, hit, lost })
     }
 
     /// The first slip under Coulomb's friction. Returns whether the impact ends before the slip stops, or

@@ -10,13 +10,18 @@
 //!   it rocks over    P_low = 0,   P_up = ell (2 I1 W + Qh)/(I1 + ell^2),                 w2 -> -W + (ell P_up - Qh)/I1
 //!   u_h  -> u_h + Qh - (change of w2),   u_2 -> u_2 + a Q2 + b (Q2 of the other rim),   a, b = 1 + 1/I3 +- ell^2/I1
 //!   w1   -> w1 + ell (Q2,low - Q2,up)/I1,   w3 -> w3 - (Q2,low + Q2,up)/I3
+//! bounce of both rims        then P grows by e P, and Q again opposes the slip that remains, with |Q| <= mu e P
 //! seen from the other rim   (w1, w2, w3, u_h, u_2) -> (w1, -w2, -w3, -u_h, 2 ell w1 - u_2),   phi + pi, -psi
 //! ```
 //! The impulses are those of Newton's and Euler's equations about the centre of mass. Friction is Coulomb's in the form
 //! of Moreau (Unilateral contact and dry friction in finite freedom dynamics, 1988): the impulse at a rim opposes the
 //! slip after the impact, Q = -mu P u/|u|, or it is just large enough to stop the slip. Therefore no landing gains
 //! energy. The law is exact where the slip keeps its direction during the impact or stops and sticks; where the slip
-//! turns it is a model. Without friction both rims stay if ell^2 >= I1; with friction if ell^2 - ell Q_up,h/P_up >= I1.
+//! turns it is a model. If both rims come down at once and bounce, the table gives back the share e of the normal
+//! impulse of compression at each rim (Poisson). For these normal impulses Moreau's friction leaves the least energy,
+//! not more than if e Q were given back, which would leave at most e^2 of the energy taken: no bounce of both rims
+//! gains energy. One rim bounces as in [`impact`](super::impact). Without friction both rims stay if ell^2 >= I1; with
+//! friction if ell^2 - ell Q_up,h/P_up >= I1.
 //!
 //! Error: 1e-12 of the largest velocity; a test of `throw` compares with the three-dimensional model.
 
@@ -122,47 +127,93 @@ pub(crate) fn land_at(
     for (name, x) in [("w1", y.w1), ("w3", y.w3), ("u_h", slip[0]), ("u_2", slip[1])] {
         within(name, x, (-most, most), "-1e100 to 1e100")?;
     }
-    let mu = friction.strength();
-    let dry = matches!(friction, Friction::Coulomb { .. });
     let before = energy(body, y, slip, lift);
     let end = |outcome, y: State, slip: [f64; 2]| {
-        let lost = (before - energy(body, &y, slip, 0.0)).max(0.0);
+        let lost = before - energy(body, &y, slip, 0.0);
         Landed { outcome, state: y, slip, lost }
     };
-    let comes = y.w2 < 0.0 || lift < 0.0;
-    let on = |y: &State, slip: [f64; 2], lift: f64, both| {
-        Impact { body, y: *y, slip, lift, mu, dry, both }.solved()
-    };
-    let lies = on(y, slip, lift, true);
-    let rocks = if comes { on(y, slip, lift, false) } else { None };
-    // Where the lower rim barely stays, both solutions are the same motion up to rounding, and one is
-    // dropped.
-    let rocks = rocks.filter(|(after, _)| lies.is_none() || after.w2 < SAME * y.w2);
-    // If both rims come down, it may also be the other one that leaves the table.
-    let stands = if lift < 0.0 && lies.is_none() && rocks.is_none() {
-        let (there, other) = mirrored(body, y, slip);
-        on(&there, other, lift + 2.0 * body.ell() * y.w2, false)
-    } else {
-        None
-    };
-    match (lies, rocks, stands) {
-        (Some((y, slip)), None, _) => {
+    let mu = friction.strength();
+    Ok(match compressed(body, y, (slip, lift), friction)? {
+        Compressed { here: true, there: true, end: Pushed { y, slip, .. } } => {
             let (there, other) = mirrored(body, &y, slip);
-            Ok(if rises(body, &y, slip, mu) {
+            if rises(body, &y, slip, mu) {
                 end(Outcome::Rises, y, slip)
             } else if rises(body, &there, other, mu) {
                 end(Outcome::Changes, there, other)
             } else {
                 end(Outcome::Lies, y, slip)
-            })
+            }
         }
-        (None, Some((y, slip)), _) => {
+        Compressed { here: true, end: Pushed { y, slip, .. }, .. } => end(Outcome::Rises, y, slip),
+        Compressed { end: Pushed { y, slip, .. }, .. } => {
             let (there, other) = mirrored(body, &y, slip);
-            Ok(end(Outcome::Changes, there, other))
+            end(Outcome::Changes, there, other)
         }
-        (None, None, Some((there, other))) => {
-            let (y, slip) = mirrored(body, &there, other);
-            Ok(end(Outcome::Rises, y, slip))
+    })
+}
+
+/// A landing of both rims at once that bounce with the restitution `e`: the state, the slip and the vertical velocity
+/// of the lower rim, which comes down at `lift` < 0, and the energy lost. Arguments and errors as for [`land_at`].
+pub(crate) fn bounced(
+    body: &Body,
+    y: &State,
+    (slip, lift): ([f64; 2], f64),
+    friction: &Friction,
+    e: f64,
+) -> Result<(State, [f64; 2], f64, f64), Error> {
+    let Compressed { end, .. } = compressed(body, y, (slip, lift), friction)?;
+    let (mu, dry) = strength(friction);
+    let given = Rims::Given(end.push.map(|p| e * p));
+    let again = Impact { body, y: end.y, slip: end.slip, lift: end.lift, mu, dry, rims: given }.solved();
+    let Some(after) = again else { return Err(Error::Landing { mu, outcomes: 0 }) };
+    let lost = energy(body, y, slip, lift) - energy(body, &after.y, after.slip, after.lift);
+    Ok((after.y, after.slip, after.lift, lost))
+}
+
+/// The end of a compression, and which rims remain on the table: the lower one, and the other one.
+struct Compressed {
+    here: bool,
+    there: bool,
+    end: Pushed,
+}
+
+/// The coefficient of a law of friction, and whether it is dry.
+fn strength(friction: &Friction) -> (f64, bool) {
+    (friction.strength(), matches!(friction, Friction::Coulomb { .. }))
+}
+
+/// The compression of a landing, by the one of its outcomes that is consistent.
+fn compressed(
+    body: &Body,
+    y: &State,
+    (slip, lift): ([f64; 2], f64),
+    friction: &Friction,
+) -> Result<Compressed, Error> {
+    let (mu, dry) = strength(friction);
+    let comes = y.w2 < 0.0 || lift < 0.0;
+    let on = |y: &State, slip: [f64; 2], lift: f64, rims| {
+        Impact { body, y: *y, slip, lift, mu, dry, rims }.solved()
+    };
+    let lies = on(y, slip, lift, Rims::Both);
+    let rocks = if comes { on(y, slip, lift, Rims::Other) } else { None };
+    // Where the lower rim barely stays, both solutions are the same motion up to rounding, and one is
+    // dropped.
+    let rocks = rocks.filter(|after| lies.is_none() || after.y.w2 < SAME * y.w2);
+    // If both rims come down, it may also be the other one that leaves the table.
+    let stands = if lift < 0.0 && lies.is_none() && rocks.is_none() {
+        let (there, other) = mirrored(body, y, slip);
+        on(&there, other, lift + 2.0 * body.ell() * y.w2, Rims::Other)
+    } else {
+        None
+    };
+    match (lies, rocks, stands) {
+        (Some(end), None, _) => Ok(Compressed { here: true, there: true, end }),
+        (None, Some(end), _) => Ok(Compressed { here: false, there: true, end }),
+        (None, None, Some(end)) => {
+            let (seen, slip) = mirrored(body, &end.y, end.slip);
+            let lift = end.lift + 2.0 * body.ell() * end.y.w2;
+            let push = [end.push[1], end.push[0]];
+            Ok(Compressed { here: true, there: false, end: Pushed { y: seen, slip, lift, push } })
         }
         (lies, ..) => Err(Error::Landing { mu, outcomes: if lies.is_some() { 2 } else { 0 } }),
     }
@@ -178,8 +229,7 @@ pub(crate) fn settled(
     (slip, lift): ([f64; 2], f64),
     friction: &Friction,
 ) -> (State, [f64; 2]) {
-    let (ell, mu) = (body.ell(), friction.strength());
-    let dry = matches!(friction, Friction::Coulomb { .. });
+    let (ell, (mu, dry)) = (body.ell(), strength(friction));
     let drag = |[u, v]: [f64; 2]| {
         let size = if dry { u.hypot(v) } else { 1.0 };
         [u, v].map(|u| if size > 0.0 { mu * u / size } else { 0.0 })
@@ -188,7 +238,7 @@ pub(crate) fn settled(
     let (down, turn) = (-(lift + ell * y.w2), -body.i1() * y.w2);
     let there = (turn + down * (ell - low[0])) / (2.0 * ell + up[0] - low[0]);
     let q = [low.map(|d| -(down - there) * d), up.map(|d| -there * d)];
-    let (after, slips) = Impact { body, y: *y, slip, lift, mu, dry, both: true }.after(&q, 0.0);
+    let (after, slips) = Impact { body, y: *y, slip, lift, mu, dry, rims: Rims::Both }.after(&q, 0.0);
     (State { w2: 0.0, ..after }, if slip == [0.0; 2] { slip } else { slips[0] })
 }
 
@@ -211,17 +261,37 @@ fn energy(body: &Body, y: &State, [along, across]: [f64; 2], lift: f64) -> f64 {
     0.5 * (forth * forth + aside * aside + up * up + turning)
 }
 
-/// An impact on the assumption that both rims stay (`both`), or that the lower rim leaves the table.
+/// The normal impulses of an impact.
+#[derive(Clone, Copy, PartialEq)]
+enum Rims {
+    /// Those that keep both rims on the table.
+    Both,
+    /// That which keeps the other rim on the table, while the lower rim leaves it.
+    Other,
+    /// These, of the lower and of the other rim.
+    Given([f64; 2]),
+}
+
+/// An impact with the normal impulses of `rims`.
 struct Impact<'a> {
     body: &'a Body,
     y: State,
     slip: [f64; 2],
-    /// The vertical velocity of the lower rim, which is not positive.
+    /// The vertical velocity of the lower rim.
     lift: f64,
     /// The coefficient mu of dry friction, or c of a viscous film.
     mu: f64,
     dry: bool,
-    both: bool,
+    rims: Rims,
+}
+
+/// The state, the slip and the vertical velocity of the lower rim after an impact, and the normal impulses of both
+/// rims.
+struct Pushed {
+    y: State,
+    slip: [f64; 2],
+    lift: f64,
+    push: [f64; 2],
 }
 
 /// Friction impulses of the lower and the upper rim, each along e_h and e2.
@@ -231,12 +301,17 @@ impl Impact<'_> {
     /// The normal impulses P of both rims, and w2 after the impact.
     fn pushed(&self, q: &Impulses) -> ([f64; 2], f64) {
         let (ell, i1, w, along) = (self.body.ell(), self.body.i1(), -self.y.w2, q[0][0] + q[1][0]);
-        if self.both {
-            let (all, apart) = (ell * w - self.lift, (i1 * w + along) / ell);
-            return ([0.5 * (all - apart), 0.5 * (all + apart)], 0.0);
+        match self.rims {
+            Rims::Both => {
+                let (all, apart) = (ell * w - self.lift, (i1 * w + along) / ell);
+                ([0.5 * (all - apart), 0.5 * (all + apart)], 0.0)
+            }
+            Rims::Other => {
+                let push = (i1 * (2.0 * ell * w - self.lift) + ell * along) / (i1 + ell * ell);
+                ([0.0, push], (ell * push - along) / i1 - w)
+            }
+            Rims::Given(push) => (push, (ell * (push[1] - push[0]) - along) / i1 - w),
         }
-        let push = (i1 * (2.0 * ell * w - self.lift) + ell * along) / (i1 + ell * ell);
-        ([0.0, push], (ell * push - along) / i1 - w)
     }
 
     /// The state after the impact and the slips of both rims.
@@ -252,23 +327,26 @@ impl Impact<'_> {
         (State { w1, w2, w3, ..y }, slips.map(|across| [along, across]))
     }
 
-    /// The state and the slip of the lower rim after the impact, if the assumption is consistent.
+    /// The end of the impact, if its normal impulses are consistent.
     ///
     /// Each friction impulse is moved against the remaining slip and limited to mu P, until nothing changes.
-    fn solved(&self) -> Option<(State, [f64; 2])> {
+    fn solved(&self) -> Option<Pushed> {
         if self.excluded() {
             return None;
         }
         let (ell, i1, i3) = (self.body.ell(), self.body.i1(), self.body.i3());
-        let rims = if self.both { 2.0 } else { 1.0 };
-        let [along, straight, turning] =
-            [if self.both { 2.0 } else { 1.0 + 1.0 / (i1 + ell * ell) }, 1.0 + 1.0 / i3, ell * ell / i1];
-        let across = if self.both { (rims * straight).max(rims * turning) } else { straight + turning };
+        let (straight, turning) = (1.0 + 1.0 / i3, ell * ell / i1);
+        let both = 2.0 * straight.max(turning);
+        let (along, across, given) = match self.rims {
+            Rims::Both => (2.0, both, 0.0),
+            Rims::Other => (1.0 + 1.0 / (i1 + ell * ell), straight + turning, 0.0),
+            Rims::Given([here, there]) => (2.0 + 2.0 / i1, both, here.max(there)),
+        };
         let step = 1.0 / across.max(along);
         // This velocity, as an impulse, is the scale of the rounding errors of the slips.
         let other = (2.0 * ell * self.y.w1).abs();
-        let velocity =
-            step * self.slip[0].abs().max(self.slip[1].abs()).max(other).max(-self.y.w2).max(-self.lift);
+        let speeds = [self.slip[0].abs(), self.slip[1].abs(), other, -self.y.w2, -self.lift, given];
+        let velocity = step * speeds.into_iter().fold(0.0, f64::max);
         let mut q: Impulses = [[0.0; 2]; 2];
         for _ in 0..STEPS {
             let (p, w2) = self.pushed(&q);
@@ -307,15 +385,27 @@ impl Impact<'_> {
         self.dry
             && self.lift == 0.0
             && reach < i1 + square
-            && if self.both { most < -rounding } else { least > rounding }
+            && match self.rims {
+                Rims::Both => most < -rounding,
+                Rims::Other => least > rounding,
+                Rims::Given(_) => false,
+            }
     }
 
     /// The result, if no rim pulls and a rim that leaves the table moves upwards.
-    fn consistent(&self, q: &Impulses) -> Option<(State, [f64; 2])> {
-        let (p, w2) = self.pushed(q);
-        let good = if self.both { p[0] >= -SAME * p[1] && p[1] >= 0.0 } else { p[1] >= 0.0 && w2 < 0.0 };
+    fn consistent(&self, q: &Impulses) -> Option<Pushed> {
+        let (push @ [here, there], w2) = self.pushed(q);
+        let good = match self.rims {
+            Rims::Both => here >= -SAME * there && there >= 0.0,
+            Rims::Other => there >= 0.0 && w2 < 0.0,
+            Rims::Given(_) => true,
+        };
         let (y, slips) = self.after(q, w2);
-        good.then_some((y, slips[0]))
+        let lift = match self.rims {
+            Rims::Both => 0.0,
+            _ => self.lift + here + there - self.body.ell() * (w2 - self.y.w2),
+        };
+        good.then_some(Pushed { y, slip: slips[0], lift, push })
     }
 }
 

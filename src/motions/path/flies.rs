@@ -7,11 +7,13 @@
 //! factor. [`strikes`](super::strikes) has the impacts.
 
 use super::flight::air::{AirFlight, in_air};
+use super::flight::lands::TOUCH;
 use super::flight::{Aloft, Flies, Flight, Takeoff};
 use super::phases::{BodyPhases, BodyWalk};
 use super::strikes::{RATTLED, ROUNDED};
 use crate::laws::body::Shape;
 use crate::laws::contact::{Force, Table};
+use crate::laws::newton;
 use crate::laws::state::State;
 use crate::motions::halt::{TIME, loses, lost, poses};
 use crate::motions::row::OutputRow;
@@ -142,7 +144,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             None => Box::new(Flight::new(&shape, &from)),
         };
         let other = from.on_other_rim(&shape);
-        let touches = other.height == 0.0;
+        let touches = other.height.abs() <= 2.0 * TOUCH;
         let leaves = [leaves, touches.then_some(if other.lift == 0.0 { 2 } else { 1 })];
         let left = self.since.last().map_or(0.0, |t| t - now);
         let Ok(landing) = course.lands(leaves, self.has_two_rims(), left) else {
@@ -170,14 +172,37 @@ impl<const N: usize> BodyWalk<'_, N> {
         self.continues_with(next);
     }
 
-    /// The body at a time of its flight. The energy lost to the air until then is added to the energy lost `before`.
+    /// The body at a time of its flight. The energy lost to the air until then is added to the energy lost `before`. A
+    /// rim below the table is an error of the motion: the estimated error is at least its depth.
     fn flown(&mut self, course: &dyn Flies, t: f64, before: f64) -> Aloft {
-        let (at, lost) = course.at(t);
+        let (mut at, lost) = course.at(t);
         if loses(N) {
             self.at[N - 1] = before + lost;
         }
         self.claims(course.free().doubt(t, &at));
+        let other = if self.has_two_rims() { self.of.slide.law.shape.rim.between(at.angle) } else { 0.0 };
+        self.claims(-(at.height + other.min(0.0)));
+        if at.height < 0.0 && -at.height <= course.free().doubt_of_height(t) {
+            at.height = 0.0;
+        }
         at
+    }
+
+    /// Compares the energy, with all that has been taken from it, with that at the start. Their difference, over the
+    /// largest speed, is an error of the numbers.
+    pub(super) fn compares_energy(&mut self) {
+        if self.ask.restitution.is_none() || self.perturbation > 0.0 {
+            return;
+        }
+        let (from, law) = (self.aloft(), &self.of.slide.law);
+        let [v_h, v_2] = law.centre(from.angle, from.w, from.slip);
+        let v_z = from.lift + law.shape.rim.lever(from.angle) * from.w[1];
+        let has = newton::energy(&law.shape, from.angle, from.w, [v_h, v_2, v_z]) + from.height;
+        let last = self.made.path.impacts.last().map_or(0.0, |hit| hit.lost);
+        let whole = has + self.at[8] + self.of.struck + last + if loses(N) { self.at[N - 1] } else { 0.0 };
+        let fastest = [v_h, v_2, v_z].into_iter().chain(from.w).fold(1.0, |most: f64, x| most.max(x.abs()));
+        let first = *self.of.energy.get_or_insert(whole);
+        self.claims((whole - first).abs() / fastest);
     }
 
     /// The contact that begins where the normal velocity is zero.
@@ -191,6 +216,6 @@ impl<const N: usize> BodyWalk<'_, N> {
         let force = self.ask.force.then_some((Force { normal: force, along: force, across: force }, 0.0));
         let pose = poses(N).then(|| at.pose());
         let row = OutputRow::on_table(at.state(), at.slip, [self.at[8], lost(&self.at)], kind);
-        self.made.push(OutputRow { pose, force, aloft: [at.height.max(0.0), at.lift], ..row });
+        self.made.push(OutputRow { pose, force, aloft: [at.height, at.lift], ..row });
     }
 }

@@ -55,6 +55,10 @@ pub(crate) struct BodyPhases {
     pub(crate) lying: Option<Box<LyingPhase>>,
     /// The beginning of the next flight, or the height and the vertical velocity of a body in the air.
     pub(super) takeoff: Takeoff,
+    /// The energy that the impacts before the last one have taken, and the sum of energy, heat and all that was lost
+    /// at the start.
+    pub(super) struck: f64,
+    pub(super) energy: Option<f64>,
     /// Whether only theta changes, so that rounding must not make the body turn.
     pub(super) planar: bool,
     /// Estimates of the end of a slipping whirr; None if the losses do not let a whirr last for infinitely many turns.
@@ -110,6 +114,8 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
             lossy: None,
             lying: None,
             takeoff: Takeoff::default(),
+            struck: 0.0,
+            energy: None,
             planar: start.w1 == 0.0 && start.w3 == 0.0 && slip[1] == 0.0,
             tail: (!body.is_ball() && ask.losses.turn_endlessly()).then(LastTurns::default),
         };
@@ -291,6 +297,9 @@ impl<const N: usize> Phases<N> for BodyPhases {
         Error::Painleve { mu, theta, limit: painleve(&walk.of.body, theta) }
     }
 
+    fn audits(walk: &mut BodyWalk<'_, N>) {
+        walk.compares_energy();
+    }
     fn is_over(walk: &mut BodyWalk<'_, N>, next: &Next) -> bool {
         let fall = walk.at[1] * walk.at[3];
         if loses(N) && walk.still > STILL && walk.at[0] < ALL_BUT_FLAT && fall > 0.0 {

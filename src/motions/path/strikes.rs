@@ -3,15 +3,16 @@
 //! ```text
 //! bounces             last 2 u_n/(G (1 - q)) in all,  G = a_n N0,  q the ratio of the next bounce to this one
 //! contact             where 2 u_n^2 < TAIL G (1 - q): the last impact is taken with e = 0
-//! both rims           land in turn, the faster one first, until none comes down
+//! both rims           land at once while both come down, else in turn, until none comes down
 //! ```
 //! The impulses of the bounces that are summed agree with the contact force to first order, so that the error of
 //! their sum is about TAIL.
 
 use super::flight::{Aloft, Takeoff};
 use super::phases::{BodyWalk, LONGER};
+use crate::laws::body::Shape;
 use crate::laws::contact::impact::{Hit, RimImpact, Struck, lightness, turned};
-use crate::laws::contact::landing::{Landed, Outcome, land_at, settled};
+use crate::laws::contact::landing::{Landed, Outcome, bounced, land_at, settled};
 use crate::laws::contact::slip::Friction;
 use crate::laws::contact::{FLAT, Table};
 use crate::laws::newton;
@@ -51,6 +52,19 @@ const JAM_TAKES: f64 = 1e-9;
 /// Largest number of impacts of both rims in turn.
 const MOST_IN_TURN: u32 = 10_000;
 
+/// The coefficient of friction of a table on which a body rolls, in an impact of both rims.
+const PERFECTLY_ROUGH: f64 = 1e100;
+
+/// The momentum that the centre of mass has gained, which is the impulse of both rims together, at theta = pi/2.
+fn gained(shape: &Shape<f64>, [old, new]: [&Aloft; 2]) -> [f64; 3] {
+    let velocity = |at: &Aloft| {
+        let ([w1, w2, w3], [along, across]) = (at.w, at.slip);
+        [along + w2, across - shape.rim.ell * w1 + w3, at.lift + shape.rim.ell * w2]
+    };
+    let [old, new] = [velocity(old), velocity(new)];
+    core::array::from_fn(|i| new[i] - old[i])
+}
+
 impl<const N: usize> BodyWalk<'_, N> {
     /// The phase after the impact that stops a slip which presses the rim into the table. None where the rim could
     /// leave the table as well.
@@ -84,20 +98,29 @@ impl<const N: usize> BodyWalk<'_, N> {
     /// The next phase after a landing.
     #[inline(never)]
     pub(super) fn strikes(&mut self) -> Next {
-        let (e, from) = (self.ask.restitution.unwrap_or(0.0), self.aloft());
+        let (e, shape) = (self.ask.restitution.unwrap_or(0.0), self.of.slide.law.shape);
+        let mut from = self.aloft();
         if from.angle.0 < FLAT && self.of.body.rim() > 0.0 {
             return Next::Ends(Ending::Face);
         }
+        let both = self.has_two_rims() && from.angle.1.abs() < BOTH_AT_ONCE;
+        if both {
+            // Rounding must not decide which rim is lower.
+            self.claims(from.angle.1.abs());
+            from = Aloft { angle: (1.0, 0.0), height: 0.0, ..from };
+            self.sets(&from);
+        }
+        let there = from.on_other_rim(&shape);
+        if both && from.lift >= 0.0 && there.lift < 0.0 {
+            self.turns_over();
+            return self.strikes();
+        }
         if from.lift >= 0.0 {
-            self.of.takeoff = Takeoff::default();
+            self.claims(from.lift);
             return self.touches_down();
         }
-        let shape = self.of.slide.law.shape;
-        let there = from.on_other_rim(&shape);
-        let both = self.has_two_rims() && from.angle.1.abs() < BOTH_AT_ONCE;
         // After two flights of zero length the rims land in turn at the same time.
         if both && (there.lift < 0.0 || e > 0.0 && self.still > 2) {
-            self.claims(from.angle.1.abs());
             return if e == 0.0 { self.lands_on_both() } else { self.rattles(e) };
         }
         let Some(mut struck) = self.impact(&from, e) else { return Next::Ends(Ending::Slip) };
@@ -170,6 +193,8 @@ impl<const N: usize> BodyWalk<'_, N> {
     fn struck(&mut self, from: &Aloft, struck: &Struck, (other, stays): (bool, bool)) -> Aloft {
         let w = turned(&self.of.slide.law.shape, from.angle, from.w, struck.impulse);
         let after = Aloft { w, slip: struck.slip, lift: struck.lift, ..*from };
+        // No impact gains energy.
+        self.claims(-struck.lost);
         self.records([from, &after], other, struck.hit, (struck.impulse, struck.lost), stays);
         after
     }
@@ -185,10 +210,11 @@ impl<const N: usize> BodyWalk<'_, N> {
     ) {
         let velocities = both.map(|at| [at.slip[0], at.slip[1], at.lift]);
         let (time, states) = (self.t0 + self.at[TIME], both.map(Aloft::state));
+        self.of.struck += self.made.path.impacts.last().map_or(0.0, |before| before.lost);
         self.records_impact(Strike { time, other, hit, states, velocities, impulse, lost, stays });
     }
 
-    /// Computes the impacts of both rims in turn, the faster rim first, until no rim comes down.
+    /// Computes the impacts of both rims at once while both come down, and of one rim in turn, until no rim comes down.
     #[inline(never)]
     pub(super) fn rattles(&mut self, e: f64) -> Next {
         (self.at[0], self.at[1]) = (1.0, 0.0);
@@ -203,6 +229,13 @@ impl<const N: usize> BodyWalk<'_, N> {
             }
             if turn > MOST_IN_TURN {
                 return Next::Ends(Ending::Bounded);
+            }
+            if at.lift.max(there.lift) < -RATTLE_OVER * fast.min(1.0) {
+                match self.bounces_on_both(at, other, e) {
+                    Ok((after, seen)) => (at, other) = (after, seen),
+                    Err(ending) => return Next::Ends(ending),
+                }
+                continue;
             }
             if there.lift < at.lift {
                 (at, other) = (there, !other);
@@ -222,17 +255,56 @@ impl<const N: usize> BodyWalk<'_, N> {
             return self.ends_rattle();
         }
         if at.lift < RATTLE_OVER * fast.min(1.0) {
+            self.claims(at.lift.abs());
             return self.touches_down();
         }
         self.of.takeoff.leaves = Some(1);
         Next::Own(Kind::Flying)
     }
 
+    /// The numbers after both rims have struck at once, and whether they are seen from the other rim; `other` says so
+    /// of the numbers before.
+    fn bounces_on_both(&mut self, at: Aloft, other: bool, e: f64) -> Result<(Aloft, bool), Ending> {
+        let shape = self.of.slide.law.shape;
+        // As seen from the rim that comes down more slowly.
+        let (at, other) = if at.w[1] > 0.0 { (at.on_other_rim(&shape), !other) } else { (at, other) };
+        let [w1, w2, w3] = at.w;
+        let before = State { theta: FRAC_PI_2, w1, w2, w3 };
+        let (friction, rolls) = match self.ask.table {
+            Table::Rubs(friction) => (friction, false),
+            Table::Rolling { mu } => (Friction::coulomb(mu.min(PERFECTLY_ROUGH)), true),
+            Table::Smooth => (Friction::coulomb(0.0), false),
+        };
+        let (y, slip, lift, lost) =
+            bounced(&self.of.body, &before, (at.slip, at.lift), &friction, e).map_err(|_| Ending::Landing)?;
+        let mut after = Aloft { w: [y.w1, y.w2, y.w3], slip, lift, ..at };
+        if rolls {
+            let slips = [slip, after.on_other_rim(&shape).slip].into_iter().flatten();
+            // What is left is rounding, or a slip that friction cannot stop.
+            if slips.fold(0.0, |most: f64, u| most.max(u.abs())) > RATTLE_OVER * at.lift.abs() {
+                return Err(Ending::Slip);
+            }
+            after.slip = [0.0; 2];
+        }
+        let impulse = gained(&shape, [&at, &after]);
+        self.claims(-lost);
+        let seen = other != self.made.path.upside_down;
+        self.records([&at, &after], seen, Hit::BothRims, (impulse, lost), false);
+        Ok((after, other))
+    }
+
     /// The phase on both rims after a rattle, whose last impacts are summed.
     fn ends_rattle(&mut self) -> Next {
-        let Table::Rubs(friction) = self.ask.table else { return self.lands_on_both() };
         let from = self.aloft();
         let left = from.angle.1.abs().max(from.w[1].abs()).max(from.lift.abs());
+        let Table::Rubs(friction) = self.ask.table else {
+            self.claims(left);
+            if from.w[1] > 0.0 {
+                self.turns_over();
+            }
+            self.of.takeoff.lift = 0.0;
+            return self.lands_on_both();
+        };
         self.claims(if from.slip == [0.0; 2] { left } else { left * left * SUMMED });
         self.claims(left * LASTS * self.couples(&from));
         let (law, flat) = (self.of.slide.law, (1.0, 0.0));
@@ -253,11 +325,14 @@ impl<const N: usize> BodyWalk<'_, N> {
     pub(super) fn lands_on_both(&mut self) -> Next {
         let friction = match self.ask.table {
             Table::Rubs(friction) => friction,
-            _ if self.at[2] == 0.0 && self.at[4] == 0.0 => Friction::coulomb(1e100),
+            _ if self.at[2] == 0.0 && self.at[4] == 0.0 => Friction::coulomb(PERFECTLY_ROUGH),
             _ => return Next::Ends(Ending::Side),
         };
+        if self.at[3] > 0.0 {
+            self.turns_over();
+        }
         let before = State { theta: FRAC_PI_2, ..self.of.state };
-        let lift = self.of.takeoff.lift.min(0.0);
+        let lift = self.of.takeoff.lift;
         let Ok(landed) = land_at(&self.of.body, &before, ([self.at[5], self.at[6]], lift), &friction) else {
             return Next::Ends(Ending::Landing);
         };
@@ -266,12 +341,8 @@ impl<const N: usize> BodyWalk<'_, N> {
         self.lands_as(&landed);
         let here = self.aloft();
         let there = if other == self.made.path.upside_down { here } else { here.on_other_rim(&shape) };
-        // The impulses of both rims together are the momentum that the centre of mass has gained.
-        let [old, new] = [&from, &there].map(|at| {
-            let ([w1, w2, w3], [along, across]) = (at.w, at.slip);
-            [along + w2, across - shape.rim.ell * w1 + w3, at.lift + shape.rim.ell * w2]
-        });
-        let impulse = core::array::from_fn(|i| new[i] - old[i]);
+        let impulse = gained(&shape, [&from, &there]);
+        self.claims(-landed.lost);
         self.records([&from, &there], other, Hit::BothRims, (impulse, landed.lost), true);
         let rises = self.at[3];
         if rises < ROCKED_OUT {

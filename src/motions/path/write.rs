@@ -52,8 +52,12 @@ impl Followed {
         let pose = poses(N).then(|| pose(y));
         // Where a dry slip just begins, with u = 0, friction acts against the direction in which it begins.
         let towards = if slip == [0.0, 0.0] && slide.law.dry { self.path.way } else { slip };
-        let force =
-            ask.force.then(|| doubted(&now, state_errors(&now, slide.tol), |y| slide.law.force(y, towards)));
+        let force = ask.force.then(|| {
+            let (force, doubt) =
+                doubted(&now, state_errors(&now, slide.tol), |y| slide.law.force(y, towards));
+            // No table pulls: such a force is an error.
+            (force, doubt.max(-force.normal))
+        });
         self.push(OutputRow {
             pose,
             force,

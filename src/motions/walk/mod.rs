@@ -204,6 +204,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         while let Some(next) = self.next.take() {
             self.grown?;
             let next = self.goes_on(next);
+            P::audits(self);
             let now = self.at[TIME];
             self.still = if now > self.began { 0 } else { self.still + 1 };
             self.short = if now > self.began + SHORT { 0 } else { self.short + 1 };

@@ -46,6 +46,8 @@ pub(crate) trait Phases<const N: usize>: Sized {
     /// The error for an initial state without a unique contact force.
     fn no_unique_force(walk: &Walk<'_, Self, N>) -> Error;
 
+    /// Tests the numbers between two phases; what cannot be true is an error of the motion.
+    fn audits(_: &mut Walk<'_, Self, N>) {}
     /// Ends the motion before the next phase if its end is already known. Returns whether it has ended.
     fn is_over(_: &mut Walk<'_, Self, N>, _: &Next) -> bool {
         false

@@ -1,19 +1,25 @@
 //! Flight against the air: the couple of the air on a body in the air, by steps.
 //!
 //! ```text
-//! y = (quaternion of the body's axes, w along them, heights of both rims, lost, time)
+//! y = (quaternion of the body's axes, w along them, height of the rim, cos theta, lost, time)
 //! q' = q (0, w)/2,   I1 wx' = (I1 - I3) wy wz + mx,   I1 wy' = (I3 - I1) wx wz + my,   I3 wz' = mz
+//! z' = z x w         the vertical in the body's axes, for the power series at the start
 //! ```
 //! The centre moves along its parabola: drag on the centre is not modelled. Only the laws that resist all rotation act
 //! in the air; the others need a contact or a gap under the face. In these axes the poles are ordinary points. The
-//! landing is computed as in [`lands`](super::lands), step by step, with the initial K = (|l| + a) (|L|^2/I1^2 +
-//! |m|/I1) - 1, since the air slows the body down. Error: the tolerance of the steps.
+//! height of a rim and cos theta are numbers of their own, since near zero their changes have more digits than they
+//! themselves. The landing is computed as in [`lands`](super::lands), step by step, with the initial K = (|l| + a)
+//! (|L|^2/I1^2 + |m|/I1) - 1, since w3 and the size of w across the axis only fall. Where a rim touches at the start,
+//! the couple of the air belongs to the leading terms of its height, so that the power series there includes it. Error:
+//! the tolerance of the steps.
 
-use super::lands::{Falling, Leaves, TOUCH, TooMany};
+use super::lands::{AngleSeries, Falling, Leaves, NoLanding, RIM_TERMS, TOUCH};
 use super::{Aloft, Flies, Flight};
 use crate::laws::body::Shape;
 use crate::laws::loss::{Couples, Kinematics, Law, Losses};
 use crate::methods::rk8;
+use crate::numbers::tape::{Tape, Taped};
+use crate::numbers::{Real, TERMS};
 use core::f64::consts::TAU;
 
 const NUMBERS: usize = 11;
@@ -21,6 +27,14 @@ const AIR_TIME: usize = 10;
 type AirNumbers = [f64; NUMBERS];
 /// Largest number of steps.
 const AIR_STEPS: usize = 100_000;
+/// The series at the start holds for this share of the time that it would without the air, or for less, until its last
+/// two terms are below `LAST_SHARE` of its largest one.
+const AIR_SHARE: f64 = 0.25;
+const LAST_SHARE: f64 = 1e-17;
+/// Error of the height within a step, in tolerances.
+const STEP_NOISE: f64 = 100.0;
+/// Below this size the cosine of theta is the integrated one.
+const COSINE_KNOWN: f64 = 0.5;
 
 /// A step of a flight against the air: the numbers at its start, and phi and psi there.
 #[derive(Debug, Clone, Copy)]
@@ -63,9 +77,8 @@ impl AirFlight {
         let free = Flight::new(shape, from);
         // The axes of the body are e1, e2 and e3 at the start, which lean toward x.
         let half = 0.5 * from.angle.0.atan2(from.angle.1);
-        let other = from.on_other_rim(shape).height;
         let [w1, w2, w3] = from.w;
-        let y = [half.cos(), 0.0, -half.sin(), 0.0, w1, w2, w3, from.height, other, 0.0, 0.0];
+        let y = [half.cos(), 0.0, -half.sin(), 0.0, w1, w2, w3, from.height, from.angle.1, 0.0, 0.0];
         let steps = vec![AirStep { y, angles: [0.0; 2] }];
         Self { shape: *shape, from: *from, free, losses, steps, tol }
     }
@@ -85,7 +98,6 @@ impl AirFlight {
         let (sin, cos) = (axis[0].hypot(axis[1]), axis[2]);
         let sine = if sin > 0.0 { -(cos * cosine / sin) } else { 0.0 };
         let [.., up] = self.free.velocity;
-        let rise = |side: f64| up - y[AIR_TIME] - rim.slope((sine, side * cosine));
         [
             -0.5 * (b * x + c * z + d * w),
             0.5 * (a * x + c * w - d * z),
@@ -94,8 +106,8 @@ impl AirFlight {
             ((i1 - i3) * z * w + m1) / i1,
             ((i3 - i1) * x * w + m2) / i1,
             m3 / i3,
-            rise(1.0),
-            rise(-1.0),
+            up - y[AIR_TIME] - rim.slope((sine, cosine)),
+            cosine,
             -(m1 * x + m2 * z + m3 * w),
             1.0,
         ]
@@ -125,29 +137,101 @@ impl AirFlight {
     }
 }
 
+impl AirFlight {
+    /// The coefficients of sine and cosine of theta in powers of the time since the start.
+    fn series(&self) -> [[f64; TERMS]; 2] {
+        let tape = Tape::default();
+        let number = |x: f64| tape.number(x);
+        let given: [Taped<'_>; 6] = core::array::from_fn(|_| tape.given());
+        let ([x, y, z, w1, w2, w3], zero) = (given, number(0.0));
+        let Shape { rim, i1, i3 } = self.shape.map(number);
+        let seen = Kinematics::of(&rim, (number(1.0), zero), w1, [w1, w2, w3]);
+        let [m1, m2, m3] = self.losses.map(number).at(&seen).free;
+        // The height of a ball does not depend on s, which may be zero.
+        let sine = if self.shape.rim.a > 0.0 { (x * x + y * y).sqrt() } else { zero };
+        let results = [
+            y * w3 - z * w2,
+            z * w1 - x * w3,
+            x * w2 - y * w1,
+            ((i1 - i3) * w2 * w3 + m1) / i1,
+            ((i3 - i1) * w1 * w3 + m2) / i1,
+            m3 / i3,
+            sine,
+        ];
+        let mut player = tape.player(&given, &results, &[]);
+        let ((s, c), [w1, w2, w3]) = (self.from.angle, self.from.w);
+        [s, 0.0, c, w1, w2, w3].into_iter().enumerate().for_each(|(i, x)| player.set(i, 0, x));
+        player.begin();
+        for n in 1..TERMS {
+            for i in 0..given.len() {
+                let rate = player.result(i).at[n - 1];
+                player.set(i, n, rate / n as f64);
+            }
+            player.go_on(n);
+        }
+        [player.result(given.len()).at, *player.given(2)]
+    }
+
+    /// The earliest landing of a rim that touches at the start, up to the time until which a series shows it; and the
+    /// times up to which no other landing is possible.
+    fn leaves(&self, leaves: [Leaves; 2], two: bool) -> Result<(Option<(f64, bool)>, [f64; 2]), NoLanding> {
+        let (mut first, mut clear) = (None, [0.0; 2]);
+        if leaves == [None; 2] {
+            return Ok((first, clear));
+        }
+        let series = self.series();
+        let mut near = AIR_SHARE * self.free.near();
+        let size = |near: f64, all: core::ops::Range<usize>| {
+            let term = |at: &[f64; TERMS], k: usize| at[k].abs() * near.powi(k as i32);
+            all.flat_map(|k| series.iter().map(move |at| term(at, k))).fold(0.0, f64::max)
+        };
+        while size(near, TERMS - 2..TERMS) > LAST_SHARE * size(near, 1..TERMS) {
+            near *= 0.5;
+        }
+        let swung = |near: f64, terms: usize| -> AngleSeries {
+            series.map(|at| {
+                let known = |k: usize| if k < terms.min(TERMS) { at[k] * near.powi(k as i32) } else { 0.0 };
+                core::array::from_fn::<f64, RIM_TERMS, _>(known)
+            })
+        };
+        for (i, side) in [1.0, -1.0].into_iter().enumerate().take(if two { 2 } else { 1 }) {
+            let Some(order) = leaves[i] else { continue };
+            match self.free.leaves(side, order, near, &swung)? {
+                Some(t) => {
+                    clear[i] = t;
+                    if first.is_none_or(|(before, _)| t < before) {
+                        first = Some((t, i == 1));
+                    }
+                }
+                None => clear[i] = near,
+            }
+        }
+        Ok((first, clear))
+    }
+}
+
 impl Flies for AirFlight {
-    fn lands(&mut self, leaves: [Leaves; 2], two: bool, until: f64) -> Result<Option<(f64, bool)>, TooMany> {
+    fn lands(
+        &mut self,
+        leaves: [Leaves; 2],
+        two: bool,
+        until: f64,
+    ) -> Result<Option<(f64, bool)>, NoLanding> {
         let (rim, i1, [w1, w2, w3]) = (self.shape.rim, self.shape.i1, self.from.w);
         let reach = rim.ell.abs() + rim.a;
         let [m1, m2, m3] = self.couple(self.from.w);
         let turn = self.free.rate * self.free.rate + m1.hypot(m2).hypot(m3) / i1;
         let bend = (reach * turn - 1.0).max(1e-9);
-        // The series without the air carries a rim away from the table.
-        let mut starts = [0.0; 2];
-        for (i, side) in [1.0, -1.0].into_iter().enumerate().take(if two { 2 } else { 1 }) {
-            if let Some(order) = leaves[i] {
-                let (near, found) = self.free.leaves(side, order, until)?;
-                match found {
-                    Some(0.0) => return Ok(Some((0.0, i == 1))),
-                    Some(t) => starts[i] = 0.5 * t,
-                    None => starts[i] = near,
-                }
-            }
-        }
+        let (soon, clear) = self.leaves(leaves, two)?;
+        let soon = soon.filter(|(t, _)| *t <= until);
+        let until = soon.map_or(until, |(t, _)| t);
         let mut h = 0.05 / (1.0 + w1.abs().max(w2.abs()).max(w3.abs()));
         for _ in 0..AIR_STEPS {
-            let step = *self.steps.last().ok_or(TooMany)?;
+            let step = *self.steps.last().ok_or(NoLanding)?;
             let now = step.y[AIR_TIME];
+            if now >= until {
+                return Ok(soon);
+            }
             h = h.min(until - now);
             let (y, error) = self.part(&step, h);
             if error.is_nan() || error > 1.0 {
@@ -155,17 +239,21 @@ impl Flies for AirFlight {
                 continue;
             }
             let mut first: Option<(f64, bool)> = None;
-            for (i, start) in starts.into_iter().enumerate().take(if two { 2 } else { 1 }) {
-                let (low, high) = (start - now, first.map_or(h, |(t, _)| t));
+            for (i, clear) in clear.into_iter().enumerate().take(if two { 2 } else { 1 }) {
+                let (low, high) = ((clear - now).max(0.0), first.map_or(h, |(t, _)| t));
                 if low >= high {
                     continue;
                 }
                 let of = |x: f64| {
                     let y = self.part(&step, x).0;
-                    [y[7 + i], self.rates(&y)[7 + i]]
+                    let (rate, apart) = (self.rates(&y), if i == 1 { 2.0 * rim.ell } else { 0.0 });
+                    [y[7] + apart * y[8], rate[7] + apart * rate[8]]
                 };
-                let mut falling = Falling { of, bend, touch: TOUCH };
-                if let Some(x) = falling.first_zero(low.max(0.0), high)? {
+                let noise = STEP_NOISE * self.tol;
+                let mut falling = Falling { of, bend, touch: TOUCH, noise };
+                if let Some(x) = falling.first_zero(low, high)?
+                    && first.is_none_or(|(before, _)| x < before)
+                {
                     first = Some((x, i == 1));
                 }
             }
@@ -174,15 +262,15 @@ impl Flies for AirFlight {
             }
             let angles = self.angles(&y, step.angles);
             self.steps.push(AirStep { y, angles });
-            if y[AIR_TIME] >= until {
-                return Ok(None);
-            }
             h *= rk8::growth(error);
         }
-        Err(TooMany)
+        Err(NoLanding)
     }
 
     fn at(&self, t: f64) -> (Aloft, f64) {
+        if t == 0.0 {
+            return (self.from, 0.0);
+        }
         let k = self.steps.partition_point(|step| step.y[AIR_TIME] <= t).max(1) - 1;
         let step = &self.steps[k];
         let y = if t > step.y[AIR_TIME] { self.part(step, t - step.y[AIR_TIME]).0 } else { step.y };
@@ -190,8 +278,13 @@ impl Flies for AirFlight {
         let [.., axis] = axes([y[0], y[1], y[2], y[3]]);
         let (sin, cos) = psi.sin_cos();
         let w = [y[4] * cos - y[5] * sin, y[4] * sin + y[5] * cos, y[6]];
-        let at = self.free.placed(t, (axis[0].hypot(axis[1]), axis[2]), w, [phi, psi]);
-        (at, y[9])
+        let cosine = y[8];
+        let angle = if cosine.abs() < COSINE_KNOWN {
+            (((1.0 - cosine) * (1.0 + cosine)).sqrt(), cosine)
+        } else {
+            (axis[0].hypot(axis[1]), axis[2])
+        };
+        (Aloft { height: y[7], ..self.free.placed(t, angle, w, [phi, psi]) }, y[9])
     }
 
     fn free(&self) -> &Flight {

@@ -5,6 +5,7 @@
 //! h'' <= K = Lam^2 (|l| sin a sin b + a sin b) - 1     at all times, also where theta passes a pole
 //! no landing in [t1, t2]    if the least value of chord - K (t - t1)(t2 - t)/2 is positive
 //! one landing               if h(t1) > 0 >= h(t2) and h'(t1) + K (t2 - t1) < 0
+//! no landing after          z falls below the least height of a landing: 0 with two rims, else min(0, rho - |l|)
 //! ```
 //! The bound is one-sided: s is the length of the horizontal part x of e3, so that s s'' >= x.x'' and s'' >= -Lam^2 sin
 //! b, while s'' has no upper bound. An interval that is neither free nor certain is halved. The height of a rim that
@@ -17,37 +18,46 @@ use super::{Aloft, Flies, Flight};
 use crate::laws::body::Shape;
 
 /// Number of terms of the series at the start.
-const RIM_TERMS: usize = 30;
+pub(super) const RIM_TERMS: usize = 30;
 /// Within `near` the terms of the series fall by this factor; a landing before this share of `near` is sought with
 /// fewer terms, of which the last is below exp(-DIGITS).
 const NARROWS: f64 = 3.0;
 const EARLY: f64 = 0.5;
 const DIGITS: f64 = 36.0;
-/// A cell shorter than this, in units of the time since the start, in which the height is below `TOUCH` counts as a touch.
+/// A cell shorter than this, in units of the time since the start, in which the height is below `TOUCH` counts as a
+/// touch.
 const SHORT_CELL: f64 = 1e-9;
-pub(super) const TOUCH: f64 = 1e-15;
+pub(crate) const TOUCH: f64 = 1e-15;
 /// Largest number of evaluations of the height.
 const HEIGHTS: u32 = 1_000_000;
 
 /// The beginning of a rim's flight: above the table, or on the table with a height that grows as t^k.
 pub(crate) type Leaves = Option<usize>;
 
-/// A function of time with its derivative, whose second derivative is at most `bend`.
+/// Sine and cosine of theta as power series in the time since the start.
+pub(super) type AngleSeries = [[f64; RIM_TERMS]; 2];
+
+/// A function of time with its derivative, whose second derivative is at most `bend`, and its rounding error.
 pub(super) struct Falling<F: FnMut(f64) -> [f64; 2]> {
     pub of: F,
     pub bend: f64,
     pub touch: f64,
+    pub noise: f64,
 }
 
 impl<F: FnMut(f64) -> [f64; 2]> Falling<F> {
-    /// The first zero in (from, to], where the function is positive after `from`. An error after too many evaluations.
-    pub fn first_zero(&mut self, from: f64, to: f64) -> Result<Option<f64>, TooMany> {
+    /// The first zero in [from, to], where the function is known to be positive up to `from`. An error if it is
+    /// negative there, and after too many evaluations.
+    pub fn first_zero(&mut self, from: f64, to: f64) -> Result<Option<f64>, NoLanding> {
         let (mut t, [mut here, mut rate]) = (from, (self.of)(from));
+        if here <= 0.0 {
+            return if here >= -self.noise { Ok(Some(from)) } else { Err(NoLanding) };
+        }
         let (mut ends, mut count) = (vec![to], 0);
         while let Some(&end) = ends.last() {
             count += 1;
             if count > HEIGHTS {
-                return Err(TooMany);
+                return Err(NoLanding);
             }
             let [there, fall] = (self.of)(end);
             let wide = end - t;
@@ -96,9 +106,9 @@ impl<F: FnMut(f64) -> [f64; 2]> Falling<F> {
     }
 }
 
-/// The search for a landing takes too many evaluations.
+/// The search for a landing takes too many evaluations, or a rim is below the table where it begins.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct TooMany;
+pub(crate) struct NoLanding;
 
 impl Flight {
     /// Height and vertical velocity of the lowest point of a rim. The height is the sum of the initial height and its
@@ -116,29 +126,33 @@ impl Flight {
         ]
     }
 
-    fn lands_on(&self, side: f64, leaves: Leaves, until: f64) -> Result<Option<f64>, TooMany> {
+    fn lands_on(&self, side: f64, leaves: Leaves, two: bool, until: f64) -> Result<Option<f64>, NoLanding> {
         let Shape { rim, .. } = self.shape;
         let [.., up] = self.velocity;
         let reach = rim.ell.hypot(rim.a) + rim.rho;
-        // The centre is low enough for a landing before `falls` and after `comes`, and on the table at `end`.
+        // The centre is low enough for a landing before `rises` and after `comes`. At `end` it is so low that a rim is
+        // below the table, whatever the inclination: the centre of one rim may itself be below the table.
+        let lowest = if two { 0.0 } else { (rim.rho - rim.ell.abs()).min(0.0) };
         let passes = |height: f64| {
             let square = up * up + 2.0 * (self.height - height);
             (square >= 0.0).then(|| (up - square.sqrt(), up + square.sqrt()))
         };
-        let end = passes(0.0).map_or(0.0, |(_, end)| end + 1e-6).min(until);
-        let (rises, comes) = passes(reach).unwrap_or((end, 0.0));
-        let sine = self.b.sin();
-        let bend = (self.rate * self.rate * (rim.ell.abs() * self.wide + rim.a * sine) - 1.0).max(1e-9);
+        let end = (passes(lowest).map_or(up, |(_, end)| end) + 1e-6).min(until);
+        let (rises, comes) = passes(reach).unwrap_or((end, end));
+        let bend =
+            (self.rate * self.rate * (rim.ell.abs() * self.wide + rim.a * self.b.sin()) - 1.0).max(1e-9);
         let touch = TOUCH * (1.0 + reach + self.height);
         let mut from = 0.0;
         if let Some(order) = leaves {
-            let (near, found) = self.leaves(side, order, end)?;
+            let near = self.near();
+            let found = self.leaves(side, order, near, &|near, terms| self.swung(near, terms))?;
             if found.is_some() {
-                return Ok(found);
+                return Ok(found.filter(|t| *t <= until));
             }
             from = near;
         }
-        let mut falling = Falling { of: |t: f64| self.rim(side, t), bend, touch };
+        let noise = touch + 4.0 * self.doubt_of_height(from);
+        let mut falling = Falling { of: |t: f64| self.rim(side, t), bend, touch, noise };
         // While the centre is too high no rim lands.
         let parts = if rises > 0.0 {
             [(from, rises.min(end)), (comes.max(from), end)]
@@ -155,31 +169,47 @@ impl Flight {
         Ok(None)
     }
 
-    /// The time up to which the series of a rim that touches at the start is used, and the landing up to then.
-    pub(super) fn leaves(&self, side: f64, order: usize, end: f64) -> Result<(f64, Option<f64>), TooMany> {
+    /// The time up to which the series of a rim that touches at the start is used.
+    pub(super) fn near(&self) -> f64 {
         let (s, sine) = (self.from.angle.0, self.b.sin());
-        let near = if sine * self.rate > 0.0 && self.shape.rim.a > 0.0 {
+        if sine * self.rate > 0.0 && self.shape.rim.a > 0.0 {
             (0.4 * s / sine).ln_1p() / (3.0 * self.rate)
         } else {
             1.0 / (1.0 + self.rate)
-        };
-        let near = near.min(end);
+        }
+    }
+
+    /// The landing up to the time `near` of a rim that touches at the start; 0 if it does not leave the table. `swung`
+    /// gives the series of the inclination.
+    pub(super) fn leaves(
+        &self,
+        side: f64,
+        order: usize,
+        near: f64,
+        swung: &dyn Fn(f64, usize) -> AngleSeries,
+    ) -> Result<Option<f64>, NoLanding> {
         // A bounce that is over much earlier needs few terms, up to twice the time that the first two give.
-        let first = self.series(side, near, order + 2);
+        let first = self.heights(side, near, &swung(near, order + 2));
         let early = -(2.0 * first[order] / first[order + 1]);
         if early > 0.0 && early < EARLY {
             let terms = order + 2 + (DIGITS / (NARROWS / early).ln()) as usize;
-            let found = self.lands_near(side, order, early * near, terms)?;
+            let found = self.lands_near(side, order, early * near, (terms, swung))?;
             if found.is_some() {
-                return Ok((near, found));
+                return Ok(found);
             }
         }
-        Ok((near, self.lands_near(side, order, near, RIM_TERMS)?))
+        self.lands_near(side, order, near, (RIM_TERMS, swung))
     }
 
     /// The landing up to the time `near`, by a series of h/t^k.
-    fn lands_near(&self, side: f64, order: usize, near: f64, terms: usize) -> Result<Option<f64>, TooMany> {
-        let series = &self.series(side, near, terms)[order..terms];
+    fn lands_near(
+        &self,
+        side: f64,
+        order: usize,
+        near: f64,
+        (terms, swung): (usize, &dyn Fn(f64, usize) -> AngleSeries),
+    ) -> Result<Option<f64>, NoLanding> {
+        let series = &self.heights(side, near, &swung(near, terms))[order..terms];
         if series[0] <= 0.0 {
             return Ok(Some(0.0));
         }
@@ -189,13 +219,13 @@ impl Flight {
             [value, rate]
         };
         let bend: f64 = (2..series.len()).map(|k| (k * (k - 1)) as f64 * series[k].abs()).sum();
-        let mut falling = Falling { of: power, bend: bend.max(1e-9 * series[0]), touch: 0.0 };
+        let mut falling = Falling { of: power, bend: bend.max(1e-9 * series[0]), touch: 0.0, noise: 0.0 };
         Ok(falling.first_zero(0.0, 1.0)?.map(|x| x * near))
     }
 
-    /// The series of the height of a rim that touches at the start, in units of the time `near`.
-    fn series(&self, side: f64, near: f64, terms: usize) -> [f64; RIM_TERMS] {
-        let (Shape { rim, .. }, (s, c), [p, q]) = (self.shape, self.from.angle, self.swing);
+    /// The series of the inclination in units of the time `near`.
+    fn swung(&self, near: f64, terms: usize) -> AngleSeries {
+        let ((s, c), [p, q]) = (self.from.angle, self.swing);
         let (mut cosines, mut sines) = ([0.0; RIM_TERMS], [0.0; RIM_TERMS]);
         let mut scale = 1.0;
         for k in 0..terms {
@@ -203,12 +233,20 @@ impl Flight {
             scale *= self.rate * near / (k + 1) as f64;
         }
         (cosines[0], sines[0]) = (c, s);
+        // The height of a ball does not depend on s, which may be zero.
+        let terms = if self.shape.rim.a > 0.0 { terms } else { 0 };
         // The coefficients of s from s^2 = 1 - c^2.
         for k in 1..terms {
             let square: f64 = (0..=k).map(|i| cosines[i] * cosines[k - i]).sum();
             let known: f64 = (1..k).map(|i| sines[i] * sines[k - i]).sum();
             sines[k] = -(square + known) / (2.0 * s);
         }
+        [sines, cosines]
+    }
+
+    /// The series of the height of a rim that touches at the start, in units of the time `near`.
+    fn heights(&self, side: f64, near: f64, [sines, cosines]: &AngleSeries) -> [f64; RIM_TERMS] {
+        let rim = &self.shape.rim;
         let mut all = core::array::from_fn(|k| -rim.slope((sines[k], side * cosines[k])));
         // The first coefficient is the normal velocity, which is known without a difference.
         all[1] = near * if side > 0.0 { self.from.lift } else { self.from.on_other_rim(&self.shape).lift };
@@ -218,11 +256,19 @@ impl Flight {
 }
 
 impl Flies for Flight {
-    fn lands(&mut self, leaves: [Leaves; 2], two: bool, until: f64) -> Result<Option<(f64, bool)>, TooMany> {
+    fn lands(
+        &mut self,
+        leaves: [Leaves; 2],
+        two: bool,
+        until: f64,
+    ) -> Result<Option<(f64, bool)>, NoLanding> {
         let mut first = None;
         for (i, side) in [1.0, -1.0].into_iter().enumerate().take(if two { 2 } else { 1 }) {
+            // Of two rims that land at the same time the first one counts; an impact looks at both.
             let until = first.map_or(until, |(t, _)| t);
-            if let Some(t) = self.lands_on(side, leaves[i], until)? {
+            if let Some(t) = self.lands_on(side, leaves[i], two, until)?
+                && first.is_none_or(|(before, _)| t < before)
+            {
                 first = Some((t, i == 1));
             }
         }
@@ -235,5 +281,21 @@ impl Flies for Flight {
 
     fn free(&self) -> &Flight {
         self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_search_that_begins_below_the_table_by_more_than_rounding_finds_no_landing() {
+        let from = |height: f64| {
+            let of = move |t: f64| [height - t, -1.0];
+            Falling { of, bend: 1e-9, touch: 1e-15, noise: 1e-12 }.first_zero(0.0, 1.0)
+        };
+        assert!(from(-0.1).is_err() && from(-2e-12).is_err());
+        assert_eq!(from(-1e-13).unwrap(), Some(0.0));
+        assert!((from(0.1).unwrap().unwrap() - 0.1).abs() < 1e-15);
     }
 }

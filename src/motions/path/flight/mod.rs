@@ -21,7 +21,7 @@ use crate::laws::pose::Pose;
 use crate::laws::state::State;
 use crate::motions::path::write::posed;
 use core::f64::consts::PI;
-use lands::{Leaves, TooMany};
+use lands::{Leaves, NoLanding};
 
 /// A body in the air, or in an impact, as seen from one of its rims.
 #[derive(Debug, Clone, Copy)]
@@ -45,7 +45,7 @@ impl Aloft {
     }
 
     pub fn pose(&self) -> Pose {
-        posed(self.pose, self.height.max(0.0))
+        posed(self.pose, self.height)
     }
 
     /// The same motion as seen from the other rim of a body with two equal rims.
@@ -77,7 +77,8 @@ pub(crate) struct Takeoff {
 pub(crate) trait Flies {
     /// The first time after the start at which a rim lands, and whether it is the other rim of a body with two rims;
     /// None if no rim lands up to the time `until`. `leaves` is the beginning of both rims' flights.
-    fn lands(&mut self, leaves: [Leaves; 2], two: bool, until: f64) -> Result<Option<(f64, bool)>, TooMany>;
+    fn lands(&mut self, leaves: [Leaves; 2], two: bool, until: f64)
+    -> Result<Option<(f64, bool)>, NoLanding>;
     /// The body at a time since the start, as seen from the same rim, and the energy lost to the air.
     fn at(&self, t: f64) -> (Aloft, f64);
     /// The flight without losses.

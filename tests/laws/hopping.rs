@@ -1,0 +1,364 @@
+//! Bodies of all profiles that hop, with and without air: their energy and lowest point, landings of an independent
+//! model, and landings of both rims at once.
+
+use crate::common::{drawn, wander};
+use crate::flight::{centre, coulomb, dropped, energy, impacts, rim};
+use nalgebra::Vector3;
+use spincyl::contact::Table;
+use spincyl::contact::slip::Friction;
+use spincyl::loss::{Law, Losses};
+use spincyl::motion::path::{Hit, Kind};
+use spincyl::motion::{Ask, Ending, Motion, Start, roll_with};
+use spincyl::{Body, State};
+use std::f64::consts::{FRAC_PI_2, PI};
+
+fn moved(body: &Body, start: &Start, ask: &Ask, times: &[f64]) -> Motion {
+    roll_with(body, *start, times, ask, || true).unwrap().unwrap()
+}
+
+fn two_rims(body: &Body) -> bool {
+    body.ell() > 0.0 && body.theta_end() == FRAC_PI_2
+}
+
+/// A body of any profile: sharp, rounded, two equal balls, and one ball whose centre of mass may lie outside.
+fn any_profile(r: &mut impl FnMut() -> f64) -> Body {
+    let body = match (8.0 * r()) as u8 {
+        0 => Body::solid(0.03 + 3.0 * r()),
+        1 => Body::tube(0.03 + 4.0 * r(), r()),
+        2 => Body::rounded_tube(0.4 + 2.0 * r(), 0.0, 0.05 + 0.3 * r()),
+        3 => Body::ball(r() - 0.5, 0.3 + 0.3 * r(), 0.2 + 0.4 * r()),
+        4 => Body::ball(1.0 + 1.5 * r(), 0.4 + 1.6 * r(), 0.2 + 0.6 * r()),
+        5 => Body::solid(0.0),
+        6 => Body::balls(1.0 + 0.5 * r()),
+        _ => Body::solid(0.3 + 1.2 * r()),
+    };
+    body.unwrap()
+}
+
+/// A start on the table or in the air; a body with two rims also starts on its side, or close to it.
+fn any_start(body: &Body, r: &mut impl FnMut() -> f64) -> Start {
+    let theta = match (5.0 * r()) as u8 {
+        0 if two_rims(body) => FRAC_PI_2,
+        1 if two_rims(body) => FRAC_PI_2 - 10f64.powf(-16.0 * r()),
+        _ if body.fillet() == 1.0 && !two_rims(body) => 0.1 + 2.9 * r(),
+        _ => 0.1 + 1.4 * r(),
+    };
+    let fast = [0.3, 1.0, 3.0][(3.0 * r()) as usize];
+    let [w1, w2, w3] = core::array::from_fn(|_| if r() < 0.15 { 0.0 } else { fast * (2.0 * r() - 1.0) });
+    let state = State { theta, w1, w2, w3 };
+    let start = Start::from(state).with_slip([2.0 * r() - 1.0, 2.0 * r() - 1.0]);
+    match (4.0 * r()) as u8 {
+        0 => start.with_aloft([1.5 * r(), 2.0 * r() - 1.0]),
+        1 => start.with_aloft([0.0, 2.0 * r() - 1.0]),
+        _ => start,
+    }
+}
+
+fn any_air(r: &mut impl FnMut() -> f64) -> Losses {
+    let law = [Law::AirLinear, Law::AirQuadratic][(2.0 * r()) as usize];
+    Losses::of(law, 10f64.powf(-4.0 + 3.5 * r()))
+}
+
+#[test]
+fn whatever_hops_keeps_its_energy_within_its_estimated_error_and_nothing_sinks_into_the_table() {
+    let (mut r, mut flights, mut lost) = (wander(641), 0, 0);
+    let times: Vec<f64> = (0..61).map(|k| 0.1 * f64::from(k)).collect();
+    for _ in 0..drawn(600) {
+        let body = any_profile(&mut r);
+        let (start, mu) = (any_start(&body, &mut r), 0.02 + 0.98 * r());
+        let e = [0.0, 0.3, 0.9][(3.0 * r()) as usize];
+        let air = if r() < 0.5 { any_air(&mut r) } else { Losses::NONE };
+        let m = moved(&body, &start, &Ask::on(coulomb(mu)).with_restitution(e).with_losses(air), &times);
+        let path = m.path.as_ref().unwrap();
+        let whole = |i: usize| {
+            let ([u, v], [height, lift]) = (path.slip[i], path.aloft[i]);
+            let before = path.impacts.iter().filter(|hit| hit.time < m.times[i]);
+            energy(&body, &m.states[i], [u, v, lift], height)
+                + path.dissipated[i]
+                + before.map(|hit| hit.lost).sum::<f64>()
+                + path.work_lost.get(i).unwrap_or(&0.0)
+        };
+        let case = format!("{body:?} {start:?} mu {mu} e {e} {air:?}: error {:e}", m.error);
+        // Some bounces at a high restitution depend on errors of the size of rounding.
+        lost += usize::from(m.error > 1e-3);
+        for i in 0..m.times.len() {
+            let off = (whole(i) - whole(0)).abs();
+            assert!(off < m.error.max(1e-12) * (1.0 + whole(0)), "{off:e} {case}");
+            let [height, _] = path.aloft[i];
+            let other = if two_rims(&body) { 2.0 * body.ell() * m.states[i].theta.cos() } else { 0.0 };
+            let lowest = height + other.min(0.0);
+            assert!(lowest >= -m.error.max(1e-13), "{lowest:e} at {} {case}", m.times[i]);
+        }
+        assert!(path.impacts.iter().all(|hit| hit.lost > -1e-13), "{case}");
+        // With a restitution a motion ends only if a face lands or nothing moves.
+        assert!(matches!(m.ending(), Ending::Done | Ending::Face | Ending::Stops), "{:?} {case}", m.ending());
+        flights += path.phases.iter().filter(|phase| phase.kind == Kind::Flying).count();
+    }
+    assert!(flights > 1000 && lost <= drawn(600) / 50, "{flights} {lost}");
+}
+
+#[test]
+fn a_body_on_both_rims_that_turns_lands_with_the_velocity_of_its_start() {
+    let mut r = wander(642);
+    for _ in 0..drawn(60) {
+        let body = Body::solid(0.2 + 2.0 * r()).unwrap();
+        let mut speed = || 4.0 * r() - 2.0;
+        let state = State { theta: FRAC_PI_2, w1: speed(), w2: speed(), w3: speed() };
+        let (slip, lift) = ([speed(), speed()], -2.0 * r());
+        let there = lift + 2.0 * body.ell() * state.w2;
+        for e in [0.0, 0.5] {
+            let ask = Ask::on(coulomb(0.3)).with_restitution(e);
+            let m = moved(&body, &dropped(state, slip, 0.0, lift), &ask, &[0.0, 0.01]);
+            let hit = impacts(&m)[0];
+            let lands = if hit.other { there } else { lift };
+            assert_eq!(hit.time, 0.0);
+            assert!((hit.velocities[0][2] - lands).abs() < 1e-15, "{state:?} {lift} {hit:?}");
+            assert_eq!([hit.states[0].w1, hit.states[0].w2.abs()], [state.w1, state.w2.abs()]);
+        }
+    }
+}
+
+#[test]
+fn a_ball_with_its_centre_of_mass_outside_lands_on_its_lowest_point_upside_down_too() {
+    let (mut r, mut below) = (wander(643), 0);
+    for _ in 0..drawn(150) {
+        let ell = 1.0 + 2.0 * r();
+        let ball = Body::ball(ell, 0.5 + r(), 0.5).unwrap();
+        // Without w1 and w3 the inclination is theta - w2 t, and may pass a pole.
+        let (theta, w2, lift) = (0.2 + 2.7 * r(), 4.0 * r() - 2.0, 3.0 * r());
+        let start = dropped(State { theta, w1: 0.0, w2, w3: 0.0 }, [0.0; 2], 0.0, lift);
+        let m = moved(&ball, &start, &Ask::on(coulomb(0.3)).with_restitution(0.5), &[20.0]);
+        let rise = lift + ell * theta.sin() * w2;
+        let height = |t: f64| ell * theta.cos() + t * (rise - 0.5 * t) - ell * (theta - w2 * t).cos();
+        let step = 1e-4;
+        let k = (1..200_000).find(|k| height(step * f64::from(*k)) <= 0.0).unwrap();
+        let (mut low, mut high) = (step * f64::from(k - 1), step * f64::from(k));
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if height(middle) > 0.0 { low = middle } else { high = middle }
+        }
+        let lands = impacts(&m)[0].time;
+        if low > 10.0 * step {
+            assert!((lands - low).abs() < 1e-10 * (1.0 + low), "ell {ell} {start:?}: {lands} for {low}");
+        }
+        below += u32::from(ell * (theta - w2 * low).cos() + 1.0 < 0.0);
+    }
+    assert!(below > 5, "{below}");
+}
+
+/// The first zero of the height of a rim that touches the table, after a lift-off at rest or from a slip, by Newton's
+/// and Euler's equations in the laboratory; None up to `until`.
+fn landing(body: &Body, y: &State, [u, v]: [f64; 2], air: &Losses, until: f64) -> Option<f64> {
+    let (s, c) = y.theta.sin_cos();
+    let (e1, e2, e3) = (Vector3::new(c, 0.0, s), Vector3::y(), Vector3::new(-s, 0.0, c));
+    let w = e1 * y.w1 + e2 * y.w2 + e3 * y.w3;
+    let (i1, i3) = (body.i1(), body.i3());
+    let [.., rise] = centre(body, y, [u, v, 0.0]);
+    let [b, b2] = [Law::AirLinear, Law::AirQuadratic].map(|law| air.coefficient(law));
+    let turns = |axis: &Vector3<f64>, l: &Vector3<f64>| l / i1 + axis * ((1.0 / i3 - 1.0 / i1) * l.dot(axis));
+    let rates = |[axis, l]: [Vector3<f64>; 2]| {
+        let w = turns(&axis, &l);
+        [w.cross(&axis), -w * (b + b2 * w.norm())]
+    };
+    let height = |t: f64, axis: &Vector3<f64>| {
+        let level = |axis: &Vector3<f64>| body.ell() * axis.z + body.rim() * axis.xy().norm();
+        t * (rise - 0.5 * t) - (level(axis) - level(&e3))
+    };
+    let mut at = [e3, w * i1 + e3 * ((i3 - i1) * y.w3)];
+    let (count, mut high) = (40_000, 0f64);
+    let step = until / f64::from(count);
+    let mut last = 0.0;
+    for k in 1..=count {
+        let ahead = |by: f64, rate: [Vector3<f64>; 2]| [at[0] + rate[0] * by, at[1] + rate[1] * by];
+        let k1 = rates(at);
+        let k2 = rates(ahead(0.5 * step, k1));
+        let k3 = rates(ahead(0.5 * step, k2));
+        let k4 = rates(ahead(step, k3));
+        at = [0, 1].map(|i| at[i] + (k1[i] + (k2[i] + k3[i]) * 2.0 + k4[i]) * (step / 6.0));
+        let h = height(step * f64::from(k), &at[0]);
+        high = high.max(h);
+        if h <= 0.0 && last > 0.0 && high > 1e-12 {
+            return Some(step * (f64::from(k) - h / (h - last)));
+        }
+        last = h;
+    }
+    None
+}
+
+#[test]
+fn a_body_that_leaves_the_table_against_the_air_lands_when_newtons_equations_say() {
+    let (mut r, mut met) = (wander(644), 0);
+    for _ in 0..drawn(900) {
+        let body = Body::tube(0.05 + 1.5 * r(), r()).unwrap();
+        let [w1, w2, w3] = core::array::from_fn(|_| 5.0 * r() - 2.5);
+        let state = State { theta: 0.3 + 1.2 * r(), w1, w2, w3 };
+        let (air, mu) = (any_air(&mut r), 0.1 + 0.9 * r());
+        let ask = Ask::on(coulomb(mu)).with_restitution(0.3).with_losses(air);
+        let m = moved(&body, &Start::from(state), &ask, &[3.0]);
+        let path = m.path.as_ref().unwrap();
+        for pair in path.phases.windows(2) {
+            let lasts = pair[1].time - pair[0].time;
+            let bounced = path.impacts.iter().any(|hit| (hit.time - pair[0].time).abs() < 1e-12);
+            if pair[0].kind != Kind::Flying || bounced || !(1e-4..1.0).contains(&lasts) {
+                continue;
+            }
+            let Some(hit) = path.impacts.iter().find(|hit| hit.time == pair[1].time) else { continue };
+            // The model follows one rim.
+            if hit.states[0].theta > FRAC_PI_2 - 0.01 || path.impacts.iter().any(|hit| hit.other) {
+                continue;
+            }
+            let lands = landing(&body, &pair[0].state, pair[0].slip, &air, 2.0 * lasts);
+            let off = lands.map_or(f64::INFINITY, |t| (t / lasts - 1.0).abs());
+            assert!(off < 1e-5, "{body:?} {:?} {air:?}: {lasts} for {lands:?}", pair[0]);
+            met += 1;
+        }
+    }
+    assert!(met > drawn(60), "{met}");
+}
+
+#[test]
+fn a_can_that_is_dropped_flat_rises_level_over_its_spot_to_the_square_of_its_restitution() {
+    for ell in [0.3, 1.0, 4.0] {
+        let can = Body::solid(ell).unwrap();
+        let state = State { theta: FRAC_PI_2, w1: 0.0, w2: 0.0, w3: 0.0 };
+        for e in [0.3, 0.5, 1.0] {
+            let height = 0.7;
+            let fall = f64::sqrt(2.0 * height);
+            let times = [fall, fall * (1.0 + e), fall * (1.0 + 2.0 * e) * 0.999];
+            let ask = Ask::on(coulomb(0.5)).with_restitution(e).with_pose(true);
+            let m = moved(&can, &dropped(state, [0.0; 2], height, 0.0), &ask, &times);
+            let path = m.path.as_ref().unwrap();
+            assert!((path.aloft[1][0] - e * e * height).abs() < 1e-14, "{ell} {e}: {:?}", path.aloft);
+            assert!(m.states.iter().all(|y| y.theta == FRAC_PI_2 && y.w2 == 0.0), "{:?}", m.states);
+            let point = m.poses.as_ref().unwrap()[1].contact_point;
+            assert!(point.x.abs() < 1e-15 && point.y == 0.0, "{point}");
+            let hit = impacts(&m)[0];
+            assert!(hit.hit == Hit::BothRims && (hit.impulse[2] - (1.0 + e) * fall).abs() < 1e-14);
+        }
+    }
+}
+
+#[test]
+fn a_can_that_falls_flat_while_it_slides_across_grips_as_a_hoop_does() {
+    for (ell, mu, e, u) in [(1.0, 0.1, 0.5, 2.0), (0.4, 0.8, 0.3, -1.0), (2.0, 0.02, 0.9, 0.7)] {
+        let can = Body::solid(ell).unwrap();
+        let state = State { theta: FRAC_PI_2, w1: 0.0, w2: 0.0, w3: 0.3 };
+        let ask = Ask::on(coulomb(mu)).with_restitution(e);
+        let m = moved(&can, &dropped(state, [0.0, u], 0.5, 0.0), &ask, &[1.1]);
+        let hit = impacts(&m)[0];
+        // Friction takes mu (1 + e) of the fall, or what stops the slip.
+        let takes = (mu * (1.0 + e)).min(u.abs() / (1.0 + 1.0 / can.i3()));
+        assert!((hit.impulse[1] + u.signum() * takes).abs() < 1e-13, "{hit:?}");
+        assert!(hit.impulse[0] == 0.0 && hit.states[1].w1 == 0.0 && hit.states[1].w2 == 0.0);
+        assert!((hit.states[1].w3 - (0.3 + u.signum() * takes / can.i3())).abs() < 1e-12);
+    }
+}
+
+/// Both rims come down at once, at these velocities.
+fn both_come_down(r: &mut impl FnMut() -> f64) -> (Body, Start) {
+    let body = Body::solid(0.1 + 2.0 * r()).unwrap();
+    let (here, there) = (-2.0 * r() - 1e-3, -2.0 * r() - 1e-3);
+    let mut speed = || 4.0 * r() - 2.0;
+    let state = State { theta: FRAC_PI_2, w1: speed(), w2: (there - here) / (2.0 * body.ell()), w3: speed() };
+    (body, dropped(state, [speed(), speed()], 0.0, here))
+}
+
+#[test]
+fn two_rims_that_land_at_once_take_the_impulse_of_newton_and_euler_and_never_gain_energy() {
+    let mut r = wander(645);
+    for _ in 0..drawn(900) {
+        let (body, start) = both_come_down(&mut r);
+        let (mu, e) = (1.2 * r(), [0.0, 0.5, 1.0, r()][(4.0 * r()) as usize]);
+        let m = moved(&body, &start, &Ask::on(coulomb(mu)).with_restitution(e), &[0.0, 1e-9]);
+        if m.ending() == Ending::Landing {
+            continue;
+        }
+        let hit = impacts(&m)[0];
+        assert_eq!(hit.hit, Hit::BothRims);
+        let [before, after] = [0, 1].map(|k| energy(&body, &hit.states[k], hit.velocities[k], 0.0));
+        assert!((before - after - hit.lost).abs() < 1e-13 * before && hit.lost > -1e-13, "{hit:?}");
+        let v = |k: usize| Vector3::from(centre(&body, &hit.states[k], hit.velocities[k]));
+        assert!((v(1) - v(0) - Vector3::from(hit.impulse)).norm() < 1e-12);
+        let [p_h, p_2, p_n] = hit.impulse;
+        assert!(p_h.hypot(p_2) <= mu * p_n * (1.0 + 1e-12) + 1e-14);
+        // The impulses of the rims about the centre, from the changes of w: P apart, and Q across apart.
+        let [a, b] = hit.states;
+        let lean = (body.i1() * (b.w2 - a.w2) + p_h) / body.ell();
+        assert!(lean.abs() <= p_n * (1.0 + 1e-12), "a rim pulls: {hit:?}");
+        let spun = body.i3() * (b.w3 - a.w3) + p_2;
+        assert!(spun.abs() < 1e-12, "{spun:e}");
+    }
+}
+
+#[test]
+fn without_friction_each_of_two_rims_that_both_take_an_impulse_gives_back_its_share() {
+    let (mut r, mut both) = (wander(646), 0);
+    for _ in 0..drawn(300) {
+        let (body, start) = both_come_down(&mut r);
+        let e = r();
+        let m = moved(&body, &start, &Ask::on(coulomb(0.0)).with_restitution(e), &[0.0, 1e-9]);
+        let hit = impacts(&m)[0];
+        let other = |k: usize| hit.velocities[k][2] + 2.0 * body.ell() * hit.states[k].w2;
+        let [a, b] = hit.states;
+        let apart = body.i1() * (b.w2 - a.w2) / body.ell();
+        if apart.abs() < hit.impulse[2] * (1.0 - 1e-9) {
+            assert!((hit.velocities[1][2] + e * hit.velocities[0][2]).abs() < 1e-13, "{hit:?}");
+            assert!((other(1) + e * other(0)).abs() < 1e-13, "{hit:?}");
+            both += 1;
+        }
+    }
+    assert!(both > drawn(90), "{both}");
+}
+
+#[test]
+fn the_mirror_image_of_a_landing_of_both_rims_is_its_landing_along_the_axis_and_across() {
+    let mut r = wander(647);
+    for _ in 0..drawn(600) {
+        let (body, start) = both_come_down(&mut r);
+        let (mu, e) = (1.2 * r(), r());
+        let (y, [u, v], [_, lift]) = (start.state, start.slip, start.aloft.unwrap());
+        let ask = Ask::on(Table::from(Friction::coulomb(mu))).with_restitution(e);
+        let first = |start: &Start| {
+            let m = moved(&body, start, &ask, &[0.0, 1e-9]);
+            impacts(&m).first().filter(|hit| hit.hit == Hit::BothRims).copied()
+        };
+        let Some(hit) = first(&start) else { continue };
+        let after = |hit: &spincyl::motion::path::Strike, other: bool| {
+            // As seen from the rim of the start, or from the other one.
+            let (y, [u, v, lift]) = (hit.states[1], hit.velocities[1]);
+            if hit.other == other {
+                return [y.w1, y.w2, y.w3, u, v, lift];
+            }
+            let apart = 2.0 * body.ell();
+            [y.w1, -y.w2, -y.w3, -u, apart * y.w1 - v, lift + apart * y.w2]
+        };
+        let one = after(&hit, false);
+        let near = |a: [f64; 6], b: [f64; 6]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-12);
+        // Across: w1, w3 and the slip across change their signs.
+        let image = dropped(State { w1: -y.w1, w3: -y.w3, ..y }, [u, -v], 0.0, lift);
+        let [w1, w2, w3, u_h, u_2, rise] = after(&first(&image).unwrap(), false);
+        assert!(near(one, [-w1, w2, -w3, u_h, -u_2, rise]), "{start:?} {mu} {e}");
+        // Along: the image of the lower rim is the other rim; w1 and w3 change their signs in the view from there.
+        let apart = 2.0 * body.ell();
+        let there = [y.w1, -y.w2, -y.w3, -u, apart * y.w1 - v, lift + apart * y.w2];
+        let seen = State { theta: PI - FRAC_PI_2, w1: there[0], w2: there[1], w3: there[2] };
+        let turned = first(&dropped(seen, [there[3], there[4]], 0.0, there[5])).unwrap();
+        assert!(near(one, after(&turned, true)), "{start:?} {mu} {e}");
+    }
+}
+
+#[test]
+fn a_slow_drop_flat_is_not_lower_than_the_table_and_its_rim_is_where_its_pose_says() {
+    // A coin that lands flat on its side, and its rims: the height is that of the pose.
+    let coin = Body::solid(0.2).unwrap();
+    let state = State { theta: FRAC_PI_2, w1: 0.5, w2: 0.0, w3: 0.2 };
+    let times: Vec<f64> = (0..200).map(|k| 0.02 * f64::from(k)).collect();
+    let ask = Ask::on(coulomb(0.3)).with_restitution(0.6).with_pose(true);
+    let m = moved(&coin, &dropped(state, [0.3, 0.1], 0.3, 0.0), &ask, &times);
+    for (i, pose) in m.poses.as_ref().unwrap().iter().enumerate() {
+        let [height, _] = m.path.as_ref().unwrap().aloft[i];
+        assert_eq!(pose.height, height);
+        let z = pose.centre(&coin, &m.states[i]).z;
+        assert!((z - rim(&coin, m.states[i].theta)[2] - height).abs() < 1e-15);
+    }
+}
