@@ -214,7 +214,11 @@ class Motion:
         """,
     )
     dissipated = Number(
-        FRICTION, "(n,) heat of friction since the initial state, M g R or J. Needs a law of friction."
+        FRICTION,
+        """(n,) heat of friction since the initial state, M g R or J. Needs a law of friction.
+
+        The friction of impacts, also of bounces that are summed, is in `lost_in_impacts`.
+        """,
     )
     phase = Number(
         FRICTION,
@@ -260,7 +264,10 @@ class Motion:
 
     @property
     def lost_in_impacts(self) -> Floats:
-        """(n,) energy lost in impacts since the initial state, M g R or J. Needs `restitution=`."""
+        """(n,) energy lost in impacts since the initial state, M g R or J. Needs `restitution=`.
+
+        Includes the friction of all bounces, also of those that are summed.
+        """
         of = self.natural.impacts
         times, lost = np.array([x.time for x in of]), np.array([0.0, *(x.lost for x in of)])
         return self._told("energy", np.cumsum(lost)[np.searchsorted(times, self.natural.t)])
