@@ -59,7 +59,9 @@ def test_what_slips_and_impacts_take_does_not_depend_on_where_the_bounces_are_su
     start = sc.State(0.0966, 0.0, 0.0, -8.59, slip=(0.0, 8.59), height=0.1, lift=0.0)
     how = {"contact": sc.Coulomb(0.3), "restitution": 0.5}
     runs = [sc.roll(coin, start, [0.0, 5.0], tol=tol, **how) for tol in (LEAST, 1e-12, 1e-10)]
-    heat, lost = (np.array([getattr(m, name)[-1] for m in runs]) for name in ("dissipated", "lost_in_impacts"))
+    heat, lost = (
+        np.array([getattr(m, name)[-1] for m in runs]) for name in ("dissipated", "lost_in_impacts")
+    )
     assert len({len(m.impacts) for m in runs}) > 1
     most = [10 * m.error + 1e-10 for m in runs]
     assert (np.abs(heat - heat[0]) <= most).all() and (np.abs(lost - lost[0]) <= most).all()

@@ -109,8 +109,13 @@ def against_digits(given, tally):
         mu, e, height, end = rng.uniform(0.1, 0.6), rng.uniform(0.2, 0.9), rng.uniform(0.1, 1.0), 3.0
         precise(flights.DIGITS)
         made = flights.Scene(f"drop {number}", body, mu, e, start, end, height)
-        rows = [row for kind, row in flights.follow(flight_closed.Closed(made)).rows if kind in ("sample", "end")]
-        of, state = sc.Body(*made.body[:3], fillet=made.body[3]), sc.State(*start[:4], slip=start[4:], height=height)
+        rows = [
+            row for kind, row in flights.follow(flight_closed.Closed(made)).rows if kind in ("sample", "end")
+        ]
+        of, state = (
+            sc.Body(*made.body[:3], fillet=made.body[3]),
+            sc.State(*start[:4], slip=start[4:], height=height),
+        )
         times = [float(row[0]) for row in rows]
         for tol in (None, 1e-12, 1e-10, 1e-8):
             how = {} if tol is None else {"tol": tol}
@@ -119,6 +124,9 @@ def against_digits(given, tally):
             for k, row in enumerate(rows[: len(found.t)]):
                 y = [float(found.theta[k]), *map(float, found.w[k])]
                 there = [math.pi - y[0], y[1], -y[2], -y[3]]
-                off = max(off, min(max(abs(x - float(r)) for x, r in zip(z, row[1:5])) for z in (y, there)))
+                off = max(
+                    off,
+                    min(max(abs(x - float(r)) for x, r in zip(z, row[1:5], strict=True)) for z in (y, there)),
+                )
             line = f"drop {number}, {made.body}, {start}, mu={mu}, e={e}, height={height}"
             tally.add(f"50 digits, tol={tol}: states", off, found.error, line)

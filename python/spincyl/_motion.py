@@ -214,11 +214,7 @@ class Motion:
         """,
     )
     dissipated = Number(
-        FRICTION,
-        """(n,) heat of friction since the initial state, M g R or J. Needs a law of friction.
-
-        The friction of impacts, also of bounces that are summed, is in `lost_in_impacts`.
-        """,
+        FRICTION, "(n,) heat of friction, without impacts, since the start, M g R or J. Needs a law of friction."
     )
     phase = Number(
         FRICTION,
@@ -264,10 +260,7 @@ class Motion:
 
     @property
     def lost_in_impacts(self) -> Floats:
-        """(n,) energy lost in impacts since the initial state, M g R or J. Needs `restitution=`.
-
-        Includes the friction of all bounces, also of those that are summed.
-        """
+        """(n,) energy lost in impacts and their friction since the start, M g R or J. Needs `restitution=`."""
         of = self.natural.impacts
         times, lost = np.array([x.time for x in of]), np.array([0.0, *(x.lost for x in of)])
         return self._told("energy", np.cumsum(lost)[np.searchsorted(times, self.natural.t)])
