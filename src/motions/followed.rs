@@ -32,9 +32,12 @@ const TOGETHER: f64 = 0.3;
 const ALIKE: f64 = 0.7;
 /// The estimated error is at least this share of the sum of all step errors, since two runs may agree by chance.
 const CHANCE: f64 = 0.1;
-/// A phase of a motion with impacts that is shorter has no meaning of its own: it belongs to bounces from which another run, with
-/// the same motion before and after, may have one more or one less.
+/// A phase of a motion with impacts that is shorter has no meaning of its own: it belongs to bounces, of which another
+/// run with the same motion before and after may have one more or one less.
 pub(crate) const BRIEF: f64 = 1e-4;
+/// A motion with impacts has an estimated error that is larger by this factor: a flight in air has few steps, whose
+/// errors are less proportional to the tolerance, and impacts multiply them.
+const HOPPING: f64 = 2.0;
 /// The estimated error, in units of the difference, of a motion whose two runs do not hop alike.
 const UNLIKE: f64 = 3.0;
 /// Runs that differ by this share of the largest speed have parted, and the error is their whole difference.
@@ -264,7 +267,13 @@ impl<S: Moving> Followed<S> {
         least += alone;
         // Errors that have grown until the two runs part are no longer proportional to the tolerances.
         let parted = PARTED * fastest;
-        let claimed = if unlike { UNLIKE } else { claimed };
+        let claimed = if unlike {
+            UNLIKE
+        } else if hops {
+            HOPPING * claimed
+        } else {
+            claimed
+        };
         let grown = |off: f64| off * (claimed * parted / (parted - off).max(0.0)).min(claimed.max(1.0));
         let settled = |claim: f64, off: f64| if ends { claim + grown(off) + least } else { f64::INFINITY };
         let state_claim = motion.error;
@@ -275,8 +284,9 @@ impl<S: Moving> Followed<S> {
         motion.force_error = settled(motion.force_error * larger.max(1.0), pressed);
         // Rounding errors of the angles of a pose are proportional to these angles.
         let turning = motion.poses.iter().flatten().last().map_or(0.0, S::turning);
-        let claimed_here = if hops { state_claim } else { 0.0 };
-        motion.pose_error = settled(motion.pose_error + claimed_here, turned) + 32.0 * f64::EPSILON * turning;
+        // After an impact the errors of its time and of its sum are also those of the pose.
+        let state_claim = if hops { state_claim } else { 0.0 };
+        motion.pose_error = settled(motion.pose_error + state_claim, turned) + 32.0 * f64::EPSILON * turning;
     }
 }
 
@@ -309,5 +319,20 @@ mod tests {
         let (pairs, alone) = together([&ours[..5], &ours], 10.0, false);
         assert!(pairs.len() == 5 && alone == 2.0, "{} {alone}", pairs.len());
         assert_eq!(together([&ours[..5], &ours], 10.0, true).1, 0.0);
+    }
+
+    #[test]
+    fn the_number_of_brief_bounces_has_no_meaning_and_a_long_flight_of_one_run_has() {
+        let flights = |times: &[f64]| -> Vec<Phase> {
+            phases(times).into_iter().map(|phase| Phase { kind: Kind::Flying, ..phase }).collect()
+        };
+        let ours = lasting(&flights(&[0.0, 1.0, 1.00001, 1.00002, 1.00003]), 2.0);
+        let theirs = lasting(&flights(&[0.0, 1.0, 1.00001, 1.00002]), 2.0);
+        assert_eq!([ours.len(), theirs.len()], [2, 2]);
+        assert_eq!(together([&ours, &theirs], 2.0, false).1, 0.0);
+        assert!(!follows_bounces(&flights(&[0.0, 1.0, 1.5]), &ours[0]));
+        assert!(follows_bounces(&flights(&[0.0, 1.0, 1.00001, 1.00002, 1.00003]), &ours[1]));
+        let parted = lasting(&flights(&[0.0, 0.4, 1.2, 1.6]), 2.0);
+        assert!(together([&ours, &parted], 2.0, false).1 > 0.1);
     }
 }

@@ -16,8 +16,8 @@ pub(crate) fn pose_distance(a: &Pose, b: &Pose) -> f64 {
     angle(a.phi, b.phi).max(angle(a.psi, b.psi)).max(moved)
 }
 
-/// The largest difference between two poses that are seen from the two equal rims of a body, `a` from the one that was not
-/// down at the start. The points on the table differ along the lean, by a length of the body.
+/// The largest difference between two poses that are seen from the two equal rims of a body, `a` from the one that was
+/// not down at the start. The points on the table differ along the lean, by a length of the body.
 pub(crate) fn pose_distance_over(a: &Pose, b: &Pose) -> f64 {
     let by = |a: Angle, turns: f64, rest: f64| ((a.turns - turns) * TAU + (a.rest - rest)).abs();
     let turned = by(a.phi, b.phi.turns + 0.5, b.phi.rest).max(by(a.psi, -b.psi.turns, -b.psi.rest));

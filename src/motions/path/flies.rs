@@ -190,8 +190,9 @@ impl<const N: usize> BodyWalk<'_, N> {
         at
     }
 
-    /// Includes a relative error of the numbers in the estimated error, although both runs make the same error: the rougher
-    /// run is perturbed by as much as the difference of the runs has to show, so that the difference also has the growth of this error.
+    /// Includes a relative error of the numbers in the estimated error, although both runs make the same error: the
+    /// rougher run is perturbed by as much as the difference of the runs has to show. The growth of the error is then
+    /// that of the difference.
     pub(super) fn doubts(&mut self, share: f64) {
         BodyPhases::perturbs_by(self, share * self.shows());
     }

@@ -5,9 +5,9 @@
 //! contact             where 2 u_n^2 < TAIL G (1 - q): the last impact is taken with e = 0
 //! both rims           land in turn, the faster one first, until none comes down
 //! ```
-//! The impulses of the bounces that are summed agree with the contact force to first order, and to second order where they
-//! slip. A bounce that sticks has moved in its flight before: the error of their sum is of second order, about TAIL, and part
-//! of the estimated error. The friction of all bounces is lost in impacts, also of those that are summed.
+//! The impulses of the bounces that are summed agree with the contact force to first order, and to second order where
+//! they slip. Where they stick, the contact point has moved in each flight before: the error of their sum is of second
+//! order, about TAIL, and part of the estimated error. The friction of all bounces is lost in impacts.
 
 use super::flight::{Aloft, Takeoff};
 use super::phases::{BodyWalk, LONGER};
@@ -175,8 +175,8 @@ impl<const N: usize> BodyWalk<'_, N> {
     }
 
     /// Counts the friction of the bounces that are summed as lost in impacts, as that of all other bounces, and not as
-    /// the heat of a slip. Includes the error of the sum in the estimated error. The bounces take the time `left`, and begin with
-    /// the velocity `bounce`.
+    /// the heat of a slip. Includes the error of the sum in the estimated error. The bounces take the time `left`, and
+    /// begin with the velocity `bounce`.
     fn sums_bounces(&mut self, after: &Aloft, left: f64, bounce: f64) {
         let speed = after.slip[0].hypot(after.slip[1]);
         let mut share = SUM_ERROR * left * bounce;

@@ -394,8 +394,8 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         self.made.motion.error = self.made.motion.error.max(error);
     }
 
-    /// The factor by which a rougher run exaggerates an error that both runs make alike, so that the scaled difference of the
-    /// runs shows this error; 0 in the finer run.
+    /// The factor by which a rougher run exaggerates an error that both runs make alike, so that the scaled difference
+    /// of the runs shows this error; 0 in the finer run.
     pub fn shows(&self) -> f64 {
         self.perturbation / f64::EPSILON
     }
@@ -403,8 +403,8 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
     /// Includes the error of the time of an end at `y` in the estimated error. It is the error of the steps, divided by
     /// the rate at which the margin fell, or the speed of a body that comes to rest.
     pub fn claims_time_error(&mut self, halt: Halt, steep: f64, y: &[f64; N]) {
-        // A rim that leaves the table sooner or later has the same acceleration, and when it leaves in the midst of bounces has no
-        // meaning.
+        // A rim that leaves the table sooner or later has the same acceleration, and the time at which it leaves in the
+        // midst of bounces has no meaning.
         let leaves = matches!(halt, Halt::LiftOff | Halt::Rises) && self.ask.restitution.is_some();
         if leaves && y[TIME] - self.began <= BRIEF {
             return;
