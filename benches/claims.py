@@ -10,6 +10,7 @@ saddles   motions that linger at an unstable steady state       launches  10,000
 periods   periods and precessions                               losses    motions with losses
 ends      ends of a million random starts and of hard ones      stones    random stones from random starts
 many      many motions at once against each alone               singles   times and errors of single motions
+hops      motions with flights, impacts and lying bodies
 
 A ratio is the true error over the estimated error: one is honest, a hundredth is vague.
 """
@@ -26,7 +27,7 @@ import numpy as np
 from judge import Tally
 
 KINDS = (
-    "motions", "starts", "saddles", "periods", "slips", "phases", "launches", "losses", "stones", "many", "singles", "ends",
+    "motions", "starts", "saddles", "periods", "slips", "phases", "launches", "losses", "stones", "many", "singles", "ends", "hops",
 )  # fmt: skip
 
 

@@ -202,7 +202,7 @@ def test_a_dropped_hoop_obeys_the_law_of_grip_and_slip():
 # The library.
 
 
-def rolled(case):
+def rolled(case, **options):
     """The motion at the times of the table."""
     ell, i1, i3, fillet = case.body
     theta, w1, w2, w3, *slip = case.start
@@ -214,7 +214,7 @@ def rolled(case):
     elif case.law == "viscous":
         contact = sc.Viscous(case.mu)
     times = [float(row.t) for row in sampled(case)]
-    how = {"contact": contact, "restitution": case.restitution, "want": "pose"}
+    how = {"contact": contact, "restitution": case.restitution, "want": "pose", **options}
     return sc.roll(sc.Body(ell, i1, i3, fillet=fillet), start, times, t0=0.0, **how)
 
 
@@ -298,11 +298,19 @@ def test_phases_begin_where_those_of_the_reference_do(case):
 @each_motion
 def test_heat_and_what_impacts_lose_are_told_apart(case):
     m, rows = rolled(case), sampled(case)
+    # the friction of the last bounces of a sequence, which the library takes as one, is lost in impacts
     for found, name in ((m.dissipated, "heat"), (m.lost_in_impacts, "lost")):
-        # the last bounces of a sequence, which the library takes as one, slide instead
-        assert np.abs(found - [float(getattr(row, name)) for row in rows]).max() <= 1e-5
-    if not any(x.stays for x in m.impacts):
-        assert np.abs(m.lost_in_impacts - [float(row.lost) for row in rows]).max() <= max(1e-11, m.error)
+        assert np.abs(found - [float(getattr(row, name)) for row in rows]).max() <= max(1e-11, 10 * m.error)
+
+
+@pytest.mark.parametrize("tol", [1e-6, 1e-8, 1e-10])
+@each_motion
+def test_at_every_tolerance_the_estimated_error_covers_the_true_one(case, tol):
+    m, rows = rolled(case, tol=tol), sampled(case)
+    states = np.column_stack([m.theta, m.w, m.slip])
+    assert off(states, rows, STATE).max() <= m.error
+    poses = np.column_stack([m.phi, m.psi, m.contact_point])
+    assert off(whole(poses, rows), rows, POSE).max() <= m.pose_error
 
 
 def test_the_samples_know_what_flies():

@@ -214,7 +214,7 @@ class Motion:
         """,
     )
     dissipated = Number(
-        FRICTION, "(n,) heat of friction since the initial state, M g R or J. Needs a law of friction."
+        FRICTION, "(n,) heat of friction since the start, without impacts, M g R, J. Needs a law of friction."
     )
     phase = Number(
         FRICTION,
@@ -260,7 +260,7 @@ class Motion:
 
     @property
     def lost_in_impacts(self) -> Floats:
-        """(n,) energy lost in impacts since the initial state, M g R or J. Needs `restitution=`."""
+        """(n,) energy lost in impacts and their friction since the start, M g R, J. Needs `restitution=`."""
         of = self.natural.impacts
         times, lost = np.array([x.time for x in of]), np.array([0.0, *(x.lost for x in of)])
         return self._told("energy", np.cumsum(lost)[np.searchsorted(times, self.natural.t)])

@@ -63,7 +63,7 @@ class Impact(NamedTuple):
         Impulse of the table on the body along e_h, along e2 and upward, in M sqrt(g R) or N s; if both rims
         touch the table, the sum of their impulses.
     lost : float
-        Energy lost in the impact, in M g R or J.
+        Energy lost in the impact, in M g R or J; with `stays` also that of the bounces that are summed.
     before : State
         State before the impact, with its slip and `lift` < 0. Its theta refers to the rim that lands.
     after : State

@@ -4,7 +4,7 @@
 //! The estimated error is the difference of the two runs, scaled by the ratio of the tolerances, times
 //! [`Moving::SAFETY`].
 
-use super::{Ending, Motion, Moving, Path, Phase};
+use super::{Ending, Kind, Motion, Moving, Path, Phase};
 use crate::error::Error;
 use crate::laws::state::State;
 
@@ -31,6 +31,14 @@ const TOGETHER: f64 = 0.3;
 const ALIKE: f64 = 0.7;
 /// The estimated error is at least this share of the sum of all step errors, since two runs may agree by chance.
 const CHANCE: f64 = 0.1;
+/// A phase of a motion with impacts that is shorter has no meaning of its own: it belongs to bounces, of which another
+/// run with the same motion before and after may have one more or one less.
+pub(crate) const BRIEF: f64 = 1e-4;
+/// A motion with impacts has an estimated error that is larger by this factor: a flight in air has few steps, whose
+/// errors are less proportional to the tolerance, and impacts multiply them.
+const HOPPING: f64 = 2.0;
+/// The estimated error, in units of the difference, of a motion whose two runs do not hop alike.
+const UNLIKE: f64 = 3.0;
 /// Runs that differ by this share of the largest speed have parted, and the error is their whole difference.
 const PARTED: f64 = 0.3;
 
@@ -86,7 +94,8 @@ fn together<S>(runs: [&[Phase<S>]; 2], end: f64, whirrs: bool) -> (Vec<[&Phase<S
         } else {
             b.time + long[1] < a.time + long[0]
         });
-        let goes_on = at[k] > 0 && runs[k][at[k] - 1].kind == runs[k][at[k]].kind;
+        let kind = runs[k][at[k]].kind;
+        let goes_on = kind != Kind::Flying && at[k] > 0 && runs[k][at[k] - 1].kind == kind;
         alone = alone.max(if goes_on { 0.0 } else { long[k] });
         let more = a.kind == b.kind && !goes_on && at[k] + 2 < runs[k].len();
         at[k] += if more { 2 } else { 1 };
@@ -95,6 +104,23 @@ fn together<S>(runs: [&[Phase<S>]; 2], end: f64, whirrs: bool) -> (Vec<[&Phase<S
         alone = runs[k].get(at[k]).map_or(alone, |phase| alone.max(end - phase.time));
     }
     (pairs, alone)
+}
+
+/// The phases of a motion with impacts, up to the time `end`, that are not brief.
+fn lasting<S: Copy>(phases: &[Phase<S>], end: f64) -> Vec<Phase<S>> {
+    let next = phases.iter().skip(1).map(|phase| phase.time).chain([end]);
+    phases
+        .iter()
+        .zip(next)
+        .filter(|(phase, next)| next - phase.time > BRIEF)
+        .map(|(phase, _)| *phase)
+        .collect()
+}
+
+/// Whether a phase follows a brief one, so that the number of bounces decides when it begins.
+fn follows_bounces<S>(phases: &[Phase<S>], phase: &Phase<S>) -> bool {
+    let before = phases.partition_point(|other| other.time < phase.time).checked_sub(1);
+    before.is_some_and(|i| phase.time - phases[i].time <= BRIEF)
 }
 
 impl Followed {
@@ -127,27 +153,53 @@ impl<S: Moving> Followed<S> {
         let motion = &mut self.motion;
         let (mut off, mut turned, mut pressed) = (0f64, 0f64, 0f64);
         let mut apart = |by: f64| off = off.max(by);
-        for (a, b) in motion.states.iter().zip(&rough.motion.states) {
-            apart(a.distance(b));
-        }
-        for (a, b) in self.path.slip.iter().flatten().zip(rough.path.slip.iter().flatten()) {
-            apart((a - b).abs());
+        // After impacts of both rims one run may see the body from one rim, and the other run from the other rim.
+        let hops = !self.path.impacts.is_empty();
+        let distance = |a: &S, b: &S, u: &[f64; 2], v: &[f64; 2]| {
+            let direct = a.distance(b).max((u[0] - v[0]).abs()).max((u[1] - v[1]).abs());
+            let there = b.from_other_rim().filter(|_| hops);
+            there.map_or(direct, |b| direct.min(a.distance(&b).max((u[0] + v[0]).abs())))
+        };
+        let runs =
+            [(motion.states.iter().zip(&self.path.slip)), rough.motion.states.iter().zip(&rough.path.slip)];
+        let [ours, theirs] = runs;
+        for ((a, u), (b, v)) in ours.zip(theirs) {
+            apart(distance(a, b, u, v));
         }
         let whirrs = self.path.leaves_turns || rough.path.leaves_turns || given_up;
         let end = [&*motion, &rough.motion].map(|m| m.event.map(|e| e.time).or(m.times.last().copied()));
         let end = end.into_iter().flatten().fold(0.0, f64::max);
-        let (pairs, alone) = together([&self.path.phases, &rough.path.phases], end, whirrs);
+        let lasts = [&self.path.phases, &rough.path.phases]
+            .map(|of| if hops { lasting(of, end) } else { Vec::new() });
+        let phases =
+            if hops { [&lasts[0][..], &lasts[1]] } else { [&self.path.phases[..], &rough.path.phases] };
+        let (pairs, alone) = together(phases, end, whirrs);
+        // Once two runs do not hop alike, their difference is no longer proportional to the tolerances.
+        let unlike = hops && alone > 0.0;
+        let alone = if hops { 0.0 } else { alone };
         for [a, b] in pairs {
+            if unlike
+                || hops && follows_bounces(&self.path.phases, a)
+                || hops && follows_bounces(&rough.path.phases, b)
+            {
+                continue;
+            }
             apart((a.time - b.time).abs());
-            apart(a.state.distance(&b.state));
+            apart(distance(&a.state, &b.state, &a.slip, &b.slip));
         }
         if let (Some(a), Some(b)) = (motion.event, rough.motion.event) {
             apart((a.time - b.time).abs());
-            apart(a.state.distance(&b.state));
+            apart(distance(&a.state, &b.state, &[0.0; 2], &[0.0; 2]));
         }
         if let (Some(poses), Some(others)) = (&motion.poses, &rough.motion.poses) {
-            for (a, b) in poses.iter().zip(others) {
-                turned = turned.max(S::pose_distance(a, b));
+            for (i, (a, b)) in poses.iter().zip(others).enumerate() {
+                let [over, there] =
+                    [&self.path.turned, &rough.path.turned].map(|of| of.get(i) == Some(&true));
+                turned = turned.max(match (over, there) {
+                    (true, false) => S::pose_distance_over(a, b),
+                    (false, true) => S::pose_distance_over(b, a),
+                    _ => S::pose_distance(a, b),
+                });
             }
         }
         if let (Some(forces), Some(others)) = (&motion.forces, &rough.motion.forces) {
@@ -186,23 +238,32 @@ impl<S: Moving> Followed<S> {
         least += alone;
         // Errors that have grown until the two runs part are no longer proportional to the tolerances.
         let parted = PARTED * fastest;
-        let grown = |off: f64| off * (claimed * parted / (parted - off).max(0.0)).min(1.0);
+        let claimed = if unlike {
+            UNLIKE
+        } else if hops {
+            HOPPING * claimed
+        } else {
+            claimed
+        };
+        let grown = |off: f64| off * (claimed * parted / (parted - off).max(0.0)).min(claimed.max(1.0));
         let settled = |claim: f64, off: f64| if ends { claim + grown(off) + least } else { f64::INFINITY };
-        motion.error = settled(motion.error, off);
+        let state_claim = motion.error;
+        motion.error = settled(state_claim, off);
         // The errors of the forces were computed for states with errors of one tolerance; the states have
         // larger errors.
         let larger = (grown(off) + least) / tol;
         motion.force_error = settled(motion.force_error * larger.max(1.0), pressed);
         // Rounding errors of the angles of a pose are proportional to these angles.
         let turning = motion.poses.iter().flatten().last().map_or(0.0, S::turning);
-        motion.pose_error = settled(motion.pose_error, turned) + 32.0 * f64::EPSILON * turning;
+        // After an impact the errors of its time and of its sum are also those of the pose.
+        let state_claim = if hops { state_claim } else { 0.0 };
+        motion.pose_error = settled(motion.pose_error + state_claim, turned) + 32.0 * f64::EPSILON * turning;
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::motions::Kind;
 
     /// Phases that alternately roll and slip; the first one rolls.
     fn phases(times: &[f64]) -> Vec<Phase> {
@@ -229,5 +290,20 @@ mod tests {
         let (pairs, alone) = together([&ours[..5], &ours], 10.0, false);
         assert!(pairs.len() == 5 && alone == 2.0, "{} {alone}", pairs.len());
         assert_eq!(together([&ours[..5], &ours], 10.0, true).1, 0.0);
+    }
+
+    #[test]
+    fn the_number_of_brief_bounces_has_no_meaning_and_a_long_flight_of_one_run_has() {
+        let flights = |times: &[f64]| -> Vec<Phase> {
+            phases(times).into_iter().map(|phase| Phase { kind: Kind::Flying, ..phase }).collect()
+        };
+        let ours = lasting(&flights(&[0.0, 1.0, 1.00001, 1.00002, 1.00003]), 2.0);
+        let theirs = lasting(&flights(&[0.0, 1.0, 1.00001, 1.00002]), 2.0);
+        assert_eq!([ours.len(), theirs.len()], [2, 2]);
+        assert_eq!(together([&ours, &theirs], 2.0, false).1, 0.0);
+        assert!(!follows_bounces(&flights(&[0.0, 1.0, 1.5]), &ours[0]));
+        assert!(follows_bounces(&flights(&[0.0, 1.0, 1.00001, 1.00002, 1.00003]), &ours[1]));
+        let parted = lasting(&flights(&[0.0, 0.4, 1.2, 1.6]), 2.0);
+        assert!(together([&ours, &parted], 2.0, false).1 > 0.1);
     }
 }

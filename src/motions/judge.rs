@@ -5,16 +5,24 @@ use super::{Event, Motion, Moving};
 use crate::error::{Error, room};
 use crate::laws::body::Body;
 use crate::laws::contact::{Contact, Force, force};
-use crate::laws::pose::Pose;
+use crate::laws::pose::{Angle, Pose};
 use crate::laws::state::State;
 use crate::numbers::larger;
+use core::f64::consts::TAU;
 
 pub(crate) fn pose_distance(a: &Pose, b: &Pose) -> f64 {
-    let angle = |a: crate::laws::pose::Angle, b: crate::laws::pose::Angle| {
-        ((a.turns - b.turns) * core::f64::consts::TAU + (a.rest - b.rest)).abs()
-    };
+    let angle = |a: Angle, b: Angle| ((a.turns - b.turns) * TAU + (a.rest - b.rest)).abs();
     let moved = (a.contact_point - b.contact_point).norm().max((a.height - b.height).abs());
     angle(a.phi, b.phi).max(angle(a.psi, b.psi)).max(moved)
+}
+
+/// The largest difference between two poses that are seen from the two equal rims of a body, `a` from the one that was
+/// not down at the start. The points on the table differ along the lean, by a length of the body.
+pub(crate) fn pose_distance_over(a: &Pose, b: &Pose) -> f64 {
+    let by = |a: Angle, turns: f64, rest: f64| ((a.turns - turns) * TAU + (a.rest - rest)).abs();
+    let turned = by(a.phi, b.phi.turns + 0.5, b.phi.rest).max(by(a.psi, -b.psi.turns, -b.psi.rest));
+    let ((sin, cos), moved) = (b.phi.radians().sin_cos(), a.contact_point - b.contact_point);
+    turned.max((moved.y * cos - moved.x * sin).abs())
 }
 
 /// Relative error of a number of a state from a few roundings.

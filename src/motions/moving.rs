@@ -1,9 +1,10 @@
 //! The states of a moving body or stone, with the types of its poses and contact forces.
 
-use super::judge::{force_distance, pose_distance};
+use super::judge::{force_distance, pose_distance, pose_distance_over};
 use crate::laws::contact::Force;
 use crate::laws::pose::Pose;
 use crate::laws::state::State;
+use core::f64::consts::PI;
 use core::fmt::Debug;
 
 /// A state of a moving body, as a few numbers, with the types of its pose and of its contact force.
@@ -27,6 +28,15 @@ pub trait Moving: Copy + Debug + PartialEq {
     fn turning(pose: &Self::Pose) -> f64;
     /// The largest difference between the numbers of two forces.
     fn force_distance(a: &Self::Force, b: &Self::Force) -> f64;
+    /// The same state as seen from the other one of two equal rims; None for a stone.
+    fn from_other_rim(&self) -> Option<Self> {
+        None
+    }
+    /// The largest difference between two poses that are seen from different rims, `a` from the one that was not down at
+    /// the start.
+    fn pose_distance_over(a: &Self::Pose, b: &Self::Pose) -> f64 {
+        Self::pose_distance(a, b)
+    }
     /// The largest difference between the numbers of two states.
     fn distance(&self, other: &Self) -> f64 {
         let (a, b) = (self.numbers(), other.numbers());
@@ -47,6 +57,12 @@ impl Moving for State {
     }
     fn pose_distance(a: &Pose, b: &Pose) -> f64 {
         pose_distance(a, b)
+    }
+    fn from_other_rim(&self) -> Option<Self> {
+        Some(Self { theta: PI - self.theta, w1: self.w1, w2: -self.w2, w3: -self.w3 })
+    }
+    fn pose_distance_over(a: &Pose, b: &Pose) -> f64 {
+        pose_distance_over(a, b)
     }
     fn turning(pose: &Pose) -> f64 {
         pose.phi.radians().abs() + pose.psi.radians().abs()

@@ -195,7 +195,7 @@ pub struct Strike {
     /// The impulses along the lean, across it, and upwards, in M sqrt(g R), summed over both rims if both receive an
     /// impulse.
     pub impulse: [f64; 3],
-    /// The energy lost, in M g R.
+    /// The energy lost, in M g R; if the body stays, also the friction of the bounces that are summed.
     pub lost: f64,
     /// Whether this is the last of a sequence of bounces, after which the body stays on the table.
     pub stays: bool,
@@ -209,7 +209,7 @@ pub struct Strike {
 pub struct Path<S = State> {
     /// The slip at each time, along the lean and across it.
     pub slip: Vec<[f64; 2]>,
-    /// The heat of friction up to each time, in M g R.
+    /// The heat of friction up to each time, in M g R, without the friction of impacts.
     pub dissipated: Vec<f64>,
     /// The energy lost to the losses up to each time, in M g R; empty without losses.
     pub work_lost: Vec<f64>,

@@ -129,7 +129,10 @@ fn an_impact_is_that_of_newton_and_euler_and_never_gains_energy() {
             assert!(p_h.hypot(p_2) <= mu * p_n * (1.0 + 1e-12) + 1e-15 && p_n > 0.0);
             let lost = energy(&body, &before, hit.velocities[0], 0.0)
                 - energy(&body, &after, hit.velocities[1], 0.0);
-            assert!(hit.lost >= 0.0 && (lost - hit.lost).abs() < 1e-12 * (1.0 + lost), "{lost} {}", hit.lost);
+            // The last impact of a sequence of bounces also has the friction of those that are summed.
+            let summed = if hit.stays { 1e-5 } else { 0.0 };
+            assert!(hit.lost >= 0.0 && hit.lost > lost - 1e-12 * (1.0 + lost), "{lost} {}", hit.lost);
+            assert!(hit.lost < lost + summed + 1e-12 * (1.0 + lost), "{lost} {}", hit.lost);
             assert!(hit.velocities[1][2] >= 0.0 && hit.velocities[0][2] < 0.0);
             if hit.hit == Hit::Sticks {
                 assert_eq!(hit.velocities[1][..2], [0.0; 2]);

@@ -9,12 +9,13 @@
 use super::flight::air::{AirFlight, in_air};
 use super::flight::lands::TOUCH;
 use super::flight::{Aloft, Flies, Flight, Takeoff};
-use super::phases::{BodyPhases, BodyWalk};
+use super::phases::{BodyPhases, BodyWalk, LONGER};
 use super::strikes::{RATTLED, ROUNDED};
 use crate::laws::body::Shape;
 use crate::laws::contact::{Force, Table};
 use crate::laws::newton;
 use crate::laws::state::State;
+use crate::methods::flow::Spent;
 use crate::motions::halt::{TIME, loses, lost, poses};
 use crate::motions::row::OutputRow;
 use crate::motions::walk::{Next, Phases};
@@ -140,7 +141,11 @@ impl<const N: usize> BodyWalk<'_, N> {
         let (from, now) = (self.aloft(), self.at[TIME]);
         let Takeoff { leaves, .. } = self.of.takeoff;
         let mut course: Box<dyn Flies> = match in_air(&self.ask.losses) {
-            Some(losses) => Box::new(AirFlight::new(&shape, &from, losses, self.of.slide.tol)),
+            Some(losses) => {
+                // The first step of a rougher run is longer, so that the two runs take different steps.
+                let longer = if self.perturbation > 0.0 { LONGER } else { 1.0 };
+                Box::new(AirFlight::new(&shape, &from, losses, (self.of.slide.tol, longer)))
+            }
             None => Box::new(Flight::new(&shape, &from)),
         };
         let other = from.on_other_rim(&shape);
@@ -151,6 +156,9 @@ impl<const N: usize> BodyWalk<'_, N> {
             self.next = Some(Next::Ends(Ending::Bounded));
             return;
         };
+        if let Some(spent) = course.spent() {
+            self.has_spent(Spent { patience: self.spent.patience, ..spent });
+        }
         let before = lost(&self.at);
         let end = landing.map_or(f64::INFINITY, |(t, _)| t);
         while let Some(t) = self.until().filter(|t| *t <= now + end) {
@@ -158,15 +166,19 @@ impl<const N: usize> BodyWalk<'_, N> {
             self.writes_with(&at, Kind::Flying, 0.0);
         }
         let Some((t, upper)) = landing else { return };
-        let at = self.flown(&*course, t, before);
+        // The time of a landing is as uncertain as the height, over the normal velocity; a rougher run lands later.
+        let (at, high) = (self.flown(&*course, t, before), course.free().doubt_of_height(t));
+        let lift = if upper { at.on_other_rim(&shape).lift } else { at.lift };
+        let late = (high / lift.abs()).min(high.sqrt());
+        self.claims(late);
+        let t = t + late * self.shows();
+        let at = if self.shows() > 0.0 { self.flown(&*course, t, before) } else { at };
         self.at[TIME] = now + t;
         self.sets(&Aloft { height: if upper { at.height } else { 0.0 }, ..at });
         if upper {
             self.turns_over();
         }
-        // The time of a landing is as uncertain as the height, over the normal velocity.
-        let high = course.free().doubt_of_height(t);
-        self.claims((high / self.of.takeoff.lift.abs()).min(high.sqrt()));
+        self.doubts(course.free().roundings(t) * f64::EPSILON);
         self.of.takeoff.height = 0.0;
         let next = self.strikes();
         self.continues_with(next);
@@ -203,6 +215,13 @@ impl<const N: usize> BodyWalk<'_, N> {
         let fastest = [v_h, v_2, v_z].into_iter().chain(from.w).fold(1.0, |most: f64, x| most.max(x.abs()));
         let first = *self.of.energy.get_or_insert(whole);
         self.claims((whole - first).abs() / fastest);
+    }
+
+    /// Includes a relative error of the numbers in the estimated error, although both runs make the same error: the
+    /// rougher run is perturbed by as much as the difference of the runs has to show. The growth of the error is then
+    /// that of the difference.
+    pub(super) fn doubts(&mut self, share: f64) {
+        BodyPhases::perturbs_by(self, share * self.shows());
     }
 
     /// The contact that begins where the normal velocity is zero.

@@ -192,6 +192,28 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
     }
 }
 
+impl BodyPhases {
+    /// Perturbs the state by this share.
+    pub(super) fn perturbs_by<const N: usize>(walk: &mut BodyWalk<'_, N>, share: f64) {
+        if share == 0.0 || walk.of.lying.is_some() {
+            return;
+        }
+        let (down, up) = (1.0 - share, 1.0 + share);
+        let State { theta, w1, w2, w3 } = walk.of.state;
+        // Drilling w_z, rolling w_h and rocking w2 are each changed by a share of themselves: a motion that is zero
+        // stays zero.
+        let (s, c) = theta.sin_cos();
+        let (drilling, rolling) = ((s * w1 + c * w3) * up, (c * w1 - s * w3) * up);
+        // Near its other rim the height of the body is known from cos theta, not from theta.
+        let near = walk.ask.restitution.is_some() && walk.at[1].abs() < LEVEL;
+        let theta = if near { theta } else { theta * down };
+        let (s, c) = if near { (walk.at[0], walk.at[1] * down) } else { theta.sin_cos() };
+        let (w1, w3) = (s * drilling + c * rolling, c * drilling - s * rolling);
+        walk.of.state = State { theta, w1, w2: w2 * down, w3 };
+        walk.at[..5].copy_from_slice(&[s, c, w1, w2 * down, w3]);
+    }
+}
+
 impl<const N: usize> Phases<N> for BodyPhases {
     type State = State;
     type Slow = BodySlips;
@@ -215,22 +237,7 @@ impl<const N: usize> Phases<N> for BodyPhases {
     }
 
     fn perturbs(walk: &mut BodyWalk<'_, N>) {
-        if walk.perturbation == 0.0 || walk.of.lying.is_some() {
-            return;
-        }
-        let (down, up) = (1.0 - walk.perturbation, 1.0 + walk.perturbation);
-        let State { theta, w1, w2, w3 } = walk.of.state;
-        // Drilling w_z, rolling w_h and rocking w2 are each changed by a share of themselves: a motion that is zero
-        // stays zero.
-        let (s, c) = theta.sin_cos();
-        let (drilling, rolling) = ((s * w1 + c * w3) * up, (c * w1 - s * w3) * up);
-        // Near its other rim the height of the body is known from cos theta, not from theta.
-        let near = walk.ask.restitution.is_some() && walk.at[1].abs() < LEVEL;
-        let theta = if near { theta } else { theta * down };
-        let (s, c) = if near { (walk.at[0], walk.at[1] * down) } else { theta.sin_cos() };
-        let (w1, w3) = (s * drilling + c * rolling, c * drilling - s * rolling);
-        walk.of.state = State { theta, w1, w2: w2 * down, w3 };
-        walk.at[..5].copy_from_slice(&[s, c, w1, w2 * down, w3]);
+        BodyPhases::perturbs_by(walk, walk.perturbation);
     }
 
     fn write(walk: &mut BodyWalk<'_, N>, y: &[f64; N]) {

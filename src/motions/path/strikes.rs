@@ -5,8 +5,9 @@
 //! contact             where 2 u_n^2 < TAIL G (1 - q): the last impact is taken with e = 0
 //! both rims           land at once while both come down, else in turn, until none comes down
 //! ```
-//! The impulses of the bounces that are summed agree with the contact force to first order, so that the error of
-//! their sum is about TAIL.
+//! The impulses of the bounces that are summed agree with the contact force to first order, and to second order where
+//! they slip. Where they stick, the contact point has moved in each flight before: the error of their sum is of second
+//! order, about TAIL, and part of the estimated error. The friction of all bounces is lost in impacts.
 
 use super::flight::{Aloft, Takeoff};
 use super::phases::{BodyWalk, LONGER};
@@ -14,7 +15,7 @@ use crate::laws::body::Shape;
 use crate::laws::contact::impact::{Hit, RimImpact, Struck, lightness, turned};
 use crate::laws::contact::landing::{Landed, Outcome, bounced, land_at, settled};
 use crate::laws::contact::slip::Friction;
-use crate::laws::contact::{FLAT, Table};
+use crate::laws::contact::{FLAT, Force, Table};
 use crate::laws::newton;
 use crate::laws::state::State;
 use crate::motions::halt::TIME;
@@ -27,6 +28,10 @@ use core::f64::consts::FRAC_PI_2;
 const TAIL_SHARE: f64 = 0.1;
 const TAIL: f64 = 1e-13;
 const LONGEST_TAIL: f64 = 1e-10;
+/// Relative error of the numbers by the sum of the bounces, in units of their time and their first velocity.
+const SUM_ERROR: f64 = 1.0;
+/// The same error of bounces that slip, in units of their velocity over that of the slip.
+const TURNS: f64 = 10.0;
 /// The same share for a body with losses, which act at a contact, but not on a body that bounces.
 const LOSSY_TAIL: f64 = 1e-8;
 /// The tolerance of a step along an impact.
@@ -129,12 +134,15 @@ impl<const N: usize> BodyWalk<'_, N> {
         let left =
             if struck.lift > 0.0 && force > 0.0 { self.bounces_for(&from, &struck, force, e) } else { None };
         self.claims(left.unwrap_or(0.0) * force * self.couples(&from));
-        let stays = left.is_some();
+        let (stays, bounce) = (left.is_some(), struck.lift);
         if stays && let Some(last) = self.impact(&from, 0.0) {
             struck = last;
         }
         let after = self.struck(&from, &struck, (self.made.path.upside_down, stays));
         self.sets(&after);
+        if let Some(left) = left {
+            self.sums_bounces(&after, left, bounce);
+        }
         let level = from.angle.1.abs().max(after.lift).max(after.on_other_rim(&shape).lift.abs());
         if self.has_two_rims() && e > 0.0 && level < RATTLED {
             return self.ends_rattle();
@@ -187,6 +195,26 @@ impl<const N: usize> BodyWalk<'_, N> {
         }
         let left = 2.0 * struck.lift / (fall * (1.0 - ratio));
         (ratio < 1.0 && left * struck.lift < tail).then_some(left)
+    }
+
+    /// Counts the friction of the bounces that are summed as lost in impacts, as that of all other bounces, and not as
+    /// the heat of a slip. Includes the error of the sum in the estimated error. The bounces take the time `left`, and
+    /// begin with the velocity `bounce`.
+    fn sums_bounces(&mut self, after: &Aloft, left: f64, bounce: f64) {
+        let speed = after.slip[0].hypot(after.slip[1]);
+        let mut share = SUM_ERROR * left * bounce;
+        if speed > 0.0 {
+            let Force { along, across, .. } = self.of.slide.law.force(&after.state(), after.slip);
+            let heat = -(left * (across * after.slip[0] + along * after.slip[1]));
+            if let Some(last) = self.made.path.impacts.last_mut() {
+                last.lost += heat;
+                self.at[8] -= heat;
+            }
+            // A slip whose direction hardly turns between the bounces has the same impulses, at the same mean time.
+            share *= (TURNS * bounce / speed).min(1.0);
+        }
+        self.claims(share * after.w.into_iter().fold(1.0, |most: f64, w| most.max(w.abs())));
+        self.doubts(share);
     }
 
     /// The numbers after an impact, which is also recorded.
@@ -305,7 +333,10 @@ impl<const N: usize> BodyWalk<'_, N> {
             self.of.takeoff.lift = 0.0;
             return self.lands_on_both();
         };
-        self.claims(if from.slip == [0.0; 2] { left } else { left * left * SUMMED });
+        let doubt = if from.slip == [0.0; 2] { left } else { left * left * SUMMED };
+        self.claims(doubt);
+        self.doubts(doubt);
+        let from = self.aloft();
         self.claims(left * LASTS * self.couples(&from));
         let (law, flat) = (self.of.slide.law, (1.0, 0.0));
         let state = State { theta: FRAC_PI_2, ..self.of.state };

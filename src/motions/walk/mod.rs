@@ -16,7 +16,7 @@ mod slips;
 pub(crate) mod slow;
 
 use super::ask::Ask;
-use super::followed::Followed;
+use super::followed::{BRIEF, Followed};
 use super::halt::{Halt, TIME};
 use super::result::{Ending, Event, Kind, Phase, Strike};
 use super::{Method, Moving};
@@ -401,9 +401,21 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         self.made.motion.error = self.made.motion.error.max(error);
     }
 
+    /// The factor by which a rougher run exaggerates an error that both runs make alike, so that the scaled difference
+    /// of the runs shows this error; 0 in the finer run.
+    pub fn shows(&self) -> f64 {
+        self.perturbation / f64::EPSILON
+    }
+
     /// Includes the error of the time of an end at `y` in the estimated error. It is the error of the steps, divided by
     /// the rate at which the margin fell, or the speed of a body that comes to rest.
     pub fn claims_time_error(&mut self, halt: Halt, steep: f64, y: &[f64; N]) {
+        // A rim that leaves the table sooner or later has the same acceleration, and the time at which it leaves in the
+        // midst of bounces has no meaning.
+        let leaves = matches!(halt, Halt::LiftOff | Halt::Rises) && self.ask.restitution.is_some();
+        if leaves && y[TIME] - self.began <= BRIEF {
+            return;
+        }
         if let Some(grows) = self.of.grows(halt, y) {
             let erred = grows * (self.spent.erred * self.of.tol() + 8.0 * f64::EPSILON);
             // A margin that only touches zero does so with zero slope: the error of the time is a square root. The

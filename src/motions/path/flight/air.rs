@@ -17,6 +17,7 @@ use super::lands::{AngleSeries, Falling, Leaves, NoLanding, RIM_TERMS, TOUCH};
 use super::{Aloft, Flies, Flight};
 use crate::laws::body::Shape;
 use crate::laws::loss::{Couples, Kinematics, Law, Losses};
+use crate::methods::flow::Spent;
 use crate::methods::rk8;
 use crate::numbers::tape::{Tape, Taped};
 use crate::numbers::{Real, TERMS};
@@ -25,6 +26,10 @@ use core::f64::consts::TAU;
 const NUMBERS: usize = 11;
 const AIR_TIME: usize = 10;
 type AirNumbers = [f64; NUMBERS];
+/// Length of the first step, in units of the time in which the body turns by one radian.
+const FIRST_STEP: f64 = 0.05;
+/// Number of evaluations of the rates in a step.
+const RATES_PER_STEP: u64 = 12;
 /// Largest number of steps.
 const AIR_STEPS: usize = 100_000;
 /// The series at the start holds for this share of the time that it would without the air, or for less, until its last
@@ -52,6 +57,8 @@ pub(crate) struct AirFlight {
     losses: Couples<f64>,
     steps: Vec<AirStep>,
     tol: f64,
+    first: f64,
+    spent: Spent,
 }
 
 /// The laws that act on a body in the air; None if no law does.
@@ -73,14 +80,18 @@ fn axes([w, x, y, z]: [f64; 4]) -> [[f64; 3]; 3] {
 }
 
 impl AirFlight {
-    pub fn new(shape: &Shape<f64>, from: &Aloft, losses: Couples<f64>, tol: f64) -> Self {
+    /// The first step is `longer` by this factor.
+    pub fn new(shape: &Shape<f64>, from: &Aloft, losses: Couples<f64>, (tol, longer): (f64, f64)) -> Self {
         let free = Flight::new(shape, from);
         // The axes of the body are e1, e2 and e3 at the start, which lean toward x.
         let half = 0.5 * from.angle.0.atan2(from.angle.1);
         let [w1, w2, w3] = from.w;
         let y = [half.cos(), 0.0, -half.sin(), 0.0, w1, w2, w3, from.height, from.angle.1, 0.0, 0.0];
         let steps = vec![AirStep { y, angles: [0.0; 2] }];
-        Self { shape: *shape, from: *from, free, losses, steps, tol }
+        let fastest = w1.abs().max(w2.abs()).max(w3.abs());
+        let (first, spent) =
+            (longer * FIRST_STEP / (1.0 + fastest), Spent { evaluations: 0, erred: 0.0, patience: 0 });
+        Self { shape: *shape, from: *from, free, losses, steps, tol, first, spent }
     }
 
     /// The couple of the air along the axes of the body.
@@ -225,7 +236,7 @@ impl Flies for AirFlight {
         let (soon, clear) = self.leaves(leaves, two)?;
         let soon = soon.filter(|(t, _)| *t <= until);
         let until = soon.map_or(until, |(t, _)| t);
-        let mut h = 0.05 / (1.0 + w1.abs().max(w2.abs()).max(w3.abs()));
+        let (mut h, fastest) = (self.first, w1.abs().max(w2.abs()).max(w3.abs()).max(1.0));
         for _ in 0..AIR_STEPS {
             let step = *self.steps.last().ok_or(NoLanding)?;
             let now = step.y[AIR_TIME];
@@ -234,6 +245,7 @@ impl Flies for AirFlight {
             }
             h = h.min(until - now);
             let (y, error) = self.part(&step, h);
+            self.spent.evaluations += RATES_PER_STEP;
             if error.is_nan() || error > 1.0 {
                 h *= rk8::growth(error).min(0.7);
                 continue;
@@ -257,6 +269,7 @@ impl Flies for AirFlight {
                     first = Some((x, i == 1));
                 }
             }
+            self.spent.erred += error * fastest;
             if let Some((x, other)) = first {
                 return Ok(Some((now + x, other)));
             }
@@ -289,5 +302,9 @@ impl Flies for AirFlight {
 
     fn free(&self) -> &Flight {
         &self.free
+    }
+
+    fn spent(&self) -> Option<Spent> {
+        Some(self.spent)
     }
 }

@@ -19,6 +19,7 @@ pub(crate) mod lands;
 use crate::laws::body::Shape;
 use crate::laws::pose::Pose;
 use crate::laws::state::State;
+use crate::methods::flow::Spent;
 use crate::motions::path::write::posed;
 use core::f64::consts::PI;
 use lands::{Leaves, NoLanding};
@@ -83,6 +84,10 @@ pub(crate) trait Flies {
     fn at(&self, t: f64) -> (Aloft, f64);
     /// The flight without losses.
     fn free(&self) -> &Flight;
+    /// The evaluations and the estimated errors of the steps; None without steps.
+    fn spent(&self) -> Option<Spent> {
+        None
+    }
 }
 
 /// For |cos theta| above this its small complement is computed.
@@ -258,9 +263,14 @@ impl Flight {
         4.0 * f64::EPSILON * (self.from.height + t * (1.0 + self.velocity[2].abs() + self.rate * reach))
     }
 
+    /// The error of the numbers at a time, in roundings, away from the poles.
+    pub fn roundings(&self, t: f64) -> f64 {
+        4.0 * (1.0 + self.rate * t)
+    }
+
     /// The error of the numbers at a time, due to rounding.
     pub fn doubt(&self, t: f64, at: &Aloft) -> f64 {
         let fastest = at.w.iter().fold(1.0, |most: f64, w| most.max(w.abs()));
-        4.0 * f64::EPSILON * (1.0 + self.rate * t) * fastest / at.angle.0.clamp(1e-300, 1.0)
+        self.roundings(t) * f64::EPSILON * fastest / at.angle.0.clamp(1e-300, 1.0)
     }
 }
