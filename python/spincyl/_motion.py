@@ -15,7 +15,6 @@ from spincyl._contact import AnyContact, Coulomb, named
 from spincyl._ending import Ending, Event
 from spincyl._input.equality import compared
 from spincyl._input.numbers import Floats, Reals, si
-from spincyl._input.short import alike
 from spincyl._labelled import AXES, Components, frame, labelled
 from spincyl._measured import in_si, natural_time, speaking, told
 from spincyl._outputs import ALOFT, BOTH, COUPLE, FORCE, FRICTION, LOSSES, PATCH, POSE, Number, output
@@ -389,7 +388,7 @@ class Motion:
     def _told(self, name: str, values: Floats) -> Floats:
         """Convert an output from natural units to those of the motion."""
         found: Floats = values if self._natural is None else told(name, values, self.scale)
-        return alike(found, self.theta)
+        return found
 
     def _angle(self, name: str) -> Floats:
         turns, rest = output(self, name, POSE).T
