@@ -1,7 +1,10 @@
 """A stopwatch: the time in which a coin stops gives the coefficient of a loss, with an error that holds."""
 
+import json
 import math
+import re
 import warnings
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -299,3 +302,13 @@ def test_normal_times_seldom_have_an_outlier():
             sc.data._stop._timed(np.round(times, 1 + k % 2), 0.1)
         warned += len(said)
     assert warned <= 3
+
+
+def test_the_coin_of_the_lab_page_has_a_coefficient_that_is_typical_of_coins():
+    page = (Path(__file__).parents[1] / "docs" / "lab.md").read_text("utf-8")
+    times, angle = re.search(
+        r"^times = (\[.*\])\n.*fit_stop\(coin, sc.loss.DryContour, \"(\w+)\"", page, re.M
+    ).groups()
+    (coin,) = (row for row in sc.loss.typical.of(sc.loss.DryContour) if row.pair.startswith("coin"))
+    for fit in sc.data.fit_stop(COIN, sc.loss.DryContour, angle, json.loads(times)).fits:
+        assert coin.unit == "mm" and coin.low < 1e3 * fit.coefficient_si < coin.high

@@ -228,10 +228,10 @@ def fit_stop(
     --------
     >>> import spincyl as sc
     >>> coin = sc.measured(outer_diameter="25.75mm", length="2.2mm", mass="8.5g")
-    >>> times = [6.9, 7.3, 7.0, 7.4, 7.1]
-    >>> found = sc.data.fit_stop(coin, sc.loss.DryContour, "20deg", times, from_err="2deg", centre="rest")
+    >>> times = [4.1, 4.4, 4.2, 4.5, 4.3]
+    >>> found = sc.data.fit_stop(coin, sc.loss.DryContour, "45deg", times, from_err="2deg", centre="rest")
     >>> found.of("rest")
-    <DryContour with the centre at rest: 0.006845 +- 0.001 mm>
+    <DryContour with the centre at rest: 0.03874 +- 0.0028 mm>
     """
     one_body(body)
     if body.scale is None:
