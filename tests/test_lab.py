@@ -349,14 +349,39 @@ def test_rates_in_radians_a_second_are_told_by_their_factor():
         sc.data.compare(CYLINDER, theta, 2 * np.pi * rate)
 
 
+def test_one_film_is_compared_with_the_body_as_built_in_its_own_errors():
+    """Normal errors of both quantities: the distances are those of a normal deviate."""
+    rng, away = np.random.default_rng(11), []
+    for _ in range(300):
+        theta, rate = STEEP + 0.01 * rng.normal(), float(TUBE.rate(STEEP)) * (1 + 0.01 * rng.normal())
+        errors = {"theta_err": 0.01, "rate_err": 0.01 * float(TUBE.rate(STEEP))}
+        away.append(float(sc.data.compare(TUBE, theta, rate, **errors).away[0]))
+    assert 0.9 < np.sqrt(np.mean(np.square(away))) < 1.1
+    film = sc.data.from_above(sc.data.example("tube_from_above"), TUBE)
+    errors = {"theta_err": film.theta_err, "rate_err": film.rate_err}
+    for shape in (float, np.atleast_1d):
+        found = sc.data.compare(TUBE, shape(film.theta), shape(film.rate), **errors)
+        assert found.away == pytest.approx([abs(film.theta - film.predicted) / film.theta_err], rel=0.1)
+        assert "one point, 1.4 errors from a steady state: in accord with" in repr(found)
+        assert np.isnan(found.ratio) and found.fitted == TUBE and "steady at 83.4" in found.report()
+        assert "in accord" in found._repr_html_()
+    off = sc.data.compare(TUBE, film.theta - 0.1, film.rate, **errors)
+    assert "not in accord with the body as built" in off.report() and off.away[0] > 15
+    with pytest.raises(ValueError, match="common = 0.03: expected 0 for fewer than three points"):
+        sc.data.compare(TUBE, film.theta, film.rate, **errors, common=0.03)
+
+
 def test_two_points_are_told_that_three_are_needed():
     theta = np.array([0.1, 1.4])
     for given, said in (
-        ((theta, CYLINDER.rate(theta)), "at least three different points, not two$"),
-        ((theta[:1], CYLINDER.rate(theta[:1])), "at least three different points, not one$"),
+        (
+            (theta, CYLINDER.rate(theta)),
+            "at least three different points, not two; one or two need theta_err",
+        ),
+        ((theta[:1], CYLINDER.rate(theta[:1])), "different points, not one; one or two need theta_err"),
         (([], []), "at least three different points, not none$"),
-        (([0.1] * 5, [0.5] * 5), r"not five \(one different\)$"),
-        (([0.1, 1.4, np.nan], [0.5, 1.0, 1.0]), "not two, and one with NaN$"),
+        (([0.1] * 5, [0.5] * 5), r"not five \(one different\); one or two need"),
+        (([0.1, 1.4, np.nan], [0.5, 1.0, 1.0]), "not two, and one with NaN; one or two need"),
     ):
         with pytest.raises(ValueError, match=said):
             sc.data.compare(CYLINDER, *given)
