@@ -3,9 +3,12 @@
 import re
 import warnings
 
+import numpy as np
 import pytest
 
 import spincyl as sc
+from spincyl import parts
+from spincyl._input import units
 
 COIN = sc.Body.solid(0.1)
 MEASURED = sc.measured(outer_diameter="25.75mm", length="2.2mm", mass="8.5g")
@@ -100,3 +103,77 @@ def test_what_an_output_needs_is_advised_where_it_helps_and_only_there(chosen, k
             given["want"] = "force"
         left = {key: value for key, value in kind.items() if f"{key}=" not in (advice[2] or "")}
         assert has(rolled(body, state, left | given), name) is True, said
+
+
+@pytest.mark.parametrize("unit", [*units._KINDS, "radian"])
+def test_the_example_of_a_missing_unit_is_of_the_same_quantity(unit):
+    with pytest.raises(TypeError, match=r"or a text with a unit, as '\S+', not '3'$") as caught:
+        units.read("3", unit)
+    assert units.read(re.search(r"as '(\S+)'", str(caught.value))[1], unit) > 0
+
+
+RIM = parts.cylinder(outer_diameter="300mm", length="20mm", mass="0.5kg", at="90mm")
+WHEEL = sc.assembled([RIM, parts.cylinder(outer_diameter="10mm", length="200mm", mass="0.2kg", at=0)])
+DRIFT = sc.drift(COIN, 0.3, sc.loss.ViscousContour(1e-3))
+
+
+@pytest.mark.parametrize(
+    ("call", "said"),
+    [
+        (
+            lambda: sc.measured(outer_diameter="22mm", length="66mm", mass="30"),
+            "mass: .* as '30g', not '30'$",
+        ),
+        (lambda: sc.roll(MEASURED, MEASURED.steady(0.5), "2"), "t: .* as '2s', not '2'$"),
+        (
+            lambda: sc.data.fit_stop(MEASURED, sc.loss.DryContour, "20deg", ["7,2", "7,1"]),
+            "seconds: .* a decimal point, not a comma, and no quotes: 7.2$",
+        ),
+        (lambda: parts.ball(diameter="2cm", density="7.85g/cm3"), "density: expected a number in kg/m.3"),
+        (lambda: sc.assembled([]), "parts: expected at least one part, not an empty list$"),
+        (
+            lambda: sc.data.fit_losses(np.arange(8) / 10, np.full(8, 0.35), body=MEASURED),
+            "theta: expected a drift; all values are 0.35$",
+        ),
+        (
+            lambda: WHEEL.circular(np.radians(75), radius=3.0),
+            "theta = 1.3.*: expected at most theta_end = 0.55.*, where another part lands$",
+        ),
+        (
+            lambda: rolled(MEASURED, MEASURED.steady(0.5), PATCH),
+            "restitution = 0.5 cannot be combined with a patch of contact: ",
+        ),
+        (
+            lambda: DRIFT.theta(Labelled()),
+            "t: expected numbers or a NumPy array, not Labelled; give its values",
+        ),
+        (lambda: RIM.raised("1 s"), "by: '1 s': expected a length"),
+        (
+            lambda: sc.view(sc.roll(COIN, COIN.steady(0.5), 1.0), exposure=np.ones(3)),
+            "exposure: expected a number",
+        ),
+        (
+            lambda: sc.scene(sc.roll(COIN, COIN.steady(0.5), 1.0)).save(""),
+            "path = .*: expected the name of a file$",
+        ),
+        (lambda: COIN.steady(np.ones((1,) * 40)), "theta: expected at most 31 dimensions, not 40$"),
+    ],
+)
+def test_a_message_names_the_argument_and_what_would_be_right(call, said):
+    with pytest.raises((TypeError, ValueError), match=f"^{said}"):
+        call()
+
+
+PATCH = {"contact": sc.Coulomb.from_si(0.3, patch="0.3mm", scale=MEASURED), "restitution": 0.5}
+
+
+class Labelled:
+    dims = ("x",)
+
+
+def test_a_column_of_names_is_named(tmp_path):
+    (tmp_path / "class.csv").write_text("student;angle (deg);time (s)\nS1;10;0,38\nS2;20;0,85\nS3;30;1,84\n")
+    with pytest.raises(
+        ValueError, match="line 2 has the text 'S1' in the column 'student', .* remove this column"
+    ):
+        sc.data.read_table(tmp_path / "class.csv")
