@@ -161,3 +161,9 @@ def test_a_custom_motion_is_shown_and_plotted():
 def test_a_dry_loss_belongs_into_the_law_of_your_own():
     with pytest.raises(ValueError, match="delta = 0.01: expected only laws without the normal force"):
         sc.roll(COIN, START, T, contact=FALLING, losses=sc.loss.RollingResistance(0.01))
+
+
+def test_a_couple_of_ones_own_differs_from_every_other_law_and_is_printed_by_its_name():
+    couple, other = sc.custom.Couple(np.negative), sc.loss.RollingResistance(1e-3)
+    assert couple != other and other != couple and couple in [other, couple]
+    assert str(couple) == repr(couple) == "custom.Couple(negative)"

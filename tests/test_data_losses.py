@@ -360,3 +360,18 @@ def test_the_fitted_curve_goes_on_before_its_start_and_beyond_its_stop():
     assert begin == pytest.approx(0.3, rel=1e-9) and abs(last) < 1e-4 and beyond < -1.0
     tangent = (begin - float(drift.theta(1e-4 * stop))) / 1e-4
     assert before - begin == pytest.approx(0.1 * tangent, rel=1e-3)
+
+
+def test_a_fit_does_not_depend_on_the_origin_of_time():
+    """Stopwatch readings of the time that is left, at three inclinations; all but one lie beyond a law's drift."""
+    coin = sc.measured(outer_diameter="25.75mm", length="2.2mm", mass="8.5g")
+    left = np.array([1.84, 1.78, 1.77, 1.72, 0.99, 0.85, 0.40, 0.38, 0.33, 0.31])
+    theta = np.radians([30, 30, 30, 30, 20, 20, 10, 10, 10, 10.0])
+    laws = [sc.loss.DryContour, sc.loss.Drilling]
+    fits = [sc.data.fit_losses(shift - left, theta, body=coin, laws=laws) for shift in (0.0, 5.0, -1.84, 1e4)]
+    for shift, found in zip((0.0, 5.0, -1.84, 1e4), fits, strict=True):
+        assert [(x.name, x.centre) for x in found.fits] == [(x.name, x.centre) for x in fits[0].fits]
+        assert [x[:2] for x in found.refused] == [("Drilling", "rolling")]
+        for one, first in zip(found.fits, fits[0].fits, strict=True):
+            assert one.coefficient == pytest.approx(first.coefficient, rel=1e-6)
+            assert one.stops_at - shift == pytest.approx(first.stops_at, abs=1e-6)

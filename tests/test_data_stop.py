@@ -1,7 +1,10 @@
 """A stopwatch: the time in which a coin stops gives the coefficient of a loss, with an error that holds."""
 
+import json
 import math
+import re
 import warnings
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -272,3 +275,40 @@ def test_every_row_of_the_table_has_a_source_and_a_range_that_from_si_takes():
         table.of(sc.loss.AirLinear)
     with pytest.raises(AttributeError, match="no attribute 'atypical'"):
         sc.loss.atypical
+
+
+def test_an_outlier_is_named_by_its_index_and_value_and_ten_good_times_pass():
+    truth = sc.loss.DryContour.from_si("0.05mm", scale=COIN)
+    t = lasts(truth)
+    good = t * (1 + 0.05 * np.random.default_rng(5).normal(size=10))
+    how = {"from_err": "0.2deg", "centre": "rest"}
+    sc.data.fit_stop(COIN, sc.loss.DryContour, "20deg", good, **how)
+    for times, name in (
+        ([*good, 2.1 * t], rf"seconds\[10\] = {2.1 * t:.4g}: \d+ standard deviations of the other times"),
+        ([np.nan, 0.3 * t, *good], rf"seconds\[1\] = {0.3 * t:.4g}: "),
+        ([2 * t, *good, 60 * t], rf"seconds\[0\] = .*, seconds\[11\] = {60 * t:.4g}: at least"),
+    ):
+        with pytest.warns(UserWarning, match=f"^{name}.* Set it to NaN"):
+            sc.data.fit_stop(COIN, sc.loss.DryContour, "20deg", times, **how)
+
+
+def test_normal_times_seldom_have_an_outlier():
+    """Also times that a hand watch rounds to tenths of a second."""
+    rng, warned = np.random.default_rng(3), 0
+    for k in range(300):
+        times = rng.normal(7.0, rng.choice([0.02, 0.2, 0.7]), rng.integers(5, 20))
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always")
+            sc.data._stop._timed(np.round(times, 1 + k % 2), 0.1)
+        warned += len(said)
+    assert warned <= 3
+
+
+def test_the_coin_of_the_lab_page_has_a_coefficient_that_is_typical_of_coins():
+    page = (Path(__file__).parents[1] / "docs" / "lab.md").read_text("utf-8")
+    times, angle = re.search(
+        r"^times = (\[.*\])\n.*fit_stop\(coin, sc.loss.DryContour, \"(\w+)\"", page, re.M
+    ).groups()
+    (coin,) = (row for row in sc.loss.typical.of(sc.loss.DryContour) if row.pair.startswith("coin"))
+    for fit in sc.data.fit_stop(COIN, sc.loss.DryContour, angle, json.loads(times)).fits:
+        assert coin.unit == "mm" and coin.low < 1e3 * fit.coefficient_si < coin.high

@@ -114,7 +114,9 @@ def test_a_rounded_tube_is_as_long_as_it_was_measured():
     rounded = sc.Body.from_metres(
         outer_diameter=0.625 * INCH, inner_diameter=0.5 * INCH, length=3.75 * INCH, fillet=1e-3
     )
-    assert sc.data.from_above(filmed(), rounded).theta == pytest.approx(np.radians(80.0), rel=1e-7)
+    assert sc.data.from_above(filmed(), rounded, ruler=0.01).theta == pytest.approx(
+        np.radians(80.0), rel=1e-7
+    )
 
 
 def test_frames_too_few_are_counted_in_words():
@@ -154,7 +156,7 @@ def test_what_is_no_film_of_both_ends_is_refused_with_what_would_be_right():
         ((changed(tracks, lambda v: 1e-3 * v), TUBE), "is the tube in metres"),
         ((twice, TUBE), "two positions at t = 0"),
         (({"O": tracks["O"], "X": tracks["O"]}, TUBE), "the same place"),
-        ((filmed(hertz=TURNS * 2.05), TUBE), "film with more frames per second"),
+        ((filmed(hertz=TURNS * 2.01, noise=1e-3), TUBE), "film with more frames per second"),
         ((tracks, CYLINDER), "give scale="),
     ):
         with pytest.raises(ValueError, match=said):
@@ -191,6 +193,75 @@ def test_a_film_whose_clock_counts_frames_is_warned_of():
     counting = {n: c | {"t": 240 * c["t"]} for n, c in filmed().items()}
     with pytest.warns(UserWarning, match=r"seen at 80 degrees, .* is t in seconds"):
         sc.data.from_above(counting, TUBE)
+
+
+FAST = sc.measured(outer_diameter="22mm", length="66mm", wall="1.5mm")
+
+
+def from_a_phone(turns, fps, noise=2e-4, jitter=0.0, digits=9, frames=60, ruler=1.0, dropped=(), seed=0):
+    """Tracks of FAST in its lower steady state, with errors of the positions, of the times and of the scale."""
+    rng = np.random.default_rng(seed)
+    t = np.delete(np.arange(frames) / fps, list(dropped))
+    t = t + rng.uniform(-jitter, jitter, t.size) / fps
+    arm = 0.033 * ruler * np.sin(FAST.inclinations(hertz=turns)[1])
+    ends = arm * np.exp(2j * np.pi * turns * t) * np.array([[1], [-1]])
+    ends = ends + noise * (rng.normal(size=ends.shape) + 1j * rng.normal(size=ends.shape))
+    return {
+        name: {"t": t.round(digits), "x": z.real, "y": z.imag} for name, z in zip("OX", ends, strict=True)
+    }
+
+
+@pytest.mark.parametrize("turns", [16.0, 18.0, 20.0, 22.0, 24.0, 33.0, 37.0])
+@pytest.mark.parametrize("fps", [30.0, 29.97])
+def test_a_tube_too_fast_for_the_film_is_told_by_its_inclination(turns, fps):
+    """All of them look like 0 to 15 turns a second, whose steady inclinations are at least 56 degrees."""
+    with pytest.warns(UserWarning, match=f"{turns:.2g}.* turns a second look the same .* rate is taken"):
+        found = sc.data.from_above(from_a_phone(turns, fps, noise=5e-5, frames=150), FAST)
+    assert abs(found.hertz - turns) < 4 * found.hertz_err < 0.01
+    assert abs(found.theta - found.predicted) < 4 * found.theta_err and not found.aliases.size
+    assert np.ptp(found.direction) == pytest.approx(2 * np.pi * turns * np.ptp(found.t), abs=0.1)
+
+
+@pytest.mark.parametrize("turns", [6.0, 8.0, 13.0])
+@pytest.mark.parametrize("dropped", [(), (7, 20, 21, 40)])
+def test_a_tube_slow_enough_for_the_film_is_read_as_it_is_whatever_the_clock_writes(turns, dropped):
+    for digits in (9, 3):
+        found = sc.data.from_above(from_a_phone(turns, 29.97, dropped=dropped, digits=digits), FAST)
+        assert abs(found.hertz - turns) < 5 * found.hertz_err + 1e-3 and not found.aliases.size
+
+
+def test_a_fast_tube_is_told_also_if_frames_are_lost_and_times_are_rounded():
+    for digits, dropped in ((9, (7, 20, 21, 40)), (3, ()), (3, (7, 20, 21, 40))):
+        with pytest.warns(UserWarning, match="rate is taken"):
+            found = sc.data.from_above(from_a_phone(20.0, 29.97, dropped=dropped, digits=digits), FAST)
+        assert abs(found.hertz - 20.0) < 5 * found.hertz_err + 1e-3
+
+
+def test_rates_that_the_inclination_cannot_tell_apart_are_all_named():
+    with pytest.warns(
+        UserWarning, match=r"also 21\S* or 39\S* or 51\S* turns a second look the same at 30 frames"
+    ):
+        found = sc.data.from_above(from_a_phone(9.0, 30.0, noise=0.0), FAST, ruler=0.1)
+    assert found.hertz == pytest.approx(9.0) and found.aliases[:2] == pytest.approx([21.0, 39.0], rel=1e-6)
+    with pytest.warns(
+        UserWarning, match=r"steady at .*errors away; 22\S* or 38\S* or 52\S* turns .*more frames per second"
+    ):
+        found = sc.data.from_above(from_a_phone(22.0, 30.0, noise=0.0), FAST, ruler=0.01)
+    assert found.aliases[:2] == pytest.approx([22.0, 38.0], rel=1e-6)
+
+
+def test_uneven_times_of_the_frames_exclude_the_rates_that_only_look_the_same_in_even_frames():
+    tracks = from_a_phone(9.0, 30.0, noise=0.0, jitter=0.2)
+    found = sc.data.from_above(tracks, FAST, ruler=0.1)
+    assert found.hertz == pytest.approx(9.0) and not found.aliases.size
+
+
+def test_an_inclination_many_errors_from_every_steady_one_is_warned_of():
+    """Three per cent of the scale of length: five degrees, which a flat limit of ten would let pass."""
+    tracks = from_a_phone(8.0, 240.0, ruler=0.97)
+    with pytest.warns(UserWarning, match=r"steady at 64\.\d degrees, \d+ errors away: .* does ruler= lack"):
+        sc.data.from_above(tracks, FAST)
+    assert sc.data.from_above(tracks, FAST, ruler=0.03).hertz == pytest.approx(8.0, rel=1e-3)
 
 
 # rates with a common factor
@@ -278,14 +349,39 @@ def test_rates_in_radians_a_second_are_told_by_their_factor():
         sc.data.compare(CYLINDER, theta, 2 * np.pi * rate)
 
 
+def test_one_film_is_compared_with_the_body_as_built_in_its_own_errors():
+    """Normal errors of both quantities: the distances are those of a normal deviate."""
+    rng, away = np.random.default_rng(11), []
+    for _ in range(300):
+        theta, rate = STEEP + 0.01 * rng.normal(), float(TUBE.rate(STEEP)) * (1 + 0.01 * rng.normal())
+        errors = {"theta_err": 0.01, "rate_err": 0.01 * float(TUBE.rate(STEEP))}
+        away.append(float(sc.data.compare(TUBE, theta, rate, **errors).away[0]))
+    assert 0.9 < np.sqrt(np.mean(np.square(away))) < 1.1
+    film = sc.data.from_above(sc.data.example("tube_from_above"), TUBE)
+    errors = {"theta_err": film.theta_err, "rate_err": film.rate_err}
+    for shape in (float, np.atleast_1d):
+        found = sc.data.compare(TUBE, shape(film.theta), shape(film.rate), **errors)
+        assert found.away == pytest.approx([abs(film.theta - film.predicted) / film.theta_err], rel=0.1)
+        assert "one point, 1.4 errors from a steady state: in accord with" in repr(found)
+        assert np.isnan(found.ratio) and found.fitted == TUBE and "steady at 83.4" in found.report()
+        assert "in accord" in found._repr_html_()
+    off = sc.data.compare(TUBE, film.theta - 0.1, film.rate, **errors)
+    assert "not in accord with the body as built" in off.report() and off.away[0] > 15
+    with pytest.raises(ValueError, match="common = 0.03: expected 0 for fewer than three points"):
+        sc.data.compare(TUBE, film.theta, film.rate, **errors, common=0.03)
+
+
 def test_two_points_are_told_that_three_are_needed():
     theta = np.array([0.1, 1.4])
     for given, said in (
-        ((theta, CYLINDER.rate(theta)), "at least three different points, not two$"),
-        ((theta[:1], CYLINDER.rate(theta[:1])), "at least three different points, not one$"),
+        (
+            (theta, CYLINDER.rate(theta)),
+            "at least three different points, not two; one or two need theta_err",
+        ),
+        ((theta[:1], CYLINDER.rate(theta[:1])), "different points, not one; one or two need theta_err"),
         (([], []), "at least three different points, not none$"),
-        (([0.1] * 5, [0.5] * 5), r"not five \(one different\)$"),
-        (([0.1, 1.4, np.nan], [0.5, 1.0, 1.0]), "not two, and one with NaN$"),
+        (([0.1] * 5, [0.5] * 5), r"not five \(one different\); one or two need"),
+        (([0.1, 1.4, np.nan], [0.5, 1.0, 1.0]), "not two, and one with NaN; one or two need"),
     ):
         with pytest.raises(ValueError, match=said):
             sc.data.compare(CYLINDER, *given)

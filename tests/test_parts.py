@@ -1,6 +1,7 @@
 """Bodies put together from parts, in Python: what a user types, what is drawn, what is refused."""
 
 import pickle
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -108,7 +109,15 @@ def test_the_mass_is_that_of_the_drawn_volume():
 
 def test_it_says_what_lands():
     m = sc.roll(sc.assembled(TOP), sc.State(0.3, 0.0, 0.1, 0.0), 1.0)
-    assert m.status == sc.Ending.SIDE and "lands on another part" in str(m)
+    assert m.status == sc.Ending.SIDE and "another part landed: the body lands on another part" in m.message
+
+
+@pytest.mark.parametrize("body", [sc.Body.ball(-0.27, i1=0.57, i3=0.58), sc.Body(0.5, i1=0.5, i3=0.5)])
+def test_a_stem_that_lands_is_another_part_and_no_rim_also_without_assembled_parts(body):
+    body = replace(body, theta_end=np.radians(100.0 if body.fillet else 80.0))
+    m = sc.roll(body, sc.State(1.2, 0.0, -0.9, 0.0), 10.0)
+    assert m.status == sc.Ending.SIDE and "the body lands on another part" in m.message
+    assert "rim" not in m.message and "edge" not in m.message
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from itertools import combinations
 
 import matplotlib as mpl
 import numpy as np
@@ -94,7 +95,12 @@ def test_the_curves_of_a_map_of_rounded_tubes_are_theirs():
     assert edge == pytest.approx(np.degrees(min(expected.theta_balance, expected.theta_limit)), abs=0.13)
 
 
-def test_every_region_has_a_colour_and_the_legend_names_those_that_are_there():
+def grey(colour):
+    """Luma of a colour, as a printer without colours shows it."""
+    return float(np.dot(colour[:3], (0.299, 0.587, 0.114)))
+
+
+def test_every_region_has_a_look_also_without_colours_and_the_legend_names_those_that_are_there():
     import xarray
 
     codes = np.array([[1, 4, 5], [6, 7, 7]])
@@ -112,6 +118,11 @@ def test_every_region_has_a_colour_and_the_legend_names_those_that_are_there():
         legend = ax.get_legend()
         shown = dict(zip([t.get_text() for t in legend.get_texts()], legend.get_patches(), strict=False))
         assert shown[name].get_facecolor() == colour != (1, 1, 1, 1)
+    for ax in (sc.plot.portrait(data), sc.plot.portrait()):
+        looks = [(grey(x.get_facecolor()), x.get_hatch()) for x in ax.get_legend().get_patches()]
+        assert all(abs(a[0] - b[0]) > 0.15 or a[1] != b[1] for a, b in combinations(looks, 2))
+        hatched = {h for drawn in ax.collections for h in getattr(drawn, "hatches", [])}
+        assert hatched == {hatch for _, hatch in looks if hatch}
     whole = [t.get_text() for t in sc.plot.portrait().get_legend().get_texts()]
     assert "stable only on a smooth table" not in whole and "stable only when rolling" in whole
 

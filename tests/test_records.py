@@ -10,6 +10,7 @@ import dask.array as da
 import numpy as np
 import pytest
 import xarray as xr
+import zarr
 
 import spincyl as sc
 from spincyl.sweep import _records
@@ -165,6 +166,67 @@ def test_what_is_no_lazy_sweep_is_refused_by_name(tmp_path, store):
         with pytest.raises(TypeError, match="^result: expected a lazy Dataset"):
             sc.sweep.save(bad, tmp_path / "a")
     assert not (tmp_path / "a").exists()
+
+
+def refused(path, first):
+    """Saving is refused by the name of the first foreign file, and changes nothing."""
+    before = files(path)
+    with pytest.raises(
+        FileExistsError, match=rf"{first} is not of this sweep, and save overwrites only what"
+    ):
+        sc.sweep.save(lazy(), path)
+    assert files(path) == before
+
+
+def test_a_group_of_ones_own_with_an_array_copied_from_a_store_is_refused(good, tmp_path):
+    group = zarr.open_group(tmp_path / "mine", mode="w")
+    group.attrs["note"] = "a year of work"
+    shutil.copytree(good / "rate", tmp_path / "mine" / "rate")
+    refused(tmp_path / "mine", "zarr.json")
+    group.create_array("theta", shape=(5,), dtype="f8")[:] = 7.0
+    refused(tmp_path / "mine", "theta/zarr.json")
+    (tmp_path / "old" / "rate").mkdir(parents=True)
+    shutil.copytree(good / "rate", tmp_path / "old" / "rate", dirs_exist_ok=True)
+    (tmp_path / "old" / ".zgroup").write_text('{"zarr_format": 2}')
+    refused(tmp_path / "old", ".zgroup")
+
+
+def test_an_array_of_a_store_that_was_replaced_is_refused_by_its_name(store):
+    group = zarr.open_group(store, mode="r+")
+    del group["theta"]
+    group.create_array("theta", shape=(5,), dtype="f8")[:] = 7.0
+    refused(store, "theta/zarr.json")
+    shutil.rmtree(store / "theta")
+    assert right(quietly(store)[0])
+
+
+@pytest.mark.filterwarnings("ignore:Consolidated metadata")
+def test_what_a_user_adds_to_a_store_with_xarray_and_zarr_survives_a_save(store):
+    xr.Dataset({"mine": (("theta", "ell"), np.ones((5, 4)))}).to_zarr(store, mode="a")
+    zarr.open_group(store, mode="r+").attrs["note"] = "do not trust row 3"
+    zarr.open_group(store, mode="r+")["rate"].attrs["note"] = "of the second run"
+    partial = store / "mine" / "c.0123456789abcdef0123456789abcdef.partial"
+    partial.write_text("another process writes here")
+    quietly(store)  # xarray has removed the attributes of the sweep
+    again, said = quietly(store)
+    assert said == [] and partial.exists() and right(again.drop_vars("mine"))
+    assert again["mine"].values.tolist() == np.ones((5, 4)).tolist()
+    assert again.attrs["note"] == "do not trust row 3" and "spincyl_sweep" in again.attrs
+    rate = zarr.open_group(store, mode="r", use_consolidated=False)["rate"]
+    assert rate.attrs["note"] == "of the second run"
+    before = files(store)
+    shutil.rmtree(beside(store))
+    shutil.rmtree(store / "rate" / "c")
+    (store / "zarr.json").write_bytes(before[store / "zarr.json"].replace(b"row 3", b"row 4"))
+    assert right(quietly(store)[0].drop_vars("mine")) and before.keys() == files(store).keys()
+
+
+def test_an_attribute_of_the_sweep_that_was_changed_is_named(store):
+    group = zarr.open_group(store, mode="r+")
+    name = next(iter(group["rate"].attrs))
+    group["rate"].attrs[name] = "mine"
+    assert any(f"changed attributes are as before: {name} of rate/zarr.json" in x for x in quietly(store)[1])
+    assert quietly(store)[1] == []
 
 
 # copied, renamed, moved

@@ -32,6 +32,9 @@ def circular(body: "Body", theta: Reals, precession: Reals, radius: Reals, w3: R
     if single:
         if np.isnan(asked):
             raise ValueError(f"{name} = nan: expected a number")
+        if np.isnan(number) and theta > body.theta_end:
+            lands = f"expected at most theta_end = {body.theta_end!r}, where another part lands"
+            raise ValueError(f"theta = {theta!r}: {lands}")
         if np.isnan(number):
             raise ValueError(f"{name} = {given[name]!r}: no steady state at theta = {theta!r} has this value")
         return State(*_core.circular_state(float(theta), float(number), numbers))

@@ -158,6 +158,11 @@ class Drift:
         """The five numbers that the core returns for each x: theta (code 0), time (1), or unused (2)."""
         if question == 1 and self.body.scale is not None:
             x = si(name, x, "second")
+        if hasattr(x, "dims") or hasattr(x, "dask"):
+            kind = type(x).__name__
+            raise TypeError(
+                f"{name}: expected numbers or a NumPy array, not {kind}; give its values, x.to_numpy()"
+            )
         x = reals(name, x)
         single = is_scalar(x) and self._shape == ()
         wide = fitting({name: x, "drift": np.broadcast_to(0.0, self._shape)})

@@ -25,9 +25,10 @@ class EllipsoidMotion(Motion):
 
     Attributes, optional outputs and units are the same as for `Motion`, with the largest semi-axis a in place
     of R. Differences: `theta` is the inclination of axis 3, and `w`, (n, 3), has components along the axes of
-    the ellipsoid. There are no angles phi and psi; `orientation` gives the rotation of the stone. With `tol`
-    above 1e-7 the error may be twice the estimated error. The errors of a stone that rattles grow fast; see
-    `known_until`.
+    the ellipsoid. There are no angles phi and psi; `orientation` gives the rotation of the stone. The motion
+    ends where the stone leaves the table, so there are no impacts, and no output that needs `restitution=`.
+    With `tol` above 1e-7 the error may be twice the estimated error. The errors of a stone that rattles grow
+    fast; see `known_until`.
     """
 
     _axes = Motion._axes | {

@@ -11,14 +11,13 @@ import numpy as np
 from spincyl import _core
 from spincyl._asked import Asked, Want, chosen, crossing, times_of
 from spincyl._body import Body
-from spincyl._contact import AnyContact, Coulomb, named
+from spincyl._contact import AnyContact, Coulomb
 from spincyl._ending import Ending, Event
 from spincyl._input.equality import compared
 from spincyl._input.numbers import Floats, Reals, si
-from spincyl._input.short import alike
 from spincyl._labelled import AXES, Components, frame, labelled
 from spincyl._measured import in_si, natural_time, speaking, told
-from spincyl._outputs import ALOFT, BOTH, COUPLE, FORCE, FRICTION, LOSSES, PATCH, POSE, Number, output
+from spincyl._outputs import ALOFT, BOTH, COUPLE, FORCE, FRICTION, LOSSES, PATCH, POSE, Number, lacks, output
 from spincyl._phases import Impact, Phase, impacts, lowest, phases, slipping
 from spincyl._scale import Scale
 from spincyl._state import State
@@ -255,7 +254,7 @@ class Motion:
         An infinite sequence of bounces that is summed counts as one impact.
         """
         if self._impacts is None:
-            raise AttributeError(ALOFT.format("impacts", ""))
+            raise lacks(self, "impacts", ALOFT)
         return self._impacts
 
     @property
@@ -273,7 +272,7 @@ class Motion:
         a body on its side stays lying, or lifts off.
         """
         if self._phases is None:
-            raise AttributeError(FRICTION.format("phases", named(self.contact)))
+            raise lacks(self, "phases", FRICTION)
         return self._phases
 
     @property
@@ -389,7 +388,7 @@ class Motion:
     def _told(self, name: str, values: Floats) -> Floats:
         """Convert an output from natural units to those of the motion."""
         found: Floats = values if self._natural is None else told(name, values, self.scale)
-        return alike(found, self.theta)
+        return found
 
     def _angle(self, name: str) -> Floats:
         turns, rest = output(self, name, POSE).T

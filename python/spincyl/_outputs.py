@@ -1,30 +1,34 @@
 """Outputs of a motion as properties; the error for a missing output says how to compute it."""
 
+import math
 from typing import TYPE_CHECKING, Any
 
 from numpy.typing import NDArray
 
-from spincyl._contact import named
+from spincyl._body import Body
+from spincyl._contact import Coulomb, named
 from spincyl._input.numbers import Floats
 
 if TYPE_CHECKING:
     from spincyl._motion import Motion
 
-# messages about missing outputs: how to get them, by output and contact
-_LACKS = "{{}}: not computed; give want={0} to roll, or take m.wanting({0})"
-POSE, FORCE, BOTH = (_LACKS.format(want) for want in ('"pose"', '"force"', '("pose", "force")'))
-FRICTION = "{}: needs a law of friction, not contact = {!r}; give contact=sc.Coulomb(mu) to roll"
-ALOFT = "{}: needs restitution=; this motion ends where it leaves the table. Give restitution=0.0 to roll"
-LOSSES = "{}: needs losses=; give losses=sc.loss.DryContour(eps) to roll"
-PATCH = "{}: needs a patch of contact, not contact = {!r}; give contact=sc.Coulomb(mu, patch=eps) to roll"
-COUPLE = PATCH.replace(" to roll", ' and want="force" to roll')
+# what an output that was not computed needs; `lacks` says how to get it
+POSE, FORCE, BOTH = '"pose"', '"force"', '("pose", "force")'
+FRICTION, PATCH, COUPLE, ALOFT, LOSSES = "friction", "patch", "couple", "restitution", "losses"
+#: Settings of `roll` that another argument excludes.
+_EXCLUDES = {
+    FRICTION: ("step", "method", "mu", "beyond"),
+    PATCH: ("step", "method", "mu", "beyond", "restitution"),
+    ALOFT: ("step", "method", "beyond"),
+    LOSSES: ("step", "method"),
+}
 
 
 class Number(property):
     """An output at each time, in the units of the motion; AttributeError if it was not computed."""
 
-    def __init__(self, lacking: str, said: str) -> None:
-        super().__init__(lambda m: output(m, self._name, lacking))
+    def __init__(self, needs: str, said: str) -> None:
+        super().__init__(lambda m: output(m, self._name, needs))
         self.__doc__ = said
 
     def __set_name__(self, _: type, name: str) -> None:
@@ -35,8 +39,49 @@ class Number(property):
         def __get__(self, m: Any, kind: type | None = None) -> NDArray[Any]: ...  # type: ignore[override]
 
 
-def output(m: "Motion", name: str, lacking: str) -> Floats:
+def output(m: "Motion", name: str, needs: str) -> Floats:
     """Return an output of a motion in its units, or raise AttributeError that says how to compute it."""
     if name not in m._extra:
-        raise AttributeError(lacking.format(name, named(m.contact)))
+        raise lacks(m, name, needs)
     return m._told(name, m._extra[name])
+
+
+def lacks(m: "Motion", name: str, needs: str) -> AttributeError:
+    """The error that says why an output is missing, and which arguments compute it, if there are any."""
+    return AttributeError(f"{name}: {_how_to_get(m, needs)}")
+
+
+def _how_to_get(m: "Motion", needs: str) -> str:
+    if needs in (POSE, FORCE, BOTH):
+        return f"not computed; give want={needs} to roll, or take m.wanting({needs})"
+    own = [law for law in (m.contact, m.losses) if getattr(law, "_function", None) is not None]
+    measured, stone, more = m.scale is not None, not isinstance(m.body, Body), ""
+    if needs == ALOFT:
+        patch = isinstance(m.contact, Coulomb) and m.contact.patch
+        kind = "of a stone" if stone else "on a patch of contact" if patch else ""
+        kind = "under a law of your own" if own else kind
+        if kind:
+            return f"a motion {kind} has none; it ends where the body leaves the table"
+        why, how = "restitution=; this motion ends where it leaves the table", "restitution=0.0"
+    elif needs == LOSSES:
+        law, amount = ("RollingResistance", "delta") if stone else ("DryContour", "eps")
+        made = f'{law}.from_si("0.05mm", scale=body)' if measured else f"{law}({amount})"
+        made = "custom.Couple(function)" if own else f"loss.{made}"
+        why, how = "losses=", f"losses=sc.{made}"
+    elif needs == FRICTION:
+        why, how = f"a law of friction, not contact = {named(m.contact)!r}", "contact=sc.Coulomb(mu)"
+    else:
+        patch = '.from_si(mu, patch="0.3mm", scale=body)' if measured else "(mu, patch=eps)"
+        why, how = f"a patch of contact, not contact = {named(m.contact)!r}", f"contact=sc.Coulomb{patch}"
+        more = ', want="force"' if needs == COUPLE else ""
+    off = [f"{x}=" for x in _EXCLUDES[PATCH if needs == COUPLE else needs] if _given(m, x)]
+    if needs in (PATCH, COUPLE) and m.losses in own:
+        off.append("losses=")
+    without = f", without {' and '.join(off)}" if off else ""
+    return f"needs {why}; give {how}{more} to roll{without}"
+
+
+def _given(m: "Motion", setting: str) -> bool:
+    """Whether a setting of `roll` was given for a motion."""
+    value = getattr(m._asked, setting)
+    return not (value is None or value is False or value == math.inf)

@@ -111,6 +111,9 @@ def check(state: State, contact: AnyContact, restitution: object, settings: dict
         landed(state, "give restitution=, the coefficient of restitution of impacts, 0 to 1")
     elif not 0 <= number("restitution", restitution) <= 1:
         raise ValueError(f"restitution = {restitution!r}: expected None, or 0 <= restitution <= 1")
+    elif isinstance(contact, Coulomb) and contact.patch:
+        why = "impacts are computed for contact at a point; give the contact without patch="
+        raise ValueError(f"restitution = {restitution!r} cannot be combined with a patch of contact: {why}")
     if not isinstance(contact, Coulomb | Viscous):
         if restitution is None or state.height is None:
             gripping(state, f"contact={contact!r} has no law of friction; give contact=sc.Coulomb(mu)")

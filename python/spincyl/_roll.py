@@ -15,7 +15,6 @@ from spincyl._measured import in_si, natural_time, speaking
 from spincyl._motion import Motion, rolled
 from spincyl._state import State
 from spincyl._swing import single
-from spincyl._told import shortened
 
 if TYPE_CHECKING:
     from spincyl._ellipsoid import Ellipsoid
@@ -139,9 +138,10 @@ def roll(
     Motion
         States at the times `t` up to the event that ends the motion: a landing of the face or of the other
         rim, lift-off, or slip. With a restitution a motion ends only if the face lands, or if the laws of
-        impact and friction do not determine how the motion continues. If `t` is a number and the motion ends
-        before `t`, the arrays are empty; `status`, `event` and `message` give the reason. For a measured body
-        the motion is in SI.
+        impact and friction do not determine how the motion continues. The arrays of a motion that ends early
+        are then shorter than `t`; plot them against the motion's own `t` (matplotlib rejects x and y of
+        different lengths). If `t` is a number and the motion ends before `t`, the arrays are empty; `status`,
+        `event` and `message` give the reason. For a measured body the motion is in SI.
 
     Raises
     ------
@@ -249,4 +249,4 @@ def roll(
         if m.step_loss <= 1e-3:
             why = "the precession advances by more than 0.3 rad, or the nutation by 0.5 rad, in a step"
         warn(f"step = {step!r}: {why}; give step={m.advice:.2e}, or tol=", StepWarning)
-    return shortened(m)
+    return m

@@ -5,8 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from spincyl._ending import MESSAGES, Ending
-from spincyl._input.short import short
-from spincyl._phases import how_found, told
+from spincyl._phases import how_found, told, two_rims
 
 if TYPE_CHECKING:
     from spincyl._motion import Motion
@@ -15,7 +14,9 @@ if TYPE_CHECKING:
 def message(m: "Motion") -> str:
     """How a motion ended and how it was computed, in words."""
     why = MESSAGES[m.status][0]
-    if m.event and m._phases == () and m.status == Ending.SIDE and m.event.state.w2 == 0:
+    if m.status == Ending.SIDE and not two_rims(m.body):
+        why = "another part landed"
+    elif m.event and m._phases == () and m.status == Ending.SIDE and m.event.state.w2 == 0:
         why = "the other rim does not rise"
     if m.event:
         why += f": the body {ends(m)} at t = {m.event.time:.{_digits(m.event.time, m.error)}g}{_second(m)}"
@@ -24,6 +25,8 @@ def message(m: "Motion") -> str:
     pose = "" if np.isnan(m.pose_error) else f", of the pose {m.pose_error:.1e}"
     force = "" if np.isnan(m.force_error) else f", of the forces {m.force_error:.1e}"
     errors = f"error about {m.error:.1e}{pose}{force}"
+    if m.t.size < m._asked.times.size > 1:
+        errors += f"; {m.t.size} of {m._asked.times.size} times reached: plot against m.t"
     if m._by_steps or m._phases is not None:
         phases = told(m._phases or (), _second(m))
         return "; ".join(filter(None, (why, phases, _how(m), errors, m._doubt)))
@@ -37,18 +40,9 @@ def _digits(time: float, error: float) -> int:
     return int(np.clip(2 + np.floor(np.log10(abs(time) / error)), 2, 12))
 
 
-def shortened(m: "Motion") -> "Motion":
-    """The same motion; if it ended early, plotting its arrays against all times gives the reason."""
-    if m.event and m.t.size < m._asked.times.size:
-        why = f"the body {ends(m)} at t = {m.event.time:.6g}{_second(m)}: plot against m.t, up to there"
-        m.__dict__.update({name: short(getattr(m, name), why) for name in ("t", "theta", "w")})
-    return m
-
-
 def ends(m: "Motion") -> str:
     """The behaviour of the body at the end of the motion, as "slips"; a wide body stands on its edge."""
-    whole = not getattr(m.body, "_parts", None) or m.body.theta_end == np.pi / 2
-    if m.status == Ending.SIDE and not whole:
+    if m.status == Ending.SIDE and not two_rims(m.body):
         return "lands on another part"
     if m.status == Ending.SIDE and m.body.ell < 1:
         return "stands on its edge"

@@ -109,6 +109,8 @@ class Couple(Loss):
     def __repr__(self) -> str:
         return f"custom.Couple({_named(self.function)})"
 
+    __str__ = __repr__  # without coefficients there is no unit to print
+
 
 class Friction(Coulomb):
     """Dry friction whose coefficient depends on the speed of the slip, such as Stribeck friction.

@@ -64,6 +64,7 @@ class Part:
 
     def raised(self, by: float) -> "Part":
         """Return the part with all its heights increased by the length `by`, in metres."""
+        by = _metres("by", by)
         heights = _HEIGHTS[self.form]
         return replace(self, numbers=tuple(x + by if i in heights else x for i, x in enumerate(self.numbers)))
 
@@ -237,6 +238,8 @@ def assembled(parts: Iterable[Part], *, gravity: float = Scale.gravity) -> Body:
         given = list(parts)
     except TypeError:
         raise TypeError(f"parts: expected a list of parts, not {type(parts).__name__}") from None
+    if not given:
+        raise ValueError("parts: expected at least one part, not an empty list")
     lows = [0.0]
     for i, part in enumerate(given):
         made(f"parts[{i}]", part, Part)
@@ -278,6 +281,9 @@ def _part(
     if mass is not None:
         amount: Any = number("mass", si("mass", mass, "kilogram"))
     else:
+        if isinstance(density, str):
+            told = "a number in kg/m^3, for a thin wall in kg/m^2, for a ring in kg/m"
+            raise TypeError(f"density: expected {told}, not the text {density!r}")
         amount = number("density", density)
     low = None if at is None else _metres("at", at)
     if low is not None and not math.isfinite(low):

@@ -1,6 +1,7 @@
 """Checks of arguments: numbers or arrays of real numbers; errors begin with the name of the argument."""
 
 import math
+import re
 import sys
 import warnings
 from collections.abc import Callable, Iterable, Sequence
@@ -20,6 +21,8 @@ Reals: TypeAlias = Any
 #: What an elementwise function returns: a number for numbers, else an array of the inputs' kind.
 Result: TypeAlias = Any
 Floats = NDArray[np.float64]
+#: NumPy's functions of one number at a time take no more; a law with several results needs one for itself.
+_DIMENSIONS = 31
 _Kind = TypeVar("_Kind")
 _Given = ParamSpec("_Given")
 _Found = TypeVar("_Found")
@@ -39,11 +42,22 @@ def reals(name: str, value: Reals) -> Reals:
         raise TypeError(f"{name}: expected real numbers, not {type(value).__name__}")
     for dtype in kinds:
         if getattr(dtype, "kind", "O") in "US":
-            why = "a text with a unit is one number in SI, and this argument is in natural units or a list"
-            raise TypeError(f"{name}: expected real numbers, not texts; {why}")
+            raise TypeError(f"{name}: expected real numbers, not texts; {_of_texts(value)}")
         if getattr(dtype, "kind", "O") not in "biuf" or dtype.itemsize > 8:
             raise TypeError(f"{name}: expected real numbers of at most double precision, not {dtype}")
+    if type(array) is np.ndarray and array.ndim > _DIMENSIONS:
+        raise ValueError(f"{name}: expected at most {_DIMENSIONS} dimensions, not {array.ndim}")
     return float(array) if type(array) is np.ndarray and array.ndim == 0 else array
+
+
+def _of_texts(value: Any) -> str:
+    """Why texts are no numbers: a decimal comma, or a unit where there can be none."""
+    if isinstance(value, str):
+        return "a text with a unit is one number in SI, and this argument is in natural units or a list"
+    first = next(iter(np.asarray(value).flat), "")
+    if re.fullmatch(r"\s*[+-]?\d+,\d+\s*", str(first)):
+        return f"write a decimal point, not a comma, and no quotes: {str(first).strip().replace(',', '.')}"
+    return f"in a list write numbers without unit and quotes, not {str(first)[:40]!r}"
 
 
 def radians(name: str, value: Reals, expected: str | None = None, likely: float = math.pi) -> Reals:
@@ -344,7 +358,7 @@ def of_its_shape(*values: Any) -> Reals:
         return 0.0
     try:
         return np.broadcast_to(0.0, np.broadcast_shapes(*map(np.shape, fields)))
-    except ValueError:  # such as a ragged list, about which the error to come is clearer
+    except (ValueError, RuntimeError):  # a ragged list, or too many dimensions: the error to come is clearer
         return 0.0
 
 

@@ -154,11 +154,30 @@ _KINDS = {
 }
 
 
+#: A text with a unit for each of these.
+_EXAMPLES = {
+    "metre": "16mm",
+    "kilogram": "30g",
+    "second": "2s",
+    "radian": "85deg",
+    "hertz": "9Hz",
+    "radian/second": "14rad/s",
+    "metre/second": "0.5m/s",
+    "second/metre": "1s/m",
+    "metre/second**2": "9.81m/s2",
+    "newton*second": "2mNs",
+    "newton*metre*second": "1e-6Nms",
+    "newton*metre*second**2": "1e-6Nms2",
+    "pascal*second": "18uPas",
+    "": "25C",
+}
+
+
 def read(text: str, unit: str) -> float:
     """Convert a number with a unit to the unit `unit` of SI; TypeError if number or unit is missing."""
     known = unit in _KINDS or unit == "radian"
     if not known or _NUMBER.match(text.strip()) is None or not has_unit(text):
-        like = ", or a text with a unit, as '16mm' or '85deg'" if known else ""
+        like = f", or a text with a unit, as {_EXAMPLES[unit]!r}" if known else ""
         raise TypeError(f"expected real numbers{like}, not {text!r}")
     return angle(text) if unit == "radian" else quantity(_KINDS[unit])(text)
 

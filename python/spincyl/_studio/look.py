@@ -29,7 +29,7 @@ def look(drawn: str | Iterable[str] | None, above: bool, follow: bool | None, ex
     drawn = None if drawn is None else words("drawn", drawn, DRAWN)
     follow = None if follow is None else flag("follow", follow)
     if exposure is not None:
-        exposure = math.inf if exposure == math.inf else number("exposure", exposure)
+        exposure = number("exposure", exposure)
         if not exposure >= 0.01:
             raise ValueError(f"exposure = {exposure!r}: expected at least 0.01 turns, or inf for no limit")
     return Look(drawn, flag("above", above), follow, exposure)

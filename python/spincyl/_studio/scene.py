@@ -122,6 +122,8 @@ class Scene:
             If a file cannot be written. Existing files stay until all new ones are complete.
         """
         path = path_of("path", path)
+        if not path.name:
+            raise ValueError(f"path = {str(path)!r}: expected the name of a file")
         known = {".json": self._json, ".xml": self._model}
         only = path.suffix.lower() in known
         paths = [path] if only else [path.with_name(path.name + suffix) for suffix in known]

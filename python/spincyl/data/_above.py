@@ -17,6 +17,7 @@ from spincyl._body import Body
 from spincyl._input.equality import compared
 from spincyl._input.numbers import Floats, is_scalar, number, reals
 from spincyl._scale import Scale, scale_of
+from spincyl.data._alias import Reading, Readings, read
 from spincyl.data._columns import Columns
 from spincyl.data._report import counted, section, variables, with_error
 from spincyl.data._tracker import read_tracker
@@ -25,7 +26,6 @@ _METRES = {"": 1.0, "m": 1.0, "cm": 1e-2, "mm": 1e-3, "in": 0.0254, "inch": 0.02
 _SECONDS = {"": 1.0, "s": 1.0, "sec": 1.0, "seconds": 1.0, "ms": 1e-3, "min": 60.0}
 _RULER = 1.05  # times the tube's length: a longer line raises an error, since noise does not explain it
 _SHORT = 0.0105  # times the tube's length: a shorter line raises an error, since a unit is probably wrong
-_FAR = math.radians(10.0)  # an inclination farther than this from every steady one causes a warning
 _FARTHEST = 1e12  # metres or seconds: larger numbers raise an error
 _WANDERS = 0.3  # radians: a direction that deviates more from uniform rotation causes a warning
 
@@ -65,6 +65,9 @@ class Filmed(NamedTuple):
         Steady inclinations of the body at this rate, ascending.
     unseen : int
         Number of frames in which one of the ends was not tracked.
+    aliases : ndarray, (m,)
+        Turns per second of other rates that look the same from frame to frame, and for which the measured
+        inclination is steady as well; empty if the film is unambiguous.
     predicted : float
         The one of `inclinations` that is nearest to `theta`; NaN if there is none.
     """
@@ -82,6 +85,7 @@ class Filmed(NamedTuple):
     theta_err: float
     inclinations: Floats
     unseen: int
+    aliases: Floats
 
     @property
     def predicted(self) -> float:
@@ -157,8 +161,9 @@ def from_above(
     ------
     ValueError
         If there are fewer than three frames, a track or column is missing, or an end has two positions at
-        one time. If the line is much longer or very much shorter than the tube. If the tube turns too fast
-        for the frame rate, or its size is unknown.
+        one time. If the line is much longer or very much shorter than the tube. If the tube turns by about
+        half a turn from frame to frame, and the inclination does not tell in which sense. If the size of the
+        tube is unknown.
     TypeError
         If an argument is of the wrong type; the message names it.
     OSError
@@ -168,15 +173,20 @@ def from_above(
     -----
     UserWarning
         If the line is a little longer than the tube; the inclination is then near 90 degrees but not known
-        exactly. If the direction does not turn evenly. If the inclination is far from every steady state at
-        this rate.
+        exactly. If the direction does not turn evenly. If the inclination is more than four of its errors
+        from every steady state at the slowest rate that the frames may show; the message names faster rates
+        that look the same and are steady. If several rates are possible (`Filmed.aliases`).
 
     Notes
     -----
     The rate is the slope of the direction over time, by least squares. Its error follows from the scatter,
     and is larger if the errors of neighbouring frames are correlated. The inclination follows from the median
-    length of the line. From frame to frame the tube has to turn by less than half a turn, since a faster
-    rotation looks like a slow one backwards.
+    length of the line. If the tube turns by more than half a turn from frame to frame, it looks like a slow
+    rotation, often backwards: at 30 frames a second 20 turns a second look like 10. Of the rates that look
+    the same (up to two and a half turns from frame to frame, and 10 m/s at the ends of the tube), the slowest
+    is taken if the measured inclination is steady there. If it is not, and is steady at just one faster rate,
+    this rate is taken, with a warning. Uneven times of the frames also exclude rates. The inclination can
+    decide only as well as its error is known: give `ruler`.
 
     Examples
     --------
@@ -199,10 +209,13 @@ def from_above(
     tall = float(scale.metres(2.0 * (body.ell + body.fillet)))
     line = np.abs(between)
     share, share_err = _share(line / tall, ruler)
-    slope, slope_err, direction = _turning(t, between)
-    hertz, hertz_err = abs(slope) / (2 * math.pi), slope_err / (2 * math.pi)
     one = float(scale.hertz(body, 1.0))
-    inclinations = np.atleast_1d(np.asarray(body.inclinations(rate=hertz / one), np.float64))
+    # a line that is longer than the tube only says that the inclination is near 90 degrees
+    sine, sine_err = min(share, 1.0), max(share_err, share - 1)
+    films = read(t, _unwrapped(t, between), body, one, share * tall, sine, sine_err)
+    told = _aliased(films, t, math.degrees(math.asin(min(share, 1.0))))
+    slope, inclinations = films.taken.slope, films.taken.inclinations
+    hertz, hertz_err = abs(slope) / (2 * math.pi), films.taken.slope_err / (2 * math.pi)
     # near 90 degrees the sine hardly changes, so errors are not small beside the distance from 90 degrees
     low, high = (math.asin(min(max(share + k * share_err, 0.0), 1.0)) for k in (-1, 1))
     theta = math.asin(share) if share <= 1 else math.nan
@@ -210,7 +223,7 @@ def from_above(
         body=body,
         scale=scale,
         t=t,
-        direction=direction,
+        direction=films.taken.direction,
         line=line,
         hertz=hertz,
         hertz_err=hertz_err,
@@ -218,19 +231,55 @@ def from_above(
         rate_err=hertz_err / one,
         theta=theta,
         theta_err=(high - low) / 2 if share <= 1 else math.nan,
-        inclinations=inclinations[np.isfinite(inclinations)],
+        inclinations=inclinations,
         unseen=unseen,
+        aliases=np.array([other.hertz for other in films.possible if other is not films.taken]),
     )
-    off = abs(found.theta - found.predicted)
-    if off > max(_FAR, 5 * found.theta_err) or math.isnan(found.predicted):
-        steady = f"steady at {math.degrees(found.predicted):.3g} degrees" if off > 0 else "never steady"
-        warnings.warn(
-            f"the tube was seen at {math.degrees(theta):.3g} degrees, but at {hertz:.4g} turns a second it is"
-            f" {steady}: is t in seconds, and is the radius right?",
-            UserWarning,
-            stacklevel=2,
-        )
+    told = _unsteady(films.taken) or told
+    if told:
+        warnings.warn(told, UserWarning, stacklevel=2)
     return found
+
+
+def _unsteady(taken: Reading) -> str:
+    """A warning if the direction does not turn evenly."""
+    if taken.scatter <= _WANDERS:
+        return ""
+    return (
+        f"the line deviates from uniform rotation by {taken.scatter:.2g} rad: the tube is not steady, or the"
+        " two marks were exchanged"
+    )
+
+
+def _aliased(films: Readings, t: Floats, degrees: float) -> str:
+    """A warning if the inclination is not steady at the slowest rate, or if other rates are possible as well.
+
+    Raises ValueError if the tube turns by almost half a turn from frame to frame, so that two rates are close
+    together, and the inclination does not tell which is right.
+    """
+    slow, taken, others = films.slowest, films.taken, [x for x in films.possible if x is not films.slowest]
+    most = abs(slow.slope) * float(np.median(np.diff(t)))
+    sure = len(films.possible) == 1 and films.possible[0] is taken
+    if most > 0.9 * math.pi and not sure:
+        raise ValueError(
+            f"tracks: the tube turns by {most / (2 * math.pi):.2g} of a turn from frame to frame, so that"
+            " the sense of rotation is not clear; film with more frames per second"
+        )
+    rates = " or ".join(f"{other.hertz:.5g}" for other in others)
+    alike = f"{rates} turns a second look the same at {films.fps:.4g} frames a second, and are steady there"
+    if len(others) < len(films.possible):  # the slowest is possible
+        return f"also {alike}: film with more frames per second" if others else ""
+    near = slow.inclinations
+    told = "never steady"
+    if near.size:
+        steady = math.degrees(near[np.abs(np.sin(near) - math.sin(math.radians(degrees))).argmin()])
+        told = f"steady at {steady:.3g} degrees, {slow.off:.2g} errors away"
+    told = f"the tube was seen at {degrees:.4g} degrees, but at {slow.hertz:.4g} turns a second it is {told}"
+    if taken is not slow:
+        return f"{told}; {alike}: the faster rate is taken"
+    if others:
+        return f"{told}; {alike}: film with more frames per second"
+    return f"{told}: is t in seconds, are radius and scale of length right, or does ruler= lack their error?"
 
 
 def with_size(name: str, body: Any, scale: Scale | None) -> tuple[Body, Scale]:
@@ -361,17 +410,13 @@ def _share(shares: Floats, ruler: float) -> tuple[float, float]:
     return share, error
 
 
-def _turning(t: Floats, between: Floats) -> tuple[float, float, Floats]:
-    """Angular velocity, its standard error, and the direction unwrapped across gaps."""
-    gaps, steps = np.diff(t), np.angle(between[1:] * between[:-1].conj())
+def _unwrapped(t: Floats, between: Floats) -> Floats:
+    """The direction, unwrapped across gaps for the slowest rotation that the frames may show."""
+    gaps, steps = np.diff(t), between[1:] * between[:-1].conj()
     close = gaps < 1.5 * np.median(gaps)
-    slope = float(np.median(steps[close] / gaps[close]))
-    most = abs(slope) * float(np.median(gaps))
-    if most > 0.9 * math.pi:
-        raise ValueError(
-            f"tracks: the tube turns by {most / (2 * math.pi):.2g} of a turn from frame to frame, so that"
-            " the sense of rotation is not clear; film with more frames per second"
-        )
+    # the mean of directions, not of angles, which jump where the tube makes half a turn between two frames
+    step = float(np.angle(np.sum(steps[close] / np.abs(steps[close]))))
+    slope = step / float(np.median(gaps[close]))
     direction = np.empty_like(t)
     direction[0] = np.angle(between[0])
     for k, gap in enumerate(gaps):
@@ -380,19 +425,4 @@ def _turning(t: Floats, between: Floats) -> tuple[float, float, Floats]:
         direction[k + 1] = expected + off
         if gap > 3 * np.median(gaps):  # refit the slope to the points before the gap
             slope = float(np.polyfit(t[: k + 1], direction[: k + 1], 1)[0]) if k > 3 else slope
-    table = t - t.mean()
-    squares = float(table @ table)
-    slope = float(table @ direction) / squares
-    rest = direction - direction.mean() - slope * table
-    spread = float(rest @ rest) / max(t.size - 2, 1)
-    if math.sqrt(spread) > _WANDERS:
-        warnings.warn(
-            f"the line deviates from uniform rotation by {math.sqrt(spread):.2g} rad: the tube is not"
-            " steady, or the two marks were exchanged",
-            UserWarning,
-            stacklevel=3,
-        )
-    # correlated errors of neighbours, as during nutation, carry less information than independent ones
-    alike = float(rest[1:] @ rest[:-1]) / float(rest @ rest) if spread > 0 else 0.0
-    alike = min(max(alike, 0.0), 0.95)
-    return slope, math.sqrt(spread / squares * (1 + alike) / (1 - alike)), direction
+    return direction

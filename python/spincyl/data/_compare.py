@@ -17,6 +17,8 @@ from spincyl.data._balance import Balance, Fit, with_ratio
 from spincyl.data._report import counted, section, student, variables, with_error, written
 from spincyl.data._spindown import leaning
 
+_LEAST = 3  #: With fewer points no ratio is fitted.
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
@@ -43,13 +45,14 @@ class Comparison(NamedTuple):
         Measured rate minus the rate of the steady state at the measured inclination; NaN in the forbidden
         band.
     ratio : float
-        The inertia ratio I1/I3 that fits best.
+        The inertia ratio I1/I3 that fits best; NaN if there are only one or two points.
     ratio_err : float
         Standard error of `ratio`.
     expected : float
         Inertia ratio of `body`, the body as built.
     chi2 : float
-        Sum of the squared deviations in units of their errors, per degree of freedom.
+        Sum of the squared deviations in units of their errors, per degree of freedom. For one or two points,
+        the mean of the squares of `away`.
     factor : float
         Common factor of all measured rates, fitted if `common` was given.
     factor_err : float
@@ -66,6 +69,8 @@ class Comparison(NamedTuple):
         `chi2` of the fit that gives `alone`.
     unit : float
         Turns per second at the reduced rate 1; NaN unless `hertz` was given.
+    away : ndarray, (n,)
+        Distance of each point from the steady states of the body as built, in its own errors, to first order.
     hertz, hertz_err : ndarray, (n,)
         Measured turns per second and standard errors; NaN unless `hertz` was given.
     fitted : Body
@@ -90,6 +95,14 @@ class Comparison(NamedTuple):
     alone_err: float = math.nan
     alone_chi2: float = math.nan
     unit: float = math.nan
+    away: Floats = np.empty(0)
+
+    @property
+    def _verdict(self) -> str:
+        """Whether the points are in accord with the body as built."""
+        most = float(self.away.max())
+        words = ("in accord with", "doubtful beside", "not in accord with")[(most > 2.0) + (most > 3.0)]
+        return f"{most:.1f} errors from a steady state: {words} the body as built"
 
     @property
     def hertz(self) -> Floats:
@@ -102,6 +115,10 @@ class Comparison(NamedTuple):
         return self.rate_err * self.unit
 
     def __repr__(self) -> str:
+        if math.isnan(self.ratio):
+            return (
+                f"<Comparison: {counted(len(self.theta))} point{'s'[: len(self.theta) - 1]}, {self._verdict}>"
+            )
         return (
             f"<Comparison: I1/I3 = {with_error(self.ratio, self.ratio_err)}, built {self.expected:.4g};"
             f" {len(self.theta)} points, chi2 {self.chi2:.3g}>"
@@ -117,6 +134,8 @@ class Comparison(NamedTuple):
             ("I₁/I₃ as built", f"{self.expected:.6g}"),
             ("χ² per degree of freedom", f"{self.chi2:.3g}"),
         ]
+        if math.isnan(self.ratio):
+            rows[2:] = [("as built", self._verdict)]
         middle = self.theta[np.argsort(self.theta)[len(self.theta) // 2]]
         return framed("Comparison", rows, drawing(self.body, middle, "θ"))
 
@@ -127,7 +146,12 @@ class Comparison(NamedTuple):
 
     @property
     def fitted(self) -> Body:
-        """The body with the fitted ratio, or with 1/2, the limit for real bodies, if the ratio is smaller."""
+        """The body with the fitted ratio, or with 1/2, the limit for real bodies, if the ratio is smaller.
+
+        The body as built if there are only one or two points.
+        """
+        if math.isnan(self.ratio):
+            return self.body
         return with_ratio(self.body, max(self.ratio, 0.5))
 
     def plot(self, ax: "Axes | None" = None) -> "Axes":
@@ -140,6 +164,8 @@ class Comparison(NamedTuple):
 
     def report(self) -> str:
         """Return the fitted values with their errors and correlation, as a report in lmfit's style."""
+        if math.isnan(self.ratio):
+            return "\n".join(section("Comparison", self._about_points()))
         varied = 1 + (self.factor_err > 0)
         rows = [
             ("body", repr(self.body)),
@@ -167,6 +193,24 @@ class Comparison(NamedTuple):
             lines += section("As built, with a factor of the rates alone", [("factor", told)])
         return "\n".join(lines)
 
+    def _about_points(self) -> list[tuple[str, str]]:
+        """One or two points, which determine no ratio, beside the steady states of the body."""
+        rows = [("body", repr(self.body))]
+        for theta, theta_err, rate, rate_err, away in zip(
+            *(np.degrees(self.theta), np.degrees(self.theta_err), self.rate, self.rate_err, self.away),
+            strict=True,
+        ):
+            seen = f"{with_error(theta, theta_err)} degrees at the rate {with_error(rate, rate_err)}"
+            steady = np.degrees(np.atleast_1d(self.body.inclinations(rate=rate)))
+            near = steady[np.isfinite(steady)]
+            told = (
+                f"steady at {near[np.abs(near - theta).argmin()]:.4g} degrees"
+                if near.size
+                else "never steady"
+            )
+            rows.append(("measured", f"{seen}, {told}: {away:.1f} errors"))
+        return [*rows, ("verdict", self._verdict)]
+
 
 def compare(
     body: Body,
@@ -185,10 +229,11 @@ def compare(
     ----------
     body : Body
         Single body with the aspect ratio and the moments of inertia as built.
-    theta : array_like, 1-D
+    theta : array_like, 1-D or a number
         Measured inclinations in radians, up to pi/2; also larger for balls, and for bodies with steady states
-        there.
-    rate : array_like, 1-D
+        there. One or two points, such as a single film, need their errors: they are compared with the body as
+        built, and no ratio is fitted.
+    rate : array_like, 1-D or a number
         Measured reduced rates: turns per second divided by `body.critical_hertz`.
     hertz : array_like, 1-D
         Turns per second instead of `rate`, for a measured body or one from `Body.from_metres`.
@@ -209,9 +254,9 @@ def compare(
     Raises
     ------
     ValueError
-        If there are fewer than three different points, shapes differ, or rates or errors are not positive. If
-        the fit fails. If the points do not determine the ratio, or cannot distinguish it from a common
-        factor.
+        If there are fewer than three different points without errors, shapes differ, or rates or errors are
+        not positive. If the fit fails. If the points do not determine the ratio, or do not distinguish it
+        from a common factor.
     TypeError
         If an argument is not a body or real numbers; the message names it.
     ImportError
@@ -238,6 +283,11 @@ def compare(
     >>> found = sc.data.compare(body, theta, body.rate(theta))
     >>> round(found.ratio, 6), round(body.i1 / body.i3, 6)
     (4.666667, 4.666667)
+
+    A single film:
+
+    >>> sc.data.compare(body, 1.4, 1.02 * body.rate(1.4), theta_err=0.01, rate_err=0.02)
+    <Comparison: one point, 0.6 errors from a steady state: in accord with the body as built>
     """
     one_body(body)
     extra("odrpack", "lab")
@@ -253,6 +303,16 @@ def compare(
     known = theta_err is not None
     own = float(body.i1) / float(body.i3)
     curve = Balance(body, *x.values())
+    away = np.abs(curve.off(curve.places, own, 1.0)) / curve.size
+    if x["theta"].size < _LEAST:
+        if common > 0:
+            raise ValueError(
+                f"common = {common!r}: expected 0 for fewer than three points, which fit no factor"
+            )
+        residual = x["rate"] - body.rate(x["theta"])
+        alone_chi2 = float(np.mean(away**2))
+        points = x["theta"], x["rate"], x["theta_err"], x["rate_err"], residual
+        return Comparison(body, *points, math.nan, math.nan, own, alone_chi2, unit=unit, away=away)
     if not curve.tells(("ratio",)):
         raise ValueError(
             "theta and rate: these points do not determine I1/I3; measure at inclinations farther from 90"
@@ -301,6 +361,7 @@ def compare(
         alone_err=one_err,
         alone_chi2=alone.chi2,
         unit=unit,
+        away=away,
     )
 
 
@@ -330,6 +391,8 @@ def _points(
 ) -> dict[str, Floats]:
     """The measured points with errors, without missing values; an error names a wrong argument."""
     x = {name: np.asarray(reals(name, v), np.float64) for name, v in (("theta", theta), ("rate", rate))}
+    if x["theta"].ndim == x["rate"].ndim == 0:
+        x = {name: values[np.newaxis] for name, values in x.items()}
     if x["theta"].ndim != 1 or x["rate"].shape != x["theta"].shape:
         shapes = f"{x['theta'].shape} and {x['rate'].shape}"
         raise ValueError(f"theta and rate: expected equal shapes (n,), not {shapes}")
@@ -352,12 +415,13 @@ def _points(
             raise ValueError(f"{name}: expected positive numbers from 1e-12 to 1e3 {unit}")
     given = x["theta"].size
     different = len(np.unique(np.stack([x["theta"], x["rate"]]), axis=1).T) if given else 0
-    if different < 3:
+    if different < (_LEAST if theta_err is None else min(given, _LEAST)) or not given:
         told = counted(given)
         told += f" ({counted(different)} different)" if different < given else ""
         empty = int((~measured).sum())
         told += f", and {counted(empty)} with NaN" if empty else ""
-        raise ValueError(f"theta and rate: expected at least three different points, not {told}")
+        errors = "; one or two need theta_err and rate_err" if theta_err is None and given else ""
+        raise ValueError(f"theta and rate: expected at least three different points, not {told}{errors}")
     return x
 
 

@@ -285,11 +285,11 @@ def _guess(odrpack: Any, data: SpinDown, curve: Curve) -> Floats:
         ]
         return min(mixed, key=lambda beta: _squares(data, curve, beta))
     near = np.isfinite(data.near)
-    inclinations, t = data.near[near], data.t[near]
+    inclinations, t = data.near[near], data.clock[near]  # a guess must not depend on the origin of time
     clock, less, more = curve.times([1.0], inclinations * np.array([[1.0], [0.999], [1.001]]))
     steep = np.abs(more - less) / 0.002
     seen = np.isfinite(clock) & (steep > 0)
-    if seen.sum() < 2:
+    if not seen.any() or not np.ptp(clock[seen]) * np.ptp(t[seen]) > 0:
         raise ValueError(
             f"theta: a drift under {curve.laws[0].__name__} does not pass through these inclinations"
         )
@@ -297,7 +297,7 @@ def _guess(odrpack: Any, data: SpinDown, curve: Curve) -> Floats:
     coefficient = 1 / slope if slope > 0 else np.ptp(clock[seen]) / np.ptp(t[seen])
     first = float(inclinations[0])
     if slope > 0 and curve.centre == "rest":
-        shown = curve(["theta"], np.array([data.t[0] - begun]), [coefficient], curve.top)
+        shown = curve(["theta"], np.array([-begun]), [coefficient], curve.top)
         first = float(shown[0, 0])
     return np.array([coefficient, first])
 

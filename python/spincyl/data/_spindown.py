@@ -212,13 +212,21 @@ def _errors(name: str, given: Reals | None, t: Floats, default: Floats) -> Float
 def _rises(name: str, t: Floats, values: Floats) -> bool:
     """Whether values rise, by rank correlation; ValueError if they neither rise nor fall."""
     seen = np.isfinite(values)
-    first, second = (np.argsort(np.argsort(x[seen], kind="stable"), kind="stable") for x in (t, values))
-    correlation = float(np.corrcoef(first.astype(np.float64), second.astype(np.float64))[0, 1])
+    if np.ptp(values[seen]) == 0:
+        raise ValueError(f"{name}: expected a drift; all values are {values[seen][0]:.6g}")
+    correlation = float(np.corrcoef(_ranks(t[seen]), _ranks(values[seen]))[0, 1])
     if not abs(correlation) > 0.5:
         raise ValueError(
             f"{name}: expected a drift; the rank correlation with t is {correlation:.2f}, below 0.5"
         )
     return correlation > 0
+
+
+def _ranks(values: Floats) -> Floats:
+    """The rank of each value; the mean of their ranks for equal ones."""
+    _, places, counts = np.unique(values, return_inverse=True, return_counts=True)
+    found: Floats = (np.cumsum(counts) - (counts - 1) / 2.0)[places]
+    return found
 
 
 def _near(

@@ -2,6 +2,7 @@
 
 import math
 import re
+from itertools import pairwise
 from os import PathLike
 
 import numpy as np
@@ -189,7 +190,27 @@ def _read(text: str, least: int) -> dict[str, Columns]:
         if found is not None:
             return found
     (first, _), (last, line) = lines[0], lines[-1]
+    why = why or _texts(lines, [delimiter for delimiter, comma in kinds if delimiter and not comma])
     raise ValueError(why or f"{none} from line {first} to line {last}; the last line is {_shown(line)}")
+
+
+def _texts(lines: list[tuple[int, str]], delimiters: list[str]) -> str:
+    """The column of texts in a table that otherwise has numbers; empty if there is none."""
+    for delimiter in delimiters:
+        try:
+            rows = [(at, [cell.strip() for cell in _split(line, delimiter)]) for at, line in lines[:_TOP]]
+        except ValueError:
+            continue
+        for (_, names), (at, cells) in pairwise(rows):
+            numbers = [_number(cell) for cell in cells]
+            if len(names) != len(cells) or any(map(_number, names)) or not any(numbers) or all(numbers):
+                continue
+            name, cell = next(
+                (n, c) for n, c, is_one in zip(names, cells, numbers, strict=True) if not is_one
+            )
+            told = f"line {at} has the text {_shown(cell)} in the column {_shown(name)}"
+            return f"{told}, and a table has only numbers: remove this column"
+    return ""
 
 
 class _Garbled(ValueError):

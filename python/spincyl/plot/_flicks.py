@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from spincyl._input.numbers import extra
-from spincyl.plot._style import FORBIDDEN, SMOOTH, UNSTABLE, new_axes, sized
+from spincyl.plot._style import FORBIDDEN, HATCH, HATCHES, SMOOTH, UNSTABLE, new_axes, sized
 from spincyl.sweep._flicks import Outcome
 
 if TYPE_CHECKING:
@@ -96,9 +96,11 @@ def flicks(found: "xarray.Dataset", ax: "Axes | None" = None) -> "Axes":
     shown = []
     for words, (colour, where) in others.items():
         if where.any():
-            mask = np.where(where, 1.0, np.nan)
+            mask = np.ma.masked_where(~where, where.astype(float))
+            look = {"hatch": HATCHES.get(colour, ""), "ec": HATCH, "lw": 0}
             ax.pcolormesh(across, up, mask, cmap=colormap([colour]), rasterized=True)
-            shown.append(patch(facecolor=colour, edgecolor="0.4", label=words))
+            ax.pcolor(across, up, mask, cmap=colormap(["none"]), rasterized=True, **look)
+            shown.append(patch(facecolor=colour, label=words, **look))
     times = np.where(rolls, times, np.nan)
     if np.isfinite(times).any():
         most = min(float(np.nanmax(times)), _MEDIANS * float(np.nanmedian(times)))

@@ -396,7 +396,7 @@ def comparison(found: "Comparison", ax: "Axes | None" = None) -> "Axes":
     curves = (
         (found.body, BLUE, "-", f"$I_1/I_3 = {found.expected:.4g}$, as built"),
         (found.fitted, ORANGE, "--", f"$I_1/I_3 = {ratio}$, fitted"),
-    )
+    )[: 1 if np.isnan(found.ratio) else 2]
     most, unit = steepest(found.body), 1.0 if np.isnan(found.unit) else found.unit
     wide = np.linspace(0, most, 4001)[1:]
     for body, colour, line, label in curves:

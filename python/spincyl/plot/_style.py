@@ -21,6 +21,9 @@ BLUE, ORANGE, GREEN, PURPLE, SKY, BLACK = "#0072B2", "#D55E00", "#009E73", "#CC7
 RED = "#B2182B"  # times of slipping
 FORBIDDEN, UNSTABLE, ROLLING, STABLE = "#BDBDBD", "#F6C9A8", "#F0E442", "#BFDDF2"
 SMOOTH = "#DDB3CD"  # stable on a smooth table only
+#: Hatching of regions whose colours are alike in black and white, as on the live page.
+HATCHES = {FORBIDDEN: "..", UNSTABLE: "xx", ROLLING: "//", SMOOTH: r"\\", STABLE: ""}
+HATCH = "#777777"  # colour of the hatching
 HERTZ = "turns per second"
 # sizes in figures that this package makes; the user's own axes keep their sizes
 SIZES = {

@@ -1,6 +1,7 @@
 """Records in a store, which identify its sweep, and marks of completed blocks in the folder next to it.
 
 A folder without an intact record is not ours, whatever lies next to it: nothing in it is written or deleted.
+In a store, an array is ours only by the record in its own folder; arrays and attributes of a user stay.
 """
 
 import errno
@@ -19,6 +20,8 @@ from spincyl.sweep._common import CONTENT
 
 #: Names of the record in each array's folder, where zarr ignores it, and of its copy in the folder of marks.
 RECORD, BESIDE = "spincyl.json", "job.json"
+#: Name of zarr's metadata of a group or an array, and of the objects in them to which users may add names.
+META, _OPEN = "zarr.json", ("attributes", "metadata")
 # files that killed writers leave behind: those of this package, and those of zarr
 _LEFT = re.compile(r"\.spincyl-[0-9a-f]{32}\.part.*|.+\.[0-9a-f]{32}\.partial", re.DOTALL)
 _MARK = re.compile(rb'\{"sweep": "[0-9a-f]{16}", "chunks": \{[^{}]*\}\}')
@@ -163,6 +166,90 @@ def _differs(there: Record, here: Record) -> str | None:
     return None
 
 
+def in_the_way(store: Store, record: Record, files: dict[str, bytes]) -> str | None:
+    """The first file that `lay_out` or a block would overwrite although it is not of this sweep, by its name.
+
+    A file whose bytes are those that `lay_out` writes may lack its record: nothing of it would be lost.
+    """
+    known = record.get("layout", {})
+    ours = [name for name in record["variables"] if _is_of(store.folder / name / RECORD, record)]
+    for name in record["variables"]:
+        if name in ours:
+            continue
+        laid = _is_laid(store, f"{name}/{META}", files, known)
+        for where, _, names in sorted(os.walk(store.folder / name)):
+            for file in sorted(names):
+                at = Path(where, file).relative_to(store.folder).as_posix()
+                if at == f"{name}/{RECORD}" and _whole(store.folder / at) is None:  # damaged
+                    continue
+                block = laid and name in record["columns"] and at.startswith(f"{name}/c")
+                if not (_LEFT.fullmatch(file) or block or _is_laid(store, at, files, known)):
+                    return at
+    old = next(
+        (name for name in (".zgroup", ".zattrs", ".zmetadata") if (store.folder / name).exists()), None
+    )
+    there = _node(read(store.folder / META))
+    if there is None:  # missing or damaged
+        return old
+    mine = _is_laid(store, META, files, known) or len(ours) == len(record["variables"])
+    mine = mine or _is_of(store.marks / BESIDE, record)
+    attributes, own = (node.get("attributes") or {} for node in (there, json.loads(files[META])))
+    return None if mine or attributes.get("spincyl_sweep") == own.get("spincyl_sweep") else META
+
+
+def _is_of(file: Path, record: Record) -> bool:
+    """Whether a file is an intact record of this sweep."""
+    there = _whole(file)
+    return there is not None and _differs(there, record) is None
+
+
+def _is_laid(store: Store, name: str, files: dict[str, bytes], known: dict[str, int]) -> bool:
+    """Whether a file has the bytes that `lay_out` writes or once wrote, or these with a user's attributes."""
+    raw = read(store.folder / name)
+    if raw is None or name not in files:
+        return False
+    return zlib.crc32(raw) in (known.get(name), zlib.crc32(files[name])) or says(raw, files[name])
+
+
+def _node(raw: bytes | None) -> dict[str, Any] | None:
+    """The metadata of an array or a group; None if they are missing or damaged."""
+    try:
+        found = json.loads(raw or b"")
+    except (ValueError, RecursionError):
+        return None
+    return found if isinstance(found, dict) and found.get("node_type") in ("array", "group") else None
+
+
+def with_added(there: bytes | None, ours: bytes) -> bytes:
+    """Our metadata with the attributes and arrays that a user has added to those in the store."""
+    old, new = _node(there), json.loads(ours)
+    found = new if old is None else _joined(old, new, open_=False)
+    return ours if found == new else json.dumps(found, indent=2).encode()
+
+
+def says(there: bytes | None, ours: bytes) -> bool:
+    """Whether metadata in the store have all of ours, and at most a user's attributes and arrays besides."""
+    old = _node(there)
+    return old is not None and _node(ours) is not None and _joined(old, json.loads(ours), open_=False) == old
+
+
+def changed(there: bytes | None, ours: bytes) -> list[str]:
+    """The names of our attributes that metadata in the store have with another value."""
+    old, new = ((_node(raw) or {}).get("attributes") or {} for raw in (there, ours))
+    return [name for name, value in new.items() if name in old and old[name] != value]
+
+
+def _joined(old: Any, new: Any, *, open_: bool) -> Any:
+    """`new` with the names that only `old` has, in the objects to which users may add names."""
+    if not (isinstance(old, dict) and isinstance(new, dict)):
+        return new
+    found = {
+        name: _joined(old[name], value, open_=name in _OPEN) if name in old else value
+        for name, value in new.items()
+    }
+    return found | {name: value for name, value in old.items() if open_ and name not in new}
+
+
 def lay_out(store: Store, record: Record, files: dict[str, bytes]) -> None:
     """Write the files whose content differs; records first, so that a kill leaves no folder without one."""
     seal = sealed(record)
@@ -170,7 +257,9 @@ def lay_out(store: Store, record: Record, files: dict[str, bytes]) -> None:
     store.folder.mkdir(exist_ok=True)
     for name, raw in (records | files).items():
         file = store.folder / name
-        if _bytes(file) != raw:
+        there = read(file)
+        raw = with_added(there, raw) if file.name == META else raw
+        if there != raw:
             file.parent.mkdir(parents=True, exist_ok=True)
             with replaced(file) as part:
                 part.write_bytes(raw)
@@ -178,7 +267,7 @@ def lay_out(store: Store, record: Record, files: dict[str, bytes]) -> None:
 
 def settle(store: Store, record: Record) -> None:
     """Write the record into the folder of marks if it is missing there."""
-    if _bytes(store.marks / BESIDE) != (seal := sealed(record)):
+    if read(store.marks / BESIDE) != (seal := sealed(record)):
         with replaced(store.marks / BESIDE) as part:
             part.write_bytes(seal)
 
@@ -190,13 +279,14 @@ def damaged(store: Store, record: Record) -> list[str]:
     return [name for name, sum_ in expected.items() if checksum(store.folder / name) != sum_]
 
 
-def sweep_up(store: Store) -> None:
-    """Remove the unfinished files of writers that were killed."""
-    for folder in (store.folder, store.marks):
-        for where, _, names in os.walk(folder):
-            for name in names:
-                if _LEFT.fullmatch(name):
-                    Path(where, name).unlink(missing_ok=True)
+def sweep_up(store: Store, record: Record) -> None:
+    """Remove the unfinished files of writers that were killed, but none of a user's own arrays."""
+    arrays = [store.folder / name for name in record["variables"]]
+    whole = [(where, names) for folder in (store.marks, *arrays) for where, _, names in os.walk(folder)]
+    for where, names in [*whole, (store.folder, os.listdir(store.folder))]:
+        for name in names:
+            if _LEFT.fullmatch(name):
+                Path(where, name).unlink(missing_ok=True)
 
 
 def digest(record: Record) -> str:
@@ -211,11 +301,12 @@ def mark(of: str, chunks: dict[str, int | None]) -> bytes:
 
 def checksum(file: Path) -> int | None:
     """The checksum of a file; None if the file is missing."""
-    raw = _bytes(file)
+    raw = read(file)
     return None if raw is None else zlib.crc32(raw)
 
 
-def _bytes(file: Path) -> bytes | None:
+def read(file: Path) -> bytes | None:
+    """The bytes of a file; None if the file is missing."""
     with suppress(FileNotFoundError, NotADirectoryError):
         return file.read_bytes()
     return None

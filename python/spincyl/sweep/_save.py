@@ -66,13 +66,15 @@ def save(
     OSError
         If a file cannot be written; the message has the path. Completed blocks stay valid, and a later call
         resumes the save. BlockingIOError if another process or thread is saving to the store at the same
-        time; FileExistsError if `path` has files that this function has not written.
+        time; FileExistsError if `path` has files that this function has not written: also an array of that
+        name without the record of this sweep, or the metadata of a group of your own.
 
     Warns
     -----
     UserWarning
         If completed blocks, coordinates or metadata are missing or damaged; there is one warning, and they
-        are computed again. If files cannot be locked; two processes could then save to one store unnoticed.
+        are computed again. It names the attributes of this sweep that had another value. If files cannot be
+        locked; two processes could then save to one store unnoticed.
 
     Notes
     -----
@@ -81,7 +83,7 @@ def save(
     same bytes. So a kill costs at most the blocks that were being computed. Each array in a store has a
     record that identifies the sweep. A store can be copied, moved and renamed; to resume the save, keep its
     ".sweep" directory with it. This function overwrites only files that it has written; other files in the
-    store stay.
+    store stay. Arrays and attributes that you add to a store, with xarray or zarr, stay as well.
 
     Examples
     --------
@@ -260,27 +262,39 @@ def _record(result: "xarray.Dataset") -> Record:
 
 
 def _begin(result: "xarray.Dataset", store: Store, record: Record) -> tuple[Record, list[str]]:
-    """Write the layout of the store, or repair it. Returns the record and the names of damaged files.
+    """Write the layout of the store, or repair it. Returns the record and what is damaged, in words.
 
     An existing layout stays, even if another version of zarr would write a different one. But if a damaged
     file cannot be restored byte for byte, the layout is written anew, and the marks of blocks no longer
-    count.
+    count. Attributes and arrays that a user has added are no damage.
     """
     _records.beside(store, record)
-    there, wrong = _records.same(store, record), list[str]()
-    if there is not None:
-        wrong = _records.damaged(store, there)
+    there, said = _records.same(store, record), list[str]()
+    wrong = [] if there is None else _records.damaged(store, there)
     if there is None or wrong:
         files = _layout(result, record)
+        foreign = _records.in_the_way(store, there or record, files)
+        if foreign is not None:
+            why = f"{foreign} is not of this sweep, and save overwrites only what it has written"
+            raise FileExistsError(errno.EEXIST, f"{why}; use another path, or move it away", store.said)
         sums = {name: zlib.crc32(raw) for name, raw in files.items()}
         known = {} if there is None else there["layout"]
+        raws = {name: _records.read(store.folder / name) for name in wrong if name in files}
+        wrong = [name for name in wrong if not (name in files and _records.says(raws[name], files[name]))]
+        lost = [f"{name} of {at}" for at in raws for name in _records.changed(raws[at], files[at])]
         if there is None or any(known[name] != sums.get(name) for name in wrong if name in known):
             there = record | {"layout": sums}
         else:
             files = {name: raw for name, raw in files.items() if name in wrong}
+        if wrong:
+            count = len(record["variables"]) + len(there["layout"])
+            what = f"{len(wrong)} of {count} files of metadata, coordinates and records"
+            said.append(f"{what} are missing or damaged and are made again")
+        if lost:
+            said.append(f"changed attributes are as before: {', '.join(lost[:3])}{', ...' * (len(lost) > 3)}")
         _records.lay_out(store, there, files)
     _records.settle(store, there)
-    return there, wrong
+    return there, said
 
 
 def _layout(result: "xarray.Dataset", record: Record) -> dict[str, bytes]:
@@ -311,15 +325,11 @@ def _layout(result: "xarray.Dataset", record: Record) -> dict[str, bytes]:
 
 def _todo(store: Store, blocks: list[Block], record: Record, wrong: list[str], lost: bool) -> list[Block]:
     """The blocks that are not done; warns if some of them were done before, or if files were damaged."""
-    _records.sweep_up(store)
+    _records.sweep_up(store, record)
     sweep = _records.digest(record)
     todo = [block for block in blocks if not _is_done(store, block, record, sweep)]
     damaged = [block for block in todo if _marker(store, block).exists()]
-    said = []
-    if wrong and (damaged or len(todo) < len(blocks)):
-        count = len(record["layout"]) + len(record["variables"])
-        what = f"{len(wrong)} of {count} files of metadata, coordinates and records"
-        said.append(f"{what} are missing or damaged and are made again")
+    said = wrong if damaged or len(todo) < len(blocks) else []
     if damaged:
         said.append(f"{len(damaged)} of {len(blocks)} blocks are missing or damaged and are computed again")
     if lost:
