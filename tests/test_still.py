@@ -50,7 +50,19 @@ def run(tmp_path, text, limits="1 30 1"):
     """The outcome of a run of pytest on these tests, with these limits."""
     (tmp_path / "test_of_these.py").write_text(HEAD + text)
     environment = os.environ | {"SPINCYL_STILL": limits, "PYTHONPATH": str(HERE)}
-    words = [sys.executable, "-m", "pytest", "-q", "-p", "still", "-p", "no:cacheprovider", "-c", os.devnull, "."]
+    words = [
+        sys.executable,
+        "-m",
+        "pytest",
+        "-q",
+        "-p",
+        "still",
+        "-p",
+        "no:cacheprovider",
+        "-c",
+        os.devnull,
+        ".",
+    ]
     return subprocess.run(words, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=300)
 
 
@@ -70,8 +82,31 @@ def test_what_hears_no_signal_or_leaves_a_thread_ends_the_run_and_says_where(tmp
     found = run(tmp_path, text)
     assert found.returncode == 1, found.stdout
     assert "Timeout" in found.stderr and "Thread 0x" in found.stderr
-    assert text != DEAF or "test_of_these.py" in found.stderr and "in test_that_hears_no_signal" in found.stderr
+    assert text != DEAF or (
+        "test_of_these.py" in found.stderr and "in test_that_hears_no_signal" in found.stderr
+    )
 
 
 def test_a_long_test_may_take_longer(tmp_path):
     assert "1 passed" in run(tmp_path, LONG).stdout
+
+
+AWAKE = [sys.executable, str(HERE / "awake.py")]
+
+
+def test_a_command_that_says_nothing_for_long_is_ended_with_its_last_words():
+    waits = "import sys, time; print('the test of the tide is running', flush=True); time.sleep(1000)"
+    found = subprocess.run(
+        [*AWAKE, "2", sys.executable, "-c", waits], capture_output=True, text=True, timeout=300
+    )
+    assert found.returncode == 124 and "no word for 2 s" in found.stdout
+    assert found.stdout.count("the test of the tide is running") == 3, "said, asked for, and repeated"
+
+
+def test_a_command_that_ends_gives_its_status_and_its_words():
+    for status in (0, 3):
+        ends = f"print('said'); raise SystemExit({status})"
+        found = subprocess.run(
+            [*AWAKE, "200", sys.executable, "-c", ends], capture_output=True, text=True, timeout=300
+        )
+        assert (found.returncode, found.stdout) == (status, "said\n")
