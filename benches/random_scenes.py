@@ -20,6 +20,7 @@ import argparse
 import collections
 import concurrent.futures
 import re
+import signal
 import sys
 import time
 import warnings
@@ -191,11 +192,18 @@ def main():
         for k in range(given.first, last, BLOCK)
     ]
     rows = {kind: [] for kind in given.kinds}
-    for kind, some in computed(jobs, given.jobs):
-        rows[kind] += some
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        for kind, some in computed(jobs, given.jobs):
+            rows[kind] += some
+            if len(rows[kind]) == given.count:
+                wrong = sum(bool(row[1]) for row in rows[kind])
+                print(f"{kind}: {wrong} of {given.count} are wrong", file=sys.stderr, flush=True)
+    except KeyboardInterrupt:
+        print("interrupted: what follows is of the scenes before")
     for of in rows.values():
         of.sort(key=lambda row: row[0])
-    sys.exit(table(rows, given.show) > 0)
+    sys.exit(table({kind: of for kind, of in rows.items() if of}, given.show) > 0)
 
 
 if __name__ == "__main__":
