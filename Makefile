@@ -16,6 +16,10 @@ TIMED = 2>&1 | while IFS= read -r line; do printf '[%3d s] %s\n' $$(( $$(date +%
 ALIVE = while sleep 20 > /dev/null 2>&1; do printf '[%3d s] %s\n' $$(( $$(date +%s) - $(BEGAN) )) "$$alive"; done & \
 	alive_pid=$$!; trap 'kill $$alive_pid 2> /dev/null' EXIT
 
+# What says nothing for ten minutes stands still: it fails, with its last words. Tests of Python have tests/still.py.
+AWAKE := python3 tests/awake.py 600
+SLOW := python3 tests/awake.py 3600
+
 VENV := .venv
 BIN := $(VENV)/bin
 CORE := Cargo.toml build.rs pyproject.toml $(shell find src -name '*.rs')
@@ -49,9 +53,11 @@ rust:
 	cargo fmt --all --check
 	SPINCYL_COMPILED_LANES=none nice -n 10 cargo check --quiet --lib
 	nice -n 10 cargo clippy --workspace --exclude spincyl-benches --all-targets --features python,serde -- -D warnings
-	CARGO_PROFILE_TEST_OPT_LEVEL=1 nice -n 10 cargo test --lib
-	nice -n 10 cargo test --features serde --test '*'
-	nice -n 10 cargo test --features serde --doc
+	CARGO_PROFILE_TEST_OPT_LEVEL=1 $(SLOW) nice -n 10 cargo test --lib --no-run
+	CARGO_PROFILE_TEST_OPT_LEVEL=1 $(AWAKE) nice -n 10 cargo test --lib
+	$(SLOW) nice -n 10 cargo test --features serde --test '*' --no-run
+	$(AWAKE) nice -n 10 cargo test --features serde --test '*'
+	$(SLOW) nice -n 10 cargo test --features serde --doc
 	RUSTDOCFLAGS='-D warnings' nice -n 10 cargo doc --features serde --no-deps --quiet
 
 # In one process: a second one would take a fifth more of the processor, and the tests of pages and docs run beside it.
@@ -71,9 +77,9 @@ pages: $(VENV)/.tested browser
 
 # The docs, with every figure made and every warning an error; then each is opened in a browser, offline.
 docs: note
-	nice -n 10 $(BIN)/python -m sphinx -W --keep-going -q -b html docs docs/_build
+	$(SLOW) nice -n 10 $(BIN)/python -m sphinx -W --keep-going -q -b html docs docs/_build
 	nice -n 10 $(BIN)/pytest -q tests/test_note.py
-	$(BIN)/python tests/built_pages.py docs/_build
+	$(SLOW) $(BIN)/python tests/built_pages.py docs/_build
 
 # Of every page that has code and every scene: docs/_made/notebooks.
 notebooks: $(VENV)/.built

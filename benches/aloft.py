@@ -27,9 +27,9 @@ WIDER = 1e-12
 SOUND = (sc.Ending.FACE, sc.Ending.STOPS)
 
 
-def drawn(number):
+def drawn(number, seed=51):
     """Kind, body, initial state and contact of the motion with this number."""
-    rng = np.random.default_rng([51, number])
+    rng = np.random.default_rng([seed, number])
     kind = KINDS[number % len(KINDS)]
     if kind == "tube":
         body = sc.Body.tube(rng.uniform(0.1, 6.0), bore=rng.uniform())

@@ -10,7 +10,7 @@ DOCS = Path(__file__).parents[1] / "docs"
 # options of a picture: a time in seconds, or arguments of `sc.view`
 HOW: dict[str, dict[str, Any]] = {
     "tube": {"above": True, "exposure": 1},
-    "top": {"t": 0.4},
+    "top": {"t": 2.5},
     "spoon": {"t": 1.5},
     "egg": {"t": 1.1},
     "hoop": {"t": 0.5, "follow": True},

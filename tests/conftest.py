@@ -10,6 +10,13 @@ from pathlib import Path
 import browser
 import pytest
 from hypothesis import settings
+from still import (  # noqa: F401  # a test that stands still fails
+    pytest_configure,
+    pytest_runtest_call,
+    pytest_runtest_setup,
+    pytest_runtest_teardown,
+    pytest_unconfigure,
+)
 
 # no deadline, since the machine may be busy; the same cases in every run unless the profile "fresh" is chosen
 settings.register_profile("same", deadline=None, derandomize=True)

@@ -125,36 +125,26 @@ def test_the_environment_sets_the_threads(monkeypatch):
 def test_c1_c2_a_long_map_lets_other_threads_run_and_obeys_ctrl_c():
     theta, ell = np.linspace(0.01, 1.57, 8000), np.linspace(0, 3, 4000)
     sc.sweep.portrait(THETA, ELL)  # import everything before the interrupt
-    ticks, done = [0], threading.Event()
+    begun, shares, ticks = threading.Event(), [], []
 
-    def tick():
-        while not done.is_set():
-            ticks[0] += 1
-            time.sleep(0.001)
-
-    stopped = []
+    def told(share):
+        shares.append(share)
+        if 0 < share < 0.5:
+            begun.set()
 
     def interrupt():
-        # a busy machine may delay this thread, but not by a thousand times its sleep
-        for _ in range(100):
-            time.sleep(0.05)
-            if ticks[0] > 3:
-                break
-        stopped.append(time.process_time())
+        begun.wait()
+        while len(ticks) < 4:  # it runs while the map is made
+            ticks.append(len(shares))
+            time.sleep(0.001)
         _thread.interrupt_main()
 
-    ticker, breaker = threading.Thread(target=tick), threading.Thread(target=interrupt)
-    ticker.start()
-    try:
-        with pytest.raises(KeyboardInterrupt):
-            breaker.start()
-            while True:
-                sc.sweep.portrait(theta, ell)
-        delay = time.process_time() - stopped[0]
-    finally:
-        done.set()
-        ticker.join()
-        breaker.join()
-    assert ticks[0] > 3
-    assert delay < 2.0  # seconds of processor time; a map that ignores the interrupt would take much longer
+    breaker = threading.Thread(target=interrupt)
+    with pytest.raises(KeyboardInterrupt):
+        breaker.start()
+        while True:  # a busy machine may let a map pass before the thread runs
+            shares.clear()
+            sc.sweep.portrait(theta, ell, progress=told)
+    breaker.join()
+    assert shares[-1] < 1.0, "the map was not finished first"
     assert sc.sweep.portrait(THETA, ELL)["rate"].shape == (61, 43)
