@@ -239,7 +239,7 @@ impl Drawn {
         match self.of(9) {
             0 => (cylinder(r, bore * r, ends), ends[1]),
             1 => {
-                let fillet = share * (1.0 - 1e-9) * r.min(0.5 * long);
+                let fillet = 0.999 * share * r.min(0.5 * long);
                 (Form::Solid { radii: [r; 2], bores: [0.0; 2], ends, fillet }, ends[1])
             }
             2 => (Form::Solid { radii, bores: [0.0; 2], ends, fillet: 0.0 }, ends[1]),

@@ -14,7 +14,7 @@ use super::{Aloft, Flies, Flight};
 use crate::laws::body::Shape;
 use crate::laws::loss::{Couples, Kinematics, Law, Losses};
 use crate::methods::rk8;
-use core::f64::consts::TAU;
+use core::f64::consts::{FRAC_PI_2, TAU};
 
 const NUMBERS: usize = 11;
 const AIR_TIME: usize = 10;
@@ -61,11 +61,13 @@ fn axes([w, x, y, z]: [f64; 4]) -> [[f64; 3]; 3] {
 impl AirFlight {
     pub fn new(shape: &Shape<f64>, from: &Aloft, losses: Couples<f64>, tol: f64) -> Self {
         let free = Flight::new(shape, from);
+        let from = &free.from;
         // The axes of the body are e1, e2 and e3 at the start, which lean toward x.
         let half = 0.5 * from.angle.0.atan2(from.angle.1);
+        let (sin, cos) = if half < FRAC_PI_2 { half.sin_cos() } else { (1.0, 0.0) };
         let other = from.on_other_rim(shape).height;
         let [w1, w2, w3] = from.w;
-        let y = [half.cos(), 0.0, -half.sin(), 0.0, w1, w2, w3, from.height, other, 0.0, 0.0];
+        let y = [cos, 0.0, -sin, 0.0, w1, w2, w3, from.height, other, 0.0, 0.0];
         let steps = vec![AirStep { y, angles: [0.0; 2] }];
         Self { shape: *shape, from: *from, free, losses, steps, tol }
     }
@@ -183,6 +185,9 @@ impl Flies for AirFlight {
     }
 
     fn at(&self, t: f64) -> (Aloft, f64) {
+        if t == 0.0 {
+            return (self.free.given, 0.0);
+        }
         let k = self.steps.partition_point(|step| step.y[AIR_TIME] <= t).max(1) - 1;
         let step = &self.steps[k];
         let y = if t > step.y[AIR_TIME] { self.part(step, t - step.y[AIR_TIME]).0 } else { step.y };
