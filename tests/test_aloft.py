@@ -97,6 +97,50 @@ def test_a_coin_that_is_dropped_without_spin_on_its_edge_stands_there_bounces_an
     assert m.w[-1, 2] == pytest.approx(1.0, abs=1e-14)
 
 
+def test_what_is_dropped_flat_lands_on_its_face_and_what_tumbles_from_upright_passes_the_vertical():
+    can = sc.measured(outer_diameter="10cm", length="20cm", mass=1.2, gravity=9.81)
+    flat = sc.dropped(can, 0.4, np.array([0.0, np.pi]), w3=3.0)
+    for theta in (0.0, np.pi):
+        m = sc.roll(can, sc.dropped(can, 0.4, theta, w3=3.0), [0.0, 3.0], contact=GRIP, restitution=0.3)
+        assert m.status == sc.Ending.FACE
+        assert abs(m.event.time - np.sqrt(2 * 0.4 / 9.81)) < 1e-14
+    many = sc.sweep.roll(can, flat, [0.0, 3.0], contact=GRIP, restitution=0.3, want="end")
+    assert (many.status == sc.Status.FACE).all()
+    assert np.abs(many.end - m.event.time).max() < 1e-14
+    ends = []
+    for theta in (0.0, 1e-7):
+        start = sc.dropped(can, 0.4, theta, w2=-0.1, velocity=(0.0, 1.0, 0.0))
+        ends.append(sc.roll(can, start, [0.0, 3.0], contact=GRIP, restitution=0.0).phases[-1])
+    assert ends[0].kind == ends[1].kind == "rolling on its side"
+    assert 0 < abs(ends[0].time - ends[1].time) < 1e-6
+
+
+@pytest.mark.parametrize(
+    ("body", "start", "why"),
+    [
+        (COIN, sc.State(0.0, 0.0, 0.0, 1.0), r"theta = 0.0: .*on its face; start it at theta = 1e-6, or in the air"),
+        (COIN, sc.State(np.pi, 0.0, 0.0, 1.0), r"theta = 3.14.*: .*on its face"),
+        (sc.Body.ball(-0.2, 0.4, 0.4), sc.State(0.0, 0.0, 0.0, 1.0), "on its pole .*start it at theta = 1e-6"),
+        (COIN, sc.State(0.0, 1.0, 0.0, 1.0, height=1.0), "w1 = 1.0: expected 0 at theta = 0 or pi"),
+        (sc.Body.tube(2.0, 0.0, 1.0), sc.State(0.0, 0.0, 0.0, 1.0, height=1.0), "theta = 0.0: expected a tilt"),
+    ],
+)
+def test_an_upright_start_without_a_motion_is_refused_with_what_to_do(body, start, why):
+    with pytest.raises(ValueError, match=why):
+        sc.roll(body, start, 3.0, contact=GRIP, restitution=0.5)
+
+
+def test_a_capsule_and_a_ball_that_hardly_lean_fall_without_an_error():
+    for body in (sc.Body.tube(2.0, 0.0, 1.0), sc.Body.ball(0.3, 0.4, 0.4), sc.Body.ball(-0.3, 0.4, 0.4)):
+        for w, more in itertools.product(
+            [(0, 0, 0), (0, 0.3, 0), (0, 0, 3.0), (1e-9, 0.3, 2e-9)], [{}, {"restitution": 0.0}]
+        ):
+            m = sc.roll(body, sc.State(1e-8, *w), np.linspace(0, 40, 81), contact=GRIP, **more)
+            assert m.status in (sc.Ending.DONE, sc.Ending.SIDE)
+            energy = m.energy
+            assert np.ptp(energy + m.dissipated) < 1e-9
+
+
 def test_forces_are_zero_in_the_air_and_those_of_both_rims_hold_the_weight():
     t = np.linspace(0, 40, 401)
     m = sc.roll(TUBE, sc.flicked(TUBE, w1=3.0, launch=0.9), t, contact=GRIP, restitution=0.0, want="force")

@@ -35,7 +35,7 @@ BODIES = {
     "bowl": [parts.cap(diameter=0.2, height=0.1, density=700)],
     "dome on a stick": [
         parts.cone(lower_diameter=0.001, upper_diameter=0.004, length=0.03, density=700),
-        parts.shell(diameter=0.06, height=0.02, upper=True, density=1.0),
+        parts.shell(diameter=0.06, height=0.02, upper=True, density=1.0, at=0.03),
         parts.point(mass=0.01, at=0.02),
     ],
 }
@@ -66,6 +66,76 @@ def test_parts_stand_on_each_other_unless_they_say_where_they_are():
     low = parts.cylinder(outer_diameter=0.02, length=0.01, at=0.05, density=STEEL)
     moved = sc.assembled([low, parts.ring(diameter=0.02, mass=1e-3, at=0.055)])
     assert abs(moved.ell - 0.5) < 1e-15, "where the origin is does not matter"
+
+
+@pytest.mark.parametrize("make", [parts.cap, parts.shell])
+def test_what_stands_on_a_low_cap_stands_on_its_upper_end(make):
+    foot = make(diameter="40mm", height="8mm", mass=0.02)
+    stem = {"outer_diameter": "40mm" if make is parts.shell else "6mm", "length": "30mm", "mass": 0.005}
+    stands = sc.assembled([foot, parts.cylinder(**stem)])
+    assert foot.top == 0.008 and stands == sc.assembled([foot, parts.cylinder(**stem, at="8mm")])
+
+
+def test_a_part_that_would_stand_on_nothing_is_refused_with_what_to_do():
+    rim = parts.cylinder(outer_diameter="60cm", inner_diameter="54cm", length="3cm", mass=1)
+    hub = {"outer_diameter": "6cm", "length": "3cm", "mass": 1}
+    told = r"^parts\[1\]: the cylinder fits into the hole of the cylinder before it .*give at="
+    with pytest.raises(ValueError, match=told):
+        sc.assembled([rim, parts.cylinder(**hub)])
+    assert sc.assembled([rim, parts.cylinder(**hub, at=0)]).ell == pytest.approx(0.05, abs=1e-15)
+    sleeve = parts.cylinder(outer_diameter="8cm", inner_diameter="7cm", length="2cm", mass=1)
+    with pytest.raises(ValueError, match=r"^parts\[1\]: the cylinder fits around the cylinder before it"):
+        sc.assembled([parts.cylinder(**hub), sleeve])
+    with pytest.raises(ValueError, match=r"^parts\[1\]: the ball fits into the hole"):
+        sc.assembled([rim, parts.ball(diameter="56cm", mass=1)])
+    # on the hub, or on the rim beside it, a third part stands; so does what just fits, or is a point
+    wheel = [rim, parts.cylinder(**hub, at=0)]
+    for third in (
+        parts.ball(diameter="3cm", mass=1),
+        parts.ring(diameter="57cm", mass=1),
+        parts.point(mass=1),
+    ):
+        assert sc.assembled([*wheel, third]) == sc.assembled([*wheel, replace(third, at=0.03)])
+    assert sc.assembled([rim, parts.disk(outer_diameter="54cm", mass=1)]).ell > 0
+
+
+def test_a_straight_cap_says_why_it_cannot_lie_on_both_rims():
+    floor = parts.disk(outer_diameter="16mm", density=1.0)
+    wall = parts.wall(lower_diameter="16mm", upper_diameter="16mm", length="60mm", density=1.0)
+    cap = sc.assembled([floor, wall])
+    assert cap.theta_end == np.nextafter(np.pi / 2, 0)
+    for call in (
+        lambda: sc.pressed(cap, 0.005, np.radians(60), finger=0.3),
+        lambda: sc.thrown(cap, 0.5, 0.0),
+    ):
+        with pytest.raises(
+            ValueError, match=r"^ell = 3\.\d+: expected a centre of mass midway between two equal rims"
+        ):
+            call()
+    lid = parts.disk(outer_diameter="16mm", density=1.0)
+    assert sc.assembled([floor, wall, lid]).theta_end == np.pi / 2
+
+
+@pytest.mark.parametrize("make", [parts.cap, parts.shell])
+def test_a_dome_stands_on_its_edge_until_its_sphere_touches_there(make):
+    for share in np.random.default_rng(3).uniform(0.01, 0.99, 300):
+        dome = make(diameter=0.1, height=0.1 * share, upper=True, mass=0.1)
+        assert abs(sc.assembled([dome]).theta_end - np.arccos(2 * share - 1)) < 1e-14
+
+
+def test_a_ball_on_a_thin_disk_stands_on_the_disk():
+    ball = parts.ball(diameter="35mm", mass=0.02)
+    for foot in (parts.disk(outer_diameter="18mm", mass=0.01), parts.ring(diameter="18mm", mass=0.01, at=0)):
+        body = sc.assembled([foot, replace(ball, at=0)])
+        assert (body.fillet, body.scale.radius) == (0.0, 0.009)
+        assert abs(body.theta_end - 2 * np.arctan(9 / 17.5)) < 1e-15
+
+
+def test_the_halves_of_a_ball_are_a_ball():
+    lower = parts.cap(diameter="40mm", height="20mm", density=7800)
+    upper = parts.cap(diameter="40mm", height="20mm", upper=True, density=700)
+    toy = sc.assembled([lower, upper])
+    assert (toy.fillet, toy.theta_end, toy.scale.radius) == (1.0, np.pi, 0.02) and toy.ell < 0
 
 
 @pytest.mark.parametrize("name", BODIES)

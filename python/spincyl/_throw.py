@@ -79,7 +79,7 @@ def thrown(body: Body, velocity: Reals, backspin: Reals, *, scale: Scale | None 
         velocity, backspin = velocity * (seconds / metres), backspin * seconds
     given = velocity, backspin, *body._numbers
     if is_scalar(*given):
-        if body.theta_end < np.pi / 2:
+        if body.theta_end < np.nextafter(np.pi / 2, 0):
             why = "since the body must stand on edge; a cup, which rolls in a circle, needs a State"
             raise ValueError(f"theta_end = {body.theta_end!r}: expected at least pi/2, {why}")
         state, slip = _core.thrown(float(velocity), float(backspin), six(body))
@@ -110,7 +110,8 @@ def dropped(
         Height of the lowest point of the body above the table, 0 or more, in R; for a measured body, or with
         `scale`, in metres.
     theta : array_like
-        Inclination in radians.
+        Inclination in radians, from 0 to pi. At 0 and pi, where the axis is vertical, `w1` must be 0. A body
+        that lands flat ends there, with `Ending.FACE`.
     w1, w2, w3 : array_like, optional
         Components of the angular velocity, as in `State`, in sqrt(g/R); for a measured body, or with `scale`,
         in rad/s.

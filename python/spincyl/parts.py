@@ -3,7 +3,7 @@
 Diameters, lengths and heights are numbers in metres, or texts such as "18mm". Give each part its `mass` (kg)
 or its `density`: in kg/m^3 for a solid part, in kg/m^2 for a thin wall, in kg/m for a ring. `at` is the
 height of the lowest point of the part. By default the first part is at height 0, and each further part stands
-on the part before it.
+on the part before it; a part that would stand on nothing, such as a hub in the hole of a wheel, needs `at`.
 
 >>> import spincyl as sc
 >>> from spincyl import parts
@@ -30,9 +30,11 @@ from spincyl._scale import Scale
 
 __all__ = ["Part", "assembled", "ball", "cap", "cone", "cylinder", "disk", "point", "ring", "shell", "wall"]
 
-#: Codes of the forms, and the indices of heights among their numbers; the first is the lowest point.
+#: Codes of the forms, and the indices of heights among their numbers, from the lowest to the highest point.
 _SOLID, _BALL, _WALL, _SHELL, _RING = range(5)
 _HEIGHTS = {_SOLID: (4, 5), _BALL: (3, 2, 4), _WALL: (2, 3), _SHELL: (2, 1, 3), _RING: (1,)}
+#: Relative difference of radii and heights that touch.
+_TOUCH = 1e-9
 
 
 @dataclass(frozen=True)
@@ -71,7 +73,36 @@ class Part:
     @property
     def top(self) -> float:
         """Height of the highest point of the part, in metres."""
-        return max(self.numbers[i] for i in _HEIGHTS[self.form])
+        return self.numbers[_HEIGHTS[self.form][-1]]
+
+    def _across(self, z: float) -> tuple[float, float]:
+        """Inner and outer radius of the part at the height `z`, which lies within the part."""
+        heights = [self.numbers[i] for i in _HEIGHTS[self.form]]
+        low, high = heights[0], heights[-1]
+        share = (z - low) / (high - low) if high > low else 0.0
+        if self.form == _SOLID:
+            r, s, b, c, *_ = self.numbers
+            return b + share * (c - b), r + share * (s - r)
+        if self.form == _WALL:
+            r, s = self.numbers[:2]
+            along = r + share * (s - r)
+            return (along, along) if high > low else (min(r, s), max(r, s))
+        if self.form == _RING:
+            return self.numbers[0], self.numbers[0]
+        r, up = self.numbers[0], z - heights[1]
+        hollow = self.numbers[1] if self.form == _BALL else r
+        outer, inner = (math.sqrt(max(a * a - up * up, 0.0)) for a in (r, hollow))
+        return inner, outer
+
+    def _carries(self, other: "Part") -> bool:
+        """Whether this part has matter under the lowest points of another one, at the same height."""
+        z = other.numbers[_HEIGHTS[other.form][0]]
+        near = _TOUCH * (self.top + other.top)
+        if not self.numbers[_HEIGHTS[self.form][0]] - near <= z <= self.top + near:
+            return False
+        (a, b), (c, d) = self._across(min(z, self.top)), other._across(z)
+        near = _TOUCH * (b + d)
+        return a <= d + near and c <= b + near
 
 
 def cylinder(
@@ -205,15 +236,17 @@ def assembled(parts: Iterable[Part], *, gravity: float = Scale.gravity) -> Body:
         Measured body. Its `scale` has the outer radius of its rim and the mass of all parts together;
         `natural` is the same body in natural units. Pictures, films and pages show the parts. The body stands
         on its lowest edge or ball; if several edges are equally low, on the widest. `theta_end` is the
-        inclination at which another part lands. If the upper rim is as wide as the lower and as far from the
-        centre of mass, the body has two equal rims, and may lie on both. Moments have errors of a few
-        roundings.
+        inclination at which another part touches the table. If the upper rim is as wide as the lower and as
+        far from the centre of mass, `theta_end` is pi/2: the body has two equal rims, and may lie on both. If
+        the upper rim is as wide but nearer or farther, as that of a half-full can, `theta_end` is the number
+        below pi/2, and motions end there. Moments have errors of a few roundings.
 
     Raises
     ------
     ValueError
-        If a number of a part is impossible (the message names it), if the mass is zero, or if no part can
-        touch the table.
+        If a number of a part is impossible (the message names it), if the mass is zero, if no part can
+        touch the table, or if a part without `at` would stand on nothing, because it fits into the hole of
+        the part before it or around this part.
     TypeError
         If an element of `parts` is not a part.
 
@@ -249,6 +282,10 @@ def assembled(parts: Iterable[Part], *, gravity: float = Scale.gravity) -> Body:
     placed = [part.raised(low - min(lows[:-1])) for part, low in zip(given, lows, strict=False)]
     found = _core.assembled([(part.form, list(part.numbers), part.amount, part.dense) for part in placed])
     (ell, i1, i3, fillet, theta_end), mass, radius, centre = found
+    for i, part in enumerate(placed[1:], 1):
+        solid = part.form != _RING or part.numbers[0] > 0
+        if part.at is None and solid and not any(below._carries(part) for below in placed[:i]):
+            _falls(i, part, placed[i - 1])
     # the core returns pi/2 for two equal rims, and for a body without another part that lands
     why = dubious("body", (max((part.top for part in placed), default=0.0), 2 * radius), math.nan, math.nan)
     if why:
@@ -257,6 +294,15 @@ def assembled(parts: Iterable[Part], *, gravity: float = Scale.gravity) -> Body:
     shape = tuple((part.name, part.form, _scaled(part, centre, radius)) for part in placed)
     object.__setattr__(body, "_parts", shape)
     return body
+
+
+def _falls(i: int, part: Part, below: Part) -> None:
+    (inner, _), (_, outer) = below._across(below.top), part._across(part.numbers[_HEIGHTS[part.form][0]])
+    where = "fits into the hole of" if outer < inner else "fits around"
+    raise ValueError(
+        f"parts[{i}]: the {part.name} {where} the {below.name} before it and would stand on nothing; "
+        "give at=, the height of its lowest point"
+    )
 
 
 def _scaled(part: Part, centre: float, radius: float) -> tuple[float, ...]:

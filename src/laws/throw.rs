@@ -46,6 +46,7 @@ const LEVEL: f64 = 1e-9;
 pub fn thrown(body: &Body, velocity: f64, backspin: f64) -> Result<(State, [f64; 2]), Error> {
     within("velocity", velocity, (-MOST, MOST), "-1e100 <= velocity <= 1e100")?;
     within("backspin", backspin, (-MOST, MOST), "-1e100 <= backspin <= 1e100")?;
+    landing::equal_rims(body)?;
     within(
         "theta_end",
         body.theta_end(),

@@ -45,6 +45,7 @@ mod throw;
 mod turning_points;
 mod twists;
 mod units;
+mod upright;
 mod whirrs;
 
 use common::rim::{Place, ULP, condition, place, sharp, steady_end};

@@ -16,6 +16,7 @@
 
 #[cfg(feature = "serde")]
 mod file;
+mod hull;
 pub mod parts;
 pub(crate) mod rim;
 mod tube;
@@ -32,6 +33,9 @@ const ELL: (f64, f64) = (0.0, 1e150);
 const I1: (f64, f64) = (1e-3, 1e300);
 const I3: (f64, f64) = (1e-150, 1e150);
 const FILLET: (f64, f64) = (0.0, 1.0);
+/// The theta_end of a body that lies level on two rims of one radius which are not equal, such as a half-full can: the
+/// number below pi/2, which itself stands for two equal rims.
+pub(crate) const LEVEL_ON_UNEQUAL_RIMS: f64 = FRAC_PI_2.next_down();
 
 /// A rigid body of revolution that touches the table with its lower rim.
 ///

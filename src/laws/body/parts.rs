@@ -3,16 +3,15 @@
 //! ```text
 //! dm = sigma pi (r^2 - b^2) dz   of a solid between the radii b and r,   sigma ds 2 pi r   of a thin wall
 //! I3 = sum of r^2 dm,   I1 = I3/2 + sum of (z - z0)^2 dm,   z0 = sum of z dm / M
-//! d(theta) = r s - z c + rho     the depth of an edge of the radius r, rounded by rho, below a point of the axis
 //! ```
 //! The squared radii of all parts are polynomials of z, of at most the second degree, so that Gauss's rule with four
-//! nodes is exact. The body stands on the edge, or the ball, that is lowest where the axis is upright; theta_end is the
-//! inclination at which another one becomes lower.
+//! nodes is exact. [`hull`] computes on which of their edges the body stands, and the inclination at which another one
+//! touches the table.
 //!
-//! Error: a few roundings of the moments about a point within the body. Theta_end has as many, and 1e-8 where a ball
-//! touches the table at its own edge.
+//! Error: a few roundings of the moments about a point within the body; theta_end has as many.
 
-use super::Body;
+use super::hull::{Edge, Hull};
+use super::{Body, LEVEL_ON_UNEQUAL_RIMS};
 use crate::error::{Error, within};
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -112,16 +111,6 @@ struct Mass {
     axial: f64,
 }
 
-/// A circle of radius `r` at the height `z`, rounded by `rho`, that touches for theta within `from` and `to`.
-#[derive(Clone, Copy)]
-struct Edge {
-    r: f64,
-    z: f64,
-    rho: f64,
-    from: f64,
-    to: f64,
-}
-
 /// Nodes and weights of Gauss's rule on [0, 1].
 const NODES: [[f64; 2]; 4] = [
     [0.069_431_844_202_973_71, 0.173_927_422_568_726_93],
@@ -129,8 +118,8 @@ const NODES: [[f64; 2]; 4] = [
     [0.669_990_521_792_428_1, 0.326_072_577_431_273_07],
     [0.930_568_155_797_026_3, 0.173_927_422_568_726_93],
 ];
-/// Edges that are closer to each other than this share of R count as one.
-const SAME_EDGE: f64 = 1e-12;
+/// The least theta_end of a body.
+const LEAST_END: f64 = 1e-6;
 /// Largest height of a part over the largest radius; for a body farther from the origin rounding would spoil the
 /// heights.
 const FARTHEST: f64 = 1e5;
@@ -187,7 +176,7 @@ impl Form {
     }
 
     fn cuts(radius: f64, centre: f64, ends: [f64; 2]) -> Result<(), Error> {
-        let far = radius * (1.0 + 4.0 * f64::EPSILON) + 4.0 * f64::EPSILON * centre.abs();
+        let far = radius + Self::slack(radius, centre);
         ends.iter().try_for_each(|z| {
             within("ends", z - centre, (-far, far), "heights within the ball, from its centre").map(drop)
         })
@@ -231,27 +220,38 @@ impl Form {
 
     /// The edges, and the ball, with which the part may touch the table.
     fn edges(&self) -> Vec<Edge> {
-        let edge = |r, z, rho| Edge { r, z, rho, from: 0.0, to: PI };
         match *self {
             Self::Solid { radii, ends, fillet, .. } => vec![
-                edge(radii[0] - fillet, ends[0] + fillet, fillet),
-                edge(radii[1] - fillet, ends[1] - fillet, fillet),
+                Edge::of(radii[0] - fillet, ends[0] + fillet, fillet),
+                Edge::of(radii[1] - fillet, ends[1] - fillet, fillet),
             ],
-            Self::Wall { radii, ends } => vec![edge(radii[0], ends[0], 0.0), edge(radii[1], ends[1], 0.0)],
+            Self::Wall { radii, ends } => {
+                vec![Edge::of(radii[0], ends[0], 0.0), Edge::of(radii[1], ends[1], 0.0)]
+            }
             Self::Ball { radius, centre, ends, .. } | Self::Shell { radius, centre, ends } => {
-                let at = ends.map(|z| ((centre - z) / radius).clamp(-1.0, 1.0));
-                let cut = |k: usize| edge(squared(radius, ends[k] - centre).max(0.0).sqrt(), ends[k], 0.0);
-                let ball = Edge { from: at[0].acos(), to: at[1].acos(), ..edge(0.0, centre, radius) };
-                vec![ball, cut(0), cut(1)]
+                // A cut within a rounding error of the pole of the ball cuts nothing off.
+                let pole = radius - Self::slack(radius, centre);
+                let cut = ends.map(|z| (z - centre).abs() < pole);
+                let at = |k: usize, whole: f64| {
+                    if cut[k] { ((centre - ends[k]) / radius).acos() } else { whole }
+                };
+                let edge = |k: usize| Edge::of(squared(radius, ends[k] - centre).sqrt(), ends[k], 0.0);
+                let ball = Edge { from: at(0, 0.0), to: at(1, PI), ..Edge::of(0.0, centre, radius) };
+                (0..2).filter(|k| cut[*k]).map(edge).chain([ball]).collect()
             }
             Self::Ring { radius, height } => {
                 if radius > 0.0 {
-                    vec![edge(radius, height, 0.0)]
+                    vec![Edge::of(radius, height, 0.0)]
                 } else {
                     Vec::new()
                 }
             }
         }
+    }
+
+    /// Error of the height of a ball's pole, due to the rounding of its radius and its centre.
+    fn slack(radius: f64, centre: f64) -> f64 {
+        4.0 * f64::EPSILON * (radius + centre.abs())
     }
 }
 
@@ -310,44 +310,12 @@ impl Mass {
     }
 }
 
-impl Edge {
-    /// Depth of the edge below the origin.
-    fn depth(&self, theta: f64) -> f64 {
-        self.r * theta.sin() - self.z * theta.cos() + self.rho
-    }
-
-    /// The inclinations in (0, pi) at which another edge is as deep as this one.
-    fn meets(&self, other: &Self) -> [Option<f64>; 2] {
-        // a sin theta - b cos theta = e is sin(theta - turn) = e/far.
-        let (a, b, e) = (other.r - self.r, other.z - self.z, self.rho - other.rho);
-        let far = a.hypot(b);
-        if e.abs() > far * (1.0 + SAME_EDGE) || far == 0.0 {
-            return [None; 2];
-        }
-        let (turn, by) = (b.atan2(a), (e / far).clamp(-1.0, 1.0).asin());
-        let inside = |theta: f64| {
-            let theta = theta.rem_euclid(TAU);
-            Some(theta)
-                .filter(|theta| *theta > 0.0 && *theta < PI && *theta >= other.from && *theta <= other.to)
-        };
-        [inside(turn + by), inside(turn + PI - by)]
-    }
-
-    /// Whether another edge, as deep as this one here, becomes deeper: for example a ball beyond the circle at which it
-    /// is cut.
-    fn gives_way(&self, other: &Self, theta: f64) -> bool {
-        let (s, c) = theta.sin_cos();
-        let (r, z) = (other.r - self.r, other.z - self.z);
-        let (rate, bend) = (r * c + z * s, z * c - r * s);
-        if rate.abs() <= 1e-6 * r.hypot(z) { bend > 0.0 } else { rate > 0.0 }
-    }
-}
-
 /// Assembles a body from parts on one axis.
 ///
 /// The body stands on its lowest edge or ball, and on the widest of several edges at one height. Parts inside a concave
 /// outline do not touch the table. A body has two equal rims if its other rim is as wide and as far from the centre of
-/// mass.
+/// mass; then theta_end is pi/2. If the other rim is as wide but nearer or farther, theta_end is the number below pi/2,
+/// since such a body lies on two rims that are not equal.
 ///
 /// Errors: `OutOfRange` with the number of a part that is out of range, or with "parts" for a body without mass or
 /// extent; and the errors of [`Body::rounded`].
@@ -383,42 +351,26 @@ pub fn assembled(parts: &[BodyPart]) -> Result<Assembled, Error> {
     let centre = masses.iter().map(|x| x.whole * x.height).sum::<f64>() / whole;
     let axial = masses.iter().map(|x| x.axial).sum::<f64>();
     let along = masses.iter().map(|x| x.along + x.whole * (x.height - centre).powi(2)).sum::<f64>();
-    let (rim, theta_end) = stands(&edges).ok_or(none(0.0))?;
-    let radius = rim.r + rim.rho;
     let far = edges.iter().map(|edge| edge.z.abs()).fold(0.0, f64::max);
-    let wide = edges.iter().map(|edge| edge.r + edge.rho).fold(0.0, f64::max);
+    let wide = edges.iter().map(Edge::outer).fold(0.0, f64::max);
     within("height", far, (0.0, FARTHEST * wide), "heights measured from a point of the axis near the body")?;
+    let hull = Hull::new(edges);
+    let rim = hull.rim().ok_or(none(0.0))?;
+    let (theta_end, lands) = hull.after(&rim);
+    if theta_end < LEAST_END {
+        let expected = "parts of which the next one lands at an inclination of at least 1e-6 radians";
+        return Err(Error::OutOfRange { name: "parts", value: theta_end, expected });
+    }
+    let radius = rim.outer();
     let per = 1.0 / (whole * radius * radius);
     let (ell, fillet) = ((centre - rim.z) / radius, rim.rho / radius);
+    if ell < 0.0 && fillet < 1.0 {
+        let expected = "parts whose centre of mass is above the rim on which they stand";
+        return Err(Error::OutOfRange { name: "parts", value: ell, expected });
+    }
     let body = Body::rounded(ell, (0.5 * axial + along) * per, axial * per, fillet)?;
-    // Its other rim may be another one.
-    let alike = |edge: &Edge| {
-        let off = [edge.r - rim.r, edge.rho - rim.rho, edge.z + rim.z - 2.0 * centre];
-        off.iter().all(|x| x.abs() <= SAME_EDGE * radius)
-    };
-    let level = (theta_end - FRAC_PI_2).abs() <= SAME_EDGE;
-    let theta_end = match level {
-        true if edges.iter().any(alike) => FRAC_PI_2,
-        true => FRAC_PI_2.next_down(),
-        false => theta_end,
-    };
+    let other = lands.filter(|_| theta_end == FRAC_PI_2);
+    let unequal = other.is_some_and(|other| !hull.same(&other, &rim.mirrored(centre)));
+    let theta_end = if unequal { LEVEL_ON_UNEQUAL_RIMS } else { theta_end };
     Ok(Assembled { body: body.with_theta_end(theta_end)?, mass: whole, radius, centre })
-}
-
-/// The edge on which the body stands, and the inclination at which another edge becomes deeper.
-fn stands(edges: &[Edge]) -> Option<(Edge, f64)> {
-    let lowest = |edge: &Edge| edge.depth(0.0);
-    let wide = edges.iter().map(|edge| edge.r + edge.rho).fold(0.0, f64::max);
-    let down = edges.iter().filter(|edge| edge.from == 0.0);
-    let deepest = down.clone().map(lowest).fold(f64::NEG_INFINITY, f64::max);
-    // The ball touches the table before its own edge does.
-    let rim = down
-        .filter(|edge| lowest(edge) >= deepest - SAME_EDGE * wide)
-        .max_by(|a, b| (a.r + a.rho).total_cmp(&(b.r + b.rho)))
-        .copied()
-        .filter(|rim| rim.r + rim.rho > 0.0)?;
-    let ends = edges.iter().flat_map(|other| {
-        rim.meets(other).into_iter().flatten().filter(|theta| rim.gives_way(other, *theta))
-    });
-    Some((rim, ends.fold(rim.to, f64::min)))
 }

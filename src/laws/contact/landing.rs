@@ -27,7 +27,7 @@
 
 use super::slip::Friction;
 use crate::error::{Error, within};
-use crate::laws::body::Body;
+use crate::laws::body::{Body, LEVEL_ON_UNEQUAL_RIMS};
 use crate::laws::state::State;
 use core::f64::consts::FRAC_PI_2;
 
@@ -58,6 +58,7 @@ pub struct Landed {
 /// Returns an error unless the body has two equal rims to lie on: ell > 0 and theta_end = pi/2.
 pub(crate) fn two_rims(body: &Body) -> Result<(), Error> {
     within("ell", body.ell(), (f64::MIN_POSITIVE, f64::MAX), "ell > 0, for a body that can lie on two rims")?;
+    equal_rims(body)?;
     within(
         "theta_end",
         body.theta_end(),
@@ -65,6 +66,15 @@ pub(crate) fn two_rims(body: &Body) -> Result<(), Error> {
         "pi/2, for a body that can lie on two rims",
     )?;
     Ok(())
+}
+
+/// Returns an error for a body that lies level on two rims that are not equal, since its motion ends where it lies.
+pub(crate) fn equal_rims(body: &Body) -> Result<(), Error> {
+    if body.theta_end() != LEVEL_ON_UNEQUAL_RIMS {
+        return Ok(());
+    }
+    let expected = "a centre of mass midway between two equal rims: on its side this body lies on two unequal ones, where its motion ends";
+    Err(Error::OutOfRange { name: "ell", value: body.ell(), expected })
 }
 
 /// The launch number with friction, (I3 w1 w3 - Fh)/ell, of a body at theta = pi/2 and w2 = 0; above 1 the body rises.

@@ -144,12 +144,40 @@ const PASSED: f64 = 1e-9;
 
 /// Returns an error for a body or a state outside the range in which motions are computed.
 pub(crate) fn check(body: &Body, y: &State) -> Result<(), Error> {
-    const SPEED: (f64, f64) = (-1e6, 1e6);
+    check_body(body)?;
+    let angle = if body.is_ball() {
+        "1e-8 <= theta <= pi - 1e-8 (radians) for a motion on the table: on its pole a ball stands or begins to fall; start it at theta = 1e-6"
+    } else {
+        "1e-8 <= theta <= pi - 1e-8 (radians) for a motion on the table: at 0 or pi the body stands on its face; start it at theta = 1e-6, or in the air (height > 0)"
+    };
+    within("theta", y.theta, (1e-8, PI - 1e-8), angle)?;
+    check_speeds(y)
+}
+
+/// Returns an error for a body or a state outside the range in which flights are computed, which may begin at a pole.
+pub(crate) fn check_in_air(body: &Body, y: &State) -> Result<(), Error> {
+    within("theta", y.theta, (0.0, PI), "0 <= theta <= pi (radians)")?;
+    if y.theta == 0.0 || y.theta == PI {
+        // Here only the sum or the difference of phi and psi is determined, and phi is chosen so that w1 vanishes.
+        let expected = "0 at theta = 0 or pi: give the horizontal part of the angular velocity as w2";
+        within("w1", y.w1, (0.0, 0.0), expected)?;
+        if body.is_ball() && y.w2 == 0.0 {
+            let expected = "a tilt of at least 1e-8, or a w2: a ball that lands on its pole stands there or begins to fall; start it at theta = 1e-6";
+            return Err(Error::OutOfRange { name: "theta", value: y.theta, expected });
+        }
+    }
+    check_body(body)?;
+    check_speeds(y)
+}
+
+fn check_body(body: &Body) -> Result<(), Error> {
     within("ell", body.ell(), (-1.0, 1e6), "-1 < ell <= 1e6 for a motion")?;
     within("i1", body.i1(), (1e-6, 1e12), "1e-6 <= i1 <= 1e12 for a motion")?;
-    within("i3", body.i3(), (1e-6, 1e12), "1e-6 <= i3 <= 1e12 for a motion")?;
-    let angle = "1e-8 <= theta <= pi - 1e-8 (radians) for a motion";
-    within("theta", y.theta, (1e-8, PI - 1e-8), angle)?;
+    within("i3", body.i3(), (1e-6, 1e12), "1e-6 <= i3 <= 1e12 for a motion").map(drop)
+}
+
+fn check_speeds(y: &State) -> Result<(), Error> {
+    const SPEED: (f64, f64) = (-1e6, 1e6);
     within("w1", y.w1, SPEED, "at most 1e6 sqrt(g/R) for a motion")?;
     within("w2", y.w2, SPEED, "at most 1e6 sqrt(g/R) for a motion")?;
     within("w3", y.w3, SPEED, "at most 1e6 sqrt(g/R) for a motion")?;

@@ -20,7 +20,7 @@ use crate::motions::halt::{TIME, loses, lost, poses};
 use crate::motions::row::OutputRow;
 use crate::motions::walk::{Next, Phases};
 use crate::motions::{Ending, Kind};
-use core::f64::consts::{FRAC_PI_2, TAU};
+use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// A pose as seen from the other rim; `over` if it is that of the other rim. Applied twice it returns the same pose.
 pub(super) fn pose_from(at: &Aloft, shape: &Shape<f64>, over: bool, pose: [f64; 4]) -> [f64; 4] {
@@ -76,6 +76,8 @@ impl<const N: usize> BodyWalk<'_, N> {
     pub(super) fn starts_in_air(&mut self, [height, lift]: [f64; 2]) -> Next {
         if self.of.state.theta == FRAC_PI_2 {
             (self.at[0], self.at[1]) = (1.0, 0.0);
+        } else if self.of.state.theta == PI {
+            (self.at[0], self.at[1]) = (0.0, -1.0);
         }
         self.of.takeoff = Takeoff { height, lift, leaves: (height == 0.0).then_some(1) };
         Next::Own(Kind::Flying)

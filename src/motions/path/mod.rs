@@ -93,7 +93,10 @@ fn walk<'a, const N: usize>(
 
 /// Returns the tolerance of the steps, or an error for a body, an initial state or options out of range.
 fn check(body: &Body, start: &Start, ask: &Ask) -> Result<f64, Error> {
-    exact::check(body, &start.state)?;
+    match start.aloft {
+        Some([height, _]) if height > 0.0 => exact::check_in_air(body, &start.state)?,
+        _ => exact::check(body, &start.state)?,
+    }
     ask.table.check()?;
     ask.losses.check_for(body)?;
     check_patch(ask)?;

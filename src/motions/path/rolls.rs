@@ -17,7 +17,8 @@ use crate::motions::{Ask, Ending, Start};
 use core::f64::consts::{PI, TAU};
 use nalgebra::Point2;
 
-/// A face nearer to the table than this angle has landed, since the first integrals lose their digits there.
+/// The first integrals lose their digits where the axis is nearer to the vertical than this angle: a face has landed
+/// there, and a ball is integrated.
 const LEAST: f64 = 1e-8;
 
 /// A hop counts as low, and is integrated, if both its height and its speed are below this.
@@ -38,16 +39,17 @@ impl<const N: usize> BodyWalk<'_, N> {
         }
         let mu = if at_limit { fixed * (1.0 + GRACE) } else { fixed };
         let (body, y, rubs) = (self.of.body, self.of.state, self.ask.table.rubs());
-        if self.of.integrates || self.hops_low() {
+        let upright = y.theta.min(PI - y.theta) < LEAST;
+        // A ball may pass nearer to its pole than the first integrals can follow.
+        if self.of.integrates || self.hops_low() || upright && body.is_ball() {
             return Ok(self.begins_to_lose(mu)?.map(WalkStep::Flows));
         }
         let beyond = self.ask.beyond && !rubs;
         let ask = Ask { pose: self.ask.pose, beyond, ..Ask::on(Table::Rolling { mu }) };
         let from = Start { time: self.at[7], ..y.into() };
-        if y.theta.min(PI - y.theta) < LEAST {
+        if upright {
             // A face this close to the table lands before any other event.
-            let lost = Error::Lost { theta: y.theta };
-            self.next = Some(if body.is_ball() { return Err(lost) } else { Next::Ends(Ending::Face) });
+            self.next = Some(Next::Ends(Ending::Face));
             return Ok(None);
         }
         let Some(mut rolled) = by_first_integrals(&body, &from, times, &ask, &mut *go_on)? else {

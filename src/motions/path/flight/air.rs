@@ -21,7 +21,7 @@ use crate::methods::flow::Spent;
 use crate::methods::rk8;
 use crate::numbers::tape::{Tape, Taped};
 use crate::numbers::{Real, TERMS};
-use core::f64::consts::TAU;
+use core::f64::consts::{FRAC_PI_2, TAU};
 
 const NUMBERS: usize = 11;
 const AIR_TIME: usize = 10;
@@ -83,10 +83,12 @@ impl AirFlight {
     /// The first step is `longer` by this factor.
     pub fn new(shape: &Shape<f64>, from: &Aloft, losses: Couples<f64>, (tol, longer): (f64, f64)) -> Self {
         let free = Flight::new(shape, from);
+        let from = &free.from;
         // The axes of the body are e1, e2 and e3 at the start, which lean toward x.
         let half = 0.5 * from.angle.0.atan2(from.angle.1);
+        let (sin, cos) = if half < FRAC_PI_2 { half.sin_cos() } else { (1.0, 0.0) };
         let [w1, w2, w3] = from.w;
-        let y = [half.cos(), 0.0, -half.sin(), 0.0, w1, w2, w3, from.height, from.angle.1, 0.0, 0.0];
+        let y = [cos, 0.0, -sin, 0.0, w1, w2, w3, from.height, from.angle.1, 0.0, 0.0];
         let steps = vec![AirStep { y, angles: [0.0; 2] }];
         let fastest = w1.abs().max(w2.abs()).max(w3.abs());
         let (first, spent) =
@@ -282,7 +284,7 @@ impl Flies for AirFlight {
 
     fn at(&self, t: f64) -> (Aloft, f64) {
         if t == 0.0 {
-            return (self.from, 0.0);
+            return (self.free.given, 0.0);
         }
         let k = self.steps.partition_point(|step| step.y[AIR_TIME] <= t).max(1) - 1;
         let step = &self.steps[k];

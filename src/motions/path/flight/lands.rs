@@ -117,7 +117,8 @@ impl Flight {
         let ([cosine, cosine_rate], (s0, c0), rim) = (self.cosine(t), self.from.angle, self.shape.rim);
         let (s, c) = self.angle_of(t, cosine);
         let sine_rate = if s > 0.0 { -(c * cosine_rate / s) } else { 0.0 };
-        let sine = -(cosine * (c + c0) / (s + s0));
+        // A body that stays upright, as one that is dropped flat, has no sine at all.
+        let sine = if s + s0 > 0.0 { -(cosine * (c + c0) / (s + s0)) } else { 0.0 };
         let first = self.from.height + if side > 0.0 { 0.0 } else { rim.between(self.from.angle) };
         let [.., up] = self.velocity;
         [

@@ -8,7 +8,7 @@
 //! tan X = cos((a-b)/2)/cos((a+b)/2) tan D,   tan Y = sin((a-b)/2)/sin((a+b)/2) tan D,   D = (pi - C)/2
 //! ```
 //! theta may pass pi/2 or come near a pole, where nothing special happens. Near the poles sums are written so that no
-//! digits are lost. The symmetric top without a couple is Poinsot's and Euler's; Napier's analogies are those of
+//! digits are lost. At a start on a pole phi is that with which the axis leaves it, and X and Y are their limits. The symmetric top without a couple is Poinsot's and Euler's; Napier's analogies are those of
 //! spherical trigonometry. [`lands`] computes the landing.
 //!
 //! Error: a few roundings times 1 + Lam t, and of w1, w2, phi and psi over sin(theta).
@@ -21,7 +21,7 @@ use crate::laws::pose::Pose;
 use crate::laws::state::State;
 use crate::methods::flow::Spent;
 use crate::motions::path::write::posed;
-use core::f64::consts::PI;
+use core::f64::consts::{FRAC_PI_2, PI};
 use lands::{Leaves, NoLanding};
 
 /// A body in the air, or in an impact, as seen from one of its rims.
@@ -47,6 +47,24 @@ impl Aloft {
 
     pub fn pose(&self) -> Pose {
         posed(self.pose, self.height)
+    }
+
+    /// The same body, told with the phi with which its axis leaves a pole: theta grows from 0, or falls from pi. The
+    /// lowest point then is the opposite one of its face.
+    fn leaving_pole(&self, shape: &Shape<f64>) -> Self {
+        let ((s, c), [w1, w2, w3], [u, v], [phi, psi, x, y]) = (self.angle, self.w, self.slip, self.pose);
+        if s != 0.0 || c * w2 <= 0.0 {
+            return *self;
+        }
+        let [radius, lever] = [shape.rim.radius(self.angle), shape.rim.lever(self.angle)].map(|x| 2.0 * x);
+        let (sin, cos) = phi.sin_cos();
+        Self {
+            w: [0.0 - w1, 0.0 - w2, w3],
+            slip: [0.0 - u, -(radius * w3) - v],
+            lift: self.lift + lever * w2,
+            pose: [phi + PI, psi - c * PI, x - lever * cos, y - lever * sin],
+            ..*self
+        }
     }
 
     /// The same motion as seen from the other rim of a body with two equal rims.
@@ -97,6 +115,8 @@ const FAR: f64 = 0.9;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Flight {
     shape: Shape<f64>,
+    /// The start as given, and as seen from the side to which the axis leaves a pole.
+    given: Aloft,
     from: Aloft,
     /// Velocity of the centre along e_h and e2 of the start, and upwards; its height at the start.
     velocity: [f64; 3],
@@ -114,14 +134,18 @@ pub(crate) struct Flight {
     wide: f64,
     /// sin a sin b times cosine and sine of C0.
     swing: [f64; 2],
-    /// X and Y at the start.
+    /// sin((a - b)/2) and cos((a + b)/2); one of them is exactly 0 at a start on a pole.
+    apart: [f64; 2],
+    /// The ratios of tan X and of tan Y to tan D; X and Y at the start.
+    ratios: [f64; 2],
     napier: [f64; 2],
     /// Whether the body only tumbles in a vertical plane, so that rounding must not make it turn.
     planar: bool,
 }
 
 impl Flight {
-    pub fn new(shape: &Shape<f64>, from: &Aloft) -> Self {
+    pub fn new(shape: &Shape<f64>, given: &Aloft) -> Self {
+        let from = &given.leaving_pole(shape);
         let (Shape { rim, i1, i3 }, (s, c), [w1, w2, w3]) = (*shape, from.angle, from.w);
         // The mirror image of a motion is computed by the same numbers.
         let image = if w3 < 0.0 || w3 == 0.0 && w1 < 0.0 { -1.0 } else { 1.0 };
@@ -133,7 +157,9 @@ impl Flight {
         // The components of L along e_h, e2 and z.
         let [l_h, l_2, l_z] = [i1 * w1 * c - axial * s, i1 * w2, i1 * w1 * s + axial * c];
         let (a, b) = (l_h.hypot(l_2).atan2(l_z), across.atan2(axial));
+        let upright = if s == 0.0 { c } else { 0.0 };
         let begin = (-s * w2 * size).atan2(c * i1 * transverse * transverse - axial * w1 * s);
+        let begin = if upright < 0.0 { PI } else { begin };
         let velocity = [
             from.slip[0] + height * w2,
             from.slip[1] - image * (rim.depth(from.angle) * w1 - rim.radius(from.angle) * w3),
@@ -141,6 +167,7 @@ impl Flight {
         ];
         let mut flight = Self {
             shape: *shape,
+            given: *given,
             from: *from,
             velocity,
             height: from.height + height,
@@ -153,10 +180,21 @@ impl Flight {
             begin,
             wide: a.sin() * b.sin(),
             swing: [begin.cos(), begin.sin()].map(|x| a.sin() * b.sin() * x),
+            apart: [0.0; 2],
+            ratios: [0.0; 2],
             napier: [0.0; 2],
             planar: w1 == 0.0 && w3 == 0.0,
         };
-        flight.napier = flight.analogies(0.0);
+        let (less, sum) = (0.5 * (a - b), 0.5 * (a + b));
+        // On a pole a = b, or a + b = pi.
+        let [down, up] =
+            [if upright > 0.0 { 0.0 } else { less.sin() }, if upright < 0.0 { 0.0 } else { sum.cos() }];
+        flight.apart = [down, up];
+        flight.ratios = [less.cos() / up, down / sum.sin()].map(|ratio| {
+            let size = if ratio.is_nan() { 1.0 } else { ratio.abs().clamp(1e-300, 1e300) };
+            size.copysign(ratio)
+        });
+        flight.napier = if upright == 0.0 { flight.analogies(0.0) } else { [upright * FRAC_PI_2, 0.0] };
         flight
     }
 
@@ -164,14 +202,11 @@ impl Flight {
     fn analogies(&self, t: f64) -> [f64; 2] {
         let (sin, cos) = (0.5 * (PI - self.begin - self.rate * t)).sin_cos();
         let turns = 0.5 * (PI - self.begin - self.rate * t);
-        let along = |over: f64, under: f64| {
-            let ratio = over / under;
-            let size = if ratio.is_nan() { 1.0 } else { ratio.abs().clamp(1e-300, 1e300) };
+        self.ratios.map(|ratio| {
+            let size = ratio.abs();
             let more = ((size - 1.0) * sin * cos).atan2(cos * cos + size * sin * sin);
             1f64.copysign(ratio) * (turns + more)
-        };
-        let (less, sum) = (0.5 * (self.a - self.b), 0.5 * (self.a + self.b));
-        [along(less.cos(), sum.cos()), along(less.sin(), sum.sin())]
+        })
     }
 
     /// The change of cos theta since the start, and its rate.
@@ -196,10 +231,9 @@ impl Flight {
             return (((1.0 - c) * (1.0 + c)).sqrt(), c);
         }
         // Near a pole both of these are sums of positive terms.
-        let (half, less, more) =
-            (0.5 * (self.begin + self.rate * t), 0.5 * (self.a - self.b), 0.5 * (self.a + self.b));
-        let down = 2.0 * (less.sin() * less.sin() + self.wide * half.sin() * half.sin());
-        let up = 2.0 * (more.cos() * more.cos() + self.wide * half.cos() * half.cos());
+        let (half, [less, more]) = (0.5 * (self.begin + self.rate * t), self.apart);
+        let down = 2.0 * (less * less + self.wide * half.sin() * half.sin());
+        let up = 2.0 * (more * more + self.wide * half.cos() * half.cos());
         ((down * up).sqrt(), if down < 1.0 { 1.0 - down } else { up - 1.0 })
     }
 
@@ -209,9 +243,9 @@ impl Flight {
         let half = 0.5 * (self.begin + self.rate * t);
         let swing = self.a.sin() * self.b.cos();
         let along = if cos > 0.0 {
-            (self.b - self.a).sin() + 2.0 * swing * half.sin() * half.sin()
+            self.apart[0] * -2.0 * (0.5 * (self.a - self.b)).cos() + 2.0 * swing * half.sin() * half.sin()
         } else {
-            (self.a + self.b).sin() - 2.0 * swing * half.cos() * half.cos()
+            self.apart[1] * 2.0 * (0.5 * (self.a + self.b)).sin() - 2.0 * swing * half.cos() * half.cos()
         };
         let per = self.transverse / s.max(f64::MIN_POSITIVE);
         // The sum turns -0 into 0.
@@ -221,7 +255,7 @@ impl Flight {
     /// The body at a time since the start, as seen from the same rim.
     fn flown(&self, t: f64) -> Aloft {
         if t == 0.0 {
-            return self.from;
+            return self.given;
         }
         let angle = self.angle(t);
         let [w1, w2] = self.tilting(t, angle);
@@ -271,6 +305,8 @@ impl Flight {
     /// The error of the numbers at a time, due to rounding.
     pub fn doubt(&self, t: f64, at: &Aloft) -> f64 {
         let fastest = at.w.iter().fold(1.0, |most: f64, w| most.max(w.abs()));
-        self.roundings(t) * f64::EPSILON * fastest / at.angle.0.clamp(1e-300, 1.0)
+        // Where the axis is vertical nothing is turned by an error of phi.
+        let turned = if at.angle.0 > 0.0 { at.angle.0 } else { 1.0 };
+        self.roundings(t) * f64::EPSILON * fastest / turned
     }
 }
