@@ -6,7 +6,7 @@ use crate::common::{drawn, path_of, wander};
 use nalgebra::{UnitQuaternion, Vector3};
 use spincyl::contact::{Friction, slip};
 use spincyl::loss::{Law, Losses};
-use spincyl::motion::{Ask, Ending, Motion, roll_with};
+use spincyl::motion::{Ask, Ending, Motion, Moving, roll_with};
 use spincyl::stone::{self, Ellipsoid, StoneState};
 use spincyl::{Body, State, nalgebra};
 
@@ -122,7 +122,7 @@ fn sums_of_stone(stone: &Ellipsoid, motion: &Motion<StoneState>) -> Vec<f64> {
 }
 
 /// How far the sums are out of balance, beyond what the motion claims.
-fn out<S>(sums: &[f64], motion: &Motion<S>) -> bool {
+fn out<S: Moving>(sums: &[f64], motion: &Motion<S>) -> bool {
     let off = sums.iter().map(|sum| (sum - sums[0]).abs()).fold(0.0, f64::max);
     off.is_nan() || off > 3.0 * motion.error + 1e-12
 }
@@ -148,15 +148,15 @@ pub fn wrong_with_stone(k: u64, rest: Rest) -> Option<String> {
     judged(k, &sums_of_stone(&stone, &motion), &motion, moves)
 }
 
-fn judged<S: std::fmt::Debug>(
+fn judged<S: Moving>(
     k: u64,
     sums: &[f64],
     motion: &Motion<S>,
     moves: impl Fn(&S) -> bool,
 ) -> Option<String> {
-    let ended = motion.event.as_ref();
-    let stops = ended.is_some_and(|end| end.ending == Ending::Stops && moves(&end.state));
-    let gives_up = ended.is_some_and(|end| end.ending == Ending::Bounded);
+    let ended = motion.event.as_ref().map(|end| (end.ending, end.time));
+    let stops = motion.event.as_ref().is_some_and(|end| end.ending == Ending::Stops && moves(&end.state));
+    let gives_up = ended.is_some_and(|(ending, _)| ending == Ending::Bounded);
     (out(sums, motion) || stops || gives_up).then(|| {
         let off = sums.iter().map(|sum| (sum - sums[0]).abs()).fold(0.0, f64::max);
         format!("{k}: out by {off:e} of {:e}, {ended:?}", motion.error)

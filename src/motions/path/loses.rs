@@ -24,7 +24,8 @@ impl<const N: usize> BodyWalk<'_, N> {
             self.claims(LOST_DRILLING * drilling(&self.of.state).abs());
         }
         let halt = flow.at_start(&self.of.state);
-        let rests = halt.is_none() && flow.has_stopped(&self.of.state);
+        // The friction that would hold a moving contact point is not that of a body at rest.
+        let rests = halt.is_none_or(|halt| halt == Halt::Slips) && flow.has_stopped(&self.of.state);
         self.of.lossy = Some(LossyPhase { flow, since: self.at[7], still: 0, count: 0 });
         match halt {
             _ if rests => {

@@ -182,7 +182,7 @@ impl StoneFlow<'_> {
         let ([a, b, c, d, e, f, g], mut to) = (core::array::from_fn(|i| y[i]), *y);
         let (lab, w) = (laboratory([a, b, c, d]), [e, f, g]);
         let mut rates = [0.0; N];
-        if slip_of(y) == [0.0; 2] && self.law.dry {
+        if slip_of(y) == [0.0; 2] && self.law.dry && self.rubs(y) <= self.over() {
             let at = self.law.losing(self.law.touching(lab[2], w), &lab, w);
             let pulled = self.law.pulled(&at, w, across(&lab, way));
             rates[..4].copy_from_slice(&turning([a, b, c, d], w));

@@ -164,8 +164,9 @@ impl StoneFlow<'_> {
         let size = u[0].hypot(u[1]);
         let (pull, twist) = match self.law.patch() {
             _ if !self.law.dry || size == 0.0 && drilling == 0.0 => (u.map(|u| mu * u), 0.0),
-            Some(patch) if slip_of(&y) != [0.0; 2] => {
-                let [share, twist, _] = rubs(size, drilling, patch);
+            Some(patch) if self.rubs(&y) > self.over() => {
+                let u = slip_of(&y);
+                let [share, twist, _] = rubs(u[0].hypot(u[1]), drilling, patch);
                 (u.map(|u| mu * share * u), mu * twist)
             }
             _ => (u.map(|u| mu * u / size.max(f64::MIN_POSITIVE)), 0.0),

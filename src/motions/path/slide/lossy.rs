@@ -19,12 +19,17 @@ use crate::motions::path::lossy::at_rest;
 use crate::motions::path::settled::{Balance, CLOSE, SLOWER, Turned, balance, lag, settles_within};
 use crate::numbers::{Dual, Real};
 
+/// The share by which a couple may exceed the limit of friction that holds a contact which had settled.
+const SURE: f64 = 1e-6;
+
 impl Slide {
     /// Sets the signs (`ways`) of the motions that dry losses resist, and which of them friction holds, at a state whose
     /// contact has not settled. `toward` is the direction of a slip from rest, and `known` a motion that friction has
     /// just ceased to hold (true), or that it holds in any case.
     pub fn sets_ways(&mut self, y: &State, slip: [f64; 2], toward: [f64; 2], known: Option<(Part, bool)>) {
         (self.settled, self.rolls_off) = (false, false);
+        // A settled contact stops at the very limit of friction, and the push on it falls from there on.
+        self.sure = if known == Some((Part::Contour, false)) { SURE } else { 0.0 };
         let Some(losses) = self.law.losses else { return };
         let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
         let way = |speed: f64| if speed == 0.0 { 0.0 } else { speed.signum() };
@@ -58,6 +63,11 @@ impl Slide {
             }
         }
         self.turn(ways);
+    }
+
+    /// The couple that holds the contact along the rim, and its limit, with the allowance for a contact that had settled.
+    pub(super) fn surely<T: Real>(&self, [push, limit]: [T; 2]) -> [T; 2] {
+        [push, limit * limit.splat(1.0 + self.sure)]
     }
 
     /// The friction of a slip, or of one that begins in the direction `toward`: the force -N pull and the couple N twist.

@@ -55,6 +55,8 @@ pub(crate) struct Slide {
     pub settled: bool,
     /// Whether rolling and rocking begin from rest, in the direction that the signs of the losses have.
     rolls_off: bool,
+    /// The share by which the couple that holds the contact along the rim may exceed its limit, after it has settled.
+    sure: f64,
     pub tol: f64,
 }
 
@@ -68,7 +70,7 @@ impl Slide {
         let (theta_end, ball) = (body.theta_end(), body.is_ball());
         let bare = law.with_losses(law.losses.map(Couples::off_the_contour));
         let flat = if losses.turn_endlessly() { FLATTER } else { FLAT };
-        Self { law, sloped, bare, theta_end, ball, sticks: law.dry, flat, settled: false, rolls_off: false, tol }
+        Self { law, sloped, bare, theta_end, ball, sticks: law.dry, flat, settled: false, rolls_off: false, sure: 0.0, tol }
     }
 
     /// The speed below which a slip counts as zero.
@@ -159,7 +161,8 @@ impl Slide {
     pub(crate) fn nudged<const N: usize>(&self, start: &[f64; N], way: [f64; 2], growth: f64) -> [f64; N] {
         let (angle, w) = ((start[0], start[1]), [start[2], start[3], start[4]]);
         let u = [start[5], start[6]];
-        let (at, _, heat) = if u == [0.0; 2] && self.law.dry {
+        let rests = u == [0.0; 2] && self.law.dry && !self.creeps(start);
+        let (at, _, heat) = if rests {
             (self.law.towards(angle, w, [0.0; 2], way), 1.0, 0.0)
         } else {
             self.law.answers(angle, w, u)
@@ -167,7 +170,7 @@ impl Slide {
         let ([s, c], mut y) = ([start[0], start[1]], *start);
         let mut rates = [0.0; N];
         rates[..8].copy_from_slice(&[-(c * w[1]), s * w[1], at.w[0], at.w[1], at.w[2], at.u[0], at.u[1], 1.0]);
-        if u == [0.0; 2] && self.law.dry {
+        if rests {
             (rates[5], rates[6]) = (growth * way[0], growth * way[1]);
         }
         rates[8] = heat - (at.force[1] * u[1] + at.force[2] * u[0]);
@@ -260,7 +263,7 @@ impl Flow<MARGINS> for Slide {
         let [contour, drilling] = match self.sloped.losses.as_ref().filter(|_| loses(N)) {
             Some(losses) => {
                 let seen = losses.seen(&self.sloped.shape.rim, (s, c), w1 / s, [w1, w2, w3]);
-                ways(losses, &seen, held, kept)
+                ways(losses, &seen, held, self.surely(kept))
             }
             None => [one; 2],
         };
@@ -300,7 +303,7 @@ impl Flow<MARGINS> for Slide {
                     let at = self.acts((s, c), [w1, w2, w3], [u_h, u_2]);
                     [at.held, at.kept]
                 };
-                ways(&losses, &seen, held, kept)[usize::from(SLIP_ENDS[i] == Halt::Drilling)]
+                ways(&losses, &seen, held, self.surely(kept))[usize::from(SLIP_ENDS[i] == Halt::Drilling)]
             }
             end => {
                 let at = self.acts((s, c), [w1, w2, w3], [u_h, u_2]);
