@@ -157,14 +157,16 @@ def test_the_claimed_error_holds_for_a_loose_tolerance():
 # Ends.
 
 
-def test_the_contact_of_a_whirr_stops_and_says_so():
+def test_a_whirr_whose_contact_stops_falls_flat_and_says_so():
     m = sc.roll(DISK, DISK.steady(0.3), np.linspace(0, 400, 2001), losses=DRY, want="force")
-    assert m.status is sc.Ending.STOPS == 7 and not m.success
-    assert m.message.startswith("the contact point stops: the body rolls no more at t = ")
+    assert m.status is sc.Ending.FACE == 1 and not m.success
+    assert m.message.startswith("the face landed on the table: the body lies flat at t = ")
     assert "; found by steps within 1e-14; error about" in m.message
     y = m.event.state
-    assert m.event.ending is sc.Ending.STOPS and y.slip is None
-    assert abs(y.spin) < 1e-6 * m.states.precession.max() and 0 < y.theta < 5e-3
+    assert m.event.ending is sc.Ending.FACE and y.slip is None and y.theta == 0
+    last = sc.roll(DISK, DISK.steady(0.3), m.event.time - np.geomspace(0.05, 1e-4, 40), t0=0.0, losses=DRY)
+    held = abs(last.states.spin) <= 1e-12 * (1 + abs(last.states.precession))
+    assert held[-1] and not held[0] and 0 < last.theta[-1] < last.theta[np.argmax(held)] < 5e-3
     assert m.t[-1] <= m.event.time < m.t[-1] + 0.2 + 1e-9 and m.t.size < 2001
     assert m.method == "dop853" and m.nfev > 100 and not m.coarse
 

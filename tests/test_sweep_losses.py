@@ -108,7 +108,7 @@ def test_no_bit_depends_on_threads_neighbours_or_order():
     assert np.array_equal(ran(mixed[:1], 1), all_of_them[:, mixed[:1]])
 
 
-def test_a_whirr_ends_where_its_contact_stops():
+def test_a_whirr_whose_contact_stops_falls_flat():
     found = sc.sweep.roll(
         DISK,
         DISK.steady(np.linspace(0.2, 0.3, 9)),
@@ -116,9 +116,9 @@ def test_a_whirr_ends_where_its_contact_stops():
         losses=loss.DryContour(5e-3),
         want=("final", "end"),
     )
-    assert (found["status"] == sc.sweep.Status.STOPS).all() and (np.diff(found["end"]) > 0).all()
-    spin = found["w3"] - found["w1"] / np.tan(found["theta"])
-    assert float(np.abs(spin).max()) < 1e-10
+    assert (found["status"] == sc.sweep.Status.FACE).all() and (np.diff(found["end"]) > 0).all()
+    # held by dry friction at the end: w1 = s w_z vanishes with theta, where that of a whirr grows
+    assert float(np.abs(found["w1"]).max()) < 1e-6 and float(np.abs(found["w3"]).max()) > 1e-3
     assert found.attrs["losses"] == "DryContour(0.005)" and (found["error"] < 1e-7).all()
 
 

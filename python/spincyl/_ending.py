@@ -25,7 +25,7 @@ class Ending(IntEnum):
     PAINLEVE
         The law of friction allows no contact force, or more than one.
     STOPS
-        In a motion with losses, the contact point stopped. The body may still spin about the vertical.
+        In a motion with losses, the body has come to rest, and dry friction holds it.
     LANDING
         The law of friction allows no outcome of a landing on both rims, or more than one.
     BOUNDED
@@ -54,7 +54,7 @@ MESSAGES = {
     Ending.LIFT_OFF: ("the normal force vanished", "lifts off"),
     Ending.SLIP: ("rolling needs more friction than mu N", "slips"),
     Ending.PAINLEVE: ("no unique contact force (Painleve)", "jams"),
-    Ending.STOPS: ("the contact point stops", "rolls no more"),
+    Ending.STOPS: ("dry friction holds the whole body", "comes to rest"),
     Ending.BOUNDED: ("the motion was given up", "goes on"),
     Ending.LANDING: ("no unique landing on both rims", "lands on both rims"),
 }

@@ -131,7 +131,7 @@ def roll(
         landing on both rims ends the motion (`Ending.SIDE`), unless the body only rocks from rim to rim.
     losses : Loss, optional
         Loss law of `spincyl.loss`, or several added with `+`. The motion is then integrated with steps of
-        eighth order, forward in time only. It may end where the contact point stops (`Ending.STOPS`).
+        eighth order, forward in time only. It may end where the body comes to rest (`Ending.STOPS`).
 
     Returns
     -------

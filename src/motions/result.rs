@@ -27,7 +27,7 @@ coded! {
         Invalid = 5,
         /// No contact force, or more than one, obeys the law of friction.
         Painleve = 6,
-        /// The contact point stops, held by dry friction along the rim or by rolling resistance.
+        /// The body is at rest, and dry friction holds it.
         Stops = 7,
         /// The computation stopped at this time: slipping and rolling alternate too often, or time hardly advances.
         Bounded = 8,

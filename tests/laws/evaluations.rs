@@ -29,7 +29,7 @@ fn a_whirr_costs_what_its_turns_cost_under_every_law() {
     // The precession is 110 to 130 rad, 250 under rolling resistance, and 570 in air, where the whirr does
     // not end.
     let of = Losses::of;
-    whirrs(of(Law::DryContour, 3.4e-3), Ending::Stops, [1_500, 2_400, 3_500]);
+    whirrs(of(Law::DryContour, 3.4e-3), Ending::Face, [1_500, 2_400, 3_500]);
     whirrs(of(Law::ViscousContour, 7.5e-4), Ending::Face, [1_600, 2_800, 4_500]);
     whirrs(of(Law::RollingResistance, 2.4e-2), Ending::Face, [6_200, 10_500, 17_500]);
     whirrs(of(Law::Drilling, 7.9e-2), Ending::Done, [2_900, 4_500, 7_300]);
@@ -43,7 +43,7 @@ fn a_whirr_costs_what_its_turns_cost_under_every_law() {
 fn laws_together_cost_little_more_than_each_of_them() {
     let of = Losses::of;
     let film = of(Law::DryContour, 1.7e-3) + of(Law::AirFilm, 9.6e-5);
-    whirrs(film, Ending::Stops, [1_700, 2_600, 4_200]);
+    whirrs(film, Ending::Face, [1_700, 2_600, 4_200]);
     let air = of(Law::RollingResistance, 1.2e-2) + of(Law::AirQuadratic, 3e-2);
     whirrs(air, Ending::Face, [12_500, 20_500, 33_000]);
     let three = of(Law::ViscousContour, 3e-4) + of(Law::Drilling, 2.4e-2) + of(Law::BoundaryLayer, 1.1e-4);

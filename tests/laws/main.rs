@@ -2,6 +2,7 @@
 //!
 //! All files are one program, since the compiler would take as long for each of several.
 
+mod at_once;
 mod beside_folds;
 mod beside_turns;
 mod big;

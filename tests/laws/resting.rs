@@ -18,18 +18,17 @@ fn a_ball_that_drills_on_while_resistance_holds_its_rolling_stops_whatever_the_t
             Ask::on(Table::Smooth).with_method(method).with_losses(Losses::of(Law::RollingResistance, 0.1));
         roll_with(&body, start, &[0.0, 10.0], &ask, || true).unwrap().unwrap()
     });
-    let end = |motion: &Motion| motion.event.filter(|event| event.ending == Ending::Stops).unwrap();
-    let last = end(&found[4]);
+    let last = found[4].states[1];
     for motion in &found {
-        let (event, within) = (end(motion), motion.error + 1e-12);
-        assert!(motion.error < 1e-4 && (event.time - last.time).abs() < within, "{event:?}");
-        let apart = [event.state.theta - last.state.theta, event.state.w1 - last.state.w1];
-        assert!(apart.into_iter().all(|x| x.abs() < within), "{event:?}");
+        let (y, within) = (motion.states[1], motion.error + 1e-12);
+        assert!(motion.error < 1e-4 && motion.event.is_none(), "{:?}", motion.event);
+        let apart = [y.theta - last.theta, y.w1 - last.w1];
+        assert!(apart.into_iter().all(|x| x.abs() < within), "{y:?}");
         // Rolling resistance does not stop the spin about the vertical.
-        let (s, c) = event.state.theta.sin_cos();
-        assert!((s * event.state.w1 + c * event.state.w3 - 0.4537).abs() < 1e-2, "{event:?}");
-        assert_eq!(event.state.w2, 0.0);
-        assert!((c * event.state.w1 - s * event.state.w3).abs() < 1e-13);
+        let (s, c) = y.theta.sin_cos();
+        assert!((s * y.w1 + c * y.w3 - 0.4537).abs() < 1e-2, "{y:?}");
+        assert_eq!(y.w2, 0.0);
+        assert!((c * y.w1 - s * y.w3).abs() < 1e-13);
     }
 }
 
@@ -42,12 +41,16 @@ fn a_uniform_ball_rolls_out_and_spins_on_whatever_axis_is_called_its_own() {
         for (speed, spin) in [(0.0, 2.7), (0.19, 5.4), (0.02, 1e-3)] {
             let (s, c) = theta.sin_cos();
             let start = State { theta, w1: spin * s - speed * c, w2: 0.0, w3: spin * c + speed * s };
-            let motion = roll_with(&ball, start, &[0.0, 100.0], &ask, || true).unwrap().unwrap();
-            let event = motion.event.unwrap();
-            let (s, c) = event.state.theta.sin_cos();
             let rolls = 1.4 * speed / 0.01;
-            assert!(event.ending == Ending::Stops && (event.time - rolls).abs() < 1e-8, "{theta}: {event:?}");
-            assert!((s * event.state.w1 + c * event.state.w3 - spin).abs() < 1e-9, "{theta}: {event:?}");
+            let times = [0.0, (rolls - 1e-3).max(0.0), rolls + 1e-8, 100.0];
+            let motion = roll_with(&ball, start, &times, &ask, || true).unwrap().unwrap();
+            assert!(motion.event.is_none(), "{theta}: {:?}", motion.event);
+            for (y, left) in motion.states.iter().zip([rolls, rolls.min(1e-3), 0.0, 0.0]) {
+                let (s, c) = y.theta.sin_cos();
+                let rolling = (c * y.w1 - s * y.w3).hypot(y.w2);
+                assert!((rolling - left * 0.01 / 1.4).abs() < 1e-10, "{theta}: {rolling} {left}");
+                assert!((s * y.w1 + c * y.w3 - spin).abs() < 1e-9, "{theta}: {y:?}");
+            }
         }
     }
 }
@@ -92,10 +95,13 @@ fn a_disk_on_its_edge_that_spins_about_the_vertical_does_not_roll() {
     for (w1, w2) in [(1.0, 0.0), (2.0, 0.0), (2.0, 1e-6)] {
         for time in [1.0, 10.0] {
             let start = State { theta: FRAC_PI_2, w1, w2, w3: 0.0 };
-            let event = roll_with(&disk, start, &[0.0, time], &ask, || true).unwrap().unwrap().event.unwrap();
             // Rolling resistance takes delta/J from the rocking in a unit of time, J = 5/4.
-            assert!(event.ending == Ending::Stops && (event.time - w2 * 250.0).abs() < 1e-9, "{event:?}");
-            assert!((event.state.w1 - w1).abs() < 1e-9);
+            let times = [0.0, w2 * 125.0, w2 * 250.0 + 1e-9, time];
+            let motion = roll_with(&disk, start, &times, &ask, || true).unwrap().unwrap();
+            assert!(motion.event.is_none(), "{:?}", motion.event);
+            let rocks: Vec<f64> = motion.states.iter().map(|y| y.w2).collect();
+            assert!((rocks[1] - 0.5 * w2).abs() < 1e-11 && rocks[2..] == [0.0; 2], "{rocks:?}");
+            assert!((motion.states[3].w1 - w1).abs() < 1e-9);
         }
     }
 }
@@ -124,7 +130,7 @@ fn a_disk_all_but_on_its_edge_falls_as_it_claims_whatever_the_tolerance() {
 }
 
 #[test]
-fn a_slipping_ball_that_rolling_resistance_stops_has_one_time_of_its_stop() {
+fn a_slipping_ball_whose_rolling_resistance_stops_slides_on_as_one_block_whatever_the_tolerance() {
     let ball = Body::rounded(1.0, 1.4, 0.4, 1.0).unwrap().with_theta_end(FRAC_PI_2).unwrap();
     let state = State {
         theta: 1.1962863847128117e-06,
@@ -139,15 +145,14 @@ fn a_slipping_ball_that_rolling_resistance_stops_has_one_time_of_its_stop() {
     let found = [1e-8, 1e-10, 1e-11, 1e-12, 1e-13, 3e-14, 1e-14].map(|tol| {
         let ask = Ask::on(table).with_method(Method::Tolerance(tol)).with_losses(losses);
         let motion = roll_with(&ball, start, &[0.0, 1.0], &ask, || true).unwrap().unwrap();
-        assert_eq!(motion.event.unwrap().ending, Ending::Stops);
+        assert!(motion.event.is_none(), "{:?}", motion.event);
         motion
     });
     for (i, a) in found.iter().enumerate() {
         for b in &found[..i] {
-            let (one, other, both) = (a.event.unwrap(), b.event.unwrap(), a.error + b.error);
-            assert!((one.time - other.time).abs() < 2.0 * both, "{one:?}, {other:?}: {both:e}");
-            // The drilling does not stop before the end, so that w3 of the last state is compared, too.
-            assert!((one.state.w3 - other.state.w3).abs() < 2.0 * both, "{one:?}, {other:?}: {both:e}");
+            let (one, other, both) = (a.states[1], b.states[1], a.error + b.error);
+            assert!(one.w2 == 0.0 && (one.theta - other.theta).abs() < 2.0 * both, "{one:?}, {other:?}: {both:e}");
+            assert!((one.w3 - other.w3).abs() < 2.0 * both, "{one:?}, {other:?}: {both:e}");
         }
     }
     assert!(found[6].error < 1e-10);

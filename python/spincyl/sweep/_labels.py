@@ -30,7 +30,7 @@ class Status(IntEnum):
     PAINLEVE
         No contact force, or more than one, obeys the law of friction.
     STOPS
-        The contact point stopped because of a loss; the body may still spin about the vertical.
+        The body has come to rest, and dry friction holds it.
     LANDING
         For a landing on both rims no impulse, or more than one, obeys the law of friction.
     BOUNDED

@@ -149,8 +149,8 @@ def roll(
         the motion is not computed. Only with a law of friction.
     losses : Loss, optional
         Law of `spincyl.loss` that takes energy, or a sum of several laws, with any contact. Coefficients
-        may be arrays that broadcast with the other arrays. A motion with losses ends where the contact point
-        stops (`Status.STOPS`) or the face lands (`Status.FACE`). Motions that roll or slide without friction
+        may be arrays that broadcast with the other arrays. A motion with losses ends where the body comes
+        to rest (`Status.STOPS`) or the face lands (`Status.FACE`). Motions that roll or slide without friction
         are computed eight at a time, each with its own steps; motions with friction are computed one at a
         time.
     threads : int, optional

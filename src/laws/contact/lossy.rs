@@ -17,7 +17,7 @@
 use super::reduced::{Coefficients, Rates};
 use super::{Contact, rolling};
 use crate::laws::body::Body;
-use crate::laws::loss::{Couple, Couples, Law, Losses, OwnCouple};
+use crate::laws::loss::{Couple, Couples, Law, Losses, OwnCouple, still_needs};
 use crate::laws::newton;
 use crate::laws::state::State;
 use crate::numbers::Real;
@@ -34,6 +34,8 @@ pub(crate) enum Held<T> {
     Contour(T),
     /// The drilling: w_z = 0.
     Drilling,
+    /// Rolling and rocking: the body only turns about the vertical.
+    Rolling,
 }
 
 /// A body on a table, with losses.
@@ -99,6 +101,9 @@ impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
     #[inline(always)]
     pub fn at(&self, angle: (T, T), precession: T, w: [T; 3], held: Held<T>) -> Acted<T> {
         let ((s, c), [w1, w2, w3], reduced) = (angle, w, self.rates.reduced());
+        if matches!(held, Held::Rolling) {
+            return self.stays(angle, precession, w);
+        }
         let (shape, of) = (&reduced.shape, reduced.at(angle));
         let (lever, slope, one) = (shape.rim.lever(angle), shape.rim.slope(angle), s.splat(1.0));
         let [d1, d2, d3] = self.rates.at(s, c, w);
@@ -127,7 +132,7 @@ impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
         let mut stays = [s.splat(0.0), one];
         let radius = seen.radius;
         match held {
-            Held::Nothing => {}
+            Held::Nothing | Held::Rolling => {}
             Held::Contour(rate) => {
                 // `off` is s^2 (psi'' - rate) without the couple that holds psi'.
                 let off = s * (s * r3 - c * r1 - precession * w2 - s * rate);
@@ -155,6 +160,35 @@ impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
         };
         let power = self.losses.power(&seen, pressing);
         Acted { w: [r1, tilting, r3], force: [normal, along, across], power, held: stays }
+    }
+}
+
+impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
+    /// The response of a body that only turns about the vertical, with N = 1, and the couple of rolling resistance that
+    /// this needs, with its limit. A rolling contact point is at rest, so that the centre moves on a circle.
+    #[inline(always)]
+    fn stays(&self, angle: (T, T), precession: T, w: [T; 3]) -> Acted<T> {
+        let ((s, c), [w1, _, w3], reduced) = (angle, w, self.rates.reduced());
+        let (rim, i1, i3) = (&reduced.shape.rim, reduced.shape.i1, reduced.shape.i3);
+        let (zero, one) = (s.splat(0.0), s.splat(1.0));
+        let seen = self.losses.seen(rim, angle, precession, w);
+        let [m1, m2, m3] = self.losses.at(&seen).under(one);
+        let far = match reduced.contact {
+            Contact::Smooth => zero,
+            Contact::Rolling => rim.lever(angle),
+        };
+        let (inertia, drilling) = (i1 * s * s + i3 * c * c, s * w1 + c * w3);
+        let turn = (s * m1 + c * m3) / (inertia + far * far);
+        let (along, across) = (-(far * turn), far * drilling * drilling);
+        let gyration = drilling * drilling * s * c * (i3 - i1);
+        let more1 = i1 * s * turn - rim.depth(angle) * along - m1;
+        let more3 = i3 * c * turn + rim.radius(angle) * along - m3;
+        let more2 = rim.lever(angle) + rim.height(angle) * across - gyration - m2;
+        let contour = self.losses.coefficient(Law::DryContour) * rim.radius(angle) / s;
+        let needs = still_needs([c * more1 - s * more3, more2], contour);
+        let held = [needs, self.losses.coefficient(Law::RollingResistance)];
+        let power = self.losses.power(&seen, one);
+        Acted { w: [s * turn, zero, c * turn], force: [one, along, across], power, held }
     }
 }
 

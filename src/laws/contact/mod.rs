@@ -21,6 +21,7 @@ pub mod slip;
 pub mod smooth;
 pub(crate) mod standstill;
 mod table;
+pub(crate) mod together;
 
 use super::body::Body;
 pub use super::newton::Force;

@@ -25,7 +25,7 @@ use super::JAMMED;
 use super::patch::rubs;
 use crate::error::{Error, within};
 use crate::laws::body::{Body, Shape};
-use crate::laws::loss::{Couples, Law, Losses, OwnCouple};
+use crate::laws::loss::{Couples, Holds, Law, Losses, OwnCouple, still_needs};
 use crate::laws::newton::{self, Force};
 use crate::laws::state::State;
 use crate::numbers::Real;
@@ -133,6 +133,8 @@ pub(crate) struct SlipResponse<T> {
     pub force: [T; 3],
     /// The couple about the vertical that holds the drilling, and the largest that friction can exert.
     pub held: [T; 2],
+    /// The couple that holds the contact along the rim, or rolling and rocking, and the largest that friction can exert.
+    pub kept: [T; 2],
 }
 
 impl<T: Real> Slipping<T> {
@@ -172,7 +174,7 @@ impl<T: Real, G: OwnCouple<T>> Slipping<T, G> {
         let (mut at, pace) = self.at((s, c), w, u);
         let [d1, _, d3] = at.w;
         let off = s * (s * d3 - c * d1 - w[0] / s * w[1] - s * rate);
-        let (push, more1, more3) = if self.losses.as_ref().is_some_and(Couples::holds_drilling) {
+        let (push, more1, more3) = if self.losses.as_ref().is_some_and(|losses| losses.holds().drilling) {
             // One more couple, about the vertical, keeps the drilling at rest.
             let (more1, more3) = (c / s * off, -off);
             let twist = s * i1 * more1 + c * i3 * more3;
@@ -188,7 +190,7 @@ impl<T: Real, G: OwnCouple<T>> Slipping<T, G> {
     }
 
     /// The response to the friction force F = -strength N pull/size, where `size` is the magnitude of `pull`, with
-    /// dt/dsigma, which is size/sum. One division serves all quotients.
+    /// dt/dsigma, which is size/sum. One division serves all quotients. A patch exerts the couple `twist` N, too.
     #[inline(always)]
     pub fn with(
         &self,
@@ -196,6 +198,7 @@ impl<T: Real, G: OwnCouple<T>> Slipping<T, G> {
         w: [T; 3],
         u: [T; 2],
         (pull, size, sum): ([T; 2], T, T),
+        twist: Option<T>,
     ) -> (SlipResponse<T>, T) {
         let Shape { rim, i1, i3 } = &self.shape;
         let ([w1, w2, w3], angle) = (w, (s, c));
@@ -206,7 +209,13 @@ impl<T: Real, G: OwnCouple<T>> Slipping<T, G> {
         if let Some(couple) = &couple {
             inertia = inertia - lever * couple.pressed[1];
         }
-        let left = size * inertia - self.strength * pull[0] * lever * height;
+        let holds = self.losses.as_ref().map_or(Holds::default(), Couples::holds);
+        let mut left = size * inertia - self.strength * pull[0] * lever * height;
+        let mut room = left - s.splat(JAMMED) * size * inertia;
+        if holds.rolling {
+            // The centre stays at its height, so that N = 1.
+            (left, room) = (size, size);
+        }
         // One division gives 1/s, 1/left and 1/sum.
         let per = s.splat(1.0) / (s * left * sum);
         let precession = w1 * (per * left * sum);
@@ -216,7 +225,10 @@ impl<T: Real, G: OwnCouple<T>> Slipping<T, G> {
         if let Some(couple) = &couple {
             spinning = spinning + couple.free[1];
         }
-        let free = *i1 * (w1.splat(1.0) - slope * square) + lever * spinning;
+        let mut free = *i1 * (w1.splat(1.0) - slope * square) + lever * spinning;
+        if holds.rolling {
+            free = w1.splat(1.0);
+        }
         let share = free * (per * s * sum);
         let grip = self.strength * share;
         let (across, along) = (-(grip * pull[0]), -(grip * pull[1]));
@@ -226,30 +238,89 @@ impl<T: Real, G: OwnCouple<T>> Slipping<T, G> {
             let [m1, m2, m3] = couple.under(force[0]);
             (t1, t2, t3) = (t1 + m1, t2 + m2, t3 + m3);
         }
+        if let Some(twist) = twist {
+            // Neither the normal force nor friction depends on a couple about the vertical.
+            let couple = twist * force[0];
+            (t1, t3) = (t1 + couple * s, t3 + couple * c);
+        }
         let mut dw = [t1 * self.per_i1, t2 * self.per_i1, t3 * self.per_i3];
         let mut held = [w1.splat(0.0), w1.splat(1.0)];
-        if let Some(losses) = self.losses.as_ref().filter(|losses| losses.holds_drilling()) {
-            // Neither the normal force nor friction depends on a couple about the vertical.
-            let off = s * dw[0] + c * dw[2] - w2 * (c * w1 - s * w3);
-            let (give1, give3) = (s * self.per_i1, c * self.per_i3);
-            let push = -(off / (s * give1 + c * give3));
-            (dw[0], dw[2]) = (dw[0] + give1 * push, dw[2] + give3 * push);
-            held = [push, losses.coefficient(Law::Drilling) * force[0]];
+        let mut kept = held;
+        if let Some(losses) = self.losses.as_ref().filter(|losses| losses.holds() != Holds::default()) {
+            let most = |law: Law| losses.coefficient(law) * force[0];
+            let turned = [t1, t2, t3];
+            if holds.rolling {
+                (dw, held[0], kept) = self.stays(angle, turned, holds.drilling, [most(Law::DryContour), most(Law::RollingResistance)]);
+            } else {
+                (dw, held[0], kept[0]) = self.kept_still(angle, (w, precession), (dw, turned), holds);
+                kept[1] = if holds.contour { most(Law::DryContour) * radius } else { kept[1] };
+            }
+            held[1] = if holds.drilling { most(Law::Drilling) } else { held[1] };
         }
         let [v_h, v_2] = self.centre(angle, w, u);
         let du = [
             across + precession * v_2 - lever * square - height * dw[1],
             along - precession * v_h + depth * dw[0] - radius * dw[2] + rim.rho * w2 * (s * w1 + c * w3),
         ];
-        let room = left - s.splat(JAMMED) * size * inertia;
-        (SlipResponse { w: dw, u: du, free, room, force, held }, size * (per * s * left))
+        (SlipResponse { w: dw, u: du, free, room, force, held, kept }, size * (per * s * left))
+    }
+
+    /// w' with the couples that hold the contact along the rim, or the drilling, or both, from w' without them and the
+    /// torque; also the couple about the vertical, and the couple h/s. Neither the normal force nor friction depends on
+    /// these couples.
+    #[inline(always)]
+    fn kept_still(
+        &self,
+        (s, c): (T, T),
+        ([w1, w2, w3], precession): ([T; 3], T),
+        ([d1, d2, d3], [t1, _, t3]): ([T; 3], [T; 3]),
+        holds: Holds,
+    ) -> ([T; 3], T, T) {
+        let (give1, give3) = (s * self.per_i1, c * self.per_i3);
+        let turn = s * d1 + c * d3 - w2 * (c * w1 - s * w3);
+        let off = s * d3 - c * d1 - precession * w2;
+        let (mut d1, mut d3) = (d1, d3);
+        if holds.contour {
+            let [more1, more3] = if holds.drilling {
+                [c * off - s * turn, -(s * off) - c * turn]
+            } else {
+                let push = off / (s * self.per_i3 * s + c * self.per_i1 * c);
+                [c * push * self.per_i1, -(s * push * self.per_i3)]
+            };
+            (d1, d3) = (d1 + more1, d3 + more3);
+        } else {
+            let push = -(turn / (s * give1 + c * give3));
+            return ([d1 + give1 * push, d2, d3 + give3 * push], push, s.splat(0.0));
+        }
+        // The torque that these couples add to `t1` and `t3`.
+        let [m1, m3] = [d1 * self.shape.i1 - t1, d3 * self.shape.i3 - t3];
+        ([d1, d2, d3], s * m1 + c * m3, s * (c * m1 - s * m3))
+    }
+
+    /// w' of a body whose rolling and rocking are held, from the torque; the couple about the vertical that holds the
+    /// drilling if that is held, too; and the horizontal couple, of which dry friction along the contour has exerted
+    /// its part, with its limit. `most` has the limits of that part along h s, and of rolling resistance.
+    #[inline(always)]
+    fn stays(
+        &self,
+        (s, c): (T, T),
+        [t1, t2, t3]: [T; 3],
+        drilling: bool,
+        [contour, most]: [T; 2],
+    ) -> ([T; 3], T, [T; 2]) {
+        let Shape { rim, i1, i3 } = &self.shape;
+        let twist = s * t1 + c * t3;
+        let turn = if drilling { s.splat(0.0) } else { twist / (*i1 * s * s + *i3 * c * c) };
+        let (m1, m3) = (*i1 * (s * turn) - t1, *i3 * (c * turn) - t3);
+        let needs = still_needs([c * m1 - s * m3, -t2], contour * rim.radius((s, c)) / s);
+        ([s * turn, s.splat(0.0), c * turn], if drilling { -twist } else { s.splat(0.0) }, [needs, most])
     }
 
     /// The response where a slip begins in the direction `way`, or without friction where `way` is zero.
     #[inline(always)]
     pub fn towards(&self, angle: (T, T), w: [T; 3], u: [T; 2], way: [T; 2]) -> SlipResponse<T> {
         let one = self.strength.splat(1.0);
-        self.with(angle, w, u, (way, one, one)).0
+        self.with(angle, w, u, (way, one, one), None).0
     }
 
     /// Velocity of the centre along e_h and e2.
@@ -268,7 +339,7 @@ impl<T: Real, G: OwnCouple<T>> Slipping<T, G> {
             size = u[0].mac(u[0], u[1] * u[1]).sqrt();
             sum = size + self.soft;
         }
-        self.with(angle, w, u, (u, size, sum))
+        self.with(angle, w, u, (u, size, sum), None)
     }
 
     /// The response in a state, dt/dsigma there, and the heat of the couple of the patch in a unit of time.
@@ -277,13 +348,9 @@ impl<T: Real, G: OwnCouple<T>> Slipping<T, G> {
         let drilling = s * w[0] + c * w[2];
         let [share, twist, size] = rubs(u[0].mac(u[0], u[1] * u[1]).sqrt(), drilling, patch);
         let pull = u.map(|u| u * share * size);
-        let (mut at, pace) = self.with((s, c), w, u, (pull, size, size + self.soft));
-        // Neither the contact force nor the slip across the axis depends on a couple about the vertical.
-        let (couple, rim) = (self.strength * twist * at.force[0], &self.shape.rim);
-        let (turn1, turn3) = (couple * s * self.per_i1, couple * c * self.per_i3);
-        (at.w[0], at.w[2]) = (at.w[0] + turn1, at.w[2] + turn3);
-        at.u[1] = at.u[1] + (rim.depth((s, c)) * turn1 - rim.radius((s, c)) * turn3);
-        (at, pace, -(couple * drilling))
+        let twist = self.strength * twist;
+        let (at, pace) = self.with((s, c), w, u, (pull, size, size + self.soft), Some(twist));
+        (at, pace, -(twist * at.force[0] * drilling))
     }
 
     /// Writes the derivatives of sine, cosine, w, u, time and, as the ninth number, heat with respect to sigma.

@@ -15,28 +15,17 @@
 //!
 //! Error: alpha is known to 1e-15 divided by the slope of f.
 
-use super::lossy::{Held, Lossy};
-use super::slip::{Friction, Slipping};
+use super::lossy::Lossy;
+use super::slip::{Friction, Slipping, painleve};
+use super::together::{Rubs, Together};
 use super::{Contact, Force, force};
 use crate::laws::body::Body;
-use crate::laws::loss::{Couples, Law, Losses, OwnCouple, Ways, rounded};
+use crate::laws::loss::{Couples, Losses, OwnCouple};
 use crate::laws::state::State;
 use crate::methods::roots::Trig;
 use crate::numbers::Sum;
+pub(crate) use super::together::Standstill;
 use core::f64::consts::{FRAC_PI_2, PI};
-
-/// The behaviour of a contact point whose slip is zero.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Standstill {
-    /// The contact point stays at rest, and the body rolls.
-    Sticks,
-    /// The contact point slips off along `alpha`, from e_h towards e2, and its speed grows at the rate `growth`.
-    Slips { alpha: f64, growth: f64 },
-    /// No normal force presses the body on the table.
-    LiftsOff,
-    /// No force, or more than one, obeys the law of friction.
-    Undefined,
-}
 
 /// From this fraction of mu_P on, more than one behaviour may be consistent, and all are counted.
 const DOUBTFUL: f64 = 0.9;
@@ -125,8 +114,20 @@ impl<F: Fn(f64) -> Option<f64>> HeldContact<F> {
 
 /// The behaviour of a contact point whose slip is zero.
 pub(crate) fn standstill(body: &Body, y: &State, friction: &Friction, losses: &Losses) -> Standstill {
-    let Friction::Coulomb { mu, fixed, .. } = *friction else { return Standstill::Sticks };
-    rest(body, y, (friction, [mu, fixed]), Couples::some(losses)).decides()
+    standstill_under(body, y, friction, Couples::some(losses))
+}
+
+/// The motions at rest of a body whose slip is zero, if dry losses resist others than the slip, and whether more than
+/// one behaviour may be consistent.
+fn together(
+    body: &Body,
+    y: &State,
+    mu: f64,
+    of: Option<&Couples<f64, impl OwnCouple<f64>>>,
+) -> Option<(Together, bool)> {
+    let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
+    let found = Together::of_body(&body.shape(), of?, (angle, w), [0.0; 2], Rubs::Rests)?;
+    Some((found, mu >= DOUBTFUL * painleve(body, y.theta)))
 }
 
 /// The behaviour of a contact point whose slip is zero, under these couples.
@@ -137,13 +138,20 @@ pub(crate) fn standstill_under(
     of: Option<Couples<f64, impl OwnCouple<f64>>>,
 ) -> Standstill {
     let Friction::Coulomb { mu, fixed, .. } = *friction else { return Standstill::Sticks };
-    rest(body, y, (friction, [mu, fixed]), of).decides()
+    match together(body, y, mu, of.as_ref()) {
+        Some((together, doubtful)) => together.standstill([mu, fixed], doubtful),
+        None => rest(body, y, (friction, [mu, fixed]), of).decides(),
+    }
 }
 
 /// The direction in which a contact point slips off when static friction has just ceased to hold it.
 pub(crate) fn let_go(body: &Body, y: &State, friction: &Friction, losses: &Losses) -> Standstill {
     let Friction::Coulomb { mu, fixed, .. } = *friction else { return Standstill::Sticks };
-    rest(body, y, (friction, [mu, fixed]), Couples::some(losses)).lets_go()
+    let of = Couples::some(losses);
+    match together(body, y, mu, of.as_ref()) {
+        Some((together, doubtful)) => together.lets_go([mu, fixed], doubtful),
+        None => rest(body, y, (friction, [mu, fixed]), of).lets_go(),
+    }
 }
 
 /// The forces at the contact point of a rim at rest.
@@ -153,12 +161,9 @@ fn rest(
     (friction, mu): (&Friction, [f64; 2]),
     losses: Option<Couples<f64, impl OwnCouple<f64>>>,
 ) -> HeldContact<impl Fn(f64) -> Option<f64>> {
-    let mut slipping = Slipping::on(body, friction).with_losses(losses);
+    let slipping = Slipping::on(body, friction).with_losses(losses);
     let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
-    let (rolling, ways) = rolling(body, y, losses);
-    if let Some(losses) = &mut slipping.losses {
-        losses.ways = ways;
-    }
+    let rolling = rolling(body, y, losses);
     let free = slipping.towards(angle, w, [0.0; 2], [0.0; 2]).force[0];
     HeldContact {
         mu,
@@ -175,34 +180,11 @@ fn rest(
     }
 }
 
-/// The force that keeps the contact point at rest, and the signs of the dry losses if the drilling is at
-/// rest, too.
-fn rolling(
-    body: &Body,
-    y: &State,
-    losses: Option<Couples<f64, impl OwnCouple<f64>>>,
-) -> (Force, Option<Ways>) {
-    let Some(losses) = losses else { return (force(Contact::Rolling, body, y), None) };
-    let ((s, c), w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
-    let mut law = Lossy { rates: Contact::Rolling.rates(body), losses };
-    if !law.losses.has(Law::Drilling) || (s * y.w1 + c * y.w3).abs() > rounded(s, w) {
-        let [normal, along, across] = law.in_state(y).force;
-        return (Force { normal, along, across }, None);
-    }
-    let spin = y.spin();
-    let contour = if spin == 0.0 { 0.0 } else { spin.signum() };
-    let mut under = |ways, held| {
-        law.losses.ways = Some(ways);
-        law.at((s, c), y.precession(), w, held)
-    };
-    let ways = Ways { contour, ..Ways::default() }.holding_drilling();
-    let mut acted = under(ways, Held::Drilling);
-    let ways = ways.drilling_stopped(acted.held);
-    if !ways.holds_drilling {
-        acted = under(ways, Held::Nothing);
-    }
-    let [normal, along, across] = acted.force;
-    (Force { normal, along, across }, Some(ways))
+/// The force that keeps the contact point at rest.
+fn rolling(body: &Body, y: &State, losses: Option<Couples<f64, impl OwnCouple<f64>>>) -> Force {
+    let Some(losses) = losses else { return force(Contact::Rolling, body, y) };
+    let [normal, along, across] = Lossy { rates: Contact::Rolling.rates(body), losses }.in_state(y).force;
+    Force { normal, along, across }
 }
 
 /// Cosine and sine of a direction; the direction pi or -pi gives exactly (-1, 0).
@@ -276,17 +258,8 @@ fn onset(slipping: &Slipping<f64, impl OwnCouple<f64>>, angle: (f64, f64), w: [f
     let eps = mu * lever * height / (i1 + lever * (lever - pressed[1]));
     // `bare` is u' without friction, the normal force, and the losses that are proportional to this force.
     let at = slipping.towards(angle, w, [0.0; 2], [0.0; 2]);
-    let (more, mut aside) = (-(height * pressed[1] / i1), depth * pressed[0] / i1 - radius * pressed[2] / i3);
-    let mut pulled = depth * depth / i1 + radius * radius / i3;
-    if slipping.losses.is_some_and(|losses| losses.holds_drilling()) {
-        // The couple that holds the drilling cancels the turn about the vertical by a force and by the
-        // pressed couple.
-        let (s, c) = angle;
-        let turned = s * depth / i1 - c * radius / i3;
-        let light = s * s / i1 + c * c / i3;
-        aside -= turned * (s * pressed[0] / i1 + c * pressed[2] / i3) / light;
-        pulled -= turned * turned / light;
-    }
+    let (more, aside) = (-(height * pressed[1] / i1), depth * pressed[0] / i1 - radius * pressed[2] / i3);
+    let pulled = depth * depth / i1 + radius * radius / i3;
     Onset {
         mu,
         free,

@@ -113,26 +113,47 @@ impl<T: Real> OwnCouple<T> for Option<Couple<T>> {
     }
 }
 
-/// The signs of the motions that dry friction resists, held fixed by a caller: of psi', of w_z, and of the rocking.
+/// The motions that dry friction holds at rest.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) struct Holds {
+    /// The contact along the rim, psi' = 0, by a couple h/s.
+    pub contour: bool,
+    /// The drilling, w_z = 0, by a couple about the vertical.
+    pub drilling: bool,
+    /// Rolling and rocking, by a horizontal couple, so that the body only turns about the vertical.
+    pub rolling: bool,
+}
+
+/// The signs of the motions that dry friction resists, held fixed by a caller: of psi', of w_z, and of w_h and w2.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Ways<T = f64> {
     pub contour: T,
     pub drilling: T,
-    /// The sign of w2 for a body that only rocks, otherwise 0; in lanes no body only rocks.
+    /// The direction of (w_h, w2), where it is fixed: (0, 1) or (0, -1) for a body that only rocks, and the direction
+    /// in which rolling and rocking begin; otherwise 0, and in lanes always.
+    pub rolling: f64,
     pub rocking: f64,
-    /// Whether dry friction holds the drilling, by a couple about the vertical.
-    pub holds_drilling: bool,
+    pub holds: Holds,
+}
+
+impl<T: Real> Ways<T> {
+    /// No signs, and nothing held.
+    #[inline(always)]
+    pub fn moving(like: T) -> Self {
+        let zero = like.splat(0.0);
+        Self { contour: zero, drilling: zero, rolling: 0.0, rocking: 0.0, holds: Holds::default() }
+    }
 }
 
 impl Ways {
     /// These signs with the drilling held.
     pub fn holding_drilling(self) -> Self {
-        Self { drilling: 0.0, holds_drilling: true, ..self }
+        Self { drilling: 0.0, holds: Holds { drilling: true, ..self.holds }, ..self }
     }
 
     /// These signs with a drilling that begins in the direction of the push, given by the couple that would hold it.
     pub fn drilling_from(self, push: f64) -> Self {
-        Self { drilling: -push.signum(), holds_drilling: false, ..self }
+        Self { drilling: -push.signum(), holds: Holds { drilling: false, ..self.holds }, ..self }
     }
 
     /// These signs where the drilling has stopped: dry friction holds the drilling if its limit suffices; otherwise the
@@ -182,6 +203,16 @@ pub(crate) const GRACE: f64 = 1e-11;
 /// Whether dry friction can exert the couple that holds a motion, from this couple and the limit of friction.
 pub(crate) fn holds([push, limit]: [f64; 2]) -> bool {
     push.abs() <= limit * (1.0 + GRACE)
+}
+
+/// The couple of rolling resistance that keeps a body from rolling and rocking, from the whole horizontal couple, along
+/// h and e2, that this needs; dry friction along the contour exerts as much of the former as it can.
+#[inline(always)]
+pub(crate) fn still_needs<T: Real>([across, along]: [T; 2], contour: T) -> T {
+    let zero = across.splat(0.0);
+    let left = (across.abs() - contour).max(zero);
+    // The small number keeps the slope of the root finite at zero.
+    (left.mac(left, along * along) + zero.splat(1e-300)).sqrt()
 }
 
 /// The speed below which a motion that was held counts as at rest, since rounding errors are of this size.
@@ -248,8 +279,9 @@ impl<T: Real> Couples<T> {
         let ways = self.ways.map(|ways| Ways {
             contour: number(ways.contour),
             drilling: number(ways.drilling),
+            rolling: ways.rolling,
             rocking: ways.rocking,
-            holds_drilling: ways.holds_drilling,
+            holds: ways.holds,
         });
         // In lanes the compiler would not inline the closure of an array's `map`.
         let mut coefficients = [number(self.coefficients[0]); COUNT];
@@ -267,12 +299,23 @@ impl<T: Real> Couples<T> {
 }
 
 impl<T: Real, G: OwnCouple<T>> Couples<T, G> {
+    /// These losses with another couple, per normal force.
+    pub fn with_more(&self, pressed: [T; 3]) -> Couples<T, Option<Couple<T>>> {
+        let zero = pressed[0].splat(0.0);
+        let given = self.given.couple().copied().unwrap_or(Couple { free: [zero; 3], pressed: [zero; 3] });
+        let [a, b, c] = given.pressed;
+        let pressed = [a + pressed[0], b + pressed[1], c + pressed[2]];
+        let &Self { coefficients, present, ways, .. } = self;
+        Couples { coefficients, present, ways, given: Some(Couple { pressed, ..given }) }
+    }
+
     /// The kinematics from sine and cosine of theta, w1/s and w, with the signs that a caller holds fixed.
     #[inline(always)]
     pub fn seen(&self, rim: &Rim<T>, angle: (T, T), precession: T, w: [T; 3]) -> Kinematics<T> {
         let seen = Kinematics::of(rim, angle, precession, w);
         let Some(ways) = self.ways else { return seen };
-        let only = (ways.rocking != 0.0).then(|| [angle.0.splat(0.0), angle.0.splat(ways.rocking)]);
+        let fixed = ways.rocking != 0.0 || ways.rolling != 0.0 || ways.holds.rolling;
+        let only = fixed.then(|| [ways.rolling, ways.rocking].map(|way| angle.0.splat(way)));
         Kinematics { signs: [ways.contour, ways.drilling], only, ..seen }
     }
 
@@ -335,10 +378,10 @@ impl<T: Real, G: OwnCouple<T>> Couples<T, G> {
         has
     }
 
-    /// Whether dry friction holds the drilling of a body that slips.
+    /// The motions that dry friction holds.
     #[inline(always)]
-    pub fn holds_drilling(&self) -> bool {
-        self.ways.as_ref().is_some_and(|ways| ways.holds_drilling)
+    pub fn holds(&self) -> Holds {
+        self.ways.as_ref().map_or(Holds::default(), |ways| ways.holds)
     }
 
     /// Whether this law is present.
@@ -347,7 +390,7 @@ impl<T: Real, G: OwnCouple<T>> Couples<T, G> {
         self.present[law as usize]
     }
 
-    /// Sets the coefficient of a law that is present.
+    /// Sets the coefficient of a law.
     pub fn sets(&mut self, law: Law, coefficient: T) {
         self.coefficients[law as usize] = coefficient;
     }

@@ -24,7 +24,7 @@
 use crate::laws::body::Rim;
 use crate::laws::contact::JAMMED;
 use crate::laws::contact::patch::rubs;
-use crate::laws::loss::{Couple, Couples, Kinematics};
+use crate::laws::loss::{Couple, Couples, Holds, Kinematics};
 use crate::methods::SHORT_CODE;
 use crate::numbers::Real;
 use crate::numbers::vector::{Symmetric, cross, dot, plus};
@@ -57,8 +57,8 @@ pub(crate) struct Touching<T> {
     pub r_rate: [T; 3],
     /// The couple of the losses; None if there are none.
     pub lost: Option<Couple<T>>,
-    /// True if dry friction holds the drilling w.n at zero.
-    pub holds: bool,
+    /// The motions that dry friction holds: the drilling w.n, or the rolling and the rocking.
+    pub holds: Holds,
 }
 
 /// The response of a stone in one state.
@@ -74,6 +74,8 @@ pub(crate) struct StoneResponse<T> {
     pub room: T,
     /// The couple about the vertical: that of a patch, or the one that holds the drilling.
     pub couple: T,
+    /// The horizontal couple that holds the rolling and the rocking, if they are held.
+    pub kept: T,
 }
 
 impl<T: Real> StoneLaw<T> {
@@ -121,7 +123,7 @@ impl<T: Real> StoneLaw<T> {
         let r = core::array::from_fn(|i| -(wide[i] * per) - self.offset[i]);
         let moved = by(n_rate);
         let r_rate = core::array::from_fn(|i| (wide[i] * turn - moved[i]) * per);
-        Touching { n, r, r_rate, lost: None, holds: false }
+        Touching { n, r, r_rate, lost: None, holds: Holds::default() }
     }
 
     /// The arguments of the loss laws for a stone with the angular velocity `w`: those of an upright disk, whose e1 is
@@ -140,18 +142,21 @@ impl<T: Real> StoneLaw<T> {
         let Couple { free, pressed } = losses.at(&Self::kinematics(losses, lab, w));
         let own = |[z, x, y]: [T; 3]| plus(plus(lab[2].map(|a| z * a), x, lab[0]), y, lab[1]);
         let lost = Couple { free: own(free), pressed: own(pressed) };
-        Touching { lost: Some(lost), holds: losses.holds_drilling(), ..at }
+        Touching { lost: Some(lost), holds: losses.holds(), ..at }
     }
 
     /// The response of a stone that rolls without slip. The compiler drops the force if it is not used.
     #[inline(always)]
     pub fn rolling(&self, at: &Touching<T>, w: [T; 3]) -> StoneResponse<T> {
-        self.resting(at, w, at.holds)
+        self.resting(at, w, at.holds.drilling)
     }
 
     /// The response of a stone that rolls without slip. If `held`, a couple keeps its drilling w.n constant.
     #[inline(always)]
     pub fn resting(&self, at: &Touching<T>, w: [T; 3], held: bool) -> StoneResponse<T> {
+        if at.holds.rolling {
+            return self.stays(at, w, None, None, !held);
+        }
         let &Touching { n, r, r_rate, lost, .. } = at;
         let one = n[0].splat(1.0);
         let carried = cross(w, plus(r_rate, one, cross(w, r)));
@@ -190,7 +195,7 @@ impl<T: Real> StoneLaw<T> {
             room = factor - one.splat(JAMMED);
         }
         let force = plus(plus(n, -one, carried), -one, cross(dw, r));
-        StoneResponse { w: dw, force, free: dot(force, n), room, couple: kept }
+        StoneResponse { w: dw, force, free: dot(force, n), room, couple: kept, kept: one.splat(0.0) }
     }
 
     /// The response to the friction force -strength N `pull`, where `pull` is horizontal.
@@ -202,6 +207,9 @@ impl<T: Real> StoneLaw<T> {
     /// The response to the friction force -strength N `pull` and to a couple `twist` N about the vertical.
     #[inline(always)]
     fn twisted(&self, at: &Touching<T>, w: [T; 3], pull: [T; 3], twist: Option<T>) -> StoneResponse<T> {
+        if at.holds.rolling {
+            return self.stays(at, w, Some(pull), twist, !at.holds.drilling);
+        }
         let &Touching { n, r, r_rate, .. } = at;
         let one = n[0].splat(1.0);
         let mut still = self.inverse.times(cross(self.inertia.times(w), w));
@@ -209,7 +217,7 @@ impl<T: Real> StoneLaw<T> {
         if let Some(lost) = &at.lost {
             still = plus(still, one, self.inverse.times(lost.free));
         }
-        if at.holds {
+        if at.holds.drilling {
             (still, keeps) = self.without_drilling(n, still);
         }
         let carried = plus(cross(w, plus(r_rate, one, cross(w, r))), one, cross(still, r));
@@ -219,7 +227,7 @@ impl<T: Real> StoneLaw<T> {
             lever = plus(lever, one, lost.pressed);
         }
         let mut turned = self.inverse.times(twist.map_or(lever, |twist| plus(lever, twist, n)));
-        if at.holds {
+        if at.holds.drilling {
             (turned, twists) = self.without_drilling(n, turned);
         }
         let factor = one + dot(cross(turned, r), n);
@@ -231,6 +239,44 @@ impl<T: Real> StoneLaw<T> {
             free,
             room: factor - one.splat(JAMMED),
             couple: twist.map_or(normal.mac(twists, keeps), |twist| twist * normal),
+            kept: one.splat(0.0),
+        }
+    }
+
+    /// The response of a stone that only turns about the vertical, since its rolling and its rocking are held, so that
+    /// N = 1. Either the contact point is at rest, and the centre moves on a circle, or friction is n - `pull`, with the
+    /// couple `twist` about the vertical.
+    #[inline(always)]
+    fn stays(&self, at: &Touching<T>, w: [T; 3], pull: Option<[T; 3]>, twist: Option<T>, drills: bool) -> StoneResponse<T> {
+        let &Touching { n, r, .. } = at;
+        let (zero, one) = (n[0].splat(0.0), n[0].splat(1.0));
+        let pivots = pull.is_none();
+        // Without the derivative of w.
+        let carried = if pivots { cross(w, cross(w, r)) } else { [zero; 3] };
+        let fixed = plus(plus(n, -one, carried), -self.strength, pull.unwrap_or([zero; 3]));
+        let mut couple = plus(cross(self.inertia.times(w), w), one, cross(r, fixed));
+        if let Some(lost) = &at.lost {
+            couple = plus(couple, one, lost.under(one));
+        }
+        if let Some(twist) = twist {
+            couple = plus(couple, twist, n);
+        }
+        // The couple per w', of which a part acts by the force that moves the centre.
+        let circle = cross(n, r);
+        let moves = if pivots { circle } else { [zero; 3] };
+        let needs = plus(self.inertia.times(n), one, cross(r, moves));
+        let turn = if drills { dot(couple, n) / dot(needs, n) } else { zero };
+        let left = plus(needs.map(|x| x * turn), -one, couple);
+        let about = dot(left, n);
+        let across = plus(left, -about, n);
+        let force = plus(fixed, -turn, moves);
+        StoneResponse {
+            w: n.map(|x| x * turn),
+            force,
+            free: one,
+            room: one,
+            couple: twist.unwrap_or(about),
+            kept: (dot(across, across) + one.splat(1e-300)).sqrt(),
         }
     }
 
@@ -281,7 +327,7 @@ impl<T: Real> StoneLaw<T> {
     /// The acceleration of the contact point under this couple, along the axes of the body.
     pub fn swings(&self, at: &Touching<T>, couple: [T; 3]) -> [T; 3] {
         let turned = self.inverse.times(couple);
-        cross(if at.holds { self.without_drilling(at.n, turned).0 } else { turned }, at.r)
+        cross(if at.holds.drilling { self.without_drilling(at.n, turned).0 } else { turned }, at.r)
     }
 
     /// Kinetic and potential energy of a stone whose contact point has the velocity `u`; heights are above the table.

@@ -4,7 +4,7 @@ use super::phases::{BodyWalk, LossyPhase};
 use super::write::state;
 use crate::error::Error;
 use crate::laws::contact::Table;
-use crate::laws::contact::standstill::standstill;
+use crate::laws::loss::Holds;
 use crate::laws::state::State;
 use crate::methods::flow::{Flow, Steps};
 use crate::motions::Ending;
@@ -19,14 +19,13 @@ impl<const N: usize> BodyWalk<'_, N> {
     pub(super) fn begins_to_lose(&mut self, mu: f64) -> Result<Option<[f64; N]>, Error> {
         let on = (&self.of.body, self.contact());
         let (losses, y, friction) = (self.of.rolling_losses, self.of.state, self.friction());
-        let mut flow = LossyFlow::new(on, mu, &losses, self.of.slide.tol, &y).on_patch(&friction, &y);
+        let flow = LossyFlow::new(on, mu, &losses, self.of.slide.tol, &y).on_patch(&friction, &y);
         if flow.is_patch() && flow.holds_drilling() {
             self.claims(LOST_DRILLING * drilling(&self.of.state).abs());
         }
         let halt = flow.at_start(&self.of.state);
         // The friction that would hold a moving contact point is not that of a body at rest.
-        let may_rest = halt.is_none_or(|halt| halt == Halt::Slips && self.of.is_still());
-        let rests = may_rest && flow.rests(&self.of.state);
+        let rests = halt.is_none_or(|halt| halt == Halt::Slips) && flow.has_stopped(&self.of.state);
         self.of.lossy = Some(LossyPhase { flow, since: self.at[7], still: 0, count: 0 });
         match halt {
             _ if rests => {
@@ -74,10 +73,8 @@ impl<const N: usize> BodyWalk<'_, N> {
         let Some(mut phase) = self.of.lossy.take() else { return Ok(None) };
         let (body, ask) = (self.of.body, self.ask);
         let goes_on = ask.beyond && !matches!(ask.table, Table::Rubs(_));
-        // With a restitution a body whose contact point has stopped keeps rocking and comes to lie on its side.
-        let rocks_on = found == Halt::Contour && (goes_on || ask.restitution.is_some());
         if phase.flow.holds_drilling() && !matches!(found, Halt::Time | Halt::Pause) {
-            self.removes_drilling();
+            self.stops_exactly(Holds { drilling: true, ..Holds::default() });
         }
         let flow = &mut phase.flow;
         let next = match found {
@@ -99,10 +96,7 @@ impl<const N: usize> BodyWalk<'_, N> {
                 };
                 self.claims(doubt);
                 let stops = flow.after(found, &self.of.state);
-                if stops && goes_on && found == Halt::Contour {
-                    self.records_event(Ending::Stops);
-                }
-                if !stops || rocks_on {
+                if !stops {
                     let y = flow.enter(&self.at);
                     self.of.lossy = Some(phase);
                     return Ok(Some(y));
@@ -135,10 +129,9 @@ impl<const N: usize> BodyWalk<'_, N> {
                 Next::Slips
             }
             Halt::Slips if matches!(ask.table, Table::Rubs(_)) && flow.jumps(&self.of.state) => {
-                let (state, by) = flow.on_its_way(&self.of.state);
-                (self.at[2], self.at[4], self.of.state) = (state.w1, state.w3, state);
-                self.claims(by);
-                after_rest(standstill(&body, &state, &self.friction(), &ask.losses))
+                let stops = flow.hardly_moves(&self.of.state);
+                self.stops_exactly(stops);
+                after_rest(Phases::rests(self))
             }
             Halt::Slips if ask.table.rubs() => after_rest(Phases::lets_go(self)),
             found => Next::Ends(ending(found)),

@@ -2,7 +2,7 @@
 
 use super::check;
 use super::flight::Takeoff;
-use super::lossy::{LossyFlow, REST, with_patch};
+use super::lossy::{LossyFlow, with_patch};
 use super::lying::flow::LyingPhase;
 use super::slide::Slide;
 use super::slow::{BodySlips, Slippery};
@@ -13,7 +13,7 @@ use crate::laws::body::Body;
 use crate::laws::contact::slip::{Friction, centre_velocity, painleve};
 use crate::laws::contact::standstill::{Standstill, let_go, standstill, towards};
 use crate::laws::contact::{Contact, Table, force, lossy};
-use crate::laws::loss::Losses;
+use crate::laws::loss::{Holds, Losses};
 use crate::laws::state::State;
 use crate::methods::flow::{Flow, FlowPlace, Steps};
 use crate::motions::halt::{Halt, loses, lost, poses};
@@ -74,14 +74,6 @@ pub(super) struct LossyPhase {
     pub(super) since: f64,
     pub(super) still: u32,
     pub(super) count: usize,
-}
-
-impl BodyPhases {
-    /// Whether the body is at rest.
-    pub(super) fn is_still(&self) -> bool {
-        let State { w1, w2, w3, .. } = self.state;
-        [w1, w2, w3].into_iter().all(|w| w.abs() < REST)
-    }
 }
 
 impl<'a, const N: usize> BodyWalk<'a, N> {
@@ -168,12 +160,31 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
         self.of.state = state(&self.at);
     }
 
-    /// Removes the drilling w_z that errors of the steps have caused while dry friction held it at zero.
-    pub(super) fn removes_drilling(&mut self) {
+    /// Makes motions vanish exactly that have stopped, or that dry friction has held at zero but for the errors of the
+    /// steps.
+    pub(super) fn stops_exactly(&mut self, stops: Holds) {
+        if stops == Holds::default() {
+            return;
+        }
         let (s, c) = state(&self.at).theta.sin_cos();
-        let drilling = s * self.at[2] + c * self.at[4];
-        (self.at[2], self.at[4]) = (self.at[2] - s * drilling, self.at[4] - c * drilling);
-        self.claims(drilling.abs());
+        let [w1, w2, w3] = [self.at[2], self.at[3], self.at[4]];
+        let (drilling, rolling) = (s * w1 + c * w3, c * w1 - s * w3);
+        let mut left = 0f64;
+        if stops.drilling {
+            (self.at[2], self.at[4]) = (w1 - s * drilling, w3 - c * drilling);
+            left = drilling.abs();
+        }
+        if stops.contour || stops.rolling {
+            (self.at[2], self.at[4]) = (self.at[2] - c * rolling, self.at[4] + s * rolling);
+            left = left.max(rolling.abs());
+        }
+        if stops.rolling {
+            (self.at[3], left) = (0.0, left.max(w2.abs()));
+        }
+        if stops.drilling && (stops.contour || stops.rolling) {
+            (self.at[2], self.at[4]) = (0.0, 0.0);
+        }
+        self.claims(left);
         self.of.state = state(&self.at);
     }
 
@@ -284,15 +295,6 @@ impl<const N: usize> Phases<N> for BodyPhases {
 
     fn rests(walk: &BodyWalk<'_, N>) -> Standstill {
         let (of, losses) = (&walk.of, &walk.ask.losses);
-        // A body that rolling resistance keeps at rest sticks: the law of a slip would let the resistance push it.
-        let held = || {
-            let (on, friction) = ((&of.body, walk.contact()), walk.friction());
-            let flow = LossyFlow::new(on, f64::INFINITY, &of.rolling_losses, of.slide.tol, &of.state);
-            flow.on_patch(&friction, &of.state).rests(&of.state)
-        };
-        if of.is_still() && !of.rolling_losses.is_none() && held() {
-            return Standstill::Sticks;
-        }
         standstill(&of.body, &of.state, &walk.friction(), losses)
     }
     fn lets_go(walk: &BodyWalk<'_, N>) -> Standstill {
@@ -348,10 +350,13 @@ impl<const N: usize> Phases<N> for BodyPhases {
     }
 
     fn slips(walk: &mut BodyWalk<'_, N>) -> [f64; N] {
-        walk.of.slide.sets_ways(&walk.of.state, [walk.at[5], walk.at[6]], [0.0; 2]);
-        walk.at
+        walk.of.slide.sets_ways(&walk.of.state, [walk.at[5], walk.at[6]], [0.0; 2], None);
+        Self::slips_on(walk)
     }
     fn slips_on(walk: &mut BodyWalk<'_, N>) -> [f64; N] {
+        if walk.of.slide.begins_to_roll().is_some() {
+            return walk.begins_at_once([0.0; 2], 0.0);
+        }
         walk.of.slide.enter(&walk.at)
     }
 
@@ -359,12 +364,12 @@ impl<const N: usize> Phases<N> for BodyPhases {
         walk.of.slide.rubs(&walk.at)
     }
     fn begins_slowly(walk: &BodyWalk<'_, N>) -> bool {
-        walk.of.slide.law.patch().is_none()
+        walk.of.slide.law.patch().is_none() && walk.of.slide.begins_to_roll().is_none()
     }
 
     fn lets_slip(walk: &mut BodyWalk<'_, N>, way: [f64; 2]) {
         if walk.of.lying.is_none() {
-            walk.of.slide.sets_ways(&walk.of.state, [0.0; 2], way);
+            walk.of.slide.sets_ways(&walk.of.state, [0.0; 2], way, None);
         }
     }
     fn slow(walk: &BodyWalk<'_, N>) -> BodySlips {
@@ -396,11 +401,13 @@ impl<const N: usize> Phases<N> for BodyPhases {
         })
     }
 
-    fn nudged(walk: &BodyWalk<'_, N>, way: [f64; 2], growth: f64) -> [f64; N] {
-        match &walk.of.lying {
-            Some(phase) => phase.flow.nudged(&walk.at, way, growth),
-            None => walk.of.slide.nudged(&walk.at, way, growth),
+    fn nudged(walk: &mut BodyWalk<'_, N>, way: [f64; 2], growth: f64) -> [f64; N] {
+        if let Some(phase) = &walk.of.lying {
+            return phase.flow.nudged(&walk.at, way, growth);
         }
+        let y = walk.of.slide.nudged(&walk.at, way, growth);
+        walk.of.slide.rolls_freely();
+        y
     }
 
     fn rolls(

@@ -6,6 +6,7 @@ use super::slide::Slide;
 use super::write::state;
 use crate::error::Error;
 use crate::methods::flow::{Flow, FlowPlace, Steps};
+use crate::laws::loss::Holds;
 use crate::motions::Ending;
 use crate::motions::halt::{Halt, loses};
 use crate::motions::walk::{Next, Pause, Phases, after_rest, ending};
@@ -66,8 +67,13 @@ impl<const N: usize> BodyWalk<'_, N> {
             self.claims(doubt);
         }
         self.made.path.slipping += self.at[7] - self.began;
-        if self.of.slide.holds_drilling() && !matches!(halt, Halt::Time | Halt::Pause) {
-            self.removes_drilling();
+        if !matches!(halt, Halt::Time | Halt::Pause) {
+            let Holds { contour, drilling, rolling } = self.of.slide.holds();
+            self.stops_exactly(Holds {
+                contour: contour || halt == Halt::Contour,
+                drilling: drilling || halt == Halt::Drilling,
+                rolling: rolling || halt == Halt::Rests,
+            });
         }
         let mut y = state(&self.at);
         if halt == Halt::Side {
@@ -83,12 +89,16 @@ impl<const N: usize> BodyWalk<'_, N> {
                 self.claims(Slide::settled_doubt(&y));
                 self.next = Some(Next::SlipsOn);
             }
-            Halt::Contour | Halt::Drilling | Halt::Rocking => {
+            Halt::Contour | Halt::Drilling | Halt::Rocking | Halt::Rests => {
+                let known = self.of.slide.known(halt);
                 if halt == Halt::Contour && self.of.slide.settled {
                     self.claims(self.of.slide.settled_lag(&y, slip));
                 }
-                let turns = self.of.slide.turns(halt, &y, slip);
-                self.next = Some(if turns { Next::SlipsOn } else { Next::Ends(Ending::Stops) });
+                if halt == Halt::Rocking {
+                    (self.at[3], self.of.state.w2) = (0.0, 0.0);
+                }
+                self.of.slide.sets_ways(&{ self.of.state }, slip, [0.0; 2], known);
+                self.next = Some(Next::SlipsOn);
             }
             halt => self.next = Some(Next::Ends(ending(halt))),
         }

@@ -69,6 +69,8 @@ pub(super) struct StoneFlow<'a> {
     pub stride: f64,
     /// Whether events other than a landing of the edge end the flow.
     pub watch: bool,
+    /// The direction, in the laboratory, in which rolling and rocking begin from rest.
+    pub push: [f64; 2],
     /// How fast rolling resistance changes w; 0 without rolling resistance.
     pub resisted: f64,
     /// The records of reversals and ends, in the finer run.
@@ -179,12 +181,23 @@ impl StoneFlow<'_> {
     pub fn nudged<const N: usize>(&self, y: &[f64; N], way: [f64; 2], growth: f64) -> [f64; N] {
         let ([a, b, c, d, e, f, g], mut to) = (core::array::from_fn(|i| y[i]), *y);
         let (lab, w) = (laboratory([a, b, c, d]), [e, f, g]);
-        let at = self.law.losing(self.law.touching(lab[2], w), &lab, w);
-        let pulled = self.law.pulled(&at, w, across(&lab, way));
-        let rates = turning([a, b, c, d], w).into_iter().chain(pulled.w);
-        to.iter_mut().zip(rates).for_each(|(x, rate)| *x += MOMENT * rate);
-        to[TIME] += MOMENT;
-        (to[8], to[9]) = (MOMENT * growth * way[0], MOMENT * growth * way[1]);
+        let mut rates = [0.0; N];
+        if slip_of(y) == [0.0; 2] && self.law.dry && self.rubs(y) <= self.over() {
+            let at = self.law.losing(self.law.touching(lab[2], w), &lab, w);
+            let pulled = self.law.pulled(&at, w, across(&lab, way));
+            rates[..4].copy_from_slice(&turning([a, b, c, d], w));
+            rates[4..8].copy_from_slice(&[pulled.w[0], pulled.w[1], pulled.w[2], 1.0]);
+            (rates[8], rates[9]) = (growth * way[0], growth * way[1]);
+            (rates[11], rates[12]) = (dot(lab[0], at.r_rate), dot(lab[1], at.r_rate));
+            if let Some(lost) = at.lost.filter(|_| loses(N)) {
+                rates[N - 1] = -dot(lost.under(dot(pulled.force, at.n).max(0.0)), w);
+            }
+        } else {
+            self.write_rates(y, &mut rates);
+            let pace = rates[TIME];
+            rates.iter_mut().for_each(|rate| *rate /= pace);
+        }
+        (0..N).for_each(|i| to[i] += MOMENT * rates[i]);
         self.kept(to)
     }
 

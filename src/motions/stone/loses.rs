@@ -3,25 +3,26 @@
 //! ```text
 //! w = w_z n + w_h        w_z the drilling, w_h the rolling and the rocking, along x and y of the laboratory
 //! dt = v/(v + delta l) dsigma,   v = |w_h|          with rolling resistance and without slip; l is an inverse inertia
-//! w_h = 0    stays if |m_h| <= delta N, with the horizontal couple m_h that keeps it; else the stone rolls along a root
-//!            of f, as a contact point at rest begins to slip along a root (`standstill`)
+//! w_h = 0    is held while |m_h| <= delta N, with the horizontal couple m_h that keeps it
 //! w_z = 0    is held while |m_z| <= length N
 //! ```
 //! The laws are those of bodies of revolution, in the same variables: for these laws a stone is an upright disk.
-//! A stone that no longer rolls or rocks has stopped, as a body has, but may go on drilling.
+//! [`together`](crate::laws::contact::together) finds which of the motions at rest are held, and how the others begin. A
+//! stone that no longer rolls or rocks goes on turning about the vertical until its drilling stops.
 //!
 //! Error: a stone that begins to roll gets the speed 2 `REST`.
 
 use super::flow::{Seen, StoneFlow, Touch, slip_of};
-use crate::laws::contact::standstill::{HeldContact, Onset, Standstill, towards};
-use crate::laws::loss::{Couple, Law, NEAR, Ways, rounded};
+use crate::laws::contact::patch::rubs;
+use crate::laws::contact::together::{Part, Together};
+use crate::laws::loss::{Couple, Holds, Law, NEAR, Ways, rounded};
 use crate::laws::stone::law::{StoneLaw, Touching, across, laboratory};
 use crate::methods::flow::{Flow, FlowPlace};
 use crate::motions::halt::TIME;
 pub(super) use crate::motions::path::lossy::REST;
 use crate::motions::path::slide::ways;
 use crate::numbers::vector::{dot, plus};
-use crate::numbers::{Dual, Real, Sum};
+use crate::numbers::{Dual, Real};
 
 /// In a slip, rolling that is slower than this, and that a step may change by `NEAR`, ends if rolling resistance would also
 /// stop it in the opposite direction.
@@ -47,7 +48,7 @@ impl<T: Real> StoneLaw<T> {
 impl StoneFlow<'_> {
     /// True if rolling resistance limits the steps.
     pub(super) fn is_paced(&self) -> bool {
-        self.resisted > 0.0 && self.touch != Touch::Slips
+        self.resisted > 0.0 && self.touch != Touch::Slips && !self.holds().rolling
     }
 
     /// dt/dsigma under rolling resistance.
@@ -86,18 +87,28 @@ impl StoneFlow<'_> {
         losses.map_or(f64::INFINITY, |losses| losses.longest(&seen(losses), self.is_paced()))
     }
 
-    /// The margins of the drilling, or of the couple that holds it, and of a unique normal force with rolling resistance.
+    /// The margins of the drilling, or of the couple that holds it; of the couple that holds rolling and rocking; and of a
+    /// unique normal force with rolling resistance.
     #[inline(always)]
     pub(super) fn drilling_margin<T: Real>(law: &StoneLaw<T>, seen: &Seen<T>, w: [T; 3]) -> T {
-        let one = w[0].splat(1.0);
-        let Some(losses) = &law.losses else { return one };
-        let most = losses.coefficient(Law::Drilling) * dot(seen.to.force, seen.at.n);
-        let [_, drilling] = ways(losses, &StoneLaw::kinematics(losses, &seen.lab, w), [seen.to.couple, most]);
-        drilling.min(seen.to.room)
+        let [drilling, rolling] = Self::held_margins(law, seen, w);
+        drilling.min(rolling).min(seen.to.room)
     }
 
-    pub(super) fn holds_drilling(&self) -> bool {
-        self.law.losses.as_ref().is_some_and(|losses| losses.holds_drilling())
+    #[inline(always)]
+    fn held_margins<T: Real>(law: &StoneLaw<T>, seen: &Seen<T>, w: [T; 3]) -> [T; 2] {
+        let one = w[0].splat(1.0);
+        let Some(losses) = &law.losses else { return [one; 2] };
+        let normal = dot(seen.to.force, seen.at.n);
+        let most = |law: Law| losses.coefficient(law) * normal;
+        let kept = [seen.to.kept, most(Law::RollingResistance)];
+        let kinematics = StoneLaw::kinematics(losses, &seen.lab, w);
+        let [rolling, drilling] = ways(losses, &kinematics, [seen.to.couple, most(Law::Drilling)], kept);
+        [drilling, rolling]
+    }
+
+    pub(super) fn holds(&self) -> Holds {
+        self.law.losses.as_ref().map_or(Holds::default(), |losses| losses.holds())
     }
 
     fn turn(&mut self, ways: Ways) {
@@ -107,32 +118,115 @@ impl StoneFlow<'_> {
         }
     }
 
-    /// Lets dry friction hold the drilling, or sets the sign of the drilling that it resists. `toward` is the direction
-    /// of a slip from rest; `freed` is true if friction has just let the drilling go. Returns the drilling that is left out.
+    /// The motion that friction ceases to hold where the margin of the drilling fails; None if the drilling stops.
+    pub(super) fn known<const N: usize>(&self, y: &[f64; N]) -> Option<(Part, bool)> {
+        let Holds { drilling, rolling, .. } = self.holds();
+        let margins = Self::held_margins(&self.law, &self.seen_at(y), [y[4], y[5], y[6]]);
+        if rolling && margins[1] <= margins[0] {
+            Some((Part::Rolling, true))
+        } else {
+            drilling.then_some((Part::Drilling, true))
+        }
+    }
+
+    /// The motions at rest of a stone besides the slip, which dry losses resist; None without any, or if nothing presses
+    /// the stone on the table. `slips` is the slip, or the direction of one that begins; None if the contact point is at
+    /// rest.
+    #[inline(never)]
+    pub(super) fn together<const N: usize>(&self, y: &[f64; N], slips: Option<[f64; 2]>) -> Option<Together> {
+        let losses = self.law.losses?;
+        let drilling = self.drilling(y);
+        let rests = |law: Law, there: bool| (losses.has(law) && there).then(|| losses.coefficient(law));
+        let turns = rounded(1.0, [drilling, 0.0, 0.0]);
+        let held = self.touch == Touch::Held;
+        let limits = [
+            slips.is_none().then_some(f64::INFINITY),
+            rests(Law::RollingResistance, self.rolls_at(y) < REST),
+            None,
+            rests(Law::Drilling, drilling.abs() <= turns).or(held.then_some(f64::INFINITY)),
+        ];
+        if limits[1].is_none() && (limits[3].is_none() || held) {
+            return None;
+        }
+        let mut law = self.law;
+        law.strength = 1.0;
+        let y = if limits[1].is_some() { self.rolling_along(y, [0.0; 2]) } else { *y };
+        let drills = if limits[3].is_some() { 0.0 } else { drilling.signum() };
+        if let Some(losses) = &mut law.losses {
+            losses.ways = Some(Ways { drilling: drills, ..Ways::default() });
+            if limits[1].is_some() {
+                losses.sets(Law::RollingResistance, 0.0);
+            }
+        }
+        let (lab, w) = (laboratory(core::array::from_fn(|i| y[i])), [y[4], y[5], y[6]]);
+        let at = law.losing(law.touching(lab[2], w), &lab, w);
+        let (mu, u) = (self.law.strength, slips.unwrap_or([0.0; 2]));
+        let size = u[0].hypot(u[1]);
+        let (pull, twist) = match self.law.patch() {
+            _ if !self.law.dry || size == 0.0 && drilling == 0.0 => (u.map(|u| mu * u), 0.0),
+            Some(patch) if self.rubs(&y) > self.over() => {
+                let u = slip_of(&y);
+                let [share, twist, _] = rubs(u[0].hypot(u[1]), drilling, patch);
+                (u.map(|u| mu * share * u), mu * twist)
+            }
+            _ => (u.map(|u| mu * u / size.max(f64::MIN_POSITIVE)), 0.0),
+        };
+        Together::of(limits, |r| {
+            let couple = plus(across(&lab, [r[2], r[3]]), r[5] + twist, at.n);
+            let more = |lost: Couple<f64>| Couple { pressed: plus(lost.pressed, 1.0, couple), ..lost };
+            let at = Touching { lost: at.lost.map(more), ..at };
+            let to = law.pulled(&at, w, across(&lab, [pull[0] - r[0], pull[1] - r[1]]));
+            let (slip, turn) = (law.slip_rate(&at, w, &to), lab.map(|axis| dot(axis, to.w)));
+            (dot(to.force, at.n), [dot(lab[0], slip), dot(lab[1], slip), turn[0], turn[1], 0.0, turn[2]])
+        })
+    }
+
+    /// Sets which motions dry friction holds, and the signs of the others. `toward` is the direction of a slip from rest,
+    /// and `known` a motion that friction has just ceased to hold. Returns the drilling that is left out.
     pub(super) fn sets_ways<const N: usize>(
         &mut self,
         y: &mut [f64; N],
         toward: [f64; 2],
-        freed: bool,
+        known: Option<(Part, bool)>,
     ) -> f64 {
-        if !self.law.losses.as_ref().is_some_and(|losses| losses.has(Law::Drilling)) {
+        self.push = [0.0; 2];
+        if self.law.losses.is_none() {
             return 0.0;
         }
         let drilling = self.drilling(y);
-        if drilling.abs() > rounded(1.0, [drilling, 0.0, 0.0]) {
-            self.turn(Ways { drilling: drilling.signum(), ..Ways::default() });
-            return 0.0;
+        let mut ways = Ways { drilling: if drilling == 0.0 { 0.0 } else { drilling.signum() }, ..Ways::default() };
+        self.turn(ways);
+        let slip = slip_of(y);
+        let slips = (!self.rests()).then_some(match self.touch {
+            Touch::Slips if slip == [0.0; 2] && self.law.dry => toward,
+            Touch::Slips => slip,
+            _ => [0.0; 2],
+        });
+        let Some(rests) = self.together(y, slips) else { return 0.0 };
+        let [_, rolls, _, drills] = rests.knowing(known).fates();
+        if rests.has(Part::Drilling) && self.touch != Touch::Held {
+            ways.drilling = if drills.begins() { drills.way[0].signum() } else { 0.0 };
+            ways.holds.drilling = !drills.begins();
         }
-        self.turn(Ways::default().holding_drilling());
-        let Seen { at, to, .. } = self.seen_towards(y, toward);
-        let most = self.law.losses.map_or(0.0, |losses| losses.coefficient(Law::Drilling));
-        let stopped = if freed {
-            Ways::default().drilling_from(to.couple)
-        } else {
-            Ways::default().drilling_stopped([to.couple, most * dot(to.force, at.n)])
-        };
-        self.turn(stopped);
-        if stopped.holds_drilling { self.removes_drilling(y) } else { 0.0 }
+        if rests.has(Part::Rolling) {
+            ways.holds.rolling = !rolls.begins();
+            self.push = rolls.way;
+            // In the variables of the laws, e2 and e3 are the axes x and y of the laboratory.
+            if self.touch == Touch::Slips {
+                [ways.rocking, ways.rolling] = [rolls.way[0], -rolls.way[1]];
+            }
+            *y = self.rolling_along(y, rolls.way.map(|x| 2.0 * REST * x));
+        }
+        self.turn(ways);
+        if ways.holds.drilling { self.removes_drilling(y) } else { 0.0 }
+    }
+
+    /// Frees the direction of a rolling that has begun in a slip.
+    pub(super) fn rolls_freely(&mut self) {
+        self.push = [0.0; 2];
+        if let Some(ways) = self.law.losses.as_ref().and_then(|losses| losses.ways) {
+            self.turn(Ways { rolling: 0.0, rocking: 0.0, ..ways });
+        }
     }
 
     /// Sets the drilling to zero, and returns its size.
@@ -156,7 +250,7 @@ impl StoneFlow<'_> {
     pub(super) fn rolls_no_more<const N: usize>(&self, place: &FlowPlace<N>) -> Option<[f64; N]> {
         let (y, speed) = (&place.y, self.rolls_at(&place.y));
         let slow = if self.is_paced() { REST } else { HARDLY_ROLLS };
-        if self.resisted == 0.0 || speed > slow || speed == 0.0 {
+        if self.resisted == 0.0 || self.holds().rolling || speed > slow || speed == 0.0 {
             return None;
         }
         let growth = self.rolling_growth(y);
@@ -180,50 +274,5 @@ impl StoneFlow<'_> {
         let w = plus(across(&lab, by), self.drilling(y), lab[2]);
         to[4..7].copy_from_slice(&w);
         to
-    }
-
-    /// The next motion of a stone that only drills: rolling resistance holds it, or the stone begins to roll, with w_h at
-    /// the angle alpha from axis x of the laboratory.
-    #[inline(never)]
-    pub(super) fn leaves<const N: usize>(&self, y: &[f64; N]) -> Standstill {
-        let (mut law, mut delta, y) = (self.law, 0.0, self.rolling_along(y, [0.0; 2]));
-        if let Some(losses) = &mut law.losses {
-            delta = losses.coefficient(Law::RollingResistance);
-            losses.sets(Law::RollingResistance, 0.0);
-        }
-        let (Seen { lab, at, .. }, w) = (Self { law, ..*self }.seen_at(&y), [y[4], y[5], y[6]]);
-        // The normal force and the rate of w_h with additional couples, one of which is proportional to that force.
-        let acts = |free: [f64; 3], pressed: [f64; 3]| {
-            let more = |lost: Couple<f64>| Couple {
-                free: plus(lost.free, 1.0, free),
-                pressed: plus(lost.pressed, 1.0, pressed),
-            };
-            let at = Touching { lost: at.lost.map(more), ..at };
-            let held = at.holds || self.touch == Touch::Held;
-            let to = if self.rests() { law.resting(&at, w, held) } else { law.pulled(&at, w, [0.0; 3]) };
-            (dot(to.force, at.n), [dot(lab[0], to.w), dot(lab[1], to.w)])
-        };
-        let (free, bare) = acts([0.0; 3], [0.0; 3]);
-        let [(m, [a, c]), (k, [d, b])] = [0, 1].map(|i| {
-            let (normal, rate) = acts(lab[i], [0.0; 3]);
-            (normal - free, [rate[0] - bare[0], rate[1] - bare[1]])
-        });
-        let per = -1.0 / (a * b - c * d);
-        let keeps = [per * (b * bare[0] - d * bare[1]), per * (a * bare[1] - c * bare[0])];
-        let onset = Onset {
-            mu: delta,
-            free,
-            eps: [-delta * m, -delta * k],
-            bare,
-            pressed: [Sum::from(0.0); 2],
-            pulled: [a, b, 0.5 * (c + d)],
-        };
-        let held = [free + m * keeps[0] + k * keeps[1], keeps[0].hypot(keeps[1])];
-        let growth = |alpha: f64| {
-            let way = towards(alpha);
-            let (normal, rate) = acts([0.0; 3], across(&lab, way).map(|x| -delta * x));
-            (normal > 0.0).then_some(way[0] * rate[0] + way[1] * rate[1])
-        };
-        HeldContact { mu: [delta; 2], free, held, against: 0.0, doubtful: false, onset, growth }.decides()
     }
 }

@@ -9,7 +9,8 @@ use super::write::write;
 use crate::error::Error;
 use crate::laws::contact::slip::Friction;
 use crate::laws::contact::standstill::{HeldContact, Onset, Standstill, towards};
-use crate::laws::loss::{Couples, GRACE};
+use crate::laws::contact::together::{Part, Together};
+use crate::laws::loss::{Couples, GRACE, Law, rounded};
 use crate::laws::stone::law::{across, laboratory};
 use crate::laws::stone::{Ellipsoid, StoneState};
 use crate::methods::SHORT_CODE;
@@ -43,6 +44,8 @@ pub(super) struct StonePhases<'n> {
     flow: StoneFlow<'n>,
     /// True if friction of the patch has just let the drilling go.
     freed: bool,
+    /// The motion that a dry loss has just let go.
+    known: Option<(Part, bool)>,
     /// The horizontal position of the centre of mass at the start, which is constant on a smooth table.
     still_centre: [f64; 2],
 }
@@ -72,6 +75,7 @@ impl<'a, 'n, const N: usize> StoneWalk<'a, 'n, N> {
             tol,
             stride: if tol > fine { ROUGH_STRIDE } else { 1.0 },
             watch: true,
+            push: [0.0; 2],
             resisted: law.resisted(),
             recorded,
         };
@@ -80,7 +84,7 @@ impl<'a, 'n, const N: usize> StoneWalk<'a, 'n, N> {
         at[4..7].copy_from_slice(&y.w);
         at[8..10].copy_from_slice(&slip);
         let [x, y, _] = flow.pose(&at, [0.0; 2]).centre;
-        let of = StonePhases { flow, freed: false, still_centre: [x, y] };
+        let of = StonePhases { flow, freed: false, known: None, still_centre: [x, y] };
         let mut walk = Self::new(of, at, ask, fine, (time, times))?;
         walk.next = Some(walk.first_phase()?);
         StonePhases::perturbs(&mut walk);
@@ -155,9 +159,18 @@ impl<'a, 'n, const N: usize> StoneWalk<'a, 'n, N> {
             self.made.path.slipping += y[TIME] - self.began;
         }
         self.at = y;
-        if self.of.flow.holds_drilling() && !matches!(halt, Halt::Time | Halt::Pause) {
+        let mut holds = self.of.flow.holds();
+        if halt == Halt::Drilling {
+            self.of.known = self.of.flow.known(&self.at);
+            holds.drilling |= self.of.known.is_none();
+        }
+        if holds.drilling && !matches!(halt, Halt::Time | Halt::Pause) {
             let left = self.of.flow.removes_drilling(&mut self.at);
             self.claims(left);
+        }
+        if holds.rolling && !matches!(halt, Halt::Time | Halt::Pause) {
+            self.claims(self.of.flow.rolls_at(&self.at));
+            self.at = self.of.flow.rolling_along(&self.at, [0.0; 2]);
         }
         let rubs = self.ask.table.rubs();
         match halt {
@@ -174,14 +187,10 @@ impl<'a, 'n, const N: usize> StoneWalk<'a, 'n, N> {
             }
             Halt::Drilling if self.of.flow.seen_at(&self.at).to.room <= 0.0 => Next::Ends(Ending::Painleve),
             Halt::Drilling | Halt::Rests if self.of.flow.touch != Touch::Slips => {
-                self.of.freed = self.of.flow.holds_drilling();
                 self.resumes_phase();
                 Next::Rolls { at_limit: false }
             }
-            Halt::Drilling => {
-                self.of.freed = self.of.flow.holds_drilling();
-                Next::SlipsOn
-            }
+            Halt::Drilling | Halt::Rests => Next::SlipsOn,
             Halt::Slips if let Some(slip) = self.of.flow.creeps(&self.at).filter(|_| rubs) => {
                 (self.at[8], self.at[9]) = (slip[0], slip[1]);
                 self.claims(LOST_DRILLING * self.of.flow.drilling(&self.at).abs());
@@ -192,8 +201,11 @@ impl<'a, 'n, const N: usize> StoneWalk<'a, 'n, N> {
                 self.of.freed = true;
                 Next::Rolls { at_limit: false }
             }
-            Halt::Slips if rubs && loses(N) && self.jumps() => after_rest(self.rest().decides()),
-            Halt::Slips if rubs => after_rest(self.rest().lets_go()),
+            Halt::Slips if rubs && loses(N) && self.jumps() => {
+                self.stops_exactly();
+                after_rest(self.rests_here())
+            }
+            Halt::Slips if rubs => after_rest(Phases::lets_go(self)),
             halt if halt != Halt::Face && self.ask.beyond && !rubs => {
                 self.records_event(ending(halt));
                 self.of.flow.watch = false;
@@ -212,34 +224,49 @@ impl<'a, 'n, const N: usize> StoneWalk<'a, 'n, N> {
         dot(along, along).sqrt() > self.of.flow.mu * to.free * (1.0 + JUMP)
     }
 
-    /// The behaviour of a contact point at rest. It sticks if rolling resistance keeps the whole stone at rest.
-    fn rests_here(&self) -> Standstill {
-        let flow = StoneFlow { touch: Touch::Rolls, ..self.of.flow };
-        let still = self.at[4..7].iter().all(|w| w.abs() < REST);
-        if still && flow.resisted > 0.0 && flow.leaves(&self.at) == Standstill::Sticks {
-            return Standstill::Sticks;
+    /// Makes motions vanish exactly that dry losses resist and that have hardly begun.
+    fn stops_exactly(&mut self) {
+        let (flow, losses) = (&self.of.flow, self.ask.losses);
+        let (rolls, drills) = (flow.rolls_at(&self.at), flow.drilling(&self.at).abs());
+        if losses.coefficient(Law::RollingResistance) > 0.0 && rolls < 4.0 * REST {
+            self.at = flow.rolling_along(&self.at, [0.0; 2]);
         }
-        self.rest().decides()
+        if losses.coefficient(Law::Drilling) > 0.0 && drills < 4.0 * REST {
+            self.of.flow.removes_drilling(&mut self.at);
+        }
+        self.claims(8.0 * REST);
+    }
+
+    /// The motions at rest besides the slip, if dry losses resist any; the coefficients of sliding and of static friction;
+    /// and whether more than one behaviour may be consistent.
+    fn together(&self) -> Option<(Together, [f64; 2], bool)> {
+        let rests = StoneFlow { touch: Touch::Rolls, ..self.of.flow }.together(&self.at, None)?;
+        let HeldContact { mu, doubtful, .. } = self.rest();
+        Some((rests, mu, doubtful))
+    }
+
+    /// The behaviour of a contact point at rest.
+    fn rests_here(&self) -> Standstill {
+        match self.together() {
+            Some((rests, mu, doubtful)) => rests.standstill(mu, doubtful),
+            None => self.rest().decides(),
+        }
     }
 
     /// Sets which motions dry losses resist or hold. Returns the next phase if the stone stays at rest.
     fn begins_to_lose(&mut self, toward: [f64; 2]) -> Option<Next> {
-        let freed = core::mem::take(&mut self.of.freed);
-        let left = self.of.flow.sets_ways(&mut self.at, toward, freed);
+        let known = core::mem::take(&mut self.of.known);
+        let left = self.of.flow.sets_ways(&mut self.at, toward, known);
         self.claims(left);
-        let flow = &self.of.flow;
-        if !flow.is_paced() || flow.rolls_at(&self.at) >= REST {
-            return None;
-        }
-        match flow.leaves(&self.at) {
-            Standstill::Sticks => return Some(Next::Ends(Ending::Stops)),
-            Standstill::LiftsOff => return Some(Next::Ends(Ending::LiftOff)),
-            Standstill::Undefined => return Some(Next::Ends(Ending::Painleve)),
-            Standstill::Slips { alpha, .. } => {
-                self.at = flow.rolling_along(&self.at, towards(alpha).map(|x| 2.0 * REST * x));
-            }
-        }
-        None
+        let (flow, drilling) = (&self.of.flow, self.of.flow.drilling(&self.at));
+        let turns = drilling.abs() > rounded(1.0, [drilling, 0.0, 0.0]);
+        let stops = flow.touch != Touch::Slips && flow.holds().rolling && !turns;
+        stops.then_some(Next::Ends(Ending::Stops))
+    }
+
+    /// Begins a rolling from rest in a slip.
+    fn rolls_off(&mut self) -> [f64; N] {
+        if self.of.flow.push == [0.0; 2] { self.at } else { self.begins_at_once([0.0; 2], 0.0) }
     }
 
     /// Records the room of an end by margin `i`: how far this margin falls below zero after the end. A margin
@@ -344,7 +371,10 @@ impl<'n, const N: usize> Phases<N> for StonePhases<'n> {
         walk.rests_here()
     }
     fn lets_go(walk: &StoneWalk<'_, 'n, N>) -> Standstill {
-        walk.rest().lets_go()
+        match walk.together() {
+            Some((rests, mu, doubtful)) => rests.lets_go(mu, doubtful),
+            None => walk.rest().lets_go(),
+        }
     }
 
     fn no_unique_force(walk: &StoneWalk<'_, 'n, N>) -> Error {
@@ -360,18 +390,18 @@ impl<'n, const N: usize> Phases<N> for StonePhases<'n> {
     fn slips(walk: &mut StoneWalk<'_, 'n, N>) -> [f64; N] {
         walk.of.flow.touch = Touch::Slips;
         walk.begins_to_lose([0.0; 2]);
-        walk.at
+        walk.rolls_off()
     }
     fn slips_on(walk: &mut StoneWalk<'_, 'n, N>) -> [f64; N] {
         walk.begins_to_lose([0.0; 2]);
-        walk.at
+        walk.rolls_off()
     }
 
     fn rubbing(walk: &StoneWalk<'_, 'n, N>) -> f64 {
         walk.of.flow.rubs(&walk.at)
     }
     fn begins_slowly(walk: &StoneWalk<'_, 'n, N>) -> bool {
-        walk.of.flow.law.patch().is_none()
+        walk.of.flow.law.patch().is_none() && walk.of.flow.push == [0.0; 2]
     }
 
     fn lets_slip(walk: &mut StoneWalk<'_, 'n, N>, way: [f64; 2]) {
@@ -386,8 +416,10 @@ impl<'n, const N: usize> Phases<N> for StonePhases<'n> {
         clear_until(series.until, |_, moment| walk.of.flow.margins_at(&series.at(moment)))
     }
 
-    fn nudged(walk: &StoneWalk<'_, 'n, N>, way: [f64; 2], growth: f64) -> [f64; N] {
-        walk.of.flow.nudged(&walk.at, way, growth)
+    fn nudged(walk: &mut StoneWalk<'_, 'n, N>, way: [f64; 2], growth: f64) -> [f64; N] {
+        let y = walk.of.flow.nudged(&walk.at, way, growth);
+        walk.of.flow.rolls_freely();
+        y
     }
 
     fn passed(walk: &StoneWalk<'_, 'n, N>, series: &SlowSeries<N>, until: f64) {
@@ -408,7 +440,7 @@ impl<'n, const N: usize> Phases<N> for StonePhases<'n> {
         _: &mut dyn FnMut() -> bool,
     ) -> Result<Option<WalkStep<N>>, Error> {
         walk.of.flow.touch =
-            if walk.of.freed && walk.kind() == Kind::Rolling { Touch::Rolls } else { walk.resting() };
+            if core::mem::take(&mut walk.of.freed) && walk.kind() == Kind::Rolling { Touch::Rolls } else { walk.resting() };
         if walk.of.flow.touch == Touch::Held {
             walk.claims(LOST_DRILLING * walk.of.flow.drilling(&walk.at).abs());
         }

@@ -89,7 +89,7 @@ pub(crate) trait Phases<const N: usize>: Sized {
     fn clear_until(walk: &Walk<'_, Self, N>, series: &SlowSeries<N>) -> f64;
     /// The numbers at the time `MOMENT` after the beginning of a slip along `way`, whose speed grows at the
     /// rate `growth`. Used where no series exists.
-    fn nudged(walk: &Walk<'_, Self, N>, way: [f64; 2], growth: f64) -> [f64; N];
+    fn nudged(walk: &mut Walk<'_, Self, N>, way: [f64; 2], growth: f64) -> [f64; N];
     /// Evaluates a slow slip along its series up to a time since the beginning of the series, to count reversals of the
     /// spin.
     fn passed(_: &Walk<'_, Self, N>, _: &SlowSeries<N>, _: f64) {}

@@ -58,7 +58,7 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
         if !P::begins_slowly(self) {
             self.begins_phase(P::slip_kind(self));
             self.made.path.way = way;
-            return Some(self.slips_at_once(way, growth));
+            return Some(self.begins_at_once(way, growth));
         }
         let mut slow = P::slow(self);
         let Some(mut series) = slow.follow(&self.at, Series::of(alpha), growth, 0.0) else {
@@ -74,7 +74,7 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
         self.begins_phase(P::slip_kind(self));
         self.made.path.way = way;
         if !series.is_sound() {
-            return Some(self.slips_at_once(way, growth));
+            return Some(self.begins_at_once(way, growth));
         }
         loop {
             let clear = P::clear_until(self, &series);
@@ -108,8 +108,9 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
         }
     }
 
-    /// Begins a slip that has no series with a straight line over the time `MOMENT`, and writes the outputs in that time.
-    fn slips_at_once(&mut self, way: [f64; 2], growth: f64) -> [f64; N] {
+    /// Begins a motion that has no series, a slip from rest along `way` or a rolling from rest, with a straight line over
+    /// the time `MOMENT`, and writes the outputs in that time.
+    pub fn begins_at_once(&mut self, way: [f64; 2], growth: f64) -> [f64; N] {
         let y = P::nudged(self, way, growth);
         while self.until().is_some_and(|t| t <= y[TIME]) {
             P::write(self, &{ self.at });

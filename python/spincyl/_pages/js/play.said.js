@@ -3,7 +3,7 @@
 const decimal = (x, d = 2) => Number.isFinite(x) ? x.toFixed(d) : "–", degrees = (x, d = 1) => decimal(x / deg, d) + "°";
 // the reduced rate, and the rate in hertz if the size is known
 const rated = rate => decimal(rate, 3) + (sized() ? ` (${decimal(hertzOf(rate))} Hz)` : "");
-const ENDINGS = ["", "its face lands on the table", body => body.fillet === 1 ? "the other end lands" : "the other rim lands: it lies on its side", "it lifts off", "rolling needs more friction than there is", "", "no contact force, or more than one, obeys the law of friction", "its contact point stops", "the computation stops, for the motion changes ever faster", "both rims land, and no impulse, or more than one, obeys the law of friction"];
+const ENDINGS = ["", "its face lands on the table", body => body.fillet === 1 ? "the other end lands" : "the other rim lands: it lies on its side", "it lifts off", "rolling needs more friction than there is", "", "no contact force, or more than one, obeys the law of friction", "it comes to rest", "the computation stops, for the motion changes ever faster", "both rims land, and no impulse, or more than one, obeys the law of friction"];
 // whether the later motion depends on a disturbance smaller than the rounding of the initial state
 const unsure = () => known() && !(head.error < 1e-3);
 const ending = () => { const e = ENDINGS[head.ending]; return typeof e === "function" ? e(body) : e; };

@@ -202,7 +202,7 @@ impl<T: Real> LossyUnheld<T> {
 impl LossyFlow {
     /// Whether lanes can compute this flow: no motion is held, all events end it, and the body is not a ball.
     pub fn is_free(&self) -> bool {
-        self.hold == Hold::No && !self.ways.holds_drilling && self.watch && !self.ball && !self.is_patch()
+        self.hold == Hold::No && !self.ways.holds.drilling && self.watch && !self.ball && !self.is_patch()
     }
 
     /// The numbers that lanes need: theta_end, mu, the coefficients of the losses, and the signs
@@ -236,7 +236,7 @@ impl<T: Real> LossyUnheld<T> {
         let mut coefficients = [mu; COUNT];
         coefficients.copy_from_slice(&rest[..COUNT]);
         let ways =
-            Ways { contour: rest[COUNT], drilling: rest[COUNT + 1], rocking: 0.0, holds_drilling: false };
+            Ways { contour: rest[COUNT], drilling: rest[COUNT + 1], ..Ways::moving(rest[COUNT]) };
         let losses = Couples::among(coefficients, present, Some(ways));
         Self { law: Lossy { rates, losses }, side: [sine, cosine, there], mu }
     }

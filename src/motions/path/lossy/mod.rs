@@ -21,9 +21,9 @@ mod steps;
 use crate::laws::body::Body;
 use crate::laws::contact::lossy::{Acted, Held, Lossy};
 use crate::laws::contact::{Contact, Force};
-use crate::laws::loss::{COUNT, GRACE, Law, Losses, SLACK, Ways, holds};
+use crate::laws::contact::together::{Part, Rubs, Together};
+use crate::laws::loss::{COUNT, GRACE, Holds, Law, Losses, SLACK, Ways, holds, rounded};
 use crate::laws::state::State;
-use crate::methods::search::crossing;
 use crate::motions::halt::Halt;
 use crate::motions::path::face::{FLAT, turning_share};
 use crate::numbers::{Dual, Real};
@@ -44,26 +44,15 @@ enum Hold {
     Dry,
     /// A couple that grows with psi' has almost stopped the contact point (see `settled`).
     Settled,
+    /// Rolling resistance holds rolling and rocking: the body only turns about the vertical.
+    Still,
 }
 
 /// If the required friction exceeds mu N by more than this share, it has jumped beyond mu N, as at a reversal of a dry
 /// couple, and has not crossed mu N continuously.
 pub(crate) const JUMP: f64 = 1e-6;
-/// Speed of a motion that has just reversed and slips at once, so that its new direction is definite.
-const NUDGE: f64 = 1e-13;
 /// A body with a smaller joint speed of rolling and rocking is at rest for the law of rolling resistance.
 pub(crate) const REST: f64 = 1e-13;
-
-/// The couples that push a body that only drills, and the couple that resists them.
-struct Resisted {
-    /// The couples that push the body to roll and to rock.
-    rolling: f64,
-    rocking: f64,
-    /// Accelerations of the rolling and of the rocking under a unit couple.
-    lightness: [f64; 2],
-    /// The largest couple of rolling resistance.
-    most: f64,
-}
 
 /// Length of [`LossyFlow::numbers`].
 pub(crate) const LOSSY_NUMBERS: usize = 4 + COUNT + 2;
@@ -78,6 +67,8 @@ pub(crate) struct LossyFlow {
     hold: Hold,
     /// Whether the flow starts from a state in which w_z vanishes exactly.
     starts_still: bool,
+    /// The direction of (w_h, w2) in which rolling and rocking begin from rest.
+    push: [f64; 2],
     /// Allowances for the rounding of psi', and of w_z (of w2 if the body only rocks), where these start from zero.
     slack: [f64; 2],
     ways: Ways,
@@ -113,6 +104,7 @@ impl LossyFlow {
             bare,
             hold,
             starts_still,
+            push: [0.0; 2],
             slack,
             ways,
             settled_way,
@@ -128,7 +120,7 @@ impl LossyFlow {
     }
 
     pub fn holds_drilling(&self) -> bool {
-        self.ways.holds_drilling
+        self.ways.holds.drilling
     }
 
     /// Makes a landing of the face the only event that ends the flow.
@@ -156,6 +148,9 @@ impl LossyFlow {
             }
             if drilling == 0.0 && self.has(Law::Drilling) {
                 self.stop_drilling(angle, w);
+            }
+            if self.has(Law::RollingResistance) && pace_of(angle, y.precession(), w) < REST {
+                self.stop_rolling(angle, drilling);
             }
         }
         self.turn(self.ways);
@@ -192,7 +187,7 @@ impl LossyFlow {
         let held = surely || holds(needs);
         self.hold = if held { Hold::Dry } else { Hold::No };
         self.turn(Ways { contour: if held { 0.0 } else { needs[0].signum() }, ..self.ways });
-        if held && self.ways.holds_drilling {
+        if held && self.ways.holds.drilling {
             self.only_rocks(angle, w[1]);
         }
     }
@@ -218,26 +213,79 @@ impl LossyFlow {
         self.force(y).friction_coefficient() > self.mu * (1.0 + JUMP)
     }
 
-    /// The state with a small speed in the new direction of a motion that has just reversed, and this speed.
-    pub fn on_its_way(&self, y: &State) -> (State, f64) {
-        let (s, c) = y.theta.sin_cos();
-        let little = NUDGE * (1.0 + y.precession().abs());
-        let (mut w1, mut w3) = (y.w1, y.w3);
-        if y.spin().abs() < little {
-            // Only psi' changes.
-            let by = self.ways.contour * little;
-            (w1, w3) = (w1 - s * c * by, w3 + s * s * by);
+    /// The motions that are at rest at this state, or have just begun.
+    pub fn hardly_moves(&self, y: &State) -> Holds {
+        let little = 4.0 * REST * (1.0 + y.precession().abs());
+        let angle = y.theta.sin_cos();
+        let slow = |x: f64| x.abs() < little;
+        Holds {
+            contour: slow(y.spin()) && self.has(Law::DryContour),
+            drilling: slow(angle.0 * y.w1 + angle.1 * y.w3) && self.has(Law::Drilling),
+            rolling: slow(pace_of(angle, y.precession(), [y.w1, y.w2, y.w3])) && self.has(Law::RollingResistance),
         }
-        if (s * y.w1 + c * y.w3).abs() < little {
-            // Only w_z changes.
-            let by = self.ways.drilling * little;
-            (w1, w3) = (w1 + s * by, w3 + c * by);
-        }
-        (State { w1, w3, ..*y }, little)
     }
 
-    /// Applies the changes of a halt. Returns whether the contact point has stopped for good, or
-    /// the body rests.
+    /// Makes rolling resistance hold a body that neither rolls nor rocks, if its limit suffices; else rolling and rocking
+    /// begin, in the direction of their push. Dry friction along the contour holds the contact point, or lets it go.
+    fn stop_rolling(&mut self, angle: (f64, f64), drilling: f64) {
+        if self.keeps_still(angle, drilling) {
+            self.hold = Hold::Still;
+            let holds = Holds { rolling: true, ..Holds::default() };
+            self.turn(Ways { contour: 0.0, rolling: 0.0, rocking: 0.0, holds, ..self.ways });
+        } else {
+            self.leave(angle, drilling);
+        }
+    }
+
+    /// Lets rolling and rocking begin.
+    fn leave(&mut self, angle: (f64, f64), drilling: f64) {
+        let (reduced, w) = (self.law.rates.reduced(), [angle.0 * drilling, 0.0, angle.1 * drilling]);
+        let rubs = match reduced.contact {
+            Contact::Rolling => Rubs::Rests,
+            Contact::Smooth => Rubs::Slips { pull: [0.0; 2], twist: 0.0 },
+        };
+        let Some(rests) = Together::of_body(&reduced.shape, &self.law.losses, (angle, w), [0.0; 2], rubs) else { return };
+        let [_, rolling, contour, _] = rests.knowing(Some((Part::Rolling, true))).fates();
+        self.push = rolling.way;
+        self.hold = Hold::No;
+        let mut ways = Ways { holds: Holds { rolling: false, ..self.ways.holds }, ..self.ways };
+        if rests.has(Part::Contour) {
+            self.hold = if contour.begins() { Hold::No } else { Hold::Dry };
+            ways.contour = if contour.begins() { -contour.way[0].signum() } else { 0.0 };
+        }
+        self.turn(ways);
+    }
+
+    /// Whether a body that only turns about the vertical, with this w_z, neither rolls nor rocks.
+    fn keeps_still(&self, angle: (f64, f64), drilling: f64) -> bool {
+        let mut still = *self;
+        still.turn(Ways { contour: 0.0, rocking: 0.0, holds: Holds { rolling: true, ..Holds::default() }, ..self.ways });
+        let w = [angle.0 * drilling, 0.0, angle.1 * drilling];
+        holds(still.response(angle, drilling, w, Held::Rolling).held)
+    }
+
+    /// Whether the body is at rest, and rolling resistance keeps it there.
+    pub fn has_stopped(&self, y: &State) -> bool {
+        let (s, c) = y.theta.sin_cos();
+        let w = [y.w1, y.w2, y.w3];
+        let turns = (s * y.w1 + c * y.w3).abs() > rounded(s, w);
+        match self.hold {
+            Hold::Still => !turns,
+            Hold::Planar => {
+                self.has(Law::RollingResistance) && y.w2.abs() < REST && self.keeps_still((s, c), 0.0)
+            }
+            _ => false,
+        }
+    }
+
+    /// w, with a small speed in the direction in which rolling and rocking begin from rest.
+    fn pushed(&self, y: &State) -> [f64; 3] {
+        let mut numbers = [y.theta.sin(), y.theta.cos(), y.w1, y.w2, y.w3];
+        self.pushed_off(&mut numbers);
+        [numbers[2], numbers[3], numbers[4]]
+    }
+
+    /// Applies the changes of a halt. Returns whether the body is at rest.
     pub fn after(&mut self, halt: Halt, y: &State) -> bool {
         let stops = self.turned_by(halt, y);
         self.sets_slack(y);
@@ -247,7 +295,9 @@ impl LossyFlow {
     fn turned_by(&mut self, halt: Halt, y: &State) -> bool {
         let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
         self.starts_still = halt == Halt::Drilling;
+        let drilling = angle.0 * y.w1 + angle.1 * y.w3;
         match halt {
+            Halt::Contour if self.hold == Hold::Still => self.leave(angle, drilling),
             Halt::Contour if self.hold == Hold::Dry => {
                 let push = self.response(angle, w[0] / angle.0, w, Held::Contour(0.0)).held[0];
                 self.hold = Hold::No;
@@ -258,18 +308,25 @@ impl LossyFlow {
                 // it in any case.
                 let settled = self.hold == Hold::Settled;
                 self.stop_contour(angle, w, settled);
-                return self.hold == Hold::Dry;
             }
-            Halt::Drilling if self.ways.holds_drilling => {
+            Halt::Drilling if self.ways.holds.drilling => {
                 let push = self.response(angle, w[0] / angle.0, w, Held::Drilling).held[0];
                 self.turn(self.ways.drilling_from(push));
+            }
+            Halt::Drilling if self.hold == Hold::Still => {
+                // Without the drilling the body may begin to rock.
+                self.only_rocks(angle, 0.0);
+                return !self.rocks_back(angle);
             }
             // A body that neither rolls along its rim nor drills does not turn at all.
             Halt::Drilling if self.hold != Hold::No => self.only_rocks(angle, w[1]),
             Halt::Drilling => self.stop_drilling(angle, w),
             Halt::Rocking => return !self.rocks_back(angle),
-            Halt::Rests => return self.rests(y),
-            Halt::Settles if self.ways.holds_drilling => self.only_rocks(angle, w[1]),
+            Halt::Rests => {
+                self.stop_rolling(angle, drilling);
+                return self.has_stopped(y);
+            }
+            Halt::Settles if self.ways.holds.drilling => self.only_rocks(angle, w[1]),
             Halt::Settles => {
                 (self.hold, self.settled_way) = (Hold::Settled, self.ways.contour);
                 self.turn(Ways { contour: 0.0, ..self.ways });
@@ -281,44 +338,8 @@ impl LossyFlow {
 
     /// Whether a body that only rocks, and has come to rest, rocks back; otherwise rolling resistance holds the body.
     fn rocks_back(&mut self, angle: (f64, f64)) -> bool {
-        self.turn(Ways::default());
-        let acted = self.response(angle, 0.0, [0.0; 3], Held::Nothing);
-        let inertia = self.law.rates.reduced().inertia(|| angle);
-        let limit = self.law.losses.coefficient(Law::RollingResistance) * acted.force[0];
-        let moves = acted.w[1].abs() * inertia > limit;
-        self.turn(Ways { rocking: acted.w[1].signum(), ..Ways::default() });
-        moves
-    }
-
-    /// Whether the body neither rolls nor rocks, and rolling resistance keeps the body at rest.
-    pub fn rests(&mut self, y: &State) -> bool {
-        let angle = y.theta.sin_cos();
-        let speed = pace_of(angle, y.precession(), [y.w1, y.w2, y.w3]);
-        if !self.has(Law::RollingResistance) || speed >= REST {
-            return false;
-        }
-        if self.hold == Hold::Planar {
-            return !self.rocks_back(angle);
-        }
-        let Resisted { rolling, rocking, most, .. } = self.resisted(angle, angle.0 * y.w1 + angle.1 * y.w3);
-        rolling.hypot(rocking) <= most
-    }
-
-    /// The couples that push a body that only drills to roll and rock, and the limit of rolling resistance.
-    fn resisted(&self, angle: (f64, f64), drilling: f64) -> Resisted {
-        let ((s, c), mut still) = (angle, *self);
-        still.turn(Ways { contour: 0.0, ..self.ways });
-        let w = [s * drilling, 0.0, c * drilling];
-        let acted = still.response(angle, drilling, w, Held::Contour(0.0));
-        let [push, limit] = acted.held;
-        let [d1, _, d3] = still.response(angle, drilling, w, Held::Nothing).w;
-        // Dry friction along the contour balances the push up to its limit.
-        let rolling = -push.signum() * (push.abs() - limit).max(0.0) / s;
-        let lightness = ((c * d1 - s * d3) * s / push).abs();
-        let lightness = if lightness > 0.0 { lightness } else { 1.0 };
-        let inertia = self.law.rates.reduced().inertia(|| angle);
-        let most = self.law.losses.coefficient(Law::RollingResistance) * acted.force[0].max(0.0);
-        Resisted { rolling, rocking: acted.w[1] * inertia, lightness: [lightness, 1.0 / inertia], most }
+        self.only_rocks(angle, 0.0);
+        !self.keeps_still(angle, 0.0)
     }
 
     /// The same flow after its start, where w_z no longer vanishes exactly.
@@ -328,26 +349,17 @@ impl LossyFlow {
 
     /// Whether sigma differs from time: under rolling resistance, except for a body that only rocks.
     fn is_paced(&self) -> bool {
-        self.has(Law::RollingResistance) && self.hold != Hold::Planar
+        self.has(Law::RollingResistance) && !matches!(self.hold, Hold::Planar | Hold::Still)
     }
 
     /// Gives a body that neither rolls nor rocks, but is not held, a small speed in the direction of the push.
     fn pushed_off<const N: usize>(&self, y: &mut [f64; N]) {
-        let ([s, c, w1, w2, w3], held) = (core::array::from_fn(|i| y[i]), self.hold != Hold::No);
+        let [s, c, w1, w2, w3] = core::array::from_fn(|i| y[i]);
         if !self.is_paced() || pace_of((s, c), w1 / s, [w1, w2, w3]) >= REST {
             return;
         }
         let drilling = s * w1 + c * w3;
-        let Resisted { rolling, rocking, lightness, most } = self.resisted((s, c), drilling);
-        let pushes = [if held { 0.0 } else { rolling }, rocking];
-        // The body leaves along a unit vector n that satisfies growth n = lightness (pushes - most n).
-        let way = |growth: f64| -> [f64; 2] {
-            core::array::from_fn(|i| pushes[i] / (most + growth / lightness[i]))
-        };
-        let long = |growth: f64| way(growth)[0].hypot(way(growth)[1]) - 1.0;
-        let far = pushes[0].abs() * lightness[0] + pushes[1].abs() * lightness[1];
-        let growth = if long(0.0) > 0.0 { crossing(long, 0.0, far, long(0.0), long(far)) } else { 0.0 };
-        let [rolling, rocking] = way(growth).map(|n| 2.0 * REST * n);
+        let [rolling, rocking] = self.push.map(|n| 2.0 * REST * n);
         (y[2], y[3], y[4]) = (s * drilling + c * rolling, rocking, c * drilling - s * rolling);
     }
 
@@ -369,7 +381,7 @@ impl LossyFlow {
         y[2] = match self.hold {
             Hold::No => w1 * s,
             Hold::Planar => 0.0,
-            Hold::Dry | Hold::Settled => s * w1 + c * w3,
+            Hold::Dry | Hold::Settled | Hold::Still => s * w1 + c * w3,
         };
         (y[5], y[6]) = (0.0, 0.0);
         y
@@ -377,8 +389,9 @@ impl LossyFlow {
 
     fn held<T: Real>(&self, like: T) -> Held<T> {
         match self.hold {
-            Hold::No if self.ways.holds_drilling => Held::Drilling,
+            Hold::No if self.ways.holds.drilling => Held::Drilling,
             Hold::No => Held::Nothing,
+            Hold::Still => Held::Rolling,
             _ => Held::Contour(like.splat(0.0)),
         }
     }
@@ -392,7 +405,7 @@ impl LossyFlow {
 
     /// The halt by the first margin that fails at the start of a flow; None if all margins hold.
     pub fn at_start(&self, y: &State) -> Option<Halt> {
-        let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
+        let (angle, w) = (y.theta.sin_cos(), self.pushed(y));
         let acted = self.response(angle, w[0] / angle.0, w, self.held(0.0));
         let rises = y.w2 > 0.0 || (y.w2 == 0.0 && acted.w[1] > 0.0);
         let side = self.theta_end - y.theta;
@@ -410,7 +423,7 @@ impl LossyFlow {
 
     /// The contact force at a state of the flow.
     pub fn force(&self, y: &State) -> Force {
-        let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
+        let (angle, w) = (y.theta.sin_cos(), self.pushed(y));
         let [normal, along, across] = self.response(angle, w[0] / angle.0, w, self.held(0.0)).force;
         Force { normal, along, across }
     }

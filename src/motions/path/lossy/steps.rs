@@ -103,7 +103,7 @@ impl LossyFlow {
         let within = limit * limit * number(1.0 + 2.0 * GRACE) - push * push;
         let slack = self.slack.map(|slack| number(slack) * (one + precession.abs()));
         let contour = match self.hold {
-            Hold::Dry => within,
+            Hold::Dry | Hold::Still => within,
             Hold::Settled if self.has(Law::DryContour) => number(self.settled_way) * push - limit,
             Hold::No if self.has(Law::DryContour) => {
                 number(self.ways.contour) * (w[2] - c * precession) + slack[0]
@@ -112,7 +112,7 @@ impl LossyFlow {
         };
         let drilling = if self.hold == Hold::Planar {
             if self.has(Law::RollingResistance) { number(self.ways.rocking) * w2 + slack[1] } else { one }
-        } else if self.ways.holds_drilling {
+        } else if self.ways.holds.drilling {
             within
         } else if self.has(Law::Drilling) && self.ways.drilling != 0.0 {
             number(self.ways.drilling) * (s * w[0] + c * w[2]) + slack[1]

@@ -6,8 +6,10 @@ use crate::laws::body::Shape;
 use crate::laws::contact::grip;
 use crate::laws::contact::lossy::DAMPED;
 use crate::laws::contact::slip::{SlipResponse, Slipping};
+use crate::laws::contact::patch::rubs;
+use crate::laws::contact::together::{Part, Rubs, Together};
 use crate::laws::loss::{
-    Couples, GRACE, Kinematics, Law, Losses, NEAR, SLACK, Ways, going, mirrored, rolling_growth, rounded,
+    Couples, GRACE, Holds, Kinematics, Law, Losses, NEAR, SLACK, Ways, going, mirrored, rolling_growth,
 };
 use crate::laws::state::State;
 use crate::methods::flow::FlowPlace;
@@ -17,48 +19,90 @@ use crate::motions::path::lossy::at_rest;
 use crate::motions::path::settled::{Balance, CLOSE, SLOWER, Turned, balance, lag, settles_within};
 use crate::numbers::{Dual, Real};
 
+/// The share by which a couple may exceed the limit of friction that holds a contact which had settled.
+const SURE: f64 = 1e-6;
+
 impl Slide {
-    /// Sets the signs (`ways`) of the motions that dry losses resist, at a state whose contact has not
-    /// settled. `toward` is the direction of a slip from rest.
-    pub fn sets_ways(&mut self, y: &State, slip: [f64; 2], toward: [f64; 2]) {
-        self.settled = false;
+    /// Sets the signs (`ways`) of the motions that dry losses resist, and which of them friction holds, at a state whose
+    /// contact has not settled. `toward` is the direction of a slip from rest, and `known` a motion that friction has
+    /// just ceased to hold (true), or that it holds in any case.
+    pub fn sets_ways(&mut self, y: &State, slip: [f64; 2], toward: [f64; 2], known: Option<(Part, bool)>) {
+        (self.settled, self.rolls_off) = (false, false);
+        // A settled contact stops at the very limit of friction, and the push on it falls from there on.
+        self.sure = if known == Some((Part::Contour, false)) { SURE } else { 0.0 };
         let Some(losses) = self.law.losses else { return };
-        let angle = y.theta.sin_cos();
-        let w = [y.w1, y.w2, y.w3];
-        let seen = losses.seen(&self.law.shape.rim, angle, w[0] / angle.0, w);
-        self.turn(Ways::default());
-        // A motion at rest begins in the direction in which all other forces push the body.
-        let [spin, _, rocking] = self.changes(angle, w, slip, toward);
-        let at_rest = rounded(angle.0, w);
-        let way = |value: f64, rate: f64| {
-            if value.abs() > at_rest {
-                value.signum()
-            } else if rate != 0.0 {
-                rate.signum()
-            } else {
-                0.0
-            }
+        let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
+        let way = |speed: f64| if speed == 0.0 { 0.0 } else { speed.signum() };
+        let moving = Ways {
+            contour: way(w[2] - angle.1 / angle.0 * w[0]),
+            drilling: way(angle.0 * w[0] + angle.1 * w[2]),
+            ..Ways::default()
         };
-        let (spinning, turning) = (w[2] - angle.1 * (w[0] / angle.0), seen.drilling());
-        let planar = w[0] == 0.0 && w[2] == 0.0 && spin == 0.0;
-        let rocking = if planar { way(w[1], rocking) } else { 0.0 };
-        let ways = Ways { contour: way(spinning, spin), rocking, ..Ways::default() };
-        self.turn(Ways { drilling: way(turning, 0.0), ..ways });
-        if turning.abs() <= at_rest && !planar && losses.has(Law::Drilling) {
-            self.stop_drilling(angle, w, slip, toward);
+        let (pull, twist) = self.pulls(angle, w, slip, toward);
+        let rests = Together::of_body(&self.law.shape, &losses, (angle, w), slip, Rubs::Slips { pull, twist });
+        let fates = rests.map(|rests| (rests, rests.knowing(known).fates()));
+        let mut ways = moving;
+        if w[0] == 0.0 && w[2] == 0.0 && pull[1] == 0.0 && twist == 0.0 {
+            // The body only rocks, since no couple turns it.
+            ways = Ways { rocking: way(w[1]), ..Ways::default() };
+        }
+        if let Some((rests, [_, rolling, contour, drilling])) = fates {
+            if rests.has(Part::Contour) {
+                ways.contour = -way(contour.way[0]);
+                ways.holds.contour = !contour.begins();
+            }
+            if rests.has(Part::Drilling) {
+                ways.drilling = way(drilling.way[0]);
+                ways.holds.drilling = !drilling.begins();
+            }
+            if rests.has(Part::Rolling) {
+                ways.holds.rolling = !rolling.begins();
+                [ways.rolling, ways.rocking] = rolling.way;
+                self.rolls_off = ways.rolling != 0.0 || w[0] != 0.0 || w[2] != 0.0 || pull[1] != 0.0;
+                self.rolls_off &= rolling.begins();
+            }
+        }
+        self.turn(ways);
+    }
+
+    /// The couple that holds the contact along the rim, and its limit, with the allowance for a contact that had settled.
+    pub(super) fn surely<T: Real>(&self, [push, limit]: [T; 2]) -> [T; 2] {
+        [push, limit * limit.splat(1.0 + self.sure)]
+    }
+
+    /// The friction of a slip, or of one that begins in the direction `toward`: the force -N pull and the couple N twist.
+    fn pulls(&self, (s, c): (f64, f64), w: [f64; 3], slip: [f64; 2], toward: [f64; 2]) -> ([f64; 2], f64) {
+        let mu = self.law.strength;
+        if !self.law.dry {
+            return (slip.map(|u| mu * u), 0.0);
+        }
+        let (drilling, size) = (s * w[0] + c * w[2], slip[0].hypot(slip[1]));
+        match self.law.patch() {
+            Some(patch) if size > 0.0 || drilling != 0.0 => {
+                let [share, twist, _] = rubs(size, drilling, patch);
+                (slip.map(|u| mu * share * u), mu * twist)
+            }
+            _ if size > 0.0 => (slip.map(|u| mu * u / size), 0.0),
+            _ => (toward.map(|e| mu * e), 0.0),
         }
     }
 
-    /// Makes dry friction hold the drilling, or makes the drilling begin anew.
-    fn stop_drilling(&mut self, angle: (f64, f64), w: [f64; 3], slip: [f64; 2], toward: [f64; 2]) {
-        let ways = self.law.losses.and_then(|losses| losses.ways).unwrap_or_default();
-        self.turn(ways.holding_drilling());
-        let needs = self.response(angle, w, slip, toward).held;
-        self.turn(ways.drilling_stopped(needs));
+    pub fn holds(&self) -> Holds {
+        self.law.losses.map_or(Holds::default(), |losses| losses.holds())
     }
 
-    pub fn holds_drilling(&self) -> bool {
-        self.law.losses.is_some_and(|losses| losses.holds_drilling())
+    /// Frees the direction of a rolling that has begun.
+    pub fn rolls_freely(&mut self) {
+        if let Some(ways) = self.law.losses.and_then(|losses| losses.ways).filter(|_| self.rolls_off) {
+            self.rolls_off = false;
+            self.turn(Ways { rolling: 0.0, rocking: 0.0, ..ways });
+        }
+    }
+
+    /// The direction of (w_h, w2) in which a rolling begins.
+    pub fn begins_to_roll(&self) -> Option<[f64; 2]> {
+        let ways = self.law.losses.and_then(|losses| losses.ways).filter(|_| self.rolls_off)?;
+        Some([ways.rolling, ways.rocking])
     }
 
     fn turn(&mut self, ways: Ways) {
@@ -77,53 +121,17 @@ impl Slide {
         }
     }
 
-    /// The response in a slip, or where a slip begins in the direction `toward`.
-    fn response(
-        &self,
-        angle: (f64, f64),
-        w: [f64; 3],
-        slip: [f64; 2],
-        toward: [f64; 2],
-    ) -> SlipResponse<f64> {
-        if self.settled {
-            return self.bare.settled(angle, w, slip, 0.0).0;
+    /// The motion that friction ceases to hold at this halt; None if the halt stops a motion. A settled contact stops
+    /// where dry friction balances its push, so that friction holds it in any case.
+    pub fn known(&self, halt: Halt) -> Option<(Part, bool)> {
+        let holds = self.holds();
+        match halt {
+            Halt::Contour if self.settled => Some((Part::Contour, false)),
+            Halt::Contour if holds.rolling => Some((Part::Rolling, true)),
+            Halt::Contour if holds.contour => Some((Part::Contour, true)),
+            Halt::Drilling if holds.drilling => Some((Part::Drilling, true)),
+            _ => None,
         }
-        let still = slip == [0.0; 2] && self.law.dry;
-        if still { self.law.towards(angle, w, slip, toward) } else { self.acts(angle, w, slip) }
-    }
-
-    /// The derivatives psi'', w_z' and w2'.
-    fn changes(&self, angle: (f64, f64), w: [f64; 3], slip: [f64; 2], toward: [f64; 2]) -> [f64; 3] {
-        let ((s, c), [w1, w2, w3]) = (angle, w);
-        let [d1, d2, d3] = self.response(angle, w, slip, toward).w;
-        [d3 - c / s * d1 - w1 * w2 / (s * s), s * d1 + c * d3 - w2 * (c * w1 - s * w3), d2]
-    }
-
-    /// Reverses a motion that a dry loss has stopped; drilling may also be held, or released. Returns false
-    /// if a motion other than drilling stays at rest.
-    pub fn turns(&mut self, halt: Halt, y: &State, slip: [f64; 2]) -> bool {
-        let Some(before) = self.law.losses.and_then(|losses| losses.ways) else { return false };
-        let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
-        if halt == Halt::Drilling {
-            if before.holds_drilling {
-                let [push, _] = self.response(angle, w, slip, [0.0; 2]).held;
-                self.turn(before.drilling_from(push));
-            } else {
-                self.stop_drilling(angle, w, slip, [0.0; 2]);
-            }
-            return true;
-        }
-        let (ways, i) = match halt {
-            Halt::Contour => (Ways { contour: -before.contour, ..before }, 0),
-            _ => (Ways { rocking: -before.rocking, ..before }, 2),
-        };
-        self.turn(ways);
-        if halt == Halt::Contour && self.settled {
-            // The settled contact has stopped where dry friction balances its push.
-            return false;
-        }
-        let change = self.changes(angle, w, slip, [0.0; 2])[i];
-        change * [ways.contour, ways.drilling, ways.rocking][i] > 0.0
     }
 
     /// Whether a couple that grows with psi' has almost stopped the contact along the rim, while
@@ -194,7 +202,7 @@ impl Slide {
     ) -> [T; 2] {
         let one = w[0].splat(1.0);
         let Some(losses) = self.law.losses else { return [one; 2] };
-        let (resists, holds) = (losses.has(Law::DryContour), losses.holds_drilling());
+        let (resists, holds) = (losses.has(Law::DryContour), losses.holds().drilling);
         if !resists && !holds {
             return [one; 2];
         }
@@ -278,7 +286,7 @@ impl Slide {
     pub(crate) fn comes_to_rest<const N: usize>(&self, place: &FlowPlace<N>) -> Option<[f64; N]> {
         let there = |losses: &Couples<f64>| {
             let planar = losses.ways.is_some_and(|ways| ways.rocking != 0.0);
-            losses.has(Law::RollingResistance) && !planar
+            losses.has(Law::RollingResistance) && !planar && !losses.holds().rolling
         };
         if !self.law.losses.as_ref().is_some_and(there) || place.y[0].abs() < FLAT {
             return None;
@@ -302,20 +310,27 @@ fn hold<T: Real>([push, limit]: [T; 2]) -> T {
     grip(push.splat(1.0 + GRACE), limit, push * push)
 }
 
-/// The margins of the motions that dry losses resist: along the rim, and drilling (or rocking if the body
-/// only rocks). `held` has the couple that holds the drilling, and the limit of friction.
-pub(crate) fn ways<T: Real>(losses: &Couples<T>, seen: &Kinematics<T>, held: [T; 2]) -> [T; 2] {
+/// The margins of the motions that dry losses resist: along the rim or, if it is held, of the rolling; and drilling (or
+/// rocking if the body only rocks). `held` has the couple that holds the drilling, and the limit of friction, and `kept`
+/// those of a motion along the rim or of rolling that is held.
+pub(crate) fn ways<T: Real>(losses: &Couples<T>, seen: &Kinematics<T>, held: [T; 2], kept: [T; 2]) -> [T; 2] {
     let one = seen.spin.splat(1.0);
     let size = one + seen.w[0].abs() / seen.angle.0.abs();
     let slack = one.splat(SLACK) * size;
     let Some(of) = losses.ways else { return [one; 2] };
-    let contour = if losses.has(Law::DryContour) { going(of.contour, seen.spin, slack) } else { one };
+    let contour = if of.holds.contour || of.holds.rolling {
+        hold(kept)
+    } else if losses.has(Law::DryContour) {
+        going(of.contour, seen.spin, slack)
+    } else {
+        one
+    };
     if of.rocking != 0.0 {
         let way = one.splat(of.rocking);
         let there = losses.has(Law::RollingResistance);
         return [contour, if there { going(way, seen.w[1], slack) } else { one }];
     }
-    if of.holds_drilling {
+    if of.holds.drilling {
         return [contour, hold(held)];
     }
     let there = losses.has(Law::Drilling);

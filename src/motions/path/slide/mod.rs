@@ -17,13 +17,14 @@ mod lossy;
 use super::settled::EFFORT;
 use crate::laws::body::{Body, Rim, Shape, landing_angle};
 use crate::laws::contact::slip::{Friction, SlipResponse, Slipping};
-use crate::laws::loss::{Couples, Losses};
+use crate::laws::loss::{Couples, Holds, Losses};
 use crate::laws::state::State;
 use crate::methods::flow::{FASTEST, Flow, FlowPlace};
 use crate::methods::{radau, rk8};
 use crate::motions::creep::{IMPLICIT_TURNS, rests_below};
 use crate::motions::halt::{Halt, MARGINS, TIME, loses, poses};
 use crate::motions::path::face::FLAT;
+use crate::motions::path::lossy::REST;
 use crate::motions::walk::{MOMENT, slip_over};
 use crate::numbers::{Dual, Real};
 use core::f64::consts::PI;
@@ -52,6 +53,10 @@ pub(crate) struct Slide {
     flat: f64,
     /// Whether a couple that grows with psi' has almost stopped the contact along the rim.
     pub settled: bool,
+    /// Whether rolling and rocking begin from rest, in the direction that the signs of the losses have.
+    rolls_off: bool,
+    /// The share by which the couple that holds the contact along the rim may exceed its limit, after it has settled.
+    sure: f64,
     pub tol: f64,
 }
 
@@ -65,7 +70,7 @@ impl Slide {
         let (theta_end, ball) = (body.theta_end(), body.is_ball());
         let bare = law.with_losses(law.losses.map(Couples::off_the_contour));
         let flat = if losses.turn_endlessly() { FLATTER } else { FLAT };
-        Self { law, sloped, bare, theta_end, ball, sticks: law.dry, flat, settled: false, tol }
+        Self { law, sloped, bare, theta_end, ball, sticks: law.dry, flat, settled: false, rolls_off: false, sure: 0.0, tol }
     }
 
     /// The speed below which a slip counts as zero.
@@ -155,14 +160,35 @@ impl Slide {
     /// rate `growth`. Used where no series exists.
     pub(crate) fn nudged<const N: usize>(&self, start: &[f64; N], way: [f64; 2], growth: f64) -> [f64; N] {
         let (angle, w) = ((start[0], start[1]), [start[2], start[3], start[4]]);
-        let at = self.law.towards(angle, w, [0.0; 2], way);
-        let mut y = *start;
-        let [s, c] = [start[0], start[1]];
-        (y[0], y[1]) = (s - MOMENT * c * w[1], c + MOMENT * s * w[1]);
-        for i in 0..3 {
-            y[2 + i] += MOMENT * at.w[i];
+        let u = [start[5], start[6]];
+        let rests = u == [0.0; 2] && self.law.dry && !self.creeps(start);
+        let (at, _, heat) = if rests {
+            (self.law.towards(angle, w, [0.0; 2], way), 1.0, 0.0)
+        } else {
+            self.law.answers(angle, w, u)
+        };
+        let ([s, c], mut y) = ([start[0], start[1]], *start);
+        let mut rates = [0.0; N];
+        rates[..8].copy_from_slice(&[-(c * w[1]), s * w[1], at.w[0], at.w[1], at.w[2], at.u[0], at.u[1], 1.0]);
+        if rests {
+            (rates[5], rates[6]) = (growth * way[0], growth * way[1]);
         }
-        (y[5], y[6], y[7]) = (MOMENT * growth * way[0], MOMENT * growth * way[1], start[7] + MOMENT);
+        rates[8] = heat - (at.force[1] * u[1] + at.force[2] * u[0]);
+        let precession = w[0] / s;
+        if poses(N) {
+            let turning = [precession, w[2] - c * precession];
+            rates[9..13].copy_from_slice(&pose_rates(&self.law.shape.rim, start, turning, u));
+        }
+        if loses(N) {
+            rates[N - 1] = self.law.power(angle, w, at.force[0]);
+        }
+        (0..N).for_each(|i| y[i] += MOMENT * rates[i]);
+        if let Some([across, rocks]) = self.begins_to_roll() {
+            // A least speed, so that a rolling whose speed grows from zero has its direction.
+            for (i, way) in [(2, c * across), (3, rocks), (4, -(s * across))] {
+                y[i] += 2.0 * REST * way;
+            }
+        }
         y
     }
 }
@@ -226,8 +252,8 @@ impl Flow<MARGINS> for Slide {
         }
         let (angle, w, u) = ((s, c), [w1, w2, w3], [u_h, u_2]);
         // Only these three are needed, and for a contact point no others are computed.
-        let needed = |at: SlipResponse<_>| (at.free, at.room, at.held);
-        let (free, room, held) = match self.sloped.patch() {
+        let needed = |at: SlipResponse<_>| (at.free, at.room, [at.held, at.kept]);
+        let (free, room, [held, kept]) = match self.sloped.patch() {
             Some(patch) => needed(self.sloped_on(angle, w, u, patch).0),
             None => needed(self.sloped.at(angle, w, u).0),
         };
@@ -237,7 +263,7 @@ impl Flow<MARGINS> for Slide {
         let [contour, drilling] = match self.sloped.losses.as_ref().filter(|_| loses(N)) {
             Some(losses) => {
                 let seen = losses.seen(&self.sloped.shape.rim, (s, c), w1 / s, [w1, w2, w3]);
-                ways(losses, &seen, held)
+                ways(losses, &seen, held, self.surely(kept))
             }
             None => [one; 2],
         };
@@ -246,7 +272,7 @@ impl Flow<MARGINS> for Slide {
             let losses = self.bare.losses.map(|losses| losses.map(|value| Dual { value, slope: 0.0 }));
             let bare = self.sloped.with_losses(losses);
             let [push, kept] = self.pushed_on(&bare, (s, c), [w1, w2, w3], [u_h, u_2]);
-            [push, if self.holds_drilling() { kept } else { drilling }]
+            [push, if self.holds().drilling { kept } else { drilling }]
         } else {
             [contour, drilling]
         };
@@ -261,7 +287,7 @@ impl Flow<MARGINS> for Slide {
         match SLIP_ENDS[i] {
             Halt::Face => s - self.flat,
             Halt::Contour if self.settled => self.pushed_on(&self.bare, (s, c), [w1, w2, w3], [u_h, u_2])[0],
-            Halt::Drilling if self.settled && self.holds_drilling() => {
+            Halt::Drilling if self.settled && self.holds().drilling => {
                 self.pushed_on(&self.bare, (s, c), [w1, w2, w3], [u_h, u_2])[1]
             }
             Halt::Side => {
@@ -271,12 +297,13 @@ impl Flow<MARGINS> for Slide {
             Halt::Contour | Halt::Drilling => {
                 let Some(losses) = self.law.losses else { return 1.0 };
                 let seen = losses.seen(&self.law.shape.rim, (s, c), w1 / s, [w1, w2, w3]);
-                let held = if losses.holds_drilling() {
-                    self.acts((s, c), [w1, w2, w3], [u_h, u_2]).held
+                let [held, kept] = if losses.holds() == Holds::default() {
+                    [[1.0; 2]; 2]
                 } else {
-                    [1.0; 2]
+                    let at = self.acts((s, c), [w1, w2, w3], [u_h, u_2]);
+                    [at.held, at.kept]
                 };
-                ways(&losses, &seen, held)[usize::from(SLIP_ENDS[i] == Halt::Drilling)]
+                ways(&losses, &seen, held, self.surely(kept))[usize::from(SLIP_ENDS[i] == Halt::Drilling)]
             }
             end => {
                 let at = self.acts((s, c), [w1, w2, w3], [u_h, u_2]);

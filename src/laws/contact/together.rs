@@ -1,0 +1,425 @@
+//! Motions at rest that dry friction resists at the same time: which of them it holds, and how the others begin.
+//!
+//! ```text
+//! x = (u_h, u_2, w_h, w_2, w_h, w_z) = 0     the slip, rolling and rocking, the contact along the rim, the drilling
+//! x' = a + N A r,   N = N0/(1 - m.r)         r: the reactions of friction, divided by N
+//! |r_slip| <= mu,  |r_roll| <= delta,  |r_contour| <= eps A/s,  |r_drill| <= length
+//! r = P(r - rho x')                          P: the nearest reaction within these limits
+//! ```
+//! A part whose reaction is within its limit is held; otherwise it begins against its reaction, since r is the reaction
+//! that takes the most power (Moreau 1974). All reactions act on all motions, so that this is one problem. Divided by N it
+//! is linear, r = P(r - rho (q + B r)), and is solved by projection, part by part, and then by Newton's method.
+//!
+//! Error: a few roundings of x'; the direction of a slip is known as in `standstill`.
+
+use super::slip::Slipping;
+use crate::laws::body::Shape;
+use crate::laws::loss::{Couples, Law, OwnCouple, Ways, rounded};
+use nalgebra::{SMatrix, SVector};
+
+/// Number of components of the reactions.
+const REACTIONS: usize = 6;
+type Reactions = SVector<f64, REACTIONS>;
+
+/// The behaviour of a contact point whose slip is zero.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Standstill {
+    /// The contact point stays at rest, and the body rolls.
+    Sticks,
+    /// The contact point slips off along `alpha`, from e_h towards e2, and its speed grows at the rate `growth`.
+    Slips { alpha: f64, growth: f64 },
+    /// No normal force presses the body on the table.
+    LiftsOff,
+    /// No force, or more than one, obeys the law of friction.
+    Undefined,
+}
+
+/// A motion at rest.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Part {
+    Slip = 0,
+    Rolling = 1,
+    Contour = 2,
+    Drilling = 3,
+}
+
+const PARTS: [Part; 4] = [Part::Slip, Part::Rolling, Part::Contour, Part::Drilling];
+
+impl Part {
+    /// The first of its components, and their number.
+    fn place(self) -> (usize, usize) {
+        [(0, 2), (2, 2), (4, 1), (5, 1)][self as usize]
+    }
+}
+
+/// What happens to a part.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct Fate {
+    /// The reaction per normal force.
+    pub reaction: [f64; 2],
+    /// The direction in which the motion begins, a unit vector; zero if the motion is held, or is not at rest.
+    pub way: [f64; 2],
+    /// The rate at which its speed grows.
+    pub growth: f64,
+}
+
+impl Fate {
+    pub fn begins(&self) -> bool {
+        self.way != [0.0; 2]
+    }
+}
+
+/// The motions at rest of a body or a stone, and their response to reactions.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Together {
+    /// The largest reaction of each part, per normal force; None if the part is not at rest.
+    limits: [Option<f64>; 4],
+    /// x'/N = q + B r.
+    q: Reactions,
+    b: SMatrix<f64, REACTIONS, REACTIONS>,
+    /// The normal force without reactions, and m.
+    normal: f64,
+    lean: Reactions,
+    /// A part whose fate is known.
+    known: Option<(Part, bool)>,
+}
+
+/// A reaction with which the response is probed; the response is linear, so that its size matters little.
+const PROBE: f64 = 0.125;
+/// Sweeps of the projection before Newton's method, and if Newton's method has not converged.
+const PROJECTIONS: [usize; 2] = [100, 5000];
+const NEWTON: usize = 25;
+/// Size of an error of the reactions that counts as rounding.
+const CONVERGED: f64 = 1e-13;
+/// A part whose reaction is so close to its limit is held, since friction holds up to its limit.
+const HELD: f64 = 1e-11;
+/// Components of a direction below this are roundings of zero.
+const STRAIGHT: f64 = 1e-15;
+/// Number of directions of the slip from which other solutions are searched for.
+const STARTS: usize = 24;
+/// A slip whose speed grows more slowly counts as not growing.
+const GROWS: f64 = 1e-11;
+/// Directions that differ by less than this are the same.
+const SAME: f64 = 1e-6;
+
+impl Together {
+    /// The motions with these limits, and the normal force and x' for reactions per normal force. None where no normal
+    /// force presses the body on the table.
+    pub fn of(
+        limits: [Option<f64>; 4],
+        respond: impl Fn(&[f64; REACTIONS]) -> (f64, [f64; REACTIONS]),
+    ) -> Option<Self> {
+        let (normal, at) = respond(&[0.0; REACTIONS]);
+        if normal.is_nan() || normal <= 0.0 {
+            return None;
+        }
+        let q = Reactions::from(at) / normal;
+        let mut b = SMatrix::<f64, REACTIONS, REACTIONS>::identity();
+        let mut lean = Reactions::zeros();
+        for (first, count) in PARTS.into_iter().filter(|p| limits[*p as usize].is_some()).map(Part::place) {
+            for i in first..first + count {
+                let mut size = PROBE;
+                let (pressed, at) = loop {
+                    let mut reactions = [0.0; REACTIONS];
+                    reactions[i] = size;
+                    let (pressed, at) = respond(&reactions);
+                    if pressed > 0.5 * normal && pressed < 2.0 * normal || size < 1e-6 {
+                        break (pressed, at);
+                    }
+                    size *= 0.25;
+                };
+                b.set_column(i, &((Reactions::from(at) / pressed - q) / size));
+                lean[i] = (1.0 - normal / pressed) / size;
+            }
+        }
+        Some(Self { limits, q, b, normal, lean, known: None })
+    }
+
+    /// These motions without the slip, or with the slip, which friction holds up to this coefficient.
+    pub fn with_slip(mut self, limit: f64) -> Self {
+        self.limits[Part::Slip as usize] = Some(limit);
+        self
+    }
+
+    /// These motions, of which the fate of one is known: friction has just ceased to hold it, so that it begins, or it is
+    /// held in any case (false).
+    pub fn knowing(self, known: Option<(Part, bool)>) -> Self {
+        Self { known, ..self }
+    }
+
+    pub fn has(&self, part: Part) -> bool {
+        self.limits[part as usize].is_some()
+    }
+
+    /// The nearest reaction of a part within its limit, and whether `z` itself is within.
+    fn nearest(&self, part: Part, z: [f64; 2]) -> ([f64; 2], bool) {
+        let limit = self.limits[part as usize].unwrap_or(0.0);
+        let size = z[0].hypot(z[1]);
+        if size <= limit { (z, true) } else { (z.map(|x| x * (limit / size)), false) }
+    }
+
+    fn of_part(part: Part, all: &Reactions) -> [f64; 2] {
+        let (first, count) = part.place();
+        [all[first], if count == 2 { all[first + 1] } else { 0.0 }]
+    }
+
+    fn parts(&self) -> impl Iterator<Item = Part> + '_ {
+        PARTS.into_iter().filter(|part| self.has(*part))
+    }
+
+    /// The step length rho of a part.
+    fn rho(&self, part: Part) -> f64 {
+        let (first, count) = part.place();
+        let mut size = 0f64;
+        for i in first..first + count {
+            let row: f64 = (first..first + count).map(|j| self.b[(i, j)].abs()).sum();
+            size = size.max(row);
+        }
+        1.0 / size
+    }
+
+    /// r - rho (q + B r) of a part.
+    fn pushed(&self, part: Part, r: &Reactions) -> [f64; 2] {
+        let (first, count) = part.place();
+        let rho = self.rho(part);
+        let mut z = [0.0; 2];
+        for k in 0..count {
+            let rate = self.q[first + k] + self.used(first + k, r);
+            z[k] = r[first + k] - rho * rate;
+        }
+        z
+    }
+
+    /// B r of the parts at rest, in one component.
+    fn used(&self, i: usize, r: &Reactions) -> f64 {
+        let mut sum = 0.0;
+        for (first, count) in self.parts().map(Part::place) {
+            (first..first + count).for_each(|j| sum += self.b[(i, j)] * r[j]);
+        }
+        sum
+    }
+
+    fn projects(&self, r: &mut Reactions, sweeps: usize) {
+        for _ in 0..sweeps {
+            let mut moved = 0f64;
+            for part in self.parts() {
+                let (nearest, _) = self.nearest(part, self.pushed(part, r));
+                let (first, count) = part.place();
+                for k in 0..count {
+                    moved = moved.max((nearest[k] - r[first + k]).abs());
+                    r[first + k] = nearest[k];
+                }
+            }
+            if moved < 0.01 * CONVERGED {
+                return;
+            }
+        }
+    }
+
+    /// The error r - P(r - rho x'), and its derivative.
+    fn off(&self, r: &Reactions) -> (Reactions, SMatrix<f64, REACTIONS, REACTIONS>) {
+        let mut slope = SMatrix::<f64, REACTIONS, REACTIONS>::identity();
+        let mut off = Reactions::zeros();
+        for part in self.parts() {
+            let (first, count) = part.place();
+            let (z, rho) = (self.pushed(part, r), self.rho(part));
+            let (nearest, within) = self.nearest(part, z);
+            let size = z[0].hypot(z[1]);
+            let limit = self.limits[part as usize].unwrap_or(0.0);
+            for i in 0..count {
+                off[first + i] = r[first + i] - nearest[i];
+                for (from, n) in self.parts().map(Part::place) {
+                    for j in from..from + n {
+                        // The derivative of z, seen through that of the projection.
+                        let mut seen = 0.0;
+                        for k in 0..count {
+                            let own = f64::from(u8::from(first + k == j)) - rho * self.b[(first + k, j)];
+                            let turns = f64::from(u8::from(i == k)) - z[i] * z[k] / (size * size);
+                            let turns = if within {
+                                f64::from(u8::from(i == k))
+                            } else if count == 1 {
+                                0.0
+                            } else {
+                                limit / size * turns
+                            };
+                            seen += turns * own;
+                        }
+                        slope[(first + i, j)] = f64::from(u8::from(first + i == j)) - seen;
+                    }
+                }
+            }
+        }
+        (off, slope)
+    }
+
+    /// The reactions, from a first guess.
+    fn reactions(&self, mut r: Reactions) -> Reactions {
+        for sweeps in PROJECTIONS {
+            self.projects(&mut r, sweeps);
+            for _ in 0..NEWTON {
+                let (off, slope) = self.off(&r);
+                let Ok(step) = slope.svd(true, true).solve(&off, 1e-10) else { break };
+                let next = r - step;
+                if self.off(&next).0.amax() >= off.amax() {
+                    break;
+                }
+                r = next;
+            }
+            if self.off(&r).0.amax() <= CONVERGED {
+                break;
+            }
+        }
+        r
+    }
+
+    /// What happens to each part.
+    pub fn fates(&self) -> [Fate; 4] {
+        self.fates_from(Reactions::zeros())
+    }
+
+    fn fates_from(&self, guess: Reactions) -> [Fate; 4] {
+        let r = self.reactions(guess);
+        let pressed = self.normal / (1.0 - self.lean.dot(&r));
+        let mut all = [Fate::default(); 4];
+        for part in self.parts() {
+            let z = self.pushed(part, &r);
+            let limit = self.limits[part as usize].unwrap_or(0.0);
+            let size = z[0].hypot(z[1]);
+            let fate = &mut all[part as usize];
+            fate.reaction = Self::of_part(part, &r);
+            let begins = match self.known {
+                Some((known, begins)) if known == part => begins && size > 0.0,
+                _ => size > limit * (1.0 + HELD),
+            };
+            if begins {
+                let way = z.map(|x| if x.abs() < STRAIGHT * size { 0.0 } else { 0.0 - x / size });
+                fate.way = way;
+                fate.growth = (size - limit).max(0.0) / self.rho(part) * pressed;
+            }
+        }
+        all
+    }
+
+    /// The behaviour of a contact point at rest, with the coefficients of sliding and of static friction. If `doubtful`,
+    /// more than one may be consistent, and all are counted that a search from many directions finds.
+    pub fn standstill(&self, [mu, fixed]: [f64; 2], doubtful: bool) -> Standstill {
+        let slip = |fates: &[Fate; 4]| fates[Part::Slip as usize];
+        let slips = |fate: Fate| Standstill::Slips { alpha: f64::atan2(fate.way[1], fate.way[0]), growth: fate.growth };
+        let (fixed, sliding) = (self.with_slip(fixed), self.with_slip(mu));
+        if !doubtful {
+            if !slip(&fixed.fates()).begins() {
+                return Standstill::Sticks;
+            }
+            let fate = slip(&sliding.fates());
+            return if fate.begins() { slips(fate) } else { Standstill::Sticks };
+        }
+        let holds = |of: &Self| of.all().iter().any(|fate| !fate.begins());
+        let mut found: Vec<Fate> = sliding.all();
+        found.retain(|fate| fate.begins() && fate.growth > GROWS);
+        if holds(&fixed) {
+            let allowed = usize::from(!holds(&sliding));
+            return if found.len() > allowed { Standstill::Undefined } else { Standstill::Sticks };
+        }
+        if let [only] = found[..] { slips(only) } else { Standstill::Undefined }
+    }
+
+    /// The direction in which the contact point slips off when static friction has just ceased to hold it.
+    pub fn lets_go(&self, [mu, fixed]: [f64; 2], doubtful: bool) -> Standstill {
+        if fixed != mu {
+            return match self.standstill([mu; 2], doubtful) {
+                Standstill::Sticks => Standstill::Undefined,
+                found => found,
+            };
+        }
+        let [across, along] = self.with_slip(f64::INFINITY).fates()[Part::Slip as usize].reaction;
+        let slips = Standstill::Slips { alpha: f64::atan2(0.0 - along, 0.0 - across), growth: 0.0 };
+        let another = doubtful && self.with_slip(mu).all().iter().any(|fate| fate.growth > SAME);
+        if another { Standstill::Undefined } else { slips }
+    }
+
+    /// The fates of the slip in all consistent solutions that are found.
+    fn all(&self) -> Vec<Fate> {
+        let mut found: Vec<Fate> = Vec::new();
+        let limit = self.limits[Part::Slip as usize].unwrap_or(0.0).min(1e6);
+        for k in 0..=STARTS {
+            let mut guess = Reactions::zeros();
+            if k > 0 {
+                let (sin, cos) = (core::f64::consts::TAU * k as f64 / STARTS as f64).sin_cos();
+                (guess[0], guess[1]) = (limit * cos, limit * sin);
+            }
+            let r = self.reactions(guess);
+            let fate = self.fates_from(guess)[Part::Slip as usize];
+            let sound = self.off(&r).0.amax() <= 1e-9 && 1.0 - self.lean.dot(&r) > 0.0;
+            let same = |other: &Fate| {
+                (other.way[0] - fate.way[0]).hypot(other.way[1] - fate.way[1]) < SAME
+            };
+            if sound && !found.iter().any(same) {
+                found.push(fate);
+            }
+        }
+        found
+    }
+}
+
+/// The friction of a contact point: at rest, or that of a slip.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Rubs {
+    Rests,
+    /// The friction force -N `pull`, and the couple `twist` N of a patch.
+    Slips { pull: [f64; 2], twist: f64 },
+}
+
+impl Together {
+    /// The motions at rest of a body of revolution, besides the slip. None if there are none, or if nothing presses the
+    /// body on the table. Speeds below `still` count as zero.
+    pub fn of_body(
+        shape: &Shape<f64>,
+        losses: &Couples<f64, impl OwnCouple<f64>>,
+        (angle, w): ((f64, f64), [f64; 3]),
+        u: [f64; 2],
+        rubs: Rubs,
+    ) -> Option<Self> {
+        let ((s, c), [w1, w2, w3]) = (angle, w);
+        let (spin, drilling) = (w3 - c / s * w1, s * w1 + c * w3);
+        let still = rounded(s, w);
+        let limit = |law: Law, rests: bool, by: f64| {
+            (losses.has(law) && rests).then(|| losses.coefficient(law) * by)
+        };
+        let (along, rocks) = (spin.abs() <= still, w2.abs() <= still);
+        let limits = [
+            None,
+            limit(Law::RollingResistance, along && rocks, 1.0),
+            limit(Law::DryContour, along, shape.rim.radius(angle) / s),
+            limit(Law::Drilling, drilling.abs() <= still, 1.0),
+        ];
+        if limits == [None; 4] {
+            return None;
+        }
+        let way = |rests: bool, speed: f64| if rests { 0.0 } else { speed.signum() };
+        let mut base = losses.with_more([0.0; 3]);
+        base.ways = Some(Ways {
+            contour: way(limits[2].is_some(), spin),
+            drilling: way(limits[3].is_some(), drilling),
+            ..Ways::default()
+        });
+        if limits[1].is_some() {
+            base.sets(Law::RollingResistance, 0.0);
+        }
+        let slipping = Slipping::of(shape, 1.0, false);
+        let (pulled, twist, slips) = match rubs {
+            Rubs::Rests => ([0.0; 2], 0.0, Some(f64::INFINITY)),
+            Rubs::Slips { pull, twist } => (pull, twist, None),
+        };
+        let respond = |r: &[f64; REACTIONS]| {
+            let ([a, b, across, tilt, contour], turn) = ([r[0], r[1], r[2], r[3], r[4]], r[5] + twist);
+            let couple = [c * (across + contour) + s * turn, tilt, c * turn - s * (across + contour)];
+            let law = slipping.with_losses(Some(base.with_more(couple)));
+            let at = law.towards(angle, w, u, [pulled[0] - a, pulled[1] - b]);
+            let [d1, d2, d3] = at.w;
+            let rolls = c * d1 - s * d3 + w2 * drilling;
+            let drills = s * d1 + c * d3 - w2 * (c * w1 - s * w3);
+            (at.force[0], [at.u[0], at.u[1], rolls, d2, rolls, drills])
+        };
+        Self::of([slips, limits[1], limits[2], limits[3]], respond)
+    }
+}
