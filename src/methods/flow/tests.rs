@@ -217,7 +217,7 @@ impl<T: crate::numbers::side_by_side::SideBySide> lanes::Flows<T, 2, 1> for Lane
 fn left(zeros: [f64; 2], up: f64) -> (f64, lanes::LaneStatus) {
     let mut numbers = [0.0; lanes::NUMBERS];
     numbers[..3].copy_from_slice(&[zeros[0], zeros[1], up]);
-    let entry = lanes::Entry { y: [0.0; 2], step: 1.0, numbers, tol: 1.0, until: 9.5, patience: 100 };
+    let entry = lanes::Entry { y: [0.0; 2], step: 1.0, numbers, tol: 1.0, until: 9.5, patience: 100, made: 0 };
     let mut set = lanes::Set::new(0.0, LaneClock([0.0; 3]), &entry);
     while set.status(0) == lanes::LaneStatus::Runs {
         set.burst(0.0, 64);

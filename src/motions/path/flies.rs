@@ -14,7 +14,7 @@ use crate::laws::contact::{Force, Table};
 use crate::laws::state::State;
 use crate::motions::halt::{TIME, loses, poses};
 use crate::motions::walk::{Next, Phases};
-use crate::motions::{Ending, Kind};
+use crate::motions::{Ending, Kind, Limit};
 use core::f64::consts::{FRAC_PI_2, TAU};
 
 impl<const N: usize> BodyWalk<'_, N> {
@@ -144,7 +144,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         let leaves = [leaves, touches.then_some(if other.lift == 0.0 { 2 } else { 1 })];
         let left = self.since.last().map_or(0.0, |t| t - now);
         let Ok(landing) = course.lands(leaves, self.has_two_rims(), left) else {
-            self.next = Some(Next::Ends(Ending::Bounded));
+            self.next = Some(self.gives_up(Limit::Evaluations));
             return;
         };
         let before = if loses(N) { self.at[N - 1] } else { 0.0 };

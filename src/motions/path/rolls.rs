@@ -12,7 +12,7 @@ use crate::motions::conserved::by_first_integrals;
 use crate::motions::halt::loses;
 use crate::motions::judge::doubted;
 use crate::motions::walk::{Next, Phases, WalkStep, after_rest};
-use crate::motions::{Ask, Ending, Start};
+use crate::motions::{Ask, Ending, Limit, Start};
 use core::f64::consts::{PI, TAU};
 use nalgebra::Point2;
 
@@ -45,13 +45,14 @@ impl<const N: usize> BodyWalk<'_, N> {
         let from = Start { time: self.at[7], ..y.into() };
         if y.theta.min(PI - y.theta) < LEAST {
             // A face this close to the table lands before any other event.
-            let lost = Error::Lost { theta: y.theta };
-            self.next = Some(if body.is_ball() { return Err(lost) } else { Next::Ends(Ending::Face) });
+            self.next = Some(match body.is_ball() {
+                true if self.at[7] == 0.0 => return Err(Error::Lost { theta: y.theta }),
+                true => self.gives_up(Limit::Rounding),
+                false => Next::Ends(Ending::Face),
+            });
             return Ok(None);
         }
-        let Some(mut rolled) = by_first_integrals(&body, &from, times, &ask, &mut *go_on)? else {
-            return Ok(Some(WalkStep::Interrupted));
-        };
+        let mut rolled = by_first_integrals(&body, &from, times, &ask, &mut *go_on)?;
         self.claims(rolled.error);
         self.made.motion.pose_error = self.made.motion.pose_error.max(rolled.pose_error);
         let heat = self.at[8];
@@ -70,11 +71,12 @@ impl<const N: usize> BodyWalk<'_, N> {
             }
         }
         let Some(event) = rolled.event else { return Ok(None) };
+        self.made.motion.limit = rolled.limit;
         // The pose at the event is computed separately, since `rolled` has poses at the requested times only.
         if self.ask.pose && (event.ending == Ending::Slip || event.ending == Ending::Side) {
             let ask = Ask { beyond: true, ..ask };
             let then = by_first_integrals(&body, &from, &[event.time], &ask, go_on)?;
-            if let Some(pose) = then.and_then(|m| m.poses).and_then(|poses| poses.last().copied()) {
+            if let Some(pose) = then.poses.and_then(|poses| poses.last().copied()) {
                 let pose = self.moved(&pose);
                 let numbers =
                     [pose.phi.radians(), pose.psi.radians(), pose.contact_point.x, pose.contact_point.y];

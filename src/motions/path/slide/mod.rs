@@ -172,7 +172,7 @@ impl Flow<MARGINS> for Slide {
     const TIME: usize = TIME;
     const OVER: Halt = Halt::Time;
     const PAUSE: Halt = Halt::Pause;
-    const ENDLESS: Option<Halt> = Some(Halt::Endless);
+    const ENDLESS: Halt = Halt::Endless;
     const MAY_BE_STIFF: bool = true;
 
     #[inline(always)]
