@@ -130,6 +130,16 @@ pub enum Error {
         /// The inclination at that time, in radians.
         theta: f64,
     },
+    /// Whether a body with this spin turns over or rises cannot be told from its motion.
+    #[error(
+        "spin = {spin:?}: whether the body turns over is unknown, for the error of its motion is {error:.1e}"
+    )]
+    Undecided {
+        /// The spin, as in the result of the search.
+        spin: f64,
+        /// The estimated error of the motion.
+        error: f64,
+    },
     /// The memory does not suffice for the request.
     #[error("too little memory: {bytes} bytes are needed at once")]
     Memory {

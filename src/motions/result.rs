@@ -89,7 +89,7 @@ impl From<Exhausted> for Limit {
 
 /// The event at which a motion leaves the range of the model.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
 pub struct Event<S = State> {
     /// The kind of the event.
@@ -112,6 +112,7 @@ impl<S> Event<S> {
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields),
     serde(bound(
         serialize = "S: serde::Serialize, S::Pose: serde::Serialize, S::Force: serde::Serialize",
         deserialize = "S: serde::Deserialize<'de>, S::Pose: serde::Deserialize<'de>, S::Force: serde::Deserialize<'de>"
@@ -205,7 +206,8 @@ impl<S: Moving> Motion<S> {
 
     /// Ends the motion at the limit `Interrupted`, after its first `count` outputs.
     pub(super) fn cut(mut self, count: usize) -> Self {
-        let at = self.times.get(count.saturating_sub(1)).copied().zip(self.states.get(count.saturating_sub(1)));
+        let at =
+            self.times.get(count.saturating_sub(1)).copied().zip(self.states.get(count.saturating_sub(1)));
         self.event = at.map(|(time, &state)| Event { ending: Ending::Bounded, time, state });
         self.limit = Some(Limit::Interrupted);
         self.times.truncate(count);
@@ -261,7 +263,7 @@ coded! {
 
 /// A part of a motion of one kind, such as rolling or slipping.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
 pub struct Phase<S = State> {
     /// The time at which the phase begins.
@@ -276,7 +278,7 @@ pub struct Phase<S = State> {
 
 /// An impact of a rim on the table.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
 pub struct Strike {
     /// The time of the impact.
@@ -301,7 +303,7 @@ pub struct Strike {
 /// The slip, the phases and the losses of a motion. The estimated error of the motion also covers the slips, and the
 /// times and states of the phases and of the end; the error of the heat is that error times the largest speed.
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
 pub struct Path<S = State> {
     /// The slip at each time, along the lean and across it.

@@ -63,7 +63,7 @@ def given_up(status: np.ndarray) -> None:
     count = int(np.count_nonzero(status == Status.BOUNDED))
     if count:
         told = f"{count} of {status.size} motions were given up (Status.BOUNDED) and are NaN"
-        why = "slipping and rolling alternate too often, or time hardly advances"
+        why = "they reached a limit of evaluations (max_nfev=), of phases, of impacts or of rounding"
         warn(f"{told}: {why}", RuntimeWarning)
 
 

@@ -35,7 +35,7 @@ const POINT: f64 = 1e-16;
 
 /// The law of friction at a contact point that slips or sticks.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub enum Friction {
     /// Dry friction: the force is mu N against the slip, and at most `fixed` times N while the contact point rests.
     Coulomb {
@@ -149,6 +149,7 @@ impl<T: Real> Slipping<T> {
 
 impl<T: Real, G: OwnCouple<T>> Slipping<T, G> {
     /// Returns this body on a patch of this radius.
+    #[must_use]
     pub fn with_patch(self, radius: Option<T>) -> Self {
         Self { radius, ..self }
     }
@@ -160,6 +161,7 @@ impl<T: Real, G: OwnCouple<T>> Slipping<T, G> {
     }
 
     /// Returns this body with losses.
+    #[must_use]
     pub fn with_losses<H>(self, losses: Option<Couples<T, H>>) -> Slipping<T, H> {
         let Self { shape, per_i1, per_i3, strength, soft, dry, radius, .. } = self;
         Slipping { shape, per_i1, per_i3, strength, soft, dry, losses, radius }

@@ -88,6 +88,7 @@ impl<T: Real> StoneLaw<T> {
     }
 
     /// Returns this law for a patch of this radius.
+    #[must_use]
     pub fn with_patch(self, radius: Option<T>) -> Self {
         Self { radius, ..self }
     }
@@ -99,6 +100,7 @@ impl<T: Real> StoneLaw<T> {
     }
 
     /// Returns this law with losses.
+    #[must_use]
     pub fn with_losses(self, losses: Option<Couples<T>>) -> Self {
         Self { losses, ..self }
     }

@@ -6,12 +6,12 @@
 //! The equations are those of the library's laws. Slopes of margins are differences, since a user-defined law has no
 //! derivative.
 
+use crate::error::Error;
 use crate::laws::body::{Body, landing_angle};
 use crate::laws::contact::lossy::{Acted, Held, Lossy};
 use crate::laws::contact::slip::{Friction, Slipping};
 use crate::laws::contact::standstill::{Standstill, standstill_under};
 use crate::laws::contact::{Contact, Force, Table, grip};
-use crate::error::Error;
 use crate::laws::custom::{Custom, fault_of_couple, fault_of_friction};
 use crate::laws::loss::{Couple, Couples, Losses, UnderCouple};
 use crate::laws::state::State;
@@ -119,7 +119,10 @@ impl<'a> CustomFlow<'a> {
         let (mut found, mut next) = answer(couples);
         for _ in 0..SECANTS {
             let more = at(next);
-            if more == m || more.iter().any(|x| x.is_nan()) || (next - normal).abs() <= 4.0 * f64::EPSILON * (1.0 + next.abs()) {
+            if more == m
+                || more.iter().any(|x| x.is_nan())
+                || (next - normal).abs() <= 4.0 * f64::EPSILON * (1.0 + next.abs())
+            {
                 return (found, couples);
             }
             let pressed: [f64; 3] = core::array::from_fn(|i| (more[i] - m[i]) / (next - normal));

@@ -308,7 +308,9 @@ impl<'a> CustomRun<'a> {
             Some(Exhausted::Rounding) if self.at[TIME] == 0.0 => {
                 return Err(Error::Lost { theta: flow.theta(&self.at) });
             }
-            Some(Exhausted::Crawling | Exhausted::Evaluations) if flow.is_kept_short(&self.at, flown.step) => {
+            Some(Exhausted::Crawling | Exhausted::Evaluations)
+                if flow.is_kept_short(&self.at, flown.step) =>
+            {
                 Some(Limit::Stiff)
             }
             why => why.map(Limit::from),

@@ -308,7 +308,8 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Pause<N>, Error> {
         let first = Some(first.unwrap_or_else(|| P::first(self, &y)));
-        let steps = Steps { first, most, patience: self.spent.patience, toil: self.toil(), tired: self.tired };
+        let steps =
+            Steps { first, most, patience: self.spent.patience, toil: self.toil(), tired: self.tired };
         self.tired = false;
         let paused = P::flows(self, y, steps, go_on)?;
         if self.made.motion.limit == Some(Limit::Rounding) && self.at[TIME] == 0.0 {
