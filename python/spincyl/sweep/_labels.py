@@ -34,8 +34,7 @@ class Status(IntEnum):
     LANDING
         For a landing on both rims no impulse, or more than one, obeys the law of friction.
     BOUNDED
-        The computation was given up, since the phases alternate too often or the motion hardly advances;
-        the results are NaN.
+        The computation was given up at a limit of its work or of its precision; the results are NaN.
     """
 
     DONE = 0

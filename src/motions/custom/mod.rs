@@ -252,8 +252,9 @@ impl<'a> CustomRun<'a> {
         let mut next = self.first();
         loop {
             let over = self.begins(next);
-            let supplies = || self.flow.supplies(&self.at, &self.flow.rates(&self.at));
-            let fault = self.flow.fault.take().or_else(supplies);
+            let goes_on = over.is_none().then_some(());
+            let supplies = |()| self.flow.supplies(&self.at, &self.flow.rates(&self.at));
+            let fault = self.flow.fault.take().or_else(|| goes_on.and_then(supplies));
             if let Some(fault) = fault.filter(|_| !self.flow.custom.has_failed()) {
                 return Err(fault);
             }
