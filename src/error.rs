@@ -95,15 +95,29 @@ pub enum Error {
         /// The number of consistent outcomes.
         outcomes: usize,
     },
-    /// The phases of the motion alternate too often for the motion to be computed up to its last time.
-    #[error(
-        "too many phases: {count} (slipping, rolling, ...) up to t = {time:?}: give only times before that"
-    )]
-    Restless {
-        /// The number of phases.
-        count: usize,
-        /// The time at which the last phase began.
-        time: f64,
+    /// A user-defined couple is not finite, or supplies energy, in a state on the way of a motion.
+    #[error("couple: power = {power:?} at theta = {theta:?}, w = {w:?}, N = {normal:?}: expected {expected}")]
+    Couple {
+        /// The power that the couple takes, -m.w, in M g sqrt(g R); NaN if the couple is not finite.
+        power: f64,
+        /// The accepted couples.
+        expected: &'static str,
+        /// The inclination, in radians.
+        theta: f64,
+        /// The angular velocity along e1, e2, e3, in sqrt(g/R).
+        w: [f64; 3],
+        /// The normal force, in M g.
+        normal: f64,
+    },
+    /// A user-defined coefficient of friction is negative or not finite at a speed on the way of a motion.
+    #[error("mu = {mu:?} at the speed {speed:?}: expected {expected}")]
+    Coefficient {
+        /// The coefficient of friction.
+        mu: f64,
+        /// The accepted coefficients.
+        expected: &'static str,
+        /// The speed of the slip, in sqrt(g R).
+        speed: f64,
     },
     /// Time hardly advances, because the forces on the body change faster and faster.
     #[error(
@@ -115,6 +129,16 @@ pub enum Error {
         time: f64,
         /// The inclination at that time, in radians.
         theta: f64,
+    },
+    /// Whether a body with this spin turns over or rises cannot be told from its motion.
+    #[error(
+        "spin = {spin:?}: whether the body turns over is unknown, for the error of its motion is {error:.1e}"
+    )]
+    Undecided {
+        /// The spin, as in the result of the search.
+        spin: f64,
+        /// The estimated error of the motion.
+        error: f64,
     },
     /// The memory does not suffice for the request.
     #[error("too little memory: {bytes} bytes are needed at once")]

@@ -248,8 +248,8 @@ def nouns():
         "Body.in_metres": (TUBE.in_metres, {"mass": 0.02, "radius": 8e-3, "gravity": 9.8}),
         "State.in_si": (state.in_si, {"scale": TUBE}),
         "launch_number": (sc.launch_number, {"body": body, "state": sc.State(np.pi / 2, 1, 0.0, 2)}),
-        "turning_spin": (sc.turning_spin, {"top": sc.Body.ball(-0.2, 0.40, 0.42), "contact": sc.Viscous(1.0), "lean": 0.1}),
-        "rising_spin": (sc.rising_spin, {"egg": sc.Ellipsoid.egg(1.0, 1.4), "contact": sc.Viscous(1.0), "lean": 0.1}),
+        "turning_spin": (sc.turning_spin, {"top": sc.Body.ball(-0.2, 0.40, 0.42), "contact": sc.Viscous(1.0), "lean": 0.1, "t": 300.0}),
+        "rising_spin": (sc.rising_spin, {"egg": sc.Ellipsoid.egg(1.0, 1.4), "contact": sc.Viscous(1.0), "lean": 0.1, "t": 300.0}),
         "swing": (sc.swing, {"body": body, "state": state, "contact": "rolling"}),
     }  # fmt: skip
     return found
@@ -263,7 +263,7 @@ def motions():
             sc.roll,
             {
                 "body": body, "state": state, "t": 1.0, "t0": None, "step": None, "tol": None, "method": None, "contact": "rolling",
-                "mu": np.inf, "want": (), "beyond": False, "restitution": None, "losses": None,
+                "mu": np.inf, "want": (), "beyond": False, "restitution": None, "losses": None, "max_nfev": 1000,
             },
         ),
         "roll of a measured body": (sc.roll, {"body": TUBE, "state": TUBE.steady(1.4), "t": 0.1, "t0": None, "step": None}),
@@ -355,7 +355,7 @@ def sweeps():
     how = {"threads": 1, "progress": None}
     rolls = {
         "bodies": FAMILY, "states": FAMILY.steady(1.3), "t": 1.0, "want": None, "contact": "rolling", "tol": 1e-10, "mu": np.inf,
-        "beyond": False, "restitution": None, "stop_at": None, "losses": None, "threads": 1, "progress": None,
+        "beyond": False, "restitution": None, "stop_at": None, "losses": None, "max_nfev": None, "threads": 1, "progress": None,
     }  # fmt: skip
     found = {
         "sweep.portrait": (sc.sweep.portrait, {**axes, "want": "rate", "out": None, "dtype": "float64", **how}),

@@ -1,5 +1,8 @@
 """Laws of a user's own: the library's motions, SI, and what they are refused for."""
 
+import os
+import signal
+
 import numpy as np
 import pytest
 
@@ -121,6 +124,81 @@ def test_what_is_no_friction_is_refused():
 def test_an_error_within_a_law_is_that_of_the_motion():
     with pytest.raises(ZeroDivisionError):
         sc.roll(COIN, START, T, losses=sc.custom.Couple(lambda theta, w, normal: 1 / 0))
+
+
+#: The check before a motion calls a couple about 7,100 times.
+CHECKED = 7300
+
+
+@pytest.mark.parametrize("fails_at", [1, 100, CHECKED, CHECKED + 5000])
+def test_the_first_exception_of_a_law_is_its_last_call(fails_at):
+    calls = []
+
+    def law(theta, w, normal):
+        calls.append(theta)
+        if len(calls) >= fails_at:
+            raise ZeroDivisionError("mine")
+        return -0.01 * w
+
+    with pytest.raises(ZeroDivisionError, match="mine"):
+        sc.roll(COIN, START, np.linspace(0, 500, 11), losses=sc.custom.Couple(law))
+    assert len(calls) == fails_at
+    calls.clear()
+
+    def friction(u):
+        calls.append(u)
+        if len(calls) >= fails_at:
+            raise ZeroDivisionError("mine")
+        return 0.1 + 0.2 / (1 + u * u)
+
+    with pytest.raises(ZeroDivisionError, match="mine"):
+        slips = sc.State(0.5, 0.1, 0.0, 3.0, slip=(1.0, 2.0))
+        both = sc.custom.Couple(lambda theta, w, normal: -0.01 * w)
+        contact = sc.custom.Friction(friction)
+        sc.roll(COIN, slips, np.linspace(0, 500, 11), contact=contact, losses=both)
+    assert len(calls) == fails_at
+
+
+def test_ctrl_c_in_a_law_is_heard_in_that_call():
+    calls = []
+
+    def law(theta, w, normal):
+        calls.append(theta)
+        if len(calls) == CHECKED + 2000:
+            os.kill(os.getpid(), signal.SIGINT)
+        return -0.01 * w
+
+    with pytest.raises(KeyboardInterrupt):
+        sc.roll(COIN, START, np.linspace(0, 500, 11), losses=sc.custom.Couple(law))
+    assert len(calls) <= CHECKED + 2001
+
+
+def test_a_law_that_is_nan_on_the_way_is_named_with_the_state():
+    window = sc.custom.Couple(
+        lambda theta, w, normal: -0.01 * w * (np.nan if 0.4799 < theta < 0.4801 else 1.0)
+    )
+    with pytest.raises(ValueError, match=r"^couple: power = NaN at theta = 0\.4[78].*w = \[.*N = .*finite"):
+        sc.roll(COIN, COIN.steady(0.5).kicked(-0.3), 5.0, losses=window)
+    adds = sc.custom.Couple(lambda theta, w, normal: -0.01 * w * (1 - (w @ w) / 144.0))
+    body = sc.Body.solid(2.5)
+    with pytest.raises(ValueError, match=r"^couple: power = -.*takes energy"):
+        sc.roll(body, sc.State(1.3, 0.1, 0.0, 25.0), 5.0, losses=adds)
+    tube = sc.measured(outer_diameter="22mm", length="50mm", mass="10g")
+    with pytest.raises(ValueError, match=r"^couple: power = NaN .*natural units"):
+        limit = tube.scale.radians_per_second(12.0)
+        nan = sc.custom.Couple(lambda theta, w, normal: -1e-8 * w * (np.nan if w @ w > limit**2 else 1.0))
+        sc.roll(tube, sc.State(1.3, 0.1, 0.0, 25.0), 5.0, losses=nan)
+
+
+def test_a_stiff_law_is_named_where_its_motion_is_given_up():
+    def drilling(theta, w, normal):
+        s, c = np.sin(theta), np.cos(theta)
+        couple = -1e7 * (s * w[0] + c * w[2])
+        return couple * s, 0.0, couple * c
+
+    with pytest.warns(RuntimeWarning, match="given up at .* since the law is stiff"):
+        m = sc.roll(COIN, START, 5.0, losses=sc.custom.Couple(drilling), max_nfev=20_000)
+    assert m.status == sc.Ending.BOUNDED and "the law is stiff" in m.message
 
 
 @pytest.mark.parametrize(

@@ -306,6 +306,23 @@ def test_the_name_of_a_constant_stands_once_in_a_layer():
     assert not twice, twice
 
 
+# Builders.
+
+BUILDER = re.compile(
+    r"((?:^ *(?:#\[|///).*\n)*)^ *pub fn (with\w*|kicked)(?:<\w+>)?\((?:mut )?self\b[^{;]*?-> (\w+)", re.M
+)
+
+
+def test_what_a_builder_returns_must_be_used():
+    found = [
+        (name(path), *builder) for path in SOURCES for builder in BUILDER.findall(path.read_text("utf-8"))
+    ]
+    # a `Result` must be used by itself
+    found = [(place, attributes, word) for place, attributes, word, made in found if made != "Result"]
+    assert len(found) > 15
+    assert not [(place, word) for place, attributes, word in found if "#[must_use]" not in attributes]
+
+
 # Promises of tests in comments.
 
 PROMISE = re.compile(r"[^.;]*\b(?:a test|a property|the tests|tests of)\b[^.;]*", re.I)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
 import numpy as np
 
 from spincyl._contact import AnyContact, code, table
-from spincyl._input.numbers import Floats, Reals, flag, floats, is_scalar, number, one_of, reals
+from spincyl._input.numbers import Floats, Reals, flag, floats, is_scalar, number, one_of, reals, whole
 from spincyl._phases import check, rubs
 from spincyl._state import State
 
@@ -37,6 +37,7 @@ class Asked(NamedTuple):
     restitution: float | None = None
     losses: "Loss | None" = None
     stop_at: Literal["rolling"] | None = None
+    max_nfev: int | None = None
     spread: bool = False  # whether many motions return their states at all times
 
 
@@ -47,7 +48,7 @@ def crossing(
 
     Defaults are left out, since passing them can take longer than a short motion.
     """
-    _, t0, step, tol, _, contact, mu, beyond, want, restitution, losses, stop_at, spread = asked
+    _, t0, step, tol, _, contact, mu, beyond, want, restitution, losses, stop_at, max_nfev, spread = asked
     options: dict[str, Any] = {"t0": t0} if t0 else {}
     if contact != "rolling" or mu != math.inf:
         options["table"], options["coefficients"] = table(contact, mu, own=True)
@@ -70,6 +71,8 @@ def crossing(
         options["restitution"] = float(restitution)
     if stop_at:
         options["stop_at_rolling"] = True
+    if max_nfev is not None:
+        options["max_nfev"] = max_nfev
     if spread:
         options["spread"] = True
     return options
@@ -88,6 +91,11 @@ def times_of(t: Reals) -> Floats:
     if found.size == 0:
         raise ValueError("t: expected at least one time, not an empty array")
     return found
+
+
+def evaluations(most: int | None) -> int | None:
+    """The argument `max_nfev`, checked."""
+    return most if most is None else whole("max_nfev", most, 1, 2**63 - 1)
 
 
 def choices(want: Want | Iterable[Want]) -> frozenset[Want]:
@@ -118,6 +126,7 @@ def ask(
     want: Want | Iterable[Want],
     restitution: float | None,
     losses: "Loss | None",
+    max_nfev: int | None,
 ) -> Asked:
     """Check the arguments of `roll`, in natural units; an error names the argument."""
     times = times_of(t)
@@ -167,4 +176,5 @@ def ask(
         check(state, contact, restitution, given)
     # the default `want` is an empty tuple: `choices` would take longer than this test
     want = NOTHING if type(want) is tuple and not want else choices(want)
-    return Asked(times, t0, step, tol, method, contact, mu, beyond, want, restitution, losses)
+    asked = Asked(times, t0, step, tol, method, contact, mu, beyond, want, restitution, losses)
+    return asked if max_nfev is None else asked._replace(max_nfev=evaluations(max_nfev))

@@ -209,9 +209,15 @@ def thrown(velocity: float, backspin: float, body: _Body) -> tuple[list[float], 
 def pressed(
     impulse: float, angle: float, finger: float, table: float, body: _Body
 ) -> tuple[list[float], list[float]]: ...
-def turning_spin(table: int, coefficients: tuple[float, float, float], lean: float, body: _Body) -> float: ...
+def turning_spin(
+    table: int, coefficients: tuple[float, float, float], lean: float, time: float | None, body: _Body
+) -> float: ...
 def rising_spin(
-    table: int | None, coefficients: tuple[float, float, float], lean: float, stone: Sequence[float]
+    table: int | None,
+    coefficients: tuple[float, float, float],
+    lean: float,
+    time: float | None,
+    stone: Sequence[float],
 ) -> float: ...
 def from_metres(
     outer_diameter: float, inner_diameter: float, length: float, fillet: float

@@ -128,6 +128,7 @@ class EllipsoidMotion(Motion):
             beyond=a.beyond,
             restitution=None,
             losses=a.losses,
+            max_nfev=a.max_nfev,
         )
 
     def _angle(self, name: str) -> Floats:
@@ -149,6 +150,7 @@ def roll(
     beyond: bool,
     restitution: float | None,
     losses: Loss | None,
+    max_nfev: int | None,
 ) -> "EllipsoidMotion":
     """Compute the motion of a stone: `spincyl.roll` calls this."""
     made("state", state, EllipsoidState)
@@ -173,7 +175,7 @@ def roll(
     plain = EllipsoidState(state.vertical, state.w) if not rubs(contact) else state
     with speaking(scale, "a"):
         given: Any = plain
-        asked = ask(given, t, t0, None, tol, None, contact, mu, beyond, want, None, None)
+        asked = ask(given, t, t0, None, tol, None, contact, mu, beyond, want, None, None, max_nfev)
         if losses is not None:
             check(losses, asked.times, asked.t0, {})
             asked = asked._replace(losses=losses)

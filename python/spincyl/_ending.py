@@ -29,7 +29,7 @@ class Ending(IntEnum):
     LANDING
         The law of friction allows no outcome of a landing on both rims, or more than one.
     BOUNDED
-        The computation gave up: slipping and rolling alternate too often, or the motion hardly advances.
+        The computation gave up at a limit of its work or of its precision; `Motion.message` says which.
     """
 
     DONE = 0

@@ -107,7 +107,9 @@ def natural_time(name: str, time: Reals, scale: Scale) -> Reals:
 
 
 # numbers out of range stay in natural units in a message; times on the way are converted to seconds
-_OUT_OF_RANGE = re.compile("(t|t0|step|w[123]|slip|error) = .*: expected ")
+_OUT_OF_RANGE = re.compile(
+    "(t|t0|step|w[123]|slip|error|spin|couple: power) = .*: (expected|whether) |mu = .* at the speed "
+)
 _TIME = re.compile(r"(\bt = |\bt0 = |\bstep = |\ba step of )([-+]?[0-9.]+(?:e[-+]?[0-9]+)?)")
 
 

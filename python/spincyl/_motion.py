@@ -108,6 +108,7 @@ class Motion:
     _phases: tuple[Phase, ...] | None = None
     _impacts: tuple[Impact, ...] | None = None
     _natural: "Motion | None" = None  # for a motion in SI: the same in natural units
+    _limit: tuple[str, str] | None = None  # name and reason of the limit at which the computation stopped
     _axes: ClassVar[Components] = AXES
 
     @property

@@ -6,9 +6,13 @@ from spincyl import _core
 from spincyl._contact import Coulomb, Viscous, fitting, table
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._input.numbers import Result, number
+from spincyl._measured import speaking
+from spincyl._turning import within_time
 
 
-def rising_spin(egg: Ellipsoid, contact: Coulomb | Viscous | None = None, *, lean: float = 0.1) -> Result:
+def rising_spin(
+    egg: Ellipsoid, contact: Coulomb | Viscous | None = None, *, lean: float = 0.1, t: float | None = None
+) -> Result:
     """Least spin with which an egg on its side rises to stand on an end.
 
     Without `contact` the spin is an estimate. With `contact` a search computes motions to find it.
@@ -24,20 +28,27 @@ def rising_spin(egg: Ellipsoid, contact: Coulomb | Viscous | None = None, *, lea
     lean : float, optional
         Initial angle between the axis and its position when the egg rests on its side, in radians, from 1e-6
         to 1. Used only with a contact.
+    t : float, optional
+        Time within which the egg has to rise, in sqrt(a/g), at most 1e6; for an egg in metres in seconds, or
+        a pint quantity. Default: 400 sqrt(a/g), or 1/(mu patch) if that is longer, the time in which drilling
+        takes the spin. The less the friction, the longer an egg needs. Used only with a contact.
 
     Returns
     -------
     float
-        Initial spin about the vertical, in sqrt(g/a), with the centre at rest. The result is inf if no spin
-        makes the egg stable on an end, or if ten times the estimate does not raise the egg with this contact.
-        Error of the estimate: a few roundings. Error of a search: 1e-3 of the spin. The search begins at half
-        of the estimate and finds no smaller spin.
+        Initial spin about the vertical, in sqrt(g/a), with the centre at rest. The estimate is inf if no spin
+        makes the egg stable on an end, or if at every spin something on the way to that end is stable. The
+        result of a search is inf if ten times the estimate does not raise the egg within `t` with this
+        contact. Error of the estimate: a few roundings. Error of a search: 1e-3 of the least spin within `t`;
+        each motion is computed with smaller tolerances until its estimated error lets it decide. The search
+        begins at half of the estimate and finds no smaller spin.
 
     Raises
     ------
     ValueError
         If the stone is not an egg, or stands on an end without spin; the message names the number. If `egg`
-        is a family, or a number of the contact is an array.
+        is a family, or a number of the contact is an array. If the error of a motion of the search is too
+        large to tell whether the egg rises.
     TypeError
         If an argument has another type.
 
@@ -65,8 +76,10 @@ def rising_spin(egg: Ellipsoid, contact: Coulomb | Viscous | None = None, *, lea
     if not isinstance(egg, Ellipsoid):
         raise TypeError(f"egg: expected an Ellipsoid, not {type(egg).__name__}")
     if contact is None:
-        return np.float64(_core.rising_spin(None, (0.0, 0.0, 0.0), 0.1, egg._numbers))
+        return np.float64(_core.rising_spin(None, (0.0, 0.0, 0.0), 0.1, None, egg._numbers))
     if not isinstance(contact, Coulomb | Viscous):
         raise TypeError(f"contact: expected Coulomb or Viscous, not {contact!r}")
     fitting(contact, egg.scale)
-    return np.float64(_core.rising_spin(*table(contact, 0.0), float(number("lean", lean)), egg._numbers))
+    time, leans = within_time(t, egg.scale), float(number("lean", lean))
+    with speaking(egg.scale, "a"):
+        return np.float64(_core.rising_spin(*table(contact, 0.0), leans, time, egg._numbers))

@@ -15,6 +15,7 @@ from spincyl._measured import in_si, natural_time, speaking
 from spincyl._motion import Motion, rolled
 from spincyl._state import State
 from spincyl._swing import single
+from spincyl._told import given_up
 
 if TYPE_CHECKING:
     from spincyl._ellipsoid import Ellipsoid
@@ -48,6 +49,8 @@ def roll(
     mu: float = np.inf,
     want: Want | Iterable[Want] = (),
     beyond: bool = False,
+    losses: "Loss | None" = None,
+    max_nfev: int | None = None,
 ) -> "EllipsoidMotion": ...
 @overload
 def roll(
@@ -65,6 +68,7 @@ def roll(
     beyond: bool = False,
     restitution: float | None = None,
     losses: "Loss | None" = None,
+    max_nfev: int | None = None,
 ) -> Motion: ...
 @helpful
 def roll(
@@ -82,6 +86,7 @@ def roll(
     beyond: bool = False,
     restitution: float | None = None,
     losses: "Loss | None" = None,
+    max_nfev: int | None = None,
 ) -> Motion:
     """Compute the motion of a body from an initial state.
 
@@ -132,6 +137,11 @@ def roll(
     losses : Loss, optional
         Loss law of `spincyl.loss`, or several added with `+`. The motion is then integrated with steps of
         eighth order, forward in time only. It may end where the body comes to rest (`Ending.STOPS`).
+    max_nfev : int, optional
+        Largest number of evaluations of the equations of motion (`Motion.nfev`). A motion that needs more
+        ends where it is (`Ending.BOUNDED`). Default: 8 million, or 40,000 per unit of time if that is more;
+        no limit for RK4. A larger number also allows more steps that hardly advance the time. The exact
+        method needs no evaluations.
 
     Returns
     -------
@@ -157,10 +167,11 @@ def roll(
     Warns
     -----
     RuntimeWarning
-        If the computation gives up (`Ending.BOUNDED`); the motion is returned up to that time. This happens
-        only with friction or losses: if slipping, rolling and sticking alternate more than 20 times per unit
-        of time (the limit is at least 5,000 and at most 10,000 times in all), if 600,000 steps hardly advance
-        the time, or after 8 million evaluations (40,000 per unit of time if the time exceeds 200).
+        If the computation gives up (`Ending.BOUNDED`); the motion is returned up to that time, for a body
+        and for a stone, and the message says which limit it has reached: `max_nfev` evaluations, 600,000
+        steps that hardly advance the time, slipping, rolling and sticking that alternate more than 20 times
+        per unit of time (the limit is at least 5,000 and at most 10,000 times in all), 30,000 impacts, or
+        rounding errors that outweigh the motion.
     StepWarning
         If RK4 damps the nutation by more than a thousandth of its amplitude, or if the precession advances by
         more than 0.3 rad or the nutation by more than 0.5 rad in a step.
@@ -209,10 +220,13 @@ def roll(
             "mu": mu,
         }
         given |= {"want": want, "beyond": beyond, "restitution": restitution, "losses": losses}
+        given["max_nfev"] = max_nfev
         found = stones.roll(body, state, t, **given)  # type: ignore[arg-type]  # it refuses another state
         if found._doubt:
             why = f"after that its estimated error reaches {found.error:.2g}"
             warn(f"the motion is {found._doubt} (known_until); {why}", ErrorWarning)
+        if found.status == Ending.BOUNDED:
+            warn(f"{given_up(found)} (Ending.BOUNDED)", RuntimeWarning)
         return found
     # `single` raises for other types
     one: Body = body  # type: ignore[assignment]
@@ -233,7 +247,7 @@ def roll(
             x if x is None else natural_time(name, x, scale) for name, x in (("t0", t0), ("step", step))
         )
     with speaking(scale):
-        asked = ask(start, t, t0, step, tol, method, contact, mu, beyond, want, restitution, losses)
+        asked = ask(start, t, t0, step, tol, method, contact, mu, beyond, want, restitution, losses, max_nfev)
         m = rolled(one if scale is None else one.natural, start, asked, numbers)
     if step is None and restitution is None and not m.error <= 0.1:
         warn(f"the estimated error of the motion is {m.error:.2g}, in natural units", ErrorWarning)
@@ -241,9 +255,7 @@ def roll(
         step = None if step is None else number("step", si("step", given_step, "second"))
         m = in_si(m, one, times_of(seconds), step)
     if m.status == Ending.BOUNDED:
-        at = f"t = {m.event.time:.6g}" + (" s" if scale is not None else "") if m.event else "its start"
-        told = f"given up at {at}, since slipping and rolling alternate too often, or time hardly advances"
-        warn(f"{told}; the motion ends there (Ending.BOUNDED)", RuntimeWarning)
+        warn(f"{given_up(m)} (Ending.BOUNDED)", RuntimeWarning)
     if m.coarse:
         why = f"RK4 damps the nutation by {100 * m.step_loss:.3g} % of its amplitude"
         if m.step_loss <= 1e-3:

@@ -14,7 +14,9 @@ if TYPE_CHECKING:
 def message(m: "Motion") -> str:
     """How a motion ended and how it was computed, in words."""
     why = MESSAGES[m.status][0]
-    if m.status == Ending.SIDE and not two_rims(m.body):
+    if m._limit is not None:
+        why += f", since {m._limit[1]}"
+    elif m.status == Ending.SIDE and not two_rims(m.body):
         why = "another part landed"
     elif m.event and m._phases == () and m.status == Ending.SIDE and m.event.state.w2 == 0:
         why = "the other rim does not rise"
@@ -31,6 +33,15 @@ def message(m: "Motion") -> str:
         phases = told(m._phases or (), _second(m))
         return "; ".join(filter(None, (why, phases, _how(m), errors, m._doubt)))
     return f"{why}; found {_how(m)}, {errors}"
+
+
+def given_up(m: "Motion") -> str:
+    """Where and why the computation of a motion stopped, and what it had reached."""
+    at = f"t = {m.event.time:.6g}{_second(m)}" if m.event else "its start"
+    name, why = m._limit or ("", "")
+    more = "; max_nfev= allows more" if name == "evaluations" else ""
+    phases = f" and {len(m._phases)} phases" if m._phases else ""
+    return f"given up at {at} after {m.nfev} evaluations{phases}, since {why}{more}; the motion ends there"
 
 
 def _digits(time: float, error: float) -> int:

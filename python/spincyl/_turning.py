@@ -6,11 +6,15 @@ from spincyl import _core
 from spincyl._body import Body
 from spincyl._contact import Coulomb, Viscous, fitting, table
 from spincyl._input.numbers import Result, elementwise, is_scalar, number
+from spincyl._measured import natural_time, speaking
+from spincyl._scale import Scale
 from spincyl._throw import six
 
 
 @elementwise
-def turning_spin(top: Body, contact: Coulomb | Viscous | None = None, *, lean: float = 0.1) -> Result:
+def turning_spin(
+    top: Body, contact: Coulomb | Viscous | None = None, *, lean: float = 0.1, t: float | None = None
+) -> Result:
     """Least spin with which a tippe top turns over.
 
     Without `contact` the spin is an estimate. With `contact` a search computes motions to find it.
@@ -25,22 +29,29 @@ def turning_spin(top: Body, contact: Coulomb | Viscous | None = None, *, lean: f
         exact for any.
     lean : float, optional
         Initial inclination, in radians, from 1e-6 to 1. Used only with a contact.
+    t : float, optional
+        Time within which the top has to turn over, in sqrt(R/g), at most 1e6; for a measured body in seconds,
+        or a pint quantity. Default: 400 sqrt(R/g), or 1/(mu patch) if that is longer, the time in which
+        drilling takes the spin. The less the friction, the longer a top needs. Used only with a contact.
 
     Returns
     -------
     float or array
-        Initial w3, in sqrt(g/R), with the centre at rest. The result is inf if no spin makes the top stable
-        upside down, or if ten times the estimate does not turn the top over with this contact. With a contact
-        point (`patch=0`) the top turns over only if the table is very slippery. Error of the estimate: a few
-        roundings. Error of a search: 1e-3 of the spin. If friction is large, the boundary is ragged: a larger
-        spin may fail where a smaller one succeeds, and the result is one point of the boundary. The search
-        begins at half of the estimate and finds no smaller spin.
+        Initial w3, in sqrt(g/R), with the centre at rest. The estimate is inf if with every spin the top is
+        unstable upside down or stable upright, that is, unless 1 - l < I1/I3 < 1 + l (see the Notes). The
+        result of a search is inf if ten times the estimate does not turn the top over within `t` with this
+        contact. With a contact point (`patch=0`) the top turns over only if the table is very slippery. Error
+        of the estimate: a few roundings. Error of a search: 1e-3 of the least spin within `t`; each motion is
+        computed with smaller tolerances until its estimated error lets it decide. If friction is large, the
+        boundary is ragged: a larger spin may fail where a smaller one succeeds, and the result is one point
+        of the boundary. The search begins at half of the spin that keeps the top upside down, and finds no
+        smaller spin.
 
     Raises
     ------
     ValueError
         If a single body is not a tippe top; the message names the number. If a number of the contact is an
-        array.
+        array. If the error of a motion of the search is too large to tell whether the top turns over.
     TypeError
         If an argument has another type.
 
@@ -52,6 +63,9 @@ def turning_spin(top: Body, contact: Coulomb | Viscous | None = None, *, lean: f
     (1995)). With l = -ell:
 
         w3 = (1 + l)^2/(1 - l) sqrt(l/(I3 (1 + l) - I1))
+
+    and if it is unstable upright, which needs at least w3 = (1 - l) sqrt(l/(I1 - I3 (1 - l))). The estimate
+    is the larger of the two.
 
     On a patch of contact the couple of drilling reduces J. A smaller patch does not help: it reduces J more
     slowly, but the top also rises more slowly. A top needs 1.25 times the estimate at mu = 0.1, 1.7 times at
@@ -72,11 +86,20 @@ def turning_spin(top: Body, contact: Coulomb | Viscous | None = None, *, lean: f
     if contact is None:
         found: Result = _core.jellett_spin(*top._numbers)
         if np.ndim(found) == 0 and np.isnan(found):
-            _core.turning_spin(*table(Viscous(1.0), 0.0), 0.1, six(top))  # says why there is none
+            _core.turning_spin(*table(Viscous(1.0), 0.0), 0.1, None, six(top))  # says why there is none
         return found
     if not isinstance(contact, Coulomb | Viscous):
         raise TypeError(f"contact: expected Coulomb or Viscous, not {contact!r}")
     if not is_scalar(*top._numbers):
         raise ValueError("top: expected a single body with contact=, not a family")
     fitting(contact, top.scale)
-    return np.float64(_core.turning_spin(*table(contact, 0.0), float(number("lean", lean)), six(top)))
+    time, leans = within_time(t, top.scale), float(number("lean", lean))
+    with speaking(top.scale):
+        return np.float64(_core.turning_spin(*table(contact, 0.0), leans, time, six(top)))
+
+
+def within_time(t: float | None, scale: Scale | None) -> float | None:
+    """The time of a search in natural units."""
+    if t is None:
+        return None
+    return float(number("t", t if scale is None else natural_time("t", t, scale)))

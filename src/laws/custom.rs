@@ -12,6 +12,11 @@ pub trait CoupleLaw {
     /// The couple along e1, e2, e3, in M g R, in a state and with a normal force in M g (never negative). The couple
     /// has to be continuous, and zero when the motion that it resists is at rest.
     fn couple(&self, body: &Body, y: &State, normal: f64) -> [f64; 3];
+
+    /// Whether the law has failed and has no more values. A motion then ends where it is, as one that is interrupted.
+    fn has_failed(&self) -> bool {
+        false
+    }
 }
 
 impl<F: Fn(&Body, &State, f64) -> [f64; 3]> CoupleLaw for F {
@@ -26,6 +31,11 @@ impl<F: Fn(&Body, &State, f64) -> [f64; 3]> CoupleLaw for F {
 pub trait FrictionLaw {
     /// The coefficient of friction mu >= 0 at the speed >= 0 of the slip, in sqrt(g R).
     fn coefficient(&self, speed: f64) -> f64;
+
+    /// Whether the law has failed and has no more values. A motion then ends where it is, as one that is interrupted.
+    fn has_failed(&self) -> bool {
+        false
+    }
 }
 
 impl<F: Fn(f64) -> f64> FrictionLaw for F {
@@ -46,13 +56,20 @@ pub struct Custom<'a> {
 
 impl<'a> Custom<'a> {
     /// Returns these laws with this couple.
+    #[must_use]
     pub fn with_couple(self, couple: &'a dyn CoupleLaw) -> Self {
         Self { couple: Some(couple), ..self }
     }
 
     /// Returns these laws with this friction.
+    #[must_use]
     pub fn with_friction(self, friction: &'a dyn FrictionLaw) -> Self {
         Self { friction: Some(friction), ..self }
+    }
+
+    /// Whether any of the laws has failed.
+    pub fn has_failed(&self) -> bool {
+        self.couple.is_some_and(CoupleLaw::has_failed) || self.friction.is_some_and(FrictionLaw::has_failed)
     }
 
     /// Checks the laws. Returns an error if a couple supplies energy, is not finite, or jumps when the motion is at rest.
@@ -70,6 +87,28 @@ const NEARLY: f64 = 1e-9;
 const STEP: f64 = 1e-3;
 /// A couple may supply this share of its power by rounding, and static friction may be smaller by this share.
 const GIVEN_BY_ROUNDING: f64 = 1e-12;
+
+/// The values that a couple and a coefficient of friction may have.
+const FINITE: &str = "a couple that is finite in every state";
+const LOSES: &str = "a couple that takes energy, m.w <= 0";
+const AT_LEAST_0: &str = "a coefficient of friction of 0 or more at every speed";
+
+/// The error of a couple that is not finite in a state, or supplies energy there.
+pub(crate) fn fault_of_couple(m: [f64; 3], y: &State, normal: f64) -> Option<Error> {
+    let w = [y.w1, y.w2, y.w3];
+    let fault = |power: f64, expected| Some(Error::Couple { power, expected, theta: y.theta, w, normal });
+    let power = -(m[0] * w[0] + m[1] * w[1] + m[2] * w[2]);
+    match () {
+        () if !size(m).is_finite() => fault(f64::NAN, FINITE),
+        () if power < -GIVEN_BY_ROUNDING * size(m) * size(w) => fault(power, LOSES),
+        () => None,
+    }
+}
+
+/// The error of a coefficient of friction that is negative or not finite at a speed.
+pub(crate) fn fault_of_friction(mu: f64, speed: f64) -> Option<Error> {
+    (!(0.0..=f64::MAX).contains(&mu)).then_some(Error::Coefficient { mu, expected: AT_LEAST_0, speed })
+}
 
 /// States whose index is a multiple of this are joined by lines, along which jumps are searched for.
 const LINES: usize = 12;
@@ -115,10 +154,10 @@ fn check_couple(law: &dyn CoupleLaw, body: &Body) -> Result<(), Error> {
         let (m, y) = at(speed);
         let power = -(m[0] * y.w1 + m[1] * y.w2 + m[2] * y.w3);
         if !size(m).is_finite() {
-            return refuse(size(m), "a couple that is finite in every state");
+            return refuse(size(m), FINITE);
         }
         if power < -GIVEN_BY_ROUNDING * size(m) * speed {
-            return refuse(power, "a couple that takes energy, m.w <= 0");
+            return refuse(power, LOSES);
         }
         let mut jump = size(at(speed * NEARLY).0) / size(m).max(f64::MIN_POSITIVE);
         if (i as usize).is_multiple_of(LINES)
@@ -149,7 +188,7 @@ fn check_friction(law: &dyn FrictionLaw, fixed: f64) -> Result<(), Error> {
     let mu = |i: f64| law.coefficient(if i < 0.0 { 0.0 } else { speed(i) });
     for i in -1..1000 {
         let [from, to] = [f64::from(i), f64::from(i + 1)];
-        within("mu", mu(to), (0.0, f64::MAX), "a coefficient of friction of 0 or more at every speed")?;
+        within("mu", mu(to), (0.0, f64::MAX), AT_LEAST_0)?;
         let rises = (mu(to) - mu(from)).abs() > STEP * (1.0 + most);
         if rises
             && step(|x| {

@@ -23,7 +23,7 @@ use nalgebra::Vector3;
 
 /// The contact force, in units of the weight.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Force {
     /// The vertical component N.
     pub normal: f64,

@@ -22,7 +22,7 @@ const TAU_LO: f64 = 2.449_293_598_294_706_4e-16;
 
 /// An angle as whole turns and a remainder.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Angle {
     /// The number of whole turns, an integer.
     pub turns: f64,
@@ -85,7 +85,7 @@ pub fn euler_angles(orientation: &UnitQuaternion<f64>) -> [f64; 3] {
 
 /// Orientation and position of a body in a state.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Pose {
     /// Precession angle since time 0.
     pub phi: Angle,

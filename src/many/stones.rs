@@ -63,6 +63,15 @@ impl StoneSummary {
     const fn none(status: Ending) -> Self {
         Self { status: status as u8, numbers: [f64::NAN; 14] }
     }
+
+    /// The row of a motion that was given up at this time.
+    fn given_up(time: f64) -> Self {
+        let mut row = Self::none(Ending::Bounded);
+        for (to, name) in row.numbers.iter_mut().zip(Self::NAMES) {
+            *to = if name == "end" { time } else { *to };
+        }
+        row
+    }
 }
 
 /// Computes the motions of `count` stones, each given by `row`, up to the last of the times. `go_on` is called with
@@ -120,7 +129,9 @@ fn one(
         Err(Error::OutOfRange { .. } | Error::Inertia { .. }) => return StoneSummary::none(Ending::Invalid),
         Err(_) => return StoneSummary::none(Ending::Bounded),
     };
-    let Some(found) = found else { return StoneSummary::none(Ending::Bounded) };
+    if let Some(event) = found.motion.event.filter(|event| event.ending == Ending::Bounded) {
+        return StoneSummary::given_up(event.time);
+    }
     let Some(last) = found.motion.event.map(|e| e.state).or(found.motion.states.last().copied()) else {
         return StoneSummary::none(Ending::Bounded);
     };

@@ -60,6 +60,11 @@ pub struct Ask {
     pub restitution: Option<f64>,
     /// Whether the motion ends where the body begins to roll; only with a law of friction.
     pub stop_at_rolling: bool,
+    /// The largest number of evaluations of the equations of motion ([`Motion::evaluations`](super::Motion)); a motion
+    /// that needs more ends where it is, with [`Ending::Bounded`](super::Ending::Bounded). With `None` a motion that
+    /// slips, loses energy or hops, and steps within a tolerance, may take 8 million, or 40,000 for each unit of time if
+    /// this is more, and steps of fixed length as many as they are. First integrals need none.
+    pub max_evaluations: Option<u64>,
     /// Whether poses are computed.
     pub pose: bool,
     /// Whether contact forces are computed.
@@ -73,41 +78,55 @@ impl Ask {
     }
 
     /// Returns these options with another contact.
+    #[must_use]
     pub fn with_table(self, table: impl Into<Table>) -> Self {
         Self { table: table.into(), ..self }
     }
 
     /// Returns these options with these losses.
+    #[must_use]
     pub fn with_losses(self, losses: Losses) -> Self {
         Self { losses, ..self }
     }
 
     /// Returns these options with this method.
+    #[must_use]
     pub fn with_method(self, method: Method) -> Self {
         Self { method, ..self }
     }
 
     /// Returns these options, with or without a continuation past events.
+    #[must_use]
     pub fn with_beyond(self, beyond: bool) -> Self {
         Self { beyond, ..self }
     }
 
     /// Returns these options with this coefficient of restitution, or with `None`.
+    #[must_use]
     pub fn with_restitution(self, restitution: impl Into<Option<f64>>) -> Self {
         Self { restitution: restitution.into(), ..self }
     }
 
     /// Returns these options, with or without an end at rolling.
+    #[must_use]
     pub fn with_stop_at_rolling(self, stop_at_rolling: bool) -> Self {
         Self { stop_at_rolling, ..self }
     }
 
+    /// Returns these options with this largest number of evaluations, or with `None`.
+    #[must_use]
+    pub fn with_max_evaluations(self, most: impl Into<Option<u64>>) -> Self {
+        Self { max_evaluations: most.into(), ..self }
+    }
+
     /// Returns these options, with poses or without them.
+    #[must_use]
     pub fn with_pose(self, pose: bool) -> Self {
         Self { pose, ..self }
     }
 
     /// Returns these options, with contact forces or without them.
+    #[must_use]
     pub fn with_force(self, force: bool) -> Self {
         Self { force, ..self }
     }
@@ -147,16 +166,19 @@ impl<S> From<S> for Start<S> {
 
 impl<S> Start<S> {
     /// Returns this start with this slip.
+    #[must_use]
     pub fn with_slip(self, slip: [f64; 2]) -> Self {
         Self { slip, ..self }
     }
 
     /// Returns this start at this time.
+    #[must_use]
     pub fn with_time(self, time: f64) -> Self {
         Self { time, ..self }
     }
 
     /// Returns this start in the air, with this height of the lowest point and its vertical velocity, or with `None`.
+    #[must_use]
     pub fn with_aloft(self, aloft: impl Into<Option<[f64; 2]>>) -> Self {
         Self { aloft: aloft.into(), ..self }
     }

@@ -24,18 +24,15 @@ pub(super) fn conserved(
     times: &[f64],
     ask: &Ask,
     go_on: &mut dyn FnMut() -> bool,
-) -> Result<Option<Motion>, Error> {
-    if ask.method == Method::Exact {
-        return by_first_integrals(body, start, times, ask, go_on);
-    }
+) -> Result<Motion, Error> {
     exact::check(body, &start.state)?;
     let course = Course::of(body, start, times, ask.pose, check(ask, start.time, times)?);
     let swing = Swing::new(body, course.start, ask.table.contact(), ask.pose).ok();
     let (limits, swing) = (Limits::new(body, &ask.table), swing.as_ref());
     let found = match ask.method {
+        Method::Exact => return by_first_integrals(body, start, times, ask, go_on),
         Method::Step(step) => stepped(&course, swing, &limits, ask, step.abs(), go_on)?,
         Method::Tolerance(tol) => within(&course, swing, &limits, ask, tol, go_on)?,
-        Method::Exact => None,
     };
     with_forces(found, body, ask, go_on)
 }
@@ -47,11 +44,11 @@ pub(super) fn by_first_integrals(
     times: &[f64],
     ask: &Ask,
     go_on: &mut dyn FnMut() -> bool,
-) -> Result<Option<Motion>, Error> {
+) -> Result<Motion, Error> {
     exact::check(body, &start.state)?;
     let course = Course::of(body, start, times, ask.pose, check(ask, start.time, times)?);
     if !SHORT_CODE && let Some(motion) = quickly(body, course.start, course.t0, times, ask)? {
-        return Ok(Some(motion));
+        return Ok(motion);
     }
     let swing = Swing::new(body, course.start, ask.table.contact(), ask.pose).ok();
     let (limits, swing) = (Limits::new(body, &ask.table), swing.as_ref());
@@ -64,13 +61,10 @@ pub(super) fn by_first_integrals(
 }
 
 fn with_forces(
-    found: Option<Motion>,
+    found: Motion,
     body: &Body,
     ask: &Ask,
     go_on: &mut dyn FnMut() -> bool,
-) -> Result<Option<Motion>, Error> {
-    match found {
-        Some(motion) if ask.force => pressed(motion, ask.table.contact(), body, go_on),
-        found => Ok(found),
-    }
+) -> Result<Motion, Error> {
+    if ask.force { pressed(found, ask.table.contact(), body, go_on) } else { Ok(found) }
 }

@@ -48,7 +48,7 @@ pub(crate) fn quickly(
         (motion.poses, motion.pose_error) = (Some(found.poses), found.pose_error);
     }
     let motion = Motion { times: copied(times)?, states: found.states, error: found.error, ..motion };
-    if ask.force { pressed(motion, ask.table.contact(), body, &mut || true) } else { Ok(Some(motion)) }
+    Ok(Some(if ask.force { pressed(motion, ask.table.contact(), body, &mut || true)? } else { motion }))
 }
 
 /// The exact motion up to its end.
@@ -58,7 +58,7 @@ pub(crate) fn follow(
     limits: &Limits,
     beyond: bool,
     go_on: &mut dyn FnMut() -> bool,
-) -> Result<Option<Motion>, Error> {
+) -> Result<Motion, Error> {
     let way = course.way();
     let event = limits::first_event(swing, limits, way).filter(|e| e.time.abs() <= course.span.abs());
     let last = match event {
@@ -72,7 +72,7 @@ pub(crate) fn follow(
     let (mut fastest, mut swiftest) = (0.0, 0.0);
     for (i, t) in course.times[..count].iter().enumerate() {
         if i % 4096 == 4095 && !go_on() {
-            return Ok(None);
+            return Ok(motion.interrupted(course.times, course.t0, *course.start));
         }
         let t = t - course.t0;
         let y = swing.state(t);
@@ -87,8 +87,7 @@ pub(crate) fn follow(
             motion.error = motion.error.max(swing.error(t));
         }
         if let Some(poses) = &mut motion.poses {
-            let Some(pose) = swing.pose(t) else { return Ok(None) };
-            poses.push(pose);
+            poses.extend(swing.pose(t));
             if looked_at {
                 motion.pose_error = motion.pose_error.max(swing.pose_error(t));
             }
@@ -100,5 +99,5 @@ pub(crate) fn follow(
         motion.pose_error = motion.pose_error.max(if course.pose { swing.pose_error(t) } else { f64::NAN });
     }
     motion.times = copied(&course.times[..count])?;
-    Ok(Some(motion))
+    Ok(motion)
 }

@@ -4,8 +4,8 @@
 //! The estimated error is the difference of the two runs, scaled by the ratio of the tolerances, times
 //! [`Moving::SAFETY`].
 
-use super::{Ending, Kind, Motion, Moving, Path, Phase};
-use crate::error::Error;
+use super::{Ending, Kind, Limit, Motion, Moving, Path, Phase};
+use crate::error::{Error, copied};
 use crate::laws::state::State;
 
 /// A motion and its path, before the path becomes a part of the motion.
@@ -47,19 +47,28 @@ pub(crate) fn rougher(tol: f64) -> f64 {
     (ROUGHER * tol).min(ROUGH).max(BARELY * tol)
 }
 
-/// The motion of a `run` with the tolerance `fine`, with its error from a rougher run; None if a run
+/// The motion of a `run` with the tolerance `fine`, with its error from a rougher run; that error is infinite if a run
 /// is interrupted.
 pub(crate) fn judged<S: Moving>(
     fine: f64,
     times: &[f64],
-    mut run: impl FnMut(f64, &[f64]) -> Result<Option<Followed<S>>, Error>,
-) -> Result<Option<Followed<S>>, Error> {
-    let Some(mut found) = run(fine, times)? else { return Ok(None) };
-    // If the computation stopped early, only its outputs up to that time are compared.
-    let judged = if found.is_given_up() { found.motion.states.len() } else { times.len() };
-    let Some(rough) = run(rougher(fine), &times[..judged])? else { return Ok(None) };
-    found.judge(&rough, fine);
-    Ok(Some(found))
+    mut run: impl FnMut(f64, &[f64]) -> Result<Followed<S>, Error>,
+) -> Result<Followed<S>, Error> {
+    let mut found = run(fine, times)?;
+    if !found.motion.is_interrupted() {
+        // If the computation stopped early, only its outputs and its state up to that time are compared.
+        let early = found.motion.event.filter(|_| found.is_given_up()).map(|event| event.time);
+        let until = early.map_or(times.len(), |_| found.motion.states.len());
+        let mut times = copied(&times[..until])?;
+        times.extend(early);
+        let rough = run(rougher(fine), &times)?;
+        if !rough.motion.is_interrupted() {
+            found.judge(&rough, fine);
+            return Ok(found);
+        }
+    }
+    found.stays_unjudged();
+    Ok(found)
 }
 
 impl<S: Moving> From<Followed<S>> for Motion<S> {
@@ -146,6 +155,12 @@ impl<S: Moving> Followed<S> {
         self.motion.event.is_some_and(|event| event.ending == Ending::Bounded)
     }
 
+    /// Marks a motion whose error a rougher run does not show, because the computation was interrupted.
+    pub(super) fn stays_unjudged(&mut self) {
+        self.motion.limit = Some(Limit::Interrupted);
+        self.motion.forgets_error();
+    }
+
     /// Estimates the errors of this motion from its difference from a rougher run.
     pub(crate) fn judge(&mut self, rough: &Self, tol: f64) {
         let claimed = (S::SAFETY * tol / rougher(tol)).min(1.0);
@@ -187,7 +202,13 @@ impl<S: Moving> Followed<S> {
             apart((a.time - b.time).abs());
             apart(distance(&a.state, &b.state, &a.slip, &b.slip));
         }
-        if let (Some(a), Some(b)) = (motion.event, rough.motion.event) {
+        let reached = rough.motion.states.get(motion.states.len());
+        if let Some(((state, event), _)) = reached.zip(motion.event).zip(given_up.then_some(())) {
+            apart(event.state.distance(state));
+        }
+        if let (Some(a), Some(b)) = (motion.event, rough.motion.event)
+            && !given_up
+        {
             apart((a.time - b.time).abs());
             apart(distance(&a.state, &b.state, &[0.0; 2], &[0.0; 2]));
         }
@@ -208,7 +229,7 @@ impl<S: Moving> Followed<S> {
             }
         }
         let mut ends = motion.event.map(|e| e.ending) == rough.motion.event.map(|e| e.ending)
-            || given_up && rough.motion.states.len() == motion.states.len();
+            || given_up && rough.motion.states.len() >= motion.states.len();
         // One of the two runs may meet an end at the last time, and the other may just miss that end.
         let last = motion.times.last().or(rough.motion.times.last()).copied();
         if let (Some(event), None) | (None, Some(event)) = (motion.event, rough.motion.event)

@@ -120,17 +120,18 @@ pub(crate) fn same(a: &Event, b: &Event) -> bool {
     a.ending == b.ending && (a.time - b.time).abs() <= 1e-2 * (1.0 + b.time.abs())
 }
 
-/// Adds the contact force at each state to the motion.
+/// Adds the contact force at each state to the motion, or ends it after the last force if `go_on` interrupts.
 pub(crate) fn pressed(
     mut motion: Motion,
     contact: Contact,
     body: &Body,
     go_on: &mut dyn FnMut() -> bool,
-) -> Result<Option<Motion>, Error> {
+) -> Result<Motion, Error> {
     let (mut forces, mut doubt) = (room(motion.states.len())?, 0.0);
     for some in motion.states.chunks(1024) {
         if !go_on() {
-            return Ok(None);
+            motion = motion.cut(forces.len());
+            break;
         }
         for y in some {
             let (force, off) = doubted(y, [motion.error; 2], |y| force(contact, body, y));
@@ -139,5 +140,5 @@ pub(crate) fn pressed(
         }
     }
     (motion.forces, motion.force_error) = (Some(forces), doubt);
-    Ok(Some(motion))
+    Ok(motion)
 }

@@ -69,7 +69,7 @@ pub struct Measured {
 
 /// The state of a body at one time, in SI along the axes of the laboratory.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
 pub struct Reading {
     /// The time in seconds.
@@ -97,7 +97,7 @@ pub struct Reading {
 
 /// A motion of a measured body.
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct MeasuredMotion {
     /// The motion in natural units.
     pub natural: Motion,

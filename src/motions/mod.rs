@@ -30,5 +30,5 @@ mod within;
 
 pub use ask::{Ask, Method, Start};
 pub use moving::Moving;
-pub use result::{Ending, Event, Hit, Kind, Motion, Path, Phase, Strike};
+pub use result::{Ending, Event, Hit, Kind, Limit, Motion, Path, Phase, Strike};
 pub use sample::Sample;

@@ -14,7 +14,7 @@
 use super::conserved::conserved;
 use super::exact::Swing;
 use super::limits::{self, Limits};
-pub use super::{Ask, Ending, Event, Method, Motion, Moving, Sample, Start, path};
+pub use super::{Ask, Ending, Event, Limit, Method, Motion, Moving, Sample, Start, path};
 use crate::error::Error;
 use crate::laws::body::Body;
 use crate::laws::contact::{Contact, Table};
@@ -47,7 +47,9 @@ pub fn roll(body: &Body, start: &State, times: &[f64]) -> Result<Motion, Error> 
 /// a slip. The times are in order and all after or all before the initial time; with a law of friction or losses they
 /// are not before it. `ask` chooses the contact, the losses, the method and the outputs.
 ///
-/// `go_on` is called about fifty times a second; if it returns false, the result is `Ok(None)`. Errors before any work:
+/// `go_on` is called about fifty times a second. If it returns false, the motion ends there with [`Ending::Bounded`] and
+/// [`Limit::Interrupted`], and its error is infinite unless the first integrals show it; the result is `Ok(None)` if
+/// the motion has not advanced. Errors before any work:
 /// `OutOfRange` for a body, state, slip, time, step, tolerance or coefficient out of range; `Step` for a fixed step
 /// that is too long for fast precession or nutation; `Painleve` for an initial state without a unique contact force.
 /// Errors at any time: `Memory` if the memory does not suffice for the outputs; for a body that slips or loses energy
@@ -87,12 +89,12 @@ fn rolled(
 ) -> Result<Option<Motion>, Error> {
     let found = if ask.conserves() {
         path::without_slip(start.slip)?;
-        conserved(body, start, times, ask, go_on)
+        conserved(body, start, times, ask, go_on)?
     } else {
-        path::follow(body, start, times, ask, go_on)
+        path::follow(body, start, times, ask, go_on)?
     };
-    Ok(found?
-        .map(|motion| Motion { smooth: ask.table == Table::Smooth && ask.restitution.is_none(), ..motion }))
+    let smooth = ask.table == Table::Smooth && ask.restitution.is_none();
+    Ok(Motion { smooth, ..found }.advanced(start.time))
 }
 
 /// The first event of an exact motion that the model does not cover, from time 0 on; `mu` is the coefficient of friction

@@ -20,6 +20,8 @@ pub trait Moving: Copy + Debug + PartialEq {
 
     /// The numbers of the state.
     fn numbers(&self) -> Self::Numbers;
+    /// The inclination, in radians.
+    fn theta(&self) -> f64;
     /// The largest angular velocity in the state.
     fn fastest(&self) -> f64;
     /// The largest difference between the numbers of two poses.
@@ -51,6 +53,9 @@ impl Moving for State {
 
     fn numbers(&self) -> [f64; 4] {
         (*self).into()
+    }
+    fn theta(&self) -> f64 {
+        self.theta
     }
     fn fastest(&self) -> f64 {
         self.w1.abs().max(self.w3.abs())

@@ -6,6 +6,7 @@ use super::ask::Method;
 use crate::error::{Error, room};
 pub use crate::laws::contact::impact::Hit;
 use crate::laws::state::State;
+use crate::methods::flow::Exhausted;
 use crate::numbers::codes::coded;
 
 coded! {
@@ -29,16 +30,66 @@ coded! {
         Painleve = 6,
         /// The body is at rest, and dry friction holds it.
         Stops = 7,
-        /// The computation stopped at this time: slipping and rolling alternate too often, or time hardly advances.
+        /// The computation stopped at this time, at the limit [`Motion::limit`].
         Bounded = 8,
         /// A landing on both rims has no outcome, or more than one, under the law of friction.
         Landing = 9,
     }
 }
 
+coded! {
+    /// The limit at which the computation of a motion stopped.
+    pub enum Limit {
+        /// The number of evaluations is the largest allowed ([`Ask::max_evaluations`](super::Ask::max_evaluations)).
+        Evaluations = 1,
+        /// 600,000 steps have hardly advanced the time, or as many as the allowed evaluations if these are more.
+        Crawling = 2,
+        /// Slipping, rolling and the like, and the motions that dry losses hold and let go, have changed too often: more
+        /// than 20 times in each unit of time, at least 5,000 and at most 10,000 times.
+        Changes = 3,
+        /// These changes follow each other without an advance of time.
+        Chatter = 4,
+        /// There are more than 30,000 impacts, or impacts follow each other without end.
+        Impacts = 5,
+        /// Rounding errors outweigh the terms of the equations.
+        Rounding = 6,
+        /// The caller has interrupted the computation.
+        Interrupted = 7,
+        /// A user-defined law acts in a time far shorter than the motion, so that no step may be longer.
+        Stiff = 8,
+    }
+}
+
+impl Limit {
+    /// The reason for which the computation stopped, as a clause.
+    pub fn reason(self) -> &'static str {
+        match self {
+            Self::Evaluations => "the number of evaluations is the largest allowed",
+            Self::Crawling => "time hardly advances: forces change ever faster",
+            Self::Changes => "slipping, rolling and sticking alternate too often",
+            Self::Chatter => "slipping, rolling and sticking alternate without an advance of time",
+            Self::Impacts => "there are too many impacts",
+            Self::Rounding => "rounding errors outweigh the motion",
+            Self::Interrupted => "the computation was interrupted",
+            Self::Stiff => "the law is stiff: it acts in a time far shorter than the motion",
+        }
+    }
+}
+
+impl From<Exhausted> for Limit {
+    fn from(why: Exhausted) -> Self {
+        match why {
+            Exhausted::Evaluations => Self::Evaluations,
+            Exhausted::Crawling => Self::Crawling,
+            Exhausted::Rounding => Self::Rounding,
+            Exhausted::Interrupted => Self::Interrupted,
+        }
+    }
+}
+
 /// The event at which a motion leaves the range of the model.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
 pub struct Event<S = State> {
     /// The kind of the event.
@@ -61,6 +112,7 @@ impl<S> Event<S> {
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields),
     serde(bound(
         serialize = "S: serde::Serialize, S::Pose: serde::Serialize, S::Force: serde::Serialize",
         deserialize = "S: serde::Deserialize<'de>, S::Pose: serde::Deserialize<'de>, S::Force: serde::Deserialize<'de>"
@@ -100,6 +152,10 @@ pub struct Motion<S: Moving = State> {
     pub coarse: bool,
     /// Number of evaluations of the equations of motion.
     pub evaluations: u64,
+    /// The limit at which the computation stopped, if it did: its motion ends there with [`Ending::Bounded`]. A motion
+    /// that is interrupted only while its error is estimated has its own ending and this limit, and an infinite error.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub limit: Option<Limit>,
     /// Slip, phases and lost energy, with a law of friction or for a body with losses.
     pub path: Option<Box<Path<S>>>,
     /// Whether the table is smooth, so that the centre moves only up and down.
@@ -123,6 +179,7 @@ impl<S: Moving> Motion<S> {
             advice: f64::INFINITY,
             coarse: false,
             evaluations: 0,
+            limit: None,
             path: None,
             smooth: false,
         })
@@ -136,6 +193,48 @@ impl<S: Moving> Motion<S> {
         if let Some(poses) = &mut self.poses {
             poses.truncate(kept);
         }
+    }
+
+    /// Ends the motion at the limit `Interrupted`, after the outputs that are written; its last state is `then`.
+    pub(super) fn interrupted(mut self, times: &[f64], t0: f64, start: S) -> Self {
+        self.times = times[..self.states.len()].to_vec();
+        let (time, state) = (self.times.last().copied().unwrap_or(t0), self.states.last().copied());
+        self.event = Some(Event { ending: Ending::Bounded, time, state: state.unwrap_or(start) });
+        self.limit = Some(Limit::Interrupted);
+        self
+    }
+
+    /// Ends the motion at the limit `Interrupted`, after its first `count` outputs.
+    pub(super) fn cut(mut self, count: usize) -> Self {
+        let at =
+            self.times.get(count.saturating_sub(1)).copied().zip(self.states.get(count.saturating_sub(1)));
+        self.event = at.map(|(time, &state)| Event { ending: Ending::Bounded, time, state });
+        self.limit = Some(Limit::Interrupted);
+        self.times.truncate(count);
+        self.states.truncate(count);
+        self.poses.iter_mut().for_each(|poses| poses.truncate(count));
+        self
+    }
+
+    /// Whether the computation was interrupted.
+    pub fn is_interrupted(&self) -> bool {
+        self.limit == Some(Limit::Interrupted)
+    }
+
+    /// Makes the estimated errors infinite, since the run that shows them is missing.
+    pub(super) fn forgets_error(&mut self) {
+        self.error = f64::INFINITY;
+        for (error, some) in
+            [(&mut self.pose_error, self.poses.is_some()), (&mut self.force_error, self.forces.is_some())]
+        {
+            *error = if some { f64::INFINITY } else { *error };
+        }
+    }
+
+    /// The motion; None if it was interrupted before it advanced from its initial time.
+    pub(super) fn advanced(self, t0: f64) -> Option<Self> {
+        let stays = self.is_interrupted() && self.event.is_some_and(|event| event.time == t0);
+        (!stays).then_some(self)
     }
 
     /// The ending of the motion; `Done` without an event.
@@ -164,7 +263,7 @@ coded! {
 
 /// A part of a motion of one kind, such as rolling or slipping.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
 pub struct Phase<S = State> {
     /// The time at which the phase begins.
@@ -179,7 +278,7 @@ pub struct Phase<S = State> {
 
 /// An impact of a rim on the table.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
 pub struct Strike {
     /// The time of the impact.
@@ -204,7 +303,7 @@ pub struct Strike {
 /// The slip, the phases and the losses of a motion. The estimated error of the motion also covers the slips, and the
 /// times and states of the phases and of the end; the error of the heat is that error times the largest speed.
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
 pub struct Path<S = State> {
     /// The slip at each time, along the lean and across it.

@@ -19,6 +19,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields),
     serde(bound(
         serialize = "S: serde::Serialize, S::Pose: serde::Serialize, S::Force: serde::Serialize",
         deserialize = "S: serde::Deserialize<'de>, S::Pose: serde::Deserialize<'de>, S::Force: serde::Deserialize<'de>"

@@ -4,19 +4,23 @@
 //! J = I3 n (1 - l)        at the start, upright;  l = |ell|, the centre of mass below the middle of the ball
 //! J = I3 n' (1 + l)       upside down; stable for n'^2 > l (1 + l)^2/(I3 (1 + l) - I1)
 //! n = (1 + l)^2/(1 - l) sqrt(l/(I3 (1 + l) - I1))      if friction keeps J, Jellett's number
+//! n >= (1 - l) sqrt(l/(I1 - I3 (1 - l)))               the upright top is unstable
 //!
 //! J = w (I1 s^2 + I3 c^2) h                       of an egg that lies, with the height h of its centre of mass
 //! J^2 > I3^2 h^4 (h - rho)/(rho (I3 h - I1))      of one on its end, for its end's radius of curvature rho and I1 -> I1 rho
+//! (I3 a^2 - I1 b^2) cos + I3 d sqrt(b^2 + (a^2 - b^2) cos^2) > 0    on the whole way to the end at cos = 1; < 0 to the other
 //! ```
-//! Friction at a point conserves J (Jellett 1872; Ebenfeld and Scheck, Ann. Phys. 243, 195 (1995)), so that this is the
+//! A body can rise only if the least energy with the same J falls on the whole way. For a top that needs
+//! 1 - l < I1/I3 < 1 + l. Friction at a point conserves J (Jellett 1872; Ebenfeld and Scheck, Ann. Phys. 243, 195 (1995)), so that this is the
 //! least spin for any coefficient of friction. On a patch the couple of drilling reduces J. In creep both the rise and
 //! that loss are proportional to the radius of the patch, so that a top needs more spin on the smallest patch, too.
 //! That spin is computed from motions.
 //!
-//! Error of the search: 1e-3 of the spin.
+//! Error of the search: 1e-3 of the spin, within the time of the search. A motion decides only if its estimated error is
+//! smaller than what separates it from the other decision; else it is computed again with a smaller tolerance.
 
 use super::motion::roll_with;
-use super::{Ask, Method, Motion, Start, stone};
+use super::{Ask, Method, Motion, Moving, Start, stone};
 use crate::error::{Error, within};
 use crate::laws::body::Body;
 use crate::laws::contact::slip::{Friction, centre_velocity};
@@ -31,15 +35,22 @@ const UPSIDE_DOWN: f64 = 0.14;
 const ON_END: f64 = 0.2;
 /// The search ends at this relative width.
 const SPIN_KNOWN: f64 = 1e-3;
+/// Share of the sum of two terms by which it may be negative by rounding.
+const ROUNDED_OFF: f64 = 1e-14;
 /// The spins of the first search grow by this factor, up to `MOST_SPIN` times that of Jellett's number.
 const SPIN_STEP: f64 = 1.15;
 const MOST_SPIN: f64 = 10.0;
-/// A top that drills slows down within 1/(mu eps) units of time at a spin of about 1, and its motion is computed for
-/// that time; at a point, and on a film, for the shorter time `LEAST_TIME`.
+/// A top that drills slows down within 1/(mu eps) units of time at a spin of about 1, and by default its motion is
+/// computed for that time; at a point, and on a film, for the shorter time `LEAST_TIME`.
 const LEAST_TIME: f64 = 400.0;
+/// The state is computed at this number of times, or once in each unit of time, but at most at `MOST_LOOKS` times.
+const LEAST_LOOKS: f64 = 400.0;
+const MOST_LOOKS: f64 = 40_000.0;
+/// The tolerances with which a motion is computed, one after the other, until its error lets it decide.
+const FINER: [f64; 3] = [1e-8, 1e-11, 1e-14];
 
 /// The least spin w3, in sqrt(g/R), with which a nearly upright top turns over if friction conserves Jellett's number;
-/// infinite if the top is unstable upside down with any spin.
+/// infinite if with every spin the top is unstable upside down or stable upright, unless 1 - l < I1/I3 < 1 + l.
 ///
 /// Error: a few roundings. Errors: `OutOfRange` unless the body is a ball with its centre of mass below its middle.
 ///
@@ -51,6 +62,12 @@ const LEAST_TIME: f64 = 400.0;
 /// # Ok::<(), spincyl::Error>(())
 /// ```
 pub fn jellett_spin(top: &Body) -> Result<f64, Error> {
+    let [over, up] = jellett_spins(top)?;
+    Ok(over.max(up))
+}
+
+/// The least spins with which a top is stable upside down, and with which it is unstable upright.
+fn jellett_spins(top: &Body) -> Result<[f64; 2], Error> {
     let low = -top.ell();
     if !top.is_ball() {
         return Err(Error::OutOfRange {
@@ -65,46 +82,58 @@ pub fn jellett_spin(top: &Body) -> Result<f64, Error> {
         (-1.0, -f64::MIN_POSITIVE),
         "below 0: the centre of mass of a tippe top is below its middle",
     )?;
-    let stiff = top.i3() * (1.0 + low) - top.i1();
-    Ok(if stiff > 0.0 {
-        (1.0 + low) * (1.0 + low) / (1.0 - low) * (low / stiff).sqrt()
-    } else {
-        f64::INFINITY
-    })
+    let root = |stiff: f64| if stiff > 0.0 { (low / stiff).sqrt() } else { f64::INFINITY };
+    let over = (1.0 + low) * (1.0 + low) / (1.0 - low) * root(top.i3() * (1.0 + low) - top.i1());
+    Ok([over, (1.0 - low) * root(top.i1() - top.i3() * (1.0 - low))])
 }
 
 /// The least spin w3, in sqrt(g/R), with which a top at the inclination `lean`, with its centre at rest, turns over
-/// under this friction. The result is infinite if the top does not turn over with ten times the spin of
-/// [`jellett_spin`].
+/// under this friction within a `time` in sqrt(R/g). `None` is the time 400, or 1/(mu patch) if this is longer: the time
+/// in which drilling takes the spin. The result is infinite if the top does not turn over in that time with ten times
+/// the spin of [`jellett_spin`]. The weaker the friction, the longer a top needs; with more time the result may be less.
 ///
 /// The top has turned over when its axis comes within 0.14 rad of the vertical. A motion that ends earlier, for example
 /// by a hop, counts as one without turning over. Error: 1e-3 of the spin. On rough tables a larger spin may fail where
-/// a smaller one does not, and the result is one limit of several. The result is never less than half of the estimate.
-/// Errors: those of [`jellett_spin`]; `OutOfRange` for a `lean` outside [1e-6, 1] or coefficients out of range; those
-/// of [`roll_with`](super::motion::roll_with).
+/// a smaller one does not, and the result is one limit of several. The result is never less than half of the spin with
+/// which the top is stable upside down. Errors: those of [`jellett_spin`]; `OutOfRange` for a `lean` outside [1e-6, 1],
+/// a `time` outside (0, 1e6] or coefficients out of range; those of [`roll_with`](super::motion::roll_with); `Undecided`
+/// for a motion that is given up, or whose error at the smallest tolerance is too large to tell.
 pub fn turning_spin(
     top: &Body,
     friction: Friction,
     lean: f64,
+    time: impl Into<Option<f64>>,
     mut go_on: impl FnMut() -> bool,
 ) -> Result<Option<f64>, Error> {
-    let turns = |spin: f64| turns_over(top, friction, lean, spin, &mut go_on);
-    searched(jellett_spin(top)?, (friction, lean), turns)
+    let times = looks(friction, lean, time.into())?;
+    let turns = |spin: f64| turns_over(top, (friction, lean), &times, spin, &mut go_on);
+    let [over, up] = jellett_spins(top)?;
+    searched(over, if up.is_finite() { over.max(up) } else { over }, turns)
 }
 
 /// The least spin about the vertical, in sqrt(g/a), with which a lying egg rises to an end if friction conserves
-/// Jellett's number; infinite if the egg is unstable on both ends with any spin.
+/// Jellett's number; infinite if with every spin the egg is unstable on its ends, or something on the way is stable.
 ///
 /// An egg is a spheroid whose third semi-axis is the longest, with a mass that is symmetric about that axis. Error: a
 /// few roundings. Errors: `OutOfRange` for another body, for an egg that stands on an end without spin, and for one
 /// that cannot lie.
 pub fn jellett_rising_spin(egg: &Ellipsoid) -> Result<f64, Error> {
-    let LyingEgg { height, moment, .. } = LyingEgg::of(egg)?;
+    let LyingEgg { theta, height, moment } = LyingEgg::of(egg)?;
     let ([b, _, a], [_, _, d], [i1, _, i3, ..]) = (egg.axes(), egg.offset(), egg.inertia.0);
-    let curved = b * b / a;
-    let least = [a - d, a + d].map(|h| {
+    let (curved, long) = (b * b / a, a * a - b * b);
+    // Positive where an egg with cosine c gains height with less energy of the same J, towards c = 1.
+    let (tilt, shift) = (i3 * a * a - i1 * b * b, i3 * d);
+    let rises = |c: f64| tilt * c + shift * (b * b + long * c * c).sqrt();
+    let lying = theta.cos();
+    let ratio = tilt / shift;
+    let turning = -(ratio * b / (long * (long - ratio * ratio)).sqrt());
+    let least = [-1.0, 1.0].map(|end: f64| {
+        let h = a + end * d;
         let stiff = curved * (i3 * h - i1 * curved);
-        if stiff > 0.0 { i3 * h * h * ((h - curved) / stiff).sqrt() } else { f64::INFINITY }
+        let between = |c: f64| (lying.min(end)..lying.max(end)).contains(&c);
+        let falls = |c: f64| end * rises(c) < -ROUNDED_OFF * (tilt.abs() + shift.abs() * a);
+        let barred = falls(lying) || between(turning) && falls(turning);
+        if stiff > 0.0 && !barred { i3 * h * h * ((h - curved) / stiff).sqrt() } else { f64::INFINITY }
     });
     let [one, other] = least.map(|number| number / (moment * height));
     Ok(one.min(other))
@@ -114,38 +143,52 @@ pub fn jellett_rising_spin(egg: &Ellipsoid) -> Result<f64, Error> {
 /// raised by `lean` and its centre at rest. The result is infinite if the egg does not rise with ten times the spin of
 /// [`jellett_rising_spin`].
 ///
-/// The egg has risen when its axis comes within 0.2 rad of the vertical. Error and errors are as for [`turning_spin`].
+/// The egg has risen when its axis comes within 0.2 rad of the vertical. `time`, error and errors are as for
+/// [`turning_spin`], in sqrt(a/g).
 pub fn rising_spin(
     egg: &Ellipsoid,
     friction: Friction,
     lean: f64,
+    time: impl Into<Option<f64>>,
     mut go_on: impl FnMut() -> bool,
 ) -> Result<Option<f64>, Error> {
-    let rises = |spin: f64| rises(egg, friction, lean, spin, &mut go_on);
-    searched(jellett_rising_spin(egg)?, (friction, lean), rises)
+    let times = looks(friction, lean, time.into())?;
+    let rises = |spin: f64| rises(egg, (friction, lean), &times, spin, &mut go_on);
+    let least = jellett_rising_spin(egg)?;
+    searched(least, least, rises)
 }
 
-/// The least spin for which `turns` is true, from half to ten times an estimate; None if the search is interrupted.
-fn searched(
-    least: f64,
-    (friction, lean): (Friction, f64),
-    mut turns: impl FnMut(f64) -> Result<Option<bool>, Error>,
-) -> Result<Option<f64>, Error> {
+/// The times at which the state is computed, up to the time of the search.
+fn looks(friction: Friction, lean: f64, time: Option<f64>) -> Result<Vec<f64>, Error> {
     friction.check()?;
     within("lean", lean, (1e-6, 1.0), "1e-6 to 1 rad")?;
+    let slows = friction.strength() * friction.patch();
+    let until = time.unwrap_or(LEAST_TIME.max(if slows > 0.0 { 1.0 / slows } else { 0.0 }));
+    within("t", until, (f64::MIN_POSITIVE, 1e6), "a time above 0, at most 1e6")?;
+    // A body that has turned stands for a long time, so that it stands at one of these times.
+    let count = until.clamp(LEAST_LOOKS, MOST_LOOKS).ceil();
+    Ok((1..=count as u32).map(|k| until / count * f64::from(k)).collect())
+}
+
+/// The least spin for which `turns` is true, from half of `least` to ten times `most`; None if the search is interrupted.
+fn searched(
+    least: f64,
+    most: f64,
+    mut turns: impl FnMut(f64) -> Result<Option<bool>, Error>,
+) -> Result<Option<f64>, Error> {
     if !least.is_finite() {
         return Ok(Some(f64::INFINITY));
     }
     // On a film, an inclined top may turn over with less spin.
-    let [mut low, mut high] = [0.5 * least, 0.5 * least];
-    while high < MOST_SPIN * least {
+    let [mut low, mut high] = [0.5 * least; 2];
+    while high < MOST_SPIN * most {
         let Some(enough) = turns(high)? else { return Ok(None) };
         if enough {
             break;
         }
         (low, high) = (high, high * SPIN_STEP);
     }
-    if high >= MOST_SPIN * least {
+    if high >= MOST_SPIN * most {
         return Ok(Some(f64::INFINITY));
     }
     while high - low > SPIN_KNOWN * high {
@@ -156,45 +199,72 @@ fn searched(
     Ok(Some(high))
 }
 
-/// Whether a top with this spin turns over.
+/// Whether a top with this spin turns over; None if the search is interrupted.
 fn turns_over(
     top: &Body,
-    friction: Friction,
-    lean: f64,
+    (friction, lean): (Friction, f64),
+    times: &[f64],
     spin: f64,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Option<bool>, Error> {
     let state = State { theta: lean, w1: 0.0, w2: 0.0, w3: spin };
     let slip = centre_velocity(top, &state, [0.0; 2]).map(|v| -v);
-    let (times, ask) = watched(friction);
-    let motion = roll_with(top, Start { slip, ..state.into() }, &times, &ask, go_on)?;
-    Ok(motion.map(|m| m.states.iter().any(|y| y.theta > PI - UPSIDE_DOWN)))
+    let start = Start { slip, ..state.into() };
+    decided(
+        friction,
+        times,
+        spin,
+        |y: &State| y.theta - (PI - UPSIDE_DOWN),
+        |times, ask| roll_with(top, start, times, ask, &mut *go_on),
+    )
 }
 
-/// Whether an egg with this spin rises.
+/// Whether an egg with this spin rises; None if the search is interrupted.
 fn rises(
     egg: &Ellipsoid,
-    friction: Friction,
-    lean: f64,
+    (friction, lean): (Friction, f64),
+    times: &[f64],
     spin: f64,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Option<bool>, Error> {
     let (sin, cos) = (LyingEgg::of(egg)?.theta - lean).sin_cos();
     let vertical = [sin, 0.0, cos];
     let state = StoneState { vertical, w: vertical.map(|x| spin * x) };
-    let (times, ask) = watched(friction);
     let start = Start { slip: egg.slip(&state, [0.0; 2]), ..state.into() };
-    let motion: Option<Motion<StoneState>> = stone::roll(egg, start, &times, &ask, go_on)?;
-    Ok(motion.map(|m| m.states.iter().any(|y| y.vertical[2].abs() > ON_END.cos())))
+    let leans = |y: &StoneState| ON_END - y.vertical[2].abs().min(1.0).acos();
+    decided(friction, times, spin, leans, |times, ask| stone::roll(egg, start, times, ask, &mut *go_on))
 }
 
-/// The times at which the state is computed, and the options of the motion.
-fn watched(friction: Friction) -> (Vec<f64>, Ask) {
-    let slows = friction.strength() * friction.patch();
-    let until = LEAST_TIME.max(if slows > 0.0 { 1.0 / slows } else { 0.0 });
-    // A body that has turned stands for a long time, so that it stands at one of these times.
-    let times = (1..=400).map(|k| until / 400.0 * f64::from(k)).collect();
-    (times, Ask { method: Method::Tolerance(1e-8), ..Ask::on(friction) })
+/// Whether `room` is positive in a state of a motion. The motion is computed with smaller tolerances until its error
+/// lets it decide; what happens after the first such state does not matter. None if the motion is interrupted.
+fn decided<S: Moving>(
+    friction: Friction,
+    times: &[f64],
+    spin: f64,
+    room: impl Fn(&S) -> f64,
+    mut roll: impl FnMut(&[f64], &Ask) -> Result<Option<Motion<S>>, Error>,
+) -> Result<Option<bool>, Error> {
+    let mut error = f64::INFINITY;
+    for tol in FINER {
+        let ask = Ask { method: Method::Tolerance(tol), ..Ask::on(friction) };
+        let Some(whole) = roll(times, &ask)?.filter(|m| !m.is_interrupted()) else { return Ok(None) };
+        let most = whole.states.iter().map(&room).fold(f64::NEG_INFINITY, f64::max);
+        error = whole.error;
+        if error < most.abs() && (most > 0.0 || whole.limit.is_none()) {
+            return Ok(Some(most > 0.0));
+        }
+        // Up to the first such states the error may be smaller.
+        for least in [0.0, 0.5 * most, 0.9 * most].into_iter().filter(|_| most > 0.0) {
+            let Some(first) = whole.states.iter().position(|y| room(y) > least) else { continue };
+            let Some(part) = roll(&times[..=first], &ask)?.filter(|m| !m.is_interrupted()) else {
+                return Ok(None);
+            };
+            if part.states.last().is_some_and(|y| room(y) > part.error) {
+                return Ok(Some(true));
+            }
+        }
+    }
+    Err(Error::Undecided { spin, error })
 }
 
 /// An egg at rest on its side.

@@ -73,15 +73,14 @@ impl<'a> Known<'a> {
     }
 }
 
-/// The motion by steps within `tol`, and its path; `fine` is the tolerance of the finer of two runs. `None`
-/// if the computation is interrupted.
+/// The motion by steps within `tol`, and its path; `fine` is the tolerance of the finer of two runs.
 fn flown(
     course: &Course<'_>,
     ask: &Ask,
     (tol, fine): (f64, f64),
     times: &[f64],
     go_on: &mut dyn FnMut() -> bool,
-) -> Result<Option<Followed>, Error> {
+) -> Result<Followed, Error> {
     let (way, t0) = (course.way(), course.t0);
     let turned = |y: &State| State { w1: way * y.w1, w2: way * y.w2, w3: way * y.w3, ..*y };
     let start = Start::from(turned(course.start));
@@ -89,15 +88,14 @@ fn flown(
     since.iter_mut().for_each(|t| *t = way * (*t - t0));
     let (tol, fine) = ((SHARE * tol).max(FINE), (SHARE * fine).max(FINE));
     let ask = Ask { method: Method::Tolerance(fine), losses: Losses::NONE, force: false, ..*ask };
-    let found = walked((course.body, &start), &ask, (tol, true), &since, go_on)?;
-    let Some(mut found) = found else { return Ok(None) };
+    let mut found = walked((course.body, &start), &ask, (tol, true), &since, go_on)?;
     let motion = &mut found.motion;
     motion.times = copied(&times[..motion.states.len()])?;
     motion.states.iter_mut().for_each(|y| *y = turned(y));
     if let Some(event) = &mut motion.event {
         *event = Event { time: t0 + way * event.time, state: turned(&event.state), ..*event };
     }
-    Ok(Some(found))
+    Ok(found)
 }
 
 /// The motion by steps within `tol`, with its errors; `swing` is the exact solution, if there is one.
@@ -108,19 +106,15 @@ pub(crate) fn within(
     ask: &Ask,
     tol: f64,
     go_on: &mut dyn FnMut() -> bool,
-) -> Result<Option<Motion>, Error> {
+) -> Result<Motion, Error> {
     let known = Known::of(course, swing, limits, ask.beyond);
     let Some(swing) = known.swing else { return judged_alone(course, ask, tol, go_on) };
-    let mut run = |tol: f64, beyond: bool| -> Result<Option<Motion>, Error> {
-        let found = flown(course, &Ask { beyond, ..*ask }, (tol, tol), course.times, go_on)?;
-        Ok(found.map(|found| found.motion))
+    let mut run = |tol: f64, beyond: bool| -> Result<Motion, Error> {
+        Ok(flown(course, &Ask { beyond, ..*ask }, (tol, tol), course.times, go_on)?.motion)
     };
-    let Some(mut motion) = run(tol, ask.beyond)? else { return Ok(None) };
-    if let Some(made) = motion.event.filter(|made| !known.agrees(Some(*made))) {
-        let Some(better) = decided(course, &known, ask, (motion, made), tol, &mut run)? else {
-            return Ok(None);
-        };
-        motion = better;
+    let mut motion = run(tol, ask.beyond)?;
+    if let Some(made) = motion.event.filter(|made| motion.limit.is_none() && !known.agrees(Some(*made))) {
+        motion = decided(course, &known, ask, (motion, made), tol, &mut run)?;
     }
     // Steps can miss an end of the exact solution.
     if motion.event.is_none() {
@@ -130,7 +124,7 @@ pub(crate) fn within(
     judge(&mut motion, swing, known.event, course.t0);
     motion.error = motion.error.max(if motion.event.is_some() { known.doubt } else { 0.0 });
     motion.method = Method::Tolerance(tol);
-    Ok(Some(motion))
+    Ok(motion)
 }
 
 /// Sets the event of a motion to that of the exact solution, and removes the outputs after an end.
@@ -151,20 +145,22 @@ fn decided(
     ask: &Ask,
     (mut motion, made): (Motion, Event),
     mut tol: f64,
-    run: &mut dyn FnMut(f64, bool) -> Result<Option<Motion>, Error>,
-) -> Result<Option<Motion>, Error> {
+    run: &mut dyn FnMut(f64, bool) -> Result<Motion, Error>,
+) -> Result<Motion, Error> {
     let sure = known.is_sure(&made, course.t0);
     if sure {
-        let Some(mut on) = run(tol, true)? else { return Ok(None) };
+        let mut on = run(tol, true)?;
         let reached = on.times.len();
-        ended(&mut on, known, course, ask);
-        if reached >= known.count {
-            return Ok(Some(on));
+        if on.limit.is_none() {
+            ended(&mut on, known, course, ask);
+        }
+        if on.limit.is_some() || reached >= known.count {
+            return Ok(on);
         }
     }
-    while tol > TIGHTEST && motion.event.is_some() {
+    while tol > TIGHTEST && motion.event.is_some() && motion.limit.is_none() {
         tol = (0.01 * tol).max(TIGHTEST);
-        let Some(tighter) = run(tol, ask.beyond)? else { return Ok(None) };
+        let tighter = run(tol, ask.beyond)?;
         let stands = if sure {
             known.agrees(tighter.event)
         } else {
@@ -178,7 +174,7 @@ fn decided(
             break;
         }
     }
-    Ok(Some(motion))
+    Ok(motion)
 }
 
 /// The motion by steps within `tol`, with its error from a rougher run. If the two runs end differently, they
@@ -188,12 +184,12 @@ fn judged_alone(
     ask: &Ask,
     tol: f64,
     go_on: &mut dyn FnMut() -> bool,
-) -> Result<Option<Motion>, Error> {
+) -> Result<Motion, Error> {
     let mut fine = tol;
     let mut motion = loop {
         let run = |tol: f64, times: &[f64]| flown(course, ask, (tol, fine), times, go_on);
-        let Some(found) = judged(fine, course.times, run)? else { return Ok(None) };
-        if found.motion.error.is_finite() || fine <= TIGHTEST {
+        let found = judged(fine, course.times, run)?;
+        if found.motion.error.is_finite() || fine <= TIGHTEST || found.motion.limit.is_some() {
             break found.motion;
         }
         fine = (0.01 * fine).max(TIGHTEST);
@@ -207,5 +203,5 @@ fn judged_alone(
     if ask.pose {
         motion.pose_error = motion.pose_error.max(motion.error * (1.0 + course.span.abs()));
     }
-    Ok(Some(motion))
+    Ok(motion)
 }

@@ -1,55 +1,92 @@
 //! Laws of loss and friction that are Python functions.
 
+use super::watch::ASK;
 use crate::laws::body::Body;
 use crate::laws::custom::{CoupleLaw, FrictionLaw};
 use crate::laws::state::State;
 use numpy::PyArray1;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
+use std::time::Instant;
 
-/// A Python function as a law. The first error that it raises is kept; the value of the law is then NaN.
-pub(super) struct PythonLaw<'py> {
-    function: Bound<'py, PyAny>,
-    raised: RefCell<Option<PyErr>>,
+/// The first error that a law has raised, or Ctrl-C between two calls of a law, which need not be Python code.
+#[derive(Default)]
+pub(super) struct Raised {
+    error: RefCell<Option<PyErr>>,
+    asked: Cell<Option<Instant>>,
 }
 
-impl<'py> PythonLaw<'py> {
-    pub fn of(py: Python<'py>, function: Option<&Py<PyAny>>) -> Option<Self> {
-        function.map(|f| Self { function: f.bind(py).clone(), raised: RefCell::new(None) })
+impl Raised {
+    /// The error, if there is one.
+    pub fn end(&self) -> PyResult<()> {
+        self.error.take().map_or(Ok(()), Err)
     }
 
-    /// The error that the function has raised.
-    pub fn raised(self) -> Option<PyErr> {
-        self.raised.into_inner()
+    fn check_signals(&self, py: Python<'_>) -> PyResult<()> {
+        let now = Instant::now();
+        if self.asked.get().is_none_or(|asked| now - asked >= ASK) {
+            self.asked.set(Some(now));
+            py.check_signals()?;
+        }
+        Ok(())
+    }
+}
+
+/// A Python function as a law. After the first error of any law no law is called, and their values are NaN.
+pub(super) struct PythonLaw<'py, 'a> {
+    function: Bound<'py, PyAny>,
+    raised: &'a Raised,
+}
+
+impl<'py, 'a> PythonLaw<'py, 'a> {
+    pub fn of(py: Python<'py>, function: Option<&Py<PyAny>>, raised: &'a Raised) -> Option<Self> {
+        function.map(|f| Self { function: f.bind(py).clone(), raised })
     }
 
-    fn value<T>(&self, found: PyResult<T>, lost: T) -> T {
+    fn is_over(&self) -> bool {
+        self.raised.error.borrow().is_some()
+    }
+
+    fn value<T>(&self, found: impl FnOnce() -> PyResult<T>, lost: T) -> T {
+        if self.is_over() {
+            return lost;
+        }
+        let found = found().and_then(|x| self.raised.check_signals(self.function.py()).map(|()| x));
         found.unwrap_or_else(|error| {
-            self.raised.borrow_mut().get_or_insert(error);
+            self.raised.error.replace(Some(error));
             lost
         })
     }
 }
 
-impl CoupleLaw for PythonLaw<'_> {
+impl CoupleLaw for PythonLaw<'_, '_> {
+    fn has_failed(&self) -> bool {
+        self.is_over()
+    }
+
     fn couple(&self, _: &Body, y: &State, normal: f64) -> [f64; 3] {
-        let w = PyArray1::from_slice(self.function.py(), &[y.w1, y.w2, y.w3]);
         let numbers = |m: &Bound<'_, PyAny>| {
             let all: Vec<f64> = m.try_iter()?.map(|x| x?.extract()).collect::<PyResult<_>>()?;
             <[f64; 3]>::try_from(all).map_err(|_| PyTypeError::new_err(()))
         };
-        let found = self.function.call1((y.theta, w, normal)).and_then(|m| {
+        let found = || {
+            let w = PyArray1::from_slice(self.function.py(), &[y.w1, y.w2, y.w3]);
+            let m = self.function.call1((y.theta, w, normal))?;
             numbers(&m).map_err(|_| unlike("couple: expected three numbers, along e1, e2, e3", &m))
-        });
+        };
         self.value(found, [f64::NAN; 3])
     }
 }
 
-impl FrictionLaw for PythonLaw<'_> {
+impl FrictionLaw for PythonLaw<'_, '_> {
+    fn has_failed(&self) -> bool {
+        self.is_over()
+    }
+
     fn coefficient(&self, speed: f64) -> f64 {
         let number = |mu: Bound<'_, PyAny>| mu.extract().map_err(|_| unlike("mu: expected a number", &mu));
-        self.value(self.function.call1((speed,)).and_then(number), f64::NAN)
+        self.value(|| self.function.call1((speed,)).and_then(number), f64::NAN)
     }
 }
 

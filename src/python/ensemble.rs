@@ -75,6 +75,7 @@ pub fn ensemble<'py>(
         step: asked.step,
         beyond: asked.beyond,
         restitution: asked.restitution,
+        max_evaluations: asked.max_nfev,
         stop_at_rolling: asked.stop_at_rolling,
     };
     let (mut method, mut status) = (codes(&out, "method")?, codes(&out, "status")?);

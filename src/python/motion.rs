@@ -1,7 +1,7 @@
 //! Motions: the functions take plain arrays and return a dictionary of plain arrays.
 
 use super::BODY;
-use super::custom::PythonLaw;
+use super::custom::{PythonLaw, Raised};
 use super::options::{MotionAsked, contact_of, table_of};
 use super::stone::{STONE, stone_of};
 use super::watch::Watch;
@@ -263,54 +263,55 @@ fn custom<'py>(
     times: &[f64],
     asked: &MotionAsked,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let (ask, mut watch) = (asked.ask_without_custom()?, Watch::new(None));
-    let couple = PythonLaw::of(py, asked.couple.as_ref());
-    let friction = PythonLaw::of(py, asked.friction.as_ref());
+    let (ask, mut watch, raised) = (asked.ask_without_custom()?, Watch::new(None), Raised::default());
+    let couple = PythonLaw::of(py, asked.couple.as_ref(), &raised);
+    let friction = PythonLaw::of(py, asked.friction.as_ref(), &raised);
     let laws = Custom {
         couple: couple.as_ref().map(|law| law as &dyn CoupleLaw),
         friction: friction.as_ref().map(|law| law as &dyn FrictionLaw),
     };
     let rolled = crate::motions::custom::roll_with(body, start, times, &ask, laws, || watch.still());
     watch.done(py)?;
-    if let Some(error) = [couple, friction].into_iter().flatten().find_map(PythonLaw::raised) {
-        return Err(error);
-    }
+    raised.end()?;
     let m = rolled?.ok_or_else(|| PyRuntimeError::new_err("the motion was interrupted"))?;
     let columns = columns(&m, body, (&ask, asked.couple.is_some() || !ask.losses.is_none()), &mut || true)?
         .unwrap_or_default();
     dictionary(py, &m, columns, rubs(&ask))
 }
 
-/// The least spin with which a top turns over, with the friction of a table, or ValueError.
+/// The least spin with which a top turns over within a time, with the friction of a table, or ValueError.
 #[pyfunction]
 pub fn turning_spin(
     py: Python<'_>,
     table: u8,
     coefficients: [f64; 3],
     lean: f64,
+    time: Option<f64>,
     body: [f64; BODY],
 ) -> PyResult<f64> {
     let (top, friction) = (Body::of_numbers(body)?, table_of(table)?.with(coefficients).friction());
     let mut watch = Watch::new(None);
-    let found = py.detach(|| turning::turning_spin(&top, friction, lean, || watch.still()))?;
+    let found = py.detach(|| turning::turning_spin(&top, friction, lean, time, || watch.still()))?;
     watch.done(py)?;
     found.ok_or_else(|| PyRuntimeError::new_err("the search was interrupted"))
 }
 
-/// The least spin with which a lying egg rises, with the friction of a table or by Jellett's number, or ValueError.
+/// The least spin with which a lying egg rises, with the friction of a table within a time, or by Jellett's number, or
+/// ValueError.
 #[pyfunction]
 pub fn rising_spin(
     py: Python<'_>,
     table: Option<u8>,
     coefficients: [f64; 3],
     lean: f64,
+    time: Option<f64>,
     stone: [f64; STONE],
 ) -> PyResult<f64> {
     let egg = stone_of(&stone)?;
     let Some(table) = table else { return Ok(turning::jellett_rising_spin(&egg)?) };
     let friction = table_of(table)?.with(coefficients).friction();
     let mut watch = Watch::new(None);
-    let found = py.detach(|| turning::rising_spin(&egg, friction, lean, || watch.still()))?;
+    let found = py.detach(|| turning::rising_spin(&egg, friction, lean, time, || watch.still()))?;
     watch.done(py)?;
     found.ok_or_else(|| PyRuntimeError::new_err("the search was interrupted"))
 }
@@ -385,6 +386,9 @@ fn dictionary<'py, S: Moving>(
     out.set_item(intern!(py, "advice"), m.advice)?;
     out.set_item(intern!(py, "coarse"), m.coarse)?;
     out.set_item(intern!(py, "nfev"), m.evaluations)?;
+    if let Some(limit) = m.limit {
+        out.set_item(intern!(py, "_limit"), limit.reason())?;
+    }
     if let Some(path) = &m.path
         && path.known_until < f64::INFINITY
     {

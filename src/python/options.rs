@@ -65,6 +65,7 @@ options! {
         /// The height and the vertical velocity of an initial state in the air.
         aloft: Option<[f64; 2]> = None,
         stop_at_rolling: bool = false,
+        max_nfev: Option<u64> = None,
         pose: bool = false,
         force: bool = false,
         /// User-defined laws: a couple, and a coefficient of friction.
@@ -108,6 +109,7 @@ impl MotionAsked {
             beyond: self.beyond,
             restitution: self.restitution,
             stop_at_rolling: self.stop_at_rolling,
+            max_evaluations: self.max_nfev,
             pose: self.pose,
             force: self.force,
         })

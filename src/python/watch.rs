@@ -5,7 +5,7 @@ use std::cell::Cell;
 use std::time::{Duration, Instant};
 
 /// The time between two checks.
-const ASK: Duration = Duration::from_millis(20);
+pub(super) const ASK: Duration = Duration::from_millis(20);
 
 /// Checks for Ctrl-C, and reports the finished share of the work to `progress`.
 pub struct Watch {

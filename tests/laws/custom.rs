@@ -4,8 +4,9 @@ use crate::common::{drawn, wander};
 use spincyl::contact::{Contact, Table, lossy, slip::Friction};
 use spincyl::custom::{self, Custom};
 use spincyl::loss::{Law, Losses};
-use spincyl::motion::{Ask, Ending, Method, Motion, Start, roll_with};
-use spincyl::{Body, Error, State, newton};
+use spincyl::motion::{Ask, Ending, Limit, Method, Motion, Start, roll_with};
+use spincyl::{Body, Error, State, newton, steady};
+use std::cell::Cell;
 use std::f64::consts::FRAC_PI_2;
 
 /// A body, a start that may slip, and a table, at random.
@@ -213,6 +214,132 @@ fn a_law_that_gives_energy_or_has_a_step_is_refused_by_name() {
     let resisted = Ask::default().with_losses(Losses::of(Law::RollingResistance, 0.01));
     assert_eq!(refused(Custom::default(), resisted).0, Law::RollingResistance.parameter());
     assert_eq!(refused(Custom::default(), Ask::default().with_beyond(true)).0, "beyond");
+}
+
+/// The couple of a law that counts its calls after the check, which is over at the first call with the state at the start.
+fn counted<'a>(
+    calls: &'a Cell<u64>,
+    start: State,
+    law: impl Fn(&State) -> [f64; 3] + 'a,
+) -> impl Fn(&Body, &State, f64) -> [f64; 3] + 'a {
+    move |_: &Body, y: &State, _: f64| {
+        calls.set(if *y == start && calls.get() == 0 || calls.get() > 0 { calls.get() + 1 } else { 0 });
+        law(y)
+    }
+}
+
+#[test]
+fn a_law_that_is_nan_or_gives_energy_on_the_way_is_named_with_the_state() {
+    let body = Body::solid(0.1).unwrap();
+    let start = State { theta: 0.5, w1: 1.0, w2: 0.05, w3: 0.3 };
+    let hole = |_: &Body, y: &State, _: f64| {
+        let nan = if (0.4799..0.4801).contains(&y.theta) { f64::NAN } else { 1.0 };
+        [y.w1, y.w2, y.w3].map(|w| -0.01 * nan * w)
+    };
+    let on = |law: &dyn custom::CoupleLaw, y: State| {
+        own(&body, y.into(), &[5.0], &Ask::default(), Custom::default().with_couple(law))
+    };
+    match on(&hole, start) {
+        Err(Error::Couple { power, expected, theta, w, normal }) => {
+            assert!(power.is_nan() && expected.contains("finite"));
+            assert!((0.4799..0.4801).contains(&theta), "{theta}");
+            assert!(w[1] > 0.0 && normal > 0.5, "{w:?} {normal}");
+        }
+        other => panic!("{other:?}"),
+    }
+    // The couple gives energy where w is larger than 12, beyond what the check before the motion tries.
+    let gives = |_: &Body, y: &State, _: f64| {
+        let fast = y.w1 * y.w1 + y.w2 * y.w2 + y.w3 * y.w3;
+        [y.w1, y.w2, y.w3].map(|w| -0.01 * (1.0 - fast / 144.0) * w)
+    };
+    let fast = State { theta: 1.3, w1: 0.1, w2: 0.0, w3: 25.0 };
+    match on(&gives, fast) {
+        Err(Error::Couple { power, theta, w, .. }) => {
+            assert!(power < 0.0 && theta == 1.3 && w == [0.1, 0.0, 25.0], "{power} {theta} {w:?}");
+        }
+        other => panic!("{other:?}"),
+    }
+    // In a narrow band of speeds that the check does not try, the body slows down into it.
+    let band = |_: &Body, y: &State, _: f64| {
+        let sign = if (11.0..11.5).contains(&y.w3) { -1.0 } else { 1.0 };
+        [y.w1, y.w2, y.w3].map(|w| -0.05 * (sign + 1e-9) * w)
+    };
+    let slowing = on(&band, State { theta: 1.3, w1: 0.1, w2: 0.0, w3: 12.0 });
+    assert!(
+        matches!(slowing, Err(Error::Couple { power, w, .. }) if power < 0.0 && w[2] < 11.6),
+        "{slowing:?}"
+    );
+    // With a coefficient of friction beyond the speeds of the check.
+    let negative = |speed: f64| if speed < 2000.0 { 0.3 } else { 0.3 - 1e-3 * (speed - 2000.0) };
+    let hoop = Body::tube(0.0, 1.0).unwrap();
+    let thrown = Start::from(State { theta: FRAC_PI_2, w1: 0.0, w2: 0.0, w3: -3.0 }).with_slip([0.0, 3000.0]);
+    let laws = Custom::default().with_friction(&negative);
+    let found = own(&hoop, thrown, &[5.0], &Ask::on(Friction::coulomb(0.4)), laws);
+    assert!(
+        matches!(found, Err(Error::Coefficient { mu, speed, .. }) if mu < 0.0 && speed == 3000.0),
+        "{found:?}"
+    );
+}
+
+#[test]
+fn a_stiff_law_is_named_as_the_limit_of_its_motion_and_a_soft_one_is_not() {
+    let body = Body::solid(0.1).unwrap();
+    let start = steady::state(&body, 0.5).unwrap();
+    // Drilling under this couple follows the slow change of rolling 1e7 times faster than the body moves.
+    let stiff = |_: &Body, y: &State, _: f64| {
+        let (s, c) = y.theta.sin_cos();
+        let drilling = 1e7 * (s * y.w1 + c * y.w3);
+        [-drilling * s, 0.0, -drilling * c]
+    };
+    let ask = Ask::default().with_max_evaluations(20_000);
+    let m = own(&body, start.into(), &[5.0], &ask, Custom::default().with_couple(&stiff)).unwrap();
+    assert_eq!((m.ending(), m.limit), (Ending::Bounded, Some(Limit::Stiff)));
+    let soft = |_: &Body, y: &State, _: f64| [y.w1, y.w2, y.w3].map(|w| -0.01 * w);
+    let ask = Ask::default().with_max_evaluations(2_000);
+    let m = own(&body, start.into(), &[500.0], &ask, Custom::default().with_couple(&soft)).unwrap();
+    assert_eq!((m.ending(), m.limit), (Ending::Bounded, Some(Limit::Evaluations)));
+}
+
+/// A law that fails at one of its calls; it counts the calls after that.
+struct Failing {
+    calls: Cell<u64>,
+    fails_at: u64,
+}
+
+impl custom::CoupleLaw for Failing {
+    fn couple(&self, _: &Body, y: &State, _: f64) -> [f64; 3] {
+        self.calls.set(self.calls.get() + 1);
+        let nan = if self.has_failed() { f64::NAN } else { 1.0 };
+        [y.w1, y.w2, y.w3].map(|w| -0.01 * nan * w)
+    }
+    fn has_failed(&self) -> bool {
+        self.calls.get() >= self.fails_at
+    }
+}
+
+#[test]
+fn a_law_that_fails_ends_its_motion_within_a_step_and_so_does_the_caller() {
+    let body = Body::solid(0.1).unwrap();
+    let start = steady::state(&body, 0.5).unwrap();
+    let times: Vec<f64> = (0..=500).map(f64::from).collect();
+    let fails_at = 9_000;
+    let law = Failing { calls: Cell::new(0), fails_at };
+    let m = own(&body, start.into(), &times, &Ask::default(), Custom::default().with_couple(&law)).unwrap();
+    assert_eq!((m.ending(), m.limit, m.error), (Ending::Bounded, Some(Limit::Interrupted), f64::INFINITY));
+    assert!(m.states.len() > 1 && m.states.len() < times.len(), "{}", m.states.len());
+    let more = law.calls.get() - fails_at;
+    assert!(more < 300, "{more} calls after the failure");
+    // A caller is asked at each step.
+    let (calls, asked) = (Cell::new(0), Cell::new(0));
+    let law = counted(&calls, start, |y| [y.w1, y.w2, y.w3].map(|w| -0.01 * w));
+    let mut go_on = || {
+        asked.set(asked.get() + 1);
+        calls.get() < 1_000
+    };
+    let laws = Custom::default().with_couple(&law);
+    let m = custom::roll_with(&body, start, &times, &Ask::default(), laws, &mut go_on).unwrap().unwrap();
+    assert!(m.is_interrupted() && m.event.unwrap().time > 0.0);
+    assert!(calls.get() < 1_400 && asked.get() > 10, "{} {}", calls.get(), asked.get());
 }
 
 #[test]

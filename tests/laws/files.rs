@@ -130,6 +130,88 @@ fn options_and_starts_come_back_and_may_be_short() {
     }
 }
 
+/// A file with one more name in an object, for each object of a file at any depth; losses are objects whose names are laws.
+fn misspelt(file: &Value) -> Vec<Value> {
+    let mut all = Vec::new();
+    match file {
+        Value::Object(fields) => {
+            let mut more = fields.clone();
+            more.insert("msipelt".into(), json!(0.5));
+            all.push(Value::Object(more));
+            for (name, inner) in fields {
+                for other in misspelt(inner) {
+                    let mut with = fields.clone();
+                    with[name] = other;
+                    all.push(Value::Object(with));
+                }
+            }
+        }
+        Value::Array(items) => {
+            for (i, inner) in items.iter().enumerate() {
+                for other in misspelt(inner) {
+                    let mut with = items.clone();
+                    with[i] = other;
+                    all.push(Value::Array(with));
+                }
+            }
+        }
+        _ => (),
+    }
+    all
+}
+
+/// Asserts that a name too many is refused in every object of the file of `x`; returns the number of objects.
+fn every_name_counts<T: Serialize + DeserializeOwned + Debug>(x: &T) -> usize {
+    let wrong = misspelt(&serde_json::to_value(x).unwrap());
+    for file in &wrong {
+        let said = refused::<T>(file.clone());
+        assert!(said.contains("msipelt"), "{file}: {said}");
+    }
+    wrong.len()
+}
+
+#[test]
+fn a_misspelt_name_is_an_error_in_every_object_of_every_file() {
+    let mut objects = 0;
+    for table in [
+        Table::default(),
+        Friction::Coulomb { mu: 0.3, fixed: 0.4, patch: 0.05 }.into(),
+        Friction::Viscous { c: 2.0 }.into(),
+    ] {
+        let losses = Losses::of(Law::AirLinear, 0.1);
+        objects += every_name_counts(&Ask::on(table).with_losses(losses).with_method(Method::Step(0.1)));
+        objects += every_name_counts(&table);
+    }
+    let file = r#"{"table": {"Rubs": {"Coulomb": {"mu": 0.3, "fixed": 0.3, "patch": 0.0, "pathc": 0.05}}}}"#;
+    assert!(from_str::<Ask>(file).unwrap_err().to_string().contains("unknown field `pathc`"));
+    let tube = Tube { outer_diameter: 24e-3, length: 2e-3, mass: 8e-3, ..Tube::default() };
+    let coin = Measured::tube(&tube).unwrap();
+    objects += every_name_counts(&tube) + every_name_counts(&coin);
+    objects += every_name_counts(&Start::from(state(1.0, 0.1, 0.2, 0.3)).with_aloft([0.5, 0.0]));
+    for form in [
+        r#""Solid": {"radii": [1, 1], "bores": [0, 0], "ends": [0, 1], "fillet": 0}"#,
+        r#""Ball": {"radius": 1, "hollow": 0, "centre": 0, "ends": [-1, 1]}"#,
+        r#""Ring": {"radius": 1, "height": 0.2}"#,
+    ] {
+        let part =
+            from_str::<BodyPart>(&format!(r#"{{"form": {{{form}}}, "amount": {{"Mass": 2}}}}"#)).unwrap();
+        objects += every_name_counts(&part);
+    }
+    let ask = Ask::on(Friction::coulomb(0.2)).with_pose(true).with_force(true).with_restitution(0.5);
+    let falls = Start::from(state(0.4, 0.3, 0.2, 0.5)).with_aloft([0.3, 0.0]);
+    let motion = roll_with(coin.body(), falls, &[1.0, 40.0], &ask, || true).unwrap().unwrap();
+    assert!(motion.path.as_ref().is_some_and(|path| !path.impacts.is_empty()));
+    objects += every_name_counts(&motion.samples().next().unwrap()) + every_name_counts(&motion);
+    let slow = coin.roll(steady::state(coin.body(), 1.2).unwrap(), &[0.1], &Ask::default(), || true);
+    let slow = slow.unwrap().unwrap();
+    objects += every_name_counts(&slow) + every_name_counts(&slow.readings().next().unwrap());
+    let egg = Ellipsoid::egg(0.02, 0.03, 0.001).unwrap();
+    let turns =
+        stone::roll(&egg, egg.spinning(1.0, 0.1, 0.0), &[1.0], &Ask::default().with_pose(true), || true);
+    objects += every_name_counts(&egg) + every_name_counts(&turns.unwrap().unwrap());
+    assert!(objects > 60, "{objects}");
+}
+
 /// A motion as a whole; NaN is no number that equals itself, so that texts are compared.
 fn same<T: Serialize + DeserializeOwned>(motion: &T) {
     assert_eq!(to_string(&again(motion)).unwrap(), to_string(motion).unwrap());

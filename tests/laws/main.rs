@@ -18,6 +18,7 @@ mod exact;
 #[cfg(feature = "serde")]
 mod files;
 mod flight;
+mod given_up;
 mod hard_cases;
 mod hopping;
 mod impacts;

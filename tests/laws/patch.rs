@@ -238,16 +238,65 @@ fn a_top_needs_more_spin_than_jelletts_number_says_on_any_patch() {
     for (mu, millimetres, spin) in
         [(0.3, 0.1, 4.14), (0.3, 0.3, 4.18), (0.3, 1.0, 4.50), (0.1, 0.1, 3.15), (0.6, 0.1, 5.25)]
     {
-        let found = turning_spin(&top, on(mu, millimetres / 15.0), 0.1, || true).unwrap().unwrap();
+        let found = turning_spin(&top, on(mu, millimetres / 15.0), 0.1, None, || true).unwrap().unwrap();
         assert!((found - spin).abs() < 0.01 * spin, "{found} for {spin}");
     }
     // At a point it rolls and stays down with any spin; on a film Jellett's number nearly suffices.
-    assert_eq!(turning_spin(&top, on(0.3, 0.0), 0.1, || true).unwrap(), Some(f64::INFINITY));
-    let film = turning_spin(&top, Friction::Viscous { c: 1.0 }, 0.1, || true).unwrap().unwrap();
+    assert_eq!(turning_spin(&top, on(0.3, 0.0), 0.1, None, || true).unwrap(), Some(f64::INFINITY));
+    let film = turning_spin(&top, Friction::Viscous { c: 1.0 }, 0.1, None, || true).unwrap().unwrap();
     assert!(film > estimate && film < 1.1 * estimate, "{film}");
     // A body that is no top is refused.
-    assert!(turning_spin(&Body::solid(1.0).unwrap(), on(0.3, 0.01), 0.1, || true).is_err());
+    assert!(turning_spin(&Body::solid(1.0).unwrap(), on(0.3, 0.01), 0.1, None, || true).is_err());
     assert!(jellett_spin(&Body::ball(0.2, 0.4, 0.42).unwrap()).is_err());
+}
+
+#[test]
+fn a_top_turns_over_only_between_both_limits_of_its_moments() {
+    // 1 - l < I1/I3 < 1 + l (Ebenfeld and Scheck 1995).
+    for (low, i1, i3) in [(0.09, 0.37, 0.41), (0.05, 0.30, 0.40), (0.2, 0.25, 0.40), (0.2, 0.5, 0.40)] {
+        let top = Body::ball(-low, i1, i3).unwrap();
+        assert_eq!(jellett_spin(&top).unwrap(), f64::INFINITY);
+        let found = turning_spin(&top, Friction::Viscous { c: 0.6 }, 1e-3, None, || true).unwrap();
+        assert_eq!(found, Some(f64::INFINITY), "{low} {i1} {i3}");
+    }
+    // Between them, near the lower limit, an upright top with less spin stays upright, although it could stand upside down.
+    let top = Body::ball(-0.2, 0.332, 0.40).unwrap();
+    let (low, estimate) = (0.2, jellett_spin(&top).unwrap());
+    let over = (1.0 + low) * (1.0 + low) / (1.0 - low) * (low / (0.4 * (1.0 + low) - 0.332f64)).sqrt();
+    assert!(estimate > 1.3 * over, "{estimate} {over}");
+    let found = turning_spin(&top, Friction::Viscous { c: 0.6 }, 1e-4, 2000.0, || true).unwrap().unwrap();
+    assert!((found - estimate).abs() < 0.05 * estimate, "{found} {estimate}");
+}
+
+#[test]
+fn with_more_time_a_top_turns_over_that_slips_little() {
+    let top = Body::ball(-0.2, 0.40, 0.42).unwrap();
+    let film = Friction::Viscous { c: 0.05 };
+    assert_eq!(turning_spin(&top, film, 0.1, None, || true).unwrap(), Some(f64::INFINITY));
+    let found = turning_spin(&top, film, 0.1, 2000.0, || true).unwrap().unwrap();
+    // Its axis comes within 0.14 of the vertical in that time, and not with 0.3 % less spin.
+    let over = |spin: f64, until: f64| {
+        let state = State { theta: 0.1, w1: 0.0, w2: 0.0, w3: spin };
+        let slip = spincyl::contact::slip::centre_velocity(&top, &state, [0.0; 2]).map(|v| -v);
+        let times: Vec<f64> = (1..=4000).map(|k| until / 4000.0 * f64::from(k)).collect();
+        let m = roll_with(&top, Start::from(state).with_slip(slip), &times, &Ask::on(film), || true);
+        m.unwrap().unwrap().states.iter().any(|y| y.theta > PI - 0.14)
+    };
+    assert!(over(found, 2000.0) && !over(0.997 * found, 2000.0) && !over(found, 0.7 * 2000.0), "{found}");
+    for time in [0.0, -1.0, f64::NAN, 1e7] {
+        assert!(turning_spin(&top, film, 0.1, time, || true).unwrap_err().to_string().starts_with("t = "));
+    }
+}
+
+#[test]
+fn an_egg_whose_way_to_an_end_is_barred_does_not_rise_to_it() {
+    // The centre of mass of this egg is near one end: it could spin on that end with less than on the other one, but
+    // from its side it rises to the other one, as the motion shows.
+    let inertia = [[0.2, 0.0, 0.0], [0.0, 0.2, 0.0], [0.0, 0.0, 0.17]];
+    let egg = Ellipsoid::new([0.7, 0.7, 1.0], inertia, [0.0, 0.0, 0.1]).unwrap();
+    let estimate = jellett_rising_spin(&egg).unwrap();
+    let found = rising_spin(&egg, Friction::Viscous { c: 0.5 }, 0.02, 1000.0, || true).unwrap().unwrap();
+    assert!((found - estimate).abs() < 0.1 * estimate, "{found} {estimate}");
 }
 
 #[test]
@@ -258,10 +307,13 @@ fn an_egg_that_lies_rises_with_a_little_more_spin_than_jelletts_number_says() {
     // By an independent model: on patches of 0.2 and 1 mm with mu = 0.3 it comes to 0.28 of the vertical with 84 rad/s, and
     // stands with 106, in units of 17.84 rad/s.
     for millimetres in [0.2, 1.0] {
-        let found = rising_spin(&egg, on(0.3, millimetres / 30.8), 0.1, || true).unwrap().unwrap() * 17.84;
+        let found =
+            rising_spin(&egg, on(0.3, millimetres / 30.8), 0.1, None, || true).unwrap().unwrap() * 17.84;
         assert!(found > 84.0 && found < 106.0, "{found}");
     }
     let (sphere, table) = (Ellipsoid::egg(1.0, 1.0, 0.0).unwrap(), on(0.3, 0.01));
-    assert!(rising_spin(&sphere, table, 0.1, || true).is_err() && jellett_rising_spin(&sphere).is_err());
-    assert_eq!(rising_spin(&egg, table, 0.1, || false).unwrap(), None);
+    assert!(
+        rising_spin(&sphere, table, 0.1, None, || true).is_err() && jellett_rising_spin(&sphere).is_err()
+    );
+    assert_eq!(rising_spin(&egg, table, 0.1, None, || false).unwrap(), None);
 }

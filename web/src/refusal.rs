@@ -14,7 +14,7 @@ pub enum Refusal {
         /// The accepted range.
         expected: &'static str,
     },
-    /// Codes 2 to 8, 11 and 13: the core itself refuses.
+    /// Codes 2 to 6, 8, 11 and 13: the core itself refuses.
     Core(Error),
     /// Code 9: no body has been set, or no motion has been started.
     Nothing,
@@ -52,7 +52,6 @@ impl Refusal {
             }
             Self::Core(Error::Lost { theta }) => (5, &[theta]),
             Self::Core(Error::Painleve { mu, theta, limit }) => (6, &[mu, theta, limit]),
-            Self::Core(Error::Restless { count, time }) => (7, &[count as f64, time]),
             Self::Core(Error::Endless { time, theta }) => (13, &[time, theta]),
             Self::Core(Error::Memory { .. }) => (8, &[]),
             Self::Nothing => (9, &[]),

@@ -146,7 +146,8 @@ fn follow(body: &Body, start: &Start, times: &[f64], ask: &Ask) -> Result<Motion
         looks += 1;
         looks <= LOOKS
     };
-    path::follow(body, start, times, ask, &mut go_on)?.ok_or(Refusal::Work)
+    let motion = path::follow(body, start, times, ask, &mut go_on)?;
+    if motion.is_interrupted() { Err(Refusal::Work) } else { Ok(motion) }
 }
 
 /// The pose that follows the pose `from` by the change `by`; about the axis of a body that has `turned` over since then the

@@ -34,8 +34,7 @@ class Status(IntEnum):
     LANDING
         For a landing on both rims no impulse, or more than one, obeys the law of friction.
     BOUNDED
-        The computation was given up, since the phases alternate too often or the motion hardly advances;
-        the results are NaN.
+        The computation was given up at a limit of its work or of its precision; the results are NaN.
     """
 
     DONE = 0
@@ -63,7 +62,7 @@ def given_up(status: np.ndarray) -> None:
     count = int(np.count_nonzero(status == Status.BOUNDED))
     if count:
         told = f"{count} of {status.size} motions were given up (Status.BOUNDED) and are NaN"
-        why = "slipping and rolling alternate too often, or time hardly advances"
+        why = "they reached a limit of evaluations (max_nfev=), of phases, of impacts or of rounding"
         warn(f"{told}: {why}", RuntimeWarning)
 
 

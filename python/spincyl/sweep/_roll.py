@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from spincyl import _core
-from spincyl._asked import Asked
+from spincyl._asked import Asked, evaluations
 from spincyl._body import Body
 from spincyl._contact import TABLES, AnyContact, Coulomb, Viscous, code, fitting, law
 from spincyl._input.numbers import (
@@ -89,6 +89,7 @@ def roll(
     restitution: float | None = None,
     stop_at: Literal["rolling"] | None = None,
     losses: Loss | None = None,
+    max_nfev: int | None = None,
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> "xarray.Dataset":
@@ -153,6 +154,10 @@ def roll(
         to rest (`Status.STOPS`) or the face lands (`Status.FACE`). Motions that roll or slide without friction
         are computed eight at a time, each with its own steps; motions with friction are computed one at a
         time.
+    max_nfev : int, optional
+        Largest number of evaluations of the equations of motion for each motion, as in `spincyl.roll`. A
+        motion that needs more is given up (`Status.BOUNDED`). Default: 8 million, or 40,000 per unit of time
+        if that is more. First integrals need no evaluations.
     threads : int, optional
         Number of threads. Default: the environment variable RAYON_NUM_THREADS, else every core that this
         process may use; 1 in a block of dask.
@@ -183,10 +188,9 @@ def roll(
     Warns
     -----
     RuntimeWarning
-        If the computation of motions with friction or losses is given up; the message gives the number of
-        motions. The limits are 600,000 steps that hardly advance the time, 20 phases per unit of time (at
-        least 5,000, at most 10,000), and 8 million evaluations (40,000 per unit of time if the time exceeds
-        200). Such a motion has NaN and `Status.BOUNDED`; its "end" is the time at which it was given up.
+        If the computation of motions is given up; the message gives the number of motions. The limits are
+        those of `spincyl.roll`, also for stones. Such a motion has NaN and `Status.BOUNDED`; its "end" is the
+        time at which it was given up.
     ErrorWarning
         If the estimated errors of stones become too large before the last time (see the Notes); the message
         gives the number of stones.
@@ -227,7 +231,7 @@ def roll(
             raise ValueError(
                 "step, beyond, restitution, stop_at: only for bodies of revolution; leave them out for stones"
             )
-        stones = _stones.question(bodies, states, t, want, contact, tol, mu, losses)
+        stones = _stones.question(bodies, states, t, want, contact, tol, mu, losses, max_nfev)
         labels = LABELS | _stones.LABELS
         found = swept(_stones.fill, stones, labels, threads=threads, progress=progress, length="a")
         if losses is not None:
@@ -247,7 +251,7 @@ def roll(
         at, several = _times(t)
     asked = Asked(at, step=step, contact=contact, beyond=flag("beyond", beyond), mu=number("mu", mu))
     asked = _checked(asked._replace(restitution=restitution, stop_at=stop_at), losses)
-    asked = asked._replace(tol=number("tol", tol))
+    asked = asked._replace(tol=number("tol", tol), max_nfev=evaluations(max_nfev))
     if restitution is None:
         landed(states, "give restitution=, the coefficient of restitution, 0 to 1")
     if not rubs(contact) and (restitution is None or states.height is None):

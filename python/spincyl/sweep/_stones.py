@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from spincyl import _core
-from spincyl._asked import Asked
+from spincyl._asked import Asked, evaluations
 from spincyl._contact import AnyContact, Coulomb, Viscous, code, fitting
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._ellipsoid_state import EllipsoidState
@@ -35,6 +35,7 @@ def question(
     tol: float,
     mu: float,
     losses: Loss | None,
+    max_nfev: int | None,
 ) -> Question:
     """The arguments of `spincyl.sweep.roll` for stones, checked; an error names the argument."""
     states, scale, seconds = made("states", states, EllipsoidState), stones.scale, t
@@ -63,6 +64,7 @@ def question(
         names_of = (name for name, _ in _core.loss_laws())
         fields |= zip(names_of, losses._coefficients, strict=True)
     asked = Asked(np.array([end]), tol=number("tol", tol), contact=contact, mu=number("mu", mu))
+    asked = asked._replace(max_nfev=evaluations(max_nfev))
     told = kept_stones(stones, states) | kept_contact(contact)
     return Question(fields, names, frozenset(), asked, wanted, scale, seconds, told)
 

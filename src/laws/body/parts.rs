@@ -17,7 +17,7 @@ use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// The amount of matter in a part.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub enum Amount {
     /// The mass of the part.
     Mass(f64),
@@ -27,7 +27,7 @@ pub enum Amount {
 
 /// The form of a part. All lengths are in one unit, and heights are measured upward from one point of the axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub enum Form {
     /// A cylinder, a cone or a frustum: outer and inner radii at the lower and the upper end, the heights of both ends, and
     /// the radius by which both outer edges of a cylinder are rounded. The mass is that of the sharp body.
@@ -80,7 +80,7 @@ pub enum Form {
 
 /// A part of a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct BodyPart {
     /// Its form.
     pub form: Form,

@@ -35,7 +35,7 @@ const POINT: f64 = 1e-16;
 
 /// The law of friction at a contact point that slips or sticks.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub enum Friction {
     /// Dry friction: the force is mu N against the slip, and at most `fixed` times N while the contact point rests.
     Coulomb {
@@ -151,6 +151,7 @@ impl<T: Real> Slipping<T> {
 
 impl<T: Real, G: OwnCouple<T>> Slipping<T, G> {
     /// Returns this body on a patch of this radius.
+    #[must_use]
     pub fn with_patch(self, radius: Option<T>) -> Self {
         Self { radius, ..self }
     }
@@ -162,6 +163,7 @@ impl<T: Real, G: OwnCouple<T>> Slipping<T, G> {
     }
 
     /// Returns this body with losses.
+    #[must_use]
     pub fn with_losses<H>(self, losses: Option<Couples<T, H>>) -> Slipping<T, H> {
         let Self { shape, per_i1, per_i3, strength, soft, dry, radius, .. } = self;
         Slipping { shape, per_i1, per_i3, strength, soft, dry, losses, radius }
@@ -250,7 +252,12 @@ impl<T: Real, G: OwnCouple<T>> Slipping<T, G> {
             let most = |law: Law| losses.coefficient(law) * force[0];
             let turned = [t1, t2, t3];
             if holds.rolling {
-                (dw, held[0], kept) = self.stays(angle, turned, holds.drilling, [most(Law::DryContour), most(Law::RollingResistance)]);
+                (dw, held[0], kept) = self.stays(
+                    angle,
+                    turned,
+                    holds.drilling,
+                    [most(Law::DryContour), most(Law::RollingResistance)],
+                );
             } else {
                 (dw, held[0], kept[0]) = self.kept_still(angle, (w, precession), (dw, turned), holds);
                 kept[1] = if holds.contour { most(Law::DryContour) * radius } else { kept[1] };

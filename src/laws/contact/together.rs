@@ -304,7 +304,10 @@ impl Together {
     /// more than one may be consistent, and all are counted that a search from many directions finds.
     pub fn standstill(&self, [mu, fixed]: [f64; 2], doubtful: bool) -> Standstill {
         let slip = |fates: &[Fate; 4]| fates[Part::Slip as usize];
-        let slips = |fate: Fate| Standstill::Slips { alpha: f64::atan2(fate.way[1], fate.way[0]), growth: fate.growth };
+        let slips = |fate: Fate| Standstill::Slips {
+            alpha: f64::atan2(fate.way[1], fate.way[0]),
+            growth: fate.growth,
+        };
         let (fixed, sliding) = (self.with_slip(fixed), self.with_slip(mu));
         if !doubtful {
             if !slip(&fixed.fates()).begins() {
@@ -350,9 +353,7 @@ impl Together {
             let r = self.reactions(guess);
             let fate = self.fates_from(guess)[Part::Slip as usize];
             let sound = self.off(&r).0.amax() <= 1e-9 && 1.0 - self.lean.dot(&r) > 0.0;
-            let same = |other: &Fate| {
-                (other.way[0] - fate.way[0]).hypot(other.way[1] - fate.way[1]) < SAME
-            };
+            let same = |other: &Fate| (other.way[0] - fate.way[0]).hypot(other.way[1] - fate.way[1]) < SAME;
             if sound && !found.iter().any(same) {
                 found.push(fate);
             }
@@ -366,7 +367,10 @@ impl Together {
 pub(crate) enum Rubs {
     Rests,
     /// The friction force -N `pull`, and the couple `twist` N of a patch.
-    Slips { pull: [f64; 2], twist: f64 },
+    Slips {
+        pull: [f64; 2],
+        twist: f64,
+    },
 }
 
 impl Together {
@@ -382,9 +386,8 @@ impl Together {
         let ((s, c), [w1, w2, w3]) = (angle, w);
         let (spin, drilling) = (w3 - c / s * w1, s * w1 + c * w3);
         let still = rounded(s, w);
-        let limit = |law: Law, rests: bool, by: f64| {
-            (losses.has(law) && rests).then(|| losses.coefficient(law) * by)
-        };
+        let limit =
+            |law: Law, rests: bool, by: f64| (losses.has(law) && rests).then(|| losses.coefficient(law) * by);
         let (along, rocks) = (spin.abs() <= still, w2.abs() <= still);
         let limits = [
             None,

@@ -255,6 +255,7 @@ impl Couples<f64> {
     }
 
     /// These losses with a user-defined couple.
+    #[must_use]
     pub fn with_given(self, given: Option<Couple<f64>>) -> UnderCouple {
         let Self { coefficients, present, ways, .. } = self;
         Couples { coefficients, present, ways, given }

@@ -55,7 +55,7 @@ impl StoneState {
 
 /// The orientation of a stone, and its contact point.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct StonePose {
     /// The rotation from the axes of the ellipsoid to those of the laboratory.
     pub orientation: UnitQuaternion<f64>,

@@ -180,7 +180,7 @@ impl Waiting<4, DRIFT_MARGINS> for Drifts<'_, '_, '_> {
         numbers[4 + COUNT..][..DRIFT_NUMBERS].copy_from_slice(&task.of.numbers());
         let (y, step, patience) = (task.y, task.step, task.left);
         self.inside[k] = Some(task);
-        Some(Entry { y, step, numbers, tol: 1.0, until: f64::INFINITY, patience })
+        Some(Entry { y, step, numbers, tol: 1.0, until: f64::INFINITY, patience, made: 0 })
     }
 
     fn leave(&mut self, k: usize, _: LaneStatus, (y, step): (Numbers<f64>, f64), spent: Spent) {

@@ -58,6 +58,8 @@ pub struct Job<'a> {
     pub beyond: bool,
     /// The coefficient of restitution, as in [`Ask`].
     pub restitution: Option<f64>,
+    /// The largest number of evaluations of each motion, as in [`Ask`].
+    pub max_evaluations: Option<u64>,
     /// Whether a motion ends where it begins to roll, as in [`Ask`].
     pub stop_at_rolling: bool,
 }
@@ -73,6 +75,7 @@ impl<'a> Job<'a> {
             step: None,
             beyond: false,
             restitution: None,
+            max_evaluations: None,
             stop_at_rolling: false,
         }
     }
@@ -93,6 +96,7 @@ impl<'a> Job<'a> {
             method: self.step.map_or(Method::Exact, Method::Step),
             beyond: self.beyond,
             restitution: self.restitution,
+            max_evaluations: self.max_evaluations,
             stop_at_rolling: self.stop_at_rolling,
             ..Ask::default()
         }

@@ -6,7 +6,7 @@
 use super::lossy_lanes::LossyKind;
 use crate::error::Error;
 use crate::laws::body::landing_angle;
-use crate::methods::flow::lanes::{Entry, Flows, LaneStatus, NUMBERS};
+use crate::methods::flow::lanes::{Entry, Flows, LaneStatus, NUMBERS, counted_before};
 use crate::methods::flow::schedule::{STEPS_ALONE, Waiting, follow};
 use crate::methods::flow::{Spent, until_tired};
 use crate::motions::halt::TIME;
@@ -26,6 +26,7 @@ pub(super) struct FlowTask<const N: usize> {
     tol: f64,
     until: f64,
     patience: u64,
+    made: u64,
 }
 
 /// The kind of a flow; the flows in lanes at one time are all of one kind.
@@ -85,7 +86,6 @@ impl<const N: usize> Walks<'_, N> {
                         return;
                     }
                 },
-                Ok(Pause::Interrupted) => return,
                 Err(e) => {
                     self.walks[i] = Err(e);
                     return;
@@ -98,7 +98,8 @@ impl<const N: usize> Walks<'_, N> {
             };
             let (tol, patience) = (walk.of.slide.tol, until_tired(walk.spent.patience));
             let step = step.unwrap_or_else(|| Phases::first(walk, &y));
-            let task = FlowTask { walk: i, y, step, numbers, tol, until, patience };
+            let made = counted_before(walk.toil());
+            let task = FlowTask { walk: i, y, step, numbers, tol, until, patience, made };
             match self.queues.iter_mut().find(|(of, _)| *of == among) {
                 Some((_, queue)) => queue.push_back(task),
                 None => self.queues.push((among, VecDeque::from([task]))),
@@ -140,10 +141,10 @@ struct Queued<'a, 'b, const N: usize> {
 impl<const N: usize, const K: usize, const M: usize> Waiting<K, M> for Queued<'_, '_, N> {
     fn enter(&mut self, k: usize) -> Option<Entry<K, M>> {
         let next = self.all.queues[self.queue].1.pop_front()?;
-        let FlowTask { step, numbers, tol, until, patience, .. } = next;
+        let FlowTask { step, numbers, tol, until, patience, made, .. } = next;
         let y = core::array::from_fn(|i| next.y[if i + 1 == K { TIME } else { i }]);
         self.tasks[k] = Some(next);
-        Some(Entry { y, step, numbers, tol, until, patience })
+        Some(Entry { y, step, numbers, tol, until, patience, made })
     }
 
     fn leave(&mut self, k: usize, status: LaneStatus, (y, step): ([f64; K], f64), spent: Spent) {
@@ -151,6 +152,7 @@ impl<const N: usize, const K: usize, const M: usize> Waiting<K, M> for Queued<'_
         let mut numbers = [0.0; TIME + 1];
         numbers[..K - 1].copy_from_slice(&y[..K - 1]);
         numbers[TIME] = y[K - 1];
+        let spent = Spent { evaluations: spent.evaluations - ended.made, ..spent };
         self.all.handle(&ended, status, (numbers, step), spent, self.go_on);
     }
 

@@ -59,6 +59,8 @@ pub(crate) struct Entry<const N: usize, const M: usize> {
     pub until: f64,
     /// Number of crawling steps that are allowed.
     pub patience: u64,
+    /// Number of evaluations that the lane counts at its start, besides those that it makes ([`counted_before`]).
+    pub made: u64,
 }
 
 /// The status of a lane after a step.
@@ -78,6 +80,11 @@ const TIME_REACHED: f64 = 2.0;
 
 /// A lane stops after this number of evaluations of its rates, so that the limit of the whole motion is checked.
 const TOIL_IN_LANES: f64 = 1e6;
+
+/// The evaluations that a lane counts at its start if it may make only `toil` evaluations.
+pub(crate) fn counted_before(toil: u64) -> u64 {
+    (TOIL_IN_LANES as u64).saturating_sub(toil)
+}
 
 /// The progress of the motions in their lanes.
 #[derive(Clone, Copy)]
@@ -203,7 +210,7 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
             before: [0.0; M],
             back: 0.0,
             patience: entry.patience as f64,
-            made: 1.0,
+            made: 1.0 + entry.made as f64,
             erred: 0.0,
         };
         let mut row = 0;
@@ -291,7 +298,7 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
     pub fn spent(&self, k: usize) -> Spent {
         let Way { made, patience, erred, .. } = &self.way;
         let patience = patience.lane(k).max(0.0) as u64;
-        Spent { evaluations: made.lane(k) as u64, erred: erred.lane(k), patience }
+        Spent { evaluations: made.lane(k) as u64, erred: erred.lane(k), patience, exhausted: None }
     }
 
     /// Takes at most `steps` steps, until a lane stops running.

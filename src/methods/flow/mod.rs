@@ -16,15 +16,13 @@ mod place;
 pub(crate) mod schedule;
 
 pub(crate) use ends::{looks, only_zero};
-pub(crate) use place::{FlowPlace, Flown, Spent, Steps, TakenStep};
+pub(crate) use place::{Exhausted, FlowPlace, Flown, Spent, Steps, TakenStep};
 
 use super::radau;
 use super::rk8::{self, growth, plus};
 use crate::error::Error;
 use crate::numbers::{Dual, IN_REGISTERS, here, in_registers};
 
-/// Number of steps between two calls of `go_on`.
-const BREATH: u64 = 256;
 /// A step shorter than this, relative to the elapsed time, is too short: rounding would swallow its advance.
 pub(crate) const SHORTEST: f64 = 1e-14;
 /// Time added to the elapsed time in that comparison, for fast changes right after the start.
@@ -39,7 +37,7 @@ pub(crate) const FROZEN: f64 = 1e-6;
 /// beyond a singularity, where the event is not real and the step is repeated; rounding errors near the table
 /// are smaller.
 const ROUNDED: f64 = 100.0;
-/// Largest number of crawling steps of one motion.
+/// Largest number of crawling steps of one motion, unless its caller allows more evaluations.
 pub(crate) const PATIENCE: u64 = 600_000;
 /// Largest number of evaluations of one motion; a long motion may take `TOIL_PER_TIME` for each unit of time.
 pub(crate) const TOIL: u64 = 8_000_000;
@@ -59,7 +57,7 @@ pub(crate) fn toil_of(span: f64) -> u64 {
 
 /// Number of crawling steps before the next call of [`Flow::stuck`]; `patience` is the number that is still allowed.
 pub(crate) fn until_tired(patience: u64) -> u64 {
-    (TIRING - PATIENCE.saturating_sub(patience) % TIRING).min(patience)
+    patience - patience.saturating_sub(1) / TIRING * TIRING
 }
 
 /// A system of differential equations with M margins, and the ends of its flow.
@@ -72,8 +70,10 @@ pub(crate) trait Flow<const M: usize>: Copy {
     const OVER: Self::Halt;
     /// The halt after the allowed number of steps.
     const PAUSE: Self::Halt;
-    /// The halt of a flow that exceeds its limits of work; if None, this is an error.
-    const ENDLESS: Option<Self::Halt> = None;
+    /// Number of steps between two calls of `go_on`.
+    const BREATH: u64 = 256;
+    /// The halt of a flow that is [`Exhausted`].
+    const ENDLESS: Self::Halt = Self::PAUSE;
     /// Whether the stages of all steps form a loop: for rates so slow that the loop costs little in comparison.
     const LOOPS: bool = rk8::LOOPS;
     /// Writes the rates of all numbers in sigma.
@@ -305,7 +305,8 @@ pub(crate) trait Flow<const M: usize>: Copy {
     }
 
     /// Computes the flow from a point, up to its halt, to the last of the `times`, or to a pause after the allowed
-    /// steps. `write` receives the numbers at each of the `times` that is reached. None if `go_on` interrupts the flow.
+    /// steps. `write` receives the numbers at each of the `times` that is reached. A flow that exceeds its limits of
+    /// work or of precision, or that `go_on` interrupts, ends where it is ([`Spent::exhausted`]).
     fn run<const N: usize>(
         &self,
         here: FlowPlace<N>,
@@ -313,12 +314,31 @@ pub(crate) trait Flow<const M: usize>: Copy {
         times: &[f64],
         write: &mut dyn FnMut(&[f64; N]),
         go_on: &mut dyn FnMut() -> bool,
-    ) -> Result<Option<Flown<Self::Halt, N>>, Error> {
+    ) -> Flown<Self::Halt, N> {
         // Compiled for AVX2 where the processor has it: several numbers in a register, and the same bits.
         in_registers!(
             self.run_here::<{ rk8::LOOPS }, N>(here, steps, times, write, go_on),
             else self.run_here::<SPARES, N>(here, steps, times, write, go_on)
         )
+    }
+
+    /// Computes the flow as [`Flow::run`] does. An exhausted flow is an error, and an interrupted one None.
+    fn run_whole<const N: usize>(
+        &self,
+        here: FlowPlace<N>,
+        steps: Steps,
+        times: &[f64],
+        write: &mut dyn FnMut(&[f64; N]),
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<Flown<Self::Halt, N>>, Error> {
+        let flown = self.run(here, steps, times, write, go_on);
+        let (theta, time) = (self.theta(&flown.y), flown.y[Self::TIME]);
+        match flown.spent.exhausted {
+            None => Ok(Some(flown)),
+            Some(Exhausted::Interrupted) => Ok(None),
+            Some(Exhausted::Rounding) => Err(Error::Lost { theta }),
+            Some(_) => Err(Error::Endless { theta, time }),
+        }
     }
 
     #[inline(always)]
@@ -329,18 +349,15 @@ pub(crate) trait Flow<const M: usize>: Copy {
         times: &[f64],
         write: &mut dyn FnMut(&[f64; N]),
         go_on: &mut dyn FnMut() -> bool,
-    ) -> Result<Option<Flown<Self::Halt, N>>, Error> {
+    ) -> Flown<Self::Halt, N> {
         let end = times.last().copied().unwrap_or(here.y[Self::TIME]);
         let mut next = times.partition_point(|t| *t < here.y[Self::TIME]);
         let mut margins = self.margins_at(&here);
         let mut h = first.unwrap_or_else(|| self.first(&here.y));
         let (mut calm, mut frozen) = (self.calm(&here.y), false);
-        let (mut spent, mut last) = (Spent { evaluations: 1, erred: 0.0, patience }, here.y);
+        let (mut spent, mut last) = (Spent { evaluations: 1, erred: 0.0, patience, exhausted: None }, here.y);
         let (mut stages, mut steep) = ([here.rate; rk8::STAGES], f64::INFINITY);
         for steps in 1u64.. {
-            if steps.is_multiple_of(BREATH) && !go_on() {
-                return Ok(None);
-            }
             let over = if next == times.len() {
                 Some((Self::OVER, last))
             } else if steps > most {
@@ -349,22 +366,28 @@ pub(crate) trait Flow<const M: usize>: Copy {
                 None
             };
             if let Some((halt, y)) = over {
-                return Ok(Some(Flown { halt, y: self.shown(&y), step: h, steep, spent }));
+                return Flown { halt, y: self.shown(&y), step: h, steep, spent };
             }
-            let endless = Error::Endless { theta: self.theta(&here.y), time: here.y[Self::TIME] };
             let crawls = h < SLOW * calm || frozen;
-            if spent.evaluations > toil || crawls && spent.patience < self.effort() {
-                let Some(halt) = Self::ENDLESS else { return Err(endless) };
-                return Ok(Some(Flown { halt, y: self.shown(&here.y), step: h, steep, spent }));
+            spent.exhausted = if steps.is_multiple_of(Self::BREATH) && !go_on() {
+                Some(Exhausted::Interrupted)
+            } else if spent.evaluations > toil {
+                Some(Exhausted::Evaluations)
+            } else if crawls && spent.patience < self.effort() {
+                Some(Exhausted::Crawling)
+            } else {
+                None
+            };
+            if spent.exhausted.is_some() {
+                return Flown { halt: Self::ENDLESS, y: self.shown(&here.y), step: h, steep, spent };
             }
             if crawls {
                 let left = spent.patience - self.effort();
-                let crawled = |left: u64| PATIENCE.saturating_sub(left) / TIRING;
-                tired = tired || crawled(left) != crawled(spent.patience);
+                tired = tired || left.div_ceil(TIRING) != spent.patience.div_ceil(TIRING);
                 spent.patience = left;
             }
             if tired && let Some(halt) = self.stuck(&here, &margins) {
-                return Ok(Some(Flown { halt, y: self.shown(&here.y), step: h, steep, spent }));
+                return Flown { halt, y: self.shown(&here.y), step: h, steep, spent };
             }
             tired = false;
             let mut made = self.step::<LOOP, N>(&here, h, &mut stages);
@@ -382,10 +405,11 @@ pub(crate) trait Flow<const M: usize>: Copy {
                 h *= growth(error).min(0.7);
                 // A step that is NaN counts as too short.
                 if h.is_nan() || here.y.iter().any(|x| x.is_nan()) || h < self.shortest(&here.y) {
-                    let Some(halt) = self.stuck(&here, &margins) else {
-                        return Err(Error::Lost { theta: self.theta(&here.y) });
-                    };
-                    return Ok(Some(Flown { halt, y: self.shown(&here.y), step: h, steep, spent }));
+                    let halt = self.stuck(&here, &margins).unwrap_or_else(|| {
+                        spent.exhausted = Some(Exhausted::Rounding);
+                        Self::ENDLESS
+                    });
+                    return Flown { halt, y: self.shown(&here.y), step: h, steep, spent };
                 }
                 continue;
             }
@@ -422,7 +446,7 @@ pub(crate) trait Flow<const M: usize>: Copy {
                 }
             }
             if let Some((halt, y)) = stop.filter(|(_, y)| y[Self::TIME] <= end) {
-                return Ok(Some(Flown { halt, y: self.shown(&y), step: h, steep, spent }));
+                return Flown { halt, y: self.shown(&y), step: h, steep, spent };
             }
             frozen = after.y[Self::TIME] - here.y[Self::TIME] <= FROZEN * calm;
             (here, margins) = (after, ahead);

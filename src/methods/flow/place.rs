@@ -25,6 +25,19 @@ pub(crate) struct Flown<H, const N: usize> {
     pub spent: Spent,
 }
 
+/// The reason for which a flow stops before any of its ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Exhausted {
+    /// The flow has taken the largest number of evaluations.
+    Evaluations,
+    /// Too many steps have crawled.
+    Crawling,
+    /// The next step would be so short that rounding swallows it, or is NaN.
+    Rounding,
+    /// The caller has interrupted the flow.
+    Interrupted,
+}
+
 /// The cost of a flow.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Spent {
@@ -33,6 +46,8 @@ pub(crate) struct Spent {
     pub erred: f64,
     /// Number of crawling steps that are still allowed.
     pub patience: u64,
+    /// The reason for which the flow stopped before any of its ends, if it did.
+    pub exhausted: Option<Exhausted>,
 }
 
 /// The limits of the steps of a flow.

@@ -97,8 +97,8 @@ fn ended(zeros: &[f64], last: f64) -> (Rings, f64, usize) {
     let steps = Steps { first: None, most: u64::MAX, patience: PATIENCE, toil: TOIL, tired: false };
     let times = [0.0, 0.5 * last, last];
     let mut write = |_: &[f64; 9]| written += 1;
-    let found = clock.run(clock.place([0.0; 9]), steps, &times, &mut write, &mut || true);
-    let flown = found.ok().flatten().expect("a clock ends");
+    let flown = clock.run(clock.place([0.0; 9]), steps, &times, &mut write, &mut || true);
+    assert_eq!(flown.spent.exhausted, None, "a clock ends");
     (flown.halt, flown.y[TIME], written)
 }
 
@@ -141,13 +141,25 @@ fn of_two_or_three_zeros_within_a_step_the_first_is_found() {
 }
 
 #[test]
-fn a_flow_that_crawls_is_given_up() {
+fn a_flow_that_is_exhausted_ends_where_it_is_and_says_why() {
     let clock = Clock::of(&[]);
-    let steps = Steps { first: Some(1e-9), most: u64::MAX, patience: 3, toil: TOIL, tired: false };
-    let found = clock.run(clock.place([0.0; 9]), steps, &[1.0], &mut |_: &[f64; 9]| (), &mut || true);
-    assert!(matches!(found, Err(Error::Endless { .. })));
-    let steps = Steps { patience: 30, ..steps };
-    assert!(clock.run(clock.place([0.0; 9]), steps, &[1.0], &mut |_: &[f64; 9]| (), &mut || true).is_ok());
+    let patient = Steps { first: Some(1e-9), most: u64::MAX, patience: 30, toil: TOIL, tired: false };
+    let run = |steps: Steps, asked: bool| {
+        let flown = clock.run(clock.place([0.0; 9]), steps, &[1000.0], &mut |_: &[f64; 9]| (), &mut || asked);
+        (flown.spent.exhausted, flown.y[TIME])
+    };
+    assert_eq!(run(patient, true), (None, 1000.0));
+    let (crawls, at) = run(Steps { patience: 3, ..patient }, true);
+    assert!(crawls == Some(Exhausted::Crawling) && at < 1e-3, "{crawls:?} {at}");
+    let (tires, at) = run(Steps { toil: 1000, ..patient }, true);
+    assert!(tires == Some(Exhausted::Evaluations) && at > 10.0 && at < 1000.0, "{tires:?} {at}");
+    let (stops, at) = run(patient, false);
+    assert!(stops == Some(Exhausted::Interrupted) && at > 10.0 && at < 1000.0, "{stops:?} {at}");
+    let whole = |steps: Steps, asked: bool| {
+        clock.run_whole(clock.place([0.0; 9]), steps, &[1000.0], &mut |_: &[f64; 9]| (), &mut || asked)
+    };
+    assert!(matches!(whole(Steps { patience: 3, ..patient }, true), Err(Error::Endless { .. })));
+    assert!(matches!(whole(patient, false), Ok(None)) && matches!(whole(patient, true), Ok(Some(_))));
 }
 
 #[test]
@@ -217,7 +229,8 @@ impl<T: crate::numbers::side_by_side::SideBySide> lanes::Flows<T, 2, 1> for Lane
 fn left(zeros: [f64; 2], up: f64) -> (f64, lanes::LaneStatus) {
     let mut numbers = [0.0; lanes::NUMBERS];
     numbers[..3].copy_from_slice(&[zeros[0], zeros[1], up]);
-    let entry = lanes::Entry { y: [0.0; 2], step: 1.0, numbers, tol: 1.0, until: 9.5, patience: 100 };
+    let entry =
+        lanes::Entry { y: [0.0; 2], step: 1.0, numbers, tol: 1.0, until: 9.5, patience: 100, made: 0 };
     let mut set = lanes::Set::new(0.0, LaneClock([0.0; 3]), &entry);
     while set.status(0) == lanes::LaneStatus::Runs {
         set.burst(0.0, 64);

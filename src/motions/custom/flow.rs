@@ -6,12 +6,13 @@
 //! The equations are those of the library's laws. Slopes of margins are differences, since a user-defined law has no
 //! derivative.
 
+use crate::error::Error;
 use crate::laws::body::{Body, landing_angle};
 use crate::laws::contact::lossy::{Acted, Held, Lossy};
 use crate::laws::contact::slip::{Friction, Slipping};
 use crate::laws::contact::standstill::{Standstill, standstill_under};
 use crate::laws::contact::{Contact, Force, Table, grip};
-use crate::laws::custom::Custom;
+use crate::laws::custom::{Custom, fault_of_couple, fault_of_friction};
 use crate::laws::loss::{Couple, Couples, Losses, UnderCouple};
 use crate::laws::state::State;
 use crate::methods::flow::{Flow, FlowPlace};
@@ -24,6 +25,7 @@ use crate::motions::path::write::state;
 use crate::motions::walk::slip_over;
 use crate::motions::{Ask, Ending, Kind};
 use crate::numbers::Dual;
+use core::cell::Cell;
 use core::f64::consts::PI;
 use nalgebra::SMatrix;
 
@@ -35,6 +37,10 @@ const COUPLED: usize = 7;
 const SECANTS: usize = 40;
 /// Share of the longest step, or of a number, over which a slope is computed.
 const ASIDE: f64 = 1e-5;
+/// A step is near its limit of stability if its length times the slope of the rates is more than this.
+const STABLE: f64 = 0.3;
+/// A law is stiff if it pulls w at this many times the rate at which w changes.
+const FAR_FASTER: f64 = 100.0;
 
 /// One phase: its body, its laws, and a flag that is true if the contact point slips.
 #[derive(Clone, Copy)]
@@ -42,6 +48,8 @@ pub(super) struct CustomFlow<'a> {
     pub body: &'a Body,
     pub ask: &'a Ask,
     pub custom: Custom<'a>,
+    /// The last wrong value of a law since the last step that was taken.
+    pub fault: &'a Cell<Option<Error>>,
     pub slips: bool,
     pub tol: f64,
 }
@@ -58,12 +66,24 @@ pub(super) struct CustomResponse {
     pub pace: f64,
 }
 
+/// The state at these numbers with theta > 0, and the sign of e1 and e2 in it: the axis of a ball may lean to the other
+/// side.
+fn upright(angle: (f64, f64), w: [f64; 3]) -> (f64, State) {
+    let side = if angle.0 < 0.0 { -1.0 } else { 1.0 };
+    let theta = (side * angle.0).atan2(angle.1);
+    (side, State { theta, w1: side * w[0], w2: side * w[1], w3: w[2] })
+}
+
 impl<'a> CustomFlow<'a> {
     /// The law of sliding friction at a speed.
     pub(super) fn friction(&self, speed: f64) -> Friction {
         match (self.ask.table.friction(), self.custom.friction) {
             (Friction::Coulomb { fixed, .. }, Some(law)) => {
-                Friction::Coulomb { mu: law.coefficient(speed), fixed, patch: 0.0 }
+                let mu = law.coefficient(speed);
+                if mu.is_nan() && speed.is_finite() {
+                    self.fault.set(fault_of_friction(mu, speed));
+                }
+                Friction::Coulomb { mu, fixed, patch: 0.0 }
             }
             (friction, _) => friction,
         }
@@ -85,11 +105,13 @@ impl<'a> CustomFlow<'a> {
             let couples = (!self.ask.losses.is_none()).then(|| built_in.with_given(None));
             return (answer(couples).0, couples);
         };
-        let side = if angle.0 < 0.0 { -1.0 } else { 1.0 };
-        let y = State { theta: (side * angle.0).atan2(angle.1), w1: side * w[0], w2: side * w[1], w3: w[2] };
+        let (side, y) = upright(angle, w);
         let at = |normal: f64| {
-            let [m1, m2, m3] = law.couple(self.body, &y, normal.max(0.0));
-            [side * m1, side * m2, m3]
+            let m = law.couple(self.body, &y, normal.max(0.0));
+            if m.iter().any(|x| x.is_nan()) && [y.theta, y.w1, y.w2, y.w3].iter().all(|x| x.is_finite()) {
+                self.fault.set(fault_of_couple(m, &y, normal.max(0.0)));
+            }
+            [side * m[0], side * m[1], m[2]]
         };
         let of = |given: Couple<f64>| Some(built_in.with_given(Some(given)));
         let (mut normal, mut m) = (1.0, at(1.0));
@@ -97,7 +119,10 @@ impl<'a> CustomFlow<'a> {
         let (mut found, mut next) = answer(couples);
         for _ in 0..SECANTS {
             let more = at(next);
-            if more == m || (next - normal).abs() <= 4.0 * f64::EPSILON * (1.0 + next.abs()) {
+            if more == m
+                || more.iter().any(|x| x.is_nan())
+                || (next - normal).abs() <= 4.0 * f64::EPSILON * (1.0 + next.abs())
+            {
                 return (found, couples);
             }
             let pressed: [f64; 3] = core::array::from_fn(|i| (more[i] - m[i]) / (next - normal));
@@ -107,6 +132,36 @@ impl<'a> CustomFlow<'a> {
         }
         let lost = Couple { free: [f64::NAN; 3], pressed: [f64::NAN; 3] };
         (answer(of(lost)).0, of(lost))
+    }
+
+    /// The error of a law that supplies energy in the state with these numbers, whose rates are `rate`.
+    pub(super) fn supplies<const N: usize>(&self, y: &[f64; N], rate: &[f64; N]) -> Option<Error> {
+        let (angle, w) = ((y[0], y[1]), [y[2], y[3], y[4]]);
+        let couple = self.custom.couple.filter(|_| rate[N - 1] < 0.0 || !self.ask.losses.is_none());
+        let of_couple = couple.and_then(|law| {
+            let ((_, y), normal) = (upright(angle, w), self.answer(y).force[0].max(0.0));
+            fault_of_couple(law.couple(self.body, &y, normal), &y, normal)
+        });
+        let friction = self.custom.friction.filter(|_| self.slips && rate[8] < 0.0);
+        of_couple.or_else(|| {
+            let speed = y[5].hypot(y[6]);
+            friction.and_then(|law| fault_of_friction(law.coefficient(speed), speed))
+        })
+    }
+
+    /// Whether steps of the length `h` from the numbers `y` are short only because a law is stiff: the couple pulls w
+    /// towards a slow motion much faster than w changes.
+    pub(super) fn is_kept_short<const N: usize>(&self, y: &[f64; N], h: f64) -> bool {
+        let (fast, rate) = (Slide::fastest(y), self.rates(y));
+        let mut slope = 0f64;
+        for j in 2..5 {
+            let mut more = *y;
+            more[j] += ASIDE * fast;
+            let above = self.rates(&more);
+            slope += (2..5).map(|i| ((above[i] - rate[i]) / (more[j] - y[j])).powi(2)).sum::<f64>();
+        }
+        let (slope, change) = (slope.sqrt(), rate[2].hypot(rate[3]).hypot(rate[4]));
+        h * slope > STABLE && slope * fast > FAR_FASTER * change
     }
 
     /// The response of a body that rolls, or slides freely on a smooth table, and the couples that act.
@@ -223,8 +278,10 @@ impl Flow<CUSTOM_MARGINS> for CustomFlow<'_> {
     const TIME: usize = TIME;
     const OVER: Halt = Halt::Time;
     const PAUSE: Halt = Halt::Pause;
-    const ENDLESS: Option<Halt> = Some(Halt::Endless);
+    const ENDLESS: Halt = Halt::Endless;
     const LOOPS: bool = true;
+    /// A step calls a law dozens of times, and each call may be slow.
+    const BREATH: u64 = 1;
     const MAY_BE_STIFF: bool = true;
 
     fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {
@@ -293,6 +350,10 @@ impl Flow<CUSTOM_MARGINS> for CustomFlow<'_> {
     }
 
     fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
+        self.fault.set(self.supplies(&place.y, &place.rate));
+        if self.fault.get().is_some() {
+            return Some((Halt::Endless, place.y));
+        }
         let friction = self.friction(0.0);
         let over = slip_over(true, friction.strength());
         let sticks = self.slips && friction.sticks();

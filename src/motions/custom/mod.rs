@@ -18,7 +18,7 @@ use super::path::without_slip;
 use super::path::write::{pose, state, state_errors};
 use super::row::OutputRow;
 use super::walk::{MOMENT, STILL, ending, most_phases, slip_over};
-use super::{Ask, Ending, Event, Method, Motion, Phase, Start, exact};
+use super::{Ask, Ending, Event, Limit, Method, Motion, Phase, Start, exact};
 use crate::error::{Error, copied, grow, room};
 use crate::laws::body::Body;
 use crate::laws::contact::Table;
@@ -27,7 +27,8 @@ use crate::laws::contact::standstill::{Standstill, towards};
 use crate::laws::custom::Custom;
 use crate::laws::pose::Pose;
 use crate::laws::state::State;
-use crate::methods::flow::{Flow, PATIENCE, Steps, TOIL};
+use crate::methods::flow::{Exhausted, Flow, PATIENCE, Steps, toil_of};
+use core::cell::Cell;
 use flow::CustomFlow;
 
 /// The default tolerance of a step, since a user-defined law may be slow.
@@ -43,7 +44,10 @@ const KEEPS_ITS_WAY: f64 = 1e-5;
 /// `ask` gives the contact, smooth losses, poses and forces. A motion in the air, beyond events or on a patch of
 /// contact is an error, and so are dry losses. The default tolerance of a step is 1e-10. With `custom.friction` the
 /// contact has to be Coulomb's friction, of which only the static coefficient is used. Errors: those of
-/// [`motion::roll_with`](super::motion::roll_with) and of [`Custom::check`], and `Lost` if a law is not finite.
+/// [`motion::roll_with`](super::motion::roll_with) and of [`Custom::check`], and at any time `Couple` or `Coefficient` if
+/// a law is not finite or supplies energy. A motion whose law is so stiff that it would need too many steps ends there
+/// with [`Limit::Stiff`]. `go_on` is called at every step, and a law that [fails](crate::custom::CoupleLaw::has_failed)
+/// interrupts the motion, too.
 ///
 /// ```
 /// use spincyl::{Body, State, contact::Friction, custom::{self, Custom}, motion::{Ask, Start}};
@@ -69,11 +73,13 @@ pub fn roll_with(
     let start = start.into();
     let tol = check(body, &start, ask, &custom)?;
     check_times_after(start.time, times)?;
+    let fault = Cell::new(None);
+    let mut go_on = || !custom.has_failed() && go_on();
     let run = |tol: f64, times: &[f64]| {
-        let flow = CustomFlow { body, ask, custom, slips: false, tol };
+        let flow = CustomFlow { body, ask, custom, fault: &fault, slips: false, tol };
         CustomRun::new(flow, &start, times)?.run(&mut go_on)
     };
-    Ok(judged(tol, times, run)?.map(Motion::from))
+    Ok(Motion::from(judged(tol, times, run)?).advanced(start.time))
 }
 
 /// Checks the options of such a motion. Returns the tolerance of its steps.
@@ -147,10 +153,11 @@ impl<'a> CustomRun<'a> {
         made.motion.method = Method::Tolerance(flow.tol);
         let (State { theta, w1, w2, w3 }, [along, across]) = (start.state, start.slip);
         let ((s, c), mut at) = (theta.sin_cos(), [0.0; CUSTOM_NUMBERS]);
+        let patience = ask.max_evaluations.map_or(PATIENCE, |most| PATIENCE.max(most));
         at[..7].copy_from_slice(&[s, c, w1, w2, w3, along, across]);
         let mut since = room(count)?;
         since.extend(times.iter().map(|t| t - start.time + 0.0));
-        Ok(Self { flow, start, times, since, at, way: [0.0; 2], made, patience: PATIENCE })
+        Ok(Self { flow, start, times, since, at, way: [0.0; 2], made, patience })
     }
 
     /// The first phase.
@@ -198,7 +205,13 @@ impl<'a> CustomRun<'a> {
         let (time, slip) = (self.start.time + self.at[TIME], [self.at[5], self.at[6]]);
         grow(phases, Phase { time, kind: self.flow.kind(), state: state(&self.at), slip })?;
         let still = phases.iter().rev().take_while(|phase| phase.time >= time).count();
-        if still > STILL as usize || phases.len() > most_phases(&self.since) {
+        let limit = match () {
+            () if still > STILL as usize => Some(Limit::Chatter),
+            () if phases.len() > most_phases(&self.since) => Some(Limit::Changes),
+            () => None,
+        };
+        if limit.is_some() {
+            self.made.motion.limit = limit;
             return Ok(Some(Ending::Bounded));
         }
         if let Beginning::SlipsOff(way, lasts) = next {
@@ -232,11 +245,18 @@ impl<'a> CustomRun<'a> {
         self.made.written(&self.flow, (&self.start.state, &self.at), self.way);
     }
 
-    /// Computes the run to its end; None if it is interrupted.
-    fn run(mut self, go_on: &mut dyn FnMut() -> bool) -> Result<Option<Followed>, Error> {
+    /// Computes the run to its end, or up to the limit at which the computation stops.
+    fn run(mut self, go_on: &mut dyn FnMut() -> bool) -> Result<Followed, Error> {
         let mut next = self.first();
         loop {
-            if let Some(ending) = self.begins(next)? {
+            let over = self.begins(next)?;
+            let goes_on = over.is_none().then_some(());
+            let supplies = |()| self.flow.supplies(&self.at, &self.flow.rates(&self.at));
+            let fault = self.flow.fault.take().or_else(|| goes_on.and_then(supplies));
+            if let Some(fault) = fault.filter(|_| !self.flow.custom.has_failed()) {
+                return Err(fault);
+            }
+            if let Some(ending) = over {
                 let (now, state) = (self.at[TIME], state(&self.at));
                 while self.due(now).is_some() {
                     self.writes();
@@ -245,8 +265,7 @@ impl<'a> CustomRun<'a> {
                 self.made.path.last_slip = [self.at[5], self.at[6]];
                 break;
             }
-            let Some(halt) = self.flows(go_on)? else { return Ok(None) };
-            next = match halt {
+            next = match self.flows(go_on)? {
                 Halt::Time => break,
                 Halt::Standstill => self.rests(false),
                 Halt::Slips if self.flow.ask.table.rubs() => self.rests(true),
@@ -261,28 +280,42 @@ impl<'a> CustomRun<'a> {
         }
         self.made.motion.times = copied(&self.times[..self.made.motion.states.len()])?;
         (self.made.path.heat, self.made.path.lost) = (self.at[8], self.at[CUSTOM_NUMBERS - 1]);
-        Ok(Some(self.made))
+        Ok(self.made)
     }
 
     /// Computes the current phase up to its end.
-    fn flows(&mut self, go_on: &mut dyn FnMut() -> bool) -> Result<Option<Halt>, Error> {
+    fn flows(&mut self, go_on: &mut dyn FnMut() -> bool) -> Result<Halt, Error> {
         let (flow, start, began) = (self.flow, &self.start.state, self.at[TIME]);
-        let toil = TOIL.saturating_sub(self.made.motion.evaluations);
+        let most = flow.ask.max_evaluations;
+        let most = most.unwrap_or_else(|| toil_of(self.since.last().copied().unwrap_or(0.0)));
+        let toil = most.saturating_sub(self.made.motion.evaluations);
         let steps = Steps { first: None, most: u64::MAX, patience: self.patience, toil, tired: false };
         let first = self.made.motion.states.len();
         let (made, way) = (&mut self.made, self.way);
         let mut write = |y: &[f64; CUSTOM_NUMBERS]| made.written(&flow, (start, y), way);
-        let Some(flown) = flow.run(flow.place(self.at), steps, &self.since[first..], &mut write, go_on)?
-        else {
-            return Ok(None);
-        };
+        let flown = flow.run(flow.place(self.at), steps, &self.since[first..], &mut write, go_on);
         self.made.motion.evaluations += flown.spent.evaluations;
         self.made.path.erred += flown.spent.erred * flow.tol;
         (self.at, self.patience) = (flown.y, flown.spent.patience);
         if flow.slips {
             self.made.path.slipping += self.at[TIME] - began;
         }
-        Ok(Some(flown.halt))
+        let fault = flow.fault.take().filter(|_| flown.halt == Halt::Endless);
+        let limit = match flown.spent.exhausted {
+            Some(Exhausted::Interrupted) => Some(Limit::Interrupted),
+            _ if let Some(fault) = fault => return Err(fault),
+            Some(Exhausted::Rounding) if self.at[TIME] == 0.0 => {
+                return Err(Error::Lost { theta: flow.theta(&self.at) });
+            }
+            Some(Exhausted::Crawling | Exhausted::Evaluations)
+                if flow.is_kept_short(&self.at, flown.step) =>
+            {
+                Some(Limit::Stiff)
+            }
+            why => why.map(Limit::from),
+        };
+        self.made.motion.limit = limit;
+        Ok(flown.halt)
     }
 }
 

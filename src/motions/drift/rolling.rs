@@ -193,7 +193,7 @@ impl Rolling<'_> {
     ) -> Result<Flown<DriftHalt, 4>, Error> {
         loop {
             let steps = Steps { first, most, patience: PATIENCE, toil: TOIL, tired: false };
-            let flown = self.run(self.place(y), steps, &[f64::INFINITY], &mut |_| (), &mut || true)?;
+            let flown = self.run_whole(self.place(y), steps, &[f64::INFINITY], &mut |_| (), &mut || true)?;
             let Some(flown) = flown else { return Err(Error::Lost { theta: self.counted(y[0]) }) };
             if flown.halt != DriftHalt::Turned {
                 return Ok(flown);

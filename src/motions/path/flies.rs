@@ -19,7 +19,7 @@ use crate::methods::flow::Spent;
 use crate::motions::halt::{TIME, loses, lost, poses};
 use crate::motions::row::OutputRow;
 use crate::motions::walk::{Next, Phases};
-use crate::motions::{Ending, Kind};
+use crate::motions::{Ending, Kind, Limit};
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// A pose as seen from the other rim; `over` if it is that of the other rim. Applied twice it returns the same pose.
@@ -155,7 +155,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         let leaves = [leaves, touches.then_some(if other.lift == 0.0 { 2 } else { 1 })];
         let left = self.since.last().map_or(0.0, |t| t - now);
         let Ok(landing) = course.lands(leaves, self.has_two_rims(), left) else {
-            self.next = Some(Next::Ends(Ending::Bounded));
+            self.next = Some(self.gives_up(Limit::Evaluations));
             return;
         };
         if let Some(spent) = course.spent() {

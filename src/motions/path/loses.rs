@@ -11,7 +11,7 @@ use crate::motions::Ending;
 use crate::motions::creep::LOST_DRILLING;
 use crate::motions::halt::Halt;
 use crate::motions::path::lossy::LossyFlow;
-use crate::motions::walk::{Next, Pause, Phases, STILL, after_rest, ending, most_phases};
+use crate::motions::walk::{Next, Pause, Phases, after_rest, ending};
 
 impl<const N: usize> BodyWalk<'_, N> {
     /// Begins a phase that loses energy and rolls with friction up to `mu` N, or slides freely. Returns the
@@ -26,7 +26,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         let halt = flow.at_start(&self.of.state);
         // The friction that would hold a moving contact point is not that of a body at rest.
         let rests = halt.is_none_or(|halt| halt == Halt::Slips) && flow.has_stopped(&self.of.state);
-        self.of.lossy = Some(LossyPhase { flow, since: self.at[7], still: 0, count: 0 });
+        self.of.lossy = Some(LossyPhase { flow });
         match halt {
             _ if rests => {
                 (self.of.lossy, self.next) = (None, Some(Next::Ends(Ending::Stops)));
@@ -50,9 +50,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         let made = &mut self.made;
         let mut write = |y: &[f64; N]| made.lossy(&ask, (&body, &start, flow), y, kind);
         let times = &self.since[first..];
-        let Some(flown) = flow.run(flow.place(y), steps, times, &mut write, go_on)? else {
-            return Ok(Pause::Interrupted);
-        };
+        let flown = flow.run(flow.place(y), steps, times, &mut write, go_on);
         self.has_spent(flown.spent);
         self.claims_time_error(flown.halt, flown.steep, &flown.y);
         if flown.halt == Halt::Pause {
@@ -80,11 +78,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         let next = match found {
             Halt::Time | Halt::Pause => return Ok(None),
             Halt::Contour | Halt::Drilling | Halt::Rocking | Halt::Settles | Halt::Rests => {
-                phase.still = if self.at[7] > phase.since { 0 } else { phase.still + 1 };
-                (phase.since, phase.count) = (self.at[7], phase.count + 1);
-                let count = phase.count;
-                if phase.still > STILL || count > most_phases(&self.since) {
-                    self.next = Some(Next::Ends(Ending::Bounded));
+                if self.turns_too_often() {
                     return Ok(None);
                 }
                 Phases::perturbs(self);
@@ -111,7 +105,7 @@ impl<const N: usize> BodyWalk<'_, N> {
                 self.of.state = state(&self.at);
                 Next::Ends(Ending::Face)
             }
-            _ if goes_on && found != Halt::Rests => {
+            _ if goes_on && !matches!(found, Halt::Rests | Halt::Endless) => {
                 self.records_event(ending(found));
                 flow.go_beyond();
                 let y = flow.enter(&self.at);

@@ -43,20 +43,20 @@ pub(crate) use phases::BodyWalk;
 
 /// The motion of a body that slips or loses energy, for [`roll_with`](super::motion::roll_with).
 /// A web page that needs no other motion calls this function directly, so that its program contains no other code. A
-/// motion whose time hardly advances, or in which slipping and rolling alternate more than 20 times in each unit of
-/// time (at least 5,000 and at most 10,000 times), ends there with [`Ending::Bounded`](super::Ending::Bounded). Error
-/// at any time: `Lost` where the equations lose their digits.
+/// motion that is too much work, or whose equations lose their digits on the way, ends there with
+/// [`Ending::Bounded`](super::Ending::Bounded) and the [`Limit`](super::Limit) that it has reached; so does a motion
+/// that `go_on` interrupts. Error: `Lost` where the equations have lost their digits at the start.
 pub fn follow(
     body: &Body,
     start: &Start,
     times: &[f64],
     ask: &Ask,
     go_on: &mut dyn FnMut() -> bool,
-) -> Result<Option<Motion>, Error> {
+) -> Result<Motion, Error> {
     let fine = check(body, start, ask)?;
     check_times_after(start.time, times)?;
     let run = |tol: f64, times: &[f64]| walked((body, start), ask, (tol, false), times, go_on);
-    Ok(judged(fine, times, run)?.map(Motion::from))
+    Ok(judged(fine, times, run)?.into())
 }
 
 /// One run of a body's walk, with the tolerance `tol` of its steps. Its numbers include a pose and the lost energy only
@@ -67,7 +67,7 @@ pub(super) fn walked(
     (tol, integrates): (f64, bool),
     times: &[f64],
     go_on: &mut dyn FnMut() -> bool,
-) -> Result<Option<Followed>, Error> {
+) -> Result<Followed, Error> {
     // `SHORT_CODE` compiles one kind of walk only, with the pose and the lost energy.
     let loses = !ask.losses.is_none() || ask.table.friction().patch() > 0.0;
     match (SHORT_CODE || ask.pose, !SHORT_CODE && !loses) {

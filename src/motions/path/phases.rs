@@ -69,11 +69,6 @@ pub(crate) struct BodyPhases {
 #[derive(Clone, Copy)]
 pub(super) struct LossyPhase {
     pub(super) flow: LossyFlow,
-    /// The time of the last change of holds or signs, the number of such changes in succession at the same
-    /// time, and their total number.
-    pub(super) since: f64,
-    pub(super) still: u32,
-    pub(super) count: usize,
 }
 
 impl<'a, const N: usize> BodyWalk<'a, N> {
@@ -343,10 +338,6 @@ impl<const N: usize> Phases<N> for BodyPhases {
     }
     fn slip_kind(walk: &BodyWalk<'_, N>) -> Kind {
         walk.kind_of_slip()
-    }
-
-    fn gives_up(_: &BodyWalk<'_, N>, _: usize) -> Result<Next, Error> {
-        Ok(Next::Ends(Ending::Bounded))
     }
 
     fn slips(walk: &mut BodyWalk<'_, N>) -> [f64; N] {

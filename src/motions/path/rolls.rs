@@ -13,7 +13,7 @@ use crate::motions::halt::lost;
 use crate::motions::judge::doubted;
 use crate::motions::row::OutputRow;
 use crate::motions::walk::{Next, Phases, WalkStep, after_rest};
-use crate::motions::{Ask, Ending, Start};
+use crate::motions::{Ask, Ending, Limit, Start};
 use core::f64::consts::{PI, TAU};
 use nalgebra::Point2;
 
@@ -52,9 +52,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             self.next = Some(Next::Ends(Ending::Face));
             return Ok(None);
         }
-        let Some(mut rolled) = by_first_integrals(&body, &from, times, &ask, &mut *go_on)? else {
-            return Ok(Some(WalkStep::Interrupted));
-        };
+        let mut rolled = by_first_integrals(&body, &from, times, &ask, &mut *go_on)?;
         self.claims(rolled.error);
         self.made.motion.pose_error = self.made.motion.pose_error.max(rolled.pose_error);
         let spent = [self.at[8], lost(&self.at)];
@@ -71,11 +69,12 @@ impl<const N: usize> BodyWalk<'_, N> {
             self.made.push(OutputRow { pose, force, ..row });
         }
         let Some(event) = rolled.event else { return Ok(None) };
+        self.made.motion.limit = rolled.limit;
         // The pose at the event is computed separately, since `rolled` has poses at the requested times only.
         if self.ask.pose && (event.ending == Ending::Slip || event.ending == Ending::Side) {
             let ask = Ask { beyond: true, ..ask };
             let then = by_first_integrals(&body, &from, &[event.time], &ask, go_on)?;
-            if let Some(pose) = then.and_then(|m| m.poses).and_then(|poses| poses.last().copied()) {
+            if let Some(pose) = then.poses.and_then(|poses| poses.last().copied()) {
                 let pose = self.moved(&pose);
                 let numbers =
                     [pose.phi.radians(), pose.psi.radians(), pose.contact_point.x, pose.contact_point.y];

@@ -5,8 +5,8 @@ use super::phases::BodyWalk;
 use super::slide::Slide;
 use super::write::state;
 use crate::error::Error;
-use crate::methods::flow::{Flow, FlowPlace, Steps};
 use crate::laws::loss::Holds;
+use crate::methods::flow::{Flow, FlowPlace, Steps};
 use crate::motions::Ending;
 use crate::motions::halt::{Halt, loses};
 use crate::motions::walk::{Next, Pause, Phases, after_rest, ending};
@@ -29,9 +29,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         let steps = Steps { most, ..steps };
         let (ask, made) = (self.ask, &mut self.made);
         let mut write = |y: &[f64; N]| made.slid(&ask, &slide, y);
-        let Some(slid) = slide.run(place, steps, &self.since[first..], &mut write, go_on)? else {
-            return Ok(Pause::Interrupted);
-        };
+        let slid = slide.run(place, steps, &self.since[first..], &mut write, go_on);
         self.has_spent(slid.spent);
         if slid.halt == Halt::Pause {
             if let Some(end) = self.whirr_ends(&slid.y) {

@@ -20,7 +20,7 @@ use crate::laws::newton;
 use crate::laws::state::State;
 use crate::motions::halt::TIME;
 use crate::motions::walk::Next;
-use crate::motions::{Ending, Kind, Method, Moving, Strike};
+use crate::motions::{Ending, Kind, Limit, Method, Moving, Strike};
 use core::f64::consts::FRAC_PI_2;
 
 /// Share of the state that the summed bounces may change: this part of the tolerance of a sweep, within these two
@@ -256,7 +256,7 @@ impl<const N: usize> BodyWalk<'_, N> {
                 break;
             }
             if turn > MOST_IN_TURN {
-                return Next::Ends(Ending::Bounded);
+                return self.gives_up(Limit::Impacts);
             }
             if at.lift.max(there.lift) < -RATTLE_OVER * fast.min(1.0) {
                 match self.bounces_on_both(at, other, e) {

@@ -23,20 +23,22 @@ pub(crate) fn stepped(
     ask: &Ask,
     step: f64,
     go_on: &mut dyn FnMut() -> bool,
-) -> Result<Option<Motion>, Error> {
+) -> Result<Motion, Error> {
     let guarded = guard(course, swing, limits, step)?;
     let known = Known::of(course, swing, limits, ask.beyond);
     let reference = match known.swing {
         Some(_) => None,
-        None => match within(course, swing, limits, ask, BETTER, go_on)? {
-            Some(reference) => Some(reference),
-            None => return Ok(None),
-        },
+        None => Some(within(course, swing, limits, &Ask { max_evaluations: None, ..*ask }, BETTER, go_on)?),
     };
+    if let Some(reference) = reference.as_ref().filter(|reference| reference.is_interrupted()) {
+        return Ok(Motion::empty(0, ask.pose)?.interrupted(&reference.times[..0], course.t0, *course.start));
+    }
     let event = reference.as_ref().map_or(known.event, |reference| reference.event);
     let count = reference.as_ref().map_or(known.count, |reference| reference.times.len());
     let by_itself = (step, swing.is_none());
-    let Some(mut motion) = steps::run(course, limits, by_itself, count, go_on)? else { return Ok(None) };
+    let most = ask.max_evaluations.unwrap_or(u64::MAX);
+    let mut motion = steps::run(course, limits, by_itself, (count, most), go_on)?;
+    let event = if motion.limit.is_none() { event } else { motion.event };
     motion.event = event;
     if let Some(swing) = known.swing {
         judge(&mut motion, swing, event, course.t0);
@@ -48,5 +50,5 @@ pub(crate) fn stepped(
         motion.pose_error += reference.pose_error;
     }
     (motion.step_loss, motion.advice, motion.coarse) = (guarded.loss, guarded.advice, guarded.coarse);
-    Ok(Some(motion))
+    Ok(motion)
 }

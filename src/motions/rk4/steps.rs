@@ -17,20 +17,20 @@ use crate::methods::rk4::{Compensated, increment};
 use crate::methods::search;
 use crate::motions::course::Course;
 use crate::motions::limits::Limits;
-use crate::motions::{Method, Motion};
+use crate::motions::{Ending, Event, Limit, Method, Motion};
 use core::f64::consts::PI;
 use nalgebra::Point2;
 
 /// Integrates theta, w1, w2 and w3, and with a pose also phi, psi, x and y, by steps of length `h`, at the first
-/// `count` of the times. `unguarded` means that no exact motion has checked the step, so that each step is checked
+/// `count` of the times, with at most `most` evaluations. `unguarded` means that no exact motion has checked the step, so that each step is checked
 /// against the precession at its beginning.
 pub(crate) fn run(
     course: &Course<'_>,
     limits: &Limits,
     (h, unguarded): (f64, bool),
-    count: usize,
+    count: (usize, u64),
     go_on: &mut dyn FnMut() -> bool,
-) -> Result<Option<Motion>, Error> {
+) -> Result<Motion, Error> {
     let h = course.way() * h;
     if course.pose {
         let y = course.start;
@@ -148,9 +148,9 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
     fn run(
         mut self,
         step: f64,
-        count: usize,
+        (count, most): (usize, u64),
         go_on: &mut dyn FnMut() -> bool,
-    ) -> Result<Option<Motion>, Error> {
+    ) -> Result<Motion, Error> {
         let (t0, way) = (self.course.t0, self.course.way());
         // With a local copy the compiler computes terms that depend on the body alone only once.
         let rates = self.rates;
@@ -160,11 +160,19 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
         for _ in 0..written {
             self.write(&self.here.clone());
         }
-        let mut steps = 0u64;
+        let (mut steps, mut pause) = (0u64, 512.min(most / 4 + 1));
         while written < times.len() {
             steps += 1;
-            if steps.is_multiple_of(512) && beat.is_due() && !go_on() {
-                return Ok(None);
+            if steps == pause {
+                pause = (pause + 512).min(most / 4 + 1);
+                let spent = steps > most / 4;
+                if spent || beat.is_due() && !go_on() {
+                    let limit = if spent { Limit::Evaluations } else { Limit::Interrupted };
+                    let (time, state) = (t0 + self.here.t, state(&self.here.at.y));
+                    self.motion.event = Some(Event { ending: Ending::Bounded, time, state });
+                    self.motion.limit = Some(limit);
+                    break;
+                }
             }
             let then = steps as f64 * step;
             let ahead = match self.ahead(&rates, then)? {
@@ -195,10 +203,10 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
             }
             self.here = pole.map_or(ahead, |(_, past)| past);
         }
-        self.motion.times = copied(times)?;
+        self.motion.times = copied(&times[..self.motion.states.len()])?;
         self.motion.method = Method::Step(step.abs());
         self.motion.evaluations = self.evaluations;
-        Ok(Some(self.motion))
+        Ok(self.motion)
     }
 
     /// One step, to the time `t`; None if theta leaves (0, pi) within the step.

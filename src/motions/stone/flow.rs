@@ -252,6 +252,7 @@ impl Flow<STONE_MARGINS> for StoneFlow<'_> {
     const TIME: usize = TIME;
     const OVER: Halt = Halt::Time;
     const PAUSE: Halt = Halt::Pause;
+    const ENDLESS: Halt = Halt::Endless;
 
     fn theta<const N: usize>(&self, y: &[f64; N]) -> f64 {
         state(y).theta()

@@ -194,7 +194,8 @@ impl StoneFlow<'_> {
             return 0.0;
         }
         let drilling = self.drilling(y);
-        let mut ways = Ways { drilling: if drilling == 0.0 { 0.0 } else { drilling.signum() }, ..Ways::default() };
+        let mut ways =
+            Ways { drilling: if drilling == 0.0 { 0.0 } else { drilling.signum() }, ..Ways::default() };
         self.turn(ways);
         let slip = slip_of(y);
         let slips = (!self.rests()).then_some(match self.touch {

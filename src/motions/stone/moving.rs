@@ -18,6 +18,9 @@ impl Moving for StoneState {
         let [d, e, f] = self.w;
         [a, b, c, d, e, f]
     }
+    fn theta(&self) -> f64 {
+        self.theta()
+    }
     fn fastest(&self) -> f64 {
         self.w.iter().fold(0.0, |most: f64, x| most.max(x.abs()))
     }

@@ -206,7 +206,7 @@ impl<'a, 'n, const N: usize> StoneWalk<'a, 'n, N> {
                 after_rest(self.rests_here())
             }
             Halt::Slips if rubs => after_rest(Phases::lets_go(self)),
-            halt if halt != Halt::Face && self.ask.beyond && !rubs => {
+            halt if !matches!(halt, Halt::Face | Halt::Endless) && self.ask.beyond && !rubs => {
                 self.records_event(ending(halt));
                 self.of.flow.watch = false;
                 self.made.path.phases.pop();
@@ -383,10 +383,6 @@ impl<'n, const N: usize> Phases<N> for StonePhases<'n> {
         Error::Painleve { mu, theta, limit: mu / eps[0].hypot(eps[1]) }
     }
 
-    fn gives_up(walk: &StoneWalk<'_, 'n, N>, count: usize) -> Result<Next, Error> {
-        Err(Error::Restless { count, time: walk.t0 + walk.at[TIME] })
-    }
-
     fn slips(walk: &mut StoneWalk<'_, 'n, N>) -> [f64; N] {
         walk.of.flow.touch = Touch::Slips;
         walk.begins_to_lose([0.0; 2]);
@@ -439,8 +435,11 @@ impl<'n, const N: usize> Phases<N> for StonePhases<'n> {
         at_limit: bool,
         _: &mut dyn FnMut() -> bool,
     ) -> Result<Option<WalkStep<N>>, Error> {
-        walk.of.flow.touch =
-            if core::mem::take(&mut walk.of.freed) && walk.kind() == Kind::Rolling { Touch::Rolls } else { walk.resting() };
+        walk.of.flow.touch = if core::mem::take(&mut walk.of.freed) && walk.kind() == Kind::Rolling {
+            Touch::Rolls
+        } else {
+            walk.resting()
+        };
         if walk.of.flow.touch == Touch::Held {
             walk.claims(LOST_DRILLING * walk.of.flow.drilling(&walk.at).abs());
         }
@@ -474,20 +473,9 @@ impl<'n, const N: usize> Phases<N> for StonePhases<'n> {
         } else {
             let mut write = |y: &[f64; WITHOUT_POSE]| write(made, (&flow, &ask, still), &whole(y));
             let here = flow.place(core::array::from_fn(|i| y[i]));
-            flow.run(here, steps, times, &mut write, go_on).map(|flown| {
-                flown.map(|Flown { halt, y, step, steep, spent }| {
-                    let y = whole(&y);
-                    Flown { halt, y, step, steep, spent }
-                })
-            })
+            let Flown { halt, y, step, steep, spent } = flow.run(here, steps, times, &mut write, go_on);
+            Flown { halt, y: whole(&y), step, steep, spent }
         };
-        let flown = match flown {
-            Err(Error::Endless { theta, time }) => {
-                return Err(Error::Endless { theta, time: walk.t0 + time });
-            }
-            flown => flown?,
-        };
-        let Some(flown) = flown else { return Ok(Pause::Interrupted) };
         walk.has_spent(flown.spent);
         walk.claims_time_error(flown.halt, flown.steep, &flown.y);
         if flown.halt == Halt::Rests && flow.touch == Touch::Slips {

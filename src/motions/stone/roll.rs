@@ -13,7 +13,7 @@ use super::known::{Recorded, Runs, settle};
 use super::phases::StoneWalk;
 use crate::error::Error;
 use crate::laws::stone::{Ellipsoid, StoneState};
-use crate::motions::followed::{Followed, rougher};
+use crate::motions::followed::{Followed, judged, rougher};
 use crate::motions::{Ask, Motion, Start};
 use core::cell::RefCell;
 
@@ -23,9 +23,8 @@ use core::cell::RefCell;
 /// length 1. The components of a slip, initially and in all outputs, are along the horizontal axes x and y of the
 /// laboratory frame in which the stone is turned from upright by the smallest angle. `ask` has
 /// the contact, the losses, the tolerance, `beyond` and the outputs; a stone has no fixed step and no second rim
-/// that could land. `go_on` is called often; if it returns false, the result is `Ok(None)`. Errors: `OutOfRange`,
-/// which names the argument; `Painleve` for an initial state without a unique contact force; `Restless` if slipping
-/// and rolling alternate too often; `Endless` if the motion hardly advances.
+/// that could land. `go_on` and the limits of the work are as for a body ([`roll_with`](crate::motion::roll_with)).
+/// Errors: `OutOfRange`, which names the argument; `Painleve` for an initial state without a unique contact force.
 ///
 /// ```
 /// use spincyl::{Ellipsoid, motion::Ask, stone};
@@ -57,7 +56,8 @@ fn rolled(
     ask: &Ask,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Option<Motion<StoneState>>, Error> {
-    Ok(followed(stone, start, times, ask, &RefCell::default(), go_on)?.map(Motion::from))
+    let found = followed(stone, start, times, ask, &RefCell::default(), go_on)?;
+    Ok(Motion::from(found).advanced(start.time))
 }
 
 /// The motion and its path, with the error from a rougher run. The finer run records reversals and ends in
@@ -69,25 +69,30 @@ pub(crate) fn followed(
     ask: &Ask,
     recorded: &RefCell<Recorded>,
     go_on: &mut dyn FnMut() -> bool,
-) -> Result<Option<Followed<StoneState>>, Error> {
+) -> Result<Followed<StoneState>, Error> {
     let (start, fine) = check(start, times, ask)?;
-    let mut runs = |times: &[f64], recorded: Option<&RefCell<Recorded>>| -> Runs {
-        let mut run = |tol: f64, recorded| {
-            let of = (stone, &start);
-            if ask.losses.is_none() {
-                walk::<ALL>(of, times, ask, (tol, fine), recorded)?.run(go_on)
-            } else {
-                walk::<LOSING>(of, times, ask, (tol, fine), recorded)?.run(go_on)
-            }
-        };
-        let Some(found) = run(fine, recorded)? else { return Ok(None) };
-        Ok(run(rougher(fine), None)?.map(|rough| [found, rough]))
+    let mut run = |tol: f64, times: &[f64], recorded| {
+        let of = (stone, &start);
+        if ask.losses.is_none() {
+            walk::<ALL>(of, times, ask, (tol, fine), recorded)?.run(go_on)
+        } else {
+            walk::<LOSING>(of, times, ask, (tol, fine), recorded)?.run(go_on)
+        }
     };
-    let Some([mut found, rough]) = runs(times, Some(recorded))? else { return Ok(None) };
-    found.judge(&rough, fine);
+    let runs = |tol: f64, times: &[f64]| run(tol, times, (tol == fine).then_some(recorded));
+    let mut found = judged(fine, times, runs)?;
+    if found.motion.is_interrupted() {
+        return Ok(found);
+    }
     let span = (start.time, times[times.len() - 1], fine);
-    let settled = settle(&mut found, &mut recorded.borrow_mut(), span, &mut |times| runs(times, None))?;
-    Ok(settled.then_some(found))
+    let mut again = |times: &[f64]| -> Runs {
+        let both = [run(fine, times, None)?, run(rougher(fine), times, None)?];
+        Ok(if both.iter().any(|of| of.motion.is_interrupted()) { None } else { Some(both) })
+    };
+    if !settle(&mut found, &mut recorded.borrow_mut(), span, &mut again)? {
+        found.stays_unjudged();
+    }
+    Ok(found)
 }
 
 /// Begins a walk, on the heap, since threads may have only a small stack.

@@ -120,7 +120,7 @@ impl FreeRolling {
             let (orientation, centre) = ([y[0], y[1], y[2], y[3]], [y[7], y[8]]);
             rows.push(RollingStone { time: y[FREE_TIME], orientation, centre, rates, state, normal });
         };
-        let flown = self.run(self.place(y), steps, times, &mut write, go_on)?;
+        let flown = self.run_whole(self.place(y), steps, times, &mut write, go_on)?;
         Ok(flown.map(|_| rows))
     }
 

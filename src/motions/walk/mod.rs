@@ -18,7 +18,7 @@ pub(crate) mod slow;
 use super::ask::Ask;
 use super::followed::{BRIEF, Followed};
 use super::halt::{Halt, TIME};
-use super::result::{Ending, Event, Kind, Phase, Strike};
+use super::result::{Ending, Event, Kind, Limit, Phase, Strike};
 use super::{Method, Moving};
 use crate::error::{Error, copied, grow};
 use crate::laws::contact::Table;
@@ -90,8 +90,6 @@ pub(crate) enum WalkStep<const N: usize> {
     Flows([f64; N]),
     /// The walk is complete.
     Done,
-    /// The caller has interrupted the walk.
-    Interrupted,
 }
 
 /// Whether a flow has paused before its end.
@@ -100,8 +98,6 @@ pub(crate) enum Pause<const N: usize> {
     No,
     /// The flow has paused at these numbers, with this next step if it is known.
     Here([f64; N], Option<f64>),
-    /// The caller has interrupted the flow.
-    Interrupted,
 }
 
 /// The computation of a motion, phase by phase.
@@ -123,10 +119,16 @@ pub(crate) struct Walk<'a, P: Phases<N>, const N: usize> {
     pub began: f64,
     /// Whether an earlier phase continues.
     resumes: bool,
-    /// Number of consecutive phases that began at the same time as the phase before.
+    /// The time of the last change of the motion.
+    changed: f64,
+    /// Number of consecutive changes at the same time as the change before.
     pub still: u32,
-    /// Number of consecutive phases that began at most `SHORT` later than the phase before.
+    /// Number of consecutive changes at most `SHORT` later than the change before.
     short: u32,
+    /// Number of changes within phases.
+    turns: usize,
+    /// Largest number of crawling steps.
+    crawling: u64,
     /// The share by which a rougher run perturbs the state at each end of a phase; 0 in the finer run. Where
     /// the motion is unstable, the difference of the two runs then shows the instability.
     pub perturbation: f64,
@@ -152,6 +154,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         let tol = of.tol();
         let mut made = Followed::empty(times.len(), ask, !ask.losses.is_none())?;
         made.motion.method = Method::Tolerance(tol);
+        let crawling = ask.max_evaluations.map_or(PATIENCE, |most| PATIENCE.max(most));
         Ok(Self {
             // The estimated error is SAFETY fine/tol times the difference of the runs, to which this share adds one
             // rounding.
@@ -167,19 +170,19 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
             next: None,
             began: f64::NEG_INFINITY,
             resumes: false,
+            changed: f64::NEG_INFINITY,
             still: 0,
             short: 0,
-            spent: Spent { evaluations: 0, erred: 0.0, patience: PATIENCE },
+            turns: 0,
+            crawling,
+            spent: Spent { evaluations: 0, erred: 0.0, patience: crawling, exhausted: None },
             tired: false,
         })
     }
 
-    /// The whole motion; None if it was interrupted.
+    /// The whole motion, or the motion up to the limit at which the computation stopped.
     #[allow(clippy::boxed_local)] // On the heap it leaves the stack to the flows.
-    pub fn run(
-        mut self: Box<Self>,
-        go_on: &mut dyn FnMut() -> bool,
-    ) -> Result<Option<Followed<P::State>>, Error> {
+    pub fn run(mut self: Box<Self>, go_on: &mut dyn FnMut() -> bool) -> Result<Followed<P::State>, Error> {
         loop {
             match self.advance(go_on)? {
                 WalkStep::Flows(mut y) => {
@@ -188,12 +191,10 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
                         match self.flows(y, step, u64::MAX, go_on)? {
                             Pause::Here(there, next) => (y, step) = (there, next),
                             Pause::No => break,
-                            Pause::Interrupted => return Ok(None),
                         }
                     }
                 }
-                WalkStep::Done => return Ok(Some(self.done()?)),
-                WalkStep::Interrupted => return Ok(None),
+                WalkStep::Done => return self.done(),
             }
         }
     }
@@ -205,20 +206,12 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
             self.grown?;
             let next = self.goes_on(next);
             P::audits(self);
-            let now = self.at[TIME];
-            self.still = if now > self.began { 0 } else { self.still + 1 };
-            self.short = if now > self.began + SHORT { 0 } else { self.short + 1 };
+            let limit = self.changes();
             if P::is_over(self, &next) {
                 break;
             }
-            let count = self.made.path.phases.len();
-            let chatters = self.still > STILL || !self.ask.losses.is_none() && self.short > CHATTER;
-            let hops = self.made.path.impacts.len();
-            let too_many =
-                chatters || hops > MOST_IMPACTS || count.saturating_sub(hops) > most_phases(&self.since);
-            let next = match next {
-                Next::Ends(_) => next,
-                _ if too_many => P::gives_up(self, count)?,
+            let next = match limit {
+                Some(limit) if !matches!(next, Next::Ends(_)) => self.gives_up(limit),
                 _ => next,
             };
             match next {
@@ -246,7 +239,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
                     return Ok(WalkStep::Flows(P::slips(self)));
                 }
                 Next::SlipsOn => {
-                    self.began = now;
+                    self.began = self.at[TIME];
                     return Ok(WalkStep::Flows(P::slips_on(self)));
                 }
                 Next::SlipsOff { alpha, growth } => {
@@ -257,6 +250,40 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
             }
         }
         Ok(WalkStep::Done)
+    }
+
+    /// Counts a change of the motion at the current time: the beginning of a phase, or the end of a hold. Returns the
+    /// limit that the changes have reached.
+    fn changes(&mut self) -> Option<Limit> {
+        let now = self.at[TIME];
+        self.still = if now > self.changed { 0 } else { self.still + 1 };
+        self.short = if now > self.changed + SHORT { 0 } else { self.short + 1 };
+        self.changed = now;
+        let (count, hops) = (self.made.path.phases.len() + self.turns, self.made.path.impacts.len());
+        match () {
+            () if hops > MOST_IMPACTS => Some(Limit::Impacts),
+            () if count.saturating_sub(hops) > most_phases(&self.since) => Some(Limit::Changes),
+            () if self.still > STILL => Some(Limit::Chatter),
+            () if !self.ask.losses.is_none() && self.short > CHATTER => Some(Limit::Chatter),
+            () => None,
+        }
+    }
+
+    /// Counts a change within a phase: a motion that dry losses stop, hold or let go. Returns whether the computation
+    /// stops because there are too many; the walk then ends.
+    pub fn turns_too_often(&mut self) -> bool {
+        self.turns += 1;
+        let limit = self.changes();
+        if let Some(limit) = limit {
+            self.next = Some(self.gives_up(limit));
+        }
+        limit.is_some()
+    }
+
+    /// The end of a motion whose computation stops at this limit.
+    pub fn gives_up(&mut self, limit: Limit) -> Next {
+        self.made.motion.limit = Some(limit);
+        Next::Ends(Ending::Bounded)
     }
 
     /// The phase after an ending past which the motion continues. One ending may follow another at the same time.
@@ -280,11 +307,22 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         most: u64,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Pause<N>, Error> {
-        let toil = toil_of(self.since.last().copied().unwrap_or(0.0)).saturating_sub(self.spent.evaluations);
         let first = Some(first.unwrap_or_else(|| P::first(self, &y)));
-        let steps = Steps { first, most, patience: self.spent.patience, toil, tired: self.tired };
+        let steps =
+            Steps { first, most, patience: self.spent.patience, toil: self.toil(), tired: self.tired };
         self.tired = false;
-        P::flows(self, y, steps, go_on)
+        let paused = P::flows(self, y, steps, go_on)?;
+        if self.made.motion.limit == Some(Limit::Rounding) && self.at[TIME] == 0.0 {
+            return Err(Error::Lost { theta: P::state(self).theta() });
+        }
+        Ok(paused)
+    }
+
+    /// The number of evaluations that are still allowed.
+    pub fn toil(&self) -> u64 {
+        let most = self.ask.max_evaluations;
+        let most = most.unwrap_or_else(|| toil_of(self.since.last().copied().unwrap_or(0.0)));
+        most.saturating_sub(self.spent.evaluations)
     }
 
     /// The phase that begins at the current numbers, initially or after a landing. An error if no unique contact force
@@ -354,7 +392,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
 
     /// Allows more crawling steps after a change of the motion.
     pub fn allows_crawling(&mut self) {
-        self.spent.patience = (self.spent.patience + RENEWED).min(PATIENCE);
+        self.spent.patience = (self.spent.patience + RENEWED).min(self.crawling);
     }
 
     /// Records an event outside the model, at the current numbers, unless an earlier event is recorded.
@@ -426,7 +464,8 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
     }
 
     /// Adds the cost of a flow.
-    pub fn has_spent(&mut self, Spent { evaluations, erred, patience }: Spent) {
+    pub fn has_spent(&mut self, Spent { evaluations, erred, patience, exhausted }: Spent) {
+        self.made.motion.limit = exhausted.map(Limit::from).or(self.made.motion.limit);
         self.spent.evaluations += evaluations;
         self.spent.erred += erred;
         self.spent.patience = patience;

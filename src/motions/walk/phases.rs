@@ -68,8 +68,6 @@ pub(crate) trait Phases<const N: usize>: Sized {
     fn slip_kind(_: &Walk<'_, Self, N>) -> Kind {
         Kind::Slipping
     }
-    /// The ending or the error of a motion with too many phases, `count` in all.
-    fn gives_up(walk: &Walk<'_, Self, N>, count: usize) -> Result<Next, Error>;
     /// Begins a slip, or continues one. Returns the numbers at which its flow starts.
     fn slips(walk: &mut Walk<'_, Self, N>) -> [f64; N];
     fn slips_on(walk: &mut Walk<'_, Self, N>) -> [f64; N];

@@ -286,6 +286,7 @@ impl<T: Real> SteadyPoint<T> {
 
     /// Each quantity from this point and from another one, as `pick` chooses.
     #[inline(always)]
+    #[must_use]
     pub fn with(self, other: Self, pick: impl Fn(T, T) -> T) -> Self {
         Self {
             rate: pick(self.rate, other.rate),

@@ -29,7 +29,6 @@ const REFUSED = {
   2: "There is no such body: its axial moment of inertia is more than twice the transverse one.",
   5: "This motion cannot be followed: its equations lose all accuracy here.",
   6: "No contact force, or more than one, obeys the law of dry friction here (Painlevé's paradox).",
-  7: "Slipping and rolling follow each other too often to be followed.",
   13: "This motion hardly advances, for it changes ever faster.",
   8: "There is not enough memory for this.",
   12: "This page was made without friction and losses: it has only rubber and ice.",

@@ -91,8 +91,10 @@ impl AirFlight {
         let y = [cos, 0.0, -sin, 0.0, w1, w2, w3, from.height, from.angle.1, 0.0, 0.0];
         let steps = vec![AirStep { y, angles: [0.0; 2] }];
         let fastest = w1.abs().max(w2.abs()).max(w3.abs());
-        let (first, spent) =
-            (longer * FIRST_STEP / (1.0 + fastest), Spent { evaluations: 0, erred: 0.0, patience: 0 });
+        let (first, spent) = (
+            longer * FIRST_STEP / (1.0 + fastest),
+            Spent { evaluations: 0, erred: 0.0, patience: 0, exhausted: None },
+        );
         Self { shape: *shape, from: *from, free, losses, steps, tol, first, spent }
     }
 

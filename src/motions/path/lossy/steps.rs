@@ -171,7 +171,7 @@ impl Flow<MARGINS> for LossyFlow {
     const TIME: usize = TIME;
     const OVER: Halt = Halt::Time;
     const PAUSE: Halt = Halt::Pause;
-    const ENDLESS: Option<Halt> = Some(Halt::Endless);
+    const ENDLESS: Halt = Halt::Endless;
 
     fn theta<const N: usize>(&self, y: &[f64; N]) -> f64 {
         y[0].atan2(y[1])

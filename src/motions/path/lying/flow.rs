@@ -47,10 +47,6 @@ const LYING_ENDS: [Halt; MARGINS] =
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LyingPhase {
     pub flow: LyingFlow,
-    /// The number of consecutive changes of the held motions at the same time, and the time of the last change.
-    pub still: u32,
-    pub since: f64,
-    pub count: usize,
 }
 
 /// A body on both rims, and the motions that dry losses hold.
@@ -173,7 +169,7 @@ impl Flow<MARGINS> for LyingFlow {
     const TIME: usize = TIME;
     const OVER: Halt = Halt::Time;
     const PAUSE: Halt = Halt::Pause;
-    const ENDLESS: Option<Halt> = Some(Halt::Endless);
+    const ENDLESS: Halt = Halt::Endless;
 
     fn is_extrapolated(halt: Halt) -> bool {
         matches!(halt, Halt::Standstill | Halt::OtherStandstill)

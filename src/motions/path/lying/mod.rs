@@ -28,7 +28,7 @@ use crate::methods::search::crossing;
 use crate::motions::halt::{Halt, TIME, lost, poses};
 use crate::motions::path::write;
 use crate::motions::row::OutputRow;
-use crate::motions::walk::{Next, Pause, Phases, STILL, WalkStep, after_rest, ending, most_phases};
+use crate::motions::walk::{Next, Pause, Phases, WalkStep, after_rest, ending};
 use crate::motions::{Ask, Ending, Kind};
 use core::f64::consts::{FRAC_PI_2, PI};
 use flow::{LyingFlow, LyingPhase, Stance};
@@ -154,7 +154,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         if stance == Stance::Rolls && self.at[4] == 0.0 && law.held[1] {
             return Next::Ends(Ending::Stops);
         }
-        self.of.lying = Some(Box::new(LyingPhase { flow, still: 0, since: self.at[TIME], count: 0 }));
+        self.of.lying = Some(Box::new(LyingPhase { flow }));
         Next::Own(stance.kind())
     }
 
@@ -262,7 +262,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             grows.map(|(alpha, (_, growth, _))| (alpha, growth)).max_by(|a, b| a.1.total_cmp(&b.1))
         });
         let Some((alpha, growth)) = found else { return Next::Ends(Ending::Painleve) };
-        self.of.lying = Some(Box::new(LyingPhase { flow, still: 0, since: self.at[TIME], count: 0 }));
+        self.of.lying = Some(Box::new(LyingPhase { flow }));
         Next::SlipsOff { alpha, growth }
     }
 
@@ -300,9 +300,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         let first = self.made.motion.states.len();
         let (ask, over, made) = (self.ask, self.over(), &mut self.made);
         let mut write = |y: &[f64; N]| made.push(row_of(&ask, &flow, over.as_ref(), y));
-        let Some(flown) = flow.run(flow.place(y), steps, &self.since[first..], &mut write, go_on)? else {
-            return Ok(Pause::Interrupted);
-        };
+        let flown = flow.run(flow.place(y), steps, &self.since[first..], &mut write, go_on);
         self.has_spent(flown.spent);
         // Where a dry loss stops w1 or w3, the acceleration changes at a time as uncertain as that of an end.
         let stops = matches!(flown.halt, Halt::Drilling | Halt::Contour);
@@ -341,10 +339,7 @@ impl<const N: usize> BodyWalk<'_, N> {
                 }
             }
             Halt::Drilling | Halt::Contour => {
-                phase.still = if y[TIME] > phase.since { 0 } else { phase.still + 1 };
-                (phase.since, phase.count) = (y[TIME], phase.count + 1);
-                if phase.still > STILL || phase.count > most_phases(&self.since) {
-                    self.next = Some(Next::Ends(Ending::Bounded));
+                if self.turns_too_often() {
                     return None;
                 }
                 let i = usize::from(halt == Halt::Contour);

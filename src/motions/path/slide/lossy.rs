@@ -5,8 +5,8 @@ use super::Slide;
 use crate::laws::body::Shape;
 use crate::laws::contact::grip;
 use crate::laws::contact::lossy::DAMPED;
-use crate::laws::contact::slip::{SlipResponse, Slipping};
 use crate::laws::contact::patch::rubs;
+use crate::laws::contact::slip::{SlipResponse, Slipping};
 use crate::laws::contact::together::{Part, Rubs, Together};
 use crate::laws::loss::{
     Couples, GRACE, Holds, Kinematics, Law, Losses, NEAR, SLACK, Ways, going, mirrored, rolling_growth,
@@ -39,7 +39,8 @@ impl Slide {
             ..Ways::default()
         };
         let (pull, twist) = self.pulls(angle, w, slip, toward);
-        let rests = Together::of_body(&self.law.shape, &losses, (angle, w), slip, Rubs::Slips { pull, twist });
+        let rests =
+            Together::of_body(&self.law.shape, &losses, (angle, w), slip, Rubs::Slips { pull, twist });
         let fates = rests.map(|rests| (rests, rests.knowing(known).fates()));
         let mut ways = moving;
         if w[0] == 0.0 && w[2] == 0.0 && pull[1] == 0.0 && twist == 0.0 {
