@@ -148,12 +148,7 @@ pub fn wrong_with_stone(k: u64, rest: Rest) -> Option<String> {
     judged(k, &sums_of_stone(&stone, &motion), &motion, moves)
 }
 
-fn judged<S: Moving>(
-    k: u64,
-    sums: &[f64],
-    motion: &Motion<S>,
-    moves: impl Fn(&S) -> bool,
-) -> Option<String> {
+fn judged<S: Moving>(k: u64, sums: &[f64], motion: &Motion<S>, moves: impl Fn(&S) -> bool) -> Option<String> {
     let ended = motion.event.as_ref().map(|end| (end.ending, end.time));
     let stops = motion.event.as_ref().is_some_and(|end| end.ending == Ending::Stops && moves(&end.state));
     let gives_up = ended.is_some_and(|(ending, _)| ending == Ending::Bounded);

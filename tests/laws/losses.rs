@@ -44,7 +44,8 @@ pub(crate) fn stop_of(body: &Body, start: &State, losses: Losses) -> (f64, State
     let (mut from, mut to) = (0.0, end.time);
     for _ in 0..4 {
         let count = 400;
-        let times: Vec<f64> = (0..count).map(|i| from + (to - from) * f64::from(i) / f64::from(count)).collect();
+        let times: Vec<f64> =
+            (0..count).map(|i| from + (to - from) * f64::from(i) / f64::from(count)).collect();
         let path = follow(body, start, losses, &times, ROLLS);
         let last = path.states.iter().rposition(|y| !held(y)).unwrap();
         (from, to) = (times[last], times.get(last + 1).copied().unwrap_or(to));

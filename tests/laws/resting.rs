@@ -151,7 +151,10 @@ fn a_slipping_ball_whose_rolling_resistance_stops_slides_on_as_one_block_whateve
     for (i, a) in found.iter().enumerate() {
         for b in &found[..i] {
             let (one, other, both) = (a.states[1], b.states[1], a.error + b.error);
-            assert!(one.w2 == 0.0 && (one.theta - other.theta).abs() < 2.0 * both, "{one:?}, {other:?}: {both:e}");
+            assert!(
+                one.w2 == 0.0 && (one.theta - other.theta).abs() < 2.0 * both,
+                "{one:?}, {other:?}: {both:e}"
+            );
             assert!((one.w3 - other.w3).abs() < 2.0 * both, "{one:?}, {other:?}: {both:e}");
         }
     }

@@ -150,9 +150,9 @@ def roll(
     losses : Loss, optional
         Law of `spincyl.loss` that takes energy, or a sum of several laws, with any contact. Coefficients
         may be arrays that broadcast with the other arrays. A motion with losses ends where the body comes
-        to rest (`Status.STOPS`) or the face lands (`Status.FACE`). Motions that roll or slide without friction
-        are computed eight at a time, each with its own steps; motions with friction are computed one at a
-        time.
+        to rest (`Status.STOPS`) or the face lands (`Status.FACE`). Motions that roll or slide without
+        friction are computed eight at a time, each with its own steps; motions with friction are computed one
+        at a time.
     threads : int, optional
         Number of threads. Default: the environment variable RAYON_NUM_THREADS, else every core that this
         process may use; 1 in a block of dask.

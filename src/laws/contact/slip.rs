@@ -250,7 +250,12 @@ impl<T: Real, G: OwnCouple<T>> Slipping<T, G> {
             let most = |law: Law| losses.coefficient(law) * force[0];
             let turned = [t1, t2, t3];
             if holds.rolling {
-                (dw, held[0], kept) = self.stays(angle, turned, holds.drilling, [most(Law::DryContour), most(Law::RollingResistance)]);
+                (dw, held[0], kept) = self.stays(
+                    angle,
+                    turned,
+                    holds.drilling,
+                    [most(Law::DryContour), most(Law::RollingResistance)],
+                );
             } else {
                 (dw, held[0], kept[0]) = self.kept_still(angle, (w, precession), (dw, turned), holds);
                 kept[1] = if holds.contour { most(Law::DryContour) * radius } else { kept[1] };

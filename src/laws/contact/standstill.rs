@@ -17,6 +17,7 @@
 
 use super::lossy::Lossy;
 use super::slip::{Friction, Slipping, painleve};
+pub(crate) use super::together::Standstill;
 use super::together::{Rubs, Together};
 use super::{Contact, Force, force};
 use crate::laws::body::Body;
@@ -24,7 +25,6 @@ use crate::laws::loss::{Couples, Losses, OwnCouple};
 use crate::laws::state::State;
 use crate::methods::roots::Trig;
 use crate::numbers::Sum;
-pub(crate) use super::together::Standstill;
 use core::f64::consts::{FRAC_PI_2, PI};
 
 /// From this fraction of mu_P on, more than one behaviour may be consistent, and all are counted.

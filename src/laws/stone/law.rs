@@ -247,7 +247,14 @@ impl<T: Real> StoneLaw<T> {
     /// N = 1. Either the contact point is at rest, and the centre moves on a circle, or friction is n - `pull`, with the
     /// couple `twist` about the vertical.
     #[inline(always)]
-    fn stays(&self, at: &Touching<T>, w: [T; 3], pull: Option<[T; 3]>, twist: Option<T>, drills: bool) -> StoneResponse<T> {
+    fn stays(
+        &self,
+        at: &Touching<T>,
+        w: [T; 3],
+        pull: Option<[T; 3]>,
+        twist: Option<T>,
+        drills: bool,
+    ) -> StoneResponse<T> {
         let &Touching { n, r, .. } = at;
         let (zero, one) = (n[0].splat(0.0), n[0].splat(1.0));
         let pivots = pull.is_none();

@@ -235,8 +235,7 @@ impl<T: Real> LossyUnheld<T> {
         let [sine, cosine, there, mu, rest @ ..] = numbers;
         let mut coefficients = [mu; COUNT];
         coefficients.copy_from_slice(&rest[..COUNT]);
-        let ways =
-            Ways { contour: rest[COUNT], drilling: rest[COUNT + 1], ..Ways::moving(rest[COUNT]) };
+        let ways = Ways { contour: rest[COUNT], drilling: rest[COUNT + 1], ..Ways::moving(rest[COUNT]) };
         let losses = Couples::among(coefficients, present, Some(ways));
         Self { law: Lossy { rates, losses }, side: [sine, cosine, there], mu }
     }

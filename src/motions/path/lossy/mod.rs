@@ -20,8 +20,8 @@ mod steps;
 
 use crate::laws::body::Body;
 use crate::laws::contact::lossy::{Acted, Held, Lossy};
+use crate::laws::contact::together::{Resting, Rubs, Together};
 use crate::laws::contact::{Contact, Force};
-use crate::laws::contact::together::{Part, Rubs, Together};
 use crate::laws::loss::{COUNT, GRACE, Holds, Law, Losses, SLACK, Ways, holds, rounded};
 use crate::laws::state::State;
 use crate::motions::halt::Halt;
@@ -221,7 +221,8 @@ impl LossyFlow {
         Holds {
             contour: slow(y.spin()) && self.has(Law::DryContour),
             drilling: slow(angle.0 * y.w1 + angle.1 * y.w3) && self.has(Law::Drilling),
-            rolling: slow(pace_of(angle, y.precession(), [y.w1, y.w2, y.w3])) && self.has(Law::RollingResistance),
+            rolling: slow(pace_of(angle, y.precession(), [y.w1, y.w2, y.w3]))
+                && self.has(Law::RollingResistance),
         }
     }
 
@@ -244,12 +245,15 @@ impl LossyFlow {
             Contact::Rolling => Rubs::Rests,
             Contact::Smooth => Rubs::Slips { pull: [0.0; 2], twist: 0.0 },
         };
-        let Some(rests) = Together::of_body(&reduced.shape, &self.law.losses, (angle, w), [0.0; 2], rubs) else { return };
-        let [_, rolling, contour, _] = rests.knowing(Some((Part::Rolling, true))).fates();
+        let Some(rests) = Together::of_body(&reduced.shape, &self.law.losses, (angle, w), [0.0; 2], rubs)
+        else {
+            return;
+        };
+        let [_, rolling, contour, _] = rests.knowing(Some((Resting::Rolling, true))).fates();
         self.push = rolling.way;
         self.hold = Hold::No;
         let mut ways = Ways { holds: Holds { rolling: false, ..self.ways.holds }, ..self.ways };
-        if rests.has(Part::Contour) {
+        if rests.has(Resting::Contour) {
             self.hold = if contour.begins() { Hold::No } else { Hold::Dry };
             ways.contour = if contour.begins() { -contour.way[0].signum() } else { 0.0 };
         }
@@ -259,7 +263,12 @@ impl LossyFlow {
     /// Whether a body that only turns about the vertical, with this w_z, neither rolls nor rocks.
     fn keeps_still(&self, angle: (f64, f64), drilling: f64) -> bool {
         let mut still = *self;
-        still.turn(Ways { contour: 0.0, rocking: 0.0, holds: Holds { rolling: true, ..Holds::default() }, ..self.ways });
+        still.turn(Ways {
+            contour: 0.0,
+            rocking: 0.0,
+            holds: Holds { rolling: true, ..Holds::default() },
+            ..self.ways
+        });
         let w = [angle.0 * drilling, 0.0, angle.1 * drilling];
         holds(still.response(angle, drilling, w, Held::Rolling).held)
     }

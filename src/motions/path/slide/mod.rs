@@ -70,7 +70,19 @@ impl Slide {
         let (theta_end, ball) = (body.theta_end(), body.is_ball());
         let bare = law.with_losses(law.losses.map(Couples::off_the_contour));
         let flat = if losses.turn_endlessly() { FLATTER } else { FLAT };
-        Self { law, sloped, bare, theta_end, ball, sticks: law.dry, flat, settled: false, rolls_off: false, sure: 0.0, tol }
+        Self {
+            law,
+            sloped,
+            bare,
+            theta_end,
+            ball,
+            sticks: law.dry,
+            flat,
+            settled: false,
+            rolls_off: false,
+            sure: 0.0,
+            tol,
+        }
     }
 
     /// The speed below which a slip counts as zero.
@@ -169,7 +181,16 @@ impl Slide {
         };
         let ([s, c], mut y) = ([start[0], start[1]], *start);
         let mut rates = [0.0; N];
-        rates[..8].copy_from_slice(&[-(c * w[1]), s * w[1], at.w[0], at.w[1], at.w[2], at.u[0], at.u[1], 1.0]);
+        rates[..8].copy_from_slice(&[
+            -(c * w[1]),
+            s * w[1],
+            at.w[0],
+            at.w[1],
+            at.w[2],
+            at.u[0],
+            at.u[1],
+            1.0,
+        ]);
         if rests {
             (rates[5], rates[6]) = (growth * way[0], growth * way[1]);
         }
