@@ -151,9 +151,9 @@ def roll(
     losses : Loss, optional
         Law of `spincyl.loss` that takes energy, or a sum of several laws, with any contact. Coefficients
         may be arrays that broadcast with the other arrays. A motion with losses ends where the body comes
-        to rest (`Status.STOPS`) or the face lands (`Status.FACE`). Motions that roll or slide without friction
-        are computed eight at a time, each with its own steps; motions with friction are computed one at a
-        time.
+        to rest (`Status.STOPS`) or the face lands (`Status.FACE`). Motions that roll or slide without
+        friction are computed eight at a time, each with its own steps; motions with friction are computed one
+        at a time.
     max_nfev : int, optional
         Largest number of evaluations of the equations of motion for each motion, as in `spincyl.roll`. A
         motion that needs more is given up (`Status.BOUNDED`). Default: 8 million, or 40,000 per unit of time

@@ -36,16 +36,16 @@ pub(crate) enum Standstill {
 
 /// A motion at rest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Part {
+pub(crate) enum Resting {
     Slip = 0,
     Rolling = 1,
     Contour = 2,
     Drilling = 3,
 }
 
-const PARTS: [Part; 4] = [Part::Slip, Part::Rolling, Part::Contour, Part::Drilling];
+const ALL_RESTING: [Resting; 4] = [Resting::Slip, Resting::Rolling, Resting::Contour, Resting::Drilling];
 
-impl Part {
+impl Resting {
     /// The first of its components, and their number.
     fn place(self) -> (usize, usize) {
         [(0, 2), (2, 2), (4, 1), (5, 1)][self as usize]
@@ -81,7 +81,7 @@ pub(crate) struct Together {
     normal: f64,
     lean: Reactions,
     /// A part whose fate is known.
-    known: Option<(Part, bool)>,
+    known: Option<(Resting, bool)>,
 }
 
 /// A reaction with which the response is probed; the response is linear, so that its size matters little.
@@ -94,13 +94,13 @@ const CONVERGED: f64 = 1e-13;
 /// A part whose reaction is so close to its limit is held, since friction holds up to its limit.
 const HELD: f64 = 1e-11;
 /// Components of a direction below this are roundings of zero.
-const STRAIGHT: f64 = 1e-15;
+const ROUNDED_AWAY: f64 = 1e-15;
 /// Number of directions of the slip from which other solutions are searched for.
 const STARTS: usize = 24;
 /// A slip whose speed grows more slowly counts as not growing.
 const GROWS: f64 = 1e-11;
 /// Directions that differ by less than this are the same.
-const SAME: f64 = 1e-6;
+const SAME_WAY: f64 = 1e-6;
 
 impl Together {
     /// The motions with these limits, and the normal force and x' for reactions per normal force. None where no normal
@@ -116,7 +116,9 @@ impl Together {
         let q = Reactions::from(at) / normal;
         let mut b = SMatrix::<f64, REACTIONS, REACTIONS>::identity();
         let mut lean = Reactions::zeros();
-        for (first, count) in PARTS.into_iter().filter(|p| limits[*p as usize].is_some()).map(Part::place) {
+        for (first, count) in
+            ALL_RESTING.into_iter().filter(|p| limits[*p as usize].is_some()).map(Resting::place)
+        {
             for i in first..first + count {
                 let mut size = PROBE;
                 let (pressed, at) = loop {
@@ -137,38 +139,38 @@ impl Together {
 
     /// These motions without the slip, or with the slip, which friction holds up to this coefficient.
     pub fn with_slip(mut self, limit: f64) -> Self {
-        self.limits[Part::Slip as usize] = Some(limit);
+        self.limits[Resting::Slip as usize] = Some(limit);
         self
     }
 
     /// These motions, of which the fate of one is known: friction has just ceased to hold it, so that it begins, or it is
     /// held in any case (false).
-    pub fn knowing(self, known: Option<(Part, bool)>) -> Self {
+    pub fn knowing(self, known: Option<(Resting, bool)>) -> Self {
         Self { known, ..self }
     }
 
-    pub fn has(&self, part: Part) -> bool {
+    pub fn has(&self, part: Resting) -> bool {
         self.limits[part as usize].is_some()
     }
 
     /// The nearest reaction of a part within its limit, and whether `z` itself is within.
-    fn nearest(&self, part: Part, z: [f64; 2]) -> ([f64; 2], bool) {
+    fn nearest(&self, part: Resting, z: [f64; 2]) -> ([f64; 2], bool) {
         let limit = self.limits[part as usize].unwrap_or(0.0);
         let size = z[0].hypot(z[1]);
         if size <= limit { (z, true) } else { (z.map(|x| x * (limit / size)), false) }
     }
 
-    fn of_part(part: Part, all: &Reactions) -> [f64; 2] {
+    fn of_part(part: Resting, all: &Reactions) -> [f64; 2] {
         let (first, count) = part.place();
         [all[first], if count == 2 { all[first + 1] } else { 0.0 }]
     }
 
-    fn parts(&self) -> impl Iterator<Item = Part> + '_ {
-        PARTS.into_iter().filter(|part| self.has(*part))
+    fn parts(&self) -> impl Iterator<Item = Resting> + '_ {
+        ALL_RESTING.into_iter().filter(|part| self.has(*part))
     }
 
     /// The step length rho of a part.
-    fn rho(&self, part: Part) -> f64 {
+    fn rho(&self, part: Resting) -> f64 {
         let (first, count) = part.place();
         let mut size = 0f64;
         for i in first..first + count {
@@ -179,7 +181,7 @@ impl Together {
     }
 
     /// r - rho (q + B r) of a part.
-    fn pushed(&self, part: Part, r: &Reactions) -> [f64; 2] {
+    fn pushed(&self, part: Resting, r: &Reactions) -> [f64; 2] {
         let (first, count) = part.place();
         let rho = self.rho(part);
         let mut z = [0.0; 2];
@@ -193,7 +195,7 @@ impl Together {
     /// B r of the parts at rest, in one component.
     fn used(&self, i: usize, r: &Reactions) -> f64 {
         let mut sum = 0.0;
-        for (first, count) in self.parts().map(Part::place) {
+        for (first, count) in self.parts().map(Resting::place) {
             (first..first + count).for_each(|j| sum += self.b[(i, j)] * r[j]);
         }
         sum
@@ -228,7 +230,7 @@ impl Together {
             let limit = self.limits[part as usize].unwrap_or(0.0);
             for i in 0..count {
                 off[first + i] = r[first + i] - nearest[i];
-                for (from, n) in self.parts().map(Part::place) {
+                for (from, n) in self.parts().map(Resting::place) {
                     for j in from..from + n {
                         // The derivative of z, seen through that of the projection.
                         let mut seen = 0.0;
@@ -292,7 +294,7 @@ impl Together {
                 _ => size > limit * (1.0 + HELD),
             };
             if begins {
-                let way = z.map(|x| if x.abs() < STRAIGHT * size { 0.0 } else { 0.0 - x / size });
+                let way = z.map(|x| if x.abs() < ROUNDED_AWAY * size { 0.0 } else { 0.0 - x / size });
                 fate.way = way;
                 fate.growth = (size - limit).max(0.0) / self.rho(part) * pressed;
             }
@@ -303,7 +305,7 @@ impl Together {
     /// The behaviour of a contact point at rest, with the coefficients of sliding and of static friction. If `doubtful`,
     /// more than one may be consistent, and all are counted that a search from many directions finds.
     pub fn standstill(&self, [mu, fixed]: [f64; 2], doubtful: bool) -> Standstill {
-        let slip = |fates: &[Fate; 4]| fates[Part::Slip as usize];
+        let slip = |fates: &[Fate; 4]| fates[Resting::Slip as usize];
         let slips = |fate: Fate| Standstill::Slips {
             alpha: f64::atan2(fate.way[1], fate.way[0]),
             growth: fate.growth,
@@ -334,16 +336,16 @@ impl Together {
                 found => found,
             };
         }
-        let [across, along] = self.with_slip(f64::INFINITY).fates()[Part::Slip as usize].reaction;
+        let [across, along] = self.with_slip(f64::INFINITY).fates()[Resting::Slip as usize].reaction;
         let slips = Standstill::Slips { alpha: f64::atan2(0.0 - along, 0.0 - across), growth: 0.0 };
-        let another = doubtful && self.with_slip(mu).all().iter().any(|fate| fate.growth > SAME);
+        let another = doubtful && self.with_slip(mu).all().iter().any(|fate| fate.growth > SAME_WAY);
         if another { Standstill::Undefined } else { slips }
     }
 
     /// The fates of the slip in all consistent solutions that are found.
     fn all(&self) -> Vec<Fate> {
         let mut found: Vec<Fate> = Vec::new();
-        let limit = self.limits[Part::Slip as usize].unwrap_or(0.0).min(1e6);
+        let limit = self.limits[Resting::Slip as usize].unwrap_or(0.0).min(1e6);
         for k in 0..=STARTS {
             let mut guess = Reactions::zeros();
             if k > 0 {
@@ -351,9 +353,10 @@ impl Together {
                 (guess[0], guess[1]) = (limit * cos, limit * sin);
             }
             let r = self.reactions(guess);
-            let fate = self.fates_from(guess)[Part::Slip as usize];
+            let fate = self.fates_from(guess)[Resting::Slip as usize];
             let sound = self.off(&r).0.amax() <= 1e-9 && 1.0 - self.lean.dot(&r) > 0.0;
-            let same = |other: &Fate| (other.way[0] - fate.way[0]).hypot(other.way[1] - fate.way[1]) < SAME;
+            let same =
+                |other: &Fate| (other.way[0] - fate.way[0]).hypot(other.way[1] - fate.way[1]) < SAME_WAY;
             if sound && !found.iter().any(same) {
                 found.push(fate);
             }

@@ -14,7 +14,7 @@
 
 use super::flow::{Seen, StoneFlow, Touch, slip_of};
 use crate::laws::contact::patch::rubs;
-use crate::laws::contact::together::{Part, Together};
+use crate::laws::contact::together::{Resting, Together};
 use crate::laws::loss::{Couple, Holds, Law, NEAR, Ways, rounded};
 use crate::laws::stone::law::{StoneLaw, Touching, across, laboratory};
 use crate::methods::flow::{Flow, FlowPlace};
@@ -119,13 +119,13 @@ impl StoneFlow<'_> {
     }
 
     /// The motion that friction ceases to hold where the margin of the drilling fails; None if the drilling stops.
-    pub(super) fn known<const N: usize>(&self, y: &[f64; N]) -> Option<(Part, bool)> {
+    pub(super) fn known<const N: usize>(&self, y: &[f64; N]) -> Option<(Resting, bool)> {
         let Holds { drilling, rolling, .. } = self.holds();
         let margins = Self::held_margins(&self.law, &self.seen_at(y), [y[4], y[5], y[6]]);
         if rolling && margins[1] <= margins[0] {
-            Some((Part::Rolling, true))
+            Some((Resting::Rolling, true))
         } else {
-            drilling.then_some((Part::Drilling, true))
+            drilling.then_some((Resting::Drilling, true))
         }
     }
 
@@ -187,7 +187,7 @@ impl StoneFlow<'_> {
         &mut self,
         y: &mut [f64; N],
         toward: [f64; 2],
-        known: Option<(Part, bool)>,
+        known: Option<(Resting, bool)>,
     ) -> f64 {
         self.push = [0.0; 2];
         if self.law.losses.is_none() {
@@ -205,11 +205,11 @@ impl StoneFlow<'_> {
         });
         let Some(rests) = self.together(y, slips) else { return 0.0 };
         let [_, rolls, _, drills] = rests.knowing(known).fates();
-        if rests.has(Part::Drilling) && self.touch != Touch::Held {
+        if rests.has(Resting::Drilling) && self.touch != Touch::Held {
             ways.drilling = if drills.begins() { drills.way[0].signum() } else { 0.0 };
             ways.holds.drilling = !drills.begins();
         }
-        if rests.has(Part::Rolling) {
+        if rests.has(Resting::Rolling) {
             ways.holds.rolling = !rolls.begins();
             self.push = rolls.way;
             // In the variables of the laws, e2 and e3 are the axes x and y of the laboratory.

@@ -9,7 +9,7 @@ use super::write::write;
 use crate::error::Error;
 use crate::laws::contact::slip::Friction;
 use crate::laws::contact::standstill::{HeldContact, Onset, Standstill, towards};
-use crate::laws::contact::together::{Part, Together};
+use crate::laws::contact::together::{Resting, Together};
 use crate::laws::loss::{Couples, GRACE, Law, rounded};
 use crate::laws::stone::law::{across, laboratory};
 use crate::laws::stone::{Ellipsoid, StoneState};
@@ -45,7 +45,7 @@ pub(super) struct StonePhases<'n> {
     /// True if friction of the patch has just let the drilling go.
     freed: bool,
     /// The motion that a dry loss has just let go.
-    known: Option<(Part, bool)>,
+    known: Option<(Resting, bool)>,
     /// The horizontal position of the centre of mass at the start, which is constant on a smooth table.
     still_centre: [f64; 2],
 }

@@ -20,7 +20,7 @@ mod steps;
 
 use crate::laws::body::Body;
 use crate::laws::contact::lossy::{Acted, Held, Lossy};
-use crate::laws::contact::together::{Part, Rubs, Together};
+use crate::laws::contact::together::{Resting, Rubs, Together};
 use crate::laws::contact::{Contact, Force};
 use crate::laws::loss::{COUNT, GRACE, Holds, Law, Losses, SLACK, Ways, holds, rounded};
 use crate::laws::state::State;
@@ -249,11 +249,11 @@ impl LossyFlow {
         else {
             return;
         };
-        let [_, rolling, contour, _] = rests.knowing(Some((Part::Rolling, true))).fates();
+        let [_, rolling, contour, _] = rests.knowing(Some((Resting::Rolling, true))).fates();
         self.push = rolling.way;
         self.hold = Hold::No;
         let mut ways = Ways { holds: Holds { rolling: false, ..self.ways.holds }, ..self.ways };
-        if rests.has(Part::Contour) {
+        if rests.has(Resting::Contour) {
             self.hold = if contour.begins() { Hold::No } else { Hold::Dry };
             ways.contour = if contour.begins() { -contour.way[0].signum() } else { 0.0 };
         }

@@ -7,7 +7,7 @@ use crate::laws::contact::grip;
 use crate::laws::contact::lossy::DAMPED;
 use crate::laws::contact::patch::rubs;
 use crate::laws::contact::slip::{SlipResponse, Slipping};
-use crate::laws::contact::together::{Part, Rubs, Together};
+use crate::laws::contact::together::{Resting, Rubs, Together};
 use crate::laws::loss::{
     Couples, GRACE, Holds, Kinematics, Law, Losses, NEAR, SLACK, Ways, going, mirrored, rolling_growth,
 };
@@ -20,16 +20,16 @@ use crate::motions::path::settled::{Balance, CLOSE, SLOWER, Turned, balance, lag
 use crate::numbers::{Dual, Real};
 
 /// The share by which a couple may exceed the limit of friction that holds a contact which had settled.
-const SURE: f64 = 1e-6;
+const HELD_SURELY: f64 = 1e-6;
 
 impl Slide {
     /// Sets the signs (`ways`) of the motions that dry losses resist, and which of them friction holds, at a state whose
     /// contact has not settled. `toward` is the direction of a slip from rest, and `known` a motion that friction has
     /// just ceased to hold (true), or that it holds in any case.
-    pub fn sets_ways(&mut self, y: &State, slip: [f64; 2], toward: [f64; 2], known: Option<(Part, bool)>) {
+    pub fn sets_ways(&mut self, y: &State, slip: [f64; 2], toward: [f64; 2], known: Option<(Resting, bool)>) {
         (self.settled, self.rolls_off) = (false, false);
         // A settled contact stops at the very limit of friction, and the push on it falls from there on.
-        self.sure = if known == Some((Part::Contour, false)) { SURE } else { 0.0 };
+        self.sure = if known == Some((Resting::Contour, false)) { HELD_SURELY } else { 0.0 };
         let Some(losses) = self.law.losses else { return };
         let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
         let way = |speed: f64| if speed == 0.0 { 0.0 } else { speed.signum() };
@@ -48,15 +48,15 @@ impl Slide {
             ways = Ways { rocking: way(w[1]), ..Ways::default() };
         }
         if let Some((rests, [_, rolling, contour, drilling])) = fates {
-            if rests.has(Part::Contour) {
+            if rests.has(Resting::Contour) {
                 ways.contour = -way(contour.way[0]);
                 ways.holds.contour = !contour.begins();
             }
-            if rests.has(Part::Drilling) {
+            if rests.has(Resting::Drilling) {
                 ways.drilling = way(drilling.way[0]);
                 ways.holds.drilling = !drilling.begins();
             }
-            if rests.has(Part::Rolling) {
+            if rests.has(Resting::Rolling) {
                 ways.holds.rolling = !rolling.begins();
                 [ways.rolling, ways.rocking] = rolling.way;
                 self.rolls_off = ways.rolling != 0.0 || w[0] != 0.0 || w[2] != 0.0 || pull[1] != 0.0;
@@ -124,13 +124,13 @@ impl Slide {
 
     /// The motion that friction ceases to hold at this halt; None if the halt stops a motion. A settled contact stops
     /// where dry friction balances its push, so that friction holds it in any case.
-    pub fn known(&self, halt: Halt) -> Option<(Part, bool)> {
+    pub fn known(&self, halt: Halt) -> Option<(Resting, bool)> {
         let holds = self.holds();
         match halt {
-            Halt::Contour if self.settled => Some((Part::Contour, false)),
-            Halt::Contour if holds.rolling => Some((Part::Rolling, true)),
-            Halt::Contour if holds.contour => Some((Part::Contour, true)),
-            Halt::Drilling if holds.drilling => Some((Part::Drilling, true)),
+            Halt::Contour if self.settled => Some((Resting::Contour, false)),
+            Halt::Contour if holds.rolling => Some((Resting::Rolling, true)),
+            Halt::Contour if holds.contour => Some((Resting::Contour, true)),
+            Halt::Drilling if holds.drilling => Some((Resting::Drilling, true)),
             _ => None,
         }
     }
