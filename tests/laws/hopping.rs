@@ -222,7 +222,8 @@ fn a_body_that_leaves_the_table_against_the_air_lands_when_newtons_equations_say
             }
             let Some(hit) = path.impacts.iter().find(|hit| hit.time == pair[1].time) else { continue };
             // The model follows one rim.
-            if hit.states[0].theta > FRAC_PI_2 - 0.01 || path.impacts.iter().any(|hit| hit.other) {
+            let other = path.impacts.iter().any(|before| before.other && before.time <= hit.time);
+            if other || hit.states[0].theta > FRAC_PI_2 - 0.01 {
                 continue;
             }
             let lands = landing(&body, &pair[0].state, pair[0].slip, &air, 2.0 * lasts);
