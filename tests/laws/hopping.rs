@@ -2,7 +2,7 @@
 //! model, and landings of both rims at once.
 
 use crate::common::{drawn, wander};
-use crate::flight::{centre, coulomb, dropped, energy, impacts, rim};
+use crate::flight::{centre, coulomb, dropped, energy, impacts};
 use nalgebra::Vector3;
 use spincyl::contact::Table;
 use spincyl::contact::slip::Friction;
@@ -188,11 +188,29 @@ fn landing(body: &Body, y: &State, [u, v]: [f64; 2], air: &Losses, until: f64) -
 #[test]
 fn a_body_that_leaves_the_table_against_the_air_lands_when_newtons_equations_say() {
     let (mut r, mut met) = (wander(644), 0);
-    for _ in 0..drawn(900) {
+    // Two short flights, whose lengths the couple of the air changes by a tenth.
+    let short = [
+        (
+            0.2746267602138183,
+            [0.3433532910091432, 1.7079919439438926, 2.5187902318901223, 1.8393702452276344],
+        ),
+        (
+            0.04640838396435143,
+            [1.1256333048276321, 2.4410490736443204, 2.4813943516203754, -1.736683741328736],
+        ),
+    ];
+    for k in 0..drawn(900) {
         let body = Body::tube(0.05 + 1.5 * r(), r()).unwrap();
         let [w1, w2, w3] = core::array::from_fn(|_| 5.0 * r() - 2.5);
         let state = State { theta: 0.3 + 1.2 * r(), w1, w2, w3 };
         let (air, mu) = (any_air(&mut r), 0.1 + 0.9 * r());
+        let (body, state, air, mu) = match short.get(k) {
+            Some((ell, y)) => {
+                let mu = [0.1333, 0.5379][k];
+                (Body::solid(*ell).unwrap(), State::from(*y), Losses::of(Law::AirQuadratic, 0.012), mu)
+            }
+            None => (body, state, air, mu),
+        };
         let ask = Ask::on(coulomb(mu)).with_restitution(0.3).with_losses(air);
         let m = moved(&body, &Start::from(state), &ask, &[3.0]);
         let path = m.path.as_ref().unwrap();
@@ -204,7 +222,8 @@ fn a_body_that_leaves_the_table_against_the_air_lands_when_newtons_equations_say
             }
             let Some(hit) = path.impacts.iter().find(|hit| hit.time == pair[1].time) else { continue };
             // The model follows one rim.
-            if hit.states[0].theta > FRAC_PI_2 - 0.01 || path.impacts.iter().any(|hit| hit.other) {
+            let other = path.impacts.iter().any(|before| before.other && before.time <= hit.time);
+            if other || hit.states[0].theta > FRAC_PI_2 - 0.01 {
                 continue;
             }
             let lands = landing(&body, &pair[0].state, pair[0].slip, &air, 2.0 * lasts);
@@ -312,7 +331,7 @@ fn without_friction_each_of_two_rims_that_both_take_an_impulse_gives_back_its_sh
 
 #[test]
 fn the_mirror_image_of_a_landing_of_both_rims_is_its_landing_along_the_axis_and_across() {
-    let mut r = wander(647);
+    let (mut r, mut met) = (wander(647), 0);
     for _ in 0..drawn(600) {
         let (body, start) = both_come_down(&mut r);
         let (mu, e) = (1.2 * r(), r());
@@ -344,21 +363,7 @@ fn the_mirror_image_of_a_landing_of_both_rims_is_its_landing_along_the_axis_and_
         let seen = State { theta: PI - FRAC_PI_2, w1: there[0], w2: there[1], w3: there[2] };
         let turned = first(&dropped(seen, [there[3], there[4]], 0.0, there[5])).unwrap();
         assert!(near(one, after(&turned, true)), "{start:?} {mu} {e}");
+        met += 1;
     }
-}
-
-#[test]
-fn a_slow_drop_flat_is_not_lower_than_the_table_and_its_rim_is_where_its_pose_says() {
-    // A coin that lands flat on its side, and its rims: the height is that of the pose.
-    let coin = Body::solid(0.2).unwrap();
-    let state = State { theta: FRAC_PI_2, w1: 0.5, w2: 0.0, w3: 0.2 };
-    let times: Vec<f64> = (0..200).map(|k| 0.02 * f64::from(k)).collect();
-    let ask = Ask::on(coulomb(0.3)).with_restitution(0.6).with_pose(true);
-    let m = moved(&coin, &dropped(state, [0.3, 0.1], 0.3, 0.0), &ask, &times);
-    for (i, pose) in m.poses.as_ref().unwrap().iter().enumerate() {
-        let [height, _] = m.path.as_ref().unwrap().aloft[i];
-        assert_eq!(pose.height, height);
-        let z = pose.centre(&coin, &m.states[i]).z;
-        assert!((z - rim(&coin, m.states[i].theta)[2] - height).abs() < 1e-15);
-    }
+    assert!(met > drawn(500), "{met}");
 }
