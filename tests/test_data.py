@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import spincyl as sc
-from spincyl.data import _tracker
+from spincyl.data import _cells, _tracker
 
 CYLINDER = sc.Body.solid(2.5)
 
@@ -66,7 +66,7 @@ def test_a_table_without_a_name_and_blank_lines_is_read(tmp_path):
         ("t,x,y\n0,5,1,5,2,5\n", "line 2 has 6 cells under 3"),
         ("#multi:\n\ta\ta\nt\tx\tx\n0\t1\t2\n", "two tracks"),
         ("a\nt\tx\tx\n0\t1\t2\n", "two columns"),
-        ("t\tx\n0\t1_000\n", "no line of column names"),
+        ("t\tx\n0\t1_000\n", "has the text .1_000. in the column"),
         ("<html>\n<p>1 2</p>\n", "not a table"),
     ],
 )
@@ -112,7 +112,7 @@ def test_the_quick_reader_gives_what_the_careful_one_does_or_nothing(rows, comma
         lines = [line for line in lines if line.strip()]
         if not lines:
             continue
-        careful = [_tracker._numbers(line, delimiter, comma) for line in lines]
+        careful = [_cells.numbers_in(line, delimiter, comma) for line in lines]
         quick = _tracker._plain(lines, delimiter, comma, 4)
         if quick is not None:
             assert np.array_equal(quick, [x + [np.nan] * (4 - len(x)) for x in careful], equal_nan=True)

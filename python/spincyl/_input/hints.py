@@ -1,6 +1,7 @@
 """Unknown names: the error proposes known ones."""
 
 import difflib
+import re
 import shlex
 import sys
 from collections.abc import Callable, Iterable
@@ -8,6 +9,8 @@ from dataclasses import fields
 from functools import wraps
 from inspect import signature
 from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
+
+import numpy as np
 
 _Given = ParamSpec("_Given")
 _Found = TypeVar("_Found")
@@ -74,6 +77,16 @@ def explain(call: Callable[..., Any], named: dict[str, Any], error: TypeError) -
     if odd is not None and f"unexpected keyword argument {odd!r}" in str(error):
         named_ = [x for x, of in known.items() if of.kind != of.VAR_KEYWORD and x not in ("self", "cls")]
         raise TypeError(f"{error}{instead(odd, named_)}") from None
+
+
+def of_texts(value: Any) -> str:
+    """Why texts are no numbers: a decimal comma, or a unit where there can be none."""
+    if isinstance(value, str):
+        return "a text with a unit is one number in SI, and this argument is in natural units or a list"
+    first = next(iter(np.asarray(value).flat), "")
+    if re.fullmatch(r"\s*[+-]?\d+,\d+\s*", str(first)):
+        return f"write a decimal point, not a comma, and no quotes: {str(first).strip().replace(',', '.')}"
+    return f"in a list write numbers without unit and quotes, not {str(first)[:40]!r}"
 
 
 class Named(type):

@@ -1,7 +1,6 @@
 """Checks of arguments: numbers or arrays of real numbers; errors begin with the name of the argument."""
 
 import math
-import re
 import sys
 import warnings
 from collections.abc import Callable, Iterable, Sequence
@@ -14,15 +13,13 @@ from typing import Any, ParamSpec, TypeAlias, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from spincyl._input.hints import explain, installs
+from spincyl._input.hints import explain, installs, of_texts
 
 #: A number or an array of numbers; NumPy, pandas, xarray and dask arrays keep their kind.
 Reals: TypeAlias = Any
 #: What an elementwise function returns: a number for numbers, else an array of the inputs' kind.
 Result: TypeAlias = Any
 Floats = NDArray[np.float64]
-#: NumPy's functions of one number at a time take no more; a law with several results needs one for itself.
-_DIMENSIONS = 31
 _Kind = TypeVar("_Kind")
 _Given = ParamSpec("_Given")
 _Found = TypeVar("_Found")
@@ -42,22 +39,12 @@ def reals(name: str, value: Reals) -> Reals:
         raise TypeError(f"{name}: expected real numbers, not {type(value).__name__}")
     for dtype in kinds:
         if getattr(dtype, "kind", "O") in "US":
-            raise TypeError(f"{name}: expected real numbers, not texts; {_of_texts(value)}")
+            raise TypeError(f"{name}: expected real numbers, not texts; {of_texts(value)}")
         if getattr(dtype, "kind", "O") not in "biuf" or dtype.itemsize > 8:
             raise TypeError(f"{name}: expected real numbers of at most double precision, not {dtype}")
-    if type(array) is np.ndarray and array.ndim > _DIMENSIONS:
-        raise ValueError(f"{name}: expected at most {_DIMENSIONS} dimensions, not {array.ndim}")
+    if type(array) is np.ndarray and array.ndim > 31:  # NumPy takes 32, and a law may need one for itself
+        raise ValueError(f"{name}: expected at most 31 dimensions, not {array.ndim}")
     return float(array) if type(array) is np.ndarray and array.ndim == 0 else array
-
-
-def _of_texts(value: Any) -> str:
-    """Why texts are no numbers: a decimal comma, or a unit where there can be none."""
-    if isinstance(value, str):
-        return "a text with a unit is one number in SI, and this argument is in natural units or a list"
-    first = next(iter(np.asarray(value).flat), "")
-    if re.fullmatch(r"\s*[+-]?\d+,\d+\s*", str(first)):
-        return f"write a decimal point, not a comma, and no quotes: {str(first).strip().replace(',', '.')}"
-    return f"in a list write numbers without unit and quotes, not {str(first)[:40]!r}"
 
 
 def radians(name: str, value: Reals, expected: str | None = None, likely: float = math.pi) -> Reals:
@@ -182,8 +169,7 @@ def turns_per_second(name: str, value: Reals) -> Reals:
         return _read(name, value, "hertz")
     if not is_quantity(value):
         return value
-    root = dict(value.to_root_units().unit_items())
-    unit = "turn/second" if "radian" in root else "hertz"
+    unit = "turn/second" if "radian" in dict(value.to_root_units().unit_items()) else "hertz"
     return _magnitude(name, value, unit, "turns per second")
 
 

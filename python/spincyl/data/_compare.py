@@ -14,10 +14,8 @@ from spincyl._single import one_body
 from spincyl._upward import above
 from spincyl.data._above import with_size
 from spincyl.data._balance import Balance, Fit, with_ratio
+from spincyl.data._points import LEAST, points
 from spincyl.data._report import counted, section, student, variables, with_error, written
-from spincyl.data._spindown import leaning
-
-_LEAST = 3  #: With fewer points no ratio is fitted.
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -296,7 +294,7 @@ def compare(
     if not common >= 0 or 0 < common < 1e-6:
         raise ValueError(f"common = {common!r}: expected 0, inf, or at least 1e-6, such as 0.03")
     try:
-        x = _points(theta, rate, theta_err, rate_err, body)
+        x = points(theta, rate, theta_err, rate_err, body)
     except (TypeError, ValueError) as e:
         said = str(e) if hertz is None else re.sub(r"\brate(?=\b|_err)", "hertz", str(e))
         raise type(e)(said) from None
@@ -304,15 +302,15 @@ def compare(
     own = float(body.i1) / float(body.i3)
     curve = Balance(body, *x.values())
     away = np.abs(curve.off(curve.places, own, 1.0)) / curve.size
-    if x["theta"].size < _LEAST:
+    if x["theta"].size < LEAST:
         if common > 0:
             raise ValueError(
                 f"common = {common!r}: expected 0 for fewer than three points, which fit no factor"
             )
         residual = x["rate"] - body.rate(x["theta"])
         alone_chi2 = float(np.mean(away**2))
-        points = x["theta"], x["rate"], x["theta_err"], x["rate_err"], residual
-        return Comparison(body, *points, math.nan, math.nan, own, alone_chi2, unit=unit, away=away)
+        seen = x["theta"], x["rate"], x["theta_err"], x["rate_err"], residual
+        return Comparison(body, *seen, math.nan, math.nan, own, alone_chi2, unit=unit, away=away)
     if not curve.tells(("ratio",)):
         raise ValueError(
             "theta and rate: these points do not determine I1/I3; measure at inclinations farther from 90"
@@ -384,45 +382,6 @@ def _reduced(
         None if x is None else reals(name, turns_per_second(name, x)) / unit for name, x in given
     )
     return turns, errors, unit
-
-
-def _points(
-    theta: Reals, rate: Reals, theta_err: Reals | None, rate_err: Reals | None, body: Body
-) -> dict[str, Floats]:
-    """The measured points with errors, without missing values; an error names a wrong argument."""
-    x = {name: np.asarray(reals(name, v), np.float64) for name, v in (("theta", theta), ("rate", rate))}
-    if x["theta"].ndim == x["rate"].ndim == 0:
-        x = {name: values[np.newaxis] for name, values in x.items()}
-    if x["theta"].ndim != 1 or x["rate"].shape != x["theta"].shape:
-        shapes = f"{x['theta'].shape} and {x['rate'].shape}"
-        raise ValueError(f"theta and rate: expected equal shapes (n,), not {shapes}")
-    measured = np.isfinite(x["theta"]) & np.isfinite(x["rate"])
-    if (theta_err is None) != (rate_err is None):
-        raise ValueError("theta_err and rate_err: give both or none")
-    default = {"theta_err": np.radians(1.0), "rate_err": 0.02 * x["rate"]}
-    for name, given in (("theta_err", theta_err), ("rate_err", rate_err)):
-        errors = np.asarray(default[name] if given is None else reals(name, given), np.float64)
-        if errors.shape not in ((), x["theta"].shape):
-            raise ValueError(f"{name}: expected a number or shape {x['theta'].shape}, not {errors.shape}")
-        x[name] = np.broadcast_to(errors, x["theta"].shape)
-    x = {name: values[measured] for name, values in x.items()}
-    leaning("theta", x["theta"], body)
-    if not ((x["rate"] >= 1e-6) & (x["rate"] <= 1e6)).all():
-        raise ValueError("rate: expected positive numbers: reduced rates from 1e-6 to 1e6")
-    for name, of in (("theta_err", 1.0), ("rate_err", x["rate"])):
-        if not ((x[name] >= 1e-12 * of) & (x[name] <= 1e3 * of)).all():
-            unit = "radian" if name == "theta_err" else "times the value"
-            raise ValueError(f"{name}: expected positive numbers from 1e-12 to 1e3 {unit}")
-    given = x["theta"].size
-    different = len(np.unique(np.stack([x["theta"], x["rate"]]), axis=1).T) if given else 0
-    if different < (_LEAST if theta_err is None else min(given, _LEAST)) or not given:
-        told = counted(given)
-        told += f" ({counted(different)} different)" if different < given else ""
-        empty = int((~measured).sum())
-        told += f", and {counted(empty)} with NaN" if empty else ""
-        errors = "; one or two need theta_err and rate_err" if theta_err is None and given else ""
-        raise ValueError(f"theta and rate: expected at least three different points, not {told}{errors}")
-    return x
 
 
 def _doubts(found: Fit, alone: Fit, both: Fit | None, own: float, known: bool, *, fitted: bool) -> str:

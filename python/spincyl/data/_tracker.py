@@ -8,6 +8,7 @@ from os import PathLike
 import numpy as np
 
 from spincyl._input.numbers import Floats
+from spincyl.data._cells import is_number, missing_in, numbers_in, split
 from spincyl.data._columns import UNITS, Columns
 from spincyl.data._contents import MOST_BYTES, contents
 from spincyl.data._encoding import decoded, legible
@@ -17,26 +18,6 @@ from spincyl.data._project import project
 _DELIMITERS = ("\t", ";", ",", None)
 #: Names and the first row of numbers have to be within this many lines that are not empty.
 _TOP = 10_000
-#: Cells without a number, in lower case; float() accepts "nan" by itself.
-_MISSING = frozenset(
-    (
-        "",
-        "na",
-        "n/a",
-        "#n/a",
-        "n.a.",
-        "n. a.",
-        "k.a.",
-        "k. a.",
-        "-",
-        "--",
-        "---",
-        "?",
-        "none",
-        "null",
-        "missing",
-    )
-)
 
 
 def read_table(path: str | PathLike[str], *, encoding: str | None = None) -> Columns:
@@ -173,10 +154,10 @@ def _read(text: str, least: int) -> dict[str, Columns]:
     if not lines:
         raise ValueError(f"it is empty: {none}")
     # formats in which the last line is not a row of numbers come last: they would fail there
-    kinds.sort(key=lambda kind: _numbers(lines[-1][1], *kind) is None)
+    kinds.sort(key=lambda kind: numbers_in(lines[-1][1], *kind) is None)
     why = ""
     for kind in kinds:
-        first = next((k for k, (_, x) in enumerate(lines[:_TOP]) if _numbers(x, *kind) is not None), None)
+        first = next((k for k, (_, x) in enumerate(lines[:_TOP]) if numbers_in(x, *kind) is not None), None)
         if not first:
             continue
         try:
@@ -198,18 +179,18 @@ def _texts(lines: list[tuple[int, str]], delimiters: list[str]) -> str:
     """The column of texts in a table that otherwise has numbers; empty if there is none."""
     for delimiter in delimiters:
         try:
-            rows = [(at, [cell.strip() for cell in _split(line, delimiter)]) for at, line in lines[:_TOP]]
+            rows = [(at, [cell.strip() for cell in split(line, delimiter)]) for at, line in lines[:_TOP]]
         except ValueError:
             continue
         for (_, names), (at, cells) in pairwise(rows):
-            numbers = [_number(cell) for cell in cells]
-            if len(names) != len(cells) or any(map(_number, names)) or not any(numbers) or all(numbers):
+            numbers = [is_number(cell) for cell in cells]
+            if len(names) != len(cells) or any(map(is_number, names)) or not any(numbers) or all(numbers):
                 continue
             name, cell = next(
                 (n, c) for n, c, is_one in zip(names, cells, numbers, strict=True) if not is_one
             )
             told = f"line {at} has the text {_shown(cell)} in the column {_shown(name)}"
-            return f"{told}, and a table has only numbers: remove this column"
+            return f"{told}: expected only numbers; leave out a column of names"
     return ""
 
 
@@ -230,7 +211,7 @@ def _found(
         columns, units = _names(at, line, delimiter), columns
     if units and len(units) == len(columns):
         columns = [f"{name} ({unit.strip('()[]')})" for name, unit in zip(columns, units, strict=True)]
-    numbers = [_number(name) for name in columns]
+    numbers = [is_number(name) for name in columns]
     if len(columns) < least:
         return None
     if all(numbers):
@@ -271,40 +252,11 @@ def _shown(line: str) -> str:
 def _above(line: str, delimiter: str | None, columns: list[str], several: bool) -> list[str]:
     """Names of tracks above columns, empty above their further columns; else the line as a single name."""
     try:
-        names = [cell.strip() for cell in _split(line, delimiter)]
+        names = [cell.strip() for cell in split(line, delimiter)]
     except ValueError:
         names = []
     over = delimiter is not None and len(names) > 1 and "" in names and len(names) <= len(columns)
     return names if several or over else [line.strip()]
-
-
-def _split(line: str, delimiter: str | None) -> list[str]:
-    """The cells of a line, without empty ones at the end; ValueError for an unclosed quote."""
-    if delimiter is None:
-        return line.split()
-    if '"' not in line:
-        return line.rstrip(delimiter + " ").split(delimiter)
-    cells: list[str] = []
-    begun: list[str] = []
-    many = 0
-    for piece in line.split(delimiter):
-        if not begun and not piece.lstrip().startswith('"'):
-            cells.append(piece)
-            continue
-        begun.append(piece)
-        many += piece.count('"')
-        if many % 2 == 0:  # the delimiters so far were inside quotes
-            cell = delimiter.join(begun).strip()
-            bare = cell[1:-1].replace('""', "")
-            if '"' in bare or not cell.endswith('"'):
-                break
-            cells.append(cell[1:-1].replace('""', '"'))
-            begun, many = [], 0
-    if begun:
-        raise ValueError("a quote that is not closed")
-    while cells and not cells[-1].strip():
-        cells.pop()
-    return cells
 
 
 def _names(at: int, line: str, delimiter: str | None) -> list[str]:
@@ -318,49 +270,9 @@ def _names(at: int, line: str, delimiter: str | None) -> list[str]:
                 names.append(word)
         return names
     try:
-        return [cell.strip() for cell in _split(line, delimiter)]
+        return [cell.strip() for cell in split(line, delimiter)]
     except ValueError as e:
         raise ValueError(f"line {at} has {e}: {_shown(line)}") from None
-
-
-def _numbers(line: str, delimiter: str | None, comma: bool) -> list[float] | None:
-    """The numbers of a line, NaN for an empty cell; None if a cell is not a number or all are empty."""
-    if "_" in line:  # which float() would accept
-        return None
-    try:
-        cells = _split(line, delimiter)
-    except ValueError:
-        return None
-    if comma:
-        if "." in line and any("." in cell and cell.strip().lower() not in _MISSING for cell in cells):
-            return None  # a point among decimal commas is a thousands separator or an error
-        cells = [cell.replace(",", ".") for cell in cells]
-    try:
-        found = [float(cell) if cell and not cell.isspace() else math.nan for cell in cells]
-    except ValueError:
-        try:
-            known = [cell.strip().lower() for cell in cells]
-            found = [math.nan if cell in _MISSING else float(cell) for cell in known]
-        except ValueError:
-            return None
-        if all(cell in _MISSING for cell in known):
-            return None
-    return found if any(cells) and math.inf not in map(abs, found) else None
-
-
-def _number(cell: str) -> bool:
-    """Whether a cell is a number, with a point or a comma, even if it has lost one of its quotes."""
-    bare = cell.strip(" \t\"'")
-    return any(_numbers(bare, None, comma) is not None for comma in (False, True))
-
-
-def _missing(line: str, delimiter: str | None) -> list[float] | None:
-    """NaN for each cell if all cells of the line are marked as missing; else None."""
-    try:
-        cells = _split(line, delimiter)
-    except ValueError:
-        return None
-    return [math.nan] * len(cells) if all(cell.strip().lower() in _MISSING for cell in cells) else None
 
 
 def _table(lines: list[tuple[int, str]], delimiter: str | None, comma: bool, width: int) -> Floats:
@@ -381,9 +293,9 @@ def _table(lines: list[tuple[int, str]], delimiter: str | None, comma: bool, wid
         return plain
     table: list[list[float]] = []
     for i, line in lines:
-        numbers = _numbers(line, delimiter, comma)
+        numbers = numbers_in(line, delimiter, comma)
         if numbers is None:
-            numbers = _missing(line, delimiter)
+            numbers = missing_in(line, delimiter)
         if numbers is None:
             raise ValueError(f"line {i} has {_trouble(line, delimiter, comma)}: {_shown(line)}")
         if len(numbers) > width:
@@ -400,10 +312,10 @@ def _table(lines: list[tuple[int, str]], delimiter: str | None, comma: bool, wid
 def _trouble(line: str, delimiter: str | None, comma: bool) -> str:
     """The reason why a line is not a row of numbers."""
     try:
-        _split(line, delimiter)
+        split(line, delimiter)
     except ValueError as e:
         return str(e)
-    if comma and _numbers(line.replace(".", ""), delimiter, True) is not None:
+    if comma and numbers_in(line.replace(".", ""), delimiter, True) is not None:
         return "a decimal point among decimal commas"
     return "a cell that is not a number"
 
@@ -424,7 +336,7 @@ _THOUSANDS = re.compile(r"\s*[+-]?[1-9][0-9]{0,2}(,[0-9]{3})+\s*")
 def _quoted(line: str) -> list[str]:
     """The cells of a comma-separated line that has quotes; empty for an unclosed quote."""
     try:
-        return _split(line, ",") if '"' in line else []
+        return split(line, ",") if '"' in line else []
     except ValueError:
         return []
 

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from spincyl._input.numbers import extra
-from spincyl.plot._style import FORBIDDEN, HATCH, HATCHES, SMOOTH, UNSTABLE, new_axes, sized
+from spincyl.plot._style import FORBIDDEN, SMOOTH, UNSTABLE, hatching, new_axes, sized
 from spincyl.sweep._flicks import Outcome
 
 if TYPE_CHECKING:
@@ -97,7 +97,7 @@ def flicks(found: "xarray.Dataset", ax: "Axes | None" = None) -> "Axes":
     for words, (colour, where) in others.items():
         if where.any():
             mask = np.ma.masked_where(~where, where.astype(float))
-            look = {"hatch": HATCHES.get(colour, ""), "ec": HATCH, "lw": 0}
+            look = hatching(colour)
             ax.pcolormesh(across, up, mask, cmap=colormap([colour]), rasterized=True)
             ax.pcolor(across, up, mask, cmap=colormap(["none"]), rasterized=True, **look)
             shown.append(patch(facecolor=colour, label=words, **look))

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from spincyl._body import Body
 from spincyl._contact import Contact, code
-from spincyl._input.numbers import Floats, flag, is_scalar, number, one_of, within
+from spincyl._input.numbers import flag, is_scalar, number, one_of, within
 from spincyl._single import one_body
 from spincyl._state import State
 from spincyl.data._above import with_size
@@ -18,8 +18,6 @@ from spincyl.plot._style import (
     BLUE,
     FORBIDDEN,
     GREEN,
-    HATCH,
-    HATCHES,
     HERTZ,
     ORANGE,
     PURPLE,
@@ -28,6 +26,8 @@ from spincyl.plot._style import (
     SMOOTH,
     STABLE,
     UNSTABLE,
+    hatch,
+    hatching,
     new_axes,
     sized,
     title,
@@ -250,7 +250,7 @@ def portrait(
         norm=BoundaryNorm(np.arange(-0.5, 8.0), 8),
     )
     for colour in dict.fromkeys(colour for _, colour in shown):
-        _hatch(ax, np.isin(region, [code for code in named if named[code][1] == colour]), HATCHES[colour])
+        hatch(ax, np.isin(region, [code for code in named if named[code][1] == colour]), colour)
     first, last = max(float(ell[0]), 1e-3), float(ell[-1])
     near = np.geomspace(1e-9, 1e-2, 60)
     fine = Body.critical_aspect(bore, fillet) * (1 + np.concatenate([-near, near]))
@@ -268,10 +268,7 @@ def portrait(
     _roots(ax, curve, family.folds(), color=PURPLE, lw=1.8, ls="-.", label="folds")
     _roots(ax, curve, family.ridge(), color=GREEN, lw=1.8, ls="--", label="energy ridge")
     lines, _ = ax.get_legend_handles_labels()
-    patches = [
-        Patch(facecolor=c, edgecolor=HATCH, hatch=HATCHES[c], linewidth=0.5, label=n)
-        for n, c in dict.fromkeys(shown)
-    ]
+    patches = [Patch(facecolor=c, label=n, **hatching(c)) for n, c in dict.fromkeys(shown)]
     ax.legend(handles=patches + lines, loc="lower left", framealpha=0.92)
     ax.set(xlim=(ell[0], ell[-1]), ylim=(0, 90), yticks=range(0, 91, 15))
     ax.set_xlabel(r"aspect ratio  $\ell$ (half length / radius)")
@@ -345,16 +342,6 @@ def _ells(ells: Iterable[float | Body]) -> list[float | Body]:
     if any(isinstance(x, Body) and not is_scalar(*x._numbers) for x in given):
         raise ValueError("ells: expected single bodies, not a family; give a list of bodies")
     return [x if isinstance(x, Body) else within(f"ells[{k}]", x, 0.0, 1e6) for k, x in enumerate(given)]
-
-
-def _hatch(ax: "Axes", where: Floats, hatch: str) -> None:
-    """Hatch the points of an image on these axes, so that regions differ without colours."""
-    left, right, low, high = ax.images[-1].get_extent()
-    rows, columns = where.shape
-    edges = np.linspace(left, right, 2 * columns + 1)[1::2], np.linspace(low, high, 2 * rows + 1)[1::2]
-    if hatch and min(rows, columns) > 1:
-        drawn = ax.contourf(*edges, where.astype(float), [0.5, 1.5], colors="none", hatches=[hatch])
-        drawn.set(edgecolor=HATCH, linewidth=0.0)
 
 
 def _mapped(data: Any) -> tuple[Any, Any, Any, float, float]:

@@ -115,3 +115,18 @@ def title(contact: Contact | None, bore: float, fillet: float = 0.0) -> str:
         None: "steady states, by both criteria",
     }
     return table[contact] + (f", bore {bore:g}" if bore else "") + (f", fillet {fillet:g}" if fillet else "")
+
+
+def hatching(colour: str) -> dict[str, Any]:
+    """The hatching of regions of a colour, for patches and meshes."""
+    return {"hatch": HATCHES.get(colour, ""), "ec": HATCH, "lw": 0.0}
+
+
+def hatch(ax: "Axes", where: Any, colour: str) -> None:
+    """Hatch the points of the last image on these axes, so that regions differ without colours."""
+    left, right, low, high = ax.images[-1].get_extent()
+    rows, columns = where.shape
+    edges = np.linspace(left, right, 2 * columns + 1)[1::2], np.linspace(low, high, 2 * rows + 1)[1::2]
+    if HATCHES[colour] and min(rows, columns) > 1:
+        drawn = ax.contourf(*edges, where.astype(float), [0.5, 1.5], colors="none", hatches=[HATCHES[colour]])
+        drawn.set(edgecolor=HATCH, linewidth=0.0)
