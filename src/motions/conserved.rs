@@ -66,5 +66,8 @@ fn with_forces(
     ask: &Ask,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Motion, Error> {
-    if ask.force { pressed(found, ask.table.contact(), body, go_on) } else { Ok(found) }
+    // An interrupted motion has all its forces, too.
+    let over = found.is_interrupted();
+    let mut go_on = || over || go_on();
+    if ask.force { pressed(found, ask.table.contact(), body, &mut go_on) } else { Ok(found) }
 }

@@ -387,7 +387,7 @@ fn dictionary<'py, S: Moving>(
     out.set_item(intern!(py, "coarse"), m.coarse)?;
     out.set_item(intern!(py, "nfev"), m.evaluations)?;
     if let Some(limit) = m.limit {
-        out.set_item(intern!(py, "_limit"), limit.reason())?;
+        out.set_item(intern!(py, "_limit"), (limit.to_string(), limit.reason()))?;
     }
     if let Some(path) = &m.path
         && path.known_until < f64::INFINITY

@@ -164,8 +164,7 @@ fn misspelt(file: &Value) -> Vec<Value> {
 fn every_name_counts<T: Serialize + DeserializeOwned + Debug>(x: &T) -> usize {
     let wrong = misspelt(&serde_json::to_value(x).unwrap());
     for file in &wrong {
-        let said = refused::<T>(file.clone());
-        assert!(said.contains("msipelt"), "{file}: {said}");
+        assert!(from_str::<T>(&file.to_string()).is_err(), "{file}");
     }
     wrong.len()
 }

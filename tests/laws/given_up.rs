@@ -1,7 +1,7 @@
 //! Motions that are too much work, or that their caller interrupts: one ending for bodies and stones, the motion so far, and
 //! the limit that it has reached.
 
-use crate::common::{distance, path_of, state};
+use crate::common::{path_of, state};
 use spincyl::contact::{Friction, Table, TableKind};
 use spincyl::ensemble::{Job, LossColumns, MotionOutput, MotionStarts, Summary, roll};
 use spincyl::loss::{Law, Losses};
@@ -84,7 +84,7 @@ fn steps_of_fixed_length_and_steps_within_a_tolerance_obey_the_same_limit() {
         assert!(part.evaluations <= most + 40, "{method:?} {}", part.evaluations);
         assert!(part.states.len() > 2 && part.states.len() < whole.states.len());
         assert!(
-            part.states.iter().zip(&whole.states).all(|(a, b)| distance(a, b) <= part.error + whole.error)
+            part.states.iter().zip(&whole.states).all(|(a, b)| a.distance(b) <= part.error + whole.error)
         );
     }
     // The first integrals need no evaluations.
@@ -98,9 +98,9 @@ fn beyond_its_events_a_motion_is_given_up_too() {
     let ask = Ask::on(Table::Smooth).with_losses(Losses::of(Law::AirLinear, 1e-12)).with_beyond(true);
     let m = roll_with(&ball, spun, &[150.0], &ask.with_max_evaluations(5_000), || true).unwrap().unwrap();
     assert_eq!((m.ending(), m.limit), (Ending::Bounded, Some(Limit::Evaluations)));
-    let stone = rattleback();
+    let stone = Ellipsoid::uniform([1.0, 1.0, 1.0]).unwrap();
     let ask = Ask::default().with_beyond(true).with_max_evaluations(5_000);
-    let m = stone::roll(&stone, stone.spinning(50.0, 0.1, 0.1), &[1e3], &ask, || true).unwrap().unwrap();
+    let m = stone::roll(&stone, stone.spinning(2e3, 0.0, 0.0), &[1e3], &ask, || true).unwrap().unwrap();
     assert_eq!(m.limit, Some(Limit::Evaluations));
 }
 
@@ -134,7 +134,7 @@ fn an_interrupted_motion_is_the_motion_up_to_there() {
     let (_, looks) = rolled_while(u32::MAX);
     let (judged, _) = rolled_while(looks - 1);
     let ended = (judged.ending(), judged.limit, judged.error);
-    assert_eq!(ended, (Ending::Done, Some(Limit::Interrupted), f64::INFINITY));
+    assert_eq!(ended, (whole.ending(), Some(Limit::Interrupted), f64::INFINITY));
     assert_eq!(judged.states, whole.states);
     // Motions by their first integrals and by steps end at the last output that they have.
     let tube = Body::solid(2.5).unwrap();
@@ -155,7 +155,7 @@ fn an_interrupted_motion_is_the_motion_up_to_there() {
         let count = part.states.len();
         assert_eq!((part.ending(), part.limit), (Ending::Bounded, Some(Limit::Interrupted)));
         assert!(count > 100 && count < all.len() && part.times == all[..count], "{count}");
-        assert!(part.states.iter().zip(&whole.states).all(|(a, b)| distance(a, b) <= whole.error + 1e-9));
+        assert!(part.states.iter().zip(&whole.states).all(|(a, b)| a.distance(b) <= whole.error + 1e-9));
         assert!(part.poses.as_ref().is_none_or(|poses| poses.len() == count));
         assert!(part.forces.as_ref().is_none_or(|forces| forces.len() == count));
     }

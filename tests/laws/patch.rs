@@ -265,7 +265,7 @@ fn a_top_turns_over_only_between_both_limits_of_its_moments() {
     let over = (1.0 + low) * (1.0 + low) / (1.0 - low) * (low / (0.4 * (1.0 + low) - 0.332f64)).sqrt();
     assert!(estimate > 1.3 * over, "{estimate} {over}");
     let found = turning_spin(&top, Friction::Viscous { c: 0.6 }, 1e-4, 2000.0, || true).unwrap().unwrap();
-    assert!((found - estimate).abs() < 0.05 * estimate, "{found} {estimate}");
+    assert!(found > estimate && found < 1.1 * estimate, "{found} {estimate}");
 }
 
 #[test]

@@ -79,7 +79,7 @@ impl<'a> CustomFlow<'a> {
     pub(super) fn friction(&self, speed: f64) -> Friction {
         match (self.ask.table.friction(), self.custom.friction) {
             (Friction::Coulomb { fixed, .. }, Some(law)) => {
-                let mu = law.coefficient(speed);
+                let mu = if self.custom.has_failed() { f64::NAN } else { law.coefficient(speed) };
                 if mu.is_nan() && speed.is_finite() {
                     self.fault.set(fault_of_friction(mu, speed));
                 }
@@ -107,7 +107,9 @@ impl<'a> CustomFlow<'a> {
         };
         let (side, y) = upright(angle, w);
         let at = |normal: f64| {
-            let m = law.couple(self.body, &y, normal.max(0.0));
+            // A law that has failed is not called again.
+            let failed = self.custom.has_failed();
+            let m = if failed { [f64::NAN; 3] } else { law.couple(self.body, &y, normal.max(0.0)) };
             if m.iter().any(|x| x.is_nan()) && [y.theta, y.w1, y.w2, y.w3].iter().all(|x| x.is_finite()) {
                 self.fault.set(fault_of_couple(m, &y, normal.max(0.0)));
             }
@@ -117,6 +119,9 @@ impl<'a> CustomFlow<'a> {
         let (mut normal, mut m) = (1.0, at(1.0));
         let mut couples = of(Couple { free: m, pressed: [0.0; 3] });
         let (mut found, mut next) = answer(couples);
+        if m.iter().any(|x| x.is_nan()) {
+            return (found, couples);
+        }
         for _ in 0..SECANTS {
             let more = at(next);
             if more == m
@@ -150,7 +155,7 @@ impl<'a> CustomFlow<'a> {
     }
 
     /// Whether steps of the length `h` from the numbers `y` are short only because a law is stiff: the couple pulls w
-    /// towards a slow motion much faster than w changes.
+    /// towards a slow motion much faster than w changes, and than rotation and nutation allow.
     pub(super) fn is_kept_short<const N: usize>(&self, y: &[f64; N], h: f64) -> bool {
         let (fast, rate) = (Slide::fastest(y), self.rates(y));
         let mut slope = 0f64;
@@ -161,7 +166,8 @@ impl<'a> CustomFlow<'a> {
             slope += (2..5).map(|i| ((above[i] - rate[i]) / (more[j] - y[j])).powi(2)).sum::<f64>();
         }
         let (slope, change) = (slope.sqrt(), rate[2].hypot(rate[3]).hypot(rate[4]));
-        h * slope > STABLE && slope * fast > FAR_FASTER * change
+        let fast = FAR_FASTER * change.max(fast / self.calm(y)) / fast;
+        h * slope > STABLE && slope > fast
     }
 
     /// The response of a body that rolls, or slides freely on a smooth table, and the couples that act.
