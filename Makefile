@@ -132,6 +132,8 @@ long: $(VENV)/.tested wheel core
 	$(BIN)/python benches/slowest.py --count 20000
 	$(BIN)/python benches/aloft.py --count 20000
 	$(BIN)/python benches/claims.py --of hops --count 5000
+	$(BIN)/python benches/random_scenes.py --count 500
+	$(BIN)/python benches/random_scenes.py --reference 24
 	$(BIN)/python benches/claims.py --of launches
 	HYPOTHESIS_PROFILE=fresh $(BIN)/pytest -m 'not page and not long' $$(grep -l hypothesis tests/test_*.py)
 	python3 tests/fresh.py --runs 10

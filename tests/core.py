@@ -19,10 +19,10 @@ ASK = """async (core, questions) => {
   const { exports: x } = (await WebAssembly.instantiate(bytes(core), {})).instance;
   return questions.map(([name, given]) => {
     const numbers = [...new Float64Array(bytes(given).buffer)];
-    const before = performance.now(), code = x[name](...numbers), took = performance.now() - before;
+    const code = x[name](...numbers);
     const view = (at, count) => text(new Uint8Array(x.memory.buffer, at, count));
     const map = name === "map" && !code ? view(x.codes(), numbers[0] * numbers[1]) : "";
-    return [code, view(x.out(), 8 * x.len()), map, view(x.words(), x.words_len()), took];
+    return [code, view(x.out(), 8 * x.len()), map, view(x.words(), x.words_len())];
   });
 }"""
 # answers each line of input by a line
@@ -35,10 +35,10 @@ NODE = """(async () => {
 
 
 class Answer:
-    """A code, numbers, the region codes of a map, the text of a refusal, and the duration in ms."""
+    """A code, numbers, the region codes of a map, and the text of a refusal."""
 
-    def __init__(self, code, out, codes, words, took):
-        self.code, self.took = code, took
+    def __init__(self, code, out, codes, words):
+        self.code = code
         self.out = np.frombuffer(base64.b64decode(out))
         self.codes = np.frombuffer(base64.b64decode(codes), np.uint8)
         self.words = base64.b64decode(words).decode().split("\n")

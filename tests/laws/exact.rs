@@ -197,8 +197,7 @@ fn d17_a_motion_at_a_billion_costs_what_it_costs_at_twenty() {
     assert!(rows.iter().filter(|r| r.t == 1e9).count() == 2);
     // at no time does it make steps: a motion to a billion costs no evaluation of the equations
     for t in [20.0, 1e9] {
-        let m =
-            roll_with(&rows[0].body, rows[0].start.into(), &[t], &Ask::default(), || true).unwrap().unwrap();
+        let m = roll_with(&rows[0].body, rows[0].start, &[t], &Ask::default(), || true).unwrap().unwrap();
         assert_eq!((m.evaluations, m.method), (0, Method::Exact));
     }
 }
