@@ -31,6 +31,9 @@ pub(super) fn pose_from(at: &Aloft, shape: &Shape<f64>, over: bool, pose: [f64; 
     other
 }
 
+/// A bounce in which the body turns by less than this angle is short; its landing is that of a power series.
+const SHORT_BOUNCE: f64 = 0.1;
+
 impl<const N: usize> BodyWalk<'_, N> {
     pub(super) fn has_two_rims(&self) -> bool {
         self.of.body.ell() > 0.0 && self.of.body.theta_end() == FRAC_PI_2
@@ -168,19 +171,25 @@ impl<const N: usize> BodyWalk<'_, N> {
             self.writes_with(&at, Kind::Flying, 0.0);
         }
         let Some((t, upper)) = landing else { return };
-        // The time of a landing is as uncertain as the height, over the normal velocity; a rougher run lands later.
-        let (at, high) = (self.flown(&*course, t, before), course.free().doubt_of_height(t));
+        // The time of a landing is as uncertain as the height, over the normal velocity; that of a short bounce has the
+        // roundings of a power series. A rougher run lands sooner or later by more than this error.
+        let (at, free) = (self.flown(&*course, t, before), *course.free());
+        let high = free.doubt_of_height(t);
         let lift = if upper { at.on_other_rim(&shape).lift } else { at.lift };
-        let late = (high / lift.abs()).min(high.sqrt());
+        let mut late = (high / lift.abs()).min(high.sqrt());
+        if leaves[0] == Some(1) && !upper && free.turns(t) < SHORT_BOUNCE {
+            late = late.min(free.roundings(t) * f64::EPSILON * t);
+        }
         self.claims(late);
-        let t = t + late * self.shows();
-        let at = if self.shows() > 0.0 { self.flown(&*course, t, before) } else { at };
+        let shown = self.shows() * self.sign_of_rounding();
+        let t = (t + late * shown).max(0.0);
+        let at = if shown == 0.0 { at } else { self.flown(&*course, t, before) };
         self.at[TIME] = now + t;
         self.sets(&Aloft { height: if upper { at.height } else { 0.0 }, ..at });
         if upper {
             self.turns_over();
         }
-        self.doubts(course.free().roundings(t) * f64::EPSILON);
+        self.doubts(free.roundings(t) * f64::EPSILON);
         self.of.takeoff.height = 0.0;
         let next = self.strikes();
         self.continues_with(next);
@@ -223,7 +232,14 @@ impl<const N: usize> BodyWalk<'_, N> {
     /// rougher run is perturbed by as much as the difference of the runs has to show. The growth of the error is then
     /// that of the difference.
     pub(super) fn doubts(&mut self, share: f64) {
-        BodyPhases::perturbs_by(self, share * self.shows());
+        BodyPhases::perturbs_by(self, share * self.shows() * self.sign_of_rounding());
+    }
+
+    /// The sign of a perturbation after this impact, as irregular as that of a rounding error: thousands of errors of one sign
+    /// would add up to more than roundings do.
+    fn sign_of_rounding(&self) -> f64 {
+        let mixed = (self.made.path.impacts.len() as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        if mixed >> 63 == 0 { 1.0 } else { -1.0 }
     }
 
     /// The contact that begins where the normal velocity is zero.

@@ -448,10 +448,8 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
     /// Includes the error of the time of an end at `y` in the estimated error. It is the error of the steps, divided by
     /// the rate at which the margin fell, or the speed of a body that comes to rest.
     pub fn claims_time_error(&mut self, halt: Halt, steep: f64, y: &[f64; N]) {
-        // A rim that leaves the table sooner or later has the same acceleration, and the time at which it leaves in the
-        // midst of bounces has no meaning.
-        let leaves = matches!(halt, Halt::LiftOff | Halt::Rises) && self.ask.restitution.is_some();
-        if leaves && y[TIME] - self.began <= BRIEF {
+        // In the midst of bounces the time of an end has no meaning, and its effect is in the difference of the runs.
+        if self.ask.restitution.is_some() && y[TIME] - self.began <= BRIEF {
             return;
         }
         if let Some(grows) = self.of.grows(halt, y) {

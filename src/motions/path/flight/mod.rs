@@ -297,9 +297,14 @@ impl Flight {
         4.0 * f64::EPSILON * (self.from.height + t * (1.0 + self.velocity[2].abs() + self.rate * reach))
     }
 
+    /// The angle by which the body has turned at a time.
+    pub fn turns(&self, t: f64) -> f64 {
+        self.rate * t
+    }
+
     /// The error of the numbers at a time, in roundings, away from the poles.
     pub fn roundings(&self, t: f64) -> f64 {
-        4.0 * (1.0 + self.rate * t)
+        4.0 * (1.0 + self.turns(t))
     }
 
     /// The error of the numbers at a time, due to rounding.
