@@ -36,9 +36,15 @@ class SpinDown(NamedTuple):
 
     @property
     def clock(self) -> Floats:
-        """Times since the first one."""
+        """Times since the first one.
+
+        They are rounded to 1e-12 of the duration, so that the rounding of times far from the origin, which
+        some fits amplify, does not matter.
+        """
         after: Floats = self.t - self.t[0]
-        return after
+        digit = 2.0 ** (math.floor(math.log2(float(after[-1]))) - 40)
+        clock: Floats = np.round(after / digit) * digit
+        return clock
 
     @property
     def numbers(self) -> int:
