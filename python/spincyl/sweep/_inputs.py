@@ -129,9 +129,9 @@ def inputs(rows: "xarray.Dataset") -> dict[str, Any]:
     -------
     dict
         Keyword arguments of `roll`: "bodies", "states", "t", "contact" and "tol"; also "losses",
-        "restitution", "mu", "step", "beyond", "stop_at" and "max_nfev" if they were given. A call of `roll` with these
-        arguments repeats the results bit by bit. Lazy coordinates give lazy bodies and states; call
-        ``rows.load()`` first to get bodies and states in memory.
+        "restitution", "mu", "step", "beyond", "stop_at" and "max_nfev" if they were given. A call of
+        `roll` with these arguments repeats the results bit by bit. Lazy coordinates give lazy bodies and
+        states; call ``rows.load()`` first to get bodies and states in memory.
 
     Raises
     ------
