@@ -364,8 +364,8 @@ pub fn assembled(parts: &[BodyPart]) -> Result<Assembled, Error> {
     let radius = rim.outer();
     let per = 1.0 / (whole * radius * radius);
     let (ell, fillet) = ((centre - rim.z) / radius, rim.rho / radius);
-    if ell < 0.0 && fillet < 1.0 {
-        let expected = "parts whose centre of mass is above the rim on which they stand";
+    if ell < 0.0 && (fillet < 1.0 || ell <= -1.0) {
+        let expected = "parts whose centre of mass is above the rim, or the lowest point of the ball, on which they stand";
         return Err(Error::OutOfRange { name: "parts", value: ell, expected });
     }
     let body = Body::rounded(ell, (0.5 * axial + along) * per, axial * per, fillet)?;
