@@ -161,3 +161,25 @@ def test_a_custom_motion_is_shown_and_plotted():
 def test_a_dry_loss_belongs_into_the_law_of_your_own():
     with pytest.raises(ValueError, match="delta = 0.01: expected only laws without the normal force"):
         sc.roll(COIN, START, T, contact=FALLING, losses=sc.loss.RollingResistance(0.01))
+
+
+def test_laws_of_your_own_are_equal_if_their_functions_are():
+    def falling(speed):
+        return 0.3 / (1 + speed)
+
+    class Tribometer:
+        def law(self, speed):
+            return 0.3
+
+        def couple(self, theta, w, normal):
+            return -0.01 * w
+
+    one, other = sc.custom.Friction(lambda u: 0.3), sc.custom.Friction(falling)
+    assert one != other and {one: "mine"}.get(other) is None and sc.Coulomb(0.3) != one != sc.Coulomb(0.3)
+    assert sc.custom.Friction(falling) == other and hash(sc.custom.Friction(falling)) == hash(other)
+    assert sc.custom.Friction(falling, static=0.4) != other
+    of = Tribometer()
+    assert sc.custom.Friction(of.law) == sc.custom.Friction(of.law) != sc.custom.Friction(Tribometer().law)
+    assert sc.custom.Couple(of.couple) == sc.custom.Couple(of.couple) != sc.custom.Couple(Tribometer().couple)
+    with pytest.raises(TypeError, match=r"^custom.Friction.from_si: not needed; .* in m/s"):
+        sc.custom.Friction.from_si(0.3, patch=0.0, scale=sc.Scale(0.01))

@@ -98,12 +98,17 @@ fn together<S>(runs: [&[Phase<S>]; 2], end: f64, whirrs: bool) -> (Vec<[&Phase<S
 }
 
 impl Followed {
-    /// The state and the slip at the last time, or at the end of the motion.
-    pub(crate) fn last(&self) -> Option<(State, [f64; 2])> {
+    /// State, slip and rim at the last time, or at the end of the motion.
+    pub(crate) fn last(&self) -> Option<(State, [f64; 2], u8)> {
         match self.motion.event {
-            Some(event) => Some((event.state, self.path.last_slip)),
-            None if self.path.rolls_on => self.path.phases.last().map(|phase| (phase.state, phase.slip)),
-            None => self.motion.states.last().copied().zip(self.path.slip.last().copied()),
+            Some(event) => Some((event.state, self.path.last_slip, event.rim)),
+            None if self.path.rolls_on => {
+                self.path.phases.last().map(|phase| (phase.state, phase.slip, phase.rim))
+            }
+            None => {
+                let rim = self.path.rims.last().copied().unwrap_or_default();
+                Some((*self.motion.states.last()?, *self.path.slip.last()?, rim))
+            }
         }
     }
 
@@ -211,7 +216,7 @@ mod tests {
         times
             .iter()
             .enumerate()
-            .map(|(i, &time)| Phase { time, kind: kind(i), state, slip: [0.0; 2] })
+            .map(|(i, &time)| Phase { time, kind: kind(i), state, slip: [0.0; 2], aloft: [0.0; 2], rim: 0 })
             .collect()
     }
 
