@@ -24,7 +24,7 @@ pub fn scene(tube: &Tube, mu: f64, restitution: f64, motion: &MeasuredMotion) ->
     let [i1, i3] = [body.i1(), body.i3()].map(|moment| scale.kilogram_square_metres(moment));
     let (half, rim) = (0.5 * tube.length, 0.5 * tube.outer_diameter - tube.fillet);
     let circles = [-1.0, 1.0].map(|end| json!({"height": end * (half - tube.fillet), "radius": rim}));
-    let [_, places, forces] = motion.error();
+    let bounds = motion.bounds();
     let path = motion.natural.path.as_deref();
     let impacts: Vec<Value> = path
         .into_iter()
@@ -89,7 +89,8 @@ pub fn scene(tube: &Tube, mu: f64, restitution: f64, motion: &MeasuredMotion) ->
             "impacts": impacts,
             "ending": {"kind": ending.to_string(), "time": time.or(all.last().map(|now| now.time))},
         },
-        "error": {"position": places, "contact_force": forces},
+        "error": {"position": bounds.position, "velocity": bounds.velocity, "angle": bounds.orientation,
+            "angular_velocity": bounds.angular_velocity, "contact_force": bounds.force, "energy": bounds.energy},
     })
 }
 
@@ -122,6 +123,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         Some(path) => std::fs::write(path, format!("{told}\n"))?,
         None => println!("{told}"),
     }
-    eprintln!("{} times, error of the place {:.0e} m", motion.seconds.len(), motion.error()[1]);
+    eprintln!("{} times, error of the place {:.0e} m", motion.seconds.len(), motion.bounds().position);
     Ok(())
 }

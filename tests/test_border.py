@@ -13,7 +13,7 @@ PACKAGE = pathlib.Path(sc.__file__).parent
 CODES = {name: dict(values) for name, values in _core.codes()}
 
 
-@pytest.mark.parametrize("kind", [sc.Ending, sc.sweep.Status, sc.Region, sc.sweep.Answer])
+@pytest.mark.parametrize("kind", [sc.Ending, sc.sweep.Status, sc.Region, sc.RestsOn, sc.sweep.Answer])
 def test_an_enumeration_has_the_names_and_codes_of_the_core(kind):
     assert {value.name: int(value) for value in kind} == CODES[kind.__name__]
 
@@ -31,7 +31,17 @@ def test_phases_tables_and_laws_have_the_names_of_the_core_in_its_order():
 
 
 def test_every_enumeration_of_the_core_is_one_of_these():
-    assert sorted(CODES) == ["Answer", "Drift", "Ending", "Law", "Phase", "Region", "Status", "Table"]
+    assert sorted(CODES) == [
+        "Answer",
+        "Drift",
+        "Ending",
+        "Law",
+        "Phase",
+        "Region",
+        "RestsOn",
+        "Status",
+        "Table",
+    ]
     assert all(len({*codes.values()}) == len(codes) for codes in CODES.values())
 
 

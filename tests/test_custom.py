@@ -246,3 +246,25 @@ def test_a_couple_of_ones_own_differs_from_every_other_law_and_is_printed_by_its
     couple, other = sc.custom.Couple(np.negative), sc.loss.RollingResistance(1e-3)
     assert couple != other and other != couple and couple in [other, couple]
     assert str(couple) == repr(couple) == "custom.Couple(negative)"
+
+
+def test_laws_of_your_own_are_equal_if_their_functions_are():
+    def falling(speed):
+        return 0.3 / (1 + speed)
+
+    class Tribometer:
+        def law(self, speed):
+            return 0.3
+
+        def couple(self, theta, w, normal):
+            return -0.01 * w
+
+    one, other = sc.custom.Friction(lambda u: 0.3), sc.custom.Friction(falling)
+    assert one != other and {one: "mine"}.get(other) is None and sc.Coulomb(0.3) != one != sc.Coulomb(0.3)
+    assert sc.custom.Friction(falling) == other and hash(sc.custom.Friction(falling)) == hash(other)
+    assert sc.custom.Friction(falling, static=0.4) != other
+    of = Tribometer()
+    assert sc.custom.Friction(of.law) == sc.custom.Friction(of.law) != sc.custom.Friction(Tribometer().law)
+    assert sc.custom.Couple(of.couple) == sc.custom.Couple(of.couple) != sc.custom.Couple(Tribometer().couple)
+    with pytest.raises(TypeError, match=r"^custom.Friction.from_si: not needed; .* in m/s"):
+        sc.custom.Friction.from_si(0.3, patch=0.0, scale=sc.Scale(0.01))

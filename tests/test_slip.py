@@ -294,8 +294,8 @@ def test_a_slipping_motion_has_the_shape_of_any_other():
     m = slid(PIPE, LAUNCH, 60.0, sc.Coulomb(0.3), want=("pose", "force"))
     n = m.t.size
     assert (m.slip.shape, m.dissipated.shape, m.phase.shape, m.phase.dtype) == ((n, 2), (n,), (n,), np.uint8)
-    assert [kind for _, kind, _ in m.phases] == ["slipping", "rolling"]
-    (begin, _, start), (sticks, _, rolls) = m.phases
+    assert [phase.kind for phase in m.phases] == ["slipping", "rolling"]
+    (begin, _, start, _), (sticks, _, rolls, _) = m.phases
     assert begin == 0 and start == LAUNCH and rolls.slip == (0.0, 0.0)
     assert np.array_equal(m.phase, np.where(m.t < sticks, 1, 0))
     assert (m.slip[m.phase == 0] == 0).all() and (np.diff(m.dissipated[m.phase == 0]) == 0).all()

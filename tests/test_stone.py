@@ -128,7 +128,7 @@ def test_what_looks_like_degrees_millimetres_or_grams_is_warned_of():
         STONE.spinning(0.1, pitch=5)
     with pytest.warns(UserWarning, match="are these degrees"):
         assert np.isnan(STONE.spinning(0.1, pitch=[5, 0.1]).w).all(axis=-1).tolist() == [True, False]
-    with pytest.warns(UserWarning, match="160 m long"):
+    with pytest.warns(UserWarning, match="160 m long and 32 m wide"):
         sc.Ellipsoid.rattleback((80, 16, 14), twist=0.05).in_metres()
     with pytest.warns(UserWarning, match="1 g is 1e-3"):
         sc.Ellipsoid.rattleback((0.08, 0.016, 0.014), twist=0.05).in_metres(45)

@@ -13,11 +13,13 @@ __all__ = [
     "angular_velocity",
     "areas",
     "assembled",
+    "axis_up",
     "beta",
     "body_i1",
     "body_i3",
     "boundary_rolling",
     "boundary_smooth",
+    "bounds",
     "capsule_end",
     "centre_across",
     "centre_along",
@@ -122,6 +124,7 @@ __all__ = [
 
 rate: np.ufunc
 recoil: np.ufunc
+axis_up: np.ufunc
 kappa_rolling: np.ufunc
 kappa_smooth: np.ufunc
 region: np.ufunc
@@ -246,6 +249,9 @@ def ensemble(
     threads: tuple[int, bool],
     progress: Callable[[float], object] | None,
 ) -> None: ...
+def bounds(
+    errors: tuple[float, float, float], size: tuple[float, float], most: tuple[float, float, float]
+) -> dict[str, float]: ...
 def codes() -> list[tuple[str, list[tuple[str, int]]]]: ...
 def columns() -> list[list[str]]: ...
 def motion_options() -> list[str]: ...

@@ -362,9 +362,9 @@ class Ellipsoid(Sized):
 
     def _bulk(self) -> tuple[str, tuple[float, float], float]:
         volume = float(np.max(4 / 3 * math.pi * np.prod(np.asarray(self.axes), axis=-1)))
-        # a stone with an edge is about half of its ellipsoid
         cut = not bool(np.isnan(np.asarray(self.theta_end)).all())
-        return "stone", (2.0, 2.0), volume / 2 if cut else volume
+        wide = float(np.max(np.median(np.asarray(self.axes), axis=-1)))
+        return "stone", (2.0, 2 * wide), volume / 2 if cut else volume  # about half of the ellipsoid
 
     def _with_scale(self, scale: Scale | None) -> Self:
         return replace(self, scale=scale)

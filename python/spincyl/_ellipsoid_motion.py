@@ -195,7 +195,7 @@ def rolled(body: Ellipsoid, state: EllipsoidState, asked: Asked) -> EllipsoidMot
     status = ENDINGS[found["status"]]
     event = None
     if "event" in found:
-        time, six, pair = found["event"]
+        time, six, pair, _ = found["event"]
         event = Event(status, time, _state(six, pair))  # type: ignore[arg-type]
     found |= {
         "body": body,
@@ -211,5 +211,5 @@ def rolled(body: Ellipsoid, state: EllipsoidState, asked: Asked) -> EllipsoidMot
     return m
 
 
-def _state(six: list[float], slip: list[float] | None) -> EllipsoidState:
+def _state(six: list[float], slip: list[float] | None, _: object = None) -> EllipsoidState:
     return EllipsoidState(six[:3], six[3:], slip)

@@ -1,7 +1,7 @@
 """Endings of a motion."""
 
 from enum import IntEnum
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 from spincyl._state import State
 
@@ -46,6 +46,34 @@ class Ending(IntEnum):
         return self.name
 
 
+class RestsOn(IntEnum):
+    """What a body of revolution lies or stands on at the end of a motion: heads or tails.
+
+    Attributes
+    ----------
+    NONE
+        The body is not at rest, or the motion was not computed to its rest.
+    FACE
+        Its first face, at the rim from which the initial state is seen; `Motion.axis_up` is then 1. A bounce
+        of the face and a spin on it are not computed.
+    OTHER_FACE
+        The face at its other end; `Motion.axis_up` is then -1.
+    SIDE
+        Its side: both rims, or a rim and another part of the body.
+    EDGE
+        A rim, at rest: the body is balanced, or held by dry losses. A ball rests at any inclination.
+    """
+
+    NONE = 0
+    FACE = 1
+    OTHER_FACE = 2
+    SIDE = 3
+    EDGE = 4
+
+    def __str__(self) -> str:
+        return self.name
+
+
 #: The reason of each ending, and what the body does then.
 MESSAGES = {
     Ending.DONE: ("the last time was reached", ""),
@@ -78,8 +106,11 @@ class Event(NamedTuple):
         Time of the event in sqrt(R/g), for a measured body in seconds.
     state : State or EllipsoidState
         State at that time, in natural units.
+    rim : str
+        Rim from which the state is seen: "first" is that of the initial state, "other" the other one.
     """
 
     ending: Ending
     time: float
     state: State
+    rim: Literal["first", "other"] = "first"

@@ -20,6 +20,7 @@ AXES: Components = {
     "contact_point": ("plan", ["x", "y"], ["contact_x", "contact_y"]),
     "centre": ("space", ["x", "y", "z"], ["centre_x", "centre_y", "centre_z"]),
     "contact_force": ("space", ["x", "y", "z"], ["force_x", "force_y", "force_z"]),
+    "contact_force_other": ("space", ["x", "y", "z"], [f"force_other_{axis}" for axis in "xyz"]),
     "orientation": ("quaternion", ["x", "y", "z", "w"], [f"orientation_{axis}" for axis in "xyzw"]),
     "slip": ("direction", ["along the lean", "across"], ["slip_along", "slip_across"]),
     "slip_other": ("direction", ["along the lean", "across"], ["slip_other_along", "slip_other_across"]),

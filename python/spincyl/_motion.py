@@ -7,18 +7,19 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from spincyl import _core
 from spincyl._asked import Asked, Want, chosen, crossing, times_of
 from spincyl._body import Body
 from spincyl._contact import AnyContact, Coulomb
-from spincyl._ending import Ending, Event
+from spincyl._ending import Ending, Event, RestsOn
 from spincyl._input.equality import compared
 from spincyl._input.numbers import Floats, Reals, si
 from spincyl._labelled import AXES, Components, frame, labelled
 from spincyl._measured import in_si, natural_time, speaking, told
-from spincyl._outputs import ALOFT, BOTH, COUPLE, FORCE, FRICTION, LOSSES, PATCH, POSE, Number, lacks, output
-from spincyl._phases import Impact, Phase, impacts, lowest, phases, slipping
+from spincyl._outputs import ALOFT, FRICTION, POSE, Outputs, lacks, output
+from spincyl._phases import RIMS, Impact, Phase, impacts, lowest, phases, slipping
 from spincyl._scale import Scale
 from spincyl._state import State
 from spincyl._swing import single, single_aloft, single_slip
@@ -41,7 +42,7 @@ _Four: TypeAlias = tuple[float, float, float, float]
 
 @compared
 @dataclass(frozen=True, eq=False, repr=False)
-class Motion:
+class Motion(Outputs):
     """Motion of a body: times, states, and how the motion ended; the result of `roll`.
 
     The object is similar to the result of SciPy's `solve_ivp`. Arrays have a row for each of the n times that
@@ -105,6 +106,7 @@ class Motion:
     _asked: Asked
     _setting: float
     _extra: dict[str, Any]
+    _rests: int = 0
     _phases: tuple[Phase, ...] | None = None
     _impacts: tuple[Impact, ...] | None = None
     _natural: "Motion | None" = None  # for a motion in SI: the same in natural units
@@ -153,6 +155,31 @@ class Motion:
         return self._told("height", lowest(self.body, self.theta, rim))
 
     @property
+    def rim(self) -> NDArray[np.uint8]:
+        """(n,) code of the rim from which the body is seen at each time: 0 its first rim, 1 the other one.
+
+        The first rim is that of the initial state. Theta, w, phi, psi, the contact point, `slip`, `normal`
+        and `friction` refer to this rim; `centre` and `orientation` do not depend on it. Always 0 without
+        `restitution=`, and while both rims touch the table.
+        """
+        found = self._extra.get("rim")
+        return np.zeros(self.t.size, np.uint8) if found is None else found
+
+    @property
+    def axis_up(self) -> Floats:
+        """(n,) cosine of the angle from the vertical to the body's axis, which points out of its first rim.
+
+        1 if the body lies on its first face (heads), -1 if it lies on the other one (tails), 0 on its side.
+        """
+        up: Floats = _core.axis_up(self.theta, self.rim)
+        return up
+
+    @property
+    def rests_on(self) -> RestsOn:
+        """What the body lies or stands on at the end of the motion; `RestsOn.NONE` if it is not at rest."""
+        return RestsOn(self._rests)
+
+    @property
     def success(self) -> bool:
         """Whether the motion reached the last time."""
         return self.status == Ending.DONE
@@ -179,74 +206,6 @@ class Motion:
         The remaining angle is in radians, and keeps its digits after any number of turns.
         """
         return output(self, "phi", POSE), output(self, "psi", POSE)
-
-    contact_point = Number(
-        POSE,
-        '(n, 2) position of the contact point on the table, R or m; initially (0, 0). Needs want="pose".',
-    )
-    centre = Number(POSE, '(n, 3) position of the centre of mass, R or m. Needs want="pose".')
-    orientation = Number(
-        POSE,
-        """(n, 4) rotation from the axes of the body to those of the laboratory. Needs want="pose".
-
-        The third axis of the body is e3. Rotations are unit quaternions (x, y, z, w), as in SciPy's
-        `Rotation.from_quat`.
-        """,
-    )
-    normal = Number(FORCE, '(n,) normal force, M g or N. Needs want="force".')
-    friction = Number(
-        FORCE,
-        '(n,) magnitude of the horizontal force of the table, M g or N. Needs want="force".',
-    )
-    friction_coefficient = Number(
-        FORCE,
-        '(n,) coefficient of friction needed; infinite if N <= 0, NaN in the air. Needs want="force".',
-    )
-    contact_force = Number(
-        BOTH,
-        '(n, 3) force of the table along the axes of the laboratory, M g or N. Needs want=("pose", "force").',
-    )
-    slip = Number(
-        FRICTION,
-        """(n, 2) velocity of the contact point over the table, sqrt(g R) or m/s, along e_h and e2 of `State`.
-
-        Needs a law of friction or `restitution=`.
-        """,
-    )
-    dissipated = Number(
-        FRICTION, "(n,) heat of friction since the start, without impacts, M g R, J. Needs a law of friction."
-    )
-    phase = Number(
-        FRICTION,
-        """(n,) code of the phase at each time. Needs a law of friction or `restitution=`.
-
-        0 rolling, 1 slipping, 2 flying; on both rims 3 lying and slipping, 4 pivoting, 5 rolling on its side.
-        """,
-    )
-    drilling = Number(
-        PATCH, "(n,) angular velocity about the vertical, sqrt(g/R) or rad/s. Needs a patch of contact."
-    )
-    creep = Number(
-        PATCH, "(n,) slip over the product of `drilling` and patch radius; 0 in rolling. Needs a patch."
-    )
-    couple = Number(
-        COUPLE,
-        """(n,) couple of the patch about the vertical, M g R or J. Needs a patch and want="force".
-
-        NaN in rolling, where static friction prevents drilling.
-        """,
-    )
-    lift = Number(
-        ALOFT, "(n,) upward velocity of the lowest point of the rim, sqrt(g R) or m/s. Needs `restitution=`."
-    )
-    slip_other = Number(
-        ALOFT, "(n, 2) `slip` of the other rim; NaN unless both rims touch the table. Needs `restitution=`."
-    )
-    normal_other = Number(ALOFT, '(n,) `normal` of the other rim. Needs `restitution=` and want="force".')
-    friction_other = Number(ALOFT, '(n,) `friction` of the other rim. Needs `restitution=` and want="force".')
-    work_lost = Number(
-        LOSSES, "(n,) energy that `losses` have taken since the initial state, M g R or J. Needs `losses=`."
-    )
 
     @property
     def impacts(self) -> tuple[Impact, ...]:
@@ -428,8 +387,8 @@ def rolled(body: Body, state: State, asked: Asked, numbers: tuple[_Six, _Four] |
     status = ENDINGS[found["status"]]
     event = None
     if "event" in found:
-        time, *where = found["event"]
-        event = Event(status, time, slipping(*where))
+        time, four, slipped, rim = found["event"]
+        event = Event(status, time, slipping(four, slipped), RIMS[rim])
     # the core's names are those of the fields: setting frozen fields one by one takes longer than a motion
     found |= {
         "body": body,

@@ -85,3 +85,85 @@ def _given(m: "Motion", setting: str) -> bool:
     """Whether a setting of `roll` was given for a motion."""
     value = getattr(m._asked, setting)
     return not (value is None or value is False or value == math.inf)
+
+
+class Outputs:
+    """Outputs of a motion at each time that are computed if they were asked for."""
+
+    contact_point = Number(
+        POSE,
+        '(n, 2) position of the contact point on the table, R or m; initially (0, 0). Needs want="pose".',
+    )
+    centre = Number(POSE, '(n, 3) position of the centre of mass, R or m. Needs want="pose".')
+    orientation = Number(
+        POSE,
+        """(n, 4) rotation from the axes of the body to those of the laboratory. Needs want="pose".
+
+        The third axis of the body is e3. Rotations are unit quaternions (x, y, z, w), as in SciPy's
+        `Rotation.from_quat`.
+        """,
+    )
+    normal = Number(FORCE, '(n,) normal force, M g or N. Needs want="force".')
+    friction = Number(
+        FORCE,
+        '(n,) magnitude of the horizontal force of the table, M g or N. Needs want="force".',
+    )
+    friction_coefficient = Number(
+        FORCE,
+        '(n,) coefficient of friction needed; infinite if N <= 0, NaN in the air. Needs want="force".',
+    )
+    contact_force = Number(
+        BOTH,
+        """(n, 3) force of the table along the axes of the laboratory, M g or N. Needs want=("pose", "force").
+
+        The whole force: on both rims, if both touch the table.
+        """,
+    )
+    contact_force_other = Number(
+        ALOFT,
+        """(n, 3) part of `contact_force` on the other rim; NaN unless both rims touch the table.
+
+        Needs `restitution=` and want=("pose", "force").
+        """,
+    )
+    slip = Number(
+        FRICTION,
+        """(n, 2) velocity of the contact point over the table, sqrt(g R) or m/s, along e_h and e2 of `State`.
+
+        Needs a law of friction or `restitution=`.
+        """,
+    )
+    dissipated = Number(
+        FRICTION, "(n,) heat of friction since the start, without impacts, M g R, J. Needs a law of friction."
+    )
+    phase = Number(
+        FRICTION,
+        """(n,) code of the phase at each time. Needs a law of friction or `restitution=`.
+
+        0 rolling, 1 slipping, 2 flying; on both rims 3 lying and slipping, 4 pivoting, 5 rolling on its side.
+        """,
+    )
+    drilling = Number(
+        PATCH, "(n,) angular velocity about the vertical, sqrt(g/R) or rad/s. Needs a patch of contact."
+    )
+    creep = Number(
+        PATCH, "(n,) slip over the product of `drilling` and patch radius; 0 in rolling. Needs a patch."
+    )
+    couple = Number(
+        COUPLE,
+        """(n,) couple of the patch about the vertical, M g R or J. Needs a patch and want="force".
+
+        NaN in rolling, where static friction prevents drilling.
+        """,
+    )
+    lift = Number(
+        ALOFT, "(n,) upward velocity of the lowest point of the rim, sqrt(g R) or m/s. Needs `restitution=`."
+    )
+    slip_other = Number(
+        ALOFT, "(n, 2) `slip` of the other rim; NaN unless both rims touch the table. Needs `restitution=`."
+    )
+    normal_other = Number(ALOFT, '(n,) `normal` of the other rim. Needs `restitution=` and want="force".')
+    friction_other = Number(ALOFT, '(n,) `friction` of the other rim. Needs `restitution=` and want="force".')
+    work_lost = Number(
+        LOSSES, "(n,) energy that `losses` have taken since the initial state, M g R or J. Needs `losses=`."
+    )

@@ -21,6 +21,10 @@ Hit: TypeAlias = Literal["slips", "sticks", "slips on", "smooth", "both rims"]
 HITS: tuple[Hit, ...] = ("slips", "sticks", "slips on", "smooth", "both rims")
 
 
+#: Rim from which a state is seen, for each code in `Motion.rim`.
+RIMS: tuple[Literal["first", "other"], ...] = ("first", "other")
+
+
 class Phase(NamedTuple):
     """A phase of a motion, such as slipping or rolling: the time, kind and state with which it begins.
 
@@ -32,12 +36,16 @@ class Phase(NamedTuple):
         "rolling", "slipping" or "flying". For a body on both rims: "lying" (both rims slip), "pivoting" or
         "rolling on its side".
     state : State
-        State at that time, with its slip, in natural units.
+        State at that time, with its slip, in natural units; in the air also with its `height` and `lift`.
+        A motion that starts from it continues this one.
+    rim : str
+        Rim from which the state is seen: "first" is that of the initial state, "other" the other one.
     """
 
     time: float
     kind: Kind
     state: State
+    rim: Literal["first", "other"] = "first"
 
     def __repr__(self) -> str:
         return f"({self.time:.12g}, {self.kind!r})"
@@ -91,8 +99,7 @@ def impacts(found: Iterable[tuple[Any, ...]]) -> tuple[Impact, ...]:
     def impact(numbers: tuple[Any, ...]) -> Impact:
         time, other, hit, states, u, (along, across, up), lost, stays = numbers
         before, after = map(state, states, u)
-        rim: Literal["first", "other"] = "other" if other else "first"
-        return Impact(time, rim, HITS[hit], (along, across, up), lost, before, after, stays)
+        return Impact(time, RIMS[other], HITS[hit], (along, across, up), lost, before, after, stays)
 
     return tuple(map(impact, found))
 
@@ -136,16 +143,17 @@ _WHY = {
 }
 
 
-def slipping(four: Sequence[float], slip: Sequence[float] | None) -> State:
-    """The state of theta, w1, w2, w3 and of the slip along e_h and e2; None for no slip."""
-    return State(*four, slip=None if slip is None else (slip[0], slip[1]))
+def slipping(
+    four: Sequence[float], slip: Sequence[float] | None, aloft: Sequence[float] | None = None
+) -> State:
+    """The state of theta, w1, w2, w3, of the slip along e_h and e2, and of height and lift; None for none."""
+    height, lift = aloft or (None, None)
+    return State(*four, slip=None if slip is None else (slip[0], slip[1]), height=height, lift=lift)
 
 
-def phases(
-    found: Iterable[tuple[float, int, Sequence[float], Sequence[float]]], state: Callable[..., Any] = slipping
-) -> tuple[Phase, ...]:
-    """Make phases from the numbers of the core; `state` makes a state from numbers and slip."""
-    return tuple(Phase(time, KINDS[kind], state(numbers, slip)) for time, kind, numbers, slip in found)
+def phases(found: Iterable[tuple[Any, ...]], state: Callable[..., Any] = slipping) -> tuple[Phase, ...]:
+    """Make phases from the numbers of the core; `state` makes a state from numbers, slip and height."""
+    return tuple(Phase(time, KINDS[kind], state(*numbers), RIMS[rim]) for time, kind, *numbers, rim in found)
 
 
 def told(phases: Sequence[Phase], unit: str = "") -> str:

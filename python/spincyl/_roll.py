@@ -132,7 +132,8 @@ def roll(
         that an impact returns (Stronge). Default: the motion ends where the body leaves the table or its
         other rim lands. With a restitution the motion continues: the body may fly, bounce, lie on both rims
         and rise again. An initial state in the air (`dropped`) needs a restitution. While the other rim
-        carries the body, theta refers to that rim, and phi is turned by pi. With `contact="rolling"` a
+        carries the body, theta refers to that rim, and phi is turned by pi: `Motion.rim` tells the rim, and
+        `Motion.axis_up` and `Motion.rests_on` tell heads from tails. With `contact="rolling"` a
         landing on both rims ends the motion (`Ending.SIDE`), unless the body only rocks from rim to rim.
     losses : Loss, optional
         Loss law of `spincyl.loss`, or several added with `+`. The motion is then integrated with steps of

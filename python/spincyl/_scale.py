@@ -21,7 +21,7 @@ _OUTPUTS = {
     "sqrt(g/R)": "w drilling",
     "R": "contact_point centre height",
     "sqrt(g R)": "slip lift slip_other",
-    "M g": "normal friction contact_force normal_other friction_other",
+    "M g": "normal friction contact_force contact_force_other normal_other friction_other",
     "M g R": "energy dissipated work_lost couple",
 }
 #: Natural unit of each output of a motion; outputs that are not listed are pure numbers.

@@ -14,7 +14,7 @@ must not add energy. A dry law contains the sign of a speed, which jumps. Smooth
 0.1411
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
 from typing import Any, Self
 
@@ -22,6 +22,7 @@ import numpy as np
 
 from spincyl._body import Body
 from spincyl._contact import Coulomb
+from spincyl._input.equality import key
 from spincyl._input.numbers import Floats, Reals, Result, number
 from spincyl._loss import Law, Loss
 from spincyl._scale import Scale
@@ -101,7 +102,7 @@ class Couple(Loss):
         return -float(self.couple(body, state, normal) @ np.array([state.w1, state.w2, state.w3]))
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Couple) and other.function is self.function
+        return isinstance(other, Couple) and (other.function,) == (self.function,)
 
     def __hash__(self) -> int:
         return hash(self.function)
@@ -158,6 +159,25 @@ class Friction(Coulomb):
             return self
         speed = scale._units[0] / scale._units[1]
         return type(self)(lambda u: self._function(speed * u), self.static)
+
+    @classmethod
+    def from_si(cls, *_: object, **__: object) -> Self:
+        """Raises TypeError: for a measured body the function gets the speed in m/s, without a conversion."""
+        how = "for a measured body custom.Friction(function, static) gets the speed of the slip in m/s"
+        raise TypeError(f"custom.Friction.from_si: not needed; {how}")
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Friction) and other._compares == self._compares
+
+    def __ne__(self, other: object) -> bool:
+        return not self == other
+
+    def __hash__(self) -> int:
+        return hash(self._compares)
+
+    @property
+    def _compares(self) -> Hashable:
+        return self._function, key(self.static)
 
     def __repr__(self) -> str:
         return f"custom.Friction({_named(self._function)})"

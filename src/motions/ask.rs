@@ -189,7 +189,8 @@ impl Start {
     /// mass. The orientation is the rotation from the axes of the body to those of the laboratory, of which the third
     /// is the vertical; the vectors are along the axes of the laboratory, in sqrt(g/R) and sqrt(g R). `height` is that
     /// of the centre above the table, for a body in the air; with `None` the body is on the table. The motion counts
-    /// phi and psi from this orientation, which has the angles [`euler_angles`](crate::laws::pose::euler_angles).
+    /// phi and psi from this orientation, which has the angles [`euler_angles`](crate::laws::pose::euler_angles);
+    /// [`readings_from`](crate::measured::MeasuredMotion::readings_from) puts it back to where it began.
     ///
     /// Errors: `OutOfRange` for a velocity that is not finite or that, on the table, would move the lowest point up or
     /// down. Error of the slip: 16 ulp of the velocities, divided by sin theta; a slip below 16 ulp counts as zero.

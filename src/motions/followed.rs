@@ -133,12 +133,17 @@ fn follows_bounces<S>(phases: &[Phase<S>], phase: &Phase<S>) -> bool {
 }
 
 impl Followed {
-    /// The state and the slip at the last time, or at the end of the motion.
-    pub(crate) fn last(&self) -> Option<(State, [f64; 2])> {
+    /// State, slip and rim at the last time, or at the end of the motion.
+    pub(crate) fn last(&self) -> Option<(State, [f64; 2], u8)> {
         match self.motion.event {
-            Some(event) => Some((event.state, self.path.last_slip)),
-            None if self.path.rolls_on => self.path.phases.last().map(|phase| (phase.state, phase.slip)),
-            None => self.motion.states.last().copied().zip(self.path.slip.last().copied()),
+            Some(event) => Some((event.state, self.path.last_slip, event.rim)),
+            None if self.path.rolls_on => {
+                self.path.phases.last().map(|phase| (phase.state, phase.slip, phase.rim))
+            }
+            None => {
+                let rim = self.path.rims.last().copied().unwrap_or_default();
+                Some((*self.motion.states.last()?, *self.path.slip.last()?, rim))
+            }
         }
     }
 
@@ -215,7 +220,7 @@ impl<S: Moving> Followed<S> {
         if let (Some(poses), Some(others)) = (&motion.poses, &rough.motion.poses) {
             for (i, (a, b)) in poses.iter().zip(others).enumerate() {
                 let [over, there] =
-                    [&self.path.turned, &rough.path.turned].map(|of| of.get(i) == Some(&true));
+                    [&self.path.rims, &rough.path.rims].map(|of| of.get(i) == Some(&1));
                 turned = turned.max(match (over, there) {
                     (true, false) => S::pose_distance_over(a, b),
                     (false, true) => S::pose_distance_over(b, a),
@@ -293,7 +298,7 @@ mod tests {
         times
             .iter()
             .enumerate()
-            .map(|(i, &time)| Phase { time, kind: kind(i), state, slip: [0.0; 2] })
+            .map(|(i, &time)| Phase { time, kind: kind(i), state, slip: [0.0; 2], aloft: [0.0; 2], rim: 0 })
             .collect()
     }
 

@@ -153,14 +153,14 @@ impl Limits {
 pub(crate) fn first_event(swing: &Swing, limits: &Limits, way: f64) -> Option<Event> {
     let start = swing.start();
     if let Some(ending) = limits.at_start(start, way) {
-        return Some(Event { ending, time: 0.0, state: *start });
+        return Some(Event { ending, time: 0.0, state: *start, rim: 0 });
     }
     let mut first: Option<Event> = None;
     let mut offer = |ending: Ending, found: Option<(f64, State)>| {
         if let Some((time, state)) = found
             && first.is_none_or(|e| time < e.time)
         {
-            first = Some(Event { ending, time, state });
+            first = Some(Event { ending, time, state, rim: 0 });
         }
     };
     offer(Ending::Face, swing.landing(way));

@@ -8,10 +8,12 @@
 //! States, slips and coefficients stay in natural units; [`Scale`] converts them. Error: that of the motion, and a few
 //! roundings.
 
-use super::{Ask, Ending, Kind, Motion, Start, motion};
+use super::{Ask, Bounds, Ending, Kind, Motion, Start, motion};
 use crate::error::{Error, within};
 use crate::laws::body::Body;
+use crate::laws::pose::{Pose, euler_angles};
 use crate::laws::scale::Scale;
+use crate::laws::state::State;
 use core::f64::consts::FRAC_PI_4;
 use nalgebra::{Point3, UnitQuaternion, Vector3};
 
@@ -210,17 +212,58 @@ impl MeasuredMotion {
         })
     }
 
-    /// Estimated errors, the largest over all times: of theta, the angular velocity and the time of the end (radians,
-    /// rad/s, seconds), of positions (metres), of forces (newtons).
-    pub fn error(&self) -> [f64; 3] {
-        let (m, scale) = (&self.natural, &self.of.scale);
-        let states = m.error * scale.radians_per_second(1.0).max(scale.seconds(1.0)).max(1.0);
-        let friction = m.forces.iter().flatten().fold(0.0, |most: f64, force| most.max(force.friction()));
-        [
-            states,
-            scale.metres(m.pose_error.max(m.error)),
-            scale.newtons(m.force_error + m.pose_error * friction),
-        ]
+    /// The readings of a motion that began with this orientation, from which [`Start::from_twist`] took its state, and with
+    /// the centre of mass above the point `(x, y)` of the table, in metres.
+    ///
+    /// ```
+    /// use spincyl::{measured::{Measured, Tube}, motion::{Ask, Start}};
+    /// use spincyl::nalgebra::{UnitQuaternion, Vector3};
+    ///
+    /// let can = Measured::tube(&Tube { outer_diameter: 0.05, length: 0.02, mass: 0.1, ..Tube::default() })?;
+    /// let (q, w) = (UnitQuaternion::from_euler_angles(0.7, 0.3, 1.2), Vector3::new(1.0, -2.0, 5.0));
+    /// let (turning, up) = (w.map(|w| can.scale().angular_velocity(w)), can.scale().length(0.2));
+    /// let start = Start::from_twist(can.body(), &q, turning, Vector3::zeros(), Some(up))?;
+    /// let motion = can.roll(start, &[0.0, 0.1], &Ask::default().with_restitution(0.5), || true)?.unwrap();
+    /// let first = motion.readings_from(&q, [0.3, 0.4]).next().unwrap();
+    /// assert!(first.orientation.angle_to(&q) < 1e-7 && (first.angular_velocity - w).norm() < 1e-13);
+    /// assert!((first.position.coords - Vector3::new(0.3, 0.4, 0.2)).norm() < 1e-15);
+    /// # Ok::<(), spincyl::Error>(())
+    /// ```
+    pub fn readings_from(
+        &self,
+        orientation: &UnitQuaternion<f64>,
+        [x, y]: [f64; 2],
+    ) -> impl Iterator<Item = Reading> {
+        let [phi, theta, psi] = euler_angles(orientation);
+        let [world, own] = [phi, psi].map(|by| UnitQuaternion::from_axis_angle(&Vector3::z_axis(), by));
+        let state = State { theta, w1: 0.0, w2: 0.0, w3: 0.0 };
+        let Point3 { coords: began } = Pose::start().centre(self.of.body(), &state);
+        let [ahead, aside] = [began.x, began.y].map(|x| self.of.scale.metres(x));
+        let placed =
+            move |p: Point3<f64>| world * (p - Vector3::new(ahead, aside, 0.0)) + Vector3::new(x, y, 0.0);
+        self.readings().map(move |now| Reading {
+            position: placed(now.position),
+            orientation: world * now.orientation * own,
+            velocity: world * now.velocity,
+            angular_velocity: world * now.angular_velocity,
+            contact_point: placed(now.contact_point),
+            force: world * now.force,
+            ..now
+        })
+    }
+
+    /// Bounds of the errors at any time, in SI. That of the states holds in radians, in rad/s and in seconds.
+    pub fn bounds(&self) -> Bounds {
+        let (found, scale) = (self.natural.bounds(self.of.body()), &self.of.scale);
+        Bounds {
+            state: found.state * scale.radians_per_second(1.0).max(scale.seconds(1.0)).max(1.0),
+            position: scale.metres(found.position),
+            velocity: scale.metres_per_second(found.velocity),
+            angular_velocity: scale.radians_per_second(found.angular_velocity),
+            force: scale.newtons(found.force),
+            energy: scale.joules(found.energy),
+            ..found
+        }
     }
 
     /// The ending of the motion, and its time in seconds if it came before the last time.

@@ -2,6 +2,7 @@
 //! states.
 
 pub(crate) mod ask;
+pub(crate) mod bounds;
 mod conserved;
 mod course;
 pub(crate) mod creep;
@@ -19,6 +20,7 @@ pub mod measured;
 pub mod motion;
 mod moving;
 pub mod path;
+mod rests;
 mod result;
 mod rk4;
 pub(crate) mod row;
@@ -29,6 +31,8 @@ pub(crate) mod walk;
 mod within;
 
 pub use ask::{Ask, Method, Start};
+pub use bounds::Bounds;
 pub use moving::Moving;
+pub use rests::RestsOn;
 pub use result::{Ending, Event, Hit, Kind, Limit, Motion, Path, Phase, Strike};
 pub use sample::Sample;

@@ -14,7 +14,7 @@
 use super::conserved::conserved;
 use super::exact::Swing;
 use super::limits::{self, Limits};
-pub use super::{Ask, Ending, Event, Limit, Method, Motion, Moving, Sample, Start, path};
+pub use super::{Ask, Bounds, Ending, Event, Limit, Method, Motion, Moving, RestsOn, Sample, Start, path};
 use crate::error::Error;
 use crate::laws::body::Body;
 use crate::laws::contact::{Contact, Table};

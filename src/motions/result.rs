@@ -98,6 +98,8 @@ pub struct Event<S = State> {
     pub time: f64,
     /// The state at the event.
     pub state: S,
+    /// The rim from which the state is seen, as in [`Path::rims`].
+    pub rim: u8,
 }
 
 impl<S> Event<S> {
@@ -199,7 +201,7 @@ impl<S: Moving> Motion<S> {
     pub(super) fn interrupted(mut self, times: &[f64], t0: f64, start: S) -> Self {
         self.times = times[..self.states.len()].to_vec();
         let (time, state) = (self.times.last().copied().unwrap_or(t0), self.states.last().copied());
-        self.event = Some(Event { ending: Ending::Bounded, time, state: state.unwrap_or(start) });
+        self.event = Some(Event { ending: Ending::Bounded, time, state: state.unwrap_or(start), rim: 0 });
         self.limit = Some(Limit::Interrupted);
         self
     }
@@ -208,7 +210,7 @@ impl<S: Moving> Motion<S> {
     pub(super) fn cut(mut self, count: usize) -> Self {
         let at =
             self.times.get(count.saturating_sub(1)).copied().zip(self.states.get(count.saturating_sub(1)));
-        self.event = at.map(|(time, &state)| Event { ending: Ending::Bounded, time, state });
+        self.event = at.map(|(time, &state)| Event { ending: Ending::Bounded, time, state, rim: 0 });
         self.limit = Some(Limit::Interrupted);
         self.times.truncate(count);
         self.states.truncate(count);
@@ -274,6 +276,10 @@ pub struct Phase<S = State> {
     pub state: S,
     /// The slip at the beginning of the phase, along the lean and across it.
     pub slip: [f64; 2],
+    /// The height of the lowest point of the rim and its vertical velocity, which are 0 on the table.
+    pub aloft: [f64; 2],
+    /// The rim from which the state is seen, as in [`Path::rims`].
+    pub rim: u8,
 }
 
 /// An impact of a rim on the table.
@@ -331,6 +337,9 @@ pub struct Path<S = State> {
     /// empty if the motion ends where the body comes to lie on its side.
     #[cfg_attr(feature = "serde", serde(with = "crate::numbers::file::rows"))]
     pub other_rim: Vec<[f64; 5]>,
+    /// The rim from which state, slip, pose and force at each time are seen: 0 is the rim from which the initial state is
+    /// seen, and 1 the other one. Empty if the motion ends where the body leaves the table: then it is always 0.
+    pub rims: Vec<u8>,
     /// The slip at the event that ended the motion.
     pub last_slip: [f64; 2],
     /// For a stone, the time up to which the estimated error is at most 1 % of the largest speed (at most 0.01 for slow
@@ -340,9 +349,8 @@ pub struct Path<S = State> {
     /// Whether the rows have the lost energy, and whether the motion continues in the air and on both rims.
     pub(super) loses: bool,
     pub(crate) goes_on: bool,
-    /// Whether the body stands on its other rim, now and, if the motion goes on, at each time.
+    /// Whether the body is now seen from its other rim.
     pub(super) upside_down: bool,
-    pub(super) turned: Vec<bool>,
     /// Whether the computation stopped where the body began to roll.
     pub(crate) rolls_on: bool,
     /// Whether the last turns of a whirr were left out, because its end is known without them.
@@ -370,12 +378,12 @@ impl<S> Path<S> {
             aloft: room(going)?,
             impacts: Vec::new(),
             other_rim: room(going)?,
+            rims: room(going)?,
             loses,
             goes_on,
             last_slip: [0.0; 2],
             known_until: f64::INFINITY,
             upside_down: false,
-            turned: room(going)?,
             rolls_on: false,
             leaves_turns: false,
             erred: 0.0,

@@ -53,7 +53,7 @@ impl<S: Moving> Followed<S> {
         }
         if path.goes_on {
             path.aloft.push(row.aloft);
-            path.turned.push(path.upside_down && row.other_rim.is_none());
+            path.rims.push(u8::from(path.upside_down && row.other_rim.is_none()));
             path.other_rim.push(row.other_rim.unwrap_or([f64::NAN; 5]));
         }
         if let Some((poses, pose)) = motion.poses.as_mut().zip(row.pose) {

@@ -43,8 +43,8 @@ pub struct Sample<S: Moving = State> {
     pub aloft: [f64; 2],
     /// Slip and force (N, across the lean, along it) of the other rim of a body that lies on both.
     pub other_rim: Option<[f64; 5]>,
-    /// Whether the body stands on its initially upper rim, from which state and pose are then seen.
-    pub turned: bool,
+    /// The rim from which state, slip, pose and force are seen: 0 is that of the initial state, and 1 the other one.
+    pub rim: u8,
     smooth: bool,
 }
 
@@ -65,19 +65,24 @@ impl<S: Moving> Motion<S> {
     /// # Ok::<(), spincyl::Error>(())
     /// ```
     pub fn samples(&self) -> impl ExactSizeIterator<Item = Sample<S>> {
+        (0..self.states.len()).map(|i| self.sample(i))
+    }
+
+    /// The motion at the time of this index.
+    pub(crate) fn sample(&self, i: usize) -> Sample<S> {
         let path = self.path.as_deref();
-        self.states.iter().enumerate().map(move |(i, state)| Sample {
+        Sample {
             time: self.times.get(i).copied().unwrap_or(f64::NAN),
-            state: *state,
+            state: self.states[i],
             pose: self.poses.as_ref().and_then(|all| all.get(i).copied()),
             force: self.forces.as_ref().and_then(|all| all.get(i).copied()),
             slip: path.and_then(|path| path.slip.get(i).copied()),
             kind: path.and_then(|path| path.kinds.get(i).copied()),
             aloft: path.and_then(|path| path.aloft.get(i).copied()).unwrap_or_default(),
             other_rim: path.and_then(|path| path.other_rim.get(i).copied().filter(|x| !x[2].is_nan())),
-            turned: path.is_some_and(|path| path.turned.get(i).copied().unwrap_or_default()),
+            rim: path.and_then(|path| path.rims.get(i).copied()).unwrap_or_default(),
             smooth: self.smooth,
-        })
+        }
     }
 }
 
@@ -90,11 +95,17 @@ impl Motion {
 }
 
 impl Sample {
+    /// The cosine of the angle from the vertical to the axis of the body at the start: 1 where the body lies on its
+    /// first face, and -1 where it lies on the other one.
+    pub fn axis_up(&self) -> f64 {
+        self.state.axis_up(self.rim)
+    }
+
     /// The rotation from the axes of the body to those of the laboratory, if poses were requested; see
     /// [`Motion::orientations`].
     pub fn orientation(&self) -> Option<UnitQuaternion<f64>> {
         // A pose on the other rim describes the body after a half turn about its own first axis.
-        let over = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), if self.turned { PI } else { 0.0 });
+        let over = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), if self.rim == 1 { PI } else { 0.0 });
         self.pose.map(|pose| pose.orientation(&self.state) * over)
     }
 
@@ -111,12 +122,14 @@ impl Sample {
     /// The force of the table along the axes of the laboratory, in weights, if poses and forces were requested: for a body
     /// that lies on both rims the sum of both forces, and zero in the air.
     pub fn force_in_laboratory(&self) -> Option<Vector3<f64>> {
-        let other = self.other_rim.map_or([0.0; 3], |[_, _, force @ ..]| force);
-        self.pose.zip(self.force).map(|(pose, Force { normal, along, across })| {
-            let both =
-                Force { normal: normal + other[0], along: along + other[1], across: across + other[2] };
-            both.in_laboratory(pose.phi.rest)
-        })
+        let own = self.pose.zip(self.force).map(|(pose, force)| force.in_laboratory(pose.phi.rest));
+        own.map(|own| own + self.force_on_other_rim().unwrap_or_default())
+    }
+
+    /// The part of that force on the other rim; None unless the body lies on both rims.
+    pub fn force_on_other_rim(&self) -> Option<Vector3<f64>> {
+        let [_, _, normal, along, across] = self.force.and(self.other_rim)?;
+        self.pose.map(|pose| Force { normal, along, across }.in_laboratory(pose.phi.rest))
     }
 
     /// The velocity of the centre of mass along the axes of the laboratory, in sqrt(g R), if poses were requested.

@@ -4,7 +4,7 @@ use crate::laws::contact::TableKind;
 use crate::laws::loss::Law;
 use crate::many::motions::Answer;
 use crate::motions::drift::End;
-use crate::motions::{Ending, Kind};
+use crate::motions::{Ending, Kind, RestsOn};
 use crate::states::stability::Region;
 use core::fmt::Debug;
 use pyo3::prelude::*;
@@ -27,7 +27,7 @@ fn constant(value: &impl Debug) -> String {
 /// Names and codes of every enumeration, in the order of the codes. Tables and ends of drifts have their own names; a
 /// loss law has the name of its class.
 #[pyfunction]
-pub fn codes() -> [(&'static str, Codes); 8] {
+pub fn codes() -> [(&'static str, Codes); 9] {
     let status: Codes = Ending::ALL.iter().map(|x| (constant(x), *x as u8)).collect();
     let endings = status.iter().filter(|(_, code)| *code != Ending::Invalid as u8).cloned();
     [
@@ -35,6 +35,7 @@ pub fn codes() -> [(&'static str, Codes); 8] {
         ("Status", status),
         ("Region", Region::ALL.iter().map(|x| (constant(x), *x as u8)).collect()),
         ("Answer", Answer::ALL.iter().map(|x| (constant(x), *x as u8)).collect()),
+        ("RestsOn", RestsOn::ALL.iter().map(|x| (constant(x), *x as u8)).collect()),
         ("Phase", Kind::ALL.iter().map(|x| (format!("{x:?}").to_lowercase(), *x as u8)).collect()),
         ("Table", TableKind::ALL.iter().map(|x| (x.name().to_owned(), *x as u8)).collect()),
         ("Law", Law::ALL.iter().map(|x| (format!("{x:?}"), *x as u8)).collect()),

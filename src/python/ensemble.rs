@@ -17,13 +17,14 @@ const SLIP: [&str; 2] = ["slip_along", "slip_across"];
 const TABLE: [&str; 3] = ["coefficient", "static", "patch"];
 
 /// Name, unit and description of the columns that are not summaries.
-const LABELS: [[&str; 3]; 9] = [
+const LABELS: [[&str; 3]; 10] = [
     ["theta", "rad", "inclination"],
     ["w1", "sqrt(g/R)", "angular velocity along e1, phi' sin theta"],
     ["w2", "sqrt(g/R)", "angular velocity along e2, -theta'"],
     ["w3", "sqrt(g/R)", "angular velocity along the axis of the body"],
     ["slip_along", "sqrt(g R)", "slip along the lean"],
     ["slip_across", "sqrt(g R)", "slip across the lean"],
+    ["rim", "1", "rim from which the state is seen: 0 the first, 1 the other"],
     ["error", "1", "estimated error of the states"],
     ["method", "1", "code of spincyl.sweep.Answer"],
     ["status", "1", "code of spincyl.sweep.Status"],
@@ -91,16 +92,17 @@ pub fn ensemble<'py>(
         wanted.push((name.as_str(), Some(array.as_slice_mut()?)));
     }
     let mut wanted = FilledColumns(wanted);
-    let (states, slips) = (wanted.some(STATE), wanted.some(SLIP));
-    let ((states, slips), (last, last_slip)) =
-        if asked.spread { ((states, slips), (None, None)) } else { ((None, None), (states, slips)) };
+    let shown = (wanted.some(STATE), wanted.some(SLIP), wanted.take("rim"));
+    let none = (None, None, None);
+    let ((states, slips, rims), (last, last_slip, last_rim)) =
+        if asked.spread { (shown, none) } else { (none, shown) };
     let mut summary = [const { None }; SUMMARIES];
     for &kind in Summary::ALL {
         summary[kind as usize] = wanted.take(kind.label()[0]);
     }
     let error = wanted.take("error").ok_or_else(|| PyValueError::new_err("no column error"))?;
     let (method, status) = (method.as_slice_mut()?, status.as_slice_mut()?);
-    let out = MotionOutput { states, slips, last, last_slip, summary, error, method, status };
+    let out = MotionOutput { states, slips, rims, last, last_slip, last_rim, summary, error, method, status };
     let mut watch = Watch::new(progress);
     py.detach(|| roll_among(&starts, &job, out, threads, &mut |share| watch.go_on(share)))?;
     watch.done(py)

@@ -207,6 +207,11 @@ static LAWS: &[ArrayFunction] = &[
         value: Value::One(|x| of_state(x, |y, b| crate::laws::contact::smooth::energy(b, y))),
     },
     ArrayFunction {
+        name: "axis_up",
+        inputs: 2,
+        value: Value::One(|x| State { theta: x[0], w1: 0.0, w2: 0.0, w3: 0.0 }.axis_up(x[1] as u8)),
+    },
+    ArrayFunction {
         name: "inertia",
         inputs: 10,
         value: Value::One(|x| of_state(x, |y, b| Contact::Rolling.reduced(b).inertia(|| y.theta.sin_cos()))),
@@ -344,7 +349,7 @@ mod _core {
     #[pymodule_export]
     use super::loss::loss_laws;
     #[pymodule_export]
-    use super::motion::{rising_spin, roll, swing, turning_spin};
+    use super::motion::{bounds, rising_spin, roll, swing, turning_spin};
     #[pymodule_export]
     use super::options::motion_options;
     #[pymodule_export]

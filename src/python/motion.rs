@@ -5,7 +5,7 @@ use super::custom::{PythonLaw, Raised};
 use super::options::{MotionAsked, contact_of, table_of};
 use super::stone::{STONE, stone_of};
 use super::watch::Watch;
-use crate::error::{room, spare_for};
+use crate::error::{copied, room, spare_for};
 use crate::laws::contact::patch;
 use crate::laws::custom::{CoupleLaw, Custom, FrictionLaw};
 use crate::laws::stone::{Ellipsoid, StoneState};
@@ -13,14 +13,16 @@ use crate::motions::exact::Swing;
 use crate::motions::motion;
 use crate::motions::stone;
 use crate::motions::turning;
-use crate::motions::{Ask, Kind, Method, Motion, Moving, Start};
+use crate::motions::{Ask, Bounds, Kind, Method, Motion, Moving, RestsOn, Sample, Start};
 use crate::{Body, Error, State};
+use nalgebra::Vector3;
 use numpy::ndarray::ArrayView2;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::collections::BTreeMap;
 
 /// A named array for Python, with its numbers row by row.
 struct NamedArray {
@@ -70,6 +72,10 @@ trait Told: Moving + Sized {
     fn drilling(&self) -> f64;
     /// The normal component of a force.
     fn normal(force: &Self::Force) -> f64;
+    /// What a body of revolution rests on.
+    fn rests_on(_: &Motion<Self>, _: &Self::Body) -> RestsOn {
+        RestsOn::None
+    }
 }
 
 impl Told for State {
@@ -85,20 +91,27 @@ impl Told for State {
             rows.add("contact_point", 2, &|i, to| to.extend([point(i).x, point(i).y]))?;
             let centre = |i: usize| <[f64; 3]>::from(poses[i].centre(body, &m.states[i]).coords);
             rows.add("centre", 3, &|i, to| to.extend(centre(i)))?;
-            let mut orientations = room(poses.len())?;
-            orientations.extend(m.orientations());
-            rows.add("orientation", 4, &|i, to| to.extend(orientations[i].coords.iter()))?;
+            let turned = |i: usize| m.sample(i).orientation().map(|q| <[f64; 4]>::from(q.coords));
+            rows.add("orientation", 4, &|i, to| to.extend(turned(i).unwrap_or([f64::NAN; 4])))?;
         }
         if let Some(forces) = &m.forces {
             rows.add("normal", 0, &|i, to| to.push(forces[i].normal))?;
             rows.add("friction", 0, &|i, to| to.push(forces[i].friction()))?;
             rows.add("friction_coefficient", 0, &|i, to| to.push(forces[i].friction_coefficient()))?;
-            if let Some(poses) = &m.poses {
-                let force = |i: usize| <[f64; 3]>::from(forces[i].in_laboratory(poses[i].phi.rest));
-                rows.add("contact_force", 3, &|i, to| to.extend(force(i)))?;
+            if m.poses.is_some() {
+                let told = |force: Option<Vector3<f64>>| force.map_or([f64::NAN; 3], <[f64; 3]>::from);
+                let (whole, other) = (Sample::force_in_laboratory, Sample::force_on_other_rim);
+                rows.add("contact_force", 3, &|i, to| to.extend(told(whole(&m.sample(i)))))?;
+                if m.path.as_ref().is_some_and(|path| path.goes_on) {
+                    rows.add("contact_force_other", 3, &|i, to| to.extend(told(other(&m.sample(i)))))?;
+                }
             }
         }
         Ok(())
+    }
+
+    fn rests_on(m: &Motion, body: &Body) -> RestsOn {
+        m.rests_on(body)
     }
 
     fn drilling(&self) -> f64 {
@@ -276,7 +289,7 @@ fn custom<'py>(
     let m = rolled?.ok_or_else(|| PyRuntimeError::new_err("the motion was interrupted"))?;
     let columns = columns(&m, body, (&ask, asked.couple.is_some() || !ask.losses.is_none()), &mut || true)?
         .unwrap_or_default();
-    dictionary(py, &m, columns, rubs(&ask))
+    dictionary(py, (&m, body), columns, rubs(&ask))
 }
 
 /// The least spin with which a top turns over within a time, with the friction of a table, or ValueError.
@@ -340,14 +353,14 @@ where
     })?;
     watch.done(py)?;
     let Some((m, columns)) = found else { return Err(PyRuntimeError::new_err("the motion was interrupted")) };
-    dictionary(py, &m, columns, rubs(ask))
+    dictionary(py, (&m, body), columns, rubs(ask))
 }
 
 /// The dictionary for Python: the arrays, the end of the motion, the method and the error estimates.
 #[inline(never)]
-fn dictionary<'py, S: Moving>(
+fn dictionary<'py, S: Told>(
     py: Python<'py>,
-    m: &Motion<S>,
+    (m, body): (&Motion<S>, &S::Body),
     columns: Vec<NamedArray>,
     rubs: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
@@ -370,13 +383,14 @@ fn dictionary<'py, S: Moving>(
     if let Some(event) = m.event {
         let numbers = event.state.numbers().as_ref().to_vec();
         let slip = m.path.as_ref().filter(|_| rubs).map(|path| path.last_slip);
-        out.set_item(intern!(py, "event"), (event.time, numbers, slip))?;
+        out.set_item(intern!(py, "event"), (event.time, numbers, slip, event.rim))?;
     }
     let (method, setting) = match m.method {
         Method::Step(h) => (intern!(py, "rk4"), h),
         Method::Tolerance(tol) => (intern!(py, "dop853"), tol),
         Method::Exact => (intern!(py, "exact"), f64::NAN),
     };
+    out.set_item(intern!(py, "_rests"), S::rests_on(m, body) as u8)?;
     out.set_item(intern!(py, "method"), method)?;
     out.set_item(intern!(py, "_setting"), setting)?;
     out.set_item(intern!(py, "error"), m.error)?;
@@ -402,11 +416,15 @@ fn dictionary<'py, S: Moving>(
         let mut codes = room(path.kinds.len())?;
         codes.extend(path.kinds.iter().map(|kind| *kind as u8));
         extra.set_item(intern!(py, "phase"), PyArray1::<u8>::from_vec(py, codes))?;
-        let phases: Vec<(f64, u8, Vec<f64>, [f64; 2])> = path
-            .phases
-            .iter()
-            .map(|phase| (phase.time, phase.kind as u8, phase.state.numbers().as_ref().to_vec(), phase.slip))
-            .collect();
+        if !path.rims.is_empty() {
+            extra.set_item("rim", PyArray1::<u8>::from_vec(py, copied(&path.rims)?))?;
+        }
+        let mut phases = room(path.phases.len())?;
+        phases.extend(path.phases.iter().map(|phase| {
+            let aloft = (phase.kind == Kind::Flying).then_some(phase.aloft);
+            let numbers = phase.state.numbers().as_ref().to_vec();
+            (phase.time, phase.kind as u8, numbers, phase.slip, aloft, phase.rim)
+        }));
         out.set_item(intern!(py, "phases"), phases)?;
         let impacts: Vec<_> = path
             .impacts
@@ -420,6 +438,21 @@ fn dictionary<'py, S: Moving>(
     }
     out.set_item(intern!(py, "_extra"), extra)?;
     Ok(out)
+}
+
+/// The bounds of the errors of a motion by name; see `Bounds::of` for the numbers.
+#[pyfunction]
+pub fn bounds(errors: [f64; 3], size: [f64; 2], most: [f64; 3]) -> BTreeMap<&'static str, f64> {
+    let of = Bounds::of(errors, size, most);
+    BTreeMap::from([
+        ("state", of.state),
+        ("position", of.position),
+        ("orientation", of.orientation),
+        ("velocity", of.velocity),
+        ("angular_velocity", of.angular_velocity),
+        ("force", of.force),
+        ("energy", of.energy),
+    ])
 }
 
 /// The arrays that the dictionary itself contains; all others are in its `_extra`.

@@ -3,7 +3,7 @@
 use spincyl::contact::Friction;
 use spincyl::loss::{Law, Losses};
 use spincyl::measured::{Measured, Tube};
-use spincyl::motion::{Ask, Ending, Start, roll_with};
+use spincyl::motion::{Ask, Ending, Method, Start, roll_with};
 use spincyl::{Body, Error, Scale, State, steady};
 use std::f64::consts::FRAC_PI_2;
 
@@ -53,8 +53,8 @@ fn a_hoop_that_rolls_has_the_speed_of_its_rim_and_carries_its_weight() {
     assert!((last.force.z - 1.5 * 9.80665).abs() < 1e-12);
     // m g R + m v^2 of a hoop
     assert!((last.energy - 1.5 * (9.80665 * 0.4 + 4.0)).abs() < 1e-12);
-    let [states, places, forces] = motion.error();
-    assert!(states < 1e-11 && places < 1e-11 && forces < 1e-10);
+    let of = motion.bounds();
+    assert!(of.state < 1e-11 && of.position < 1e-11 && of.force < 1e-10);
     assert_eq!(motion.end(), (Ending::Done, None));
 }
 
@@ -124,5 +124,42 @@ fn a_tube_without_measures_is_refused_by_name() {
     ] {
         let refused = name(Measured::tube(&tube));
         assert!(refused.starts_with(named), "{refused}");
+    }
+}
+
+/// A rod that falls by rough steps, against the exact motion: no bound is below the true error, as a bound of the place
+/// without the lever of the rod would be.
+#[test]
+fn bounds_of_a_long_rod_hold_for_its_place_velocity_force_and_energy() {
+    for length in [0.1, 0.2, 1.0] {
+        let rod =
+            Measured::tube(&Tube { outer_diameter: 0.02, length, mass: 0.05, ..Tube::default() }).unwrap();
+        let start = State { theta: 0.3, w1: 0.02, w2: -0.02, w3: 0.1 };
+        let end = rod.roll(start, &[0.0, 50.0], &Ask::default(), || true).unwrap().unwrap().end().1.unwrap();
+        let t: Vec<f64> = (0..=100).map(|i| 0.009 * end * f64::from(i)).collect();
+        let run =
+            |method| rod.roll(start, &t, &Ask::default().with_method(method), || true).unwrap().unwrap();
+        let exact = run(Method::Exact);
+        for method in [Method::Step(0.3), Method::Step(0.1), Method::Tolerance(1e-4), Method::Tolerance(1e-6)]
+        {
+            let (motion, mut off) = (run(method), [0f64; 6]);
+            for (a, b) in motion.readings().zip(exact.readings()) {
+                let apart = [
+                    (a.position - b.position).norm(),
+                    2.0 * (a.orientation.inverse() * b.orientation).imag().norm(),
+                    (a.velocity - b.velocity).norm(),
+                    (a.angular_velocity - b.angular_velocity).norm(),
+                    (a.force - b.force).norm(),
+                    (a.energy - b.energy).abs(),
+                ];
+                off.iter_mut().zip(apart).for_each(|(most, x)| *most = most.max(x));
+            }
+            let of = motion.bounds();
+            let bounds = [of.position, of.orientation, of.velocity, of.angular_velocity, of.force, of.energy];
+            for (k, (off, bound)) in off.into_iter().zip(bounds).enumerate() {
+                assert!(off <= bound, "length {length}, {method:?}, number {k}: {off:e} beyond {bound:e}");
+            }
+            assert!(bounds[0] < 100.0 * off[0], "{:e} of {:e}", bounds[0], off[0]);
+        }
     }
 }

@@ -5,6 +5,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use proptest::prelude::*;
 use spincyl::contact::{Friction, Table};
 use spincyl::loss::{Law, Losses};
+use spincyl::measured::{Measured, Tube};
 use spincyl::motion::path::Kind;
 use spincyl::motion::{Ask, Motion, Start, roll_with};
 use spincyl::pose::{axes, euler_angles};
@@ -103,6 +104,37 @@ proptest! {
     }
 }
 
+/// The first reading of a thrown body is the orientation, the place and the velocities that were given, and later its
+/// centre falls from there.
+#[test]
+fn a_motion_is_read_where_it_began() {
+    let mut draws = 0.1f64;
+    let mut draw = || {
+        draws = (997.0 * draws + 0.123).fract();
+        2.0 * draws - 1.0
+    };
+    for length in [0.004, 0.02, 0.3] {
+        let can = Tube { outer_diameter: 0.05, length, mass: 0.1, ..Tube::default() };
+        let can = Measured::tube(&can).unwrap();
+        for _ in 0..50 {
+            let q = UnitQuaternion::from_euler_angles(3.0 * draw(), 1.5 * draw(), 3.0 * draw());
+            let [w, v, at] = [10.0, 1.0, 0.5].map(|size| Vector3::from_fn(|_, _| size * draw()));
+            let s = can.scale();
+            let (turns, moves) = (w.map(|x| s.angular_velocity(x)), v.map(|x| s.speed(x)));
+            let start = Start::from_twist(can.body(), &q, turns, moves, Some(s.length(0.6))).unwrap();
+            let ask = Ask::on(Friction::coulomb(0.3)).with_restitution(0.5);
+            let motion = can.roll(start, &[0.0, 0.02], &ask, || true).unwrap().unwrap();
+            let all: Vec<_> = motion.readings_from(&q, [at.x, at.y]).collect();
+            assert!((all[0].orientation.inverse() * q).imag().norm() < 1e-14);
+            assert!((all[0].velocity - v).norm() < 1e-14 && (all[0].angular_velocity - w).norm() < 1e-13);
+            let place = Vector3::new(at.x, at.y, 0.6);
+            assert!((all[0].position.coords - place).norm() < 1e-14);
+            let falls = Vector3::z() * (0.5 * 9.80665 * 0.02 * 0.02);
+            assert!((all[1].position.coords - place - v * 0.02 + falls).norm() < 1e-14);
+        }
+    }
+}
+
 #[test]
 fn a_twist_that_is_no_number_is_refused_by_name() {
     let (body, upright) = (Body::solid(1.0).unwrap(), UnitQuaternion::identity());
@@ -161,7 +193,7 @@ fn the_velocities_of_a_sample_are_the_rates_of_its_pose() {
             let end = motion.path.iter().flat_map(|p| {
                 p.phases.iter().map(|phase| phase.time).chain(p.impacts.iter().map(|hit| hit.time))
             });
-            if end.into_iter().any(|t| a.time <= t && t <= c.time) || a.turned != c.turned {
+            if end.into_iter().any(|t| a.time <= t && t <= c.time) || a.rim != c.rim {
                 continue;
             }
             let step = c.time - a.time;
@@ -177,7 +209,7 @@ fn the_velocities_of_a_sample_are_the_rates_of_its_pose() {
                 b.time
             );
             seen += 1;
-            turned += usize::from(b.turned);
+            turned += usize::from(b.rim);
             flying += usize::from(b.kind == Some(Kind::Flying));
         }
     }

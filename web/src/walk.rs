@@ -100,10 +100,6 @@ impl Walked {
         let poses = motion.poses.iter().flatten();
         let forces = motion.forces.iter().flatten();
         let Some(path) = &motion.path else { return Vec::new() };
-        // The other rim is down where the body's axes are not those of the pose.
-        let over = |((axes, pose), y): ((_, &Pose), _)| pose.orientation(y).angle_to(&axes) > 1.0;
-        let turned: Vec<bool> =
-            motion.orientations().zip(poses.clone()).zip(&motion.states).map(over).collect();
         let row = |(i, (pose, force)): (usize, (&Pose, &Force))| {
             let (t, y, slip) = (motion.times[i], motion.states[i], path.slip[i]);
             let knocks = path.impacts.iter().take_while(|hit| hit.time < t).map(|hit| hit.lost);
@@ -118,7 +114,7 @@ impl Walked {
                 Table::Smooth => Contact::Smooth.energy(&self.body, &y),
                 Table::Rolling { .. } => Contact::Rolling.energy(&self.body, &y),
             };
-            let turned = turned[i];
+            let turned = path.rims.get(i) == Some(&1);
             let row = Row {
                 t,
                 y,

@@ -50,26 +50,17 @@ def _told(m: Motion, begins: Floats, ends: Floats, codes: list[int]) -> list[lis
 
 
 def beside(m: Motion, t: Floats) -> dict[str, Any]:
-    """Force on the other rim of a body that lies on both, as 16-bit integers between bounds: F_h, F_2, N.
-
-    Friction is opposite to the slip. If that rim does not slip while the body rolls on its side, friction has
-    the same direction as on the first rim. While the body pivots about that rim, friction is left at zero,
-    since its direction is not known.
-    """
+    """Force on the other rim of a body that lies on both, as 16-bit integers between bounds: F_h, F_2, N."""
     there = m.wanting("pose", "force", t=t)
     on_both = there.phase > FLIES
     if not on_both.any():
         return {}
     up = aloft(m, *span(m))
     told = np.where(up.on_other(there.t), -1.0, 1.0)  # sign by the rim to which theta refers
-    slip, own = there.slip_other @ [1, 1j], there.contact_force[:, :2] @ [1, 1j] * np.exp(-1j * there.phi)
-    way = np.where(np.abs(slip) > 1e-9, -slip, np.where(there.phase == len(KINDS) - 1, own, 0.0))
-    size = np.maximum(np.abs(way), 1e-300)
-    push = told * np.where(on_both, there.friction_other * way / size, 0.0)
+    force = np.where(on_both[:, np.newaxis], there.contact_force_other, 0.0)
+    push = told * (force[:, :2] @ [1, 1j]) * np.exp(-1j * there.phi)
     found = np.zeros((t.size, 3))  # no force after the end, which may come a little earlier
-    found[: there.t.size] = np.column_stack(
-        [push.real, push.imag, np.where(on_both, there.normal_other, 0.0)]
-    )
+    found[: there.t.size] = np.column_stack([push.real, push.imag, force[:, 2]])
     low, high = found.min(axis=0), found.max(axis=0)
     whole = np.round((found - low) / np.where(high > low, high - low, 1.0) * 0xFFFF)
     return {"least": low.tolist(), "largest": high.tolist(), "others": (whole, "<u2")}

@@ -36,7 +36,10 @@ def forces(m: Motion, t: Floats) -> Floats:
     of the laboratory.
     """
     there = m.wanting("pose", "force", t=t)
-    push = there.contact_force[:, :2] @ [1, 1j]
+    force = there.contact_force
+    if goes_up(m):  # that on the other rim is drawn apart
+        force = force - np.nan_to_num(there.contact_force_other)
+    push = force[:, :2] @ [1, 1j]
     slip = np.zeros(push.shape, complex) if m._phases is None else there.slip @ [1, 1j]
     if isinstance(there, EllipsoidMotion):
         # the axes of a state's slip are rotated by this angle about the vertical

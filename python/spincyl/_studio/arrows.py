@@ -12,6 +12,7 @@ import numpy as np
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._input.numbers import Floats
 from spincyl._motion import Motion
+from spincyl._studio.aloft import goes_up
 from spincyl._studio.look import Camera
 from spincyl._studio.painted import Painted, Piece, painted, whole
 from spincyl._studio.poses import seen, span
@@ -69,6 +70,8 @@ def vectors(m: Motion, t: Floats, drawn: tuple[str, ...]) -> Vectors:
     found = {"omega": omega, "momentum": momentum, "velocity": (centre[2] - centre[0]) / long}
     if "force" in drawn:
         (force,) = seen(m, t, "contact_force")
+        if goes_up(m):  # the arrow stands on one rim
+            force = force - np.nan_to_num(seen(m, t, "contact_force_other", "contact_force")[0])
         found |= {"normal": force * [0, 0, 1], "friction": force * [1, 1, 0]}
     return Vectors(found, contact, centre[1])
 

@@ -19,7 +19,7 @@ from spincyl._motion import Motion
 from spincyl._scale import Scale, scale_of
 from spincyl._state import State
 from spincyl._studio.mjcf import mjcf
-from spincyl._studio.scene_data import inclination, pose_errors, scene_data
+from spincyl._studio.scene_data import bounds, inclination, scene_data
 from spincyl._studio.shape import profiles, rotations
 
 #: Of a mesh for display: number of pieces of a profile that become one, and number of points round the axis.
@@ -190,7 +190,8 @@ class Scene:
         if t[0] == 0 and angle[0] > _DOUBTED:
             why = "expected quaternions x, y, z, w, or w, x, y, z with scalar_first=True"
             warn(f"orientation: at time 0 it differs by {angle[0]:.2g} rad from the initial one; {why}")
-        metre, (off, turned) = self.scale.radius, pose_errors(m)
+        metre, found = self.scale.radius, bounds(m)
+        off, turned = found["position"], found["orientation"]
         away = np.linalg.norm(x[:n] - metre * m.centre, axis=1)
         reach = metre * float(np.linalg.norm(m.centre[0]))
         if away[0] > _AWAY * reach:

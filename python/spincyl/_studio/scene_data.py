@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from spincyl import _core
 from spincyl._body import Body
 from spincyl._contact import Coulomb, Viscous
 from spincyl._ellipsoid import Ellipsoid
@@ -114,10 +115,15 @@ def inclination(orientation: Floats) -> Floats:
     return found
 
 
-def pose_errors(m: Motion) -> tuple[float, float]:
-    """Bounds of the errors of the centre of mass and of the angle of the orientation, in natural units."""
-    e, p = m.error, m.pose_error
-    return p + reach(m.body) * (e + p), e + 2 * p
+def bounds(m: Motion, w: Floats | float = 0.0, v: Floats | float = 0.0) -> dict[str, float]:
+    """Bounds of the errors of a motion by name, in natural units, from its angular velocities and velocities.
+
+    Without these only those of the state, the position and the orientation are right.
+    """
+    force = m.contact_force if "contact_force" in m._extra else 0.0
+    most = [float(np.linalg.norm(np.atleast_2d(x), axis=1).max(initial=0.0)) for x in (w, v, force)]
+    size = (reach(m.body), float(np.linalg.norm(tensor(m.body), 2)))
+    return _core.bounds((m.error, m.pose_error, m.force_error), size, (most[0], most[1], most[2]))
 
 
 def _body(body: Body | Ellipsoid, scale: Scale, metre: float) -> dict[str, Any]:
@@ -262,28 +268,18 @@ def _known(
 
 
 def _errors(m: Motion, metre: float, second: float, joule: float, w: Floats, v: Floats) -> dict[str, Any]:
-    """Bounds of the errors at any time, from the estimated errors of states, poses and forces.
-
-    To first order: the error of a state is `e`, that of its directions in space `e + p`.
-    """
-    e, p, far = m.error, m.pose_error, reach(m.body)
-    root, turned = math.sqrt(3.0), e + p
-    off, angle = pose_errors(m)
-    fast, speed = (float(np.linalg.norm(x, axis=1).max()) for x in (w, v))
-    press = float(np.linalg.norm(m.contact_force, axis=1).max())
-    spin, move = root * e, e * (root * (1 + far) + fast * far)
-    heavy = float(np.linalg.norm(tensor(m.body), 2))
-    spent = max(_LEAST, e)
+    """Bounds of the errors at any time, from the estimated errors of states, poses and forces."""
+    found, spent = bounds(m, w, v), max(_LEAST, m.error)
     return {
-        "position": off * metre,
-        "angle": angle,
-        "theta": e,
-        "angular_velocity": (spin + fast * turned) / second,
-        "velocity": (move + speed * p) * (metre / second),
-        "energy": (speed * move + heavy * fast * spin + far * e) * joule,
+        "position": found["position"] * metre,
+        "angle": found["orientation"],
+        "theta": found["state"],
+        "angular_velocity": found["angular_velocity"] / second,
+        "velocity": found["velocity"] * (metre / second),
+        "energy": found["energy"] * joule,
         "normal_force": 2 * m.force_error * joule / metre,
-        "contact_force": (root * m.force_error + press * p) * joule / metre,
-        "contact_point": p * metre,
+        "contact_force": found["force"] * joule / metre,
+        "contact_point": m.pose_error * metre,
         "times_of_phases_and_impacts": spent * second,
         "heat_and_losses": spent * joule,
         "is": "the largest at any time; angle is that between orientations",

@@ -10,6 +10,7 @@ from spincyl import _core
 from spincyl._asked import Asked, evaluations
 from spincyl._body import Body
 from spincyl._contact import TABLES, AnyContact, Coulomb, Viscous, code, fitting, law
+from spincyl._ending import RestsOn
 from spincyl._input.numbers import (
     Floats,
     Reals,
@@ -72,6 +73,7 @@ class Answer(IntEnum):
 
 _STATE = ("theta", "w1", "w2", "w3")
 _SLIP = ("slip_along", "slip_across")
+_RIM = ("rim",)
 LABELS = {name: (unit, words) for name, unit, words in _core.columns()}
 
 
@@ -121,10 +123,14 @@ def roll(
           of the slip, M g R) and "phases" (number of phases). For the time at which the last phase of rolling
           begins: "rolling_time", "rolling_theta", "rolling_w1", "rolling_w2", "rolling_w3" (NaN if the body
           never rolls). "states" and "final" then include `slip_along` and `slip_across`.
+        - With a law of friction, losses or `restitution`: "rests_on" (what the body lies or stands on at the
+          end, the code of `RestsOn`, also heads or tails) and "axis_up" (cosine of the angle from the
+          vertical to the body's axis at the end: 1 on its first face, -1 on the other one).
         - With losses: "work_lost" (energy that the losses have taken, M g R).
         - With `restitution`: "impacts" (number of impacts), "landings" (number of landings), "air_time"
           (total time in the air), "lost_in_impacts" (energy, M g R) and "last_phase" (code of
-          `Motion.phase`).
+          `Motion.phase`). "states" and "final" then include `rim`, the rim to which theta, w and the slip
+          refer, as in `Motion.rim`: theta alone does not tell which face is up.
     contact : {"rolling", "smooth"}, Coulomb or Viscous
         Rolling without slipping, a frictionless table, or a law of friction. The coefficients of a law, and
         the slips of the states, may be arrays that broadcast with the other arrays.
@@ -262,13 +268,16 @@ def roll(
     asked = asked._replace(spread="states" in wanted)
     fields = _fields(bodies, states, contact, losses)
     slips = rubs(contact) or restitution is not None
-    names = [*_STATE, *(_SLIP if slips else ())] if {"final", "states"} & {*wanted} else []
+    shown = (*_STATE, *(_SLIP if slips else ()), *(_RIM if restitution is not None else ()))
+    names = [*shown] if {"final", "states"} & {*wanted} else []
     spread = frozenset(names if asked.spread else ())
     names += [name for name in summaries if name in wanted] + ["error", "method", "status"]
     told = kept_bodies(bodies, states, losses) | kept_contact(contact)
     question = Question(fields, names, spread, asked, wanted, scale, seconds, told)
     result = swept(_fill, question, LABELS, threads=threads, progress=progress)
     result["method"].attrs |= flags(Answer)
+    if "rests_on" in result:
+        result["rests_on"].attrs |= flags(RestsOn)
     if losses is not None:
         result.attrs["losses"] = repr(losses)
     if asked.step is not None:

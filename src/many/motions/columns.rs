@@ -178,11 +178,15 @@ coded! {
         LostInImpacts = 19,
         /// Code of the [`Kind`](crate::motion::path::Kind) of the last phase.
         LastPhase = 20,
+        /// Cosine of the angle from the vertical to the axis of the first rim, at the last time or at the end.
+        AxisUp = 21,
+        /// Code of [`RestsOn`](crate::motion::RestsOn), what the body lies or stands on at rest.
+        RestsOn = 22,
     }
 }
 
 /// Number of kinds of [`Summary`].
-pub const SUMMARIES: usize = 21;
+pub const SUMMARIES: usize = 23;
 
 impl Summary {
     /// Name, unit and description in words.
@@ -213,6 +217,8 @@ impl Summary {
             Self::AirTime => ["air_time", "sqrt(R/g)", "time in the air"],
             Self::LostInImpacts => ["lost_in_impacts", "M g R", "energy lost in impacts"],
             Self::LastPhase => ["last_phase", "1", "code of the last phase"],
+            Self::AxisUp => ["axis_up", "1", "cosine from the vertical to the axis of the first rim"],
+            Self::RestsOn => ["rests_on", "1", "code of spincyl.RestsOn"],
         }
     }
 
@@ -222,6 +228,7 @@ impl Summary {
         match self {
             Self::End => true,
             Self::WorkLost => loses,
+            Self::AxisUp | Self::RestsOn => rubs || loses || flies,
             Self::SlipTime
             | Self::Dissipated
             | Self::Phases
@@ -244,10 +251,14 @@ pub struct MotionOutput<'a> {
     pub states: Option<[&'a mut [f64]; 4]>,
     /// The slips along the lean and across it, in the same layout as `states`.
     pub slips: Option<[&'a mut [f64]; 2]>,
+    /// The rim from which these states are seen, 0 or 1, in the same layout; only for motions with a restitution.
+    pub rims: Option<&'a mut [f64]>,
     /// theta, w1, w2, w3 at the last time, or at the end.
     pub last: Option<[&'a mut [f64]; 4]>,
     /// The slips at the last time, or at the end.
     pub last_slip: Option<[&'a mut [f64]; 2]>,
+    /// The rims from which the last states are seen.
+    pub last_rim: Option<&'a mut [f64]>,
     /// The summaries, indexed by [`Summary`].
     pub summary: [Option<&'a mut [f64]>; SUMMARIES],
     /// Estimated error of the states of a motion, the largest over all numbers and times, and over the period and the
@@ -271,8 +282,10 @@ impl Split for TimedOutput<'_> {
         let (out, times) = (self.out, self.times);
         let (states, later_states) = out.states.split(count * times);
         let (slips, later_slips) = out.slips.split(count * times);
+        let (rims, later_rims) = out.rims.split(count * times);
         let (last, later_last) = out.last.split(count);
         let (last_slip, later_last_slip) = out.last_slip.split(count);
+        let (last_rim, later_last_rim) = out.last_rim.split(count);
         let (summary, later_summary) = out.summary.split(count);
         let (error, later_error) = out.error.split(count);
         let (method, later_method) = out.method.split(count);
@@ -280,14 +293,17 @@ impl Split for TimedOutput<'_> {
         let later = MotionOutput {
             states: later_states,
             slips: later_slips,
+            rims: later_rims,
             last: later_last,
             last_slip: later_last_slip,
+            last_rim: later_last_rim,
             summary: later_summary,
             error: later_error,
             method: later_method,
             status: later_status,
         };
-        let out = MotionOutput { states, slips, last, last_slip, summary, error, method, status };
+        let out =
+            MotionOutput { states, slips, rims, last, last_slip, last_rim, summary, error, method, status };
         (Self { out, times }, Self { out: later, times })
     }
 }
@@ -296,12 +312,23 @@ impl<'a> MotionOutput<'a> {
     /// Only the arrays of errors, methods and status codes.
     pub fn new(error: &'a mut [f64], method: &'a mut [u8], status: &'a mut [u8]) -> Self {
         let summary = [const { None }; SUMMARIES];
-        Self { states: None, slips: None, last: None, last_slip: None, summary, error, method, status }
+        Self {
+            states: None,
+            slips: None,
+            rims: None,
+            last: None,
+            last_slip: None,
+            last_rim: None,
+            summary,
+            error,
+            method,
+            status,
+        }
     }
 
     pub(super) fn fits(&self, count: usize, times: usize) -> bool {
-        let wide = self.states.iter().flatten().chain(self.slips.iter().flatten());
-        let single = self.last.iter().flatten().chain(self.last_slip.iter().flatten());
+        let wide = self.states.iter().flatten().chain(self.slips.iter().flatten()).chain(&self.rims);
+        let single = self.last.iter().flatten().chain(self.last_slip.iter().flatten()).chain(&self.last_rim);
         wide.into_iter().all(|x| x.len() == count * times)
             && single.chain(self.summary.iter().flatten()).all(|x| x.len() == count)
             && [self.error.len(), self.method.len(), self.status.len()] == [count; 3]
@@ -329,6 +356,16 @@ impl<'a> MotionOutput<'a> {
         put(&mut self.last_slip, i, slip);
     }
 
+    /// Writes the rims from which the states of motion `i` are seen, up to its last one, and the rim at its end.
+    pub(super) fn put_rims(&mut self, first: usize, rims: &[u8], (i, last): (usize, u8)) {
+        for (to, rim) in self.rims.iter_mut().flat_map(|all| &mut all[first..]).zip(rims) {
+            *to = f64::from(*rim);
+        }
+        if let Some(all) = &mut self.last_rim {
+            all[i] = f64::from(last);
+        }
+    }
+
     /// Writes the method, the status and the error of motion `i`.
     pub(super) fn tell(&mut self, i: usize, answer: Answer, status: u8, error: f64) {
         (self.method[i], self.status[i], self.error[i]) = (answer as u8, status, error);
@@ -340,6 +377,12 @@ impl<'a> MotionOutput<'a> {
             self.put_state(row, &State::from([f64::NAN; 4]), [f64::NAN; 2]);
         }
         self.put_last(i, &State::from([f64::NAN; 4]), [f64::NAN; 2]);
+        if let Some(all) = &mut self.rims {
+            all[i * times..(i + 1) * times].fill(f64::NAN);
+        }
+        if let Some(all) = &mut self.last_rim {
+            all[i] = f64::NAN;
+        }
         for column in self.summary.iter_mut().flatten() {
             column[i] = f64::NAN;
         }

@@ -14,6 +14,7 @@ use super::slip_lanes::Slips;
 use super::walks::{Among, Walks, lanes};
 use super::{Answer, MotionBlock, MotionOutput, Summary};
 use crate::error::{Error, room, spare_for};
+use crate::laws::body::Body;
 use crate::laws::state::State;
 use crate::motions::followed::{Followed, rougher};
 use crate::motions::path::BodyWalk;
@@ -24,8 +25,8 @@ use crate::numbers::in_lanes;
 use crate::numbers::side_by_side::{SideBySide, zero};
 use fearless_simd::Level;
 
-/// Writes the results of motion `i`.
-fn put(out: &mut MotionOutput<'_>, i: usize, found: &Followed, times: &[f64]) {
+/// Writes the results of motion `i` of a body.
+fn put(out: &mut MotionOutput<'_>, i: usize, (body, found): (&Body, &Followed), times: &[f64]) {
     if let Some(event) = found.motion.event.filter(|event| event.ending == Ending::Bounded) {
         out.blank(i, times.len(), Ending::Bounded);
         out.put(Summary::End, i, event.time);
@@ -36,10 +37,15 @@ fn put(out: &mut MotionOutput<'_>, i: usize, found: &Followed, times: &[f64]) {
     for (j, (y, slip)) in found.motion.states.iter().zip(&found.path.slip).enumerate() {
         out.put_state(i * times.len() + j, y, *slip);
     }
-    if let Some((y, slip)) = found.last() {
-        out.put_last(i, &y, slip);
-    }
     let path = &found.path;
+    if let Some((y, slip, rim)) = found.last() {
+        out.put_last(i, &y, slip);
+        out.put_rims(i * times.len(), &path.rims, (i, rim));
+        out.put(Summary::AxisUp, i, y.axis_up(rim));
+    }
+    if out.wants(Summary::RestsOn) {
+        out.put(Summary::RestsOn, i, f64::from(found.rests_on(body) as u8));
+    }
     out.put(Summary::End, i, found.ended().unwrap_or(times[times.len() - 1]));
     out.put(Summary::SlipTime, i, path.slipping);
     out.put(Summary::Dissipated, i, path.heat);
@@ -121,11 +127,13 @@ impl<'a> MotionBlock<'a> {
             let (Some(fine), Some(rough)) = (walks.next(), walks.next()) else { return Ok(()) };
             // The error estimate needs both runs; if the second run fails, a single motion has no result
             // either.
-            match fine.and_then(BodyWalk::done).and_then(|found| Ok((found, rough.and_then(BodyWalk::done)?)))
-            {
-                Ok((mut found, rough)) => {
+            let both = fine.and_then(BodyWalk::done).and_then(|found| {
+                Ok((self.starts.body(self.first + i)?, found, rough.and_then(BodyWalk::done)?))
+            });
+            match both {
+                Ok((body, mut found, rough)) => {
                     found.judge(&rough, self.job.tol);
-                    put(out, i, &found, times);
+                    put(out, i, (&body, &found), times);
                 }
                 Err(e @ Error::Memory { .. }) => return Err(e),
                 Err(Error::Painleve { .. }) => out.blank(i, times.len(), Ending::Painleve),

@@ -203,7 +203,8 @@ impl<'a> CustomRun<'a> {
         }
         let phases = &mut self.made.path.phases;
         let (time, slip) = (self.start.time + self.at[TIME], [self.at[5], self.at[6]]);
-        grow(phases, Phase { time, kind: self.flow.kind(), state: state(&self.at), slip })?;
+        let (kind, state) = (self.flow.kind(), state(&self.at));
+        grow(phases, Phase { time, kind, state, slip, aloft: [0.0; 2], rim: 0 })?;
         let still = phases.iter().rev().take_while(|phase| phase.time >= time).count();
         let limit = match () {
             () if still > STILL as usize => Some(Limit::Chatter),
@@ -261,7 +262,7 @@ impl<'a> CustomRun<'a> {
                 while self.due(now).is_some() {
                     self.writes();
                 }
-                self.made.motion.event = Some(Event { ending, time: self.start.time + now, state });
+                self.made.motion.event = Some(Event { ending, time: self.start.time + now, state, rim: 0 });
                 self.made.path.last_slip = [self.at[5], self.at[6]];
                 break;
             }

@@ -21,7 +21,7 @@ use crate::motions::judge::doubted;
 use crate::motions::row::OutputRow;
 use crate::motions::walk::slow::clear_until;
 use crate::motions::walk::{Next, Pause, Phases, STILL, SlowSeries, Walk, WalkStep};
-use crate::motions::{Ask, Ending, Kind, Start};
+use crate::motions::{Ask, Ending, Kind, Phase, Start};
 use core::f64::consts::{FRAC_PI_2, PI};
 
 /// The walk of a body of revolution.
@@ -235,11 +235,8 @@ impl<const N: usize> Phases<N> for BodyPhases {
     fn over(&self) -> f64 {
         self.slide.over()
     }
-    fn state(walk: &BodyWalk<'_, N>) -> State {
-        walk.told().0
-    }
-    fn slip(walk: &BodyWalk<'_, N>) -> [f64; 2] {
-        walk.told().1
+    fn seen(walk: &BodyWalk<'_, N>, kind: Kind) -> Phase {
+        walk.told(kind)
     }
 
     fn perturbs(walk: &mut BodyWalk<'_, N>) {

@@ -169,7 +169,7 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
                 if spent || beat.is_due() && !go_on() {
                     let limit = if spent { Limit::Evaluations } else { Limit::Interrupted };
                     let (time, state) = (t0 + self.here.t, state(&self.here.at.y));
-                    self.motion.event = Some(Event { ending: Ending::Bounded, time, state });
+                    self.motion.event = Some(Event { ending: Ending::Bounded, time, state, rim: 0 });
                     self.motion.limit = Some(limit);
                     break;
                 }

@@ -20,7 +20,7 @@ use crate::motions::halt::{Halt, TIME, loses};
 use crate::motions::path::lossy::JUMP;
 use crate::motions::walk::slow::clear_until;
 use crate::motions::walk::{Next, Pause, Phases, SlowSeries, Walk, WalkStep, after_rest, ending};
-use crate::motions::{Ask, Ending, Kind, Start};
+use crate::motions::{Ask, Ending, Kind, Phase, Start};
 use crate::numbers::vector::{dot, plus};
 use crate::numbers::{Dual, Sum};
 use core::cell::RefCell;
@@ -302,11 +302,9 @@ impl<'n, const N: usize> Phases<N> for StonePhases<'n> {
     fn over(&self) -> f64 {
         self.flow.over()
     }
-    fn state(walk: &StoneWalk<'_, 'n, N>) -> StoneState {
-        state(&walk.at)
-    }
-    fn slip(walk: &StoneWalk<'_, 'n, N>) -> [f64; 2] {
-        output_slip(&walk.at)
+    fn seen(walk: &StoneWalk<'_, 'n, N>, kind: Kind) -> Phase<StoneState> {
+        let (time, at) = (walk.t0 + walk.at[TIME], &walk.at);
+        Phase { time, kind, state: state(at), slip: output_slip(at), aloft: [0.0; 2], rim: 0 }
     }
 
     fn perturbs(walk: &mut StoneWalk<'_, 'n, N>) {

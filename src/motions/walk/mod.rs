@@ -217,7 +217,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
             match next {
                 Next::Ends(ending) => {
                     self.records_event(ending);
-                    self.made.path.last_slip = P::slip(self);
+                    self.made.path.last_slip = P::seen(self, self.kind()).slip;
                     self.writes_up_to_now();
                 }
                 Next::Rolls { at_limit } => {
@@ -313,7 +313,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         self.tired = false;
         let paused = P::flows(self, y, steps, go_on)?;
         if self.made.motion.limit == Some(Limit::Rounding) && self.at[TIME] == 0.0 {
-            return Err(Error::Lost { theta: P::state(self).theta() });
+            return Err(Error::Lost { theta: P::seen(self, self.kind()).state.theta() });
         }
         Ok(paused)
     }
@@ -380,8 +380,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         if resumes && self.made.path.phases.last().is_some_and(|p| p.kind == kind) {
             return;
         }
-        let (time, state, slip) = (self.t0 + self.at[TIME], P::state(self), P::slip(self));
-        let phase = Phase { time, kind, state, slip };
+        let phase = P::seen(self, kind);
         self.grown = self.grown.and(grow(&mut self.made.path.phases, phase));
     }
 
@@ -397,7 +396,8 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
 
     /// Records an event outside the model, at the current numbers, unless an earlier event is recorded.
     pub fn records_event(&mut self, ending: Ending) {
-        let event = Event { ending, time: self.t0 + self.at[TIME], state: P::state(self) };
+        let Phase { time, state, rim, .. } = P::seen(self, self.kind());
+        let event = Event { ending, time, state, rim };
         self.made.motion.event.get_or_insert(event);
     }
 

@@ -5,7 +5,7 @@ use crate::error::Error;
 use crate::laws::contact::standstill::Standstill;
 use crate::methods::flow::Steps;
 use crate::motions::halt::Halt;
-use crate::motions::{Ending, Kind, Moving};
+use crate::motions::{Ending, Kind, Moving, Phase};
 
 /// The phases of a body of revolution or of a stone, whose motion has N numbers.
 pub(crate) trait Phases<const N: usize>: Sized {
@@ -22,10 +22,8 @@ pub(crate) trait Phases<const N: usize>: Sized {
     /// The speed below which a slip counts as zero.
     fn over(&self) -> f64;
 
-    /// The state at the current numbers.
-    fn state(walk: &Walk<'_, Self, N>) -> Self::State;
-    /// The slip at the current numbers, in the components of the outputs.
-    fn slip(walk: &Walk<'_, Self, N>) -> [f64; 2];
+    /// A phase of this kind that begins at the current numbers, in the components of the outputs.
+    fn seen(walk: &Walk<'_, Self, N>, kind: Kind) -> Phase<Self::State>;
     /// Perturbs the state of a rougher run by the share `Walk::perturbation`, which is more than rounding.
     fn perturbs(walk: &mut Walk<'_, Self, N>);
     /// Writes a point of a slip to the outputs.

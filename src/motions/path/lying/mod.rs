@@ -29,7 +29,7 @@ use crate::motions::halt::{Halt, TIME, lost, poses};
 use crate::motions::path::write;
 use crate::motions::row::OutputRow;
 use crate::motions::walk::{Next, Pause, Phases, WalkStep, after_rest, ending};
-use crate::motions::{Ask, Ending, Kind};
+use crate::motions::{Ask, Ending, Kind, Phase};
 use core::f64::consts::{FRAC_PI_2, PI};
 use flow::{LyingFlow, LyingPhase, Stance};
 
@@ -374,11 +374,15 @@ impl<const N: usize> BodyWalk<'_, N> {
         None
     }
 
-    /// The state and the slip; for a body on both rims as seen from the first rim.
-    pub(super) fn told(&self) -> (State, [f64; 2]) {
-        let (y, slip) = (self.of.state, [self.at[5], self.at[6]]);
-        let over = self.of.lying.is_some() && self.made.path.upside_down;
-        if over { mirrored(&self.of.body, &y, slip) } else { (y, slip) }
+    /// A phase of this kind that begins at the current numbers; a body on both rims is seen from the first rim.
+    pub(super) fn told(&self, kind: Kind) -> Phase {
+        let (y, slip, over) = (self.of.state, [self.at[5], self.at[6]], self.made.path.upside_down);
+        let lies = self.of.lying.is_some();
+        let (state, slip) = if over && lies { mirrored(&self.of.body, &y, slip) } else { (y, slip) };
+        let flies = kind == Kind::Flying;
+        let aloft = if flies { [self.of.takeoff.height, self.of.takeoff.lift] } else { [0.0; 2] };
+        let (time, rim) = (self.t0 + self.at[TIME], u8::from(over && !lies));
+        Phase { time, kind, state, slip, aloft, rim }
     }
 
     /// Writes a body on both rims to the outputs.
