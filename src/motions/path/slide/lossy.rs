@@ -169,7 +169,13 @@ impl Slide {
     /// [`Lossy::damped`]: crate::laws::contact::lossy::Lossy::damped
     pub(crate) fn damped<const N: usize>(&self, y: &[f64; N]) -> f64 {
         let ([s, c, w1, _, w3], rim) = (core::array::from_fn(|i| y[i]), &self.law.shape.rim);
-        let Some(losses) = self.law.losses.filter(Couples::is_soft) else { return f64::INFINITY };
+        let Some(losses) = self
+            .law
+            .losses
+            .filter(|losses| losses.is_soft() && !losses.holds().contour && !losses.holds().rolling)
+        else {
+            return f64::INFINITY;
+        };
         let slope = losses.slope(s.abs(), rim.radius((s, c)), w3 - c / s * w1);
         DAMPED / (slope * self.lightness((s, c)))
     }
