@@ -219,8 +219,7 @@ impl<S: Moving> Followed<S> {
         }
         if let (Some(poses), Some(others)) = (&motion.poses, &rough.motion.poses) {
             for (i, (a, b)) in poses.iter().zip(others).enumerate() {
-                let [over, there] =
-                    [&self.path.rims, &rough.path.rims].map(|of| of.get(i) == Some(&1));
+                let [over, there] = [&self.path.rims, &rough.path.rims].map(|of| of.get(i) == Some(&1));
                 turned = turned.max(match (over, there) {
                     (true, false) => S::pose_distance_over(a, b),
                     (false, true) => S::pose_distance_over(b, a),
