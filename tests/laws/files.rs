@@ -264,7 +264,7 @@ fn a_motion_from_a_file_that_lost_a_part_is_shorter_and_never_panics() {
     for name in ["times", "poses", "forces"] {
         file[name] = json!([]);
     }
-    for name in ["slip", "kinds", "turned"] {
+    for name in ["slip", "kinds", "rims"] {
         file["path"][name] = json!([]);
     }
     let less = Motion::<State>::deserialize(&file).unwrap();

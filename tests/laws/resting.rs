@@ -4,7 +4,7 @@ use crate::losses::ROLLS;
 use core::f64::consts::FRAC_PI_2;
 use spincyl::contact::{Friction, Table};
 use spincyl::loss::{Law, Losses};
-use spincyl::motion::{Ask, Ending, Method, Motion, Start, roll_with};
+use spincyl::motion::{Ask, Ending, Method, Start, roll_with};
 use spincyl::{Body, State, steady};
 
 #[test]
