@@ -362,11 +362,11 @@ def test_one_film_is_compared_with_the_body_as_built_in_its_own_errors():
     for shape in (float, np.atleast_1d):
         found = sc.data.compare(TUBE, shape(film.theta), shape(film.rate), **errors)
         assert found.away == pytest.approx([abs(film.theta - film.predicted) / film.theta_err], rel=0.1)
-        assert "one point, 1.4 errors from a steady state: in accord with" in repr(found)
+        assert "one point, 1.4 errors from a steady state: agrees with" in repr(found)
         assert np.isnan(found.ratio) and found.fitted == TUBE and "steady at 83.4" in found.report()
-        assert "in accord" in found._repr_html_()
+        assert "agrees with" in found._repr_html_()
     off = sc.data.compare(TUBE, film.theta - 0.1, film.rate, **errors)
-    assert "not in accord with the body as built" in off.report() and off.away[0] > 15
+    assert "disagrees with the body as built" in off.report() and off.away[0] > 15
     with pytest.raises(ValueError, match="common = 0.03: expected 0 for fewer than three points"):
         sc.data.compare(TUBE, film.theta, film.rate, **errors, common=0.03)
 

@@ -99,7 +99,7 @@ class Comparison(NamedTuple):
     def _verdict(self) -> str:
         """Whether the points are in accord with the body as built."""
         most = float(self.away.max())
-        words = ("in accord with", "doubtful beside", "not in accord with")[(most > 2.0) + (most > 3.0)]
+        words = ("agrees with", "doubtful beside", "disagrees with")[(most > 2.0) + (most > 3.0)]
         return f"{most:.1f} errors from a steady state: {words} the body as built"
 
     @property
@@ -285,7 +285,7 @@ def compare(
     A single film:
 
     >>> sc.data.compare(body, 1.4, 1.02 * body.rate(1.4), theta_err=0.01, rate_err=0.02)
-    <Comparison: one point, 0.6 errors from a steady state: in accord with the body as built>
+    <Comparison: one point, 0.9 errors from a steady state: agrees with the body as built>
     """
     one_body(body)
     extra("odrpack", "lab")
