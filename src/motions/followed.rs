@@ -177,7 +177,7 @@ impl<S: Moving> Followed<S> {
         let hops = !self.path.impacts.is_empty();
         let distance = |a: &S, b: &S, u: &[f64; 2], v: &[f64; 2]| {
             let direct = a.distance(b).max((u[0] - v[0]).abs()).max((u[1] - v[1]).abs());
-            let there = b.from_other_rim().filter(|_| hops);
+            let there = b.seen_from_other_rim().filter(|_| hops);
             there.map_or(direct, |b| direct.min(a.distance(&b).max((u[0] + v[0]).abs())))
         };
         let runs =

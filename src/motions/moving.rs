@@ -31,7 +31,7 @@ pub trait Moving: Copy + Debug + PartialEq {
     /// The largest difference between the numbers of two forces.
     fn force_distance(a: &Self::Force, b: &Self::Force) -> f64;
     /// The same state as seen from the other one of two equal rims; None for a stone.
-    fn from_other_rim(&self) -> Option<Self> {
+    fn seen_from_other_rim(&self) -> Option<Self> {
         None
     }
     /// The largest difference between two poses that are seen from different rims, `a` from the one that was not down at
@@ -63,7 +63,7 @@ impl Moving for State {
     fn pose_distance(a: &Pose, b: &Pose) -> f64 {
         pose_distance(a, b)
     }
-    fn from_other_rim(&self) -> Option<Self> {
+    fn seen_from_other_rim(&self) -> Option<Self> {
         Some(Self { theta: PI - self.theta, w1: self.w1, w2: -self.w2, w3: -self.w3 })
     }
     fn pose_distance_over(a: &Pose, b: &Pose) -> f64 {

@@ -187,11 +187,8 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
             match self.advance(go_on)? {
                 WalkStep::Flows(mut y) => {
                     let mut step = None;
-                    loop {
-                        match self.flows(y, step, u64::MAX, go_on)? {
-                            Pause::Here(there, next) => (y, step) = (there, next),
-                            Pause::No => break,
-                        }
+                    while let Pause::Here(there, next) = self.flows(y, step, u64::MAX, go_on)? {
+                        (y, step) = (there, next);
                     }
                 }
                 WalkStep::Done => return self.done(),

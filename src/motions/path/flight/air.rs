@@ -41,6 +41,9 @@ const STEP_NOISE: f64 = 100.0;
 /// Below this size the cosine of theta is the integrated one.
 const COSINE_KNOWN: f64 = 0.5;
 
+/// The time of the first landing, and whether it is that of the other rim.
+type FirstLanding = Option<(f64, bool)>;
+
 /// A step of a flight against the air: the numbers at its start, and phi and psi there.
 #[derive(Debug, Clone, Copy)]
 struct AirStep {
@@ -189,7 +192,7 @@ impl AirFlight {
 
     /// The earliest landing of a rim that touches at the start, up to the time until which a series shows it; and the
     /// times up to which no other landing is possible.
-    fn leaves(&self, leaves: [Leaves; 2], two: bool) -> Result<(Option<(f64, bool)>, [f64; 2]), NoLanding> {
+    fn leaves(&self, leaves: [Leaves; 2], two: bool) -> Result<(FirstLanding, [f64; 2]), NoLanding> {
         let (mut first, mut clear) = (None, [0.0; 2]);
         if leaves == [None; 2] {
             return Ok((first, clear));
