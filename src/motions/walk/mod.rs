@@ -206,6 +206,10 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
             self.grown?;
             let next = self.goes_on(next);
             P::audits(self);
+            if matches!(next, Next::Own(Kind::Flying)) {
+                // Bounces have a limit of their own.
+                self.short = 0;
+            }
             let limit = self.changes();
             if P::is_over(self, &next) {
                 break;
