@@ -37,7 +37,8 @@ const PHASES_PER_TIME: f64 = 20.0;
 const MOST_IMPACTS: usize = 30_000;
 /// Largest number of consecutive phases without an advance of time; a motion with more stops there.
 pub(crate) const STILL: u32 = 6;
-/// The computation of a body that loses energy stops after more than `CHATTER` consecutive phases shorter than `SHORT`:
+/// The computation of a body that loses energy stops after more than `CHATTER` consecutive phases, without a flight,
+/// shorter than `SHORT`:
 /// then two laws of dry friction alternate without end.
 const SHORT: f64 = 1e-9;
 const CHATTER: u32 = 200;
