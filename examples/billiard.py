@@ -15,8 +15,7 @@ Floats = NDArray[np.float64]
 class Shot(NamedTuple):
     """A shot until the ball is at rest, in SI."""
 
-    rolls: sc.Motion  # until the centre stops
-    turns: sc.Motion  # from then on, where only the patch still slows the ball
+    motion: sc.Motion
     slides: float  # time when the slip is as fast as the rim of the patch, k = 1
     stands: float  # time when the centre stops
     ends: float  # time when the spin ends
@@ -25,18 +24,17 @@ class Shot(NamedTuple):
 def shot(patch: float) -> Shot:
     """Compute the shot with a patch of this radius in metres."""
     contact = sc.Coulomb.from_si(MU, patch=patch, scale=body)
-    rolls = sc.roll(body, start, t, contact=contact, losses=losses)
-    assert rolls.event is not None
-    stands = rolls.event.time
-    turns = sc.roll(body, rolls.event.state, t, contact=contact)
-    spins = rolls.phases[-1].kind == "slipping"
-    last = int(np.argmax(rolls.creep < 1)) + 1
+    motion = sc.roll(body, start, t, contact=contact, losses=losses)
+    assert motion.event is not None
+    last = int(np.argmax(motion.creep < 1)) + 1
+    still = speed(motion) < 1e-4
     return Shot(
-        rolls,
-        turns,
-        slides=float(np.interp(-1, -rolls.creep[:last], rolls.t[:last])),
-        stands=stands,
-        ends=stands + turns.phases[-1].time if spins else rolls.phases[-1].time,
+        motion,
+        slides=float(np.interp(-1, -motion.creep[:last], motion.t[:last])),
+        # slower than 0.1 mm/s, and the ball may spin on
+        stands=float(motion.t[still][0]) if still.any() else motion.event.time,
+        # the last phase begins where the patch neither slips nor drills
+        ends=motion.phases[-1].time,
     )
 
 
@@ -69,7 +67,7 @@ MU, DELTA = 0.2, 0.01 * scale.radius
 losses = sc.loss.RollingResistance.from_si(DELTA, scale=body)
 VELOCITY, SIDE = 2.0, 60.0  # m/s, without roll; rad/s about the vertical
 start = replace(sc.thrown(body, VELOCITY, 0.0), w1=SIDE * scale.seconds(1.0))
-t = np.linspace(0.0, 21.0, 21001)
+t = np.linspace(0.0, 36.0, 36001)
 SMALL, WIDE = 0.5e-3, 2e-3  # radii of the patch in metres
 
 
@@ -78,10 +76,8 @@ def picture() -> None:
     _, axes = plt.subplots(2, 2, sharex="col", sharey="row", width_ratios=(1, 2.2))
     for patch, style in ((SMALL, "-"), (WIDE, "--")):
         found = shot(patch)
-        parts = found.rolls, found.turns
-        time = np.concatenate((found.rolls.t, found.stands + found.turns.t))
-        speeds = np.concatenate([speed(part) for part in parts])
-        spins = np.concatenate([part.drilling for part in parts])
+        time, spins = found.motion.t, found.motion.drilling
+        speeds = speed(found.motion)
         for (above, below), until in zip(axes.T, (0.6, 36.0), strict=True):
             shown = time < 1.02 * until
             above.plot(time[shown], speeds[shown], style)
@@ -102,20 +98,20 @@ def picture() -> None:
 if __name__ == "__main__":
     for patch in (SMALL, WIDE):
         found = shot(patch)
-        rolls, spin = found.rolls, found.rolls.drilling
-        first, later, last = np.searchsorted(
-            rolls.t, (found.slides, found.slides + 1.0, found.ends)
+        motion, spin = found.motion, found.motion.drilling
+        first, later, stands, last = np.searchsorted(
+            motion.t, (found.slides, found.slides + 1.0, found.stands, found.ends)
         )
         print(f"A patch of {1e3 * patch:g} mm: it slides for {found.slides:.3f} s,")
-        print(f"  to {speed(rolls)[first]:.2f} m/s and {spin[first]:.1f} rad/s, and")
-        print(f"  creeps at k = {rolls.creep[later]:.4f} (closed form: {creep():.4f}).")
+        print(f"  to {speed(motion)[first]:.2f} m/s and {spin[first]:.1f} rad/s, and")
+        print(f"  creeps at k = {motion.creep[later]:.4f} (closed form: {creep():.4f}).")
         if found.ends > found.stands:
-            rest, closed = found.ends - found.stands, lasts(spin[-1], patch)
+            rest, closed = found.ends - found.stands, lasts(spin[stands], patch)
             print(f"  Its centre stops after {found.stands:.1f} s,", end=" ")
-            print(f"but it spins at {spin[-1]:.1f} rad/s")
+            print(f"but it spins at {spin[stands]:.1f} rad/s")
             print(f"  for another {rest:.1f} s (closed form: {closed:.1f} s).")
         else:
-            rolling = speed(rolls)[last]
+            rolling = speed(motion)[last]
             print(f"  Its spin ends after {found.ends:.1f} s,", end=" ")
             print(f"when it rolls at {rolling:.1f} m/s,")
             print(f"  and its centre stops after {found.stands:.1f} s.")

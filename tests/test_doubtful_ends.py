@@ -75,8 +75,10 @@ STOPS = [
         + loss.AirQuadratic(0.01)
         + loss.AirFilm(3.0778866516498115e-06)
         + loss.BoundaryLayer(1.871030316133063e-05),
-        2.6513891272447e-08,
-        {"w1": 7.733192876387856e-09},
+        # psi' stops first, at 2.65e-8, and is held; then w2 = 1.25818e-10 falls at the rate
+        # (g - delta)/(I1 + 1 + ell^2 - g delta) = -0.0411744, g = cos theta - ell sin theta
+        2.9569624458e-08,
+        {"w1": 7.73314e-09},
     ),
     (
         sc.Body(-0.40233593120465216, 0.4578871519131137, 0.3479418749259518, fillet=1.0),
@@ -398,6 +400,58 @@ def test_dry_friction_stops_a_contact_that_slips_and_has_settled(body, y, slip, 
     for m in (followed, *others):
         assert m.status == followed.status == Status.FACE
         assert abs(m.event.time - followed.event.time) <= m.error + followed.error < 1e-4
+
+
+@pytest.mark.parametrize("tol", [1e-14, 1e-13, 1e-12, 1e-11, 1e-10])
+def test_a_contact_that_was_held_in_a_slip_is_held_when_the_slip_has_stopped(tol):
+    m = sc.roll(
+        sc.Body.solid(0.119285152792179),
+        sc.State(0.9059902507779121, 0.6219881278562983, 0.34683721237633536, -0.7426062971192557),
+        20.0,
+        contact=sc.Coulomb(0.746306488427682),
+        losses=loss.DryContour(0.03960944558104031),
+        restitution=0.5,
+        tol=tol,
+    )
+    assert m.status == Status.FACE and m.phases[-1].kind == "rolling"
+    assert abs(m.event.time - 8.19635127549) <= m.error + 1e-11
+
+
+@pytest.mark.parametrize(
+    ("thickness", "y", "slip", "height", "lift", "mu", "how"),
+    [
+        (
+            0.05412793000722732,
+            (1.2474352710291123, 1.8115949106916025, -0.4309219891747021, 1.1463922675368632),
+            (-0.9872165616736284, 0.13679415715852514),
+            0.6463173657213781,
+            -0.385999917429227,
+            0.40220385248428564,
+            loss.AirFilm(0.0649224127944282),
+        ),
+        (
+            0.0854,
+            (0.8146563589225808, -1.6876720729753727, -1.2779505702009872, -2.0957046229640186),
+            (1.004576977749208, 1.9515774279319218),
+            3.6,
+            -0.7974293923426726,
+            0.35472708553273147,
+            loss.DryContour(0.03542110906303193),
+        ),
+    ],
+    ids=["200 flights", "150 flights"],
+)
+def test_bounces_without_a_loss_of_their_own_die_out_by_the_friction_of_each_and_the_motion_goes_on(
+    thickness, y, slip, height, lift, mu, how
+):
+    # each impact reverses the slip that the flight before has caused: the next bounce is lower by that heat
+    start = sc.State(*y, slip=slip, height=height, lift=lift)
+    m = sc.roll(
+        sc.Body.solid(thickness), start, 40.0, contact=sc.Coulomb(mu), restitution=1.0, losses=how
+    )
+    assert m.status != Status.BOUNDED
+    assert any(impact.stays for impact in m.impacts)
+    assert m.error < 1e-6
 
 
 def test_a_phase_that_one_tolerance_tells_and_another_does_not_is_an_error_of_its_length():

@@ -195,10 +195,10 @@ def test_the_spin_of_a_billiard_ball_outlasts_its_way_on_a_small_patch_and_not_o
     for patch in (billiard.SMALL, billiard.WIDE):
         found = billiard.shot(patch)
         assert found.slides == pytest.approx(0.3, abs=0.02)
-        sliding = found.rolls.t < found.slides
-        assert found.rolls.drilling[sliding].min() > 0.99 * billiard.SIDE
-        middle = (found.rolls.t > found.slides + 1) & (found.rolls.t < 0.3 * found.ends)
-        assert 0.01 < found.rolls.creep[middle].mean() < 0.1
+        sliding = found.motion.t < found.slides
+        assert found.motion.drilling[sliding].min() > 0.99 * billiard.SIDE
+        middle = (found.motion.t > found.slides + 1) & (found.motion.t < 0.3 * found.ends)
+        assert 0.01 < found.motion.creep[middle].mean() < 0.1
         assert (found.ends > found.stands) == (patch == billiard.SMALL)
     assert found.stands > 2 * found.ends
 

@@ -317,7 +317,11 @@ impl<T: Real, G: OwnCouple<T>> Couples<T, G> {
         let Some(ways) = self.ways else { return seen };
         let fixed = ways.rocking != 0.0 || ways.rolling != 0.0 || ways.holds.rolling;
         let only = fixed.then(|| [ways.rolling, ways.rocking].map(|way| angle.0.splat(way)));
-        Kinematics { signs: [ways.contour, ways.drilling], only, ..seen }
+        // Where friction holds the contact along the rim, psi' is zero: its rounding, under a couple that grows with
+        // psi'/s^2, would seem to exceed the limit of friction near the table.
+        let rests = ways.holds.contour || ways.holds.rolling;
+        let spin = if rests { seen.spin.splat(0.0) } else { seen.spin };
+        Kinematics { spin, signs: [ways.contour, ways.drilling], only, ..seen }
     }
 
     /// Which laws are present, in the order of [`Law::ALL`].

@@ -32,6 +32,8 @@ const LONGEST_TAIL: f64 = 1e-10;
 const SUM_ERROR: f64 = 1.0;
 /// The same error of bounces that slip, in units of their velocity over that of the slip.
 const TURNS: f64 = 10.0;
+/// A slip of less than this many velocities of the bounce may turn around in the next impacts.
+const REVERSES: f64 = 10.0;
 /// The same share for a body with losses, which act at a contact, but not on a body that bounces.
 const LOSSY_TAIL: f64 = 1e-8;
 /// The tolerance of a step along an impact.
@@ -187,10 +189,13 @@ impl<const N: usize> BodyWalk<'_, N> {
             return None;
         }
         let mut ratio = e;
-        if struck.hit == Hit::Sticks {
+        // A slip as slow as the bounce reverses in each impact, and the flight after it brings it back.
+        let [u_h, u_2] = struck.slip.map(|u| u / struck.lift);
+        if struck.hit == Hit::Sticks || u_h.hypot(u_2) < REVERSES {
             // Each bounce has the slip that the previous flight has caused.
             let [along, across] = law.towards(from.angle, w, [0.0; 2], [0.0; 2]).u;
-            let slip = [along - b * force, across].map(|rate| 2.0 * rate / fall);
+            let [along, across] = [along - b * force, across].map(|rate| 2.0 * rate / fall);
+            let slip = [u_h + along, u_2 + across];
             ratio = self.rim_impact(slip, -1.0, light).on(&self.ask.table, e).map_or(1.0, |next| next.lift);
         }
         let left = 2.0 * struck.lift / (fall * (1.0 - ratio));

@@ -37,7 +37,8 @@ const PHASES_PER_TIME: f64 = 20.0;
 const MOST_IMPACTS: usize = 30_000;
 /// Largest number of consecutive phases without an advance of time; a motion with more stops there.
 pub(crate) const STILL: u32 = 6;
-/// The computation of a body that loses energy stops after more than `CHATTER` consecutive phases shorter than `SHORT`:
+/// The computation of a body that loses energy stops after more than `CHATTER` consecutive phases, without a flight,
+/// shorter than `SHORT`:
 /// then two laws of dry friction alternate without end.
 const SHORT: f64 = 1e-9;
 const CHATTER: u32 = 200;
@@ -203,6 +204,10 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
             self.grown?;
             let next = self.goes_on(next);
             P::audits(self);
+            if matches!(next, Next::Own(Kind::Flying)) {
+                // Bounces have a limit of their own.
+                self.short = 0;
+            }
             let limit = self.changes();
             if P::is_over(self, &next) {
                 break;

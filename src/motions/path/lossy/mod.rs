@@ -140,13 +140,17 @@ impl LossyFlow {
         let way = |x: f64| if x == 0.0 { 0.0 } else { x.signum() };
         self.ways = Ways { contour: way(spin), drilling: way(drilling), ..Ways::default() };
         self.hold = Hold::No;
-        if y.w1 == 0.0 && y.w3 == 0.0 {
+        // What a slip has held is at rest up to rounding.
+        let still = rounded(s, w);
+        let along = spin.abs() <= still && self.has(Law::DryContour);
+        let about = drilling.abs() <= still && self.has(Law::Drilling);
+        if y.w1 == 0.0 && y.w3 == 0.0 || along && about {
             self.only_rocks(angle, y.w2);
         } else {
-            if spin == 0.0 && self.has(Law::DryContour) {
+            if along {
                 self.stop_contour(angle, w, false);
             }
-            if drilling == 0.0 && self.has(Law::Drilling) {
+            if about {
                 self.stop_drilling(angle, w);
             }
             if self.has(Law::RollingResistance) && pace_of(angle, y.precession(), w) < REST {
