@@ -138,6 +138,7 @@ impl Together {
     }
 
     /// These motions without the slip, or with the slip, which friction holds up to this coefficient.
+    #[must_use]
     pub fn with_slip(mut self, limit: f64) -> Self {
         self.limits[Resting::Slip as usize] = Some(limit);
         self
