@@ -79,7 +79,8 @@ def test_roll_says_what_is_lost_and_writes_it(capsys, tmp_path):
     lost = m.energy[0] - DISK.energy(m.event.state)
     assert lost > m.work_lost[-1] + 1e-3
     assert f"energy lost            {lost:.9g} M g R" in out and " J, " in out
-    assert "the contact point stops: the body rolls no more at t = 17.26" in out
+    assert f"the face landed on the table: the body lies flat at t = {m.event.time:.12g}" in out
+    assert m.event.time == pytest.approx(17.2746, abs=1e-4)
     with file.open() as rows:
         found = list(csv.DictReader(rows))
     assert len(found) == m.t.size

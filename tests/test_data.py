@@ -130,8 +130,8 @@ def test_the_lines_of_a_long_table_are_read_together_and_not_one_by_one(tmp_path
     gaps = "t;x;y;\n" + "\n".join(";".join(row[: 1 + k % 3]) + ";" for k, row in enumerate(numbers)).replace(
         ".", ","
     )
-    one_by_one, calls = _tracker._numbers, []
-    monkeypatch.setattr(_tracker, "_numbers", lambda *given: calls.append(given) or one_by_one(*given))
+    one_by_one, calls = _tracker.numbers_in, []
+    monkeypatch.setattr(_tracker, "numbers_in", lambda *given: calls.append(given) or one_by_one(*given))
     for text in (plain, gaps):
         path = tmp_path / "long.txt"
         path.write_text(text)

@@ -102,7 +102,7 @@ def quietly(run, *given, **named):
 def wants(found):
     """What `roll` is to be asked for, so that it answers with these variables."""
     own = {"error", "method", "status", "known_until"}
-    final = {"theta", "w1", "w2", "w3", "slip_along", "slip_across", "n1", "n2", "n3"} & {*found}
+    final = {"theta", "w1", "w2", "w3", "slip_along", "slip_across", "rim", "n1", "n2", "n3"} & {*found}
     states = {"states"} if "t" in found.dims else {"final"}
     return tuple((states if final else set()) | ({*found} - own - final))
 

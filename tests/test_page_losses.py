@@ -121,7 +121,7 @@ def test_an_exact_motion_sounds_too(tmp_path):
         (
             lambda m, d: m.sound(d / "x.wav", 5.0, scale=SIZE),
             ValueError,
-            "^seconds = 5.0: .* at most 1.06746",
+            "^seconds = 5.0: .* at most 1.06822",
         ),
         (lambda m, d: m.sound(d / "x.wav", -1.0, scale=SIZE), ValueError, "^seconds = -1.0"),
         (lambda m, d: m.sound(d / "x.wav", scale=SIZE, rate=100), ValueError, "^rate = 100"),

@@ -52,7 +52,7 @@ def written(tmp_path, raw, name="file.csv"):
         ("t;x\n1.234;2,5\n1,5;2\n", "line 2 has numbers in another format than line 3"),
         ('t\n1"\n2\n', "line 2 has numbers in another format than line 3"),
         ('t,x\n1,"1,234"\n2,"5,678"\n', "line 2: '1,234' may mean 1.234 or 1234"),
-        ("t,x\n1,inf\n2,1e999\n", "the last line is '2,1e999'"),
+        ("t,x\n1,inf\n2,1e999\n", "line 2 has the text 'inf' in the column 'x': expected only numbers"),
         ("t,x\n1,2\n2,inf\n3,4\n", "line 3 has a cell that is not a number: '2,inf'"),
         ("t,x\n1,2\n2,-1e999\n", "line 3 has a cell that is not a number: '2,-1e999'"),
         ("t,t\n1,2\n", "line 1: two columns"),

@@ -5,7 +5,7 @@
 //! [`Moving::SAFETY`].
 
 use super::{Ending, Kind, Limit, Motion, Moving, Path, Phase};
-use crate::error::{Error, copied};
+use crate::error::{Error, copied, grow, room};
 use crate::laws::state::State;
 
 /// A motion and its path, before the path becomes a part of the motion.
@@ -60,10 +60,12 @@ pub(crate) fn judged<S: Moving>(
         let early = found.motion.event.filter(|_| found.is_given_up()).map(|event| event.time);
         let until = early.map_or(times.len(), |_| found.motion.states.len());
         let mut times = copied(&times[..until])?;
-        times.extend(early);
+        if let Some(time) = early {
+            grow(&mut times, time)?;
+        }
         let rough = run(rougher(fine), &times)?;
         if !rough.motion.is_interrupted() {
-            found.judge(&rough, fine);
+            found.judge(&rough, fine)?;
             return Ok(found);
         }
     }
@@ -81,8 +83,12 @@ impl<S: Moving> From<Followed<S>> for Motion<S> {
 /// longest phase that only one of the runs has. Pairs by number would all be wrong after a slip that only one
 /// run has. `whirrs`: the last turns of a whirr are left out, one run may have computed more turns than the
 /// other, and its additional phases at the end do not count.
-fn together<S>(runs: [&[Phase<S>]; 2], end: f64, whirrs: bool) -> (Vec<[&Phase<S>; 2]>, f64) {
-    let (mut pairs, mut alone, mut at) = (Vec::new(), 0f64, [0; 2]);
+fn together<S>(
+    runs: [&[Phase<S>]; 2],
+    end: f64,
+    whirrs: bool,
+) -> Result<(Vec<[&Phase<S>; 2]>, f64), Error> {
+    let (mut pairs, mut alone, mut at) = (room(runs[0].len().min(runs[1].len()))?, 0f64, [0; 2]);
     let lasts = |k: usize, i: usize| {
         let next = runs[k].get(i + 1).map_or(end, |next| next.time);
         (next - runs[k][i].time).max(0.0)
@@ -112,18 +118,16 @@ fn together<S>(runs: [&[Phase<S>]; 2], end: f64, whirrs: bool) -> (Vec<[&Phase<S
     for k in if whirrs { 0..0 } else { 0..2 } {
         alone = runs[k].get(at[k]).map_or(alone, |phase| alone.max(end - phase.time));
     }
-    (pairs, alone)
+    Ok((pairs, alone))
 }
 
 /// The phases of a motion with impacts, up to the time `end`, that are not brief.
-fn lasting<S: Copy>(phases: &[Phase<S>], end: f64) -> Vec<Phase<S>> {
+fn lasting<S: Copy>(phases: &[Phase<S>], end: f64) -> Result<Vec<Phase<S>>, Error> {
+    let mut found = room(phases.len())?;
     let next = phases.iter().skip(1).map(|phase| phase.time).chain([end]);
-    phases
-        .iter()
-        .zip(next)
-        .filter(|(phase, next)| next - phase.time > BRIEF)
-        .map(|(phase, _)| *phase)
-        .collect()
+    let long = phases.iter().zip(next).filter(|(phase, next)| next - phase.time > BRIEF);
+    found.extend(long.map(|(phase, _)| *phase));
+    Ok(found)
 }
 
 /// Whether a phase follows a brief one, so that the number of bounces decides when it begins.
@@ -166,8 +170,9 @@ impl<S: Moving> Followed<S> {
         self.motion.forgets_error();
     }
 
-    /// Estimates the errors of this motion from its difference from a rougher run.
-    pub(crate) fn judge(&mut self, rough: &Self, tol: f64) {
+    /// Estimates the errors of this motion from its difference from a rougher run, or returns an error if the memory does
+    /// not suffice to compare their phases.
+    pub(crate) fn judge(&mut self, rough: &Self, tol: f64) -> Result<(), Error> {
         let claimed = (S::SAFETY * tol / rougher(tol)).min(1.0);
         let given_up = self.is_given_up();
         let motion = &mut self.motion;
@@ -189,11 +194,10 @@ impl<S: Moving> Followed<S> {
         let whirrs = self.path.leaves_turns || rough.path.leaves_turns || given_up;
         let end = [&*motion, &rough.motion].map(|m| m.event.map(|e| e.time).or(m.times.last().copied()));
         let end = end.into_iter().flatten().fold(0.0, f64::max);
-        let lasts = [&self.path.phases, &rough.path.phases]
-            .map(|of| if hops { lasting(of, end) } else { Vec::new() });
-        let phases =
-            if hops { [&lasts[0][..], &lasts[1]] } else { [&self.path.phases[..], &rough.path.phases] };
-        let (pairs, alone) = together(phases, end, whirrs);
+        let all = [&self.path.phases[..], &rough.path.phases];
+        let lasts = if hops { Some([lasting(all[0], end)?, lasting(all[1], end)?]) } else { None };
+        let phases = lasts.as_ref().map_or(all, |[a, b]| [a, b]);
+        let (pairs, alone) = together(phases, end, whirrs)?;
         // Once two runs do not hop alike, their difference is no longer proportional to the tolerances.
         let unlike = hops && alone > 0.0;
         let alone = if hops { 0.0 } else { alone };
@@ -283,6 +287,7 @@ impl<S: Moving> Followed<S> {
         // After an impact the errors of its time and of its sum are also those of the pose.
         let state_claim = if hops { state_claim } else { 0.0 };
         motion.pose_error = settled(motion.pose_error + state_claim, turned) + 32.0 * f64::EPSILON * turning;
+        Ok(())
     }
 }
 
@@ -306,15 +311,15 @@ mod tests {
         let ours = phases(&[0.0, 1.0, 2.0, 5.0, 5.001, 8.0, 9.0]);
         let theirs = phases(&[0.0, 1.01, 2.01, 8.01, 9.01]);
         for runs in [[&ours[..], &theirs[..]], [&theirs[..], &ours[..]]] {
-            let (pairs, alone) = together(runs, 10.0, false);
+            let (pairs, alone) = together(runs, 10.0, false).unwrap();
             assert_eq!(pairs.len(), 5);
             assert!(pairs.iter().all(|[a, b]| a.kind == b.kind && (a.time - b.time).abs() < 0.02));
             assert!((alone - 0.001).abs() < 1e-12, "{alone}");
         }
         // Phases at the end that only one run has count with their length; for whirrs they do not count.
-        let (pairs, alone) = together([&ours[..5], &ours], 10.0, false);
+        let (pairs, alone) = together([&ours[..5], &ours], 10.0, false).unwrap();
         assert!(pairs.len() == 5 && alone == 2.0, "{} {alone}", pairs.len());
-        assert_eq!(together([&ours[..5], &ours], 10.0, true).1, 0.0);
+        assert_eq!(together([&ours[..5], &ours], 10.0, true).unwrap().1, 0.0);
     }
 
     #[test]
@@ -322,13 +327,13 @@ mod tests {
         let flights = |times: &[f64]| -> Vec<Phase> {
             phases(times).into_iter().map(|phase| Phase { kind: Kind::Flying, ..phase }).collect()
         };
-        let ours = lasting(&flights(&[0.0, 1.0, 1.00001, 1.00002, 1.00003]), 2.0);
-        let theirs = lasting(&flights(&[0.0, 1.0, 1.00001, 1.00002]), 2.0);
+        let ours = lasting(&flights(&[0.0, 1.0, 1.00001, 1.00002, 1.00003]), 2.0).unwrap();
+        let theirs = lasting(&flights(&[0.0, 1.0, 1.00001, 1.00002]), 2.0).unwrap();
         assert_eq!([ours.len(), theirs.len()], [2, 2]);
-        assert_eq!(together([&ours, &theirs], 2.0, false).1, 0.0);
+        assert_eq!(together([&ours, &theirs], 2.0, false).unwrap().1, 0.0);
         assert!(!follows_bounces(&flights(&[0.0, 1.0, 1.5]), &ours[0]));
         assert!(follows_bounces(&flights(&[0.0, 1.0, 1.00001, 1.00002, 1.00003]), &ours[1]));
-        let parted = lasting(&flights(&[0.0, 0.4, 1.2, 1.6]), 2.0);
-        assert!(together([&ours, &parted], 2.0, false).1 > 0.1);
+        let parted = lasting(&flights(&[0.0, 0.4, 1.2, 1.6]), 2.0).unwrap();
+        assert!(together([&ours, &parted], 2.0, false).unwrap().1 > 0.1);
     }
 }

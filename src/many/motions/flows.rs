@@ -127,14 +127,13 @@ impl<'a> MotionBlock<'a> {
             let (Some(fine), Some(rough)) = (walks.next(), walks.next()) else { return Ok(()) };
             // The error estimate needs both runs; if the second run fails, a single motion has no result
             // either.
-            let both = fine.and_then(BodyWalk::done).and_then(|found| {
-                Ok((self.starts.body(self.first + i)?, found, rough.and_then(BodyWalk::done)?))
+            let both = fine.and_then(BodyWalk::done).and_then(|mut found| {
+                let rough = rough.and_then(BodyWalk::done)?;
+                found.judge(&rough, self.job.tol)?;
+                Ok((self.starts.body(self.first + i)?, found))
             });
             match both {
-                Ok((body, mut found, rough)) => {
-                    found.judge(&rough, self.job.tol);
-                    put(out, i, (&body, &found), times);
-                }
+                Ok((body, found)) => put(out, i, (&body, &found), times),
                 Err(e @ Error::Memory { .. }) => return Err(e),
                 Err(Error::Painleve { .. }) => out.blank(i, times.len(), Ending::Painleve),
                 Err(_) => out.refuse(i, times.len()),

@@ -68,24 +68,24 @@ pub(crate) fn settle(
         let (mut known, mut beyond) = (0, reached + 1);
         while known + 1 < beyond {
             let middle = usize::midpoint(known, beyond);
-            if claim(middle) <= level {
+            if claim(middle)? <= level {
                 known = middle;
             } else {
                 beyond = middle;
             }
         }
-        if known == 0 { t0 } else { marks[known - 1] }
+        Ok::<_, Error>(if known == 0 { t0 } else { marks[known - 1] })
     };
     // The output at the end itself is left out, since the rougher run may have ended a little earlier.
-    let unsure = recorded.grazes.iter().find(|[t, room]| {
+    let mut sure = f64::INFINITY;
+    for [t, room] in &recorded.grazes {
         let count = marks.partition_point(|mark| *mark < t0 + t);
-        *room < SURELY * error && (count > reached || SURELY * claim(count) > *room)
-    });
-    if unsure.is_some() {
-        found.motion.error = f64::INFINITY;
+        if *room < SURELY * error && (count > reached || SURELY * claim(count)? > *room) {
+            (found.motion.error, sure) = (f64::INFINITY, t0 + t);
+            break;
+        }
     }
-    let sure = unsure.map_or(f64::INFINITY, |[t, _]| t0 + t);
-    let known = if error <= level { f64::INFINITY } else { until() }.min(sure);
+    let known = if error <= level { f64::INFINITY } else { until()? }.min(sure);
     found.path.known_until = known;
     if let Some(turns) = &mut recorded.turns {
         turns.times.retain(|[_, t]| t0 + t <= known);
@@ -94,9 +94,9 @@ pub(crate) fn settle(
 }
 
 /// The estimated error of a motion up to the last of its first `count` times.
-fn claimed(runs: &TwoRuns, count: usize, tol: f64) -> f64 {
+fn claimed(runs: &TwoRuns, count: usize, tol: f64) -> Result<f64, Error> {
     if count == 0 {
-        return 0.0;
+        return Ok(0.0);
     }
     let cut = |of: &Followed<StoneState>| {
         let Followed { mut motion, mut path } = of.clone();
@@ -108,6 +108,6 @@ fn claimed(runs: &TwoRuns, count: usize, tol: f64) -> f64 {
         Followed { motion, path }
     };
     let mut fine = cut(&runs[0]);
-    fine.judge(&cut(&runs[1]), tol);
-    fine.motion.error
+    fine.judge(&cut(&runs[1]), tol)?;
+    Ok(fine.motion.error)
 }
