@@ -104,7 +104,9 @@ if __name__ == "__main__":
         )
         print(f"A patch of {1e3 * patch:g} mm: it slides for {found.slides:.3f} s,")
         print(f"  to {speed(motion)[first]:.2f} m/s and {spin[first]:.1f} rad/s, and")
-        print(f"  creeps at k = {motion.creep[later]:.4f} (closed form: {creep():.4f}).")
+        print(
+            f"  creeps at k = {motion.creep[later]:.4f} (closed form: {creep():.4f})."
+        )
         if found.ends > found.stands:
             rest, closed = found.ends - found.stands, lasts(spin[stands], patch)
             print(f"  Its centre stops after {found.stands:.1f} s,", end=" ")

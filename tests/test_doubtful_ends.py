@@ -446,9 +446,7 @@ def test_bounces_without_a_loss_of_their_own_die_out_by_the_friction_of_each_and
 ):
     # each impact reverses the slip that the flight before has caused: the next bounce is lower by that heat
     start = sc.State(*y, slip=slip, height=height, lift=lift)
-    m = sc.roll(
-        sc.Body.solid(thickness), start, 40.0, contact=sc.Coulomb(mu), restitution=1.0, losses=how
-    )
+    m = sc.roll(sc.Body.solid(thickness), start, 40.0, contact=sc.Coulomb(mu), restitution=1.0, losses=how)
     assert m.status != Status.BOUNDED
     assert any(impact.stays for impact in m.impacts)
     assert m.error < 1e-6
