@@ -13,7 +13,7 @@ use crate::motions::halt::lost;
 use crate::motions::judge::doubted;
 use crate::motions::row::OutputRow;
 use crate::motions::walk::{Next, Phases, WalkStep, after_rest};
-use crate::motions::{Ask, Ending, Limit, Start};
+use crate::motions::{Ask, Ending, Start};
 use core::f64::consts::{PI, TAU};
 use nalgebra::Point2;
 
