@@ -79,11 +79,14 @@ impl<S: Moving> From<Followed<S>> for Motion<S> {
     }
 }
 
+/// Phases of two runs that belong together.
+type PhasePairs<'a, S> = Vec<[&'a Phase<S>; 2]>;
+
 /// The pairs of phases of two runs that correspond to each other, up to the time `end`, and the length of the
 /// longest phase that only one of the runs has. Pairs by number would all be wrong after a slip that only one
 /// run has. `whirrs`: the last turns of a whirr are left out, one run may have computed more turns than the
 /// other, and its additional phases at the end do not count.
-fn together<S>(runs: [&[Phase<S>]; 2], end: f64, whirrs: bool) -> Result<(Vec<[&Phase<S>; 2]>, f64), Error> {
+fn together<S>(runs: [&[Phase<S>]; 2], end: f64, whirrs: bool) -> Result<(PhasePairs<'_, S>, f64), Error> {
     let (mut pairs, mut alone, mut at) = (room(runs[0].len().min(runs[1].len()))?, 0f64, [0; 2]);
     let lasts = |k: usize, i: usize| {
         let next = runs[k].get(i + 1).map_or(end, |next| next.time);
