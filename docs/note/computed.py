@@ -195,16 +195,27 @@ def launches():
     return found
 
 
+def stops(body, start, lies, how):
+    """The time at which the contact point stops; from then on the face falls about that point."""
+    low, high = 0.99 * lies, lies
+    for _ in range(6):
+        t = np.linspace(low, high, 200)[:-1]
+        held = np.abs(sc.roll(body, start, [*t, 1e7], t0=0.0, **how).states.spin) < 1e-9
+        k = int(np.argmax(held)) if held.any() else len(t)
+        low, high = t[k - 1], t[k] if k < len(t) else high
+    return high
+
+
 @cache
 def full(body, table):
-    """The end of a motion with losses, and before it: time left, inclination, rate, friction it needs."""
+    """The stop of a motion with losses, and before it: time left, inclination, rate, friction it needs."""
     contact = {"rolling": "rolling", "slips": sc.Viscous(1.0)}.get(table, table)
     start, how = body.steady(START), {"losses": DRY, "contact": contact}
-    about = sc.roll(body, start, 1e7, tol=1e-9, **how).event.time
-    times = about * (1 - np.geomspace(0.3, 3e-6, 241))
+    lies = sc.roll(body, start, 1e7, tol=1e-9, **how).event.time
+    end = stops(body, start, lies, how)
+    times = end * (1 - np.geomspace(0.3, 3e-6, 241))
     m = sc.roll(body, start, [*times, 1e7], t0=0.0, want="force", **how)
-    end, left = m.event, m.event.time - times
-    return end, left, m.theta, m.w[:, 0] / np.sin(m.theta), m.friction_coefficient
+    return end, end - times, m.theta, m.w[:, 0] / np.sin(m.theta), m.friction_coefficient
 
 
 def drifts():
@@ -240,7 +251,7 @@ def drifts():
             found[f"fastest_{table}_{name}"] = rate.max()
             found[f"demand_{table}_{name}"] = demand.max()
             found[f"ends_{table}_{name}"] = (
-                end.time / {"rolling": drift, "slips": sc.drift(body, START, DRY)}[table].stops_at
+                end / {"rolling": drift, "slips": sc.drift(body, START, DRY)}[table].stops_at
             )
     return found
 
