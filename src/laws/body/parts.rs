@@ -5,7 +5,7 @@
 //! I3 = sum of r^2 dm,   I1 = I3/2 + sum of (z - z0)^2 dm,   z0 = sum of z dm / M
 //! ```
 //! The squared radii of all parts are polynomials of z, of at most the second degree, so that Gauss's rule with four
-//! nodes is exact. [`hull`] computes on which of their edges the body stands, and the inclination at which another one
+//! nodes is exact. `hull` computes on which of their edges the body stands, and the inclination at which another one
 //! touches the table.
 //!
 //! Error: a few roundings of the moments about a point within the body; theta_end has as many.

@@ -20,7 +20,7 @@
 //! turns it is a model. If both rims come down at once and bounce, the table gives back the share e of the normal
 //! impulse of compression at each rim (Poisson). For these normal impulses Moreau's friction leaves the least energy,
 //! not more than if e Q were given back, which would leave at most e^2 of the energy taken: no bounce of both rims
-//! gains energy. One rim bounces as in [`impact`](super::impact). Without friction both rims stay if ell^2 >= I1; with
+//! gains energy. One rim bounces as in `contact::impact`. Without friction both rims stay if ell^2 >= I1; with
 //! friction if ell^2 - ell Q_up,h/P_up >= I1.
 //!
 //! Error: 1e-12 of the largest velocity; a test of `throw` compares with the three-dimensional model.
