@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use spincyl::contact::Table;
 use spincyl::contact::slip::Friction;
 use spincyl::loss::{Law, Losses};
-use spincyl::motion::{Ask, Ending, Motion, Start, roll_with};
+use spincyl::motion::{Ask, Ending, Method, Motion, Start, roll_with};
 use spincyl::{Body, State};
 use std::f64::consts::PI;
 
@@ -165,4 +165,31 @@ fn round_ends_pass_their_poles_however_near_without_an_end_and_without_a_loss_of
         past += usize::from(m.states.len() == times.len());
     }
     assert!(past > drawn(60), "{past} {nearest}");
+}
+
+#[test]
+fn dry_friction_along_the_contour_takes_energy_also_from_a_ball_that_passes_beside_its_pole() {
+    // The nearer it passes, the shorter it takes: in the limit the pole makes no difference.
+    let ball = Body::rounded(-0.5, 0.348, 0.578, 1.0).unwrap();
+    let times: Vec<f64> = (0..9).map(|k| 0.25 * f64::from(k)).collect();
+    for tol in [1e-14, 1e-12, 1e-10, 1e-8] {
+        let ask = Ask::on(Friction::coulomb(0.4))
+            .with_losses(Losses::of(Law::DryContour, 0.0014))
+            .with_method(Method::Tolerance(tol));
+        let run = |near: f64, ask: &Ask| {
+            let start = Start::from(State { theta: near, w1: near, w2: 1.347, w3: 1.285 });
+            moved(&ball, &start, ask, &times)
+        };
+        let far = run(1e-3, &ask);
+        for near in [1e-4, 1e-5, 1e-6, 1e-7] {
+            for ask in [ask, ask.with_pose(true)] {
+                let m = run(near, &ask);
+                let lost = &m.path.as_deref().unwrap().work_lost;
+                assert!(lost.is_sorted(), "{near} {tol}: {lost:?}");
+                let (last, there) = (m.states[8], far.states[8]);
+                assert!((last.theta - there.theta).abs() < 2e-3, "{near} {tol}: {last:?} {there:?}");
+                assert!((last.w3 - there.w3).abs() < 2e-3, "{near} {tol}: {last:?} {there:?}");
+            }
+        }
+    }
 }

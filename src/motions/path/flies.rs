@@ -122,9 +122,11 @@ impl<const N: usize> BodyWalk<'_, N> {
                 if down == 0.0 {
                     return self.settles_on_side();
                 }
-                // An output at the initial time shows the body before it lands, as outputs at other landings do.
+                // An output at the initial time shows the body before it lands, as outputs at other landings do; no
+                // force of the table belongs to a motion that begins with an impact.
+                let (at, kind) = (self.aloft(), self.kind());
                 while self.until().is_some_and(|t| t <= self.at[TIME]) {
-                    BodyPhases::write_here(self);
+                    self.writes_with(&at, kind, f64::NAN);
                 }
                 if e == 0.0 || down * self.of.body.ell() <= RATTLED {
                     self.lands_on_both()
