@@ -184,7 +184,8 @@ def endings(body, m, found):
         w = max(w, 0.0 if slip is None else float(np.abs(np.ravel(slip)).max()))
         if w > REST + FEW * error:
             found.wrong("stops", f"STOPS at t = {m.event.time:.6g} with w or slip {w:.2e}")
-    told = m.status.name == "SIDE" and m.contact == "rolling"  # without friction nothing says how it goes on
+    # Without a limit of friction nothing says how the motion goes on.
+    told = m.status.name in ("SIDE", "SLIP") and m.contact == "rolling"
     if m._asked.restitution is not None and m.status.name not in REASONS and not told:
         found.wrong("ends", f"{m.status.name}" + ("" if m.event is None else f" at t = {m.event.time:.6g}"))
 
