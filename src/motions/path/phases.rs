@@ -355,6 +355,12 @@ impl<const N: usize> Phases<N> for BodyPhases {
         walk.of.slide.law.patch().is_none() && walk.of.slide.begins_to_roll().is_none()
     }
 
+    fn has_series(walk: &BodyWalk<'_, N>) -> bool {
+        let (of, slide) = (&walk.of, &walk.of.slide);
+        let alone = of.lossy.is_none() && of.lying.is_none();
+        alone && slide.law.dry && !slide.settled && Self::begins_slowly(walk)
+    }
+
     fn lets_slip(walk: &mut BodyWalk<'_, N>, way: [f64; 2]) {
         if walk.of.lying.is_none() {
             walk.of.slide.sets_ways(&walk.of.state, [0.0; 2], way, None);

@@ -77,6 +77,8 @@ pub(crate) trait Phases<const N: usize>: Sized {
     fn begins_slowly(_: &Walk<'_, Self, N>) -> bool {
         true
     }
+    /// Whether the current flow is a slip that a power series may take up where it is slow.
+    fn has_series(walk: &Walk<'_, Self, N>) -> bool;
     /// Makes a contact point at rest slip along `way`.
     fn lets_slip(walk: &mut Walk<'_, Self, N>, way: [f64; 2]);
     /// The series of slow slips, with which a slip from rest begins.

@@ -26,7 +26,7 @@ const PER_DIGIT: f64 = 1.2;
 /// A series is used only while the last two terms of alpha(t) are below this, in radians.
 const LAST_TERMS: f64 = 1e-7;
 /// A slip faster than this is computed by the integrator.
-const SLOW_SLIP: f64 = 0.02;
+pub(super) const SLOW_SLIP: f64 = 0.02;
 /// Longest time over which two sweeps for the series of a slow slip must agree, and largest number of sweeps; without
 /// agreement there is no series, and the integrator computes the slip.
 const SOON: f64 = 0.05;
