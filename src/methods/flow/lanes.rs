@@ -78,9 +78,8 @@ pub(crate) enum LaneStatus {
 const NEEDS_SINGLE: f64 = 1.0;
 const TIME_REACHED: f64 = 2.0;
 
-/// A lane stops after this number of evaluations of its rates, so that its walk checks the limit of the whole motion, and
-/// looks whether a series would take up a slow slip.
-const TOIL_IN_LANES: f64 = 1200.0;
+/// A lane stops after this number of evaluations of its rates, so that the limit of the whole motion is checked.
+const TOIL_IN_LANES: f64 = 1e6;
 
 /// The evaluations that a lane counts at its start if it may make only `toil` evaluations.
 pub(crate) fn counted_before(toil: u64) -> u64 {

@@ -135,6 +135,8 @@ pub(crate) struct Walk<'a, P: Phases<N>, const N: usize> {
     pub perturbation: f64,
     pub spent: Spent,
     looked: slips::Looked,
+    /// The series of the last slow slip.
+    slow: Option<Box<P::Slow>>,
     /// Whether a lane has used up its crawling steps, so that the next flow is tested at once
     /// for being stuck.
     tired: bool,
@@ -179,6 +181,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
             crawling,
             spent: Spent { evaluations: 0, erred: 0.0, patience: crawling, exhausted: None },
             looked: slips::Looked::default(),
+            slow: None,
             tired: false,
         })
     }
@@ -317,8 +320,8 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Pause<N>, Error> {
         let first = Some(first.unwrap_or_else(|| P::first(self, &y)));
-        let looks = P::has_series(self);
-        let most = if looks { most.min(slips::STEPS_PER_LOOK) } else { most };
+        let looks = self.steps_to_look(&y);
+        let most = most.min(looks);
         let steps =
             Steps { first, most, patience: self.spent.patience, toil: self.toil(), tired: self.tired };
         self.tired = false;
@@ -327,7 +330,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
             return Err(Error::Lost { theta: P::seen(self, self.kind()).state.theta() });
         }
         match paused {
-            Pause::Here(y, step) if looks => Ok(self.takes_up(y, step)),
+            Pause::Here(y, step) if looks < u64::MAX => Ok(self.takes_up(y, step)),
             paused => Ok(paused),
         }
     }

@@ -83,6 +83,10 @@ pub(crate) trait Phases<const N: usize>: Sized {
     fn lets_slip(walk: &mut Walk<'_, Self, N>, way: [f64; 2]);
     /// The series of slow slips, with which a slip from rest begins.
     fn slow(walk: &Walk<'_, Self, N>) -> Self::Slow;
+    /// Whether `known` are the series of slow slips under the current law, so that it need not be recorded again.
+    fn is_slow(_: &Walk<'_, Self, N>, _: &Self::Slow) -> bool {
+        false
+    }
     /// The time since the start of a series up to which no margin fails, at most the duration of the series.
     fn clear_until(walk: &Walk<'_, Self, N>, series: &SlowSeries<N>) -> f64;
     /// The numbers at the time `MOMENT` after the beginning of a slip along `way`, whose speed grows at the

@@ -40,11 +40,11 @@ impl<const N: usize> SlowSeries<N> {
     }
 }
 
-/// Number of steps of a slip between two looks at how fast its speed changes.
-pub(super) const STEPS_PER_LOOK: u64 = 24;
+/// Number of steps between two looks at how fast the speed of a slow slip changes, and of any other slip.
+const STEPS_PER_LOOK: [u64; 2] = [24, 240];
 /// A series takes up a slow slip whose speed changes by a smaller factor than exp(CREEPS) in a step: such steps are
 /// short only because the direction of the slip follows the motion so fast that longer ones would be unstable.
-const CREEPS: f64 = 0.15;
+const CREEPS: f64 = 0.5;
 /// The direction of a slip has settled where its distance from the series, times the speed, is below this share of the
 /// tolerance.
 const SETTLED: f64 = 0.5;
@@ -81,7 +81,7 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
             self.made.path.way = way;
             return Some(self.begins_at_once(way, growth));
         }
-        let mut slow = P::slow(self);
+        let mut slow = self.recorded();
         let Some(series) = slow.follow(&self.at, Series::of(alpha), growth, 0.0) else {
             self.next = Some(Next::Ends(Ending::Painleve));
             return None;
@@ -97,13 +97,27 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
         if !series.is_sound() {
             return Some(self.begins_at_once(way, growth));
         }
-        self.follows(&mut slow, series, growth < SLOWLY)
+        self.follows(slow, series, growth < SLOWLY)
+    }
+
+    /// The series of slow slips under the current law.
+    fn recorded(&mut self) -> Box<P::Slow> {
+        let known = self.slow.take().filter(|slow| P::is_slow(self, slow));
+        known.unwrap_or_else(|| Box::new(P::slow(self)))
     }
 
     /// Notes the speed of a slip that begins at the numbers `y`.
     pub(super) fn looks_at(&mut self, y: &[f64; N]) {
         let speed = y[P::SLIP].hypot(y[P::SLIP + 1]);
         self.looked = Looked { speed, evaluations: self.spent.evaluations, skips: [0; 2] };
+    }
+
+    /// Number of steps of the current flow, from the numbers `y` on, up to the next look whether a series takes it up.
+    pub fn steps_to_look(&self, y: &[f64; N]) -> u64 {
+        if !P::has_series(self) {
+            return u64::MAX;
+        }
+        STEPS_PER_LOOK[usize::from(y[P::SLIP].hypot(y[P::SLIP + 1]) > SLOW_SLIP)]
     }
 
     /// A slow slip at the numbers `y`, whose steps would remain short up to its end, continues by its series.
@@ -116,7 +130,7 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
         if speed > SLOW_SLIP || !creeps || skips > 0 {
             return Pause::Here(y, step);
         }
-        let (mut slow, angle) = (P::slow(self), y[P::SLIP + 1].atan2(y[P::SLIP]));
+        let (mut slow, angle) = (self.recorded(), y[P::SLIP + 1].atan2(y[P::SLIP]));
         let found = slow.follow(&y, Series::of(angle), 0.0, speed);
         self.spent.evaluations += SERIES;
         let fastest = self.of.grows(Halt::LiftOff, &y).unwrap_or(1.0);
@@ -126,7 +140,7 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
             Some(series) => {
                 self.spent.erred += off(&series) * fastest;
                 self.at = y;
-                match self.follows(&mut slow, series, true) {
+                match self.follows(slow, series, true) {
                     Some(y) => {
                         self.looks_at(&y);
                         Pause::Here(y, None)
@@ -135,6 +149,7 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
                 }
             }
             None => {
+                self.slow = Some(slow);
                 let next = (2 * last).clamp(1, 64);
                 self.looked.skips = [next, next];
                 Pause::Here(y, step)
@@ -144,8 +159,13 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
 
     /// Follows a slow slip by its series. Returns the numbers at which an integrator continues; None if the slip ends
     /// before that. `on` says whether further series may follow.
-    fn follows(&mut self, slow: &mut P::Slow, mut series: Box<SlowSeries<N>>, on: bool) -> Option<[f64; N]> {
-        loop {
+    fn follows(
+        &mut self,
+        mut slow: Box<P::Slow>,
+        mut series: Box<SlowSeries<N>>,
+        on: bool,
+    ) -> Option<[f64; N]> {
+        let left = loop {
             self.spent.evaluations += SERIES;
             let clear = P::clear_until(self, &series);
             let whole = clear == series.until;
@@ -163,7 +183,7 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
                     (y[P::SLIP], y[P::SLIP + 1]) = (0.0, 0.0);
                 }
                 P::slip_halts(self, y, if over { Halt::Time } else { Halt::Standstill });
-                return None;
+                break None;
             }
             // The direction of a slow slip returns to its zero of f in a time proportional to the speed, so
             // that an integrator would need tiny steps.
@@ -172,10 +192,12 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
             let next = if stays_slow { slow.follow(&y, series.angle.about(until), 0.0, speed) } else { None };
             match next.filter(|next| next.pays) {
                 Some(next) => series = next,
-                None => return Some(y),
+                None => break Some(y),
             }
             self.at = y;
-        }
+        };
+        self.slow = Some(slow);
+        left
     }
 
     /// Begins a motion that has no series, a slip from rest along `way` or a rolling from rest, with a straight line over

@@ -252,9 +252,10 @@ impl<const K: usize> SlowSlips<K> {
 }
 
 impl<const K: usize> SlowSlip<K> {
-    /// Whether this series takes less work than the steps of an integrator would up to the time `until`.
-    pub fn pays(&self, until: f64) -> bool {
-        until > WORTHWHILE * self.settling
+    /// Whether this series takes less work than the steps of an integrator would up to the time `until`. The end of a
+    /// slip takes many steps, since its speed falls by a few factors e in each.
+    pub fn pays(&self, until: f64, ends: bool) -> bool {
+        ends || until > WORTHWHILE * self.settling
     }
 
     /// The time up to which the series of these numbers may be used, and whether the slip ends then.
