@@ -300,7 +300,9 @@ impl Player {
 
     /// Adds `h` to the coefficient `n` > 0 of the chosen quantity, and updates that coefficient of all `first` results.
     pub fn turn(&mut self, n: usize, h: f64) {
-        for row in &mut self.rows[..self.first.end] {
+        let (given, results) = self.rows[..self.first.end].split_at_mut(self.first.start);
+        // A constant stays what it is, even if `h` is NaN, so that the next series does not begin with NaN.
+        for row in given.iter_mut().filter(|row| row.slope != 0.0).chain(results) {
             row.at[n] += row.slope * h;
         }
     }

@@ -64,3 +64,22 @@ fn a_launch_costs_some_thousand_evaluations_until_it_rolls() {
         }
     }
 }
+
+#[test]
+fn a_slow_slip_ends_at_the_cost_of_its_series() {
+    // One hump of slip of 2.4e-3, 0.88 long; its direction settles a thousand times faster towards its end.
+    let body = Body::solid(2.8826913698643453).unwrap();
+    let state = State {
+        theta: 1.1387317733850224,
+        w1: 7.017679607202668,
+        w2: 0.00011351795087978822,
+        w3: 20.219714727325478,
+    };
+    let ask = Ask::on(Table::Rubs(Friction::coulomb(0.07922078990612345)))
+        .with_losses(Losses::of(Law::AirFilm, 0.0012744823480859051))
+        .with_restitution(0.0);
+    for tol in [1e-6, 1e-8, 1e-10, 1e-12, 1e-14] {
+        let m = followed(&body, state.into(), 0.889, ask, tol);
+        assert!(m.evaluations <= 2_000, "{tol:e}: {} evaluations", m.evaluations);
+    }
+}

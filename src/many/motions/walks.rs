@@ -17,6 +17,10 @@ use crate::numbers::side_by_side::{MOST, SideBySide};
 use core::f64::consts::PI;
 use std::collections::VecDeque;
 
+/// A flow in a lane makes this many evaluations where a single flow takes a step before the next look at its slip: a look
+/// takes it out of its lane for some steps.
+const LOOKS_IN_LANES: u64 = 48;
+
 /// A flow for a lane: the index of its walk, and its start.
 pub(super) struct FlowTask<const N: usize> {
     walk: usize,
@@ -98,7 +102,8 @@ impl<const N: usize> Walks<'_, N> {
             };
             let (tol, patience) = (walk.of.slide.tol, until_tired(walk.spent.patience));
             let step = step.unwrap_or_else(|| Phases::first(walk, &y));
-            let made = counted_before(walk.toil());
+            let looks = walk.steps_to_look(&y).saturating_mul(LOOKS_IN_LANES);
+            let made = counted_before(walk.toil().min(looks));
             let task = FlowTask { walk: i, y, step, numbers, tol, until, patience, made };
             match self.queues.iter_mut().find(|(of, _)| *of == among) {
                 Some((_, queue)) => queue.push_back(task),

@@ -65,6 +65,13 @@ pub(crate) struct BodyPhases {
     pub(super) tail: Option<LastTurns>,
 }
 
+/// Whether a face that slips comes down by infinitely many turns: a law of loss causes this, or dry friction at a point
+/// that slips in every nod, unless a law along the contour stops the contact.
+fn turns_endlessly(ask: &Ask) -> bool {
+    let dry = matches!(ask.table, Table::Rubs(Friction::Coulomb { mu, patch: 0.0, .. }) if mu > 0.0);
+    ask.losses.turn_endlessly() || dry && !ask.losses.stop_contact()
+}
+
 /// A phase that loses energy without a slip.
 #[derive(Clone, Copy)]
 pub(super) struct LossyPhase {
@@ -104,7 +111,7 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
             struck: 0.0,
             energy: None,
             planar: start.w1 == 0.0 && start.w3 == 0.0 && slip[1] == 0.0,
-            tail: (!body.is_ball() && ask.losses.turn_endlessly()).then(LastTurns::default),
+            tail: (!body.is_ball() && turns_endlessly(ask)).then(LastTurns::default),
         };
         let mut walk = Self::new(of, at, ask, fine, (time, times))?;
         walk.next = Some(match aloft {
@@ -355,6 +362,12 @@ impl<const N: usize> Phases<N> for BodyPhases {
         walk.of.slide.law.patch().is_none() && walk.of.slide.begins_to_roll().is_none()
     }
 
+    fn has_series(walk: &BodyWalk<'_, N>) -> bool {
+        let (of, slide) = (&walk.of, &walk.of.slide);
+        let alone = of.lossy.is_none() && of.lying.is_none();
+        alone && slide.law.dry && !slide.settled && Self::begins_slowly(walk)
+    }
+
     fn lets_slip(walk: &mut BodyWalk<'_, N>, way: [f64; 2]) {
         if walk.of.lying.is_none() {
             walk.of.slide.sets_ways(&walk.of.state, [0.0; 2], way, None);
@@ -366,6 +379,10 @@ impl<const N: usize> Phases<N> for BodyPhases {
             Some(phase) => BodySlips::of(&Slippery::Two(phase.flow.law, phase.flow.ways), tol, N),
             None => BodySlips::of(&Slippery::One(walk.of.slide.law), tol, N),
         }
+    }
+
+    fn is_slow(walk: &BodyWalk<'_, N>, known: &BodySlips) -> bool {
+        walk.of.lying.is_none() && known.are_under(&walk.of.slide.law)
     }
 
     fn clear_until(walk: &BodyWalk<'_, N>, series: &SlowSeries<N>) -> f64 {

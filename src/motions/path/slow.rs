@@ -2,6 +2,7 @@
 
 use crate::laws::contact::lying::Lying;
 use crate::laws::contact::slip::Slipping;
+use crate::laws::loss::Ways;
 use crate::motions::halt::{loses, poses};
 use crate::motions::walk::slow::{SlowRates, SlowSlips, turned};
 use crate::motions::walk::{SlowLaw, SlowSeries};
@@ -10,6 +11,10 @@ use crate::numbers::{Real, Series};
 /// The series of a body's slow slips.
 pub(crate) struct BodySlips {
     slips: SlowSlips<5>,
+    /// Whether the body slips on one rim, and the signs of the motions that its dry losses resist, for which the law was
+    /// recorded.
+    one: bool,
+    ways: Option<Ways>,
     /// Index of the rate of the lost energy in [`SlowRates::more`].
     lost: Option<usize>,
 }
@@ -27,6 +32,11 @@ impl BodySlips {
             Slippery::One(law) => Self::on_one(law, tol, count),
             Slippery::Two(law, ways) => Self::on_two(law, *ways, tol, count),
         }
+    }
+
+    /// Whether these are the slips of this body on one rim under this law.
+    pub fn are_under(&self, law: &Slipping<f64>) -> bool {
+        self.one && self.ways == law.losses.and_then(|losses| losses.ways)
     }
 
     fn on_two(law: &Lying<f64>, ways: [f64; 2], tol: f64, count: usize) -> Self {
@@ -51,7 +61,7 @@ impl BodySlips {
             let _ = (s, c);
             SlowRates { numbers: [still, still, at.w[0], still, at.w[1]], slip: at.u, more }
         });
-        Self { slips, lost }
+        Self { slips, one: false, ways: None, lost }
     }
 
     fn on_one(law: &Slipping<f64>, tol: f64, count: usize) -> Self {
@@ -77,7 +87,7 @@ impl BodySlips {
             let [d1, d2, d3] = at.w;
             SlowRates { numbers: [-(c * w2), s * w2, d1, d2, d3], slip: at.u, more }
         });
-        Self { slips, lost }
+        Self { slips, one: true, ways: law.losses.and_then(|losses| losses.ways), lost }
     }
 }
 
@@ -108,7 +118,7 @@ impl<const N: usize> SlowLaw<N> for BodySlips {
             from: y[7],
             until,
             ends,
-            pays: slow.pays(until),
+            pays: slow.pays(until, ends),
             angle: slow.angle,
         }))
     }

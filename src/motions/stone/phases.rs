@@ -398,6 +398,12 @@ impl<'n, const N: usize> Phases<N> for StonePhases<'n> {
         walk.of.flow.law.patch().is_none() && walk.of.flow.push == [0.0; 2]
     }
 
+    fn has_series(walk: &StoneWalk<'_, 'n, N>) -> bool {
+        walk.of.flow.touch == Touch::Slips
+            && <Self as Phases<N>>::is_dry(&walk.of)
+            && Self::begins_slowly(walk)
+    }
+
     fn lets_slip(walk: &mut StoneWalk<'_, 'n, N>, way: [f64; 2]) {
         walk.of.flow.touch = Touch::Slips;
         walk.begins_to_lose(way);
@@ -475,6 +481,9 @@ impl<'n, const N: usize> Phases<N> for StonePhases<'n> {
             Flown { halt, y: whole(&y), step, steep, spent }
         };
         walk.has_spent(flown.spent);
+        if flown.halt == Halt::Pause {
+            return Ok(Pause::Here(flown.y, Some(flown.step)));
+        }
         walk.claims_time_error(flown.halt, flown.steep, &flown.y);
         if flown.halt == Halt::Rests && flow.touch == Touch::Slips {
             // The last steps of a rolling that ends in a slip do not resolve the turning of its couple.

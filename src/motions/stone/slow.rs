@@ -51,7 +51,7 @@ impl<const N: usize> SlowLaw<N> for StoneSlips {
             from: y[TIME],
             until,
             ends,
-            pays: slow.pays(until),
+            pays: slow.pays(until, ends),
             angle: slow.angle,
         }))
     }

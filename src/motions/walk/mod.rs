@@ -134,6 +134,9 @@ pub(crate) struct Walk<'a, P: Phases<N>, const N: usize> {
     /// the motion is unstable, the difference of the two runs then shows the instability.
     pub perturbation: f64,
     pub spent: Spent,
+    looked: slips::Looked,
+    /// The series of the last slow slip.
+    slow: Option<Box<P::Slow>>,
     /// Whether a lane has used up its crawling steps, so that the next flow is tested at once
     /// for being stuck.
     tired: bool,
@@ -177,6 +180,8 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
             turns: 0,
             crawling,
             spent: Spent { evaluations: 0, erred: 0.0, patience: crawling, exhausted: None },
+            looked: slips::Looked::default(),
+            slow: None,
             tired: false,
         })
     }
@@ -238,14 +243,19 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
                 }
                 Next::Slips => {
                     self.begins_phase(Kind::Slipping);
-                    return Ok(WalkStep::Flows(P::slips(self)));
+                    let y = P::slips(self);
+                    self.looks_at(&y);
+                    return Ok(WalkStep::Flows(y));
                 }
                 Next::SlipsOn => {
                     self.began = self.at[TIME];
-                    return Ok(WalkStep::Flows(P::slips_on(self)));
+                    let y = P::slips_on(self);
+                    self.looks_at(&y);
+                    return Ok(WalkStep::Flows(y));
                 }
                 Next::SlipsOff { alpha, growth } => {
                     if let Some(y) = self.slips_off((alpha, growth)) {
+                        self.looks_at(&y);
                         return Ok(WalkStep::Flows(y));
                     }
                 }
@@ -310,6 +320,8 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Pause<N>, Error> {
         let first = Some(first.unwrap_or_else(|| P::first(self, &y)));
+        let looks = self.steps_to_look(&y);
+        let most = most.min(looks);
         let steps =
             Steps { first, most, patience: self.spent.patience, toil: self.toil(), tired: self.tired };
         self.tired = false;
@@ -317,7 +329,10 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         if self.made.motion.limit == Some(Limit::Rounding) && self.at[TIME] == 0.0 {
             return Err(Error::Lost { theta: P::seen(self, self.kind()).state.theta() });
         }
-        Ok(paused)
+        match paused {
+            Pause::Here(y, step) if looks < u64::MAX => Ok(self.takes_up(y, step)),
+            paused => Ok(paused),
+        }
     }
 
     /// The number of evaluations that are still allowed.

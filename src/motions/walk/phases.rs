@@ -77,10 +77,16 @@ pub(crate) trait Phases<const N: usize>: Sized {
     fn begins_slowly(_: &Walk<'_, Self, N>) -> bool {
         true
     }
+    /// Whether the current flow is a slip that a power series may take up where it is slow.
+    fn has_series(walk: &Walk<'_, Self, N>) -> bool;
     /// Makes a contact point at rest slip along `way`.
     fn lets_slip(walk: &mut Walk<'_, Self, N>, way: [f64; 2]);
     /// The series of slow slips, with which a slip from rest begins.
     fn slow(walk: &Walk<'_, Self, N>) -> Self::Slow;
+    /// Whether `known` are the series of slow slips under the current law, so that it need not be recorded again.
+    fn is_slow(_: &Walk<'_, Self, N>, _: &Self::Slow) -> bool {
+        false
+    }
     /// The time since the start of a series up to which no margin fails, at most the duration of the series.
     fn clear_until(walk: &Walk<'_, Self, N>, series: &SlowSeries<N>) -> f64;
     /// The numbers at the time `MOMENT` after the beginning of a slip along `way`, whose speed grows at the

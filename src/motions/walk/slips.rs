@@ -1,6 +1,7 @@
 //! A slip from rest: by series in time, until an integrator continues the slip, or the slip ends.
 
-use super::{Next, Phases, Walk};
+use super::slow::SLOW_SLIP;
+use super::{Next, Pause, Phases, Walk};
 use crate::laws::contact::standstill::towards;
 use crate::motions::halt::{Halt, TIME};
 use crate::motions::result::Ending;
@@ -39,6 +40,26 @@ impl<const N: usize> SlowSeries<N> {
     }
 }
 
+/// Number of steps between two looks at how fast the speed of a slow slip changes, and of any other slip.
+const STEPS_PER_LOOK: [u64; 2] = [24, 240];
+/// A series takes up a slow slip whose speed changes by a smaller factor than exp(CREEPS) in a step: such steps are
+/// short only because the direction of the slip follows the motion so fast that longer ones would be unstable.
+const CREEPS: f64 = 0.5;
+/// The direction of a slip has settled where its distance from the series, times the speed, is below this share of the
+/// tolerance.
+const SETTLED: f64 = 0.5;
+/// Cost of a series, in evaluations of the rates.
+const SERIES: u64 = 100;
+
+/// The speed of a slip where it was looked at last, the number of evaluations until then, and the number of looks to be
+/// skipped, after an attempt that failed, and before the next one.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Looked {
+    speed: f64,
+    evaluations: u64,
+    skips: [u32; 2],
+}
+
 /// Phases shorter than this, in units of time, may be left out.
 const A_MOMENT: f64 = 1e-6;
 
@@ -60,8 +81,8 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
             self.made.path.way = way;
             return Some(self.begins_at_once(way, growth));
         }
-        let mut slow = P::slow(self);
-        let Some(mut series) = slow.follow(&self.at, Series::of(alpha), growth, 0.0) else {
+        let mut slow = self.recorded();
+        let Some(series) = slow.follow(&self.at, Series::of(alpha), growth, 0.0) else {
             self.next = Some(Next::Ends(Ending::Painleve));
             return None;
         };
@@ -76,7 +97,76 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
         if !series.is_sound() {
             return Some(self.begins_at_once(way, growth));
         }
-        loop {
+        self.follows(slow, series, growth < SLOWLY)
+    }
+
+    /// The series of slow slips under the current law.
+    fn recorded(&mut self) -> Box<P::Slow> {
+        let known = self.slow.take().filter(|slow| P::is_slow(self, slow));
+        known.unwrap_or_else(|| Box::new(P::slow(self)))
+    }
+
+    /// Notes the speed of a slip that begins at the numbers `y`.
+    pub(super) fn looks_at(&mut self, y: &[f64; N]) {
+        let speed = y[P::SLIP].hypot(y[P::SLIP + 1]);
+        self.looked = Looked { speed, evaluations: self.spent.evaluations, skips: [0; 2] };
+    }
+
+    /// Number of steps of the current flow, from the numbers `y` on, up to the next look whether a series takes it up.
+    pub fn steps_to_look(&self, y: &[f64; N]) -> u64 {
+        if !P::has_series(self) {
+            return u64::MAX;
+        }
+        STEPS_PER_LOOK[usize::from(y[P::SLIP].hypot(y[P::SLIP + 1]) > SLOW_SLIP)]
+    }
+
+    /// A slow slip at the numbers `y`, whose steps would remain short up to its end, continues by its series.
+    pub(super) fn takes_up(&mut self, y: [f64; N], step: Option<f64>) -> Pause<N> {
+        let (speed, spent) = (y[P::SLIP].hypot(y[P::SLIP + 1]), self.spent.evaluations);
+        let Looked { speed: before, evaluations, skips: [skips, last] } = self.looked;
+        let steps = spent.saturating_sub(evaluations) as f64 / 12.0;
+        let creeps = (before / speed).ln().abs() < CREEPS * steps;
+        self.looked = Looked { speed, evaluations: spent, skips: [skips.saturating_sub(1), last] };
+        if speed > SLOW_SLIP || !creeps || skips > 0 {
+            return Pause::Here(y, step);
+        }
+        let (mut slow, angle) = (self.recorded(), y[P::SLIP + 1].atan2(y[P::SLIP]));
+        let found = slow.follow(&y, Series::of(angle), 0.0, speed);
+        self.spent.evaluations += SERIES;
+        let fastest = self.of.grows(Halt::LiftOff, &y).unwrap_or(1.0);
+        let off =
+            |series: &SlowSeries<N>| (series.angle.at[0] - angle).abs() * speed / (fastest * self.of.tol());
+        match found.filter(|series| series.is_sound() && series.pays && off(series) < SETTLED) {
+            Some(series) => {
+                self.spent.erred += off(&series) * fastest;
+                self.at = y;
+                match self.follows(slow, series, true) {
+                    Some(y) => {
+                        self.looks_at(&y);
+                        Pause::Here(y, None)
+                    }
+                    None => Pause::No,
+                }
+            }
+            None => {
+                self.slow = Some(slow);
+                let next = (2 * last).clamp(1, 64);
+                self.looked.skips = [next, next];
+                Pause::Here(y, step)
+            }
+        }
+    }
+
+    /// Follows a slow slip by its series. Returns the numbers at which an integrator continues; None if the slip ends
+    /// before that. `on` says whether further series may follow.
+    fn follows(
+        &mut self,
+        mut slow: Box<P::Slow>,
+        mut series: Box<SlowSeries<N>>,
+        on: bool,
+    ) -> Option<[f64; N]> {
+        let left = loop {
+            self.spent.evaluations += SERIES;
             let clear = P::clear_until(self, &series);
             let whole = clear == series.until;
             let until = clear.min(self.since.last().map_or(0.0, |t| t - series.from));
@@ -93,19 +183,21 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
                     (y[P::SLIP], y[P::SLIP + 1]) = (0.0, 0.0);
                 }
                 P::slip_halts(self, y, if over { Halt::Time } else { Halt::Standstill });
-                return None;
+                break None;
             }
             // The direction of a slow slip returns to its zero of f in a time proportional to the speed, so
             // that an integrator would need tiny steps.
             let speed = y[P::SLIP].hypot(y[P::SLIP + 1]);
-            let stays_slow = whole && growth < SLOWLY;
+            let stays_slow = whole && on;
             let next = if stays_slow { slow.follow(&y, series.angle.about(until), 0.0, speed) } else { None };
             match next.filter(|next| next.pays) {
                 Some(next) => series = next,
-                None => return Some(y),
+                None => break Some(y),
             }
             self.at = y;
-        }
+        };
+        self.slow = Some(slow);
+        left
     }
 
     /// Begins a motion that has no series, a slip from rest along `way` or a rolling from rest, with a straight line over

@@ -26,7 +26,7 @@ const PER_DIGIT: f64 = 1.2;
 /// A series is used only while the last two terms of alpha(t) are below this, in radians.
 const LAST_TERMS: f64 = 1e-7;
 /// A slip faster than this is computed by the integrator.
-const SLOW_SLIP: f64 = 0.02;
+pub(super) const SLOW_SLIP: f64 = 0.02;
 /// Longest time over which two sweeps for the series of a slow slip must agree, and largest number of sweeps; without
 /// agreement there is no series, and the integrator computes the slip.
 const SOON: f64 = 0.05;
@@ -252,9 +252,10 @@ impl<const K: usize> SlowSlips<K> {
 }
 
 impl<const K: usize> SlowSlip<K> {
-    /// Whether this series takes less work than the steps of an integrator would up to the time `until`.
-    pub fn pays(&self, until: f64) -> bool {
-        until > WORTHWHILE * self.settling
+    /// Whether this series takes less work than the steps of an integrator would up to the time `until`. The end of a
+    /// slip takes many steps, since its speed falls by a few factors e in each.
+    pub fn pays(&self, until: f64, ends: bool) -> bool {
+        ends || until > WORTHWHILE * self.settling
     }
 
     /// The time up to which the series of these numbers may be used, and whether the slip ends then.
