@@ -170,18 +170,23 @@ class Body(Laws, Sized, Hinting, metaclass=Named):
         return cls(separation, i1, 0.4, fillet=1.0, theta_end=theta_end)._across(diameter, mass)
 
     @classmethod
+    @elementwise
     def ball(
-        cls, offset: float, i1: float, i3: float, *, diameter: float | None = None, mass: float | None = None
+        cls, offset: Reals, i1: Reals, i3: Reals, *, diameter: float | None = None, mass: float | None = None
     ) -> Self:
         """Ball whose centre of mass lies `offset` radii above its centre; negative for a tippe top.
 
-        `i1` and `i3` are the transverse and axial moments of inertia about the centre of mass, in M R^2. The
-        axis of a ball may pass the vertical, theta = 0 or pi. A `diameter` in metres makes a measured body;
-        its `mass` is in kilograms.
+        `i1` and `i3` are the transverse and axial moments of inertia about the centre of mass, in M R^2.
+        Arrays make a family of balls. The axis of a ball may pass the vertical, theta = 0 or pi. A `diameter`
+        in metres makes a measured body; its `mass` is in kilograms.
         """
-        numbers = number("offset", offset), number("i1", i1), number("i3", i3)
-        _core.check_ball(*numbers)
-        return cls(*numbers, fillet=1.0)._across(diameter, mass)
+        offset, i1, i3 = reals("offset", offset), reals("i1", i1), reals("i3", i3)
+        if is_scalar(offset, i1, i3):
+            offset, i1, i3 = float(offset), float(i1), float(i3)
+            _core.check_ball(offset, i1, i3)
+        else:
+            fitting({"offset": offset, "i1": i1, "i3": i3})
+        return cls(offset, i1, i3, fillet=1.0)._across(diameter, mass)
 
     @classmethod
     def from_metres(
