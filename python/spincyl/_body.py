@@ -180,13 +180,10 @@ class Body(Laws, Sized, Hinting, metaclass=Named):
         Arrays make a family of balls. The axis of a ball may pass the vertical, theta = 0 or pi. A `diameter`
         in metres makes a measured body; its `mass` is in kilograms.
         """
-        offset, i1, i3 = reals("offset", offset), reals("i1", i1), reals("i3", i3)
-        if is_scalar(offset, i1, i3):
-            offset, i1, i3 = float(offset), float(i1), float(i3)
-            _core.check_ball(offset, i1, i3)
-        else:
-            fitting({"offset": offset, "i1": i1, "i3": i3})
-        return cls(offset, i1, i3, fillet=1.0)._across(diameter, mass)
+        given = reals("offset", offset), reals("i1", i1), reals("i3", i3)
+        if is_scalar(*given):
+            _core.check_ball(*map(float, given))
+        return cls(*given, fillet=1.0)._across(diameter, mass)
 
     @classmethod
     def from_metres(
