@@ -142,6 +142,9 @@ impl<const N: usize> BodyWalk<'_, N> {
     /// Computes a flight to its end, which sets the next phase.
     #[inline(never)]
     pub(super) fn flies(&mut self) {
+        if !poses(N) && self.of.uniform {
+            return self.flies_uniformly();
+        }
         let shape = self.of.slide.law.shape;
         let (from, now) = (self.aloft(), self.at[TIME]);
         let Takeoff { leaves, .. } = self.of.takeoff;

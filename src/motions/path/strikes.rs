@@ -154,7 +154,11 @@ impl<const N: usize> BodyWalk<'_, N> {
 
     /// The impact at these numbers; None for a rolling contact without a solution.
     fn impact(&self, from: &Aloft, e: f64) -> Option<Struck> {
-        let light = lightness(&self.of.slide.law.shape, from.angle);
+        let mut light = lightness(&self.of.slide.law.shape, from.angle);
+        if self.of.uniform {
+            // Rounding must not make the slip turn.
+            (light[1], light[2], light[3]) = (light[0], 1.0, 0.0);
+        }
         self.rim_impact(from.slip, from.lift, light).on(&self.ask.table, e)
     }
 
@@ -220,6 +224,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         }
         self.claims(share * after.w.into_iter().fold(1.0, |most: f64, w| most.max(w.abs())));
         self.doubts(share);
+        self.of.roundings.turned += share;
     }
 
     /// The numbers after an impact, which is also recorded.

@@ -238,7 +238,9 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
                 }
                 Next::Slips => {
                     self.begins_phase(Kind::Slipping);
-                    return Ok(WalkStep::Flows(P::slips(self)));
+                    if !P::slips_known(self) {
+                        return Ok(WalkStep::Flows(P::slips(self)));
+                    }
                 }
                 Next::SlipsOn => {
                     self.began = self.at[TIME];
