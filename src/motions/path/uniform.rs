@@ -128,8 +128,8 @@ impl Spun {
         }
         let ([x, y, z], angle) = self.turned(t);
         let ([w_x, w_y, w_z], [u, v]) = (self.speeds(t), self.from.slip);
-        let flat = x.hypot(y);
-        let size = flat.hypot(z);
+        let square = x * x + y * y;
+        let (flat, size) = (square.sqrt(), (square + z * z).sqrt());
         let (s, c) = (flat / size, z / size);
         // On its pole the axis keeps the direction in which it leans.
         let (cos, sin) = if flat > 0.0 { (-x / flat, -y / flat) } else { (1.0, 0.0) };
