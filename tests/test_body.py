@@ -174,6 +174,20 @@ def test_a3_a_family_and_its_members_have_the_same_bits():
     assert np.nanmax(np.abs(sc.Body.tube(ell[:, None], 0.3).energy(state))) < 100
 
 
+def test_a3_a_family_of_balls_has_the_bits_of_its_members_and_nan_where_no_ball_is():
+    offset, i1, theta = np.linspace(-0.4, 0.3, 15), np.array([0.39, 0.4, 0.43])[:, None], 1.2
+    family = sc.Body.ball(offset, i1, 0.4)
+    spin, rate = family.standing_spin(), family.rate(theta)
+    assert spin.shape == rate.shape == (3, 15)
+    for i, j in ((0, 0), (1, 7), (2, 14)):
+        one = sc.Body.ball(float(offset[j]), float(i1[i, 0]), 0.4)
+        assert same(spin[i, j], one.standing_spin()) and same(rate[i, j], one.rate(theta))
+    assert same(sc.Body.ball([-1.0, 0.0], 0.4, 0.4).region(theta) == Region.INVALID, [True, False])
+    assert sc.Body.ball(offset, 0.4, 0.4, diameter="57.2mm").scale.radius == 28.6e-3
+    with pytest.raises(ValueError, match=r"offset \(2,\), i1 \(3,\)"):
+        sc.Body.ball(np.zeros(2), np.full(3, 0.4), 0.4)
+
+
 def test_a4_shapes_that_do_not_fit_are_named(body):
     with pytest.raises(ValueError, match=r"\(2,\).*\(3,\)"):
         sc.Body.solid(np.ones(3)).rate(np.ones(2))

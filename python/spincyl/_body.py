@@ -165,23 +165,23 @@ class Body(Laws, Sized, Hinting, metaclass=Named):
         -----
         Jackson, Mertens, Pearson, Am. J. Phys. 83, 959 (2015). The upper ball lands at theta = pi/2.
         """
-        separation = number("separation", separation)
-        i1, theta_end = _core.check_balls(separation)
+        i1, theta_end = _core.check_balls(separation := number("separation", separation))
         return cls(separation, i1, 0.4, fillet=1.0, theta_end=theta_end)._across(diameter, mass)
 
     @classmethod
+    @elementwise
     def ball(
-        cls, offset: float, i1: float, i3: float, *, diameter: float | None = None, mass: float | None = None
+        cls, offset: Reals, i1: Reals, i3: Reals, *, diameter: float | None = None, mass: float | None = None
     ) -> Self:
         """Ball whose centre of mass lies `offset` radii above its centre; negative for a tippe top.
 
-        `i1` and `i3` are the transverse and axial moments of inertia about the centre of mass, in M R^2. The
-        axis of a ball may pass the vertical, theta = 0 or pi. A `diameter` in metres makes a measured body;
-        its `mass` is in kilograms.
+        `i1`, `i3`: transverse and axial moments of inertia about the centre of mass, in M R^2. The axis may
+        pass the vertical. A `diameter` in metres makes a measured body; its `mass` is in kilograms.
         """
-        numbers = number("offset", offset), number("i1", i1), number("i3", i3)
-        _core.check_ball(*numbers)
-        return cls(*numbers, fillet=1.0)._across(diameter, mass)
+        given = reals("offset", offset), reals("i1", i1), reals("i3", i3)
+        if is_scalar(*given):
+            _core.check_ball(*map(float, given))
+        return cls(*given, fillet=1.0)._across(diameter, mass)
 
     @classmethod
     def from_metres(

@@ -83,3 +83,20 @@ fn a_slow_slip_ends_at_the_cost_of_its_series() {
         assert!(m.evaluations <= 2_000, "{tol:e}: {} evaluations", m.evaluations);
     }
 }
+
+#[test]
+fn a_uniform_ball_is_never_integrated() {
+    let ball = Body::ball(0.0, 0.4, 0.4).unwrap();
+    let state = State { theta: 1.1, w1: 2.0, w2: -1.0, w3: 3.0 };
+    let slips = Start::from(state).with_slip([1.3, -0.4]);
+    let ask = Ask::on(Table::Rubs(Friction::coulomb(0.2)));
+    for tol in TOLERANCES {
+        for start in [slips, Start::from(state)] {
+            assert_eq!(followed(&ball, start, 60.0, ask, tol).evaluations, 0);
+        }
+        for e in [0.0, 0.5, 0.9] {
+            let m = followed(&ball, slips.with_aloft([1.0, 0.3]), 60.0, ask.with_restitution(e), tol);
+            assert_eq!((m.evaluations, m.ending()), (0, Ending::Done));
+        }
+    }
+}

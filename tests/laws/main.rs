@@ -46,6 +46,7 @@ mod thin_disk;
 mod throw;
 mod turning_points;
 mod twists;
+mod uniform;
 mod units;
 mod upright;
 mod whirrs;

@@ -18,6 +18,7 @@ use crate::laws::body::Body;
 use crate::laws::state::State;
 use crate::motions::followed::{Followed, rougher};
 use crate::motions::path::BodyWalk;
+use crate::motions::path::uniform::knows;
 use crate::motions::walk::Pause;
 use crate::motions::{Ask, Ending, Method};
 use crate::motions::{Kind, Phase};
@@ -90,13 +91,29 @@ impl<'a> MotionBlock<'a> {
         spare_for(size_of_block(count, times.len()))?;
         let wide = in_lanes!(level, _ => true, else false);
         let mut all = Walks::<N> { walks: room(2 * count)?, queues: Vec::new(), lanes: wide };
-        for i in 0..count {
-            let (starts, i) = (self.starts, self.first + i);
+        let mut walked = room(count)?;
+        for k in 0..count {
+            let (starts, i) = (self.starts, self.first + k);
             let body = starts.body(i);
             let ask = Ask {
                 method: Method::Tolerance(self.job.tol),
                 ..self.job.ask(starts.coefficients(i), starts.losses(i))
             };
+            if let Ok(body) = body
+                && knows(&body, &ask)
+            {
+                if !go_on() {
+                    return Ok(());
+                }
+                let walk = BodyWalk::<N>::of_body(&body, &ask, self.job.tol, times, &starts.start(i));
+                let found = walk.and_then(|walk| Box::new(walk).run(go_on)).map(|mut found| {
+                    found.knows_itself(self.job.tol);
+                    (body, found)
+                });
+                self.puts(out, k, found)?;
+                continue;
+            }
+            walked.push(k);
             for tol in [self.job.tol, rougher(self.job.tol)] {
                 all.walks
                     .push(body.and_then(|body| BodyWalk::of_body(&body, &ask, tol, times, &starts.start(i))));
@@ -123,7 +140,7 @@ impl<'a> MotionBlock<'a> {
             }
         }
         let mut walks = all.walks.into_iter();
-        for i in 0..count {
+        for i in walked {
             let (Some(fine), Some(rough)) = (walks.next(), walks.next()) else { return Ok(()) };
             // The error estimate needs both runs; if the second run fails, a single motion has no result
             // either.
@@ -132,12 +149,24 @@ impl<'a> MotionBlock<'a> {
                 found.judge(&rough, self.job.tol)?;
                 Ok((self.starts.body(self.first + i)?, found))
             });
-            match both {
-                Ok((body, found)) => put(out, i, (&body, &found), times),
-                Err(e @ Error::Memory { .. }) => return Err(e),
-                Err(Error::Painleve { .. }) => out.blank(i, times.len(), Ending::Painleve),
-                Err(_) => out.refuse(i, times.len()),
-            }
+            self.puts(out, i, both)?;
+        }
+        Ok(())
+    }
+
+    /// Writes the results of motion `i` of the block, or why it has none; the memory may not suffice for any.
+    fn puts(
+        &self,
+        out: &mut MotionOutput<'_>,
+        i: usize,
+        found: Result<(Body, Followed), Error>,
+    ) -> Result<(), Error> {
+        let times = self.job.times;
+        match found {
+            Ok((body, found)) => put(out, i, (&body, &found), times),
+            Err(e @ Error::Memory { .. }) => return Err(e),
+            Err(Error::Painleve { .. }) => out.blank(i, times.len(), Ending::Painleve),
+            Err(_) => out.refuse(i, times.len()),
         }
         Ok(())
     }

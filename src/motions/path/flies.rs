@@ -53,17 +53,29 @@ impl<const N: usize> BodyWalk<'_, N> {
         Aloft { angle: (s, c), w: [w1, w2, w3], slip: [u, v], lift, height, pose }
     }
 
+    /// The state with these numbers. Its inclination is computed once in an impact of a uniform ball, whose bounces cost
+    /// little else.
+    pub(super) fn state_of(&self, at: &Aloft) -> State {
+        let ([w1, w2, w3], here) = (at.w, (self.at[0], self.at[1]));
+        if self.of.uniform && at.angle == here {
+            State { w1, w2, w3, ..self.of.state }
+        } else {
+            at.state()
+        }
+    }
+
     /// Moves the walk to these numbers.
     pub(super) fn sets(&mut self, to: &Aloft) {
         let ((s, c), [mut w1, w2, mut w3], [u, mut v]) = (to.angle, to.w, to.slip);
         if self.of.planar {
             (w1, w3, v) = (0.0, 0.0, 0.0);
         }
+        let theta = self.state_of(to).theta;
         self.at[..7].copy_from_slice(&[s, c, w1, w2, w3, u, v]);
         if poses(N) {
             self.at[9..13].copy_from_slice(&to.pose);
         }
-        self.of.state = State { theta: if c == 0.0 { FRAC_PI_2 } else { to.state().theta }, w1, w2, w3 };
+        self.of.state = State { theta: if c == 0.0 { FRAC_PI_2 } else { theta }, w1, w2, w3 };
         (self.of.takeoff.height, self.of.takeoff.lift) = (to.height, to.lift);
     }
 
@@ -88,6 +100,9 @@ impl<const N: usize> BodyWalk<'_, N> {
 
     /// N0, the normal force without friction, and the size of its terms.
     pub(super) fn pressed(&self, from: &Aloft) -> [f64; 2] {
+        if self.of.uniform {
+            return [1.0; 2];
+        }
         let law = &self.of.slide.law;
         let (shape, angle) = (&law.shape, from.angle);
         let at = law.towards(angle, from.w, [0.0; 2], [0.0; 2]);
@@ -144,6 +159,9 @@ impl<const N: usize> BodyWalk<'_, N> {
     /// Computes a flight to its end, which sets the next phase.
     #[inline(never)]
     pub(super) fn flies(&mut self) {
+        if !poses(N) && self.of.uniform {
+            return self.flies_uniformly();
+        }
         let shape = self.of.slide.law.shape;
         let (from, now) = (self.aloft(), self.at[TIME]);
         let Takeoff { leaves, .. } = self.of.takeoff;

@@ -28,6 +28,7 @@ mod slips;
 mod slow;
 mod strikes;
 mod tail;
+pub(crate) mod uniform;
 pub(crate) mod write;
 
 pub use super::ask::FINE;
@@ -55,7 +56,12 @@ pub fn follow(
 ) -> Result<Motion, Error> {
     let fine = check(body, start, ask)?;
     check_times_after(start.time, times)?;
-    let run = |tol: f64, times: &[f64]| walked((body, start), ask, (tol, false), times, go_on);
+    let mut run = |tol: f64, times: &[f64]| walked((body, start), ask, (tol, false), times, go_on);
+    if !SHORT_CODE && uniform::knows(body, ask) {
+        let mut found = run(fine, times)?;
+        found.knows_itself(fine);
+        return Ok(found.into());
+    }
     Ok(judged(fine, times, run)?.into())
 }
 
@@ -88,6 +94,7 @@ fn walk<'a, const N: usize>(
 ) -> Result<Box<BodyWalk<'a, N>>, Error> {
     let mut walk = Box::new(BodyWalk::of_body(body, ask, tol, times, start)?);
     walk.of.integrates |= integrates;
+    walk.of.uniform &= !integrates;
     Ok(walk)
 }
 

@@ -7,6 +7,7 @@ use super::lying::flow::LyingPhase;
 use super::slide::Slide;
 use super::slow::{BodySlips, Slippery};
 use super::tail::LastTurns;
+use super::uniform::{Roundings, knows};
 use super::write::{self, state};
 use crate::error::Error;
 use crate::laws::body::Body;
@@ -47,6 +48,9 @@ pub(crate) struct BodyPhases {
     /// Whether a phase without a slip is integrated; otherwise the first integrals solve it, as long as no energy is
     /// lost.
     pub(super) integrates: bool,
+    /// Whether the body is a uniform ball, whose phases are known; and their errors.
+    pub(super) uniform: bool,
+    pub(super) roundings: Roundings,
     /// The losses of a body that does not slip, with the drilling friction of a patch of contact.
     pub(super) rolling_losses: Losses,
     /// The current phase, if it loses energy without a slip.
@@ -104,6 +108,8 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
             state: start,
             start,
             integrates: ask.table == Table::Smooth || !rolling_losses.is_none(),
+            uniform: !poses(N) && knows(body, ask),
+            roundings: Roundings::default(),
             rolling_losses,
             lossy: None,
             lying: None,
@@ -344,6 +350,13 @@ impl<const N: usize> Phases<N> for BodyPhases {
         walk.kind_of_slip()
     }
 
+    fn slips_known(walk: &mut BodyWalk<'_, N>) -> bool {
+        let known = !poses(N) && walk.of.uniform;
+        if known {
+            walk.slips_uniformly();
+        }
+        known
+    }
     fn slips(walk: &mut BodyWalk<'_, N>) -> [f64; N] {
         walk.of.slide.sets_ways(&walk.of.state, [walk.at[5], walk.at[6]], [0.0; 2], None);
         Self::slips_on(walk)

@@ -9,7 +9,7 @@ use crate::laws::pose::{Angle, Pose};
 use crate::laws::state::State;
 use crate::motions::Kind;
 use crate::motions::conserved::by_first_integrals;
-use crate::motions::halt::lost;
+use crate::motions::halt::{lost, poses};
 use crate::motions::judge::doubted;
 use crate::motions::row::OutputRow;
 use crate::motions::walk::{Next, Phases, WalkStep, after_rest};
@@ -35,6 +35,10 @@ impl<const N: usize> BodyWalk<'_, N> {
         let first = self.made.motion.states.len();
         let times = &self.since[first..];
         if times.is_empty() {
+            return Ok(None);
+        }
+        if !poses(N) && self.of.uniform {
+            self.rolls_uniformly();
             return Ok(None);
         }
         let mu = if at_limit { fixed * (1.0 + GRACE) } else { fixed };

@@ -117,7 +117,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             from = Aloft { angle: (1.0, 0.0), height: 0.0, ..from };
             self.sets(&from);
         }
-        let there = from.on_other_rim(&shape);
+        let there = if both { from.on_other_rim(&shape) } else { from };
         if both && from.lift >= 0.0 && there.lift < 0.0 {
             self.turns_over();
             return self.strikes();
@@ -145,8 +145,8 @@ impl<const N: usize> BodyWalk<'_, N> {
         if let Some(left) = left {
             self.sums_bounces(&after, left, bounce);
         }
-        let level = from.angle.1.abs().max(after.lift).max(after.on_other_rim(&shape).lift.abs());
-        if self.has_two_rims() && e > 0.0 && level < RATTLED {
+        let level = || from.angle.1.abs().max(after.lift).max(after.on_other_rim(&shape).lift.abs());
+        if self.has_two_rims() && e > 0.0 && level() < RATTLED {
             return self.ends_rattle();
         }
         self.leaves_impact(&after)
@@ -154,7 +154,11 @@ impl<const N: usize> BodyWalk<'_, N> {
 
     /// The impact at these numbers; None for a rolling contact without a solution.
     fn impact(&self, from: &Aloft, e: f64) -> Option<Struck> {
-        let light = lightness(&self.of.slide.law.shape, from.angle);
+        let mut light = lightness(&self.of.slide.law.shape, from.angle);
+        if self.of.uniform {
+            // Rounding must not make the slip turn.
+            (light[1], light[2], light[3]) = (light[0], 1.0, 0.0);
+        }
         self.rim_impact(from.slip, from.lift, light).on(&self.ask.table, e)
     }
 
@@ -220,6 +224,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         }
         self.claims(share * after.w.into_iter().fold(1.0, |most: f64, w| most.max(w.abs())));
         self.doubts(share);
+        self.of.roundings.turned += share;
     }
 
     /// The numbers after an impact, which is also recorded.
@@ -242,7 +247,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         stays: bool,
     ) {
         let velocities = both.map(|at| [at.slip[0], at.slip[1], at.lift]);
-        let (time, states) = (self.t0 + self.at[TIME], both.map(Aloft::state));
+        let (time, states) = (self.t0 + self.at[TIME], both.map(|at| self.state_of(at)));
         self.of.struck += self.made.path.impacts.last().map_or(0.0, |before| before.lost);
         self.records_impact(Strike { time, other, hit, states, velocities, impulse, lost, stays });
     }

@@ -243,9 +243,11 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
                 }
                 Next::Slips => {
                     self.begins_phase(Kind::Slipping);
-                    let y = P::slips(self);
-                    self.looks_at(&y);
-                    return Ok(WalkStep::Flows(y));
+                    if !P::slips_known(self) {
+                        let y = P::slips(self);
+                        self.looks_at(&y);
+                        return Ok(WalkStep::Flows(y));
+                    }
                 }
                 Next::SlipsOn => {
                     self.began = self.at[TIME];

@@ -66,6 +66,10 @@ pub(crate) trait Phases<const N: usize>: Sized {
     fn slip_kind(_: &Walk<'_, Self, N>) -> Kind {
         Kind::Slipping
     }
+    /// Computes a slip that is known without steps; returns false for any other slip.
+    fn slips_known(_: &mut Walk<'_, Self, N>) -> bool {
+        false
+    }
     /// Begins a slip, or continues one. Returns the numbers at which its flow starts.
     fn slips(walk: &mut Walk<'_, Self, N>) -> [f64; N];
     fn slips_on(walk: &mut Walk<'_, Self, N>) -> [f64; N];

@@ -163,7 +163,7 @@ impl Marches<'_, '_> {
         let (job, row) = (self.work.job, self.work.first + i);
         let (body, start) = (self.work.starts.body(row), self.work.starts.state(row));
         let Ok(body) = body else { return First::Unknown };
-        if exact::check(&body, &start).is_err() || body.is_ball() {
+        if exact::check(&body, &start).is_err() {
             return First::Unknown;
         }
         let time_way = if job.span() < 0.0 { -1.0 } else { 1.0 };
