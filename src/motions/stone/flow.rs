@@ -362,8 +362,9 @@ impl Flow<STONE_MARGINS> for StoneFlow<'_> {
         &self,
         from: &FlowPlace<N>,
         h: f64,
+        guess: radau::Guess<N>,
     ) -> (rk8::Step<f64, N>, radau::Collocated<N>) {
-        self.creeps_on(from, h)
+        self.creeps_on(from, h, guess)
     }
 
     /// The end of a slip that is almost zero, extrapolated linearly to u = 0.
