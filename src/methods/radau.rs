@@ -7,8 +7,8 @@
 //! error = 3e-6 x^2 |(d5, x d4)|,   x^2 = 0.8 |d5|/|d3|                          d_n: divided differences of y of order n
 //! ```
 //! The method is stable for any h (Hairer and Wanner, Solving Ordinary Differential Equations II (1996), IV.5 and
-//! IV.8). Only the first M of the N numbers affect each other; the others are integrals. J is exact at the start of the
-//! step. For an oscillation d5 and d3 vanish together but d4 does not, so that the error does not depend on its phase.
+//! IV.8). Only the first M of the N numbers affect each other; the others are integrals. J is that of a point within
+//! the step. For an oscillation d5 and d3 vanish together but d4 does not, so that the error does not depend on its phase.
 //!
 //! Error: that of a pendulum goes as h^9; the tests at the end run it, a stiff equation, and the estimate of the error.
 
@@ -16,8 +16,9 @@ use super::rk8::Step;
 use crate::numbers::larger;
 use nalgebra::{Complex, Const, DimMin, SMatrix, SVector, ToTypenum};
 
-/// The cost of a step in evaluations of the rates: some five iterations, J, and its factors.
-pub(crate) const COST: u64 = 60;
+/// The cost of a step in evaluations of the rates, if it converges fast; and that of J and its factors.
+pub(crate) const COST: u64 = 36;
+const PREPARED: u64 = 20;
 /// The number of stages.
 pub(crate) const RADAU_STAGES: usize = 5;
 #[rustfmt::skip]
@@ -75,6 +76,8 @@ const SPREAD_4: [f64; RADAU_STAGES] = [11.414409029082394, -35.16538944447781, 5
 const SPREAD_3: [f64; RADAU_STAGES] = [0.0, -7.727201094286656, 28.298810103886993, -44.332583267514494, 23.760974257914153];
 /// Largest number of Newton's iterations.
 const ITERATIONS: usize = 14;
+/// The number of iterations after which their convergence is judged.
+const TRIALS: usize = 4;
 /// The factor of the error, which is about right for a radian of an oscillation.
 const MISSED: f64 = 3e-6;
 /// Largest share by which the numbers still change in an iteration that rounding prevents from converging.
@@ -86,10 +89,7 @@ pub(crate) type Guess<const N: usize> = Option<[[f64; N]; RADAU_STAGES]>;
 const LONGER: f64 = 2.0;
 
 /// The changes in a step of length `h` by the polynomial of the last step, from its changes and its length.
-pub(crate) fn goes_on<const N: usize>(
-    last: &Option<([[f64; N]; RADAU_STAGES], f64)>,
-    h: f64,
-) -> Guess<N> {
+pub(crate) fn goes_on<const N: usize>(last: &Option<([[f64; N]; RADAU_STAGES], f64)>, h: f64) -> Guess<N> {
     let (moved, before) = last.as_ref().filter(|(_, before)| h <= LONGER * before)?;
     // Lagrange's polynomials of the start and the nodes, of which that of the start multiplies a change of zero.
     let weight = |j: usize, x: f64| {
@@ -104,10 +104,17 @@ pub(crate) fn goes_on<const N: usize>(
     }))
 }
 
+/// The numbers in the middle of a step, as far as they are known: their derivatives there are those of the whole step.
+pub(crate) fn middle<const N: usize>(y: &[f64; N], guess: &Guess<N>) -> [f64; N] {
+    guess.map_or(*y, |moved| core::array::from_fn(|n| y[n] + moved[2][n]))
+}
+
 /// The stages of a step: the changes Z, and the rates there.
 pub(crate) struct Collocated<const N: usize> {
     pub moved: [[f64; N]; RADAU_STAGES],
     pub rates: [[f64; N]; RADAU_STAGES],
+    /// The cost in evaluations of the rates.
+    pub evaluations: u64,
 }
 
 /// One step of `h` from `y`. `slopes[i][j]` is the derivative of the rate of number i with respect to number j, and
@@ -135,13 +142,14 @@ where
         (one.map(Complex::from) - slopes.map(|x| per * x)).lu()
     });
     let moved = guess.unwrap_or([[0.0; N]; RADAU_STAGES]);
-    let mut all = Collocated { moved, rates: [*y; RADAU_STAGES] };
+    let mut all = Collocated { moved, rates: [*y; RADAU_STAGES], evaluations: PREPARED };
     let (mut last, mut unknown, mut moves, mut more) =
         (None::<f64>, f64::INFINITY, [[0.0; N]; RADAU_STAGES], 0.0);
-    for _ in 0..ITERATIONS {
+    for done in 1..=ITERATIONS {
         for i in 0..RADAU_STAGES {
             f(&core::array::from_fn(|n| y[n] + all.moved[i][n]), &mut all.rates[i]);
         }
+        all.evaluations += RADAU_STAGES as u64;
         // The residual of the equation of each stage.
         let left: [[f64; N]; RADAU_STAGES] = core::array::from_fn(|i| {
             core::array::from_fn(|n| {
@@ -179,7 +187,9 @@ where
         more = if share < 0.9 { share / (1.0 - share) } else { 10.0 };
         unknown = most * more;
         let stalls = share > 0.9 && unknown < STALLED;
-        if unknown < converged || stalls || share > 2.0 || !most.is_finite() {
+        let fails =
+            share > 2.0 || done > TRIALS && unknown * share.powi((ITERATIONS - done) as i32) > STALLED;
+        if unknown < converged || stalls || fails || !most.is_finite() {
             break;
         }
     }

@@ -404,25 +404,28 @@ pub(crate) trait Flow<const M: usize>: Copy {
                 return Flown { halt, y: self.shown(&here.y), step: h, steep, spent };
             }
             tired = false;
-            let stable = if Self::MAY_BE_STIFF && self.is_stiff(&here) { self.stable(&here) } else { f64::INFINITY };
+            let stable =
+                if Self::MAY_BE_STIFF && self.is_stiff(&here) { self.stable(&here) } else { f64::INFINITY };
             let implicit = ways.leads_to(&mut h, stable, || self.longest(&here));
             let made = if implicit {
                 let (made, at) = self.implicit_step(&here, h, radau::goes_on(&ways.last, h));
                 stages[..radau::RADAU_STAGES].copy_from_slice(&at.moved);
                 stages[radau::RADAU_STAGES..2 * radau::RADAU_STAGES].copy_from_slice(&at.rates);
+                spent.evaluations += at.evaluations;
                 made
             } else {
+                spent.evaluations += rk8::STAGES as u64;
                 self.explicit_step::<LOOP, N>(&here, h, &mut stages)
             };
-            spent.evaluations += if implicit { radau::COST } else { 12 };
             let error = self.error(&here.y, &made);
             let (y, carry) = plus(&here.y, &here.carry, &made.change);
             let y = self.kept(y);
             let after = FlowPlace { y, carry, rate: self.rates(&y) };
             if error.is_nan() || error > 1.0 || after.rate.iter().any(|x| x.is_nan()) {
+                let tried = h;
                 h *= growth(error).min(0.7);
                 if implicit {
-                    ways.fails(&mut h, stable);
+                    ways.fails(tried, !error.is_nan(), &mut h, stable);
                 }
                 // A step that is NaN counts as too short.
                 if h.is_nan() || here.y.iter().any(|x| x.is_nan()) || h < self.shortest(&here.y) {

@@ -15,18 +15,25 @@ pub(crate) const STABLE: f64 = 2.0;
 /// Explicit steps from a failure of an implicit step to the next one, at first and at most.
 const WAITS: [u64; 2] = [8, 128];
 
+/// A step that does not converge is repeated with this share of its length, and each further step may be longer by
+/// this factor.
+const LESS: f64 = 0.5;
+const MORE: f64 = 1.1;
+
 /// The way in which a stiff flow takes its steps.
 pub(super) struct Ways<const N: usize> {
     /// The number of explicit steps before the next implicit one, and after the next failure.
     left: u64,
     wait: u64,
+    /// The longest implicit step: shorter after a step in which Newton's iteration did not converge.
+    most: f64,
     /// The changes of the numbers at the stages of the last step, if it was implicit, and its length.
     pub last: Option<([[f64; N]; RADAU_STAGES], f64)>,
 }
 
 impl<const N: usize> Default for Ways<N> {
     fn default() -> Self {
-        Self { left: 0, wait: WAITS[0], last: None }
+        Self { left: 0, wait: WAITS[0], most: f64::INFINITY, last: None }
     }
 }
 
@@ -39,7 +46,7 @@ impl<const N: usize> Ways<N> {
         }
         let pays = pays(stable);
         if self.left == 0 && *h > 0.5 * stable && longest() >= pays {
-            *h = h.max(pays);
+            *h = h.min(self.most).max(pays);
             return true;
         }
         self.left = self.left.saturating_sub(1);
@@ -47,8 +54,13 @@ impl<const N: usize> Ways<N> {
         false
     }
 
-    /// An implicit step has failed; the next one would have the length `h`.
-    pub fn fails(&mut self, h: &mut f64, stable: f64) {
+    /// An implicit step of the length `tried` has failed, because of its error or because it does not converge; the next
+    /// one would have the length `h`.
+    pub fn fails(&mut self, tried: f64, converges: bool, h: &mut f64, stable: f64) {
+        if !converges {
+            self.most = LESS * tried;
+            *h = self.most;
+        }
         if h.is_nan() || *h < pays(stable) {
             (self.left, self.wait) = (self.wait, WAITS[1].min(2 * self.wait));
             *h = stable;
@@ -57,7 +69,7 @@ impl<const N: usize> Ways<N> {
 
     /// An implicit step has succeeded.
     pub fn succeeds(&mut self, last: ([[f64; N]; RADAU_STAGES], f64)) {
-        (self.wait, self.last) = (WAITS[0], Some(last));
+        (self.wait, self.last, self.most) = (WAITS[0], Some(last), MORE * self.most);
     }
 }
 
