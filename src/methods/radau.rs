@@ -7,8 +7,8 @@
 //! error = 3e-6 x^2 |(d5, x d4)|,   x^2 = 0.8 |d5|/|d3|                          d_n: divided differences of y of order n
 //! ```
 //! The method is stable for any h (Hairer and Wanner, Solving Ordinary Differential Equations II (1996), IV.5 and
-//! IV.8). Only the first M of the N numbers affect each other; the others are integrals. J is exact at the start of the
-//! step. For an oscillation d5 and d3 vanish together but d4 does not, so that the error does not depend on its phase.
+//! IV.8). Only the first M of the N numbers affect each other; the others are integrals. J is that of a point within
+//! the step. For an oscillation d5 and d3 vanish together but d4 does not, so that the error does not depend on its phase.
 //!
 //! Error: that of a pendulum goes as h^9; the tests at the end run it, a stiff equation, and the estimate of the error.
 
@@ -16,8 +16,9 @@ use super::rk8::Step;
 use crate::numbers::larger;
 use nalgebra::{Complex, Const, DimMin, SMatrix, SVector, ToTypenum};
 
-/// The cost of a step in evaluations of the rates: some five iterations, J, and its factors.
-pub(crate) const COST: u64 = 60;
+/// The cost of a step in evaluations of the rates, if it converges fast; and that of J and its factors.
+pub(crate) const COST: u64 = 36;
+const PREPARED: u64 = 20;
 /// The number of stages.
 pub(crate) const RADAU_STAGES: usize = 5;
 #[rustfmt::skip]
@@ -75,19 +76,50 @@ const SPREAD_4: [f64; RADAU_STAGES] = [11.414409029082394, -35.16538944447781, 5
 const SPREAD_3: [f64; RADAU_STAGES] = [0.0, -7.727201094286656, 28.298810103886993, -44.332583267514494, 23.760974257914153];
 /// Largest number of Newton's iterations.
 const ITERATIONS: usize = 14;
+/// The number of iterations after which their convergence is judged.
+const TRIALS: usize = 4;
 /// The factor of the error, which is about right for a radian of an oscillation.
 const MISSED: f64 = 3e-6;
 /// Largest share by which the numbers still change in an iteration that rounding prevents from converging.
 const STALLED: f64 = 1e-6;
 
+/// The changes Z at the stages with which Newton's iteration begins.
+pub(crate) type Guess<const N: usize> = Option<[[f64; N]; RADAU_STAGES]>;
+/// A step may be this many times longer than the last one, if the iteration begins with the polynomial of that step.
+const LONGER: f64 = 2.0;
+
+/// The changes in a step of length `h` by the polynomial of the last step, from its changes and its length.
+pub(crate) fn goes_on<const N: usize>(last: &Option<([[f64; N]; RADAU_STAGES], f64)>, h: f64) -> Guess<N> {
+    let (moved, before) = last.as_ref().filter(|(_, before)| h <= LONGER * before)?;
+    // Lagrange's polynomials of the start and the nodes, of which that of the start multiplies a change of zero.
+    let weight = |j: usize, x: f64| {
+        let others = (0..RADAU_STAGES).filter(|i| *i != j);
+        others.fold(x / PLACES[j], |product, i| product * (x - PLACES[i]) / (PLACES[j] - PLACES[i]))
+    };
+    Some(PLACES.map(|place| {
+        let weights: [f64; RADAU_STAGES] = core::array::from_fn(|j| weight(j, 1.0 + place * h / before));
+        core::array::from_fn(|n| {
+            (0..RADAU_STAGES).map(|j| weights[j] * moved[j][n]).sum::<f64>() - moved[RADAU_STAGES - 1][n]
+        })
+    }))
+}
+
+/// The numbers in the middle of a step, as far as they are known: their derivatives there are those of the whole step.
+pub(crate) fn middle<const N: usize>(y: &[f64; N], guess: &Guess<N>) -> [f64; N] {
+    guess.map_or(*y, |moved| core::array::from_fn(|n| y[n] + moved[2][n]))
+}
+
 /// The stages of a step: the changes Z, and the rates there.
 pub(crate) struct Collocated<const N: usize> {
     pub moved: [[f64; N]; RADAU_STAGES],
     pub rates: [[f64; N]; RADAU_STAGES],
+    /// The cost in evaluations of the rates.
+    pub evaluations: u64,
 }
 
 /// One step of `h` from `y`. `slopes[i][j]` is the derivative of the rate of number i with respect to number j, and
-/// `sizes` are those of the first M numbers to which errors are relative. Newton's iteration ends when no number
+/// `sizes` are those of the first M numbers to which errors are relative. Newton's iteration begins with `guess`, and
+/// ends when no number
 /// changes by more than the share `converged` of its size; the error is NaN if this does not happen.
 pub(crate) fn step<const M: usize, const N: usize>(
     mut f: impl FnMut(&[f64; N], &mut [f64; N]),
@@ -95,6 +127,7 @@ pub(crate) fn step<const M: usize, const N: usize>(
     slopes: &SMatrix<f64, M, M>,
     sizes: &[f64; M],
     (h, converged): (f64, f64),
+    guess: Guess<N>,
 ) -> (Step<f64, N>, Collocated<N>)
 where
     Const<M>: ToTypenum + DimMin<Const<M>, Output = Const<M>>,
@@ -108,13 +141,15 @@ where
         let per = Complex::new(h, 0.0) / complex(g);
         (one.map(Complex::from) - slopes.map(|x| per * x)).lu()
     });
-    let mut all = Collocated { moved: [[0.0; N]; RADAU_STAGES], rates: [*y; RADAU_STAGES] };
+    let moved = guess.unwrap_or([[0.0; N]; RADAU_STAGES]);
+    let mut all = Collocated { moved, rates: [*y; RADAU_STAGES], evaluations: PREPARED };
     let (mut last, mut unknown, mut moves, mut more) =
         (None::<f64>, f64::INFINITY, [[0.0; N]; RADAU_STAGES], 0.0);
-    for _ in 0..ITERATIONS {
+    for done in 1..=ITERATIONS {
         for i in 0..RADAU_STAGES {
             f(&core::array::from_fn(|n| y[n] + all.moved[i][n]), &mut all.rates[i]);
         }
+        all.evaluations += RADAU_STAGES as u64;
         // The residual of the equation of each stage.
         let left: [[f64; N]; RADAU_STAGES] = core::array::from_fn(|i| {
             core::array::from_fn(|n| {
@@ -152,7 +187,9 @@ where
         more = if share < 0.9 { share / (1.0 - share) } else { 10.0 };
         unknown = most * more;
         let stalls = share > 0.9 && unknown < STALLED;
-        if unknown < converged || stalls || share > 2.0 || !most.is_finite() {
+        let fails =
+            share > 2.0 || done > TRIALS && unknown * share.powi((ITERATIONS - done) as i32) > STALLED;
+        if unknown < converged || stalls || fails || !most.is_finite() {
             break;
         }
     }
@@ -182,7 +219,7 @@ mod tests {
         for _ in 0..n {
             let slopes = SMatrix::<f64, 2, 2>::new(0.0, 1.0, -f64::cos(y[0]), 0.0);
             let pendulum = |y: &[f64; 2], rate: &mut [f64; 2]| *rate = [y[1], -y[0].sin()];
-            let change = step(pendulum, &y, &slopes, &[1.0; 2], (h, 1e-16)).0.change;
+            let change = step(pendulum, &y, &slopes, &[1.0; 2], (h, 1e-16), None).0.change;
             y = [y[0] + change[0], y[1] + change[1]];
         }
         y
@@ -209,7 +246,7 @@ mod tests {
         let slow = |t: f64| (t.cos() + t.sin() / rate) / (1.0 + 1.0 / (rate * rate));
         let (mut y, h) = ([1.0, 0.0, slow(0.0)], 0.25);
         for n in 1..=40 {
-            let change = step(f, &y, &slopes, &[1.0; 3], (h, 1e-16)).0.change;
+            let change = step(f, &y, &slopes, &[1.0; 3], (h, 1e-16), None).0.change;
             y = core::array::from_fn(|i| y[i] + change[i]);
             let t = h * f64::from(n);
             assert!((y[0] - t.cos()).abs() < 2e-13 && (y[2] - slow(t)).abs() < 1e-12, "{t}: {y:?}");
@@ -223,7 +260,7 @@ mod tests {
         for h in [0.3, 0.5, 0.8, 1.2] {
             for turn in 0..8 {
                 let (s, c) = (0.7 * f64::from(turn)).sin_cos();
-                let (made, _) = step(f, &[c, s], &slopes, &[1.0; 2], (h, 1e-16));
+                let (made, _) = step(f, &[c, s], &slopes, &[1.0; 2], (h, 1e-16), None);
                 let (far, near) = (h + 0.7 * f64::from(turn)).sin_cos();
                 let off = (made.change[0] - (near - c)).hypot(made.change[1] - (far - s));
                 let said = made.fifth[0].hypot(made.fifth[1]);

@@ -352,6 +352,10 @@ impl<T: Real, G: OwnCouple<T>> Slipping<T, G> {
     /// The response in a state, dt/dsigma there, and the heat of the couple of the patch in a unit of time.
     #[inline(always)]
     pub fn on_patch(&self, (s, c): (T, T), w: [T; 3], u: [T; 2], patch: T) -> (SlipResponse<T>, T, T) {
+        // At the stages of a step s^2 + c^2 is not quite 1. The difference, times w^2, would be an acceleration of the
+        // slip, which a small patch would answer with all its friction.
+        let per = s.splat(1.0) / s.mac(s, c * c).sqrt();
+        let (s, c) = (s * per, c * per);
         let drilling = s * w[0] + c * w[2];
         let [share, twist, size] = rubs(u[0].mac(u[0], u[1] * u[1]).sqrt(), drilling, patch);
         let pull = u.map(|u| u * share * size);

@@ -14,9 +14,12 @@ pub(crate) mod lanes;
 mod place;
 #[cfg(feature = "many")]
 pub(crate) mod schedule;
+mod stiff;
 
 pub(crate) use ends::{looks, only_zero};
 pub(crate) use place::{Exhausted, FlowPlace, Flown, Spent, Steps, TakenStep};
+pub(crate) use stiff::STABLE;
+use stiff::Ways;
 
 use super::radau;
 use super::rk8::{self, growth, plus};
@@ -126,18 +129,28 @@ pub(crate) trait Flow<const M: usize>: Copy {
     const LOOKS_ON: bool = false;
     /// Whether [`Flow::is_stiff`] is called before each step.
     const MAY_BE_STIFF: bool = false;
-    /// Whether some numbers follow the others so fast from this point on that a step of [`radau`] costs less than the
-    /// short steps that would be stable otherwise.
+    /// Whether some numbers follow the others so fast from this point on that explicit steps longer than
+    /// [`Flow::stable`] are not stable. Longer steps are implicit, as long as they pay.
     fn is_stiff<const N: usize>(&self, _: &FlowPlace<N>) -> bool {
         false
     }
-    /// A step of [`radau`] and its stages.
+    /// The longest stable explicit step in sigma from a point where the flow is stiff.
+    fn stable<const N: usize>(&self, _: &FlowPlace<N>) -> f64 {
+        STABLE
+    }
+    /// A step of [`radau`] and its stages, by an iteration that begins with the changes `guess`.
     fn implicit_step<const N: usize>(
         &self,
         _: &FlowPlace<N>,
         _: f64,
+        _: radau::Guess<N>,
     ) -> (rk8::Step<f64, N>, radau::Collocated<N>) {
         unreachable!("only a stiff flow takes implicit steps")
+    }
+    /// Whether a step of this length is implicit.
+    #[inline(always)]
+    fn is_implicit<const N: usize>(&self, from: &FlowPlace<N>, h: f64) -> bool {
+        Self::MAY_BE_STIFF && self.is_stiff(from) && h > self.stable(from)
     }
     /// Called for each step that is taken, with the step, the length in sigma of the part that is taken, and the point
     /// at its end. The part ends where the flow ends; if that is at the last requested time, the length is that of the
@@ -181,8 +194,8 @@ pub(crate) trait Flow<const M: usize>: Copy {
         h: f64,
         stages: &mut rk8::Stages<f64, N>,
     ) -> rk8::Step<f64, N> {
-        if Self::MAY_BE_STIFF && self.is_stiff(from) {
-            let (made, at) = self.implicit_step(from, h);
+        if self.is_implicit(from, h) {
+            let (made, at) = self.implicit_step(from, h, None);
             stages[..radau::RADAU_STAGES].copy_from_slice(&at.moved);
             stages[radau::RADAU_STAGES..2 * radau::RADAU_STAGES].copy_from_slice(&at.rates);
             return made;
@@ -357,6 +370,7 @@ pub(crate) trait Flow<const M: usize>: Copy {
         let (mut calm, mut frozen) = (self.calm(&here.y), false);
         let (mut spent, mut last) = (Spent { evaluations: 1, erred: 0.0, patience, exhausted: None }, here.y);
         let (mut stages, mut steep) = ([here.rate; rk8::STAGES], f64::INFINITY);
+        let mut ways = Ways::default();
         for steps in 1u64.. {
             let over = if next == times.len() {
                 Some((Self::OVER, last))
@@ -390,19 +404,29 @@ pub(crate) trait Flow<const M: usize>: Copy {
                 return Flown { halt, y: self.shown(&here.y), step: h, steep, spent };
             }
             tired = false;
-            let mut made = self.step::<LOOP, N>(&here, h, &mut stages);
-            if Self::MAY_BE_STIFF && made.fifth[0].is_nan() {
-                // Where Newton's iteration does not converge, a short explicit step may succeed.
-                made = self.explicit_step::<LOOP, N>(&here, h, &mut stages);
-            }
-            let implicit = Self::MAY_BE_STIFF && self.is_stiff(&here);
-            spent.evaluations += if implicit { radau::COST } else { 12 };
+            let stable =
+                if Self::MAY_BE_STIFF && self.is_stiff(&here) { self.stable(&here) } else { f64::INFINITY };
+            let implicit = ways.leads_to(&mut h, stable, || self.longest(&here));
+            let made = if implicit {
+                let (made, at) = self.implicit_step(&here, h, radau::goes_on(&ways.last, h));
+                stages[..radau::RADAU_STAGES].copy_from_slice(&at.moved);
+                stages[radau::RADAU_STAGES..2 * radau::RADAU_STAGES].copy_from_slice(&at.rates);
+                spent.evaluations += at.evaluations;
+                made
+            } else {
+                spent.evaluations += rk8::STAGES as u64;
+                self.explicit_step::<LOOP, N>(&here, h, &mut stages)
+            };
             let error = self.error(&here.y, &made);
             let (y, carry) = plus(&here.y, &here.carry, &made.change);
             let y = self.kept(y);
             let after = FlowPlace { y, carry, rate: self.rates(&y) };
             if error.is_nan() || error > 1.0 || after.rate.iter().any(|x| x.is_nan()) {
+                let tried = h;
                 h *= growth(error).min(0.7);
+                if implicit {
+                    ways.fails(tried, !error.is_nan(), &mut h, stable);
+                }
                 // A step that is NaN counts as too short.
                 if h.is_nan() || here.y.iter().any(|x| x.is_nan()) || h < self.shortest(&here.y) {
                     let halt = self.stuck(&here, &margins).unwrap_or_else(|| {
@@ -447,6 +471,12 @@ pub(crate) trait Flow<const M: usize>: Copy {
             }
             if let Some((halt, y)) = stop.filter(|(_, y)| y[Self::TIME] <= end) {
                 return Flown { halt, y: self.shown(&y), step: h, steep, spent };
+            }
+            if Self::MAY_BE_STIFF {
+                ways.last = None;
+                if implicit {
+                    ways.succeeds((core::array::from_fn(|i| stages[i]), h));
+                }
             }
             frozen = after.y[Self::TIME] - here.y[Self::TIME] <= FROZEN * calm;
             (here, margins) = (after, ahead);

@@ -304,6 +304,7 @@ impl Flow<CUSTOM_MARGINS> for CustomFlow<'_> {
         &self,
         from: &FlowPlace<N>,
         h: f64,
+        guess: radau::Guess<N>,
     ) -> (rk8::Step<f64, N>, radau::Collocated<N>) {
         let (y, fast, slip) = (&from.y, Slide::fastest(&from.y), from.y[5].hypot(from.y[6]));
         let sizes = [y[0], 1.0, fast, fast, fast, slip, slip];
@@ -314,7 +315,7 @@ impl Flow<CUSTOM_MARGINS> for CustomFlow<'_> {
             let [above, below] = [self.rates(&more), self.rates(&less)];
             (0..COUPLED).for_each(|i| slopes[(i, j)] = (above[i] - below[i]) / (more[j] - less[j]));
         }
-        radau::step(|y, all| self.write_rates(y, all), y, &slopes, &sizes, (h, 0.01 * self.tol))
+        radau::step(|y, all| self.write_rates(y, all), y, &slopes, &sizes, (h, 0.01 * self.tol), guess)
     }
 
     fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; CUSTOM_MARGINS] {

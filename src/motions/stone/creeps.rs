@@ -123,12 +123,14 @@ impl StoneFlow<'_> {
         &self,
         from: &FlowPlace<N>,
         h: f64,
+        guess: radau::Guess<N>,
     ) -> (rk8::Step<f64, N>, radau::Collocated<N>) {
         let y = &from.y;
         let (fast, converged) = (self.fastest(y), 0.01 * self.tol);
         let slip = known_slip(self.rubs(y), self.law.patch().unwrap_or(0.0), fast, converged);
         let sizes = [1.0, 1.0, 1.0, 1.0, fast, fast, fast, 1.0, slip, slip];
-        radau::step(|y, all| self.write_rates(y, all), y, &self.slopes(y), &sizes, (h, converged))
+        let slopes = self.slopes(&radau::middle(y, &guess));
+        radau::step(|y, all| self.write_rates(y, all), y, &slopes, &sizes, (h, converged), guess)
     }
 
     /// The derivatives of the rates of the quaternion, of w and of u with respect to these numbers and the time.

@@ -97,7 +97,7 @@ impl StoneFlow<'_> {
         w: [T; 3],
         slip: Option<[T; 2]>,
     ) -> Seen<T> {
-        let lab = laboratory(q);
+        let lab = laboratory(if law.patch().is_some() { unit(q) } else { q });
         let mut at = law.touching(lab[2], w);
         let zero = w[0].splat(0.0);
         let mut even = zero.splat(1.0);
@@ -215,6 +215,14 @@ impl StoneFlow<'_> {
         let point = if self.touch == Touch::Smooth { [still[0] - x, still[1] - y_r] } else { [y[11], y[12]] };
         StonePose::new([y[0], y[1], y[2], y[3]], point, [point[0] + x, point[1] + y_r, z])
     }
+}
+
+/// The unit quaternion along another, which at the stages of a step is not quite one. The difference, times w^2, would be
+/// an acceleration of the slip, which a small patch would answer with all its friction.
+#[inline(always)]
+fn unit<T: Real>(q: [T; 4]) -> [T; 4] {
+    let per = q[0].splat(1.0) / q.iter().fold(q[0].splat(0.0), |sum, x| x.mac(*x, sum)).sqrt();
+    q.map(|x| x * per)
 }
 
 /// The state with these numbers.
@@ -362,8 +370,9 @@ impl Flow<STONE_MARGINS> for StoneFlow<'_> {
         &self,
         from: &FlowPlace<N>,
         h: f64,
+        guess: radau::Guess<N>,
     ) -> (rk8::Step<f64, N>, radau::Collocated<N>) {
-        self.creeps_on(from, h)
+        self.creeps_on(from, h, guess)
     }
 
     /// The end of a slip that is almost zero, extrapolated linearly to u = 0.

@@ -88,12 +88,14 @@ impl Slide {
         &self,
         from: &FlowPlace<N>,
         h: f64,
+        guess: radau::Guess<N>,
     ) -> (rk8::Step<f64, N>, radau::Collocated<N>) {
         let y = &from.y;
         let (fast, converged) = (Self::fastest(y), 0.01 * self.tol);
         let slip = known_slip(self.rubs(y), self.law.patch().unwrap_or(0.0), fast, converged);
         let sizes = [y[0], 1.0, fast, fast, fast, slip, slip];
-        radau::step(|y, all| self.write_rates(y, all), y, &self.slopes(y), &sizes, (h, converged))
+        let slopes = self.slopes(&radau::middle(y, &guess));
+        radau::step(|y, all| self.write_rates(y, all), y, &slopes, &sizes, (h, converged), guess)
     }
 
     /// The derivatives of the rates of sine, cosine, w and u by these numbers.

@@ -19,7 +19,7 @@ use crate::laws::body::{Body, Rim, Shape, landing_angle};
 use crate::laws::contact::slip::{Friction, SlipResponse, Slipping};
 use crate::laws::loss::{Couples, Holds, Losses};
 use crate::laws::state::State;
-use crate::methods::flow::{FASTEST, Flow, FlowPlace};
+use crate::methods::flow::{FASTEST, Flow, FlowPlace, STABLE};
 use crate::methods::{radau, rk8};
 use crate::motions::creep::{IMPLICIT_TURNS, rests_below};
 use crate::motions::halt::{Halt, MARGINS, TIME, loses, poses};
@@ -227,13 +227,19 @@ impl Flow<MARGINS> for Slide {
         self.law.patch().is_some() && self.creeps_fast(place)
     }
 
+    fn stable<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
+        let damped = if loses(N) { self.damped(&place.y) } else { f64::INFINITY };
+        STABLE.min(damped / place.rate[7])
+    }
+
     #[inline(never)]
     fn implicit_step<const N: usize>(
         &self,
         from: &FlowPlace<N>,
         h: f64,
+        guess: radau::Guess<N>,
     ) -> (rk8::Step<f64, N>, radau::Collocated<N>) {
-        self.creeps_on(from, h)
+        self.creeps_on(from, h, guess)
     }
 
     fn is_extrapolated(halt: Halt) -> bool {
