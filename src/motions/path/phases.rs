@@ -47,6 +47,9 @@ pub(crate) struct BodyPhases {
     /// Whether a phase without a slip is integrated; otherwise the first integrals solve it, as long as no energy is
     /// lost.
     pub(super) integrates: bool,
+    /// Whether the caller computes the phases of rolling that the first integrals solve, among those of other walks.
+    #[cfg(feature = "many")]
+    pub(crate) rolls_among: bool,
     /// The losses of a body that does not slip, with the drilling friction of a patch of contact.
     pub(super) rolling_losses: Losses,
     /// The current phase, if it loses energy without a slip.
@@ -97,6 +100,8 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
             state: start,
             start,
             integrates: ask.table == Table::Smooth || !rolling_losses.is_none(),
+            #[cfg(feature = "many")]
+            rolls_among: false,
             rolling_losses,
             lossy: None,
             lying: None,

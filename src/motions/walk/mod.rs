@@ -89,6 +89,9 @@ pub(crate) enum Next {
 pub(crate) enum WalkStep<const N: usize> {
     /// The caller integrates the flow from these numbers on.
     Flows([f64; N]),
+    /// The caller computes a phase of rolling by the first integrals, among those of other walks.
+    #[cfg(feature = "many")]
+    Rolls,
     /// The walk is complete.
     Done,
 }
@@ -193,6 +196,8 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
                     }
                 }
                 WalkStep::Done => return self.done(),
+                #[cfg(feature = "many")]
+                WalkStep::Rolls => unreachable!("a walk that runs alone rolls alone"),
             }
         }
     }
