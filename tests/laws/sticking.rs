@@ -5,7 +5,7 @@ use core::f64::consts::FRAC_PI_2;
 use spincyl::contact::{Friction, TableKind};
 use spincyl::ensemble::{Answer, Job, MotionOutput, MotionStarts, SUMMARIES, Summary, roll};
 use spincyl::motion::{Ask, Ending, Method, Motion, Start, roll_with};
-use spincyl::{Body, State, steady};
+use spincyl::{Body, Error, State, steady};
 
 /// Motions with the coefficients of sliding and of static friction.
 type Scenes = Vec<(Body, State, [f64; 2])>;
@@ -78,17 +78,19 @@ fn scenes(count: usize, seed: u64) -> Scenes {
                 Ok(y) if i % 3 > 0 => y.kicked(0.4 * r()),
                 _ => State { theta, ..still },
             };
-            let mu = 0.05 + 1.5 * r() * r();
+            // A large coefficient may be above that of Painleve.
+            let mu = (0.05 + 1.5 * r() * r()) * if i % 5 == 0 { 8.0 } else { 1.0 };
             (body, y, [mu, if r() < 0.5 { mu } else { mu * (1.0 + r()) }])
         })
         .collect()
 }
 
-fn alone((body, y, [mu, fixed]): &(Body, State, [f64; 2]), job: &Job<'_>) -> Option<Motion> {
+fn alone((body, y, [mu, fixed]): &(Body, State, [f64; 2]), job: &Job<'_>) -> Result<Motion, Error> {
     let table = Friction::Coulomb { mu: *mu, fixed: *fixed, patch: 0.0 };
     let mut ask = Ask::on(table).with_method(Method::Tolerance(job.tol));
     ask.restitution = job.restitution;
-    roll_with(body, Start::from(*y), job.times, &ask, || true).ok().flatten()
+    let found = roll_with(body, Start::from(*y), job.times, &ask, || true);
+    found.map(|motion| motion.expect("nobody interrupts"))
 }
 
 #[test]
@@ -116,7 +118,7 @@ fn a_body_that_static_friction_holds_moves_as_with_a_largest_coefficient_and_by_
 
 #[test]
 fn side_by_side_under_dry_friction_a_motion_is_what_it_is_alone() {
-    let (mut known, mut kinds) = (0, [0; 9]);
+    let (mut known, mut refused, mut kinds) = (0, 0, [0; 16]);
     for (k, restitution) in [None, Some(0.0), Some(0.5)].into_iter().enumerate() {
         for times in [&[12.0][..], &[0.0, 1.5, 6.0, 12.0]] {
             let all = scenes(120, 40 + k as u64);
@@ -128,7 +130,15 @@ fn side_by_side_under_dry_friction_a_motion_is_what_it_is_alone() {
             };
             let found = Swept::of(&all, &job);
             for (i, scene) in all.iter().enumerate() {
-                let Some(motion) = alone(scene, &job) else { continue };
+                let motion = match alone(scene, &job) {
+                    Ok(motion) => motion,
+                    Err(e) => {
+                        assert!(matches!(e, Error::Painleve { .. }), "{e} {scene:?}");
+                        assert_eq!(found.status[i], Ending::Painleve as u8, "{i}: {scene:?}");
+                        refused += 1;
+                        continue;
+                    }
+                };
                 let claim = motion.error + found.error[i];
                 kinds[usize::from(found.status[i])] += 1;
                 if claim.is_nan() || claim > 1e-3 {
@@ -155,7 +165,7 @@ fn side_by_side_under_dry_friction_a_motion_is_what_it_is_alone() {
             }
         }
     }
-    assert!(known > 500 && kinds[0] > 100, "{known} {kinds:?}");
+    assert!(known > 400 && kinds[0] > 100 && refused > 5, "{known} {refused} {kinds:?}");
 }
 
 #[test]
