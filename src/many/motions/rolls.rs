@@ -127,14 +127,15 @@ impl MotionBlock<'_> {
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<(), Error> {
         let waiting = core::mem::take(&mut all.rolls);
-        let walks: Vec<_> = waiting.iter().filter_map(|i| all.walks[*i].as_ref().ok()).collect();
+        let walks: Vec<_> = waiting.iter().filter_map(|(i, _)| all.walks[*i].as_ref().ok()).collect();
         let (count, times) = (walks.len(), self.job.times.len());
         let column =
             |f: &dyn Fn(&BodyWalk<'_, N>) -> f64| -> Vec<f64> { walks.iter().map(|x| f(x)).collect() };
         let numbers = [Body::ell, Body::i1, Body::i3, Body::fillet, Body::theta_end];
         let bodies = numbers.map(|number| column(&|walk| number(&walk.of.body)));
         let states = [0, 1, 2, 3].map(|k| column(&|walk| <[f64; 4]>::from(walk.rolling_state())[k]));
-        let (grip, since) = (column(&|walk| walk.ask.table.mu()), column(&|walk| walk.at[TIME]));
+        let grip: Vec<f64> = waiting.iter().map(|(_, mu)| *mu).collect();
+        let since = column(&|walk| walk.at[TIME]);
         let starts = MotionStarts {
             coefficients: Some([&grip, &grip, &[0.0]]),
             ..MotionStarts::new(bodies.each_ref().map(Vec::as_slice), states.each_ref().map(Vec::as_slice))
@@ -152,7 +153,7 @@ impl MotionBlock<'_> {
         out.last = Some(last.each_mut().map(Vec::as_mut_slice));
         out.summary[Summary::End as usize] = Some(&mut end);
         let mut alone = work.run(level, (0..count).collect(), &mut out, go_on).into_iter().peekable();
-        for (k, i) in waiting.into_iter().enumerate() {
+        for (k, (i, mu)) in waiting.into_iter().enumerate() {
             if !go_on() {
                 return Ok(());
             }
@@ -160,7 +161,7 @@ impl MotionBlock<'_> {
             let ending = ENDINGS.into_iter().find(|ending| solved && *ending as u8 == status[k]);
             let Ok(walk) = &mut all.walks[i] else { continue };
             let found = match ending {
-                None => walk.rolls_alone(grip[k], go_on),
+                None => walk.rolls_alone(mu, go_on),
                 Some(ending) => {
                     let row = |of: &[Vec<f64>; 4], row: usize| State::from(of.each_ref().map(|x| x[row]));
                     let (mut rolled, over) = (Motion::empty(times, false)?, ending != Ending::Done);
@@ -173,7 +174,7 @@ impl MotionBlock<'_> {
                     }
                     let event = Event { ending, time: end[k], state: row(&last, k), rim: 0 };
                     (rolled.event, rolled.error) = (over.then_some(event), error[k]);
-                    walk.has_rolled(rolled, grip[k], go_on)
+                    walk.has_rolled(rolled, mu, go_on)
                 }
             };
             if let Err(e) = found {

@@ -49,8 +49,8 @@ impl<const N: usize> BodyWalk<'_, N> {
             return Ok(None);
         }
         #[cfg(feature = "many")]
-        if self.of.rolls_among && !at_limit {
-            return Ok(Some(WalkStep::Rolls));
+        if self.of.rolls_among {
+            return Ok(Some(WalkStep::Rolls(mu)));
         }
         self.rolls_alone(mu, go_on)?;
         Ok(None)

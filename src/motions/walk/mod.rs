@@ -89,9 +89,10 @@ pub(crate) enum Next {
 pub(crate) enum WalkStep<const N: usize> {
     /// The caller integrates the flow from these numbers on.
     Flows([f64; N]),
-    /// The caller computes a phase of rolling by the first integrals, among those of other walks.
+    /// The caller computes a phase of rolling with this coefficient of static friction by the first integrals, among those
+    /// of other walks.
     #[cfg(feature = "many")]
-    Rolls,
+    Rolls(f64),
     /// The walk is complete.
     Done,
 }
@@ -197,7 +198,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
                 }
                 WalkStep::Done => return self.done(),
                 #[cfg(feature = "many")]
-                WalkStep::Rolls => unreachable!("a walk that runs alone rolls alone"),
+                WalkStep::Rolls(_) => unreachable!("a walk that runs alone rolls alone"),
             }
         }
     }
