@@ -355,7 +355,8 @@ def sweeps():
     how = {"threads": 1, "progress": None}
     rolls = {
         "bodies": FAMILY, "states": FAMILY.steady(1.3), "t": 1.0, "want": None, "contact": "rolling", "tol": 1e-10, "mu": np.inf,
-        "beyond": False, "restitution": None, "stop_at": None, "losses": None, "max_nfev": None, "threads": 1, "progress": None,
+        "beyond": False, "restitution": None, "stop_at": None, "losses": None, "max_nfev": None, "errors": True, "threads": 1,
+        "progress": None,
     }  # fmt: skip
     found = {
         "sweep.portrait": (sc.sweep.portrait, {**axes, "want": "rate", "out": None, "dtype": "float64", **how}),

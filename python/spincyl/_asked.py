@@ -39,6 +39,7 @@ class Asked(NamedTuple):
     stop_at: Literal["rolling"] | None = None
     max_nfev: int | None = None
     spread: bool = False  # whether many motions return their states at all times
+    errors: bool = True  # whether the errors of many motions that are integrated are estimated
 
 
 def crossing(
@@ -48,7 +49,8 @@ def crossing(
 
     Defaults are left out, since passing them can take longer than a short motion.
     """
-    _, t0, step, tol, _, contact, mu, beyond, want, restitution, losses, stop_at, max_nfev, spread = asked
+    _, t0, step, tol, _, contact, mu, beyond, want, restitution, losses, stop_at, max_nfev, *many = asked
+    spread, errors = many
     options: dict[str, Any] = {"t0": t0} if t0 else {}
     if contact != "rolling" or mu != math.inf:
         options["table"], options["coefficients"] = table(contact, mu, own=True)
@@ -75,6 +77,8 @@ def crossing(
         options["max_nfev"] = max_nfev
     if spread:
         options["spread"] = True
+    if not errors:
+        options["errors"] = False
     return options
 
 

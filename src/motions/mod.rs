@@ -20,7 +20,7 @@ pub mod measured;
 pub mod motion;
 mod moving;
 pub mod path;
-mod rests;
+pub(crate) mod rests;
 mod result;
 mod rk4;
 pub(crate) mod row;

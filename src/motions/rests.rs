@@ -103,6 +103,12 @@ impl Motion {
     }
 }
 
+/// The same for a body that has rolled on its first rim without a change of phase.
+#[cfg(feature = "many")]
+pub(crate) fn rolled_rests_on(body: &Body, state: State, ending: Ending) -> RestsOn {
+    AtLast { ending, state, slip: [0.0; 2], rim: 0, kind: Some(Kind::Rolling) }.rests_on(body)
+}
+
 #[cfg(feature = "many")]
 impl Followed {
     /// The same for a motion whose path is apart.

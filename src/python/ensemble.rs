@@ -78,6 +78,7 @@ pub fn ensemble<'py>(
         restitution: asked.restitution,
         max_evaluations: asked.max_nfev,
         stop_at_rolling: asked.stop_at_rolling,
+        errors: asked.errors,
     };
     let (mut method, mut status) = (codes(&out, "method")?, codes(&out, "status")?);
     let mut numbers: Vec<(String, PyReadwriteArray1<'py, f64>)> = Vec::new();

@@ -73,6 +73,8 @@ options! {
         friction: Option<Py<PyAny>> = None,
         /// Whether the states of many motions are returned at all times, not only at the end.
         spread: bool = false,
+        /// Whether many motions with friction or losses are computed twice, to estimate their errors.
+        errors: bool = true,
     }
 }
 

@@ -39,6 +39,7 @@ mod resting;
 mod slip;
 mod stability;
 mod steady_states;
+mod sticking;
 mod stone;
 mod stone_claims;
 mod sweep;

@@ -129,8 +129,8 @@ def inputs(rows: "xarray.Dataset") -> dict[str, Any]:
     -------
     dict
         Keyword arguments of `roll`: "bodies", "states", "t", "contact" and "tol"; also "losses",
-        "restitution", "mu", "step", "beyond", "stop_at" and "max_nfev" if they were given. A call of
-        `roll` with these arguments repeats the results bit by bit. Lazy coordinates give lazy bodies and
+        "restitution", "mu", "step", "beyond", "stop_at", "max_nfev" and "errors" if they were given. A call
+        of `roll` with these arguments repeats the results bit by bit. Lazy coordinates give lazy bodies and
         states; call ``rows.load()`` first to get bodies and states in memory.
 
     Raises
@@ -171,7 +171,7 @@ def inputs(rows: "xarray.Dataset") -> dict[str, Any]:
     found = _stones(given, scale) if stones else _bodies(given, scale)
     found |= {"t": rows["t"].to_numpy() if "t" in rows.coords else at["t"], "tol": at["tol"]}
     found |= {name: at[name] for name in ("mu", "step", "restitution", "stop_at", "max_nfev") if name in at}
-    found |= {"beyond": True} if "beyond" in at else {}
+    found |= {name: bool(at[name]) for name in ("beyond", "errors") if name in at}
     if "contact_c" in given:
         found["contact"] = Viscous(given["contact_c"])._known(known)
     elif "contact_mu" in given:

@@ -72,6 +72,7 @@ def swept(
     if not rubs(asked.contact):
         attrs["mu"] = asked.mu
     attrs |= {"beyond": 1} if asked.beyond else {}  # numbers, since netCDF has no booleans
+    attrs |= {} if asked.errors else {"errors": 0}
     more = {"restitution": asked.restitution, "stop_at": asked.stop_at, "max_nfev": asked.max_nfev}
     attrs |= {name: x for name, x in more.items() if x is not None}
     if lazy:

@@ -20,7 +20,11 @@ use super::slip::{Friction, Slipping, painleve};
 pub(crate) use super::together::Standstill;
 use super::together::{Rubs, Together};
 use super::{Contact, Force, force};
+#[cfg(feature = "many")]
+use super::{force_at, reduced::Rates};
 use crate::laws::body::Body;
+#[cfg(feature = "many")]
+use crate::laws::body::Shape;
 use crate::laws::loss::{Couples, Losses, OwnCouple};
 use crate::laws::state::State;
 use crate::methods::roots::Trig;
@@ -110,6 +114,24 @@ impl<F: Fn(f64) -> Option<f64>> HeldContact<F> {
             found => found,
         }
     }
+}
+
+/// Whether a contact point at rest certainly sticks if static friction can hold it, under sliding friction `mu`.
+///
+/// It could slip off as well, in a direction e, only where (lambda + mu N A) e = -A F with lambda, N > 0 and the friction F
+/// that holds it, and A = diag(D_h - k g h/I1, D_2) is positive, with k = g h/(I1 + g^2). There mu N < |F|, while
+/// N = N0/(1 - mu k cos alpha) is at least N0/(1 + mu |k|).
+#[cfg(feature = "many")]
+pub(crate) fn is_certain(shape: &Shape<f64>, y: &State, mu: f64) -> bool {
+    let (slipping, angle) = (Slipping::of(shape, mu, true), y.theta.sin_cos());
+    let limit = slipping.painleve(angle);
+    if mu < DOUBTFUL * limit {
+        return true;
+    }
+    let free = slipping.towards(angle, [y.w1, y.w2, y.w3], [0.0; 2], [0.0; 2]).force[0];
+    let rates = Rates::of(Contact::Rolling, shape, shape.rim.rho != 0.0);
+    let held = force_at(rates.reduced(), y, &rates.derivative(y, angle), angle).friction();
+    held * (1.0 + mu / limit) < (1.0 - JUST) * mu * free
 }
 
 /// The behaviour of a contact point whose slip is zero.
@@ -267,5 +289,41 @@ fn onset(slipping: &Slipping<f64, impl OwnCouple<f64>>, angle: (f64, f64), w: [f
         bare: [at.u[0] - free * (lever * height / i1 + more), at.u[1] - free * aside],
         pressed: [Sum::product(lever, height) / Sum::from(i1) + Sum::from(more), aside.into()],
         pulled: [height * height / i1, pulled, 0.0],
+    }
+}
+
+#[cfg(all(test, feature = "many"))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_contact_point_that_certainly_sticks_has_no_other_way() {
+        let (mut random, mut certain, mut above) = (0.5f64, 0, 0);
+        let mut next = || {
+            random = (random * 997.0 + 0.123_456_789).fract();
+            random
+        };
+        for _ in 0..20_000 {
+            let fillet = if next() < 0.5 { 0.0 } else { 0.5 * next() };
+            let body = Body::rounded_tube(fillet + 3.0 * next(), 0.0, fillet).unwrap();
+            let [w1, w2, w3] = [(); 3].map(|()| 2.0 * next() - 1.0);
+            let y = State { theta: 0.05 + 1.5 * next(), w1, w2, w3 };
+            let (mu, held) = (10.0 * next() * next(), force(Contact::Rolling, &body, &y));
+            let fixed = mu * (1.0 + next());
+            if !is_certain(&body.shape(), &y, mu)
+                || held.normal <= 0.0
+                || held.friction() > fixed * held.normal
+            {
+                continue;
+            }
+            (certain, above) = (certain + 1, above + usize::from(mu > painleve(&body, y.theta)));
+            let friction = Friction::Coulomb { mu, fixed, patch: 0.0 };
+            assert_eq!(
+                standstill(&body, &y, &friction, &Losses::NONE),
+                Standstill::Sticks,
+                "{body:?} {y:?} {mu}"
+            );
+        }
+        assert!(certain > 5000 && above > 500, "{certain} {above}");
     }
 }

@@ -2,7 +2,7 @@
 
 use super::Answer;
 use crate::error::Error;
-use crate::laws::body::Body;
+use crate::laws::body::{Body, beyond};
 use crate::laws::loss::Losses;
 use crate::laws::state::State;
 use crate::many::columns::{LossColumns, Split, at, fit, rows};
@@ -117,6 +117,12 @@ impl<'a> MotionStarts<'a> {
         let slip = self.slips.map_or([0.0; 2], |all| all.map(|x| at(x, i)));
         let aloft = self.aloft.map(|all| all.map(|x| at(x, i)));
         Start { slip, aloft, ..self.state(i).into() }
+    }
+
+    /// Whether something else than the rim touches the table at the start of motion `i`.
+    pub(super) fn is_down(&self, i: usize) -> bool {
+        let [ell, _, _, fillet, end] = self.bodies.map(|x| at(x, i));
+        self.state(i).theta >= if end.is_nan() { beyond(ell, fillet) } else { end }
     }
 
     pub(super) fn losses(&self, i: usize) -> Losses {
@@ -363,6 +369,36 @@ impl<'a> MotionOutput<'a> {
         }
         if let Some(all) = &mut self.last_rim {
             all[i] = f64::from(last);
+        }
+    }
+
+    /// Writes for motion `i`, whose states are known, that its contact point is at rest on the first rim.
+    pub(super) fn put_rolling(&mut self, i: usize, times: usize) {
+        if let Some([theta, ..]) = &self.states {
+            for row in i * times..(i + 1) * times {
+                let none = if theta[row].is_nan() { f64::NAN } else { 0.0 };
+                self.slips.iter_mut().flatten().chain(&mut self.rims).for_each(|column| column[row] = none);
+            }
+        }
+        self.last_slip.iter_mut().flatten().chain(&mut self.last_rim).for_each(|column| column[i] = 0.0);
+    }
+
+    /// The same arrays, borrowed for a shorter time.
+    pub(super) fn reborrowed(&mut self) -> MotionOutput<'_> {
+        fn all<'a, const N: usize>(columns: &'a mut Option<[&mut [f64]; N]>) -> Option<[&'a mut [f64]; N]> {
+            columns.as_mut().map(|columns| columns.each_mut().map(|x| &mut **x))
+        }
+        MotionOutput {
+            states: all(&mut self.states),
+            slips: all(&mut self.slips),
+            rims: self.rims.as_deref_mut(),
+            last: all(&mut self.last),
+            last_slip: all(&mut self.last_slip),
+            last_rim: self.last_rim.as_deref_mut(),
+            summary: self.summary.each_mut().map(Option::as_deref_mut),
+            error: self.error,
+            method: self.method,
+            status: self.status,
         }
     }
 

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! slip, rolling with losses   eight at a time, each with its own steps (Dormand and Prince, eighth order),
-//!                             twice: with tol and with 1e4 tol
+//!                             twice: with tol and with 1e4 tol, or once if no errors are wanted
 //! all other phases            one at a time: changes of phase, contacts that are held, rolling by the first integrals
 //! ```
 //! A slip with additional losses is computed alone. A lane whose phase ends takes the next phase at once. The steps of
@@ -10,6 +10,7 @@
 //! SIMD width. [`motion::path`](crate::motions::path) has the law and the estimate of the error.
 
 use super::lossy_lanes::LossyLanes;
+use super::rolls::can_roll_among;
 use super::slip_lanes::Slips;
 use super::walks::{Among, Walks, lanes};
 use super::{Answer, MotionBlock, MotionOutput, Summary};
@@ -71,10 +72,11 @@ fn put(out: &mut MotionOutput<'_>, i: usize, (body, found): (&Body, &Followed), 
 }
 
 /// Bound in bytes of the small allocations for a block of `count` motions, each computed twice. They are too small to
-/// be checked one by one: the walks, the numbers at their times, their phases and the tasks that wait for a lane.
+/// be checked one by one: the walks, the numbers at their times, also in a phase of rolling, their phases and the tasks
+/// that wait for a lane.
 pub(super) fn size_of_block(count: usize, times: usize) -> usize {
     const PHASES: usize = 2048;
-    let at_a_time = size_of::<(State, [f64; 2], Kind, [f64; 3])>();
+    let at_a_time = size_of::<(State, [f64; 2], Kind, [f64; 3], State)>();
     let one = size_of::<BodyWalk<'_, 10>>() + PHASES + times.saturating_mul(at_a_time);
     one.saturating_mul(2 * count)
 }
@@ -88,11 +90,15 @@ impl<'a> MotionBlock<'a> {
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<(), Error> {
         let times = self.job.times;
-        spare_for(size_of_block(count, times.len()))?;
         let wide = in_lanes!(level, _ => true, else false);
-        let mut all = Walks::<N> { walks: room(2 * count)?, queues: Vec::new(), lanes: wide };
-        let mut walked = room(count)?;
-        for k in 0..count {
+        let left = self.roll_throughout(level, count, out, go_on);
+        let tols = [self.job.tol, rougher(self.job.tol)];
+        let tols = if self.job.errors { &tols[..] } else { &tols[..1] };
+        spare_for(size_of_block(left.len(), times.len()))?;
+        let walks = room(tols.len() * left.len())?;
+        let mut all = Walks::<N> { walks, queues: Vec::new(), rolls: Vec::new(), lanes: wide };
+        let mut walked = room(left.len())?;
+        for k in left {
             let (starts, i) = (self.starts, self.first + k);
             let body = starts.body(i);
             let ask = Ask {
@@ -108,15 +114,20 @@ impl<'a> MotionBlock<'a> {
                 let walk = BodyWalk::<N>::of_body(&body, &ask, self.job.tol, times, &starts.start(i));
                 let found = walk.and_then(|walk| Box::new(walk).run(go_on)).map(|mut found| {
                     found.knows_itself(self.job.tol);
+                    if !self.job.errors {
+                        found.motion.error = f64::NAN;
+                    }
                     (body, found)
                 });
                 self.puts(out, k, found)?;
                 continue;
             }
             walked.push(k);
-            for tol in [self.job.tol, rougher(self.job.tol)] {
-                all.walks
-                    .push(body.and_then(|body| BodyWalk::of_body(&body, &ask, tol, times, &starts.start(i))));
+            for &tol in tols {
+                let walk = body.and_then(|body| BodyWalk::of_body(&body, &ask, tol, times, &starts.start(i)));
+                all.walks.push(
+                    walk.map(|walk| walk.rolling_among(wide && can_roll_among(self.job.table, &ask.table))),
+                );
             }
         }
         for i in 0..all.walks.len() {
@@ -125,10 +136,17 @@ impl<'a> MotionBlock<'a> {
             }
             all.lead(i, Ok(Pause::No), go_on);
         }
-        while let Some(i) = all.queues.iter().position(|(_, queue)| !queue.is_empty()) {
+        loop {
             if !go_on() {
                 return Ok(());
             }
+            let Some(i) = all.queues.iter().position(|(_, queue)| !queue.is_empty()) else {
+                if all.rolls.is_empty() {
+                    break;
+                }
+                self.roll_among(level, &mut all, go_on)?;
+                continue;
+            };
             match level {
                 #[cfg(lanes_of_sixteen)]
                 Some(Level::Avx512(simd)) => self.side_by_side(zero(simd), i, &mut all, go_on),
@@ -141,12 +159,15 @@ impl<'a> MotionBlock<'a> {
         }
         let mut walks = all.walks.into_iter();
         for i in walked {
-            let (Some(fine), Some(rough)) = (walks.next(), walks.next()) else { return Ok(()) };
+            let Some(fine) = walks.next() else { return Ok(()) };
+            let rough = if self.job.errors { walks.next() } else { None };
             // The error estimate needs both runs; if the second run fails, a single motion has no result
             // either.
             let both = fine.and_then(BodyWalk::done).and_then(|mut found| {
-                let rough = rough.and_then(BodyWalk::done)?;
-                found.judge(&rough, self.job.tol)?;
+                match rough {
+                    Some(rough) => found.judge(&rough.and_then(BodyWalk::done)?, self.job.tol)?,
+                    None => found.motion.error = f64::NAN,
+                }
                 Ok((self.starts.body(self.first + i)?, found))
             });
             self.puts(out, i, both)?;

@@ -48,36 +48,36 @@ impl MotionBlock<'_> {
     pub fn run(
         &self,
         level: Option<Level>,
-        count: usize,
+        all: Vec<usize>,
         out: &mut MotionOutput<'_>,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Vec<usize> {
         match level {
             #[cfg(lanes_of_sixteen)]
             // Two sets of lanes hide the latency of the operations.
-            Some(Level::Avx512(simd)) => self.kernels(Pair(zero(simd), zero(simd)), count, out, go_on),
+            Some(Level::Avx512(simd)) => self.kernels(Pair(zero(simd), zero(simd)), all, out, go_on),
             #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), lanes_of_eight))]
-            Some(Level::Avx2(simd)) => self.kernels(zero(simd), count, out, go_on),
+            Some(Level::Avx2(simd)) => self.kernels(zero(simd), all, out, go_on),
             #[cfg(all(target_arch = "aarch64", lanes_of_eight))]
-            Some(Level::Neon(simd)) => self.kernels(zero(simd), count, out, go_on),
+            Some(Level::Neon(simd)) => self.kernels(zero(simd), all, out, go_on),
             // Without lanes every motion is computed alone.
-            _ => (0..count).collect(),
+            _ => all,
         }
     }
 
     fn kernels<T: SideBySide>(
         &self,
         like: T,
-        count: usize,
+        all: Vec<usize>,
         out: &mut MotionOutput<'_>,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Vec<usize> {
         let rounded =
             |i: &usize| self.job.contact() == Contact::Rolling && self.starts.is_rounded(self.first + i);
         let (round, sharp): (Vec<usize>, Vec<usize>) = match self.starts.bodies[3] {
-            [_] if count > 0 && rounded(&0) => ((0..count).collect(), Vec::new()),
-            [_] => (Vec::new(), (0..count).collect()),
-            _ => (0..count).partition(rounded),
+            [_] if rounded(&0) => (all, Vec::new()),
+            [_] => (Vec::new(), all),
+            _ => all.into_iter().partition(rounded),
         };
         let mut left = Vec::new();
         for (some, round) in [(&sharp, false), (&round, true)] {
@@ -144,7 +144,7 @@ impl MotionBlock<'_> {
 
     /// The number of series in `TERMS` that are tried for the motions of this job.
     fn series(&self, round: bool) -> usize {
-        if !self.job.beyond && can(self.job, round) { SHORT } else { TERMS.len() }
+        if !self.job.beyond && can(self, round) { SHORT } else { TERMS.len() }
     }
 
     /// The motions sorted by the shortest series that may be precise enough, and the motions that are too
@@ -209,6 +209,17 @@ impl MotionBlock<'_> {
         }
     }
 
+    /// The time `t` since the beginning of each of these motions, or 0 if it is before that.
+    #[inline(always)]
+    fn after<T: SideBySide>(&self, like: T, some: &[usize], t: f64) -> T {
+        if self.since.is_none() {
+            return like.splat(t);
+        }
+        let mut times = [0.0; MOST];
+        times.iter_mut().zip(some).for_each(|(time, i)| *time = (t - self.since(*i)).max(0.0));
+        like.load(&times)
+    }
+
     /// Writes the states at all times, by the series or by RK4 steps, and returns the greatest error of each
     /// lane, NaN where the series is not precise enough; None if `go_on` returns false.
     fn write_states<T: SideBySide>(
@@ -233,7 +244,10 @@ impl MotionBlock<'_> {
             if j % TIMES_PER_BREATH == TIMES_PER_BREATH - 1 && !go_on() {
                 return None;
             }
-            let (mut y, error, least) = swings.state(like.splat(*t));
+            if self.since.is_some() && some.iter().all(|i| self.since(*i) > *t) {
+                continue;
+            }
+            let (mut y, error, least) = swings.state(self.after(like, some, *t));
             let mut off = [0f64; MOST];
             if let Some(walk) = &mut walk {
                 let stepped = apart(
@@ -301,7 +315,7 @@ impl MotionBlock<'_> {
         worst: &[f64],
         out: &mut MotionOutput<'_>,
     ) -> [bool; MOST] {
-        let (job, span) = (self.job, row.theta_end.splat(self.job.span()));
+        let (job, span) = (self.job, self.after(row.theta_end, some, self.job.span()));
         let mut sure = [false; MOST];
         for (sure, worst) in sure.iter_mut().zip(worst) {
             *sure = worst.is_finite();
@@ -317,11 +331,11 @@ impl MotionBlock<'_> {
         let least = |grip: Grip, roughly: bool| swings.least(grip, span, roughly);
         if !job.beyond {
             let normal = least(Grip::Normal, true);
-            let slips = if job.mu.is_finite() { Some(least(Grip::Friction, true)) } else { None };
+            let slips = if self.may_slip() { Some(least(Grip::Friction, true)) } else { None };
             for (k, sure) in sure[..some.len()].iter_mut().enumerate() {
                 let most = row.theta_end.lane(k);
                 let upright = most >= PI || high.lane(k) < most;
-                let grips = slips.is_none_or(|needed| -needed.lane(k) < job.mu);
+                let grips = slips.is_none_or(|needed| -needed.lane(k) < self.grip(some[k]));
                 *sure &= upright && normal.lane(k) > 0.0 && grips;
             }
         }
@@ -337,7 +351,7 @@ impl MotionBlock<'_> {
         put(Summary::ThetaMax, &|| high);
         put(Summary::NormalMin, &|| least(Grip::Normal, false));
         put(Summary::FrictionCoefficientMax, &|| -least(Grip::Friction, false));
-        put(Summary::End, &|| span);
+        put(Summary::End, &|| span.splat(job.span()));
         sure
     }
 }
@@ -393,7 +407,8 @@ mod tests {
                 summary: sums.each_mut().map(|x| Some(x.as_mut_slice())),
                 ..MotionOutput::new(&mut error, &mut method, &mut status)
             };
-            let left = run(&MotionBlock { starts: &starts, job: &job, first: 0 }, COUNT, &mut out);
+            let left =
+                run(&MotionBlock { starts: &starts, job: &job, first: 0, since: None }, COUNT, &mut out);
             for i in (0..COUNT).filter(|i| !left.contains(i)) {
                 let numbers = last.iter().chain(&sums).map(|x| x[i]).chain([error[i]]);
                 all.extend(numbers.map(f64::to_bits).chain([i as u64]));
@@ -408,11 +423,13 @@ mod tests {
         let kinds = [(TableKind::Rolling, 0.0), (TableKind::Smooth, 0.0), (TableKind::Rolling, 0.4)];
         for kind in kinds {
             let level = crate::numbers::level();
-            let best = bits(|work, count, out| work.run(level, count, out, &mut || true), kind);
+            let best =
+                bits(|work, count, out| work.run(level, (0..count).collect(), out, &mut || true), kind);
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
             if let Some(simd) = level.and_then(fearless_simd::Level::as_avx2) {
+                let all = |count| (0..count).collect();
                 let narrow =
-                    bits(|work, count, out| work.kernels(zero(simd), count, out, &mut || true), kind);
+                    bits(|work, count, out| work.kernels(zero(simd), all(count), out, &mut || true), kind);
                 assert!(narrow == best, "AVX2");
             }
         }

@@ -4,7 +4,7 @@
 //! near     one series about the start, of 8 to 72 terms, as the width of the swing requires
 //! marched  panels of 32 or 56 terms, up to the end of the motion or to both its turning points
 //! alone    `motion::roll`, one motion at a time
-//! flows    motions with friction or losses, each with its own steps (`flows`)
+//! flows    motions with friction or losses, each with its own steps (`flows`), and their phases of rolling (`rolls`)
 //! ```
 //! Motions without friction and losses are solved by first integrals, eight at a time, where the estimated error stays
 //! below the tolerance. A swing without an end takes one series; all other motions take a march (`ends`), which goes no
@@ -17,6 +17,7 @@ mod ends;
 mod flows;
 mod lanes;
 mod lossy_lanes;
+mod rolls;
 mod rows;
 #[cfg(all(test, any(target_arch = "x86", target_arch = "x86_64"), lanes_of_eight))]
 mod shares;
@@ -62,6 +63,9 @@ pub struct Job<'a> {
     pub max_evaluations: Option<u64>,
     /// Whether a motion ends where it begins to roll, as in [`Ask`].
     pub stop_at_rolling: bool,
+    /// Whether errors are estimated of motions that are integrated because of friction, losses or impacts. Each of them is
+    /// then computed a second time, with a larger tolerance; otherwise its error is NaN.
+    pub errors: bool,
 }
 
 impl<'a> Job<'a> {
@@ -77,6 +81,7 @@ impl<'a> Job<'a> {
             restitution: None,
             max_evaluations: None,
             stop_at_rolling: false,
+            errors: true,
         }
     }
 
@@ -123,7 +128,8 @@ coded! {
     pub enum Answer {
         /// None, because the body or the state is invalid, or the step is too long.
         None = 0,
-        /// The first integrals, in lanes.
+        /// The first integrals, in lanes; with a law of friction or a restitution, where the body rolls from the start
+        /// to the end.
         Lanes = 1,
         /// The first integrals, for one motion at a time.
         Single = 2,
@@ -190,7 +196,7 @@ pub(crate) fn roll_among(
     let failed = OnceLock::new();
     let mut go_on = |share| failed.get().is_none() && go_on(share);
     let all = share_aside(blocks, (threads, roomy), &mut go_on, |RowBlock { first, count, out }, still| {
-        let (work, mut out) = (MotionBlock { starts, job, first }, out.out);
+        let (work, mut out) = (MotionBlock { starts, job, first, since: None }, out.out);
         let loses = starts.losses.is_some() || starts.has_patch();
         let done = match (flows, loses) {
             (true, true) => work.flow::<10>(level, count, &mut out, still),
@@ -213,7 +219,7 @@ fn conserved(
     (count, out): (usize, &mut MotionOutput<'_>),
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<(), Error> {
-    for i in work.run(level, count, out, go_on) {
+    for i in work.run(level, (0..count).collect(), out, go_on) {
         if !go_on() {
             return Ok(());
         }
@@ -227,4 +233,25 @@ struct MotionBlock<'a> {
     job: &'a Job<'a>,
     /// The index of the first motion of the block.
     first: usize,
+    /// The time at which each motion begins, if they do not all begin at time 0; the job has no time before 0.
+    since: Option<&'a [f64]>,
+}
+
+impl MotionBlock<'_> {
+    /// The time at which motion `i` of the block begins.
+    fn since(&self, i: usize) -> f64 {
+        self.since.map_or(0.0, |all| all[i])
+    }
+
+    /// Whether motions that roll may begin to slip.
+    fn may_slip(&self) -> bool {
+        let limited = self.job.table.rubs() || self.job.mu.is_finite();
+        limited && self.job.contact() == Contact::Rolling && !self.job.beyond
+    }
+
+    /// The largest ratio of friction to normal force with which motion `i` of the block rolls.
+    fn grip(&self, i: usize) -> f64 {
+        let own = self.starts.coefficients(self.first + i).filter(|_| self.job.table.rubs());
+        own.map_or(self.job.mu, |[_, fixed, _]| fixed)
+    }
 }

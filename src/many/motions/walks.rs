@@ -50,6 +50,8 @@ pub(super) type Queue<const N: usize> = (Among, VecDeque<FlowTask<N>>);
 pub(super) struct Walks<'a, const N: usize> {
     pub walks: Vec<Result<BodyWalk<'a, N>, Error>>,
     pub queues: Vec<Queue<N>>,
+    /// The walks that wait for a phase of rolling, and the coefficient of static friction in that phase.
+    pub rolls: Vec<(usize, f64)>,
     /// Whether this processor has SIMD lanes; without lanes every walk is computed alone.
     pub lanes: bool,
 }
@@ -84,7 +86,11 @@ impl<const N: usize> Walks<'_, N> {
                 Ok(Pause::Here(y, step)) => (y, step),
                 Ok(Pause::No) => match walk.advance(go_on) {
                     Ok(WalkStep::Flows(y)) => (y, None),
-                    Ok(_) => return,
+                    Ok(WalkStep::Rolls(mu)) => {
+                        self.rolls.push((i, mu));
+                        return;
+                    }
+                    Ok(WalkStep::Done) => return,
                     Err(e) => {
                         self.walks[i] = Err(e);
                         return;

@@ -51,6 +51,9 @@ pub(crate) struct BodyPhases {
     /// Whether the body is a uniform ball, whose phases are known; and their errors.
     pub(super) uniform: bool,
     pub(super) roundings: Roundings,
+    /// Whether the caller computes the phases of rolling that the first integrals solve, among those of other walks.
+    #[cfg(feature = "many")]
+    pub(crate) rolls_among: bool,
     /// The losses of a body that does not slip, with the drilling friction of a patch of contact.
     pub(super) rolling_losses: Losses,
     /// The current phase, if it loses energy without a slip.
@@ -110,6 +113,8 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
             integrates: ask.table == Table::Smooth || !rolling_losses.is_none(),
             uniform: !poses(N) && knows(body, ask),
             roundings: Roundings::default(),
+            #[cfg(feature = "many")]
+            rolls_among: false,
             rolling_losses,
             lossy: None,
             lying: None,

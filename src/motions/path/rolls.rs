@@ -13,7 +13,7 @@ use crate::motions::halt::{lost, poses};
 use crate::motions::judge::doubted;
 use crate::motions::row::OutputRow;
 use crate::motions::walk::{Next, Phases, WalkStep, after_rest};
-use crate::motions::{Ask, Ending, Start};
+use crate::motions::{Ask, Ending, Motion, Start};
 use core::f64::consts::{PI, TAU};
 use nalgebra::Point2;
 
@@ -32,8 +32,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Option<WalkStep<N>>, Error> {
         let Friction::Coulomb { fixed, .. } = self.friction() else { return Ok(None) };
-        let first = self.made.motion.states.len();
-        let times = &self.since[first..];
+        let times = &self.since[self.made.motion.states.len()..];
         if times.is_empty() {
             return Ok(None);
         }
@@ -42,21 +41,61 @@ impl<const N: usize> BodyWalk<'_, N> {
             return Ok(None);
         }
         let mu = if at_limit { fixed * (1.0 + GRACE) } else { fixed };
-        let (body, y, rubs) = (self.of.body, self.of.state, self.ask.table.rubs());
+        let (body, y) = (self.of.body, self.of.state);
         let upright = y.theta.min(PI - y.theta) < LEAST;
         // A ball may pass nearer to its pole than the first integrals can follow.
         if self.of.integrates || self.hops_low() || upright && body.is_ball() {
             return Ok(self.begins_to_lose(mu)?.map(WalkStep::Flows));
         }
-        let beyond = self.ask.beyond && !rubs;
-        let ask = Ask { pose: self.ask.pose, beyond, ..Ask::on(Table::Rolling { mu }) };
-        let from = Start { time: self.at[7], ..y.into() };
         if upright {
             // A face this close to the table lands before any other event.
             self.next = Some(Next::Ends(Ending::Face));
             return Ok(None);
         }
-        let mut rolled = by_first_integrals(&body, &from, times, &ask, &mut *go_on)?;
+        #[cfg(feature = "many")]
+        if self.of.rolls_among {
+            return Ok(Some(WalkStep::Rolls(mu)));
+        }
+        self.rolls_alone(mu, go_on)?;
+        Ok(None)
+    }
+
+    /// The state from which a phase of rolling begins.
+    #[cfg(feature = "many")]
+    pub fn rolling_state(&self) -> State {
+        self.of.state
+    }
+
+    /// The same walk, whose caller computes the phases of rolling that the first integrals solve.
+    #[cfg(feature = "many")]
+    pub fn rolling_among(mut self, others: bool) -> Self {
+        self.of.rolls_among = others;
+        self
+    }
+
+    /// Computes a phase of rolling with the coefficient `mu` of static friction by the first integrals.
+    pub(crate) fn rolls_alone(&mut self, mu: f64, go_on: &mut dyn FnMut() -> bool) -> Result<(), Error> {
+        let (from, ask) = self.rolling(mu);
+        let times = &self.since[self.made.motion.states.len()..];
+        let rolled = by_first_integrals(&self.of.body, &from, times, &ask, &mut *go_on)?;
+        self.has_rolled(rolled, mu, go_on)
+    }
+
+    /// The start of a phase of rolling with the coefficient `mu` of static friction, and its options.
+    fn rolling(&self, mu: f64) -> (Start, Ask) {
+        let beyond = self.ask.beyond && !self.ask.table.rubs();
+        let ask = Ask { pose: self.ask.pose, beyond, ..Ask::on(Table::Rolling { mu }) };
+        (Start { time: self.at[7], ..self.of.state.into() }, ask)
+    }
+
+    /// Continues after a phase of rolling, which is known at the next times and up to its event.
+    pub(crate) fn has_rolled(
+        &mut self,
+        mut rolled: Motion,
+        mu: f64,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<(), Error> {
+        let (body, rubs) = (self.of.body, self.ask.table.rubs());
         self.claims(rolled.error);
         self.made.motion.pose_error = self.made.motion.pose_error.max(rolled.pose_error);
         let spent = [self.at[8], lost(&self.at)];
@@ -72,10 +111,11 @@ impl<const N: usize> BodyWalk<'_, N> {
             let row = OutputRow::on_table(*y, [0.0; 2], spent, Kind::Rolling);
             self.made.push(OutputRow { pose, force, ..row });
         }
-        let Some(event) = rolled.event else { return Ok(None) };
+        let Some(event) = rolled.event else { return Ok(()) };
         self.made.motion.limit = rolled.limit;
         // The pose at the event is computed separately, since `rolled` has poses at the requested times only.
         if self.ask.pose && (event.ending == Ending::Slip || event.ending == Ending::Side) {
+            let (from, ask) = self.rolling(mu);
             let ask = Ask { beyond: true, ..ask };
             let then = by_first_integrals(&body, &from, &[event.time], &ask, go_on)?;
             if let Some(pose) = then.poses.and_then(|poses| poses.last().copied()) {
@@ -94,7 +134,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             ending => Next::Ends(ending),
         };
         self.continues_with(next);
-        Ok(None)
+        Ok(())
     }
 
     /// Whether the body returns to its other rim so soon that the first integrals would lose the digits of the height:

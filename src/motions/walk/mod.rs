@@ -89,6 +89,10 @@ pub(crate) enum Next {
 pub(crate) enum WalkStep<const N: usize> {
     /// The caller integrates the flow from these numbers on.
     Flows([f64; N]),
+    /// The caller computes a phase of rolling with this coefficient of static friction by the first integrals, among those
+    /// of other walks.
+    #[cfg(feature = "many")]
+    Rolls(f64),
     /// The walk is complete.
     Done,
 }
@@ -198,6 +202,8 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
                     }
                 }
                 WalkStep::Done => return self.done(),
+                #[cfg(feature = "many")]
+                WalkStep::Rolls(_) => unreachable!("a walk that runs alone rolls alone"),
             }
         }
     }

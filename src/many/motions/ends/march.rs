@@ -37,8 +37,8 @@ fn queue<T: SideBySide, P: Copy>(
     }
 }
 
-/// Marches all runs up to the time `span`, or to their targets if `span` is None; `tell` is called with each run that
-/// is over and its outcome.
+/// Marches all runs up to the time `span` of their clock, or to their targets if `span` is None; `tell` is called with
+/// each run that is over and its outcome.
 pub(super) fn march<T: SideBySide, const N: usize>(
     like: T,
     kind: MarchKind,
@@ -53,7 +53,7 @@ pub(super) fn march<T: SideBySide, const N: usize>(
         go_on,
         |lanes, met| panels::<T, N>(like, kind, rule, lanes, met),
         |run, met| {
-            let turn = run.advance(met, span);
+            let turn = run.advance(met, span.map(|span| span - run.task.since));
             let over = !matches!(turn, RunOutcome::On);
             if over {
                 tell(run, turn);

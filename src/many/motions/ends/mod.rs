@@ -12,8 +12,7 @@ mod run;
 mod set;
 mod summed;
 
-use super::{Answer, Job, MotionBlock, MotionOutput, Summary};
-use crate::laws::contact::Contact;
+use super::{Answer, MotionBlock, MotionOutput, Summary};
 use crate::laws::state::State;
 use crate::motions::Ending;
 use crate::motions::exact;
@@ -104,7 +103,7 @@ impl Marches<'_, '_> {
         go_on: &mut dyn FnMut() -> bool,
     ) -> Vec<usize> {
         let job = self.work.job;
-        if !can(job, self.round) {
+        if !can(self.work, self.round) {
             return todo.to_vec();
         }
         let (mut left, mut tasks, mut known) = (Vec::new(), Vec::new(), Vec::new());
@@ -115,7 +114,7 @@ impl Marches<'_, '_> {
                 First::Unknown => left.push(*i),
             }
         }
-        let sought = Sought { ends: !job.beyond, slips: slips(job), turns: false };
+        let sought = Sought { ends: !job.beyond, slips: self.work.may_slip(), turns: false };
         let kind = MarchKind { contact: job.contact(), round: self.round, sought };
         let span = job.span().abs();
         let mut again = tasks;
@@ -126,7 +125,7 @@ impl Marches<'_, '_> {
                 RunOutcome::There(there) if there.error < self.allowed(rung) => {
                     known.push(SolvedRun::new(&run.task, there.before, Some(there), rung));
                 }
-                RunOutcome::Free(free) if free.doubt(span) < 0.5 * self.allowed(rung) => {
+                RunOutcome::Free(free) if free.doubt(span - run.task.since) < 0.5 * self.allowed(rung) => {
                     known.push(SolvedRun::new(&run.task, free, None, rung))
                 }
                 _ => again.push(run.task),
@@ -167,9 +166,10 @@ impl Marches<'_, '_> {
             return First::Unknown;
         }
         let time_way = if job.span() < 0.0 { -1.0 } else { 1.0 };
-        let Begun { angle: (sin, cos), rate, over } = begun(&body, job.contact(), job.mu, &start, time_way);
+        let grip = self.work.grip(i);
+        let Begun { angle: (sin, cos), rate, over } = begun(&body, job.contact(), grip, &start, time_way);
         let over = over.filter(|_| !job.beyond);
-        if over.is_none() && slips(job) && job.mu < LEAST_GRIP {
+        if over.is_none() && self.work.may_slip() && grip < LEAST_GRIP {
             return First::Unknown;
         }
         let law = job.contact().reduced(&body);
@@ -191,7 +191,8 @@ impl Marches<'_, '_> {
             theta_end: body.theta_end(),
             start: Knot { theta: start.theta, sin, cos, w1: start.w1, w3: start.w3, force, doubt: 0.0 },
             way,
-            mu_square: job.mu * job.mu,
+            mu_square: grip * grip,
+            since: self.work.since(i),
         };
         match over {
             Some(ending) => First::Over(task, EventState::at_once(comes(ending), turned(start, time_way))),
@@ -218,9 +219,10 @@ impl Marches<'_, '_> {
         // For a motion that ends, only the states before its end are computed.
         let all = out.states.is_some();
         let sought = |k: usize| {
-            let end = known[k].end;
-            let first = if all { 0 } else { times.len() - usize::from(end.is_none()) };
-            let count = end.map_or(times.len(), |end| times.partition_point(|t| t.abs() <= end.time));
+            let (end, since) = (known[k].end, known[k].task.since);
+            let begins = times.partition_point(|t| t.abs() < since);
+            let first = if all { begins } else { times.len() - usize::from(end.is_none()) };
+            let count = end.map_or(times.len(), |end| times.partition_point(|t| t.abs() - since <= end.time));
             (first..count).map(move |j| k * times.len() + j)
         };
         let kind = MarchKind { sought: Sought { ends: false, slips: false, turns: false }, ..kind };
@@ -229,22 +231,22 @@ impl Marches<'_, '_> {
             let fresh = (0..known.len()).filter(|k| known[*k].rung == rung).flat_map(sought);
             let runs = core::mem::take(&mut again).into_iter().chain(fresh).map(|slot| {
                 let of = &known[slot / times.len()];
-                Run::to(&of.task, &of.free, slot, times[slot % times.len()].abs())
+                Run::to(&of.task, &of.free, slot, times[slot % times.len()].abs() - of.task.since)
             });
             self.on(like, kind, (rung, None), runs, go_on, |run, turn| {
                 let slot = run.target.slot;
                 let (of, j) = (&known[slot / times.len()], slot % times.len());
-                let i = of.task.index;
+                let (i, time) = (of.task.index, times[j].abs() - of.task.since);
                 let RunOutcome::There(there) = turn else { return again.push(slot) };
                 if there.error.is_nan() || there.error >= self.allowed(rung) {
                     return again.push(slot);
                 }
                 let start = self.work.starts.state(self.work.first + i);
-                let y = if times[j] == 0.0 { start } else { turned(there.state, way) };
+                let y = if time == 0.0 { start } else { turned(there.state, way) };
                 out.error[i] = out.error[i].max(there.error);
                 out.put_state(i * times.len() + j, &y, [0.0; 2]);
                 if j + 1 == times.len() && of.end.is_none() {
-                    of.reaches(y.theta, times[j].abs());
+                    of.reaches(y.theta, time);
                     out.put_last(i, &y, [0.0; 2]);
                 }
             });
@@ -254,14 +256,14 @@ impl Marches<'_, '_> {
 
     /// Writes the results of a solved motion that need no state at a time.
     fn tell(&self, of: &SolvedRun, out: &mut MotionOutput<'_>) {
-        let (job, i) = (self.work.job, of.task.index);
+        let (job, i, since) = (self.work.job, of.task.index, of.task.since);
         let way = if job.span() < 0.0 { -1.0 } else { 1.0 };
         let status = of.end.map_or(Ending::Done, |end| ending(end.comes)) as u8;
         out.tell(i, Answer::Lanes, status, of.end.map_or(0.0, |end| end.error));
-        out.put(Summary::End, i, of.end.map_or(job.span(), |end| way * end.time));
+        out.put(Summary::End, i, of.end.map_or(job.span(), |end| way * (since + end.time)));
         let Some(end) = of.end else { return };
         out.put_last(i, &turned(end.state, way), [0.0; 2]);
-        let (times, after) = (job.times.len(), job.times.partition_point(|t| t.abs() <= end.time));
+        let (times, after) = (job.times.len(), job.times.partition_point(|t| t.abs() - since <= end.time));
         for column in out.states.iter_mut().flatten() {
             column[i * times + after..(i + 1) * times].fill(f64::NAN);
         }
@@ -276,14 +278,9 @@ enum First {
     Unknown,
 }
 
-/// Whether marches can compute a job: the margin of slip has no series for a rounded rim.
-pub(super) fn can(job: &Job<'_>, round: bool) -> bool {
-    job.step.is_none() && !(round && slips(job))
-}
-
-/// Whether a motion may end by slip.
-fn slips(job: &Job<'_>) -> bool {
-    job.mu.is_finite() && job.contact() == Contact::Rolling && !job.beyond
+/// Whether marches can compute a block: the margin of slip has no series for a rounded rim.
+pub(super) fn can(work: &MotionBlock<'_>, round: bool) -> bool {
+    work.job.step.is_none() && !(round && work.may_slip())
 }
 
 /// The ending of a motion at an event.

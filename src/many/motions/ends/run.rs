@@ -35,6 +35,8 @@ pub(super) struct MarchTask {
     pub way: f64,
     /// Square of the coefficient of friction.
     pub mu_square: f64,
+    /// The time at which the motion begins, on the clock of the times up to which it is marched.
+    pub since: f64,
 }
 
 /// A time at which the state of a motion is computed.
