@@ -117,8 +117,9 @@ class Shutter:
         samples: float,
         middle: Floats | None = None,
     ) -> None:
-        self._motion, self._pixel, self._shape, self._middle = m, pixel, shape, middle
-        # The motion is smooth, and a mark at rest is seen often: use more times than points, in sets of points.
+        self._motion, self._pixel, self._shape = m, pixel, shape
+        self._middle: Any = middle
+        # The motion is smooth, and a mark at rest is seen often: use more times than points, in sets.
         self._places = max(16, int(np.sqrt(samples) / 8))
         self._times = max(_SETS, int(samples / self._places))
         self._marks = [self._points(parts) for parts in ink]

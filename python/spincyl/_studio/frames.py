@@ -21,7 +21,7 @@ from spincyl._studio.look import Camera, Look, camera, held, opened
 from spincyl._studio.painted import Painted, Piece, ordered, painted, pieces, turned
 from spincyl._studio.poses import span
 from spincyl._studio.shadow import LAMPS, MANY, Caster, caster, lamps, layer, outline, shadows
-from spincyl._studio.shape import Letter, profiles, size
+from spincyl._studio.shape import Letter, size
 from spincyl._studio.shown import Shown, shown
 
 _MOST = 20_000  # frames
@@ -461,6 +461,7 @@ def _surface(ax: Any, vector: bool) -> Any:
             self.colours = np.concatenate([colours, np.ones((*colours.shape[:2], 1))], -1)
 
         def draw(self, renderer: Any) -> None:
+            agg: Any = RendererAgg
             picture = np.asarray(renderer.buffer_rgba())
             height, width, _ = picture.shape
             places = ax.transData.transform(self.corners.reshape(-1, 2))
@@ -473,9 +474,10 @@ def _surface(ax: Any, vector: bool) -> Any:
             where = np.s_[top:bottom, left:right]
             # draw on what is there, at twice the resolution, and average
             wide, tall = right - left, bottom - top
-            fine = RendererAgg(_FINE * wide, _FINE * tall, 100 * _FINE)
+            fine = agg(_FINE * wide, _FINE * tall, 100 * _FINE)
             canvas = np.asarray(fine.buffer_rgba())
-            canvas.view(np.uint32)[..., 0] = picture.view(np.uint32)[where][..., 0].repeat(_FINE, 0).repeat(_FINE, 1)
+            under = picture.view(np.uint32)[where][..., 0]
+            canvas.view(np.uint32)[..., 0] = under.repeat(_FINE, 0).repeat(_FINE, 1)
             to = ax.transData.frozen().translate(-left, bottom - height).scale(_FINE)
             graphics = fine.new_gc()
             fine.draw_gouraud_triangles(graphics, self.corners, self.colours, to)

@@ -74,8 +74,8 @@ def _fewer(profile: Profile, off: float) -> Profile:
         while last + 1 < len(corners) and spanned(kept[-1], last + 1):
             last += 1
         kept.append(last)
-    few = ([pairs[k] for k in kept] for pairs in (profile.corners, profile.normals))
-    return profile._replace(**dict(zip(("corners", "normals"), few, strict=True)))
+    few, ways = ([pairs[k] for k in kept] for pairs in (profile.corners, profile.normals))
+    return profile._replace(corners=few, normals=ways)
 
 
 def pieces(body: Body | Ellipsoid, surface: list[Part], upper: Letter) -> list[Piece]:

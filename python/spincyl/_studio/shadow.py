@@ -51,7 +51,7 @@ def caster(parts: list[Part]) -> Caster:
 
 
 def _seamless(part: Part) -> tuple[Floats, np.ndarray]:
-    """Vertices and triangles of a part: vertices at one place are one, and triangles without area are none."""
+    """Vertices and triangles of a part, without two vertices at one place and triangles without area."""
     _, kept, one = np.unique(np.round(part.vertices, 9) + 0.0, axis=0, return_index=True, return_inverse=True)
     triangles = one.reshape(-1)[part.triangles]
     triangles = triangles[(triangles != np.roll(triangles, 1, axis=1)).all(axis=1)]
