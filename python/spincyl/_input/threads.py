@@ -1,9 +1,7 @@
-"""The number of threads for a computation, and its callback for progress."""
+"""The number of threads for a computation."""
 
 import os
 import threading
-from collections.abc import Callable
-from typing import TypeAlias
 
 import numpy as np
 
@@ -12,7 +10,6 @@ try:
 except ImportError:  # not on Windows
     resource = None  # type: ignore[assignment]
 
-Progress: TypeAlias = Callable[[float], object]
 _BORN = os.getpid()
 
 
@@ -38,10 +35,3 @@ def thread_count(threads: int | None) -> int:
     if not 1 <= threads <= 4096:
         raise ValueError(f"threads = {threads!r}: expected 1 to 4096")
     return int(threads)
-
-
-def callback(progress: Progress | None) -> Progress | None:
-    """`progress` if it can be called, or TypeError."""
-    if progress is not None and not callable(progress):
-        raise TypeError(f"progress: expected a function, not {type(progress).__name__}")
-    return progress

@@ -11,7 +11,7 @@ from spincyl._contact import named
 from spincyl._ellipsoid_motion import EllipsoidMotion
 from spincyl._input.files import path_of, replaced
 from spincyl._input.numbers import one_of, within
-from spincyl._input.threads import Progress, callback
+from spincyl._input.progress import Progress, telling
 from spincyl._motion import Motion
 from spincyl._pages.few import corners, packed_part
 from spincyl._pages.joined import colours, filled, frame, line, script, style
@@ -74,7 +74,12 @@ class View:
     ) -> None:
         self.motions, self.labels, self.title = tuple(motions), tuple(labels), title
         self.scale, self.upper, self.look = scale, upper, look
-        found = [shown(m, self._slips) for m in self.motions]
+        found = []
+        with telling(None, "page") as told:
+            for m in self.motions:
+                found.append(shown(m, self._slips))
+                if told:
+                    told(len(found) / len(self.motions))
         self.slow = slow or slow_motion(max(turning for _, turning in found), scale)
         self._poses = [poses for poses, _ in found]
 
@@ -107,7 +112,7 @@ class View:
         fps: int | None = None,
         size: tuple[int, int] | None = None,
         seconds: float | None = None,
-        progress: "Progress | None" = None,
+        progress: "Progress | bool | None" = None,
         t: float | None = None,
     ) -> Path:
         """Write the page, a film, a picture or an animated scene to a file.
@@ -125,8 +130,10 @@ class View:
         seconds : float, optional
             Longest duration of a film in seconds, 0.1 to 600. Default: 10, with a warning if the film would
             be longer.
-        progress : callable, optional
-            Function that is called after each frame with the finished share of the film, 0 to 1.
+        progress : callable or bool, optional
+            Function that is called after each frame with the finished share of the film, 0 to 1. Default: if
+            tqdm is installed, a bar on a terminal or in a notebook for a film that takes more than two
+            seconds. True: a bar at once; False: none.
         t : float, optional
             Time of a picture, or first time of a picture with `exposure`; in seconds if the view has a scale,
             else in sqrt(R/g). Default: the first time of the motion.
@@ -182,7 +189,6 @@ class View:
             from spincyl._studio.film import film, reel
 
             seconds = None if seconds is None else within("seconds", seconds, 0.1, 600.0)
-            progress = callback(progress)
             made_of = reel(self, [edges(m) for m in self.motions], suffix, fps, size, seconds)
             film(made_of, path, progress)
             return path

@@ -6,6 +6,7 @@ mark on the upper end while the centre is at rest, leaves an image; a mark that 
 """
 
 import math
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -93,62 +94,119 @@ def exposure(
     width = frame(motion, seconds, scale) if width is None else width
     motion = motion.natural
 
-    return light(
-        motion, marks(motion.body, upper), (first, last), None, width / metre / size, (size, size), samples
-    )
+    ink = [marks(motion.body, upper)]
+    shutter = Shutter(motion, ink, width / metre / size, (size, size), samples)
+    found: Floats = shutter.light(min(first, last), max(first, last))[0] / abs(last - first)
+    return found
 
 
-def light(
-    m: Motion,
-    ink: list[Part],
-    open_: tuple[float, float],
-    middle: Floats | None,
-    pixel: float,
-    shape: tuple[int, int],
-    samples: float,
-) -> Floats:
-    """The picture (rows, columns) of these marks while the shutter is open, with the light of `exposure`.
+class Shutter:
+    """A camera from above with an open shutter. Times and lengths are natural.
 
-    Times and lengths are natural. Default of `middle`: the middle of the path of the centre.
+    A picture starts from the one before: only the light of the time in which the shutter is open for one of
+    the two, but not for both, is computed. There is a picture for each list of `ink`. Default of `middle`:
+    the middle of the path of the centre.
     """
-    first, last = open_
-    area = sum(_area(part) for part in ink)
-    # The motion is smooth, and a mark at rest is seen often: use more times than points, in sets of points.
-    places = max(16, int(np.sqrt(samples) / 8))
-    times = max(_SETS, int(samples / places))
-    place, normal = _sampled(ink, places * _SETS)
-    # a random time in each interval: equal steps could be in step with the precession
-    steps = (np.arange(times) + np.random.default_rng(0).random(times)) / times
-    centre, orientation = seen(m, first + (last - first) * steps, "centre", "orientation")
-    plan = centre[:, :2]
-    middle = (plan.min(axis=0) + plan.max(axis=0)) / 2 if middle is None else middle
-    rows, columns = shape
-    rotation = rotations(orientation)
-    upper_ball = [0.0, 0.0, float(m.body.ell)] if kind(m.body) == "balls" else None
-    image = np.zeros(rows * columns)
-    block = _SETS * max(1, 1_000_000 // places)
-    for start in range(0, times, block):
-        for k in range(_SETS):
-            now = slice(start + k, start + block, _SETS)
-            turned, spot = rotation[now], slice(k, None, _SETS)
-            shown = turned[:, 2] @ normal[spot].T
-            up = shown > 0
-            if upper_ball:
-                # seen from above, the upper ball hides the lower one
-                aside = [turned[:, i] @ (place[spot] - upper_ball).T for i in (0, 1)]
-                up &= (place[spot, 2] > 0) | (np.hypot(*aside) > 1)
-            x, y = (
-                (turned[:, axis] @ place[spot].T + (plan[now, axis] - middle[axis])[:, np.newaxis])[up]
-                for axis in (0, 1)
-            )
-            column = np.floor(columns / 2 + x / pixel).astype(np.intp)
-            row = np.floor(rows / 2 - y / pixel).astype(np.intp)
-            within = (column >= 0) & (column < columns) & (row >= 0) & (row < rows)
-            spots = (row * columns + column)[within]
-            image += np.bincount(spots, weights=shown[up][within], minlength=rows * columns)
-    # each point has an equal share of the area of the ink, which is seen foreshortened
-    image *= area / (places * times * pixel**2)
-    return image.reshape(shape)
+
+    def __init__(
+        self,
+        m: Motion,
+        ink: list[list[Part]],
+        pixel: float,
+        shape: tuple[int, int],
+        samples: float,
+        middle: Floats | None = None,
+    ) -> None:
+        self._motion, self._pixel, self._shape = m, pixel, shape
+        self._middle: Any = middle
+        # The motion is smooth, and a mark at rest is seen often: use more times than points, in sets.
+        self._places = max(16, int(np.sqrt(samples) / 8))
+        self._times = max(_SETS, int(samples / self._places))
+        self._marks = [self._points(parts) for parts in ink]
+        upper_ball = [[0.0], [0.0], [float(m.body.ell)]] if kind(m.body) == "balls" else None
+        self._upper_ball = None if upper_ball is None else np.array(upper_ball)
+        self._random, self._count = np.random.default_rng(0), 0
+        self._light = np.zeros((len(ink), shape[0] * shape[1]))
+        none = np.zeros(0)
+        self._lit = _Instants(none, none, none.astype(int), np.zeros((0, 3)), np.zeros((0, 3, 3)))
+        self._open = np.inf, -np.inf
+
+    def _points(self, ink: list[Part]) -> tuple[Floats, Floats, float]:
+        """Sets of points of ink and their normals, (sets, 3, points), and the area of each point."""
+        drawn = _sampled(ink, self._places * _SETS)
+        place, normal = (x.reshape(-1, _SETS, 3).transpose(1, 2, 0).copy() for x in drawn)
+        return place, normal, sum(map(_area, ink)) / self._places
+
+    def light(self, first: float, last: float) -> Floats:
+        """The time for which each pixel shows ink while the shutter is open, (pictures, rows, columns)."""
+        kept = max(self._open[0], first), min(self._open[1], last)
+        overlap = (kept[1] - kept[0]) / (last - first)
+        gone = (self._lit.t < first) | (self._lit.t > last)
+        if np.count_nonzero(gone) >= overlap * self._times:  # as quick from the beginning
+            self._light[:], gone[:] = 0.0, True
+            new = [(first, last)]
+        else:
+            self._shine(self._lit.at(gone), -1.0)
+            new = [(first, kept[0]), (kept[1], last)]
+        lit = [self._lit.at(~gone)]
+        for begin, end in new:
+            if end > begin:
+                lit.append(self._instants(begin, end, (end - begin) / (last - first)))
+                self._shine(lit[-1], 1.0)
+        self._lit = _Instants(*(np.concatenate(x) for x in zip(*lit, strict=True)))
+        self._open = first, last
+        return self._light.reshape(-1, *self._shape)
+
+    def _instants(self, first: float, last: float, share: float) -> "_Instants":
+        """Instants between two times, as many as belong to a share of the picture."""
+        many = math.ceil(self._times * share)
+        # a random time in each interval: equal steps could be in step with the precession
+        t = first + (last - first) * (np.arange(many) + self._random.random(many)) / many
+        which = (self._count + np.arange(many)) % _SETS
+        self._count += many
+        centre, orientation = seen(self._motion, t, "centre", "orientation")
+        if self._middle is None:
+            self._middle = (centre[:, :2].min(axis=0) + centre[:, :2].max(axis=0)) / 2
+        return _Instants(t, np.full(many, (last - first) / many), which, centre, rotations(orientation))
+
+    def _shine(self, lit: "_Instants", sign: float) -> None:
+        """Add the light of these instants."""
+        block = max(1, 1_000_000 // self._places)
+        for start in range(0, lit.t.size, block):
+            now = lit.at(slice(start, start + block))
+            for image, (place, normal, area) in zip(self._light, self._marks, strict=True):
+                self._add(image, now, place[now.which], normal[now.which], sign * area)
+
+    def _add(self, image: Floats, now: "_Instants", place: Floats, normal: Floats, area: float) -> None:
+        rows, columns = self._shape
+        shown = (now.rotation[:, 2:] @ normal)[:, 0]
+        up = shown > 0
+        if self._upper_ball is not None:
+            # seen from above, the upper ball hides the lower one
+            aside = now.rotation[:, :2] @ (place - self._upper_ball)
+            up &= (place[:, 2] > 0) | (np.hypot(aside[:, 0], aside[:, 1]) > 1)
+        across = now.rotation[:, :2] @ place + (now.centre[:, :2] - self._middle)[..., np.newaxis]
+        x, y = across[:, 0][up], across[:, 1][up]
+        column = np.floor(columns / 2 + x / self._pixel).astype(np.intp)
+        row = np.floor(rows / 2 - y / self._pixel).astype(np.intp)
+        within = (column >= 0) & (column < columns) & (row >= 0) & (row < rows)
+        # each point has an equal share of the area of the ink, which is seen foreshortened
+        value = (shown * (area * now.lasts / self._pixel**2)[:, np.newaxis])[up]
+        np.add.at(image, (row * columns + column)[within], value[within])
+
+
+class _Instants(NamedTuple):
+    """Instants at which light falls."""
+
+    t: Floats
+    lasts: Floats  #: the time that each stands for
+    which: Any  #: number of the set of points that it shows
+    centre: Floats  #: (n, 3)
+    rotation: Floats  #: (n, 3, 3)
+
+    def at(self, rows: Any) -> "_Instants":
+        """Some of the instants."""
+        return _Instants(*(x[rows] for x in self))
 
 
 def frame(motion: Motion, seconds: float | None = None, scale: Scale | None = None) -> float:

@@ -14,7 +14,7 @@ import numpy as np
 from spincyl._input.files import replaced
 from spincyl._input.hints import installs
 from spincyl._input.numbers import extra, whole, within
-from spincyl._input.threads import Progress
+from spincyl._input.progress import Progress, telling
 from spincyl._studio.frames import Reel, frames, pictures, vector
 from spincyl._studio.poses import span
 
@@ -61,8 +61,8 @@ def reel(
     )
 
 
-def film(what: Reel, path: Path, progress: Progress | None = None) -> None:
-    """Write the film, and report its progress."""
+def film(what: Reel, path: Path, progress: Progress | bool | None = None) -> None:
+    """Write the film, and tell how much of it is done."""
     write = _gif if path.suffix.lower() == ".gif" else _mp4
     extra("matplotlib", "film")
     program = _program() if write is _mp4 else ""
@@ -71,10 +71,10 @@ def film(what: Reel, path: Path, progress: Progress | None = None) -> None:
     def shown() -> Iterator[np.ndarray]:
         for k, picture in enumerate(frames(what), 1):
             yield picture
-            if progress:
-                progress(k / count)
+            if told:
+                told(k / count)
 
-    with replaced(path) as part:
+    with telling(progress, "film") as told, replaced(path) as part:
         write(what, shown(), part, program)
     large = path.stat().st_size
     if large > _LARGE:

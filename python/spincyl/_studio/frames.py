@@ -1,7 +1,8 @@
 """The picture of the page for each frame of a film, drawn without a browser.
 
-Bodies, marks, arrows, cameras, light and colours are those of the page. Agg (matplotlib) fills the triangles
-at twice the resolution of the film, which is then averaged. A still can be a vector drawing as well.
+Bodies, marks, arrows, cameras, light and colours are those of the page. Agg (matplotlib) draws them. Where
+there are triangles, it fills them at twice the resolution of the film, which is then averaged. A still can be
+a vector drawing as well.
 """
 
 import math
@@ -15,16 +16,18 @@ from spincyl._motion import Motion
 from spincyl._phases import rubs
 from spincyl._studio.aloft import goes_up
 from spincyl._studio.arrows import Tip, drawings
-from spincyl._studio.exposure import light
+from spincyl._studio.exposure import Shutter
 from spincyl._studio.look import Camera, Look, camera, held, opened
-from spincyl._studio.painted import Painted, ordered, painted
+from spincyl._studio.painted import Painted, Piece, ordered, painted, pieces, turned
 from spincyl._studio.poses import span
-from spincyl._studio.shadow import LAMPS, MANY, lamps, layer, outline, shadows
+from spincyl._studio.shadow import LAMPS, MANY, Caster, caster, lamps, layer, outline, shadows
 from spincyl._studio.shape import Letter, size
 from spincyl._studio.shown import Shown, shown
 
 _MOST = 20_000  # frames
-_FINE = 2  # pixels of Agg for one pixel of the film, along each side
+_FINE = 2  # pixels of Agg for one pixel of the film, along each side, where there are triangles
+# distance in pixels, or in hundredths of an inch, by which the flat pieces of a surface may lie inside it
+_OFF, _OFF_VECTOR = 0.1, 0.25
 # samples of a photograph for each of the two marks: of a still, and of a film at least, and for each pixel
 _LIGHT, _LEAST, _EACH = 8e6, 2e5, 2.0
 _DARK, _CHALK = (0.0, 0.0, 0.0), (0.87, 0.87, 0.87)  # paper and ink of a photograph
@@ -101,12 +104,11 @@ class _Stage:
 
         agg: Any = extra("matplotlib.backends.backend_agg", "film")
         self.what, self.times, self.opens, self.vector = what, times, still, vector
-        self.panels = panels = [shown(m, times, what.upper, what.drawn, coarse=vector) for m in what.motions]
+        self.panels = panels = [shown(m, times, what.upper, what.drawn) for m in what.motions]
         self.exposes, look = what.look.exposure is not None, what.look
         self.colour = {**what.colours, **({"paper": _DARK, "ink": _CHALK} if self.exposes else {})}
         width, height = what.size
-        fine = 1 if vector else _FINE
-        self.figure = Figure((width / 100, height / 100), dpi=100 * fine, facecolor=self.colour["paper"])
+        self.figure = Figure((width / 100, height / 100), dpi=100, facecolor=self.colour["paper"])
         self.canvas = agg.FigureCanvasAgg(self.figure)
         alone = max(size(m.body) for m in what.motions)
         reach = max(p.reach for p in panels)
@@ -125,6 +127,7 @@ class _Stage:
         self.axes: list[Any] = []
         self.moving: list[_Moving] = []
         self.cameras: list[Camera] = []
+        self.bodies: list[_Body] = []
         self.letters = letters = max(0.0225 * min(height / rows, 0.75 * width / columns), 9.0) * 72 / 100
         aspect = width / columns / (height / rows)
         self.shape = round(height / rows), round(width / columns)  # pixels of a photograph
@@ -133,7 +136,9 @@ class _Stage:
             ax: Any = self.figure.add_axes(place)
             ax.set(xlim=(-aspect, aspect), ylim=(-1, 1))
             ax.axis("off")
-            self.cameras.append(camera(panel.middle, reach, half, aspect, look.above or self.exposes))
+            seen_by = camera(panel.middle, reach, half, aspect, look.above or self.exposes)
+            self.cameras.append(seen_by)
+            self.bodies.append(self._made(panel.motion.body, seen_by, reach))
             around: dict[str, Any] = {"color": self.colour["ink"], "transform": ax.transAxes, "zorder": 9}
             ax.text(
                 0.02, 0.97, label, size=1.2 * letters, weight="bold", va="top", parse_math=False, **around
@@ -152,6 +157,7 @@ class _Stage:
         self.digits = max(2, 4 - math.floor(math.log10(max(1e-9, lasts))))
         if not still:  # two frames do not show the same time
             self.digits = max(2, min(self.digits, math.ceil(math.log10(what.fps * what.slow))))
+        self.shutters = [self._shutter(index) for index in range(len(panels))] if self.exposes else []
         self.gain = [self._gain(index) for index in range(len(panels))] if self.exposes else []
         # draw everything that no frame changes, once
         if not vector:
@@ -165,13 +171,14 @@ class _Stage:
             self.draw(index, k)
         for word in self.figure.texts if self.exposes else ():
             self.figure.draw_artist(word)
-        image = np.asarray(self.canvas.buffer_rgba())[..., :3]
-        height, width = image.shape[0] // _FINE * _FINE, image.shape[1] // _FINE * _FINE
-        total = np.full((height // _FINE, width // _FINE, 3), _FINE * _FINE // 2, np.uint16)
-        for i in range(_FINE):
-            for j in range(_FINE):
-                total += image[i:height:_FINE, j:width:_FINE]
-        return (total // (_FINE * _FINE)).astype(np.uint8)
+        return np.array(np.asarray(self.canvas.buffer_rgba())[..., :3])
+
+    def _made(self, body: Any, camera: Camera, reach: float) -> "_Body":
+        """The triangles of a body, as few as none can tell from its true surface."""
+        near = (camera.far - reach) / camera.far  # the distance of the nearest place, over that of the middle
+        off = (_OFF_VECTOR if self.vector else _OFF) * near * 2 * camera.high / self.shape[0]
+        surface = turned(body, off)
+        return _Body(pieces(body, surface, self.what.upper), caster(surface))
 
     def _ground(self, ax: Any, index: int, reach: float, aspect: float) -> None:
         """Draw the table: lines one radius apart, or five, that fade into the distance."""
@@ -219,8 +226,7 @@ class _Stage:
             ax.add_patch(shade)
         photo = None
         if self.exposes:
-            extent = (*ax.get_xlim(), *ax.get_ylim())
-            photo = ax.imshow(np.zeros((1, 1, 3)), extent=extent, aspect="auto", animated=True, zorder=5)
+            photo = _photo(ax, self.vector)
         clock.set_animated(True)
         return _Moving(rolled, slipped, shades, _surface(ax, self.vector), photo, clock, [])
 
@@ -265,16 +271,23 @@ class _Stage:
                 slips = panel.slips[:count, np.newaxis]
                 rolled.set_data(*np.where(slips, np.nan, way).T)
                 slipped.set_data(*np.where(slips, way, np.nan).T)
-            thrown = shadows(panel.caster, panel.rotation[k], panel.centre[k], self.lamp)
+            thrown = shadows(self.bodies[index].caster, panel.rotation[k], panel.centre[k], self.lamp)
             for shade, lines in zip(shades, thrown, strict=True):
                 shade.set_path(outline([camera(line) for line in lines]))
             found, tips = self._besides(panel, k, camera)
-            surface.put([*_body(panel, k, camera, note is not None), *found])
+            surface.put([*self._body(index, k, camera, note is not None), *found])
             self._named(ax, words, tips)
             artists = [*([ax.grid_lines] if self.follows else []), rolled, slipped, *shades, surface, clock]
         if not self.vector:
             for artist in (*artists, *words):
                 ax.draw_artist(artist)
+
+    def _body(self, index: int, k: int, camera: Camera, over: bool) -> list[Painted]:
+        """The triangles of a body at frame k, in the order of drawing."""
+        rotation, centre = self.panels[index].rotation[k], self.panels[index].centre[k]
+        height = float((camera.eye - centre) @ rotation[:, 2])
+        of = ordered(self.bodies[index].pieces, height)
+        return [painted(piece, rotation, centre, camera, over=over) for piece in of]
 
     def _besides(self, panel: Shown, k: int, camera: Camera) -> tuple[list[Painted], list[Tip]]:
         """Arrows and axis at frame k, and the letters at their tips."""
@@ -310,36 +323,46 @@ class _Stage:
         told = "to the end" if math.isinf(turns) else "1 turn" if turns == 1 else f"{turns:g} turns"
         return f"\nexposure: {told}"
 
-    def _light(self, index: int, t: float, *, before: bool) -> tuple[np.ndarray, float]:
-        """The light (rows, columns, 3) of an exposure before or after this time, and its duration."""
-        panel, turns, camera = self.panels[index], self.what.look.exposure, self.cameras[index]
-        assert turns is not None
-        open_ = opened(t, turns, panel.along, panel.turned, before=before)
-        rows, columns = self.shape
-        if not open_[1] > open_[0]:
-            return np.zeros((rows, columns, 3)), 0.0
+    def _shutter(self, index: int) -> Shutter:
+        """The shutter of a photograph of both marks."""
+        panel, (rows, columns) = self.panels[index], self.shape
         many = _LIGHT if self.opens else max(_LEAST, _EACH * rows * columns)
+        ink, pixel = [[part] for part in panel.ink], 2 * self.cameras[index].high / rows
         middle = None if self.follows else panel.middle[:2]
-        how = open_, middle, 2 * camera.high / rows, self.shape, many
-        # marks glow, as on the page
-        glow = [np.minimum(1.15 * np.array(part.colour) + 0.12, 1.0) for part in panel.ink]
-        found = [light(panel.motion, [part], *how) for part in panel.ink]
-        return np.stack(found, -1) @ np.array(glow), open_[1] - open_[0]
+        return Shutter(panel.motion, ink, pixel, self.shape, many, middle)
+
+    def _light(self, index: int, t: float) -> tuple[np.ndarray, Floats] | None:
+        """The pixels with light, and the light of each mark there; None before the shutter opens."""
+        panel, turns = self.panels[index], self.what.look.exposure
+        assert turns is not None
+        first, last = opened(t, turns, panel.along, panel.turned, before=not self.opens)
+        if not last > first:
+            return None
+        light = self.shutters[index].light(first, last).reshape(len(panel.ink), -1)
+        lit = np.flatnonzero(light.any(axis=0))
+        return lit, light[:, lit]
+
+    def _glow(self, index: int) -> Floats:
+        """The colours of the marks, (marks, 3), which glow, as on the page."""
+        return np.minimum(1.15 * np.array([part.colour for part in self.panels[index].ink]) + 0.12, 1.0)
 
     def _gain(self, index: int) -> float:
         """The gain with which the brightest places of a whole exposure are nearly white."""
         along = self.panels[index].along
         t = float(self.times[0] if self.opens else min(self.times[-1], along[-1]))
-        found, long = self._light(index, t, before=not self.opens)
-        if not long:
+        found = self._light(index, t)
+        if found is None:
             raise ValueError(f"t = {t * self.what.unit:.6g}: expected a time before the end, for an exposure")
-        most = found.max(axis=-1)
-        return 2 / (float(np.percentile(most[most > 0], 99.7)) * long) if most.any() else 0.0
+        most = (found[1].T @ self._glow(index)).max(axis=-1)
+        return 2 / float(np.percentile(most, 99.7)) if most.any() else 0.0
 
     def _developed(self, index: int, t: float) -> np.ndarray:
         """The photograph at a time: of a still the exposure from then on, of a film the one until then."""
-        found, long = self._light(index, t, before=not self.opens)
-        return np.asarray(np.round(-255 * np.expm1(-self.gain[index] * long * found)), np.uint8)
+        picture = np.zeros((math.prod(self.shape), 3), np.uint8)
+        if (found := self._light(index, t)) is not None:
+            lit, light = found
+            picture[lit] = np.round(-255 * np.expm1(light.T @ (-self.gain[index] * self._glow(index))))
+        return picture.reshape(*self.shape, 3)
 
     def _clock(self, t: float) -> str:
         told = f"{t * self.what.unit:.{self.digits}f}"
@@ -358,6 +381,13 @@ class _Stage:
         if t < before["at"] or (before["event"] and t <= before["at"]):
             return before["said"], before["t"]
         return None
+
+
+class _Body(NamedTuple):
+    """The triangles of a body."""
+
+    pieces: list[Piece]
+    caster: Caster  #: what casts its shadow
 
 
 class _Moving(NamedTuple):
@@ -390,17 +420,38 @@ def _columns(count: int, aspect: float) -> tuple[int, int]:
     return best, math.ceil(count / best)
 
 
-def _body(panel: Shown, k: int, camera: Camera, over: bool) -> list[Painted]:
-    """The triangles of a body at frame k, in the order of drawing."""
-    rotation, centre = panel.rotation[k], panel.centre[k]
-    height = float((camera.eye - centre) @ rotation[:, 2])
-    return [painted(piece, rotation, centre, camera, over=over) for piece in ordered(panel.pieces, height)]
+def _photo(ax: Any, vector: bool) -> Any:
+    """An artist that fills the axes with a picture."""
+    from matplotlib.artist import Artist
+
+    class Photo(Artist):
+        """A picture whose pixels are those of Agg."""
+
+        def set_data(self, picture: np.ndarray) -> None:
+            self.picture = picture
+
+        def draw(self, renderer: Any) -> None:
+            all_of = np.asarray(renderer.buffer_rgba())
+            left, top = round(ax.bbox.x0), all_of.shape[0] - round(ax.bbox.y1)
+            rows, columns, _ = self.picture.shape
+            where = all_of[top : top + rows, left : left + columns, :3]
+            where[:] = self.picture[: where.shape[0], : where.shape[1]]
+
+    if vector:
+        extent = (*ax.get_xlim(), *ax.get_ylim())
+        return ax.imshow(np.zeros((1, 1, 3)), extent=extent, aspect="auto", animated=True, zorder=5)
+    photo = Photo()
+    photo.set(animated=True, zorder=5)
+    ax.add_artist(photo)
+    return photo
 
 
 def _surface(ax: Any, vector: bool) -> Any:
     """An artist that draws triangles in their order: shaded, or each in one colour for a vector drawing."""
     from matplotlib.artist import Artist
+    from matplotlib.backends.backend_agg import RendererAgg
     from matplotlib.collections import PolyCollection
+    from PIL import Image
 
     class Surface(Artist):
         """Gouraud triangles for Agg."""
@@ -410,9 +461,29 @@ def _surface(ax: Any, vector: bool) -> Any:
             self.colours = np.concatenate([colours, np.ones((*colours.shape[:2], 1))], -1)
 
         def draw(self, renderer: Any) -> None:
-            graphics = renderer.new_gc()
-            renderer.draw_gouraud_triangles(graphics, self.corners, self.colours, ax.transData.frozen())
+            agg: Any = RendererAgg
+            picture = np.asarray(renderer.buffer_rgba())
+            height, width, _ = picture.shape
+            places = ax.transData.transform(self.corners.reshape(-1, 2))
+            left, low = np.floor(places.min(axis=0)).astype(int) - 1
+            right, high = np.ceil(places.max(axis=0)).astype(int) + 1
+            left, right = max(left, 0), min(right, width)
+            top, bottom = max(height - high, 0), min(height - low, height)
+            if left >= right or top >= bottom:
+                return
+            where = np.s_[top:bottom, left:right]
+            # draw on what is there, at twice the resolution, and average
+            wide, tall = right - left, bottom - top
+            fine = agg(_FINE * wide, _FINE * tall, 100 * _FINE)
+            canvas = np.asarray(fine.buffer_rgba())
+            under = picture.view(np.uint32)[where][..., 0]
+            canvas.view(np.uint32)[..., 0] = under.repeat(_FINE, 0).repeat(_FINE, 1)
+            to = ax.transData.frozen().translate(-left, bottom - height).scale(_FINE)
+            graphics = fine.new_gc()
+            fine.draw_gouraud_triangles(graphics, self.corners, self.colours, to)
             graphics.restore()
+            found = Image.frombuffer("RGBX", (_FINE * wide, _FINE * tall), canvas, "raw", "RGBX", 0, 1)
+            picture[where] = np.asarray(found.reduce(_FINE))
 
     class Polygons(PolyCollection):
         """Polygons, whose edges close the gaps between them."""

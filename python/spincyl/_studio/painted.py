@@ -11,14 +11,16 @@ from typing import NamedTuple
 
 import numpy as np
 
+from spincyl._body import Body
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._input.numbers import Floats
-from spincyl._motion import Motion
 from spincyl._studio.look import Camera
 from spincyl._studio.shape import Letter, Part, Profile, lathe, marks, profiles
 
 _SUN = np.array([-0.45, -0.5, 0.75]) / math.sqrt(0.45**2 + 0.5**2 + 0.75**2)
 _SAME = 1e-9  # heights closer than this, in R, are one
+_LEAST, _MOST = 32, 128  # flat pieces round the axis
+_BENT = 0.01  # how far a normal between two corners may be from the true one
 #: Corners (n, 3, 2) in the picture and colours (n, 3, 3) of triangles, in the order of drawing.
 Painted = tuple[Floats, Floats]
 
@@ -39,19 +41,48 @@ def whole(part: Part) -> Piece:
     return Piece(part.colour, part.vertices[part.triangles], part.normals[part.triangles])
 
 
-def _coarse(profile: Profile) -> Part:
-    """The surface of a profile; where it is curved along the axis, with a quarter of the usual triangles."""
+def turned(body: Body | Ellipsoid, off: float) -> list[Part]:
+    """The surface of a body with few triangles, which lie at most `off` inside that of `parts`."""
+    drawn = profiles(body)
+    wide = max(r * _stretched(profile) for profile in drawn for r, _ in profile.corners)
+    around = math.pi / math.acos(max(1 - off / wide, 0.0))
+    count = 8 * math.ceil(min(max(around, _LEAST), _MOST) / 8)
+    return [lathe(_fewer(profile, off / _stretched(profile)), count) for profile in drawn]
+
+
+def _stretched(profile: Profile) -> float:
+    return 1.0 if profile.stretch is None else max(profile.stretch.axes)
+
+
+def _fewer(profile: Profile, off: float) -> Profile:
+    """The profile without the corners that lie within `off` of a line whose normals are almost theirs."""
     if profile.normals is None:
-        return lathe(profile)
-    corners, normals = ([*x[:-1:2], x[-1]] for x in (profile.corners, profile.normals))
-    return lathe(profile._replace(corners=corners, normals=normals), 64)
+        return profile
+    corners, normals = np.array(profile.corners), np.array(profile.normals)
+
+    def spanned(first: int, last: int) -> bool:
+        """Whether a line from one corner to another stands for those between."""
+        line, rows = corners[last] - corners[first], slice(first + 1, last)
+        away, long = corners[rows] - corners[first], max(float(np.hypot(*line)), 1e-300)
+        share = (away @ line / long**2)[:, np.newaxis]
+        bent = normals[first] + share * (normals[last] - normals[first]) - normals[rows]
+        aside = np.abs(away[:, 0] * line[1] - away[:, 1] * line[0]) / long
+        return bool((aside <= off).all() and (np.abs(bent) <= _BENT).all())
+
+    kept = [0]
+    while (last := kept[-1] + 1) < len(corners):
+        while last + 1 < len(corners) and spanned(kept[-1], last + 1):
+            last += 1
+        kept.append(last)
+    few, ways = ([pairs[k] for k in kept] for pairs in (profile.corners, profile.normals))
+    return profile._replace(corners=few, normals=ways)
 
 
-def pieces(m: Motion, upper: Letter, *, coarse: bool = False) -> list[Piece]:
-    """The pieces of a body and of its marks."""
-    surfaces = [whole((_coarse if coarse else lathe)(profile)) for profile in profiles(m.body)]
-    found = [*surfaces, *map(whole, marks(m.body, upper))]
-    if isinstance(m.body, Ellipsoid):  # convex: only its marks have to be last
+def pieces(body: Body | Ellipsoid, surface: list[Part], upper: Letter) -> list[Piece]:
+    """The pieces of the surface of a body, and of its marks."""
+    surfaces = [whole(part) for part in surface]
+    found = [*surfaces, *map(whole, marks(body, upper))]
+    if isinstance(body, Ellipsoid):  # convex: only its marks have to be last
         return [piece._replace(rank=(0, float(k))) for k, piece in enumerate(found)]
     ends = [end for piece in surfaces for end in (piece.corners[..., 2].min(), piece.corners[..., 2].max())]
     heights = np.unique(np.round(ends, 9))

@@ -39,14 +39,26 @@ class Caster(NamedTuple):
 
 def caster(parts: list[Part]) -> Caster:
     """The combined surface of several parts."""
-    before = np.cumsum([0, *(len(part.vertices) for part in parts)])
-    triangles = np.concatenate([part.triangles + n for part, n in zip(parts, before, strict=False)])
+    seamless = [_seamless(part) for part in parts]
+    before = np.cumsum([0, *(len(vertices) for vertices, _ in seamless)])
+    triangles = np.concatenate([part + n for (_, part), n in zip(seamless, before, strict=False)])
     begin, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
     runs, back = begin * before[-1] + end, end * before[-1] + begin
     order = np.argsort(runs)
     found = order[np.searchsorted(runs, back, sorter=order) % runs.size]
     mates = np.where(runs[found] == back, found // 3, len(triangles))
-    return Caster(np.concatenate([part.vertices for part in parts]), triangles, mates.reshape(-1, 3))
+    return Caster(np.concatenate([vertices for vertices, _ in seamless]), triangles, mates.reshape(-1, 3))
+
+
+def _seamless(part: Part) -> tuple[Floats, np.ndarray]:
+    """Vertices and triangles of a part, without two vertices at one place and triangles without area."""
+    _, kept, one = np.unique(np.round(part.vertices, 9) + 0.0, axis=0, return_index=True, return_inverse=True)
+    triangles = one.reshape(-1)[part.triangles]
+    triangles = triangles[(triangles != np.roll(triangles, 1, axis=1)).all(axis=1)]
+    edges = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=-1).reshape(-1, 2)
+    if len(np.unique(edges, axis=0)) < len(edges):  # the surface touches itself
+        return part.vertices, part.triangles
+    return part.vertices[kept], triangles
 
 
 def shadows(of: Caster, rotation: Floats, centre: Floats, lamp: Floats) -> list[list[Floats]]:
@@ -64,22 +76,20 @@ def shadows(of: Caster, rotation: Floats, centre: Floats, lamp: Floats) -> list[
     return found
 
 
-def _closed(edges: np.ndarray) -> list[list[int]]:
+def _closed(edges: np.ndarray) -> list[np.ndarray]:
     """Closed lines assembled from directed edges (n, 2)."""
-    after: dict[int, list[int]] = {}
-    for begin, end in edges.tolist():
-        after.setdefault(begin, []).append(end)
-    lines = []
-    while after:
-        first = at = next(iter(after))
-        line: list[int] = []
-        while at != first or not line:
+    begin, end = edges.T
+    # at each corner as many edges end as begin: in the order of their corners they follow each other
+    after = np.empty(len(edges), np.intp)
+    after[np.argsort(end, kind="stable")] = np.argsort(begin, kind="stable")
+    following, lines = after.tolist(), []
+    left = dict.fromkeys(range(len(edges)))
+    while left:
+        line = [left.popitem()[0]]
+        while (at := following[line[-1]]) in left:
+            del left[at]
             line.append(at)
-            ends = after[at]
-            if len(ends) == 1:
-                del after[at]
-            at = ends.pop()
-        lines.append(line)
+        lines.append(begin[line])
     return lines
 
 

@@ -1,4 +1,4 @@
-"""A motion as it is drawn: at the times of frames, with its path, its pieces and its extent."""
+"""A motion as it is drawn: at the times of frames, with its path and its extent."""
 
 import math
 from typing import NamedTuple
@@ -12,10 +12,8 @@ from spincyl._phases import rubs
 from spincyl._studio.aloft import FLIES, SLIPS, aloft, goes_up, tops
 from spincyl._studio.arrows import Vectors, usual, vectors
 from spincyl._studio.look import held
-from spincyl._studio.painted import Piece, pieces
 from spincyl._studio.poses import seen, span
-from spincyl._studio.shadow import Caster, caster
-from spincyl._studio.shape import Letter, Part, lathe, marks, profiles, rotations, size
+from spincyl._studio.shape import Letter, Part, marks, rotations, size
 from spincyl._studio.shape import reach as farthest
 
 _PATH = 6000  # points of the contact's path
@@ -36,17 +34,13 @@ class Shown(NamedTuple):
     turned: Floats  #: (k,) turns about the vertical at `along`
     vectors: Vectors | None  #: None without arrows and axis
     sizes: dict[str, float]  #: magnitudes of the vectors that get an arrow of usual length
-    pieces: list[Piece]
     ink: list[Part]
-    caster: Caster
     middle: Floats
     reach: float
     half: float
 
 
-def shown(
-    m: Motion, times: Floats, upper: Letter, drawn: tuple[str, ...] = (), *, coarse: bool = False
-) -> Shown:
+def shown(m: Motion, times: Floats, upper: Letter, drawn: tuple[str, ...] = ()) -> Shown:
     """The motion at the times of frames, with its lines and vectors."""
     first, last = sorted(span(m))
     arrows = bool({*drawn} - {"path"})
@@ -81,9 +75,7 @@ def shown(
         turned=turned,
         vectors=vectors(m, times, drawn) if arrows else None,
         sizes=usual(m, drawn) if arrows else {},
-        pieces=pieces(m, upper, coarse=coarse),
         ink=marks(m.body, upper),
-        caster=caster([lathe(profile) for profile in profiles(m.body)]),
         middle=np.array([*((low + high) / 2), 0.45 * top]),
         reach=reach,
         half=held(reach, top),

@@ -9,6 +9,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
+from spincyl._input.progress import alone
+
 
 def writable(path: str | Path) -> Path:
     """Return the path if the file can be written, or raise OSError naming it; nothing is created."""
@@ -47,11 +49,13 @@ class Working:
         self.share = 0.0
         self._done = threading.Event()
         self._thread: threading.Thread | None = None
+        self._alone = alone()
 
     def __call__(self, share: float) -> None:
         self.share = share
 
     def __enter__(self) -> Self:
+        self._alone.__enter__()
         if sys.stderr is not None and sys.stderr.isatty():
             self._thread = threading.Thread(target=self._show, daemon=True)
             self._thread.start()
@@ -60,6 +64,7 @@ class Working:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
+        self._alone.__exit__(kind, error, trace)
         self._done.set()
         if self._thread is not None:
             self._thread.join()

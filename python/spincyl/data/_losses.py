@@ -9,6 +9,7 @@ import numpy as np
 
 from spincyl._body import Body
 from spincyl._input.numbers import Floats, Reals, extra, reals, turns_per_second
+from spincyl._input.progress import Progress, telling
 from spincyl._single import one_body
 from spincyl.data._curve import Curve
 from spincyl.data._line import line
@@ -34,6 +35,7 @@ def fit_losses(
     precession_err: Reals | None = None,
     hertz_err: Reals | None = None,
     start: float | None = None,
+    progress: Progress | bool | None = None,
 ) -> LossFit:
     """Fit loss laws to a measured spin-down, and rank the laws.
 
@@ -67,6 +69,10 @@ def fit_losses(
     start : float, optional
         Approximate inclination at the first time, in radians. Needed if only the precession is given, and
         steady states at several inclinations have this precession.
+    progress : callable or bool, optional
+        Function that is called after each fit with the finished share, 0 to 1. Default: if tqdm is installed,
+        a bar on a terminal or in a notebook when the work takes more than two seconds. True: a bar at once;
+        False: none.
 
     Returns
     -------
@@ -94,12 +100,14 @@ def fit_losses(
         its range in `spincyl.loss.typical`, for example because milliseconds were given for seconds. Warnings
         of the fitted drift are passed on.
 
-    Notes ----- The drift itself is fitted, by orthogonal distance regression (Boggs and Donaldson 1989,
-    odrpack). A line in a log-log diagram is not used for this, since the bias of its exponent is larger than
-    its error. If the data cannot distinguish some laws, the table says so. A law that is impossible for the
-    body, such as a film of air below a ball, is listed with the reason (`LossFit.refused`). If only the
-    precession is given, a coefficient depends on `centre`. If points scatter by more than their given errors,
-    errors and differences of AIC are scaled accordingly (QAIC; Burnham and Anderson 2002).
+    Notes
+    -----
+    The drift itself is fitted, by orthogonal distance regression (Boggs and Donaldson 1989, odrpack). A line
+    in a log-log diagram is not used for this, since the bias of its exponent is larger than its error. If the
+    data cannot distinguish some laws, the table says so. A law that is impossible for the body, such as a
+    film of air below a ball, is listed with the reason (`LossFit.refused`). If only the precession is given,
+    a coefficient depends on `centre`. If points scatter by more than their given errors, errors and
+    differences of AIC are scaled accordingly (QAIC; Burnham and Anderson 2002).
 
     Examples
     --------
@@ -122,29 +130,9 @@ def fit_losses(
             None if x is None else 2 * np.pi * reals(name, turns_per_second(name, x))
             for name, x in (("hertz", hertz), ("hertz_err", hertz_err))
         )
-    kept, sums = centres(centre), asked(laws)
     columns = t, theta, precession, t_err, theta_err, precession_err
-    found, refused = [], []
-    for one in kept:
-        try:
-            data = measured(body, *columns, one, start, max(map(len, sums)))
-        except Several:
-            raise
-        except ValueError as e:
-            refused += [(called(law), one, e) for law in sums]
-            continue
-        for law in sums:
-            curve = Curve(body.natural, law, one, data.ends, data.down)
-            try:
-                found.append(_fitted(odrpack, data, curve, None))
-            except ValueError as e:
-                refused.append((called(law), one, e))
-    if found and found[0].data.estimated:
-        # fit all laws with the same errors, so that their AIC can be compared
-        best = min(found, key=lambda f: f.chi2 + 2 * len(f.beta))
-        shown = best.curve(best.data.names, best.data.clock, best.beta[:-1], best.beta[-1])
-        errors = best.data.weighed(shown, len(best.beta)).errors
-        found = [_fitted(odrpack, f.data._replace(errors=errors), f.curve, f.beta) for f in found]
+    with telling(progress, "fit") as told:
+        found, refused = _every(odrpack, body, columns, centres(centre), asked(laws), start, told)
     whole = []
     for raw in found:
         try:
@@ -203,6 +191,48 @@ class _Raw(NamedTuple):
     def spread(self) -> float:
         """Factor by which the variance of the points exceeds that of their given errors; at least 1."""
         return 1.0 if self.data.estimated else max(self.chi2 / self.freedom, 1.0)
+
+
+def _every(
+    odrpack: Any,
+    body: Body,
+    columns: tuple[Any, Any, Any, Any, Any, Any],
+    kept: Any,
+    sums: Any,
+    start: float | None,
+    told: Progress | None,
+) -> tuple[list[_Raw], list[tuple[str, Any, Exception]]]:
+    """The fits of every law, and the laws that are refused with the reasons."""
+    found: list[_Raw] = []
+    refused: list[tuple[str, Any, Exception]] = []
+    count, rounds = len(kept) * len(sums), 2  # the second with errors that the first has estimated
+    for one in kept:
+        try:
+            data = measured(body, *columns, one, start, max(map(len, sums)))
+        except Several:
+            raise
+        except ValueError as e:
+            refused += [(called(law), one, e) for law in sums]
+            continue
+        rounds = 2 if data.estimated else 1
+        for law in sums:
+            curve = Curve(body.natural, law, one, data.ends, data.down)
+            try:
+                found.append(_fitted(odrpack, data, curve, None))
+            except ValueError as e:
+                refused.append((called(law), one, e))
+            if told:
+                told((len(found) + len(refused)) / (count * rounds))
+    if found and found[0].data.estimated:
+        # fit all laws with the same errors, so that their AIC can be compared
+        best = min(found, key=lambda f: f.chi2 + 2 * len(f.beta))
+        shown = best.curve(best.data.names, best.data.clock, best.beta[:-1], best.beta[-1])
+        errors = best.data.weighed(shown, len(best.beta)).errors
+        for k, f in enumerate(found, 1):
+            found[k - 1] = _fitted(odrpack, f.data._replace(errors=errors), f.curve, f.beta)
+            if told:
+                told((1 + k / len(found)) / 2)
+    return found, refused
 
 
 def _doubts(body: Body, best: _Raw, fits: list[FittedLoss]) -> list[str]:

@@ -1,6 +1,5 @@
 """The figures of a lecture, as files."""
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +9,7 @@ from spincyl._body import Body
 from spincyl._contact import Contact, Coulomb, Viscous
 from spincyl._input.files import path_of
 from spincyl._input.numbers import extra, flag, one_of
-from spincyl._input.threads import callback
+from spincyl._input.progress import Progress, telling
 from spincyl._roll import roll
 from spincyl._state import State
 from spincyl._swing import swing
@@ -35,7 +34,7 @@ def figures(
     *,
     suffix: str = ".png",
     slides: bool = False,
-    progress: Callable[[float], object] | None = None,
+    progress: Progress | bool | None = None,
 ) -> list[Path]:
     """Write figures for a lecture as files: the predictions of Jackson et al. (fig4 to fig8), and others.
 
@@ -48,8 +47,10 @@ def figures(
     slides : bool
         If true, all figures have the shape 16:9 (PNG: 1920 x 1080 pixels). If false, each figure has a shape
         that suits it.
-    progress : callable, optional
-        Function that is called after each figure with the finished share, 0 to 1.
+    progress : callable or bool, optional
+        Function that is called after each figure with the finished share, 0 to 1. Default: if tqdm is
+        installed, a bar on a terminal or in a notebook when the work takes more than two seconds. True: a bar
+        at once; False: none.
 
     Returns
     -------
@@ -71,11 +72,17 @@ def figures(
     on a smooth table, as in the paper, and for rolling.
     """
     folder, slides = path_of("folder", folder), flag("slides", slides)
-    callback(progress)
     one_of("suffix", suffix, SUFFIXES)
-    plt: Any = extra("matplotlib.pyplot", "plot")
+    extra("matplotlib.pyplot", "plot")
     folder = Path(folder)
-    folder.mkdir(parents=True, exist_ok=True)
+    with telling(progress, "figures") as told:
+        folder.mkdir(parents=True, exist_ok=True)
+        return _written(folder, suffix, slides, told)
+
+
+def _written(folder: Path, suffix: str, slides: bool, progress: Progress | None) -> list[Path]:
+    """The paths of the figures, after they are drawn."""
+    plt: Any = extra("matplotlib.pyplot", "plot")
     critical = float(Body.critical_aspect())
     contacts: tuple[Contact, Contact] = ("smooth", "rolling")
     pairs: dict[str, tuple[float, ...]] = {

@@ -18,6 +18,7 @@ import numpy as np
 
 from spincyl._body import Body
 from spincyl._input.numbers import Floats
+from spincyl._input.progress import Progress, telling
 from spincyl._roll import roll
 from spincyl._state import State
 from spincyl._swing import swing
@@ -79,7 +80,7 @@ def measure(
     seconds: float = 60.0,
     *,
     reference: str | None = None,
-    progress: Callable[[float], object] = lambda share: None,
+    progress: Progress | bool | None = None,
 ) -> list[Row]:
     """Measure the computing time and the error of all methods for all scenes.
 
@@ -90,8 +91,10 @@ def measure(
     reference : str, optional
         Path of a CSV file with high-precision motions. Default: the true error of the exact solution is not
         measured.
-    progress : callable
-        Function that is called with the finished share of the work, 0 to 1.
+    progress : callable or bool, optional
+        Function that is called with the finished share of the work, 0 to 1. Default: if tqdm is installed, a
+        bar on a terminal or in a notebook when the work takes more than two seconds. True: a bar at once;
+        False: none.
 
     Returns
     -------
@@ -102,9 +105,11 @@ def measure(
     found = [known.get((scene.name, scene.t), (scene, None)) for scene in scenes()]
     budget = seconds / (4 * len(found))
     rows = []
-    for scene, end in found:
-        rows.append(_row(scene, budget, end))
-        progress(len(rows) / len(found))
+    with telling(progress, "report") as told:
+        for scene, end in found:
+            rows.append(_row(scene, budget, end))
+            if told:
+                told(len(rows) / len(found))
     return rows
 
 

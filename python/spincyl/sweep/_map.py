@@ -21,7 +21,8 @@ from spincyl._input.numbers import (
     reals,
     words,
 )
-from spincyl._input.threads import Progress, callback, thread_count
+from spincyl._input.progress import Progress, telling
+from spincyl._input.threads import thread_count
 from spincyl._laws import Region
 from spincyl.sweep._common import apart, in_si, is_lazy, many_blocks, signature, target, targets
 
@@ -53,7 +54,7 @@ def portrait(
     out: "xarray.Dataset | None" = None,
     dtype: DType = "float64",
     threads: int | None = None,
-    progress: Progress | None = None,
+    progress: Progress | bool | None = None,
 ) -> "xarray.Dataset":
     """Compute the steady states with the centre at rest, for every inclination and every tube.
 
@@ -79,8 +80,10 @@ def portrait(
     threads : int, optional
         Number of threads. Default: the environment variable RAYON_NUM_THREADS, else every core that this
         process may use; 1 in a block of dask.
-    progress : callable, optional
-        Function that is called with the finished share, 0 to 1, about fifty times a second.
+    progress : callable or bool, optional
+        Function that is called with the finished share, 0 to 1, about fifty times a second. Default: if tqdm
+        is installed, a bar on a terminal or in a notebook when the work takes more than two seconds. True: a
+        bar at once; False: none.
 
     Returns
     -------
@@ -118,15 +121,16 @@ def portrait(
     axes = {name: _axis(name, x) for name, x in zip(_AXES, (theta, ell, bore, fillet), strict=True)}
     want = _wanted(want)
     cell = _cell(dtype)
-    kinds: dict[str, Any] = {"want": want, "cell": cell, "progress": callback(progress)}
+    kinds: dict[str, Any] = {"want": want, "cell": cell}
     dims = [name for name, x in axes.items() if x.ndim]
     if lazy:
         if out is not None:
             raise ValueError("out: expected None for dask-backed inputs; a lazy result has no arrays to fill")
         labelled = [lib.DataArray(x, dims=_dims(name, x)) for name, x in axes.items()]
-        with many_blocks():
+        cores = 1 if threads is None else thread_count(threads)
+        with many_blocks(), telling(progress, "map", by_default=False) as told:
             found = lib.apply_ufunc(
-                partial(_block, threads=1 if threads is None else thread_count(threads), **kinds),
+                partial(_block, threads=cores, progress=told, **kinds),
                 *labelled,
                 output_core_dims=[[]] * len(want),
                 dask="parallelized",
@@ -137,7 +141,9 @@ def portrait(
     else:
         shape = tuple(x.size for x in axes.values())
         given = targets(out, want)
-        filled = _grid(*axes.values(), threads=thread_count(threads), shape=shape, given=given, **kinds)
+        kinds |= {"threads": thread_count(threads), "shape": shape, "given": given}
+        with telling(progress, "map") as told:
+            filled = _grid(*axes.values(), progress=told, **kinds)
         inner = tuple(x.size for x in axes.values() if x.ndim)
         data = {name: (dims, x.reshape(inner)) for name, x in zip(want, filled, strict=True)}
     result: xarray.Dataset = lib.Dataset(
@@ -168,7 +174,7 @@ def points(
     out: dict[str, np.ndarray] | None = None,
     dtype: DType = "float64",
     threads: int | None = None,
-    progress: Progress | None = None,
+    progress: Progress | bool | None = None,
 ) -> dict[str, np.ndarray]:
     """Compute the quantities of `portrait` at single points: for each point one inclination and one tube.
 
@@ -211,7 +217,8 @@ def points(
     arrays = {name: target(name, shape, np.uint8 if name == "region" else cell, into[name]) for name in want}
     flat = dict(zip(_AXES, in_columns(given, shape), strict=True))
     apart(arrays, flat)
-    _core.portrait(flat, _flat(arrays), True, thread_count(threads), callback(progress))
+    with telling(progress, "map") as told:
+        _core.portrait(flat, _flat(arrays), True, thread_count(threads), told)
     return arrays
 
 
@@ -223,7 +230,7 @@ def survey(
     *,
     want: str | Iterable[str] = ("region",),
     threads: int | None = None,
-    progress: Progress | None = None,
+    progress: Progress | bool | None = None,
 ) -> dict[str, Any]:
     """Compute counts, areas and extrema of a `portrait` on these axes without storing the map.
 
@@ -268,7 +275,7 @@ def survey(
     0.251
     """
     axes = {name: _axis(name, x) for name, x in zip(_AXES, (theta, ell, bore, fillet), strict=True)}
-    asked, progress = _wanted(want), callback(progress)
+    asked = _wanted(want)
     if not (np.diff(axes["theta"].ravel()) >= 0).all():
         raise ValueError("theta: expected ascending inclinations")
     columns = _bodies(axes["theta"], axes["ell"], axes["bore"], axes["fillet"])
@@ -287,7 +294,8 @@ def survey(
     names = list(_UNITS)[:4]
     wanted = [name in asked for name in names]
     if any(wanted):
-        ends = _core.extrema(columns, wanted, cores, progress)
+        with telling(progress, "survey") as told:
+            ends = _core.extrema(columns, wanted, cores, told)
         for name, end in zip(names, ends, strict=True):
             if name in asked:
                 found[name] = None if end is None else _ends(name, end, axes)

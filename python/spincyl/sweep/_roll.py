@@ -26,7 +26,8 @@ from spincyl._input.numbers import (
     within,
     words,
 )
-from spincyl._input.threads import Progress, is_roomy
+from spincyl._input.progress import Progress
+from spincyl._input.threads import is_roomy
 from spincyl._loss import Loss, made_law
 from spincyl._lossy import narrow
 from spincyl._measured import natural_time, speaking
@@ -96,7 +97,7 @@ def roll(
     max_nfev: int | None = None,
     errors: bool = True,
     threads: int | None = None,
-    progress: Progress | None = None,
+    progress: Progress | bool | None = None,
 ) -> "xarray.Dataset":
     """Compute the motions of many bodies from their initial states.
 
@@ -175,8 +176,10 @@ def roll(
     threads : int, optional
         Number of threads. Default: the environment variable RAYON_NUM_THREADS, else every core that this
         process may use; 1 in a block of dask.
-    progress : callable, optional
-        Function that is called with the finished share, 0 to 1, about fifty times a second.
+    progress : callable or bool, optional
+        Function that is called with the finished share, 0 to 1, about fifty times a second. Default: if tqdm
+        is installed, a bar on a terminal or in a notebook when the work takes more than two seconds. True: a
+        bar at once; False: none.
 
     Returns
     -------

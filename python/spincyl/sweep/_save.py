@@ -18,7 +18,7 @@ import numpy as np
 
 from spincyl._input.files import replaced
 from spincyl._input.numbers import extra
-from spincyl._input.threads import Progress, callback
+from spincyl._input.progress import Progress, telling
 from spincyl.sweep import _records
 from spincyl.sweep._records import Record, Store, checksum, naming
 
@@ -34,7 +34,7 @@ def _zarr(folder: str | os.PathLike[str]) -> Any:
 
 
 def save(
-    result: "xarray.Dataset", path: str | os.PathLike[str], *, progress: Progress | None = None
+    result: "xarray.Dataset", path: str | os.PathLike[str], *, progress: Progress | bool | None = None
 ) -> "xarray.Dataset":
     """Compute a lazy sweep and write it to a zarr store, block by block; resume an interrupted save.
 
@@ -46,8 +46,10 @@ def save(
     path : path
         Directory for the store: a new one, or one that an earlier call began for the same sweep. A second
         directory, named `path` with ".sweep" at its end, has a mark for each completed block.
-    progress : callable, optional
-        Function that is called with the finished share of the blocks, 0 to 1, after each pass.
+    progress : callable or bool, optional
+        Function that is called with the finished share of the blocks, 0 to 1, after each pass. Default: if
+        tqdm is installed, a bar on a terminal or in a notebook when the work takes more than two seconds.
+        True: a bar at once; False: none.
 
     Returns
     -------
@@ -96,8 +98,8 @@ def save(
     >>> stored["region"].dims, stored["region"].size
     (('ell',), 1000)
     """
-    xr, dask = extra("xarray", "sweep"), extra("dask", "sweep")
-    extra("zarr", "sweep")
+    xr = extra("xarray", "sweep")
+    extra("dask", "sweep"), extra("zarr", "sweep")
     lazy = "expected a lazy Dataset of spincyl.sweep, computed from inputs backed by dask"
     if not isinstance(result, xr.Dataset) or not result.data_vars:
         raise TypeError(f"result: {lazy}")
@@ -106,7 +108,16 @@ def save(
         raise TypeError(f"result: {lazy}; this one is in memory, so save it with result.to_zarr(path){back}")
     if not isinstance(result.attrs.get("spincyl_sweep"), dict):
         raise TypeError(f"result: {lazy}")
-    callback(progress)
+    with telling(progress, "save") as told:
+        store = _stored(result, path, told)
+    opened: xarray.Dataset = xr.open_zarr(_zarr(store.folder))
+    opened.encoding["source"] = os.fspath(store.folder)
+    return opened
+
+
+def _stored(result: "xarray.Dataset", path: str | os.PathLike[str], progress: Progress | None) -> Any:
+    """The store, after the blocks that it lacked are computed."""
+    dask = extra("dask", "sweep")
     store = _records.place(path)
     record = _record(result)
     blocks = list(_blocks(_chunks(result)))
@@ -130,9 +141,7 @@ def save(
             first = last
     if progress:
         progress(1.0)
-    opened: xarray.Dataset = xr.open_zarr(_zarr(store.folder))
-    opened.encoding["source"] = os.fspath(store.folder)
-    return opened
+    return store
 
 
 def _pass(ask: Any) -> int:

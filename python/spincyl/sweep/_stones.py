@@ -12,7 +12,7 @@ from spincyl._ellipsoid import Ellipsoid
 from spincyl._ellipsoid_state import EllipsoidState
 from spincyl._ending import ErrorWarning
 from spincyl._input.numbers import Floats, Reals, components, made, number, si, warn, within, words
-from spincyl._input.threads import Progress
+from spincyl._input.progress import Progress
 from spincyl._loss import Loss
 from spincyl._lossy import narrow, of_stone
 from spincyl._measured import natural_time

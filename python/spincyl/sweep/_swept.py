@@ -10,7 +10,8 @@ import numpy as np
 from spincyl._asked import Asked, crossing
 from spincyl._contact import kind, named
 from spincyl._input.numbers import Floats, Reals, extra, floats, in_columns
-from spincyl._input.threads import Progress, callback, thread_count
+from spincyl._input.progress import Progress, telling
+from spincyl._input.threads import thread_count
 from spincyl._measured import speaking
 from spincyl._phases import rubs
 from spincyl._scale import Scale
@@ -44,7 +45,7 @@ def swept(
     labels: Mapping[str, tuple[str, str]],
     *,
     threads: int | None,
-    progress: Progress | None,
+    progress: Progress | bool | None,
     length: str = "R",
 ) -> "xarray.Dataset":
     """The Dataset of a sweep. `law` fills the columns of a block; `labels` has their units and meanings."""
@@ -54,15 +55,14 @@ def swept(
     options = crossing(asked._replace(contact=kind(asked.contact)))
     share = 1 if lazy and threads is None else thread_count(threads)
     fill = partial(_block, law=law, given=tuple(fields), names=names, spread=spread, times=at, asked=options)
-    run = partial(fill, threads=share, progress=callback(progress))
     # an empty block, run first, raises errors about the arguments before any work
     with speaking(scale, length):
         fill(*(np.empty(0) for _ in fields), threads=1, progress=None)
     given, dims = labelled(fields, kept)
     free(given, names, spread)
-    data = applied(
-        run, given[: len(fields)], names, [*map(_dtype, names)], [name in spread for name in names], at
-    )
+    columns = given[: len(fields)], names, [*map(_dtype, names)], [name in spread for name in names], at
+    with telling(progress, "sweep", by_default=not lazy) as tells:
+        data = applied(partial(fill, threads=share, progress=tells), *columns)
     data = {name: in_order(array, dims) for name, array in data.items()}
     for name, array in data.items():
         array.attrs = dict(zip(("units", "long_name"), labels[name], strict=True))
