@@ -332,16 +332,10 @@ impl Losses {
     /// Whether a face comes down by infinitely many turns: some law causes this, and no law along the contour stops the
     /// contact.
     pub(crate) fn turn_endlessly(&self) -> bool {
-        self.has_any(Law::turns_endlessly) && !self.stop_contact()
-    }
-
-    /// Whether some law along the contour stops the contact.
-    pub(crate) fn stop_contact(&self) -> bool {
-        self.has_any(Law::is_along)
-    }
-
-    fn has_any(&self, of: fn(Law) -> bool) -> bool {
-        Law::ALL.iter().any(|law| of(*law) && self.coefficients[*law as usize] > 0.0)
+        let any = |of: fn(Law) -> bool| {
+            Law::ALL.iter().any(|law| of(*law) && self.coefficients[*law as usize] > 0.0)
+        };
+        any(Law::turns_endlessly) && !any(Law::is_along)
     }
 
     /// The power that is lost in a state under a normal force N, in M g R sqrt(g/R). N is in units of the weight, 1 in

@@ -72,13 +72,6 @@ pub(crate) struct BodyPhases {
     pub(super) tail: Option<LastTurns>,
 }
 
-/// Whether a face that slips comes down by infinitely many turns: a law of loss causes this, or dry friction at a point
-/// that slips in every nod, unless a law along the contour stops the contact.
-fn turns_endlessly(ask: &Ask) -> bool {
-    let dry = matches!(ask.table, Table::Rubs(Friction::Coulomb { mu, patch: 0.0, .. }) if mu > 0.0);
-    ask.losses.turn_endlessly() || dry && !ask.losses.stop_contact()
-}
-
 /// A phase that loses energy without a slip.
 #[derive(Clone, Copy)]
 pub(super) struct LossyPhase {
@@ -122,7 +115,7 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
             struck: 0.0,
             energy: None,
             planar: start.w1 == 0.0 && start.w3 == 0.0 && slip[1] == 0.0,
-            tail: (!body.is_ball() && turns_endlessly(ask)).then(LastTurns::default),
+            tail: (!body.is_ball() && ask.losses.turn_endlessly()).then(LastTurns::default),
         };
         let mut walk = Self::new(of, at, ask, fine, (time, times))?;
         walk.next = Some(match aloft {

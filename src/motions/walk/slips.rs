@@ -41,10 +41,10 @@ impl<const N: usize> SlowSeries<N> {
 }
 
 /// Number of steps between two looks at how fast the speed of a slow slip changes, and of any other slip.
-const STEPS_PER_LOOK: [u64; 2] = [24, 240];
+const STEPS_TO_LOOK: [u64; 2] = [24, 240];
 /// A series takes up a slow slip whose speed changes by a smaller factor than exp(CREEPS) in a step: such steps are
 /// short only because the direction of the slip follows the motion so fast that longer ones would be unstable.
-const CREEPS: f64 = 0.5;
+const CREEPS: f64 = 0.15;
 /// The direction of a slip has settled where its distance from the series, times the speed, is below this share of the
 /// tolerance.
 const SETTLED: f64 = 0.5;
@@ -117,7 +117,7 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
         if !P::has_series(self) {
             return u64::MAX;
         }
-        STEPS_PER_LOOK[usize::from(y[P::SLIP].hypot(y[P::SLIP + 1]) > SLOW_SLIP)]
+        STEPS_TO_LOOK[usize::from(y[P::SLIP].hypot(y[P::SLIP + 1]) > SLOW_SLIP)]
     }
 
     /// A slow slip at the numbers `y`, whose steps would remain short up to its end, continues by its series.
