@@ -16,6 +16,7 @@
 use super::flight::Aloft;
 use super::phases::BodyWalk;
 use crate::laws::body::Body;
+use crate::laws::contact::impact::{Hit, Struck};
 use crate::laws::contact::slip::Friction;
 use crate::laws::contact::{Contact, Table, force};
 use crate::laws::state::State;
@@ -92,18 +93,19 @@ impl Spun {
     /// The axis after a time, and the angle by which the ball has turned at most.
     fn turned(&self, t: f64) -> ([f64; 3], f64) {
         let size = |w: [f64; 3]| (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]).sqrt();
-        let rate = size(self.w).max(size(self.speeds(t)));
-        let angle = rate * t;
+        let rate = size(self.w);
         if self.slows == 0.0 {
             if rate == 0.0 {
                 return (self.axis, 0.0);
             }
-            let (way, (sin, cos)) = (self.w.map(|w| w / rate), (0.5 * angle).sin_cos());
-            let across = cross(way, self.axis);
-            let inward = cross(way, across);
-            let turn = |i: usize| self.axis[i] + 2.0 * sin * (cos * across[i] + sin * inward[i]);
-            return (core::array::from_fn(turn), angle);
+            let (sin, cos) = (0.5 * rate * t).sin_cos();
+            let across = cross(self.w, self.axis);
+            let inward = cross(self.w, across);
+            let (along, towards) = (2.0 * sin * cos / rate, 2.0 * sin * sin / (rate * rate));
+            let turn = |i: usize| self.axis[i] + (along * across[i] + towards * inward[i]);
+            return (core::array::from_fn(turn), rate * t);
         }
+        let angle = rate.max(size(self.speeds(t))) * t;
         let parts = angle.max(size(self.push).sqrt() * t).ceil().max(1.0);
         let (h, mut axis) = (t / parts, self.axis);
         for part in 0..parts as u64 {
@@ -211,6 +213,18 @@ impl<const N: usize> BodyWalk<'_, N> {
         }
         let y = self.numbers(&at, now + length, heat(length));
         self.slip_ends(y, if over { Halt::Time } else { Halt::Standstill });
+    }
+
+    /// The impact of a ball whose contact point does not slip: friction has nothing to stop.
+    pub(super) fn rebounds(&self, lift: f64, e: f64) -> Struck {
+        let hit = match self.ask.table {
+            Table::Rolling { .. } => Hit::Sticks,
+            Table::Rubs(friction) if friction.strength() > 0.0 || friction.sticks() => Hit::Sticks,
+            _ => Hit::Smooth,
+        };
+        let impulse = [0.0, 0.0, -((1.0 + e) * lift)];
+        let lost = 0.5 * (1.0 - e) * (1.0 + e) * lift * lift;
+        Struck { impulse, slip: [0.0; 2], lift: 0.0 - e * lift, hit, lost }
     }
 
     /// Flies to its landing, or to the last time.
