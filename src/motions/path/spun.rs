@@ -25,6 +25,10 @@ pub(super) const OF_A_PHASE: f64 = 8.0;
 /// 1, so that there are thirty terms at most.
 const NO_MORE: f64 = 1e-18;
 
+/// The largest number of parts of a slip, as many as the steps of an integrator would need all its evaluations for.
+const MOST_PARTS: f64 = 4e5;
+const PARTS_PER_TIME: f64 = 2e3;
+
 /// Whether every phase of this motion is known.
 pub(crate) fn knows(body: &Body, ask: &Ask) -> bool {
     let dry = match ask.table {
@@ -49,10 +53,16 @@ fn cross([a, b, c]: [f64; 3], [x, y, z]: [f64; 3]) -> [f64; 3] {
     [b * z - c * y, c * x - a * z, a * y - b * x]
 }
 
+fn size([a, b, c]: [f64; 3]) -> f64 {
+    (a * a + b * b + c * c).sqrt()
+}
+
 /// A phase from its start.
 pub(super) struct Spun {
     from: Aloft,
+    /// The axis at the time `since` of the phase.
     axis: [f64; 3],
+    since: f64,
     w: [f64; 3],
     /// The change of w in a unit of time, and the share of its slip that the ball loses in it.
     push: [f64; 3],
@@ -65,7 +75,7 @@ impl Spun {
         let ((s, c), [w1, w2, w3]) = (from.angle, from.w);
         let w = [c * w1 - s * w3, w2, s * w1 + c * w3];
         let fastest = w.into_iter().chain(from.slip).fold(1.0, |most: f64, x| most.max(x.abs()));
-        Self { from: *from, axis: [-s, 0.0, c], w, push, slows, fastest }
+        Self { from: *from, axis: [-s, 0.0, c], since: 0.0, w, push, slows, fastest }
     }
 
     /// A slip under friction of this strength; without friction it does not slow down.
@@ -82,9 +92,19 @@ impl Spun {
         core::array::from_fn(|i| self.w[i] + self.push[i] * t)
     }
 
-    /// The axis after a time, and the angle by which the ball has turned at most.
-    fn turned(&self, t: f64) -> ([f64; 3], f64) {
-        let size = |w: [f64; 3]| (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]).sqrt();
+    /// The angle by which the ball turns at most in a time, and the number of parts of a series over this time.
+    fn angle(&self, t: f64) -> [f64; 2] {
+        let angle = size(self.w).max(size(self.speeds(t))) * t;
+        [angle, angle.max(size(self.push).sqrt() * t).ceil()]
+    }
+
+    /// Whether the series over this time have too many parts.
+    pub fn toils(&self, t: f64) -> bool {
+        self.slows > 0.0 && self.angle(t)[1] > MOST_PARTS.max(PARTS_PER_TIME * t)
+    }
+
+    /// The axis after a time, and the angle by which the ball has turned at most. The times of a slip ascend.
+    fn turned(&mut self, t: f64) -> ([f64; 3], f64) {
         let rate = size(self.w);
         if self.slows == 0.0 {
             if rate == 0.0 {
@@ -97,12 +117,13 @@ impl Spun {
             let turn = |i: usize| self.axis[i] + (along * across[i] + towards * inward[i]);
             return (core::array::from_fn(turn), rate * t);
         }
-        let angle = rate.max(size(self.speeds(t))) * t;
-        let parts = angle.max(size(self.push).sqrt() * t).ceil().max(1.0);
-        let (h, mut axis) = (t / parts, self.axis);
+        let ([angle, parts], more) = (self.angle(t), t - self.since);
+        let parts = (parts * (more / t)).ceil().max(1.0);
+        let h = more / parts;
         for part in 0..parts as u64 {
-            let (w, push) = (self.speeds(part as f64 * h).map(|w| w * h), self.push.map(|a| a * h * h));
-            let (mut before, mut term) = ([0.0; 3], axis);
+            let w = self.speeds(self.since + part as f64 * h).map(|w| w * h);
+            let push = self.push.map(|a| a * h * h);
+            let (mut before, mut term, axis) = ([0.0; 3], self.axis, &mut self.axis);
             let mut k = 0.0;
             while size(term) + size(before) > NO_MORE {
                 k += 1.0;
@@ -112,11 +133,12 @@ impl Spun {
                 (0..3).for_each(|i| axis[i] += term[i]);
             }
         }
-        (axis, angle)
+        self.since = t;
+        (self.axis, angle)
     }
 
     /// The ball after a time on the table, and the angle by which it has turned.
-    pub fn at(&self, t: f64) -> (Aloft, f64) {
+    pub fn at(&mut self, t: f64) -> (Aloft, f64) {
         if t == 0.0 {
             return (self.from, 0.0);
         }

@@ -12,15 +12,15 @@ use super::spun::{OF_A_PHASE, Spun};
 use crate::laws::contact::impact::{Hit, Struck};
 use crate::laws::contact::{Contact, Table, force};
 use crate::laws::state::State;
-use crate::motions::Kind;
 use crate::motions::followed::Followed;
 use crate::motions::halt::{Halt, TIME, lost};
 use crate::motions::judge::doubted;
 use crate::motions::row::OutputRow;
+use crate::motions::{Kind, Limit};
 
 impl<const N: usize> BodyWalk<'_, N> {
     /// The ball after a time of a phase, with its error among the claims.
-    fn spun(&mut self, spun: &Spun, t: f64) -> (Aloft, f64) {
+    fn spun(&mut self, spun: &mut Spun, t: f64) -> (Aloft, f64) {
         let (mut at, angle) = spun.at(t);
         if self.of.planar {
             (at.w[0], at.w[2], at.slip[1]) = (0.0, 0.0, 0.0);
@@ -54,9 +54,9 @@ impl<const N: usize> BodyWalk<'_, N> {
     /// Rolls to the last time: nothing ends it.
     pub(super) fn rolls_uniformly(&mut self) {
         let (now, spent, body) = (self.at[TIME], [self.at[8], lost(&self.at)], self.of.body);
-        let spun = Spun::new(&Aloft { slip: [0.0; 2], ..self.aloft() }, [0.0; 3], 0.0);
+        let mut spun = Spun::new(&Aloft { slip: [0.0; 2], ..self.aloft() }, [0.0; 3], 0.0);
         while let Some(t) = self.until() {
-            let y = self.spun(&spun, t - now).0.state();
+            let y = self.spun(&mut spun, t - now).0.state();
             let error = self.made.motion.error;
             let force =
                 self.ask.force.then(|| doubted(&y, [error; 2], |y| force(Contact::Rolling, &body, y)));
@@ -69,18 +69,23 @@ impl<const N: usize> BodyWalk<'_, N> {
     pub(super) fn slips_uniformly(&mut self) {
         let (now, heat, mu) = (self.at[TIME], self.at[8], self.of.slide.law.strength);
         let (from, ask, slide) = (self.aloft(), self.ask, self.of.slide);
-        let spun = Spun::rubbing(&from, self.of.body.i3(), mu);
+        let mut spun = Spun::rubbing(&from, self.of.body.i3(), mu);
         let speed = from.slip[0].hypot(from.slip[1]);
-        let heat = |t: f64| heat + mu * speed * t * (1.0 - 0.5 * spun.slows * t);
-        let end = 1.0 / spun.slows;
+        let slows = spun.slows;
+        let heat = |t: f64| heat + mu * speed * t * (1.0 - 0.5 * slows * t);
+        let (end, left) = (1.0 / slows, self.since.last().map_or(0.0, |t| t - now));
+        if spun.toils(end.min(left)) {
+            self.next = Some(self.gives_up(Limit::Evaluations));
+            return;
+        }
         while let Some(t) = self.until().filter(|t| *t <= now + end) {
-            let at = self.spun(&spun, t - now).0;
+            let at = self.spun(&mut spun, t - now).0;
             let y = self.numbers(&at, t, heat(t - now));
             self.made.slid(&ask, &slide, &y);
         }
         let over = self.until().is_none();
-        let length = if over { self.since.last().map_or(0.0, |t| t - now) } else { end };
-        let (mut at, angle) = self.spun(&spun, length);
+        let length = if over { left } else { end };
+        let (mut at, angle) = self.spun(&mut spun, length);
         self.rounds(length, angle, if over { 0.0 } else { spun.fastest * end / speed });
         if !over {
             at.slip = [0.0; 2];
@@ -104,18 +109,18 @@ impl<const N: usize> BodyWalk<'_, N> {
     /// Flies to its landing, or to the last time.
     pub(super) fn flies_uniformly(&mut self) {
         let (from, now) = (self.aloft(), self.at[TIME]);
-        let (spun, up) = (Spun::new(&from, [0.0; 3], 0.0), from.lift);
+        let (mut spun, up) = (Spun::new(&from, [0.0; 3], 0.0), from.lift);
         let fall = (up * up + 2.0 * from.height).sqrt();
         let end = if up < 0.0 { 2.0 * from.height / (fall - up) } else { up + fall };
         while let Some(t) = self.until().filter(|t| *t <= now + end) {
-            let (t, at) = (t - now, self.spun(&spun, t - now).0);
+            let (t, at) = (t - now, self.spun(&mut spun, t - now).0);
             let height = (from.height + t * (up - 0.5 * t)).max(0.0);
             self.writes_with(&Aloft { height, lift: up - t, ..at }, Kind::Flying, 0.0);
         }
         if self.since.last().is_none_or(|last| now + end > *last) {
             return;
         }
-        let (at, angle) = self.spun(&spun, end);
+        let (at, angle) = self.spun(&mut spun, end);
         self.rounds(end, angle, 0.0);
         self.at[TIME] = now + end;
         self.sets(&Aloft { height: 0.0, lift: -fall, ..at });
