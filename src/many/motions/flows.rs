@@ -19,7 +19,7 @@ use crate::laws::body::Body;
 use crate::laws::state::State;
 use crate::motions::followed::{Followed, rougher};
 use crate::motions::path::BodyWalk;
-use crate::motions::path::uniform::knows;
+use crate::motions::path::spun::knows;
 use crate::motions::walk::Pause;
 use crate::motions::{Ask, Ending, Method};
 use crate::motions::{Kind, Phase};

@@ -57,11 +57,7 @@ impl<const N: usize> BodyWalk<'_, N> {
     /// little else.
     pub(super) fn state_of(&self, at: &Aloft) -> State {
         let ([w1, w2, w3], here) = (at.w, (self.at[0], self.at[1]));
-        if self.of.uniform && at.angle == here {
-            State { w1, w2, w3, ..self.of.state }
-        } else {
-            at.state()
-        }
+        if self.of.uniform && at.angle == here { State { w1, w2, w3, ..self.of.state } } else { at.state() }
     }
 
     /// Moves the walk to these numbers.

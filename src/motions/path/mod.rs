@@ -26,9 +26,10 @@ pub(crate) mod settled;
 pub(crate) mod slide;
 mod slips;
 mod slow;
+pub(crate) mod spun;
 mod strikes;
 mod tail;
-pub(crate) mod uniform;
+mod uniform;
 pub(crate) mod write;
 
 pub use super::ask::FINE;
@@ -57,7 +58,7 @@ pub fn follow(
     let fine = check(body, start, ask)?;
     check_times_after(start.time, times)?;
     let mut run = |tol: f64, times: &[f64]| walked((body, start), ask, (tol, false), times, go_on);
-    if !SHORT_CODE && uniform::knows(body, ask) {
+    if !SHORT_CODE && spun::knows(body, ask) {
         let mut found = run(fine, times)?;
         found.knows_itself(fine);
         return Ok(found.into());

@@ -154,6 +154,9 @@ impl<const N: usize> BodyWalk<'_, N> {
 
     /// The impact at these numbers; None for a rolling contact without a solution.
     fn impact(&self, from: &Aloft, e: f64) -> Option<Struck> {
+        if self.of.uniform && from.slip == [0.0; 2] {
+            return Some(self.rebounds(from.lift, e));
+        }
         let mut light = lightness(&self.of.slide.law.shape, from.angle);
         if self.of.uniform {
             // Rounding must not make the slip turn.
