@@ -89,19 +89,25 @@ pub(crate) type Guess<const N: usize> = Option<[[f64; N]; RADAU_STAGES]>;
 const LONGER: f64 = 2.0;
 
 /// The changes in a step of length `h` by the polynomial of the last step, from its changes and its length.
+#[inline(never)]
 pub(crate) fn goes_on<const N: usize>(last: &Option<([[f64; N]; RADAU_STAGES], f64)>, h: f64) -> Guess<N> {
     let (moved, before) = last.as_ref().filter(|(_, before)| h <= LONGER * before)?;
-    // Lagrange's polynomials of the start and the nodes, of which that of the start multiplies a change of zero.
-    let weight = |j: usize, x: f64| {
-        let others = (0..RADAU_STAGES).filter(|i| *i != j);
-        others.fold(x / PLACES[j], |product, i| product * (x - PLACES[i]) / (PLACES[j] - PLACES[i]))
-    };
-    Some(PLACES.map(|place| {
-        let weights: [f64; RADAU_STAGES] = core::array::from_fn(|j| weight(j, 1.0 + place * h / before));
-        core::array::from_fn(|n| {
-            (0..RADAU_STAGES).map(|j| weights[j] * moved[j][n]).sum::<f64>() - moved[RADAU_STAGES - 1][n]
-        })
+    let end = moved[RADAU_STAGES - 1];
+    Some(ahead(h / before).map(|weights| {
+        core::array::from_fn(|n| (0..RADAU_STAGES).map(|j| weights[j] * moved[j][n]).sum::<f64>() - end[n])
     }))
+}
+
+/// Lagrange's polynomials of the nodes at the stages of the next step, which is this many times as long. That of the start
+/// would multiply a change of zero.
+fn ahead(longer: f64) -> [[f64; RADAU_STAGES]; RADAU_STAGES] {
+    PLACES.map(|place| {
+        let x = 1.0 + place * longer;
+        core::array::from_fn(|j| {
+            let others = (0..RADAU_STAGES).filter(|i| *i != j);
+            others.fold(x / PLACES[j], |product, i| product * (x - PLACES[i]) / (PLACES[j] - PLACES[i]))
+        })
+    })
 }
 
 /// The numbers in the middle of a step, as far as they are known: their derivatives there are those of the whole step.
@@ -251,6 +257,22 @@ mod tests {
             let t = h * f64::from(n);
             assert!((y[0] - t.cos()).abs() < 2e-13 && (y[2] - slow(t)).abs() < 1e-12, "{t}: {y:?}");
         }
+    }
+
+    #[test]
+    fn the_polynomial_of_a_step_goes_on_to_the_next_one() {
+        // Polynomials of fifth degree without a constant are continued exactly.
+        for power in 1..=5 {
+            for longer in [0.3, 1.0, 1.9] {
+                let at = |x: f64| x.powi(power);
+                let found = goes_on(&Some((PLACES.map(|place| [at(place)]), 0.5)), 0.5 * longer).unwrap();
+                for (place, [found]) in PLACES.into_iter().zip(found) {
+                    let exact = at(1.0 + longer * place) - 1.0;
+                    assert!((found - exact).abs() < 1e-12 * exact, "{power} {longer}: {found} {exact}");
+                }
+            }
+        }
+        assert!(goes_on(&Some(([[0.0]; RADAU_STAGES], 0.5)), 2.0).is_none());
     }
 
     #[test]

@@ -6,7 +6,8 @@
 //! S = R k,   f(k) = F/(mu N)                      the slip of a creep under the force F
 //! dt/dsigma < STIFF/3 (3 radians of the turning)  u follows the motion much faster than the body turns
 //! ```
-//! [`radau`](crate::methods::radau) takes the steps where u is that fast; at k = 1 the steps are short.
+//! [`radau`](crate::methods::radau) takes the steps where u is that fast, unless they are too short to pay; at k = 1 the
+//! steps are short.
 //!
 //! Error: `LOST_DRILLING` times the drilling that is left out.
 
@@ -17,7 +18,7 @@ use crate::numbers::{Dual, Real};
 pub(crate) const DRILLS: f64 = 1e-10;
 /// A contact point that friction has released begins to creep with at most this share of the friction of a slip.
 const MOST_CREEP: f64 = 0.999;
-/// Steps are implicit where the body turns by less than this angle in a unit of sigma, which is about the longest stable
+/// Steps may be implicit where the body turns by less than this angle in a unit of sigma, which is about the longest stable
 /// explicit step.
 const STIFF: f64 = 0.2;
 /// An implicit step may be this many times longer than an explicit one, since it amplifies no rounding.

@@ -48,4 +48,8 @@ impl<T: Real> Real for Dual<T> {
         let pick = |yes: T, no: T| self.value.select_lt(other.value, yes, no);
         Self { value: pick(yes.value, no.value), slope: pick(yes.slope, no.slope) }
     }
+    #[inline(always)]
+    fn is_lt(self, other: Self) -> bool {
+        self.value.is_lt(other.value)
+    }
 }

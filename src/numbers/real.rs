@@ -42,6 +42,12 @@ pub(crate) trait Real:
     /// Returns `yes` where `self < other`, `no` elsewhere (also for NaN).
     fn select_lt(self, other: Self, yes: Self, no: Self) -> Self;
 
+    /// Whether `self < other` is known for all that this number stands for, so that the other case need not be computed.
+    #[inline(always)]
+    fn is_lt(self, _: Self) -> bool {
+        false
+    }
+
     /// `self * b + c`, rounded once for single numbers and lanes; a product and a sum for other kinds of
     /// numbers.
     #[inline(always)]
@@ -130,5 +136,9 @@ impl Real for f64 {
     #[inline(always)]
     fn select_lt(self, other: Self, yes: Self, no: Self) -> Self {
         if self < other { yes } else { no }
+    }
+    #[inline(always)]
+    fn is_lt(self, other: Self) -> bool {
+        self < other
     }
 }

@@ -100,3 +100,32 @@ fn a_uniform_ball_is_never_integrated() {
         }
     }
 }
+
+/// A uniform ball on a patch of contact that slips, spins, and drills for long.
+fn ball_on_a_patch(resistance: f64, until: f64, tol: f64) -> Motion {
+    let ball = Body::ball(0.0, 0.4, 0.4).unwrap();
+    let state = State { theta: 1.0, w1: -2.0, w2: 1.0, w3: 3.0 };
+    let friction = Friction::Coulomb { mu: 0.2, fixed: 0.2, patch: 1e-3 };
+    let ask = Ask::on(friction).with_losses(Losses::of(Law::RollingResistance, resistance));
+    followed(&ball, Start::from(state).with_slip([2.0, 2.0]), until, ask, tol)
+}
+
+#[test]
+fn a_ball_whose_slip_has_died_on_a_patch_costs_what_its_turns_cost() {
+    // It turns by 4.8 rad in a unit of time. Its slip follows the turning 500 times faster.
+    for (tol, most) in TOLERANCES.into_iter().zip([400, 600, 1_000]) {
+        let [early, late] = [20.0, 40.0].map(|until| ball_on_a_patch(0.0, until, tol));
+        let each = (late.evaluations - early.evaluations) / 20;
+        assert!(each <= most, "{tol:e}: {each} evaluations in a unit of time, {most} allowed");
+        let slip = late.path.unwrap().slip[0];
+        assert!(slip[0].hypot(slip[1]) < 1e-12, "{tol:e}: {slip:?}");
+    }
+}
+
+#[test]
+fn a_billiard_ball_that_creeps_on_a_patch_costs_a_few_steps_in_each_turn() {
+    for (tol, most) in TOLERANCES.into_iter().zip([15_000, 25_000, 40_000]) {
+        let m = ball_on_a_patch(3e-4, 30.0, tol);
+        assert!(m.evaluations <= most, "{tol:e}: {} evaluations, {most} allowed", m.evaluations);
+    }
+}

@@ -44,13 +44,16 @@ const COUPLE: [f64; 22] = [
 fn shares<T: Real>(slip: T, turn: T) -> [T; 2] {
     let number = |x: f64| slip.splat(x);
     let one = number(1.0);
-    // Both sides are always computed, each with arguments that are valid for it.
+    // Lanes compute both sides, each with arguments that are valid for it.
     let (small, wide) = (slip.min(turn), turn.max(number(f64::MIN_POSITIVE)));
     let square = (small / wide) * (small / wide);
     let within = [
         number(3.0 * PI / 32.0) * (number(4.0) - square) / wide,
         number(3.0 * PI / 128.0) * (number(8.0) - square * (number(8.0) - number(3.0) * square)),
     ];
+    if slip.is_lt(turn) {
+        return within;
+    }
     let (fast, slow) = (slip.max(turn).max(number(f64::MIN_POSITIVE)), turn.min(slip));
     let share = slow / fast;
     let side = number(2.0) * ((one - share) * (one + share)).sqrt() - one;

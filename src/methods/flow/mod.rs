@@ -19,7 +19,7 @@ mod stiff;
 pub(crate) use ends::{looks, only_zero};
 pub(crate) use place::{Exhausted, FlowPlace, Flown, Spent, Steps, TakenStep};
 pub(crate) use stiff::STABLE;
-use stiff::Ways;
+use stiff::StiffSteps;
 
 use super::radau;
 use super::rk8::{self, growth, plus};
@@ -370,7 +370,7 @@ pub(crate) trait Flow<const M: usize>: Copy {
         let (mut calm, mut frozen) = (self.calm(&here.y), false);
         let (mut spent, mut last) = (Spent { evaluations: 1, erred: 0.0, patience, exhausted: None }, here.y);
         let (mut stages, mut steep) = ([here.rate; rk8::STAGES], f64::INFINITY);
-        let mut ways = Ways::default();
+        let mut ways = StiffSteps::default();
         for steps in 1u64.. {
             let over = if next == times.len() {
                 Some((Self::OVER, last))

@@ -21,7 +21,7 @@ const LESS: f64 = 0.5;
 const MORE: f64 = 1.1;
 
 /// The way in which a stiff flow takes its steps.
-pub(super) struct Ways<const N: usize> {
+pub(super) struct StiffSteps<const N: usize> {
     /// The number of explicit steps before the next implicit one, and after the next failure.
     left: u64,
     wait: u64,
@@ -31,13 +31,13 @@ pub(super) struct Ways<const N: usize> {
     pub last: Option<([[f64; N]; RADAU_STAGES], f64)>,
 }
 
-impl<const N: usize> Default for Ways<N> {
+impl<const N: usize> Default for StiffSteps<N> {
     fn default() -> Self {
         Self { left: 0, wait: WAITS[0], most: f64::INFINITY, last: None }
     }
 }
 
-impl<const N: usize> Ways<N> {
+impl<const N: usize> StiffSteps<N> {
     /// Whether the next step is implicit, and its length.
     #[inline(always)]
     pub fn leads_to(&mut self, h: &mut f64, stable: f64, longest: impl FnOnce() -> f64) -> bool {
