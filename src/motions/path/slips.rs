@@ -13,10 +13,10 @@ use crate::motions::walk::{Next, Pause, Phases, after_rest, ending};
 
 /// A face barely lands if more than this share of its energy is in the turning, and it falls, rather than whirrs, if the
 /// square of w2 exceeds sin theta by this factor.
-const BARELY: f64 = 1e-4;
-const FALLS: f64 = 100.0;
+const LANDS_BARELY: f64 = 1e-4;
+const FALLS_FAST: f64 = 100.0;
 /// Time of a few rockings of a face, in units of w2 (1 + I1).
-const ROCKS: f64 = 8.0;
+const ROCKINGS: f64 = 8.0;
 
 /// Number of steps between two estimates of the end of a whirr that slips.
 const STEPS_PER_LOOK: u64 = 64;
@@ -114,8 +114,8 @@ impl<const N: usize> BodyWalk<'_, N> {
     /// rock, a few times at most.
     pub(super) fn rocks_on(&self) -> f64 {
         let ([s, _, w1, w2], i1) = (core::array::from_fn(|i| self.at[i]), self.of.body.i1());
-        let barely = turning_share(i1, s, w1, w2) > BARELY && w2 * w2 > FALLS * s;
-        if barely { ROCKS * w2.abs() * (1.0 + i1) } else { 0.0 }
+        let barely = turning_share(i1, s, w1, w2) > LANDS_BARELY && w2 * w2 > FALLS_FAST * s;
+        if barely { ROCKINGS * w2.abs() * (1.0 + i1) } else { 0.0 }
     }
 
     /// The time at which a slipping whirr ends, and its error, if they are known and no output is
