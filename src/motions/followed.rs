@@ -30,7 +30,7 @@ const TOGETHER: f64 = 0.3;
 /// that the difference of the runs hides the errors of these steps.
 const ALIKE: f64 = 0.7;
 /// The estimated error is at least this share of the sum of all step errors, since two runs may agree by chance.
-const CHANCE: f64 = 0.1;
+pub(crate) const CHANCE: f64 = 0.1;
 /// A phase of a motion with impacts that is shorter has no meaning of its own: it belongs to bounces, of which another
 /// run with the same motion before and after may have one more or one less.
 pub(crate) const BRIEF: f64 = 1e-4;
@@ -260,9 +260,10 @@ impl<S: Moving> Followed<S> {
         let alike = ratio > ALIKE.min(1.5 * (tol / rougher(tol)).powf(0.125));
         // Step errors grow along the motion, by the same factor in both runs: in the rougher run from their sum to the
         // difference of the runs. Steps that are not alike show their errors in that difference; as it may be small by
-        // chance, the estimated error also includes a share of their sum.
+        // chance, the estimated error also includes a share of their sum. Where impacts multiply the errors of both runs, it
+        // includes that share as grown as it is in the rougher run, which is perturbed by it.
         let grows = if rough.path.erred > 0.0 { (off / rough.path.erred).max(1.0) } else { 1.0 };
-        least += self.path.erred * if alike { grows } else { CHANCE };
+        least += self.path.erred * if alike || hops { grows } else { CHANCE };
         least += alone;
         // Errors that have grown until the two runs part are no longer proportional to the tolerances.
         let parted = PARTED * fastest;

@@ -8,7 +8,7 @@ use spincyl::contact::Table;
 use spincyl::contact::slip::Friction;
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::path::{Hit, Kind};
-use spincyl::motion::{Ask, Ending, Motion, Start, roll_with};
+use spincyl::motion::{Ask, Ending, Method, Motion, Start, roll_with};
 use spincyl::{Body, State};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -366,4 +366,128 @@ fn the_mirror_image_of_a_landing_of_both_rims_is_its_landing_along_the_axis_and_
         met += 1;
     }
     assert!(met > drawn(500), "{met}");
+}
+
+/// The largest difference of two motions of one start at the times that both reach and at their end, as seen from the
+/// same rim.
+fn apart(a: &Motion, b: &Motion) -> f64 {
+    let of = |x: &State, y: &State| {
+        let there = State { theta: PI - y.theta, w2: -y.w2, w3: -y.w3, ..*y };
+        x.distance(y).min(x.distance(&there))
+    };
+    let ends = a.event.zip(b.event).map(|(a, b)| of(&a.state, &b.state).max((a.time - b.time).abs()));
+    a.states.iter().zip(&b.states).map(|(x, y)| of(x, y)).fold(ends.unwrap_or(0.0), f64::max)
+}
+
+/// A start at theta, w1, w2, w3 with a slip, moved within two tolerances; the motions, and their difference.
+fn within_both(body: &Body, y: [f64; 6], ask: &Ask, times: &[f64]) -> ([Motion; 2], f64) {
+    let start = Start::from(State::from([y[0], y[1], y[2], y[3]])).with_slip([y[4], y[5]]);
+    let both = [1e-14, 1e-10].map(|tol| moved(body, &start, &ask.with_method(Method::Tolerance(tol)), times));
+    let off = apart(&both[0], &both[1]);
+    (both, off)
+}
+
+fn every(step: f64, from: f64, until: f64) -> Vec<f64> {
+    (0..=((until - from) / step).round() as u32).map(|k| from + step * f64::from(k)).collect()
+}
+
+#[test]
+fn a_flight_against_the_air_past_a_pole_keeps_its_tolerance() {
+    let air = |viscosity: f64| Losses::of(Law::AirLinear, viscosity);
+    // The axis of the hoop passes the vertical by 14 degrees, that of the other body by less than one degree.
+    let hoop = Body::tube(0.0, 1.0).unwrap();
+    let slender = Body::new(1.1085317262693506, 1.086334812278953, 0.35551432011294104).unwrap();
+    let (y, z) = (
+        [1.6168459359258593, -1.2319514815349855, 1.3056241339332186, -0.8154904289871444, -0.0211, -1.0295],
+        [
+            0.13835854671246567,
+            -0.14426021667191916,
+            1.651360636109556,
+            -1.1767679402324835,
+            1.62074629391011,
+            -1.3683772202431663,
+        ],
+    );
+    for (body, y, mu, e, b, until) in [
+        (hoop, y, 0.1964, 0.3, 1.14e-4, 4.0),
+        (slender, z, 0.5898619905786536, 1.0, 2.0648058334721639e-4, 3.0),
+    ] {
+        let ask = Ask::on(coulomb(mu)).with_restitution(e).with_losses(air(b));
+        let (_, off) = within_both(&body, y, &ask, &every(0.05, 0.0, until));
+        assert!(off < 3e-8, "{body:?}: {off:e}");
+    }
+}
+
+#[test]
+fn slips_of_both_rims_keep_their_tolerance_while_they_turn_to_one_direction() {
+    // The rims of a rod with small moments of inertia turn to one direction much faster than they slow down.
+    let rod = Body::new(1.9151667590741197, 0.12025126783619942, 0.10513151690477836).unwrap();
+    let y = [
+        0.7490459816857816,
+        0.48113273452202054,
+        -1.8707847981668144,
+        -1.1243398734474375,
+        1.1667356759103618,
+        -1.5074638087615992,
+    ];
+    let ask = Ask::on(coulomb(0.2663430377513305)).with_restitution(0.0);
+    let (_, off) = within_both(&rod, y, &ask, &every(0.0025, 0.9, 5.4));
+    assert!(off < 3e-9, "{off:e}");
+}
+
+#[test]
+fn a_chain_of_impacts_claims_what_it_makes_of_the_errors_of_a_few_steps() {
+    // Eleven impacts multiply the error of the slip before them, of four steps in either run, by ten thousand.
+    let body = Body::new(0.117015446393001, 1.796775761321279, 2.3077348288837123).unwrap();
+    let y = [
+        1.4958546314227419,
+        2.453800278274771,
+        -0.22177262061793793,
+        -0.6498299097912659,
+        -0.7959749278334902,
+        -2.1805766016214316,
+    ];
+    let ask = Ask::on(coulomb(0.2858845242175299)).with_restitution(1.0);
+    let ([fine, rough], off) = within_both(&body, y, &ask, &every(0.2, 0.0, 20.0));
+    assert!(off <= 2.0 * (fine.error + rough.error), "{off:e} of {:e} and {:e}", fine.error, rough.error);
+    assert!(rough.error < 1e-4 && fine.error < 1e-8, "{:e} {:e}", rough.error, fine.error);
+}
+
+#[test]
+fn a_face_whose_landing_rounding_decides_claims_a_few_rockings() {
+    // Rolling resistance damps the turning of the hoop until its face passes flat over the table.
+    let hoop = Body::tube(0.0, 1.0).unwrap();
+    let y = [
+        0.29033129161259186,
+        0.657440868798747,
+        0.7313744973042814,
+        0.9101601334248838,
+        1.9301139553980633,
+        1.548807112627859,
+    ];
+    let losses = Losses::of(Law::RollingResistance, 0.0695802930554293);
+    let ask = Ask::on(coulomb(0.0572081968713129)).with_losses(losses);
+    let ([fine, rough], off) = within_both(&hoop, y, &ask, &[0.0, 17.0, 20.0]);
+    assert!([&fine, &rough].iter().all(|m| m.event.unwrap().ending == Ending::Face));
+    assert!(off <= 2.0 * (fine.error + rough.error), "{off:e} of {:e} and {:e}", fine.error, rough.error);
+    assert!(fine.error < 0.2 && (fine.event.unwrap().time - 17.336).abs() < 0.02, "{:?}", fine.event);
+}
+
+#[test]
+fn bounces_that_are_summed_above_a_film_of_air_claim_what_the_film_does_at_a_contact() {
+    let body = Body::new(0.743007364188049, 1.4450253562392847, 2.5937682163280527).unwrap();
+    let state =
+        State::from([0.6696691498500239, -0.23756640506288826, 1.232347931628101, -0.3763522090355309]);
+    let start = Start::from(state)
+        .with_slip([-0.257834306992858, 0.8479262272929056])
+        .with_aloft([0.4789478567397365, -1.151243805702898]);
+    let losses = Losses::of(Law::AirFilm, 0.0063086151208995855);
+    let ask = Ask::on(coulomb(0.058676901727985425)).with_restitution(0.0400865823815999).with_losses(losses);
+    let of = |tol: f64| {
+        let ask = ask.with_method(Method::Tolerance(tol));
+        moved(&body, &start, &ask, &[0.0, 0.52745, 0.5275, 1.0])
+    };
+    let [fine, rough] = [1e-14, 1e-10].map(of);
+    let off = apart(&fine, &rough);
+    assert!(off > 1e-9 && off <= 2.0 * (fine.error + rough.error), "{off:e} of {:e}", rough.error);
 }

@@ -133,11 +133,16 @@ impl<const N: usize> BodyWalk<'_, N> {
                 if down == 0.0 {
                     return self.settles_on_side();
                 }
-                // An output at the initial time shows the body before it lands, as outputs at other landings do; no
-                // force of the table belongs to a motion that begins with an impact.
-                let (at, kind) = (self.aloft(), self.kind());
+                // An output at the initial time shows the body before it lands, as outputs at other landings do. Where a
+                // table would have to pull at the rim that rises, there is no force.
+                let from = self.aloft();
+                let pulls = self.pressed(&from)[0] < 0.0;
                 while self.until().is_some_and(|t| t <= self.at[TIME]) {
-                    self.writes_with(&at, kind, f64::NAN);
+                    if pulls {
+                        self.writes_with(&from, self.kind(), f64::NAN);
+                    } else {
+                        BodyPhases::write_here(self);
+                    }
                 }
                 if e == 0.0 || down * self.of.body.ell() <= RATTLED {
                     self.lands_on_both()
@@ -253,7 +258,7 @@ impl<const N: usize> BodyWalk<'_, N> {
 
     /// The sign of a perturbation after this impact, as irregular as that of a rounding error: thousands of errors of one sign
     /// would add up to more than roundings do.
-    fn sign_of_rounding(&self) -> f64 {
+    pub(super) fn sign_of_rounding(&self) -> f64 {
         let mixed = (self.made.path.impacts.len() as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
         if mixed >> 63 == 0 { 1.0 } else { -1.0 }
     }

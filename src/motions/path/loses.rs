@@ -99,8 +99,8 @@ impl<const N: usize> BodyWalk<'_, N> {
             }
             Halt::Face => {
                 let (left, doubt) = flow.rest_of(&self.at);
+                self.claims(doubt + self.rocks_on());
                 self.at[7] += left;
-                self.claims(doubt);
                 self.at[0] = 0.0;
                 self.of.state = state(&self.at);
                 Next::Ends(Ending::Face)

@@ -17,6 +17,7 @@ use crate::laws::contact::{Contact, Table, force, lossy};
 use crate::laws::loss::{Holds, Losses};
 use crate::laws::state::State;
 use crate::methods::flow::{Flow, FlowPlace, Steps};
+use crate::motions::followed::CHANCE;
 use crate::motions::halt::{Halt, loses, lost, poses};
 use crate::motions::judge::doubted;
 use crate::motions::row::OutputRow;
@@ -66,6 +67,8 @@ pub(crate) struct BodyPhases {
     /// at the start.
     pub(super) struck: f64,
     pub(super) energy: Option<f64>,
+    /// The step errors by which a rougher run has been perturbed.
+    pub(super) shown: f64,
     /// Whether only theta changes, so that rounding must not make the body turn.
     pub(super) planar: bool,
     /// Estimates of the end of a slipping whirr; None if the losses do not let a whirr last for infinitely many turns.
@@ -114,6 +117,7 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
             takeoff: Takeoff::default(),
             struck: 0.0,
             energy: None,
+            shown: 0.0,
             planar: start.w1 == 0.0 && start.w3 == 0.0 && slip[1] == 0.0,
             tail: (!body.is_ball() && ask.losses.turn_endlessly()).then(LastTurns::default),
         };
@@ -250,8 +254,15 @@ impl<const N: usize> Phases<N> for BodyPhases {
         walk.told(kind)
     }
 
+    /// A motion that hops is also perturbed by a share of the step errors since the last time: impacts multiply them,
+    /// and where both runs take the same steps only this shows by how much.
     fn perturbs(walk: &mut BodyWalk<'_, N>) {
-        BodyPhases::perturbs_by(walk, walk.perturbation);
+        let mut share = walk.perturbation;
+        if share > 0.0 && walk.ask.restitution.is_some() {
+            let erred = walk.spent.erred - core::mem::replace(&mut walk.of.shown, walk.spent.erred);
+            share += CHANCE * erred * walk.of.slide.tol * walk.sign_of_rounding();
+        }
+        BodyPhases::perturbs_by(walk, share);
     }
 
     fn write(walk: &mut BodyWalk<'_, N>, y: &[f64; N]) {

@@ -11,6 +11,13 @@ use crate::motions::Ending;
 use crate::motions::halt::{Halt, loses};
 use crate::motions::walk::{Next, Pause, Phases, after_rest, ending};
 
+/// A face barely lands if more than this share of its energy is in the turning, and it falls, rather than whirrs, if the
+/// square of w2 exceeds sin theta by this factor.
+const LANDS_BARELY: f64 = 1e-4;
+const FALLS_FAST: f64 = 100.0;
+/// Time of a few rockings of a face, in units of w2 (1 + I1).
+const ROCKINGS: f64 = 8.0;
+
 /// Number of steps between two estimates of the end of a whirr that slips.
 const STEPS_PER_LOOK: u64 = 64;
 
@@ -61,8 +68,8 @@ impl<const N: usize> BodyWalk<'_, N> {
             let end = self.of.tail.and_then(|tail| tail.end()).filter(|[end, _]| turns && *end >= self.at[7]);
             let fall = (c * w2).max(0.0);
             let [end, doubt] = end.unwrap_or([self.at[7] + if fall > 0.0 { s / fall } else { 0.0 }, 0.0]);
+            self.claims(doubt + self.rocks_on());
             (self.at[0], self.at[7]) = (0.0, end);
-            self.claims(doubt);
         }
         self.made.path.slipping += self.at[7] - self.began;
         if !matches!(halt, Halt::Time | Halt::Pause) {
@@ -102,6 +109,15 @@ impl<const N: usize> BodyWalk<'_, N> {
         }
     }
 
+    /// The error of the time at which a falling face has landed, although it hardly cleared the table or hardly did not:
+    /// where what is left of its turning has the size of rounding errors, these decide whether it lands or goes on to
+    /// rock, a few times at most.
+    pub(super) fn rocks_on(&self) -> f64 {
+        let ([s, _, w1, w2], i1) = (core::array::from_fn(|i| self.at[i]), self.of.body.i1());
+        let barely = turning_share(i1, s, w1, w2) > LANDS_BARELY && w2 * w2 > FALLS_FAST * s;
+        if barely { ROCKINGS * w2.abs() * (1.0 + i1) } else { 0.0 }
+    }
+
     /// The time at which a slipping whirr ends, and its error, if they are known and no output is
     /// requested before.
     pub(super) fn whirr_ends(&mut self, at: &[f64; N]) -> Option<[f64; 2]> {
@@ -113,6 +129,7 @@ impl<const N: usize> BodyWalk<'_, N> {
 
     /// Ends the walk where the face lands, at a time with its error.
     pub(super) fn lies_flat(&mut self, [time, doubt]: [f64; 2]) {
+        self.claims(self.rocks_on());
         (self.at[0], self.at[7]) = (0.0, time);
         self.of.state = state(&self.at);
         self.claims(doubt);

@@ -16,6 +16,7 @@ use crate::laws::contact::impact::{Hit, RimImpact, Struck, lightness, turned};
 use crate::laws::contact::landing::{Landed, Outcome, bounced, land_at, settled};
 use crate::laws::contact::slip::Friction;
 use crate::laws::contact::{FLAT, Force, Table};
+use crate::laws::loss::{Couples, Kinematics};
 use crate::laws::newton;
 use crate::laws::state::State;
 use crate::motions::halt::TIME;
@@ -135,7 +136,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             self.pressed(&Aloft { w: turned(&shape, from.angle, from.w, struck.impulse), ..from });
         let left =
             if struck.lift > 0.0 && force > 0.0 { self.bounces_for(&from, &struck, force, e) } else { None };
-        self.claims(left.unwrap_or(0.0) * force * self.couples(&from));
+        self.claims(left.map_or(0.0, |left| left * self.couples(&from, force)));
         let (stays, bounce) = (left.is_some(), struck.lift);
         if stays && let Some(last) = self.impact(&from, 0.0) {
             struck = last;
@@ -175,10 +176,16 @@ impl<const N: usize> BodyWalk<'_, N> {
         RimImpact { slip, lift, light, tol: IMPACT_TOL * rougher, longer }
     }
 
-    /// A bound of the change by the losses in a unit of time, per unit of the normal force.
-    fn couples(&self, at: &Aloft) -> f64 {
+    /// A bound of the change by the losses in a unit of time, under a normal force. The couple of the air below a face
+    /// does not depend on that force.
+    fn couples(&self, at: &Aloft, force: f64) -> f64 {
         let (body, sum) = (&self.of.body, self.ask.losses.coefficients.iter().sum::<f64>());
-        sum * at.w.into_iter().fold(1.0, |most: f64, w| most.max(w.abs())) / body.i1().min(body.i3())
+        let Some(losses) = Couples::some(&self.ask.losses) else { return 0.0 };
+        let fastest = at.w.into_iter().fold(1.0, |most: f64, w| most.max(w.abs()));
+        let seen = Kinematics::of(&self.of.slide.law.shape.rim, at.angle, at.w[0] / at.angle.0, at.w);
+        let most =
+            losses.at(&seen).free.into_iter().fold(sum * fastest * force, |most: f64, m| most.max(m.abs()));
+        most / body.i1().min(body.i3())
     }
 
     /// The time of all bounces after an impact, if they are over so soon that they are summed.
@@ -346,11 +353,13 @@ impl<const N: usize> BodyWalk<'_, N> {
             self.of.takeoff.lift = 0.0;
             return self.lands_on_both();
         };
-        let doubt = if from.slip == [0.0; 2] { left } else { left * left * SUMMED };
+        // The last impacts turn a slip that is slower than they are.
+        let turns = if left > 0.0 { (left / from.slip[0].hypot(from.slip[1])).min(1.0) } else { 0.0 };
+        let doubt = (left * turns).max(left * left * SUMMED);
         self.claims(doubt);
         self.doubts(doubt);
         let from = self.aloft();
-        self.claims(left * LASTS * self.couples(&from));
+        self.claims(left * LASTS * self.couples(&from, 1.0));
         let (law, flat) = (self.of.slide.law, (1.0, 0.0));
         let state = State { theta: FRAC_PI_2, ..self.of.state };
         let (v, still) = (law.centre(from.angle, from.w, from.slip), law.centre(flat, from.w, [0.0; 2]));

@@ -1,14 +1,15 @@
 //! Flight against the air: the couple of the air on a body in the air, by steps.
 //!
 //! ```text
-//! y = (quaternion of the body's axes, w along them, height of the rim, cos theta, lost, time)
+//! y = (change of the quaternion q of the body's axes, w along them, lost, time)
 //! q' = q (0, w)/2,   I1 wx' = (I1 - I3) wy wz + mx,   I1 wy' = (I3 - I1) wx wz + my,   I3 wz' = mz
 //! z' = z x w         the vertical in the body's axes, for the power series at the start
 //! ```
 //! The centre moves along its parabola: drag on the centre is not modelled. Only the laws that resist all rotation act
-//! in the air; the others need a contact or a gap under the face. In these axes the poles are ordinary points. The
-//! height of a rim and cos theta are numbers of their own, since near zero their changes have more digits than they
-//! themselves. The landing is computed as in [`lands`](super::lands), step by step, with the initial K = (|l| + a)
+//! in the air; the others need a contact or a gap under the face. In these axes the poles are ordinary points, and no
+//! number changes fast near them: an integral of sin theta, which has a sharp bend there, would deceive the estimated
+//! error of a step. The height of a rim and cos theta follow from the changes of q since the start, of which small ones
+//! have all their digits. The landing is computed as in [`lands`](super::lands), step by step, with the initial K = (|l| + a)
 //! (|L|^2/I1^2 + |m|/I1) - 1, since w3 and the size of w across the axis only fall. Where a rim touches at the start,
 //! the couple of the air belongs to the leading terms of its height, so that the power series there includes it. Error:
 //! the tolerance of the steps.
@@ -23,8 +24,9 @@ use crate::numbers::tape::{Tape, Taped};
 use crate::numbers::{Real, TERMS};
 use core::f64::consts::{FRAC_PI_2, TAU};
 
-const NUMBERS: usize = 11;
-const AIR_TIME: usize = 10;
+const NUMBERS: usize = 9;
+const AIR_LOST: usize = 7;
+const AIR_TIME: usize = 8;
 type AirNumbers = [f64; NUMBERS];
 /// Length of the first step, in units of the time in which the body turns by one radian.
 const FIRST_STEP: f64 = 0.05;
@@ -38,8 +40,11 @@ const AIR_SHARE: f64 = 0.25;
 const LAST_SHARE: f64 = 1e-17;
 /// Error of the height within a step, in tolerances.
 const STEP_NOISE: f64 = 100.0;
-/// Below this size the cosine of theta is the integrated one.
-const COSINE_KNOWN: f64 = 0.5;
+/// Angle of phi in a part of a step, and length of a part in units of the first step, below which a part is not divided.
+const FAR_TURN: f64 = 1.0;
+const SHORT_PART: f64 = 1e-9;
+/// Below this size of the cosine of theta its sine follows from it.
+const LEVEL_COSINE: f64 = 0.5;
 
 /// The time of the first landing, and whether it is that of the other rim.
 type FirstLanding = Option<(f64, bool)>;
@@ -55,6 +60,8 @@ struct AirStep {
 pub(crate) struct AirFlight {
     shape: Shape<f64>,
     from: Aloft,
+    /// The quaternion at the start.
+    facing: [f64; 4],
     /// The flight without the air, which has the parabola of the centre.
     free: Flight,
     losses: Couples<f64>,
@@ -71,6 +78,12 @@ pub(crate) fn in_air(losses: &Losses) -> Option<Couples<f64>> {
         left.coefficients[law as usize] = 0.0;
     }
     Couples::some(&left)
+}
+
+/// The axis of the body in the laboratory, and its change since the start.
+struct Leaning {
+    axis: [f64; 3],
+    change: [f64; 3],
 }
 
 /// The axes of the body in the laboratory, as the columns of the rotation.
@@ -91,14 +104,15 @@ impl AirFlight {
         let half = 0.5 * from.angle.0.atan2(from.angle.1);
         let (sin, cos) = if half < FRAC_PI_2 { half.sin_cos() } else { (1.0, 0.0) };
         let [w1, w2, w3] = from.w;
-        let y = [cos, 0.0, -sin, 0.0, w1, w2, w3, from.height, from.angle.1, 0.0, 0.0];
+        let y = [0.0, 0.0, 0.0, 0.0, w1, w2, w3, 0.0, 0.0];
         let steps = vec![AirStep { y, angles: [0.0; 2] }];
         let fastest = w1.abs().max(w2.abs()).max(w3.abs());
         let (first, spent) = (
             longer * FIRST_STEP / (1.0 + fastest),
             Spent { evaluations: 0, erred: 0.0, patience: 0, exhausted: None },
         );
-        Self { shape: *shape, from: *from, free, losses, steps, tol, first, spent }
+        let facing = [cos, 0.0, -sin, 0.0];
+        Self { shape: *shape, from: *from, facing, free, losses, steps, tol, first, spent }
     }
 
     /// The couple of the air along the axes of the body.
@@ -106,16 +120,15 @@ impl AirFlight {
         self.losses.at(&Kinematics::of(&self.shape.rim, (1.0, 0.0), w[0], w)).free
     }
 
+    /// The quaternion of the body's axes.
+    fn quaternion(&self, y: &AirNumbers) -> [f64; 4] {
+        core::array::from_fn(|i| self.facing[i] + y[i])
+    }
+
     fn rates(&self, y: &AirNumbers) -> AirNumbers {
-        let (Shape { rim, i1, i3 }, [a, b, c, d]) = (self.shape, [y[0], y[1], y[2], y[3]]);
+        let (Shape { i1, i3, .. }, [a, b, c, d]) = (self.shape, self.quaternion(y));
         let [x, z, w] = [y[4], y[5], y[6]];
         let [m1, m2, m3] = self.couple([x, z, w]);
-        let [first, second, axis] = axes([a, b, c, d]);
-        // The third component of w x e3.
-        let cosine = z * first[2] - x * second[2];
-        let (sin, cos) = (axis[0].hypot(axis[1]), axis[2]);
-        let sine = if sin > 0.0 { -(cos * cosine / sin) } else { 0.0 };
-        let [.., up] = self.free.velocity;
         [
             -0.5 * (b * x + c * z + d * w),
             0.5 * (a * x + c * w - d * z),
@@ -124,10 +137,39 @@ impl AirFlight {
             ((i1 - i3) * z * w + m1) / i1,
             ((i3 - i1) * x * w + m2) / i1,
             m3 / i3,
-            up - y[AIR_TIME] - rim.slope((sine, cosine)),
-            cosine,
             -(m1 * x + m2 * z + m3 * w),
             1.0,
+        ]
+    }
+
+    fn leans(&self, y: &AirNumbers) -> Leaning {
+        let ((s, c), [a0, b0, c0, d0], [da, db, dc, dd]) =
+            (self.from.angle, self.facing, [y[0], y[1], y[2], y[3]]);
+        let [a, b, c1, d] = self.quaternion(y);
+        let change = [
+            2.0 * (db * d + b0 * dd + da * c1 + a0 * dc),
+            2.0 * (dc * d + c0 * dd - da * b - a0 * db),
+            (a + a0) * da - (b + b0) * db - (c1 + c0) * dc + (d + d0) * dd,
+        ];
+        Leaning { axis: [change[0] - s, change[1], c + change[2]], change }
+    }
+
+    /// The height of the lowest point of a rim, and its rate.
+    fn rim(&self, y: &AirNumbers, side: f64) -> [f64; 2] {
+        let (rim, Leaning { axis, change }, s0, t) =
+            (self.shape.rim, self.leans(y), self.from.angle.0, y[AIR_TIME]);
+        let [first, second, _] = axes(self.quaternion(y));
+        let s = axis[0].hypot(axis[1]);
+        // The third component of w x e3.
+        let cosine_rate = y[5] * first[2] - y[4] * second[2];
+        let sine_rate = if s > 0.0 { -(axis[2] * cosine_rate / s) } else { 0.0 };
+        let sine =
+            if s + s0 > 0.0 { ((axis[0] - s0) * change[0] + axis[1] * change[1]) / (s + s0) } else { 0.0 };
+        let begin = self.from.height + if side > 0.0 { 0.0 } else { rim.between(self.from.angle) };
+        let [.., up] = self.free.velocity;
+        [
+            begin + t * (up - 0.5 * t) - rim.slope((sine, side * change[2])),
+            up - t - rim.slope((sine_rate, side * cosine_rate)),
         ]
     }
 
@@ -137,13 +179,15 @@ impl AirFlight {
         let mut stages = [rate; rk8::STAGES];
         let rates = |y: &AirNumbers, to: &mut AirNumbers| *to = self.rates(y);
         let made = rk8::step::<true, _, _>(rates, &step.y, &rate, h, &mut stages);
-        let per = |i: usize| 1.0 / (self.tol * if i < 4 { 1.0 } else { step.y[i].abs().max(1.0) });
+        // The height of a rim changes by at most this much with a number of q.
+        let reach = 2.0 * (self.shape.rim.ell.abs() + 1.0);
+        let per = |i: usize| if i < 4 { reach } else { 1.0 / step.y[i].abs().max(1.0) } / self.tol;
         (core::array::from_fn(|i| step.y[i] + made.change[i]), made.error(per, NUMBERS as f64))
     }
 
     /// phi and psi since the start, from the numbers, within half a turn of those before.
     fn angles(&self, y: &AirNumbers, [phi, psi]: [f64; 2]) -> [f64; 2] {
-        let [first, _, axis] = axes([y[0], y[1], y[2], y[3]]);
+        let [first, _, axis] = axes(self.quaternion(y));
         let turned = (-axis[1]).atan2(-axis[0]);
         let phi = turned + TAU * ((phi - turned) / TAU).round();
         let (sin, cos) = phi.sin_cos();
@@ -152,6 +196,18 @@ impl AirFlight {
         let along = first[0] * axis[2] * cos + first[1] * axis[2] * sin + first[2] * axis[0].hypot(axis[1]);
         let spun = across.atan2(along);
         [phi, spun + TAU * ((psi - spun) / TAU).round()]
+    }
+
+    /// phi and psi at `y`, at the end of the part [from, to] of a step. Close to a pole phi turns by up to half a turn
+    /// in a moment, so that parts in which it turns far are divided.
+    fn turned(&self, step: &AirStep, [from, to]: [f64; 2], before: [f64; 2], y: &AirNumbers) -> [f64; 2] {
+        let angles = self.angles(y, before);
+        let middle = 0.5 * (from + to);
+        if (angles[0] - before[0]).abs() < FAR_TURN || middle - from <= SHORT_PART * self.first {
+            return angles;
+        }
+        let half = self.part(step, middle).0;
+        self.turned(step, [middle, to], self.turned(step, [from, middle], before, &half), y)
     }
 }
 
@@ -263,11 +319,8 @@ impl Flies for AirFlight {
                 if low >= high {
                     continue;
                 }
-                let of = |x: f64| {
-                    let y = self.part(&step, x).0;
-                    let (rate, apart) = (self.rates(&y), if i == 1 { 2.0 * rim.ell } else { 0.0 });
-                    [y[7] + apart * y[8], rate[7] + apart * rate[8]]
-                };
+                let side = if i == 1 { -1.0 } else { 1.0 };
+                let of = |x: f64| self.rim(&self.part(&step, x).0, side);
                 let noise = STEP_NOISE * self.tol;
                 let mut falling = Falling { of, bend, touch: TOUCH, noise };
                 if let Some(x) = falling.first_zero(low, high)?
@@ -280,7 +333,7 @@ impl Flies for AirFlight {
             if let Some((x, other)) = first {
                 return Ok(Some((now + x, other)));
             }
-            let angles = self.angles(&y, step.angles);
+            let angles = self.turned(&step, [0.0, h], step.angles, &y);
             self.steps.push(AirStep { y, angles });
             h *= rk8::growth(error);
         }
@@ -293,18 +346,19 @@ impl Flies for AirFlight {
         }
         let k = self.steps.partition_point(|step| step.y[AIR_TIME] <= t).max(1) - 1;
         let step = &self.steps[k];
-        let y = if t > step.y[AIR_TIME] { self.part(step, t - step.y[AIR_TIME]).0 } else { step.y };
-        let [phi, psi] = self.angles(&y, step.angles);
-        let [.., axis] = axes([y[0], y[1], y[2], y[3]]);
+        let part = (t - step.y[AIR_TIME]).max(0.0);
+        let y = if part > 0.0 { self.part(step, part).0 } else { step.y };
+        let [phi, psi] = self.turned(step, [0.0, part], step.angles, &y);
         let (sin, cos) = psi.sin_cos();
         let w = [y[4] * cos - y[5] * sin, y[4] * sin + y[5] * cos, y[6]];
-        let cosine = y[8];
-        let angle = if cosine.abs() < COSINE_KNOWN {
-            (((1.0 - cosine) * (1.0 + cosine)).sqrt(), cosine)
+        let [x, across, cosine] = self.leans(&y).axis;
+        let sine = if cosine.abs() < LEVEL_COSINE {
+            ((1.0 - cosine) * (1.0 + cosine)).sqrt()
         } else {
-            (axis[0].hypot(axis[1]), axis[2])
+            x.hypot(across)
         };
-        (Aloft { height: y[7], ..self.free.placed(t, angle, w, [phi, psi]) }, y[9])
+        let [height, _] = self.rim(&y, 1.0);
+        (Aloft { height, ..self.free.placed(t, (sine, cosine), w, [phi, psi]) }, y[AIR_LOST])
     }
 
     fn free(&self) -> &Flight {
