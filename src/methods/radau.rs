@@ -4,7 +4,7 @@
 //! ```text
 //! Z_i = h sum a_ij f(y + Z_j),   y(t + h) = y + Z_5                          five stages, at the nodes c_i
 //! (1 - (h/g_k) J) dW_k = (T^-1 (h A f - Z))_k,   dZ = T dW                   Newton's iteration, A^-1 = T diag(g) T^-1
-//! error = 3e-6 x^2 |(d5, x d4)|,   x^2 = 0.8 |d5|/|d3|                          d_n: divided differences of y of order n
+//! error = 1.5e-4 x^4 |(d5, x d4)|,   x^2 = 0.8 |d5|/|d3|                        d_n: divided differences of y of order n
 //! ```
 //! The method is stable for any h (Hairer and Wanner, Solving Ordinary Differential Equations II (1996), IV.5 and
 //! IV.8). Only the first M of the N numbers affect each other; the others are integrals. J is that of a point within
@@ -78,8 +78,11 @@ const SPREAD_3: [f64; RADAU_STAGES] = [0.0, -7.727201094286656, 28.2988101038869
 const ITERATIONS: usize = 14;
 /// The number of iterations after which their convergence is judged.
 const TRIALS: usize = 4;
-/// The factor of the error, which is about right for a radian of an oscillation.
-const MISSED: f64 = 3e-6;
+/// The factor of the error: that of an oscillation is known within a factor of ten from 0.2 rad in a step on, however long
+/// the step.
+const MISSED: f64 = 1.5e-4;
+/// Largest x^2, which is 0.04 for a radian of an oscillation. Even in a step of 24 rad it is below this.
+const WIDEST: f64 = 10.0;
 /// Largest share by which the numbers still change in an iteration that rounding prevents from converging.
 const STALLED: f64 = 1e-6;
 
@@ -205,11 +208,11 @@ where
     let size = |weights: &[f64; RADAU_STAGES]| {
         (0..M).map(|n| difference(weights, n) / sizes[n]).fold(f64::MIN_POSITIVE, f64::hypot)
     };
-    let square = (0.8 * size(&SPREAD_5) / size(&SPREAD_3)).min(1.0);
-    let share = if unknown < STALLED { MISSED * square } else { f64::NAN };
+    let square = (0.8 * size(&SPREAD_5) / size(&SPREAD_3)).min(WIDEST);
+    let share = if unknown < STALLED { MISSED * square * square } else { f64::NAN };
     let fifth = core::array::from_fn(|n| {
         let unknown = moves.iter().fold(0.0, |most: f64, moves| most.max(moves[n].abs())) * more;
-        let spread = difference(&SPREAD_5, n).hypot(square.sqrt() * difference(&SPREAD_4, n));
+        let spread = difference(&SPREAD_5, n).hypot(square.min(1.0).sqrt() * difference(&SPREAD_4, n));
         share * spread + unknown
     });
     (Step { change: all.moved[RADAU_STAGES - 1], fifth, third: [0.0; N] }, all)
@@ -279,7 +282,7 @@ mod tests {
     fn the_error_of_a_step_is_known_within_a_factor() {
         let f = |y: &[f64; 2], all: &mut [f64; 2]| *all = [-y[1], y[0]];
         let slopes = SMatrix::<f64, 2, 2>::new(0.0, -1.0, 1.0, 0.0);
-        for h in [0.3, 0.5, 0.8, 1.2] {
+        for h in [0.3, 0.5, 0.8, 1.2, 2.0, 4.0, 8.0, 24.0] {
             for turn in 0..8 {
                 let (s, c) = (0.7 * f64::from(turn)).sin_cos();
                 let (made, _) = step(f, &[c, s], &slopes, &[1.0; 2], (h, 1e-16), None);
@@ -287,7 +290,7 @@ mod tests {
                 let off = (made.change[0] - (near - c)).hypot(made.change[1] - (far - s));
                 let said = made.fifth[0].hypot(made.fifth[1]);
                 assert!(
-                    off < 3.0 * said + 1e-15 && said < 1e3 * off + 1e-13,
+                    off < 8.0 * said + 1e-15 && said < 8.0 * off + 1e-13,
                     "{h}, {turn}: {off:e} {said:e}"
                 );
             }

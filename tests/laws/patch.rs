@@ -6,7 +6,7 @@ use spincyl::contact::slip::{Friction, derivative};
 use spincyl::contact::{Table, patch};
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::path::Kind;
-use spincyl::motion::{Ask, Ending, Motion, Start, roll_with};
+use spincyl::motion::{Ask, Ending, Method, Motion, Start, roll_with};
 use spincyl::turning::{jellett_rising_spin, jellett_spin, rising_spin, turning_spin};
 use spincyl::{Body, State, steady};
 use std::f64::consts::PI;
@@ -200,6 +200,22 @@ fn a_coin_whirrs_to_its_face_in_one_phase_with_few_steps() {
         assert_eq!((event.ending, m.path.as_ref().unwrap().phases.len()), (Ending::Face, 1));
         assert!((event.time - lands).abs() < 2e-8 && m.error < 1e-6, "{} with {}", event.time, m.error);
         assert!(m.evaluations < most, "{}", m.evaluations);
+    }
+}
+
+#[test]
+fn the_landing_of_a_coin_is_known_within_its_claim_at_any_tolerance() {
+    // The coin nods, also where its creep would allow steps of many nods. The time is that of explicit steps.
+    for (tol, most) in [(1e-6, 60_000), (1e-8, 120_000), (1e-10, 240_000)] {
+        let coin = Body::solid(2.2 / 25.75).unwrap();
+        let losses = Losses::of(Law::RollingResistance, 3e-3);
+        let ask = Ask::on(on(0.3, 0.4 / 25.75)).with_losses(losses).with_method(Method::Tolerance(tol));
+        let m =
+            roll_with(&coin, steady::state(&coin, 0.5).unwrap(), &[2000.0], &ask, || true).unwrap().unwrap();
+        let off = (m.event.unwrap().time - 301.431_911_184).abs();
+        println!("coin {tol:e}: {off:e} of {:e} {}", m.error, m.evaluations);
+        assert!(off <= m.error + 2e-7, "{tol:e}: {off:e} of {:e}", m.error);
+        assert!(m.evaluations < most, "{tol:e}: {}", m.evaluations);
     }
 }
 
