@@ -4,6 +4,7 @@ use super::check;
 use super::flight::Takeoff;
 use super::lossy::{LossyFlow, with_patch};
 use super::lying::flow::LyingPhase;
+use super::rocks::Rockings;
 use super::slide::Slide;
 use super::slow::{BodySlips, Slippery};
 use super::tail::LastTurns;
@@ -61,6 +62,8 @@ pub(crate) struct BodyPhases {
     pub(super) energy: Option<f64>,
     /// Whether only theta changes, so that rounding must not make the body turn.
     pub(super) planar: bool,
+    /// The rockings of a body that goes from rim to rim.
+    pub(super) rockings: Rockings,
     /// Estimates of the end of a slipping whirr; None if the losses do not let a whirr last for infinitely many turns.
     pub(super) tail: Option<LastTurns>,
 }
@@ -104,6 +107,7 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
             struck: 0.0,
             energy: None,
             planar: start.w1 == 0.0 && start.w3 == 0.0 && slip[1] == 0.0,
+            rockings: Rockings::default(),
             tail: (!body.is_ball() && ask.losses.turn_endlessly()).then(LastTurns::default),
         };
         let mut walk = Self::new(of, at, ask, fine, (time, times))?;
