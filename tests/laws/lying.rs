@@ -304,6 +304,115 @@ fn a_short_cylinder_rocks_from_rim_to_rim_for_the_time_of_housners_block() {
     }
 }
 
+/// The time in which a thin solid cylinder, let go at the tilt `tilt` from its side, comes to rest by Housner's law, and
+/// the number of its landings until its speed is 1e-9: the hops of a block about its two rims, which stick, one by one.
+fn rocked(ell: f64, tilt: f64) -> (f64, usize) {
+    // A hop from level with w2 = w; the height over level is cos d + ell sin d - 1 = ell sin d - 2 sin^2(d/2).
+    let whole = 0.25 + ell * ell / 3.0 + 1.0 + ell * ell;
+    let height = |d: f64| ell * d.sin() - 2.0 * (0.5 * d).sin().powi(2);
+    let rises = |w: f64| {
+        let energy = 0.5 * whole * w * w;
+        let mut top = energy / ell;
+        for _ in 0..60 {
+            top -= (height(top) - energy) / (ell * top.cos() - top.sin());
+        }
+        // dt = dd/sqrt(2 (height(top) - height(d))/J) with d = top (1 - s^2), by Simpson's rule
+        let rate = |s: f64| {
+            let (mean, half) = (top * (1.0 - 0.5 * s * s), 0.5 * top * s * s);
+            let sine = if s == 0.0 { 0.5 * top } else { half.sin() / (s * s) };
+            2.0 * top / (4.0 * sine * (ell * mean.cos() - mean.sin()) / whole).sqrt()
+        };
+        let n = 40;
+        let weight = |i: usize| if i == 0 || i == n { 1.0 } else { 2.0 + 2.0 * (i % 2) as f64 };
+        (0..=n).map(|i| weight(i) * rate(i as f64 / n as f64)).sum::<f64>() / (3.0 * n as f64)
+    };
+    let keeps = (whole - 2.0 * ell * ell) / whole;
+    let mut w = (2.0 * height(tilt) / whole).sqrt();
+    let (mut time, mut hops) = (rises(w), 0);
+    while w > 1e-9 {
+        w *= keeps;
+        time += 2.0 * rises(w);
+        hops += 1;
+    }
+    (time + 2.0 * w * keeps * whole / (ell * (1.0 - keeps)), hops)
+}
+
+#[test]
+fn a_thin_coin_that_rocks_thousands_of_times_comes_to_rest_when_housners_block_does() {
+    for ell in [0.1, 0.05] {
+        let body = Body::solid(ell).unwrap();
+        let start = State { theta: FRAC_PI_2 - 0.5 * ell, w1: 0.0, w2: 0.0, w3: 0.0 };
+        let m = moved(&body, start.into(), 1.0, &[1e5]);
+        let (path, (time, hops)) = (m.path.as_ref().unwrap(), rocked(ell, 0.5 * ell));
+        let rest = path.phases.last().unwrap();
+        assert_eq!(rest.kind, Kind::RollingOnItsSide);
+        let late = (rest.time - time).abs();
+        assert!(late < m.error && m.error < 1e-9, "{ell}: {late:e}, claims {:e}", m.error);
+        // The hops of low energy are not computed one by one, and the energy of all of them is lost.
+        assert!(3 * path.impacts.len() < hops, "{ell}: {} landings of {hops}", path.impacts.len());
+        let lost: f64 = path.impacts.iter().map(|impact| impact.lost).sum();
+        assert!((path.heat + lost - energy(&body, &start, [0.0; 2]) + 1.0).abs() < 1e-12);
+        // An output during the last hops is computed, and changes nothing.
+        let also = moved(&body, start.into(), 1.0, &[time - 1e-3, 1e5]);
+        assert!(also.path.as_ref().unwrap().impacts.len() > 2 * path.impacts.len());
+        let again = also.path.as_ref().unwrap().phases.last().unwrap().time;
+        assert!((again - rest.time).abs() < m.error + also.error, "{again} {}", rest.time);
+    }
+}
+
+#[test]
+fn a_coin_that_rocks_and_bounces_comes_to_rest_after_its_last_rockings_computed_or_not() {
+    let body = Body::solid(0.2).unwrap();
+    let start = State { theta: FRAC_PI_2 - 0.1, w1: 0.0, w2: 0.0, w3: 0.0 };
+    let ask = ask(Friction::coulomb(1.0), Losses::NONE).with_restitution(0.5);
+    let of = |times: &[f64]| roll_with(&body, start, times, &ask, || true).unwrap().unwrap();
+    let m = of(&[1e4]);
+    let rest = settles(&m);
+    let also = of(&[rest - 1e-3, 1e4]);
+    let count = |m: &Motion| m.path.as_ref().unwrap().impacts.len();
+    assert!(count(&m) < count(&also), "{} {}", count(&m), count(&also));
+    let apart = (settles(&also) - rest).abs();
+    assert!(apart < m.error + also.error && m.error < 1e-7, "{apart:e} {:e} {:e}", m.error, also.error);
+}
+
+#[test]
+fn a_short_tube_whose_rim_comes_to_rest_through_rockings_pivots_about_it() {
+    // mu > 2 ell: one rim rises before the slip of the other one ends, and they rock, lower and lower, within 1e-5.
+    let body = Body::rounded_tube(0.374_840_700_051_780_9, 0.393_342_700_893_249_74, 0.364_701_296_500_763_44);
+    let body = body.unwrap();
+    let start = State { theta: FRAC_PI_2, w1: 0.3, w2: 0.0, w3: 0.0 };
+    let m = moved(&body, start.into(), 0.1, &[1.0, 100.0]);
+    let path = m.path.as_ref().unwrap();
+    let pivot = path.phases.iter().find(|phase| phase.kind == Kind::Pivoting).unwrap();
+    assert!((pivot.time - 0.231_78).abs() < 2e-5, "{}", pivot.time);
+    assert_eq!((m.ending(), path.phases.last().unwrap().kind), (Ending::Done, Kind::RollingOnItsSide));
+    assert!(path.impacts.len() < 1_000 && m.evaluations < 100_000, "{} {}", path.impacts.len(), m.evaluations);
+    // The rim that rests stays where it is until w1 = 0, under w1' of shared friction.
+    let (i1, i3, ell, mu) = (body.i1(), body.i3(), body.ell(), 0.1);
+    let (a, b) = (1.0 + 1.0 / i3 + ell * ell / i1, 1.0 + 1.0 / i3 - ell * ell / i1);
+    let (mut w1, mut w3, mut time) = (pivot.state.w1.abs(), pivot.state.w3, pivot.time);
+    // Seen from the rim at rest.
+    w3 = if pivot.slip[1].abs() > 1e-6 { -w3 } else { w3 };
+    let step = 1e-3;
+    let rates = |w1: f64, w3: f64| {
+        let up = 0.5 * (ell - w1 * ((1.0 + i3) * w3 - ell * w1)) / ell;
+        let (over, here) = (mu * up, -b / a * mu * up);
+        ((ell * here - ell * over) / i1, -(here + over) / i3)
+    };
+    while w1 > 0.0 {
+        let (x, y) = rates(w1, w3);
+        let (x, y) = rates(w1 + 0.5 * step * x, w3 + 0.5 * step * y);
+        let whole = (-w1 / x).min(step);
+        (w1, w3, time) = (w1 + whole * x, w3 + whole * y, time + whole);
+        if whole < step {
+            break;
+        }
+    }
+    // w1 falls by 3.4e-3 in a unit of time, so that 1e-8 of it is 3e-6 of the time.
+    assert!((settles(&m) - time).abs() < 3e-5, "{} {time}", settles(&m));
+    assert!(m.error < 1e-6, "{:e}", m.error);
+}
+
 #[test]
 fn rolling_straight_with_losses_stops_after_the_time_of_its_dry_couple_or_fades_in_air() {
     let body = Body::solid(1.0).unwrap();
