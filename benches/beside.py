@@ -20,6 +20,7 @@ import sys
 import tempfile
 import time
 import warnings
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -32,6 +33,8 @@ FAMILY = 20
 
 def cases():
     """{name: (job, number of its motions or points)}."""
+    from drawn_kinds import KINDS, at_once, drawn
+
     import spincyl as sc  # the build in PYTHONPATH
     from spincyl import loss, sweep
 
@@ -48,6 +51,10 @@ def cases():
     whirl = sc.State(0.15, 1.2 + 0.1 * rng.random(count), np.zeros(count), 0.1 * rng.random(count))
     slips = sc.State(theta, w[0], w[1], w[2], slip=(rng.normal(size=count), rng.normal(size=count)))
     rounded = sc.Body.solid(rng.uniform(0.3, 2.0, count), fillet=0.3)
+
+    def alone(scenes, until):
+        for scene in scenes:
+            sc.roll(scene.body, scene.state, [0.0, until], tol=1e-8, **scene.how)
 
     def many(body, y, contact="rolling", **how):
         return lambda: sweep.roll(body, y, 10.0, contact=contact, **how), count
@@ -84,11 +91,20 @@ def cases():
     stone = sc.Ellipsoid.rattleback((1.0, 0.15, 0.1), twist=np.radians(2.0))
     stones = sc.Ellipsoid.rattleback((1.0, 0.15, 0.1), twist=np.radians(np.linspace(0.5, 3.0, 64)))
 
+    kinds = {}
+    for kind in KINDS:
+        scenes = [drawn(kind, k, 5, turn=1)[0] for k in range(32)]  # without losses, e = 0.5
+        body, state, how = at_once(scenes)
+        until = float(scenes[0].times[-1]) / 6
+        kinds[f"{kind}: many"] = (partial(sweep.roll, body, state, until, tol=1e-8, **how), len(scenes))
+        kinds[f"{kind}: one"] = (partial(alone, scenes[:8], until), 8)
+
     grid = np.linspace(0.01, 1.5, 1000)
     ells = np.linspace(0.05, 3.0, 100)
     return {
         **all_swings,
         **stepped,
+        **kinds,
         "one: stone": one(stone, stone.spinning(-0.6, pitch=0.02)),
         "many: stones": (lambda: sweep.roll(stones, stones.spinning(-0.6, pitch=0.02), 10.0), 64),
         "many: near a steady state": many(tube, near),

@@ -6,7 +6,8 @@ from letters import letters
 from scipy.spatial.transform import Rotation
 
 import spincyl as sc
-from spincyl._studio.shape import parts, rotations
+from spincyl._studio import exposure
+from spincyl._studio.shape import marks, parts, rotations
 
 PIPE = sc.Body.tube(6.0, bore=0.8)  # the paper's PVC tube
 
@@ -183,3 +184,30 @@ def test_the_photograph_is_drawn_in_units_of_the_radius():
     ax = sc.plot.exposure(turning(PIPE, np.radians(89.5)), width=14.0)
     assert ax.get_images()[0].get_extent() == [-7.0, 7.0, -7.0, 7.0]
     plt.close("all")
+
+
+def test_an_open_shutter_needs_only_the_light_by_which_it_differs_from_before(monkeypatch):
+    m, asked = turning(PIPE, np.radians(89.5), turns=3.0), []
+    seen = exposure.seen
+    monkeypatch.setattr(
+        exposure, "seen", lambda m, t, *names: (asked.append(np.size(t)), seen(m, t, *names))[1]
+    )
+    ink, turn = [[part] for part in marks(PIPE)], m._asked.times[-1] / 3
+    how = ink, 0.06, (220, 220), 4e5, np.zeros(2)
+    shutter = exposure.Shutter(m, *how)
+    for t in np.linspace(0.02, 2.5, 125):
+        light = shutter.light(max(t - 1.0, 0.0) * turn, t * turn)
+    fresh = exposure.Shutter(m, *how)
+    one = fresh.light(1.5 * turn, 2.5 * turn)
+    assert light.min() > -1e-12 * light.max(), "what was added is taken away"
+    # less than nine whole pictures for 125: one while the shutter opens, and as long as it opens twice, ...
+    assert sum(asked[:-1]) < 9 * asked[-1] and len(asked) == 126
+    for sliding, whole in zip(light, one, strict=True):
+        assert sliding.sum() == pytest.approx(whole.sum(), rel=5e-3)
+        blocks = [x.reshape(22, 10, 22, 10).sum((1, 3)) for x in (sliding, whole)]
+        assert np.abs(np.subtract(*blocks)).max() < 0.05 * blocks[1].max()
+    # to an earlier time, to one far away, and back
+    for first, last in ((1.2, 2.2), (0.0, 0.1), (1.5, 2.5)):
+        light = shutter.light(first * turn, last * turn)
+        whole = exposure.Shutter(m, *how).light(first * turn, last * turn)
+        assert light.sum() == pytest.approx(whole.sum(), rel=5e-3)

@@ -15,6 +15,7 @@ import spincyl as sc
 from spincyl._pages.recorded import edges
 from spincyl._studio.film import reel
 from spincyl._studio.frames import _Stage, frames
+from spincyl._studio.painted import turned
 from spincyl._studio.shadow import LAMPS, caster, lamps, shadows
 from spincyl._studio.shape import lathe, marks, parts, profiles, rotations
 
@@ -198,6 +199,55 @@ def test_the_shadows_of_a_cylinder_are_as_large_as_its_faces_and_its_side_seen_f
             for x, y in (line[:, :2].T for line in lines)
         )
         assert area == pytest.approx(np.pi * abs(along) + 4 * ell * across, rel=2e-3)
+
+
+@pytest.mark.parametrize("body", [sc.Body.solid(1.0, fillet=0.4), sc.Body.balls(), sc.Body.tube(6.0, 0.8)])
+@pytest.mark.parametrize("off", [1e-2, 5e-4])
+def test_a_drawn_surface_has_few_triangles_which_are_as_close_to_the_true_one_as_they_have_to_be(body, off):
+    for profile, part in zip(profiles(body), turned(body, off), strict=True):
+        whole = lathe(profile)
+        assert len(part.triangles) <= len(whole.triangles)
+        # the middles of edges are farthest inside; places and normals of the whole surface are known on its rings
+        edges = (
+            part.vertices[part.triangles][:, [0, 1, 2], :] + part.vertices[part.triangles][:, [1, 2, 0], :]
+        )
+        middle = (
+            np.column_stack([np.hypot(edges[:, :, 0], edges[:, :, 1]).ravel(), edges[:, :, 2].ravel()]) / 2
+        )
+        line = np.array(profile.corners)
+        begin, along = line[:-1], np.diff(line, axis=0)
+        share = ((middle[:, None] - begin) * along).sum(-1) / np.maximum((along**2).sum(-1), 1e-300)
+        near = begin + np.clip(share, 0, 1)[..., None] * along
+        away = np.linalg.norm(middle[:, None] - near, axis=-1).min(axis=1)
+        assert away.max() <= 2 * off + 4e-4
+    count = [
+        sum(len(part.triangles) for part in surface) for surface in (turned(body, off), parts(body)[:-2])
+    ]
+    assert count[0] < (0.3 if off > 1e-3 else 1.0) * count[1] + 1
+
+
+def test_a_shadow_has_one_outline_for_each_closed_piece_of_surface():
+    for body, most in ((sc.Body.solid(1.0, fillet=0.4), 3), (sc.Body.ball(0.0, 0.4, 0.4), 1), (sc.Body.solid(1.0), 4)):
+        of = caster(turned(body, 2e-3))
+        for lines in shadows(of, np.eye(3), np.array([0.0, 0.0, 2.0]), lamps(LAMPS)):
+            assert 1 <= len(lines) <= most and sum(map(len, lines)) > 30
+
+
+def test_only_where_there_are_triangles_is_the_picture_drawn_finely(monkeypatch):
+    from matplotlib.backends import backend_agg
+
+    made, agg = [], backend_agg.RendererAgg
+
+    def renderer(width, height, dpi):
+        made.append((width, height, dpi))
+        return agg(width, height, dpi)
+
+    monkeypatch.setattr(backend_agg, "RendererAgg", renderer)
+    (picture,) = frames(taken(motion_of("nutating"), size=(640, 360)), np.array([0]))
+    coarse = [x for x in made if x[2] == 100]
+    fine = [x for x in made if x[2] == 200]
+    assert {x[:2] for x in coarse} == {(640, 360)} and len(fine) == 1
+    assert 0 < fine[0][0] * fine[0][1] < 0.35 * 4 * 640 * 360
 
 
 def test_a_shadow_is_hard_at_the_contact_and_soft_far_from_the_body():

@@ -11,6 +11,7 @@ import spincyl as sc
 
 sys.path.append(str(Path(__file__).parents[1] / "benches"))
 from drawn_answers import ANSWERS
+from drawn_kinds import KINDS, at_once, drawn
 from drawn_motions import MOTIONS
 from invariants import Found, balance, beside, endings, judged, lowest, mirrored
 from random_scenes import NAMED, generator, one, word_of
@@ -102,3 +103,20 @@ def test_refusals_are_told_without_their_numbers():
     assert word_of(ValueError("mu = 2.5: no force at theta = 0.1")) == "mu = #: no force at theta = #"
     assert NAMED.match("theta = 0.1: why") and NAMED.match("t: why") and not NAMED.match("high - low < 0")
     assert one(64, "hops, AirFilm", 0)[0] == 0
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_motions_of_a_kind_are_the_same_alone_and_at_once(kind):
+    scenes = [drawn(kind, k, 3, turn=1)[0] for k in range(4)]
+    body, state, how = at_once(scenes)
+    names = ("n1", "n2", "n3") if kind == "stones" else ("theta",)
+    names += ("w1", "w2", "w3")
+    many = sc.sweep.roll(body, state, 0.5, want="final", tol=1e-8, **how)
+    for k, scene in enumerate(scenes):
+        one = sc.roll(scene.body, scene.state, 0.5, tol=1e-8, **scene.how)
+        assert one.status == int(many["status"][k])
+        if one.event is None:
+            first = one.vertical[-1] if kind == "stones" else one.theta[-1:]
+            theirs = [float(many[name][k]) for name in names]
+            apart = np.abs(np.concatenate([first, one.w[-1]]) - theirs).max()
+            assert apart <= one.error + float(many["error"][k])

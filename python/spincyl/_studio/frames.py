@@ -16,6 +16,7 @@ from spincyl._motion import Motion
 from spincyl._phases import rubs
 from spincyl._studio.aloft import goes_up
 from spincyl._studio.arrows import Tip, drawings
+from spincyl._studio.artists import photo_of, surface_of
 from spincyl._studio.exposure import Shutter
 from spincyl._studio.look import Camera, Look, camera, held, opened
 from spincyl._studio.painted import Painted, Piece, ordered, painted, pieces, turned
@@ -25,7 +26,6 @@ from spincyl._studio.shape import Letter, size
 from spincyl._studio.shown import Shown, shown
 
 _MOST = 20_000  # frames
-_FINE = 2  # pixels of Agg for one pixel of the film, along each side, where there are triangles
 # distance in pixels, or in hundredths of an inch, by which the flat pieces of a surface may lie inside it
 _OFF, _OFF_VECTOR = 0.1, 0.25
 # samples of a photograph for each of the two marks: of a still, and of a film at least, and for each pixel
@@ -226,9 +226,9 @@ class _Stage:
             ax.add_patch(shade)
         photo = None
         if self.exposes:
-            photo = _photo(ax, self.vector)
+            photo = photo_of(ax, self.vector)
         clock.set_animated(True)
-        return _Moving(rolled, slipped, shades, _surface(ax, self.vector), photo, clock, [])
+        return _Moving(rolled, slipped, shades, surface_of(ax, self.vector), photo, clock, [])
 
     def _rule(self, ax: Any, camera: Camera) -> None:
         """Set the lines of the table that this camera sees."""
@@ -418,81 +418,3 @@ def _columns(count: int, aspect: float) -> tuple[int, int]:
 
     best = min(range(1, count + 1), key=cost)
     return best, math.ceil(count / best)
-
-
-def _photo(ax: Any, vector: bool) -> Any:
-    """An artist that fills the axes with a picture."""
-    from matplotlib.artist import Artist
-
-    class Photo(Artist):
-        """A picture whose pixels are those of Agg."""
-
-        def set_data(self, picture: np.ndarray) -> None:
-            self.picture = picture
-
-        def draw(self, renderer: Any) -> None:
-            all_of = np.asarray(renderer.buffer_rgba())
-            left, top = round(ax.bbox.x0), all_of.shape[0] - round(ax.bbox.y1)
-            rows, columns, _ = self.picture.shape
-            where = all_of[top : top + rows, left : left + columns, :3]
-            where[:] = self.picture[: where.shape[0], : where.shape[1]]
-
-    if vector:
-        extent = (*ax.get_xlim(), *ax.get_ylim())
-        return ax.imshow(np.zeros((1, 1, 3)), extent=extent, aspect="auto", animated=True, zorder=5)
-    photo = Photo()
-    photo.set(animated=True, zorder=5)
-    ax.add_artist(photo)
-    return photo
-
-
-def _surface(ax: Any, vector: bool) -> Any:
-    """An artist that draws triangles in their order: shaded, or each in one colour for a vector drawing."""
-    from matplotlib.artist import Artist
-    from matplotlib.backends.backend_agg import RendererAgg
-    from matplotlib.collections import PolyCollection
-    from PIL import Image
-
-    class Surface(Artist):
-        """Gouraud triangles for Agg."""
-
-        def put(self, found: list[Painted]) -> None:
-            self.corners, colours = (np.concatenate(x) for x in zip(*found, strict=True))
-            self.colours = np.concatenate([colours, np.ones((*colours.shape[:2], 1))], -1)
-
-        def draw(self, renderer: Any) -> None:
-            agg: Any = RendererAgg
-            picture = np.asarray(renderer.buffer_rgba())
-            height, width, _ = picture.shape
-            places = ax.transData.transform(self.corners.reshape(-1, 2))
-            left, low = np.floor(places.min(axis=0)).astype(int) - 1
-            right, high = np.ceil(places.max(axis=0)).astype(int) + 1
-            left, right = max(left, 0), min(right, width)
-            top, bottom = max(height - high, 0), min(height - low, height)
-            if left >= right or top >= bottom:
-                return
-            where = np.s_[top:bottom, left:right]
-            # draw on what is there, at twice the resolution, and average
-            wide, tall = right - left, bottom - top
-            fine = agg(_FINE * wide, _FINE * tall, 100 * _FINE)
-            canvas = np.asarray(fine.buffer_rgba())
-            under = picture.view(np.uint32)[where][..., 0]
-            canvas.view(np.uint32)[..., 0] = under.repeat(_FINE, 0).repeat(_FINE, 1)
-            to = ax.transData.frozen().translate(-left, bottom - height).scale(_FINE)
-            graphics = fine.new_gc()
-            fine.draw_gouraud_triangles(graphics, self.corners, self.colours, to)
-            graphics.restore()
-            found = Image.frombuffer("RGBX", (_FINE * wide, _FINE * tall), canvas, "raw", "RGBX", 0, 1)
-            picture[where] = np.asarray(found.reduce(_FINE))
-
-    class Polygons(PolyCollection):
-        """Polygons, whose edges close the gaps between them."""
-
-        def put(self, found: list[Painted]) -> None:
-            corners, colours = (np.concatenate(x) for x in zip(*found, strict=True))
-            self.set(verts=corners, color=colours.mean(axis=1), linewidth=0.8)
-
-    surface: Any = Polygons([]) if vector else Surface()
-    surface.set(animated=True, zorder=6)
-    ax.add_artist(surface)
-    return surface

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from spincyl._input.numbers import Floats
 from spincyl._scale import Scale, si_of
 
 #: Begin of the hash of an array, or of another input, in the record of a sweep.
@@ -89,3 +90,11 @@ def signature(job: str, inputs: dict[str, object], **parameters: object) -> dict
     told = {"spincyl": version("spincyl"), "job": job}
     told |= {name: repr(value) for name, value in parameters.items()}
     return told | {name: f"{CONTENT}{tokenize(value)}" for name, value in inputs.items()}
+
+
+def cells(axis: Floats) -> Floats:
+    """Weight of each point of an axis by the trapezoid rule; 1 for a single point."""
+    if axis.size < 2:
+        return np.ones(axis.size)
+    steps = np.abs(np.diff(axis))
+    return np.concatenate([[steps[0] / 2], (steps[1:] + steps[:-1]) / 2, [steps[-1] / 2]])

@@ -24,7 +24,7 @@ from spincyl._input.numbers import (
 from spincyl._input.progress import Progress, telling
 from spincyl._input.threads import thread_count
 from spincyl._laws import Region
-from spincyl.sweep._common import apart, in_si, is_lazy, many_blocks, signature, target, targets
+from spincyl.sweep._common import apart, cells, in_si, is_lazy, many_blocks, signature, target, targets
 
 if TYPE_CHECKING:
     import xarray
@@ -282,9 +282,9 @@ def survey(
     found: dict[str, Any] = {}
     cores = thread_count(threads)
     if "region" in asked:
-        weights = _cells(columns["theta"])
+        weights = cells(columns["theta"])
         each = _core.areas(columns | {"weights": weights}, cores).reshape(-1, 2, 8)
-        shares = [_cells(axes[name].ravel()) for name in ("ell", "bore", "fillet")]
+        shares = [cells(axes[name].ravel()) for name in ("ell", "bore", "fillet")]
         across = np.multiply.outer(np.multiply.outer(shares[0], shares[1]), shares[2]).ravel()
         with np.errstate(invalid="ignore"):  # axes that are not finite have no area: NaN without a warning
             counts, areas = each[:, 0].sum(0), across @ each[:, 1]
@@ -387,14 +387,6 @@ def _bodies(theta: Floats, ell: Floats, bore: Floats, fillet: Floats) -> dict[st
     """The inclinations of a map and the flattened grid of its tubes, by name of the axis."""
     tubes = np.meshgrid(ell, bore, fillet, indexing="ij")
     return dict(zip(_AXES, (floats(x).reshape(-1) for x in (theta, *tubes)), strict=True))
-
-
-def _cells(axis: Floats) -> Floats:
-    """Weight of each point of an axis by the trapezoid rule; 1 for a single point."""
-    if axis.size < 2:
-        return np.ones(axis.size)
-    steps = np.abs(np.diff(axis))
-    return np.concatenate([[steps[0] / 2], (steps[1:] + steps[:-1]) / 2, [steps[-1] / 2]])
 
 
 def _ends(name: str, ends: list[tuple[float, int, int]], axes: dict[str, Floats]) -> dict[str, Any]:
