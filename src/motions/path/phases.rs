@@ -4,7 +4,6 @@ use super::check;
 use super::flight::Takeoff;
 use super::lossy::{LossyFlow, with_patch};
 use super::lying::flow::LyingPhase;
-use super::rocks::Rockings;
 use super::slide::Slide;
 use super::slow::{BodySlips, Slippery};
 use super::spun::{Roundings, knows};
@@ -72,8 +71,6 @@ pub(crate) struct BodyPhases {
     pub(super) shown: f64,
     /// Whether only theta changes, so that rounding must not make the body turn.
     pub(super) planar: bool,
-    /// The rockings of a body that goes from rim to rim.
-    pub(super) rockings: Rockings,
     /// Estimates of the end of a slipping whirr; None if the losses do not let a whirr last for infinitely many turns.
     pub(super) tail: Option<LastTurns>,
 }
@@ -122,7 +119,6 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
             energy: None,
             shown: 0.0,
             planar: start.w1 == 0.0 && start.w3 == 0.0 && slip[1] == 0.0,
-            rockings: Rockings::default(),
             tail: (!body.is_ball() && ask.losses.turn_endlessly()).then(LastTurns::default),
         };
         let mut walk = Self::new(of, at, ask, fine, (time, times))?;

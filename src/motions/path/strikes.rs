@@ -150,12 +150,6 @@ impl<const N: usize> BodyWalk<'_, N> {
         if self.has_two_rims() && e > 0.0 && level() < RATTLED {
             return self.ends_rattle();
         }
-        if stays
-            && self.has_two_rims()
-            && let Some(next) = self.rocks_to_rest()
-        {
-            return next;
-        }
         self.leaves_impact(&after)
     }
 
@@ -414,11 +408,6 @@ impl<const N: usize> BodyWalk<'_, N> {
             self.claims((end[TIME] - self.at[TIME]).powi(2));
             self.at = end;
             return self.settles_on_side();
-        }
-        if landed.outcome == Outcome::Changes
-            && let Some(next) = self.rocks_to_rest()
-        {
-            return next;
         }
         self.touches_down()
     }

@@ -34,7 +34,7 @@ const FEWEST_PHASES: usize = 5_000;
 const MOST_PHASES: usize = 10_000;
 const PHASES_PER_TIME: f64 = 20.0;
 /// Largest number of impacts; the flight after each is fast to compute.
-pub(crate) const MOST_IMPACTS: usize = 30_000;
+const MOST_IMPACTS: usize = 30_000;
 /// Largest number of consecutive phases without an advance of time; a motion with more stops there.
 pub(crate) const STILL: u32 = 6;
 /// The computation of a body that loses energy stops after more than `CHATTER` consecutive phases, without a flight,

@@ -35,10 +35,6 @@ use flow::{LyingFlow, LyingPhase, Stance};
 
 /// A slip slower than this, in units of the largest speed, counts as zero where a phase begins.
 const STILL_SLIP: f64 = 1e-12;
-/// A rim that slips more slowly, in the same units, may come to rest through rockings that are left out.
-const ALL_BUT_STILL: f64 = 1e-9;
-/// Error of the numbers after these rockings, in units of that slip.
-const STOPS_TURN: f64 = 10.0;
 /// The slip with which both rims begin to slip together.
 const NUDGED: f64 = 1e-12;
 /// Number of directions at which the growth of a slip is evaluated.
@@ -173,44 +169,17 @@ impl<const N: usize> BodyWalk<'_, N> {
         if slips { Next::Slips } else { after_rest(Phases::rests(self)) }
     }
 
-    /// Whether static friction holds a rim that rests while the other one slips.
-    fn pivots(&self, flow: &mut LyingFlow, other: bool) -> bool {
-        flow.stance = Stance::Pivots { other };
-        flow.turn = self.at[2].signum();
-        self.sets_ways(flow);
-        let at = flow.lain(&self.at);
-        let [n, across, along] = at.force[usize::from(other)];
-        let presses = at.force.iter().all(|force| force[0] >= 0.0);
-        presses && across.hypot(along) <= flow.fixed * n * (1.0 + GRACE)
-    }
-
-    /// The phase of a body that rises at the end of a slip while one rim all but rests. If static friction can hold that
-    /// rim, the body rocks lower and lower, and lies again with a slip many times slower: all this is over in a moment.
-    #[inline(never)]
-    fn all_but_pivots(&mut self, flow: LyingFlow) -> Option<Next> {
-        let [w1, u_h, u_2] = [2, 5, 6].map(|i| self.at[i]);
-        let over = 2.0 * self.of.body.ell() * w1;
-        let [here, there] = [u_2, u_2 - over].map(|across| u_h.hypot(across));
-        let (other, slow) = (there < here, here.min(there));
-        let fastest = [w1, self.at[4], here, there].into_iter().fold(1.0, |most: f64, x| most.max(x.abs()));
-        if !flow.law.dry || flow.stance != Stance::Slips || slow > ALL_BUT_STILL * fastest {
-            return None;
-        }
-        (self.at[5], self.at[6]) = (0.0, if other { over } else { 0.0 });
-        let mut pivot = flow;
-        if !self.pivots(&mut pivot, other) {
-            (self.at[5], self.at[6]) = (u_h, u_2);
-            return None;
-        }
-        self.claims(slow * STOPS_TURN);
-        Some(self.begins_stance(pivot, Stance::Pivots { other }))
-    }
-
     /// The phase of a body with one rim at rest while the other slips; the other rim is at rest if `other`.
     #[inline(never)]
     fn rests_on_one(&mut self, mut flow: LyingFlow, other: bool) -> Next {
         let ways = flow.ways;
-        if self.pivots(&mut flow, other) {
+        flow.stance = Stance::Pivots { other };
+        flow.turn = self.at[2].signum();
+        self.sets_ways(&mut flow);
+        let at = flow.lain(&self.at);
+        let [n, across, along] = at.force[usize::from(other)];
+        let presses = at.force.iter().all(|force| force[0] >= 0.0);
+        if presses && across.hypot(along) <= flow.fixed * n * (1.0 + GRACE) {
             return self.begins_stance(flow, Stance::Pivots { other });
         }
         flow.ways = ways;
@@ -355,9 +324,8 @@ impl<const N: usize> BodyWalk<'_, N> {
             if phase.flow.stance == Stance::Slips { y[TIME] - self.began } else { 0.0 };
         let next = match halt {
             Halt::Time | Halt::Pause => return None,
-            Halt::Rises | Halt::Changes => {
-                self.all_but_pivots(phase.flow).unwrap_or_else(|| self.rises_on(halt == Halt::Rises))
-            }
+            Halt::Rises => self.rises_on(true),
+            Halt::Changes => self.rises_on(false),
             Halt::Slips => {
                 let other = phase.flow.stance == Stance::Pivots { other: true };
                 if phase.flow.stance == Stance::Rolls {
