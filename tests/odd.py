@@ -389,7 +389,7 @@ def measurements():
     sized = sc.measured(outer_diameter=0.02, length=0.002)  # the disk of that drift
     fits = {
         "t": time, "theta": drift().theta(time), "precession": None, "body": DISK, "laws": [sc.loss.ViscousContour], "centre": "rest",
-        "t_err": None, "theta_err": None, "precession_err": None, "start": None,
+        "t_err": None, "theta_err": None, "precession_err": None, "start": None, "progress": None,
     }  # fmt: skip
     found = {
         "data.compare": (

@@ -227,7 +227,11 @@ def test_a_drawn_surface_has_few_triangles_which_are_as_close_to_the_true_one_as
 
 
 def test_a_shadow_has_one_outline_for_each_closed_piece_of_surface():
-    for body, most in ((sc.Body.solid(1.0, fillet=0.4), 3), (sc.Body.ball(0.0, 0.4, 0.4), 1), (sc.Body.solid(1.0), 4)):
+    for body, most in (
+        (sc.Body.solid(1.0, fillet=0.4), 3),
+        (sc.Body.ball(0.0, 0.4, 0.4), 1),
+        (sc.Body.solid(1.0), 4),
+    ):
         of = caster(turned(body, 2e-3))
         for lines in shadows(of, np.eye(3), np.array([0.0, 0.0, 2.0]), lamps(LAMPS)):
             assert 1 <= len(lines) <= most and sum(map(len, lines)) > 30
@@ -243,7 +247,7 @@ def test_only_where_there_are_triangles_is_the_picture_drawn_finely(monkeypatch)
         return agg(width, height, dpi)
 
     monkeypatch.setattr(backend_agg, "RendererAgg", renderer)
-    (picture,) = frames(taken(motion_of("nutating"), size=(640, 360)), np.array([0]))
+    next(frames(taken(motion_of("nutating"), size=(640, 360)), np.array([0])))
     coarse = [x for x in made if x[2] == 100]
     fine = [x for x in made if x[2] == 200]
     assert {x[:2] for x in coarse} == {(640, 360)} and len(fine) == 1
