@@ -1,5 +1,6 @@
 """What a call does besides its equations: counted in calls of functions, objects and modules, not in time."""
 
+import pickle
 import subprocess
 import sys
 
@@ -7,6 +8,9 @@ import numpy as np
 import pytest
 
 import spincyl as sc
+
+BALL = sc.Body.ball(0.0, i1=0.4, i3=0.4)
+HOPS = sc.dropped(BALL, 2.5, 1.2, w1=2.0, w2=-3.0, w3=1.0, velocity=(1.0, -2.0, 0.5))
 
 
 def calls(job):
@@ -90,3 +94,39 @@ def test_a_sweep_is_the_dataset_that_the_public_constructor_of_xarray_makes(shap
     assert public.indexes.keys() == found.indexes.keys()
     if np.ndim(t):
         assert found.sel(t=5.0).identical(public.sel(t=5.0))
+
+
+def test_an_impact_and_a_phase_become_objects_when_they_are_asked_for(monkeypatch):
+    made = []
+    monkeypatch.setattr("spincyl._phases.unchecked", lambda *of: made.append(of))
+    how = {"contact": sc.Coulomb(0.25), "restitution": 0.9, "tol": 1e-8}
+    m = sc.roll(BALL, HOPS, 100.0, **how)
+    assert not made
+    assert m.lost_in_impacts[-1] > 0
+    assert not made
+    assert len(m.impacts) > 100
+    assert len(made) == 2 * len(m.impacts)
+    assert len(m.phases) + 2 * len(m.impacts) == len(made)
+
+
+@pytest.mark.parametrize("metres", [False, True])
+def test_impacts_and_phases_are_tuples_that_are_made_once_and_survive_a_file(metres):
+    ball = BALL.in_metres(0.2, radius=0.03) if metres else BALL
+    m = sc.roll(ball, HOPS, 2.0 if metres else 20.0, contact=sc.Coulomb(0.25), restitution=0.5)
+    unlooked = pickle.loads(pickle.dumps(m))
+    assert type(m.impacts) is type(m.phases) is tuple
+    assert m.impacts is m.impacts
+    assert m.phases is m.phases
+    again = pickle.loads(pickle.dumps(m))
+    assert m == again == unlooked
+    assert m.impacts == again.impacts == unlooked.impacts
+    assert repr(m.phases) == repr(unlooked.phases)
+    second = ball.scale.seconds(1.0) if metres else 1.0
+    natural = m.natural.impacts
+    assert [x.time for x in m.impacts] == [x.time * second for x in natural]
+    assert [x.before for x in m.impacts] == [x.before for x in natural]
+    assert m.wanting("pose").impacts == m.impacts
+    total = sum(x.lost for x in m.impacts)
+    assert m.lost_in_impacts[-1] == pytest.approx(total, rel=1e-14)
+    (hit,) = m.impacts[:1]
+    assert (hit.rim, hit.stays, hit.before.lift < 0, hit.after.lift > 0) == ("first", False, True, True)

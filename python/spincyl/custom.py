@@ -1,6 +1,7 @@
 """Custom laws: a couple that takes energy, and a coefficient of friction that depends on the speed.
 
-Each law is a Python function, plain or compiled (``numba.njit``); a motion calls it thousands of times.
+Each law is a Python function, or a C function (``numba.cfunc``, ctypes, ``scipy.LowLevelCallable``), which is
+called without Python in about a hundredth of the time; a motion calls a law thousands of times.
 `sc.roll` checks the law before the motion begins: its values must be finite and without jumps, and a couple
 must not add energy. A dry law contains the sign of a speed, which jumps. Smooth it: ``tanh(x/e)`` in place of
 ``sign(x)``.
@@ -14,9 +15,10 @@ must not add energy. A dry law contains the sign of a speed, which jumps. Smooth
 0.1411
 """
 
+import re
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
-from typing import Any, Self
+from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 
@@ -33,6 +35,58 @@ __all__ = ["Couple", "Friction"]
 #: A couple from theta, w along e1, e2, e3 (an array of 3), and the normal force.
 CoupleFunction = Callable[[float, Floats, float], Sequence[float] | Floats]
 _ALONE = "a law of your own works only in sc.roll, for a single body of revolution, as the only loss"
+
+
+#: Signatures of C functions: of a couple, from theta, w1, w2, w3, normal, and of a coefficient of friction.
+_COUPLE, _FRICTION = "void (const double *args, double *couple)", "double (double speed)"
+
+
+class _Pointer(NamedTuple):
+    """A C function: its address, and a function of ctypes that calls it from Python."""
+
+    address: int
+    call: Callable[..., Any]
+
+
+def _pointer(function: object, told: str) -> _Pointer | None:
+    """The C function that is given by numba, ctypes or SciPy, or None; TypeError for another signature."""
+    import ctypes
+
+    void, number, several = None, ctypes.c_double, ctypes.POINTER(ctypes.c_double)
+    result, arguments = (void, (several, several)) if told == _COUPLE else (number, (number,))
+    kinds: Any = ctypes
+    given: Any = function
+    if hasattr(given, "user_data"):  # scipy.LowLevelCallable
+        if given.user_data is not None:
+            raise TypeError(f"function: expected a C function {told}, which takes no user_data")
+        given = given.function
+    given = getattr(given, "ctypes", given)  # of numba.cfunc
+    if type(given).__name__ == "PyCapsule":
+        name = kinds.pythonapi.PyCapsule_GetName
+        name.restype, name.argtypes = ctypes.c_char_p, [ctypes.py_object]
+        at = kinds.pythonapi.PyCapsule_GetPointer
+        at.restype, at.argtypes = ctypes.c_void_p, [ctypes.py_object, ctypes.c_char_p]
+        said = name(given) or b""
+        if _types(said.decode()) != _types(told):
+            raise TypeError(f"function: expected a C function {told}, not {said.decode()!r}")
+        address = at(given, said)
+    elif isinstance(given, kinds._CFuncPtr):
+        own = given.restype, tuple(given.argtypes or ())
+        if own != (result, arguments) or given._flags_ & kinds._FUNCFLAG_PYTHONAPI:
+            names = [getattr(kind, "__name__", "None") for kind in (own[0], *own[1])]
+            seen = f"restype {names[0]} and argtypes ({', '.join(names[1:])})"
+            raise TypeError(f"function: expected a C function {told}, not one with {seen}")
+        address = ctypes.cast(given, ctypes.c_void_p).value
+    else:
+        return None
+    if not address:
+        raise TypeError(f"function: expected a C function {told}, not a null pointer")
+    return _Pointer(address, ctypes.CFUNCTYPE(result, *arguments)(address))
+
+
+def _types(told: str) -> str:
+    """A signature in C without names, spaces and const."""
+    return re.sub(r"const|\s|(?<=[*e ])(?:args|couple|speed)\b", "", told)
 
 
 def _called(name: str, function: object, arguments: str) -> None:
@@ -56,8 +110,8 @@ class Couple(Loss):
     Raises
     ------
     TypeError
-        If `function` is not callable. Also if the law is used for many motions, for a drift, for a stone, or
-        together with another loss law.
+        If `function` is not callable, or is a C function of another signature. Also if the law is used for
+        many motions, for a drift, for a stone, or together with another loss law.
     ValueError
         In `sc.roll`, if the couple adds energy, is not finite, or jumps; the message gives a value.
 
@@ -68,13 +122,17 @@ class Couple(Loss):
     """
 
     function: CoupleFunction
+    _units: ClassVar[tuple[float, float, float]] = (1.0, 1.0, 1.0)  # of the numbers of a C function
+    _pointer: ClassVar[_Pointer | None] = None
 
     def __post_init__(self) -> None:
-        _called("function", self.function, "theta, w and the normal force")
+        object.__setattr__(self, "_pointer", _pointer(self.function, _COUPLE))
+        if self._pointer is None:
+            _called("function", self.function, "theta, w and the normal force")
 
     @property
-    def _function(self) -> CoupleFunction:
-        return self.function
+    def _function(self) -> Any:
+        return self.function if self._pointer is None else (self._pointer.address, self._units)
 
     @property
     def laws(self) -> tuple[Law, ...]:
@@ -86,6 +144,10 @@ class Couple(Loss):
             return self
         joules, rate = scale._joule("a couple"), 1.0 / scale._units[1]
         newtons = joules / scale._units[0]
+        if self._pointer is not None:
+            found = type(self)(self.function)
+            object.__setattr__(found, "_units", (rate, newtons, joules))
+            return found
 
         def natural(theta: float, w: Floats, normal: float) -> Floats:
             return np.asarray(self.function(theta, rate * w, newtons * normal)) / joules
@@ -95,7 +157,13 @@ class Couple(Loss):
     def couple(self, body: Body, state: State, normal: Reals = 1.0) -> Result:
         """Couple in a single state, along e1, e2, e3, as the function returns it; `body` is not used."""
         w = np.array([state.w1, state.w2, state.w3], dtype=float)
-        return np.asarray(self.function(float(state.theta), w, float(normal)), dtype=float)
+        if self._pointer is None:
+            return np.asarray(self.function(float(state.theta), w, float(normal)), dtype=float)
+        from ctypes import c_double
+
+        found = (c_double * 3)()
+        self._pointer.call((c_double * 5)(state.theta, *w, normal), found)
+        return np.array(found)
 
     def power(self, body: Body, state: State, normal: Reals = 1.0) -> Result:
         """Power that the law takes in a single state, ``-couple @ w``; `body` is not used."""
@@ -120,14 +188,16 @@ class Friction(Coulomb):
     ----------
     function : callable
         ``function(speed)`` returns the coefficient of friction, 0 or more. `speed` is the magnitude of the
-        slip, in sqrt(g R), or in m/s for a measured body.
+        slip, in sqrt(g R), or in m/s for a measured body. Or a C function ``double (double speed)``, as for
+        `Couple`.
     static : float, optional
         Coefficient of static friction, at least ``function(0.0)``. Default: ``function(0.0)``.
 
     Raises
     ------
     TypeError
-        If `function` is not callable. Also if the law is used for many motions, for a stone, or on a page.
+        If `function` is not callable, or is a C function of another signature. Also if the law is used for
+        many motions, for a stone, or on a page.
     ValueError
         In `sc.roll`, if the coefficient is negative, is not finite, or jumps.
 
@@ -145,20 +215,32 @@ class Friction(Coulomb):
     """
 
     def __init__(self, function: Callable[[float], float], static: float | None = None) -> None:
-        _called("function", function, "the speed of the slip")
-        mu = number("function(0.0)", function(0.0))
+        pointer = _pointer(function, _FRICTION)
+        if pointer is None:
+            _called("function", function, "the speed of the slip")
+        mu = number("function(0.0)", (function if pointer is None else pointer.call)(0.0))
         super().__init__(mu, mu if static is None else static)
         object.__setattr__(self, "function", function)
+        object.__setattr__(self, "_pointer", pointer)
+        object.__setattr__(self, "_speed", 1.0)
 
     @property
-    def _function(self) -> Callable[[float], float]:
-        return self.function  # type: ignore[attr-defined, no-any-return]
+    def _function(self) -> Any:
+        given: Any = self
+        if given._pointer is None:
+            return given.function
+        return given._pointer.address, (given._speed, 1.0, 1.0)
 
     def _natural(self, scale: Scale | None) -> Self:
         if scale is None:
             return self
         speed = scale._units[0] / scale._units[1]
-        return type(self)(lambda u: self._function(speed * u), self.static)
+        given: Any = self
+        if given._pointer is None:
+            return type(self)(lambda u: given.function(speed * u), self.static)
+        found = type(self)(given.function, self.static)
+        object.__setattr__(found, "_speed", speed)
+        return found
 
     @classmethod
     def from_si(cls, *_: object, **__: object) -> Self:
@@ -177,10 +259,10 @@ class Friction(Coulomb):
 
     @property
     def _compares(self) -> Hashable:
-        return self._function, key(self.static)
+        return self.function, key(self.static)  # type: ignore[attr-defined]
 
     def __repr__(self) -> str:
-        return f"custom.Friction({_named(self._function)})"
+        return f"custom.Friction({_named(self.function)})"  # type: ignore[attr-defined]
 
 
 def _named(function: Any) -> str:

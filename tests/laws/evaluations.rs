@@ -64,3 +64,29 @@ fn a_launch_costs_some_thousand_evaluations_until_it_rolls() {
         }
     }
 }
+
+#[test]
+fn an_output_more_changes_nothing_in_the_others_and_no_count_of_outputs_is_too_long_to_be_interrupted() {
+    let body = Body::solid(2.5).unwrap();
+    let start = steady::state(&body, 1.3).unwrap().kicked(0.05);
+    let all: Vec<f64> = (0..=1 << 16).map(|i| 3e-4 * f64::from(i)).collect();
+    let ask = Ask::default().with_pose(true);
+    let rolled = |times: &[f64]| {
+        let mut looks = 0;
+        let go_on = || {
+            looks += 1;
+            true
+        };
+        let m = roll_with(&body, start, times, &ask, go_on).unwrap().unwrap();
+        (m, looks)
+    };
+    let (whole, looks) = rolled(&all);
+    assert!((3..30).contains(&looks), "{looks}");
+    // The method does not change with the number of outputs, and so neither do the last digits.
+    for count in [1 << 16, 20_000, 100] {
+        let (part, _) = rolled(&all[..count]);
+        assert_eq!(part.states, whole.states[..count]);
+        assert_eq!(part.poses.unwrap(), whole.poses.as_ref().unwrap()[..count]);
+        assert!(part.error <= whole.error && whole.error < 1e-12);
+    }
+}
