@@ -15,10 +15,9 @@ must not add energy. A dry law contains the sign of a speed, which jumps. Smooth
 0.1411
 """
 
-import re
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar, NamedTuple, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
@@ -26,6 +25,7 @@ from spincyl._body import Body
 from spincyl._contact import Coulomb
 from spincyl._input.equality import key
 from spincyl._input.numbers import Floats, Reals, Result, number
+from spincyl._input.pointers import COUPLE, FRICTION, Pointer, pointer
 from spincyl._loss import Law, Loss
 from spincyl._scale import Scale
 from spincyl._state import State
@@ -35,58 +35,6 @@ __all__ = ["Couple", "Friction"]
 #: A couple from theta, w along e1, e2, e3 (an array of 3), and the normal force.
 CoupleFunction = Callable[[float, Floats, float], Sequence[float] | Floats]
 _ALONE = "a law of your own works only in sc.roll, for a single body of revolution, as the only loss"
-
-
-#: Signatures of C functions: of a couple, from theta, w1, w2, w3, normal, and of a coefficient of friction.
-_COUPLE, _FRICTION = "void (const double *args, double *couple)", "double (double speed)"
-
-
-class _Pointer(NamedTuple):
-    """A C function: its address, and a function of ctypes that calls it from Python."""
-
-    address: int
-    call: Callable[..., Any]
-
-
-def _pointer(function: object, told: str) -> _Pointer | None:
-    """The C function that is given by numba, ctypes or SciPy, or None; TypeError for another signature."""
-    import ctypes
-
-    void, number, several = None, ctypes.c_double, ctypes.POINTER(ctypes.c_double)
-    result, arguments = (void, (several, several)) if told == _COUPLE else (number, (number,))
-    kinds: Any = ctypes
-    given: Any = function
-    if hasattr(given, "user_data"):  # scipy.LowLevelCallable
-        if given.user_data is not None:
-            raise TypeError(f"function: expected a C function {told}, which takes no user_data")
-        given = given.function
-    given = getattr(given, "ctypes", given)  # of numba.cfunc
-    if type(given).__name__ == "PyCapsule":
-        name = kinds.pythonapi.PyCapsule_GetName
-        name.restype, name.argtypes = ctypes.c_char_p, [ctypes.py_object]
-        at = kinds.pythonapi.PyCapsule_GetPointer
-        at.restype, at.argtypes = ctypes.c_void_p, [ctypes.py_object, ctypes.c_char_p]
-        said = name(given) or b""
-        if _types(said.decode()) != _types(told):
-            raise TypeError(f"function: expected a C function {told}, not {said.decode()!r}")
-        address = at(given, said)
-    elif isinstance(given, kinds._CFuncPtr):
-        own = given.restype, tuple(given.argtypes or ())
-        if own != (result, arguments) or given._flags_ & kinds._FUNCFLAG_PYTHONAPI:
-            names = [getattr(kind, "__name__", "None") for kind in (own[0], *own[1])]
-            seen = f"restype {names[0]} and argtypes ({', '.join(names[1:])})"
-            raise TypeError(f"function: expected a C function {told}, not one with {seen}")
-        address = ctypes.cast(given, ctypes.c_void_p).value
-    else:
-        return None
-    if not address:
-        raise TypeError(f"function: expected a C function {told}, not a null pointer")
-    return _Pointer(address, ctypes.CFUNCTYPE(result, *arguments)(address))
-
-
-def _types(told: str) -> str:
-    """A signature in C without names, spaces and const."""
-    return re.sub(r"const|\s|(?<=[*e ])(?:args|couple|speed)\b", "", told)
 
 
 def _called(name: str, function: object, arguments: str) -> None:
@@ -123,10 +71,10 @@ class Couple(Loss):
 
     function: CoupleFunction
     _units: ClassVar[tuple[float, float, float]] = (1.0, 1.0, 1.0)  # of the numbers of a C function
-    _pointer: ClassVar[_Pointer | None] = None
+    _pointer: ClassVar[Pointer | None] = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "_pointer", _pointer(self.function, _COUPLE))
+        object.__setattr__(self, "_pointer", pointer(self.function, COUPLE))
         if self._pointer is None:
             _called("function", self.function, "theta, w and the normal force")
 
@@ -215,13 +163,13 @@ class Friction(Coulomb):
     """
 
     def __init__(self, function: Callable[[float], float], static: float | None = None) -> None:
-        pointer = _pointer(function, _FRICTION)
-        if pointer is None:
+        found = pointer(function, FRICTION)
+        if found is None:
             _called("function", function, "the speed of the slip")
-        mu = number("function(0.0)", (function if pointer is None else pointer.call)(0.0))
+        mu = number("function(0.0)", (function if found is None else found.call)(0.0))
         super().__init__(mu, mu if static is None else static)
         object.__setattr__(self, "function", function)
-        object.__setattr__(self, "_pointer", pointer)
+        object.__setattr__(self, "_pointer", found)
         object.__setattr__(self, "_speed", 1.0)
 
     @property
