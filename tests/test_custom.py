@@ -1,8 +1,11 @@
 """Laws of a user's own: the library's motions, SI, and what they are refused for."""
 
+import ctypes
+import ctypes.util
 import math
 import os
 import signal
+import sys
 
 import numpy as np
 import pytest
@@ -268,3 +271,141 @@ def test_laws_of_your_own_are_equal_if_their_functions_are():
     assert sc.custom.Couple(of.couple) == sc.custom.Couple(of.couple) != sc.custom.Couple(Tribometer().couple)
     with pytest.raises(TypeError, match=r"^custom.Friction.from_si: not needed; .* in m/s"):
         sc.custom.Friction.from_si(0.3, patch=0.0, scale=sc.Scale(0.01))
+
+
+ARGUMENTS = ctypes.CFUNCTYPE(None, *[ctypes.POINTER(ctypes.c_double)] * 2)
+SPEED = ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_double)
+ERFC = ctypes.CDLL(ctypes.util.find_library("m")).erfc
+ERFC.restype, ERFC.argtypes = ctypes.c_double, [ctypes.c_double]
+
+
+@ARGUMENTS
+def drag(args, couple):
+    for k in range(3):
+        couple[k] = -0.01 * args[1 + k] * args[4]
+
+
+def test_a_c_function_moves_a_coin_as_the_same_function_of_python_does():
+    plain = sc.custom.Couple(lambda theta, w, normal: -0.01 * w * normal)
+    for coin, t in ((COIN, T), (COIN.in_metres(0.005, radius=0.012), 0.03 * T)):
+        ours = sc.roll(coin, START, t, losses=plain, want=("pose", "force"))
+        m = sc.roll(coin, START, t, losses=sc.custom.Couple(drag), want=("pose", "force"))
+        assert (m.w == ours.w).all()
+        assert (m.work_lost == ours.work_lost).all()
+        assert (m.nfev, m.error, m.message) == (ours.nfev, ours.error, ours.message)
+    state = sc.State(1.0, 0.1, 0.2, 0.3)
+    assert sc.custom.Couple(drag).couple(COIN, state, 2.0).tolist() == plain.couple(COIN, state, 2.0).tolist()
+    assert sc.custom.Couple(drag).power(COIN, state, 2.0) == plain.power(COIN, state, 2.0)
+
+
+def test_a_coefficient_in_c_is_that_of_python_and_calls_nothing_of_python():
+    hoop, thrown = sc.Body.tube(0.0, bore=1.0), sc.State(np.pi / 2, 0.0, 0.0, -3.0, slip=(0.0, 1.0))
+    for body, t in ((hoop, 40.0), (hoop.in_metres(0.1, radius=0.3), 8.0)):
+        plain, law = sc.custom.Friction(math.erfc), sc.custom.Friction(ERFC)
+        ours, m = (sc.roll(body, thrown, t, contact=contact) for contact in (plain, law))
+        assert law.mu == 1.0
+        assert [x.kind for x in m.phases] == ["slipping", "rolling"]
+        assert m.phases[1].time == pytest.approx(ours.phases[1].time, abs=2 * m.error + 2 * ours.error)
+        called = []
+        sys.setprofile(lambda _, event, of, to=called: to.append(of) if event == "c_call" else None)
+        try:
+            sc.roll(body, thrown, t, contact=law)
+        finally:
+            sys.setprofile(None)
+        assert ERFC not in called
+        assert len(called) < 200 < m.nfev
+
+
+def test_scipys_low_level_callable_is_a_c_function():
+    scipy = pytest.importorskip("scipy")
+    law = sc.custom.Friction(scipy.LowLevelCallable(ERFC))
+    assert law.static == 1.0
+    assert law._function == sc.custom.Friction(ERFC)._function
+    data = scipy.LowLevelCallable(ERFC, ctypes.c_void_p(1))
+    with pytest.raises(TypeError, match="takes no user_data"):
+        sc.custom.Friction(data)
+
+
+def capsule(signature):
+    make = ctypes.pythonapi.PyCapsule_New
+    make.restype, make.argtypes = ctypes.py_object, [ctypes.c_void_p, ctypes.c_char_p, ctypes.c_void_p]
+    return make(ctypes.cast(drag, ctypes.c_void_p), signature, None)
+
+
+SIGNED = b"void (double *, const double *)", b"void(double *,double *, int)", b"double (double)", b""
+
+
+def test_a_capsule_has_its_signature_as_its_name():
+    law = sc.custom.Couple(capsule(SIGNED[0]))
+    assert law._function == sc.custom.Couple(drag)._function
+    for signature in SIGNED[1:]:
+        with pytest.raises(TypeError, match=r"^function: expected a C function void \(const double"):
+            sc.custom.Couple(capsule(signature))
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        SPEED(lambda u: u),
+        ctypes.CFUNCTYPE(None, ctypes.c_double, ctypes.c_double)(lambda a, b: None),
+        ctypes.CFUNCTYPE(ctypes.c_double, *ARGUMENTS._argtypes_)(lambda a, b: 0.0),
+        ctypes.CFUNCTYPE(None, *[ctypes.POINTER(ctypes.c_float)] * 2)(lambda a, b: None),
+        ctypes.PYFUNCTYPE(None, *ARGUMENTS._argtypes_)(lambda a, b: None),
+        ctypes.CDLL(None).abs,
+        ARGUMENTS(),
+    ],
+    ids=["one speed", "two numbers", "with a result", "floats", "with the GIL", "untyped", "null"],
+)
+def test_a_c_function_of_another_signature_is_refused_before_it_is_called(other):
+    with pytest.raises(TypeError, match=r"^function: expected a C function void \(const double \*args"):
+        sc.custom.Couple(other)
+    with pytest.raises(TypeError, match=r"^function: expected a C function double \(double speed\)"):
+        sc.custom.Friction(other if other.argtypes != SPEED._argtypes_ else drag)
+
+
+def test_a_c_function_that_is_no_loss_is_refused_and_an_error_on_the_way_is_named():
+    @ARGUMENTS
+    def pushes(args, couple):
+        for k in range(3):
+            couple[k] = 0.01 * args[1 + k]
+
+    @ARGUMENTS
+    def forgets(args, couple):
+        couple[0] = -0.01 * args[1]
+
+    for law, words in ((pushes, "takes energy"), (forgets, "finite")):
+        with pytest.raises(ValueError, match=f"^couple = .*{words}"):
+            sc.roll(COIN, START, T, losses=sc.custom.Couple(law))
+
+
+def test_a_law_is_called_a_few_thousand_times_and_mostly_by_the_motion():
+    counts = {}
+    for name in ("couple", "friction"):
+        calls = [0]
+
+        def couple(theta, w, normal, calls=calls):
+            calls[0] += 1
+            return -1e-3 * w
+
+        def coefficient(u, calls=calls):
+            calls[0] += 1
+            return 0.2 + 0.2 * math.exp(-((u / 0.1) ** 2))
+
+        if name == "couple":
+            body = sc.Body.solid(2.0)
+            state, how = body.steady(1.3).kicked(0.1), {"losses": sc.custom.Couple(couple)}
+        else:
+            body = sc.Body.tube(0.0, bore=1.0)
+            state = sc.State(np.pi / 2, 0.0, 0.0, -3.0, slip=(0.0, 5.0))
+            how = {"contact": sc.custom.Friction(coefficient)}
+        of = []
+        for t in (1e-9, 20.0):
+            calls[0] = 0
+            of.append((sc.roll(body, state, t, tol=1e-10, **how).nfev, calls[0]))
+        counts[name] = of
+    (_, check), (nfev, whole) = counts["couple"]
+    assert check < 3200  # 7,086 if each line is halved down to rounding
+    assert whole - check < 6 * nfev
+    (_, check), (nfev, whole) = counts["friction"]
+    assert check < 2000
+    assert whole - check < 4 * nfev

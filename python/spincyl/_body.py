@@ -31,7 +31,7 @@ from spincyl._laws import Laws
 from spincyl._repr import FIELDS, body
 from spincyl._scale import Scale
 from spincyl._sized import Sized
-from spincyl._state import State
+from spincyl._state import State, unchecked
 from spincyl._upward import above
 
 if TYPE_CHECKING:
@@ -342,10 +342,10 @@ class Body(Laws, Sized, Hinting, metaclass=Named):
             If a single inclination has no steady state; the message gives the forbidden band. An array of
             inclinations gives NaN there.
         """
-        theta = radians("theta", theta, self._leans)
-        numbers = self._numbers
-        if is_scalar(theta, *numbers):
-            return State(*_core.steady_state(float(theta), numbers))
+        numbers, plain = self._numbers, type(theta) is float and self._single and abs(theta) <= np.pi
+        theta = theta if plain else radians("theta", theta, self._leans)
+        if plain or is_scalar(theta, *numbers):
+            return unchecked(_core.steady_state(float(theta), numbers))
         return State(theta, _core.steady_w1(theta, *numbers), theta * 0.0, _core.steady_w3(theta, *numbers))
 
     @elementwise

@@ -6,7 +6,7 @@ import numpy as np
 
 from spincyl import _core
 from spincyl._input.numbers import Reals, is_scalar, radians, reals, several
-from spincyl._state import State
+from spincyl._state import State, unchecked
 
 if TYPE_CHECKING:
     from spincyl._body import Body
@@ -37,6 +37,6 @@ def circular(body: "Body", theta: Reals, precession: Reals, radius: Reals, w3: R
             raise ValueError(f"theta = {theta!r}: {lands}")
         if np.isnan(number):
             raise ValueError(f"{name} = {given[name]!r}: no steady state at theta = {theta!r} has this value")
-        return State(*_core.circular_state(float(theta), float(number), numbers))
+        return unchecked(_core.circular_state(float(theta), float(number), numbers))
     w1, w3 = (f(theta, number, *numbers) for f in (_core.circular_w1, _core.circular_w3))
     return State(theta, w1, w1 * 0.0, w3)

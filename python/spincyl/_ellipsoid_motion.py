@@ -17,7 +17,7 @@ from spincyl._lossy import check, narrow, of_stone
 from spincyl._measured import in_si, natural_time, speaking
 from spincyl._motion import ENDINGS, Motion
 from spincyl._outputs import FRICTION, Number
-from spincyl._phases import phases, rubs
+from spincyl._phases import rubs
 
 
 class EllipsoidMotion(Motion):
@@ -45,6 +45,10 @@ class EllipsoidMotion(Motion):
         The components are along x and y of the laboratory, as described in `EllipsoidState`.
         """,
     )
+
+    @staticmethod
+    def _begun(six: list[float], slip: list[float] | None, _: object = None) -> EllipsoidState:
+        return EllipsoidState(six[:3], six[3:], slip)
 
     @property
     def vertical(self) -> Floats:
@@ -196,7 +200,7 @@ def rolled(body: Ellipsoid, state: EllipsoidState, asked: Asked) -> EllipsoidMot
     event = None
     if "event" in found:
         time, six, pair, _ = found["event"]
-        event = Event(status, time, _state(six, pair))  # type: ignore[arg-type]
+        event = Event(status, time, EllipsoidMotion._begun(six, pair))  # type: ignore[arg-type]
     found |= {
         "body": body,
         "start": state,
@@ -204,12 +208,8 @@ def rolled(body: Ellipsoid, state: EllipsoidState, asked: Asked) -> EllipsoidMot
         "status": status,
         "event": event,
         "_asked": asked,
-        "_phases": phases(found.pop("phases"), _state) if "phases" in found else None,
+        "_impacts": None,
     }
     m = object.__new__(EllipsoidMotion)
     object.__setattr__(m, "__dict__", found)
     return m
-
-
-def _state(six: list[float], slip: list[float] | None, _: object = None) -> EllipsoidState:
-    return EllipsoidState(six[:3], six[3:], slip)

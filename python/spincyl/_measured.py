@@ -14,6 +14,7 @@ import numpy as np
 from spincyl._body import Body
 from spincyl._input.hints import helpful
 from spincyl._input.numbers import Floats, Reals, metres, reals, refuse, si, within
+from spincyl._phases import IMPULSE, LOST
 from spincyl._scale import Scale, unit
 
 if TYPE_CHECKING:
@@ -155,7 +156,8 @@ def in_si(m: "Motion", body: Body, seconds: Floats, step: float | None) -> "Moti
     second = scale._units[1]
     asked = m._asked
     event = m.event and m.event._replace(time=m.event.time * second)
-    found: dict[str, Any] = m.__dict__ | {
+    made = ("phases", "impacts")  # in natural units, if they have been looked at
+    found: dict[str, Any] = {name: x for name, x in m.__dict__.items() if name not in made} | {
         "body": body,
         "t": seconds[: m.t.size].copy(),
         "w": told("w", m.w, scale),
@@ -165,8 +167,8 @@ def in_si(m: "Motion", body: Body, seconds: Floats, step: float | None) -> "Moti
         "advice": m.advice * second,
         "event": event,
         "_asked": asked._replace(times=seconds, t0=asked.t0 * second, step=step),
-        "_phases": m._phases and tuple(phase._replace(time=phase.time * second) for phase in m._phases),
-        "_impacts": m._impacts and tuple(_struck(impact, scale) for impact in m._impacts),
+        "_phases": _rows_in_si(m._phases, scale),
+        "_impacts": _rows_in_si(m._impacts, scale, impacts=True),
         "_natural": m,
     }
     same: Motion = object.__new__(type(m))
@@ -174,13 +176,17 @@ def in_si(m: "Motion", body: Body, seconds: Floats, step: float | None) -> "Moti
     return same
 
 
-def _struck(impact: Any, scale: Scale) -> Any:
-    """An impact in SI, as far as the mass is known."""
+def _rows_in_si(rows: Floats | None, scale: Scale, *, impacts: bool = False) -> Floats | None:
+    """Phases or impacts in SI, as far as the mass is known."""
+    if rows is None:
+        return None
     metre, second, joule, _ = scale._units
-    if not scale._is_weighed:
-        return impact._replace(time=impact.time * second)
-    push = tuple(p * (joule * second / metre) for p in impact.impulse)
-    return impact._replace(time=impact.time * second, impulse=push, lost=impact.lost * joule)
+    found = rows.copy()
+    found[:, 0] *= second
+    if impacts and scale._is_weighed:
+        found[:, IMPULSE] *= joule * second / metre
+        found[:, LOST] *= joule
+    return found
 
 
 def told(name: str, values: Any, scale: Scale | None) -> Any:

@@ -1,7 +1,8 @@
 """The motion of a body from an initial state."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from functools import cached_property
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
@@ -19,7 +20,7 @@ from spincyl._input.numbers import Floats, Reals, si
 from spincyl._labelled import AXES, Components, frame, labelled
 from spincyl._measured import in_si, natural_time, speaking, told
 from spincyl._outputs import ALOFT, FRICTION, POSE, Outputs, lacks, output
-from spincyl._phases import RIMS, Impact, Phase, impacts, lowest, phases, slipping
+from spincyl._phases import LOST, RIMS, Impact, Phase, impacts, lowest, phases, slipping
 from spincyl._scale import Scale
 from spincyl._state import State
 from spincyl._swing import single, single_aloft, single_slip
@@ -107,11 +108,12 @@ class Motion(Outputs):
     _setting: float
     _extra: dict[str, Any]
     _rests: int = 0
-    _phases: tuple[Phase, ...] | None = None
-    _impacts: tuple[Impact, ...] | None = None
+    _phases: Floats | None = None  # a row for each phase and each impact
+    _impacts: Floats | None = None
     _natural: "Motion | None" = None  # for a motion in SI: the same in natural units
     _limit: tuple[str, str] | None = None  # name and reason of the limit at which the computation stopped
     _axes: ClassVar[Components] = AXES
+    _begun: ClassVar[Callable[..., Any]] = staticmethod(slipping)  # makes the state of a phase
 
     @property
     def scale(self) -> Scale | None:
@@ -207,7 +209,7 @@ class Motion(Outputs):
         """
         return output(self, "phi", POSE), output(self, "psi", POSE)
 
-    @property
+    @cached_property
     def impacts(self) -> tuple[Impact, ...]:
         """All impacts of a rim on the table. Needs `restitution=`.
 
@@ -215,16 +217,18 @@ class Motion(Outputs):
         """
         if self._impacts is None:
             raise lacks(self, "impacts", ALOFT)
-        return self._impacts
+        return impacts(self._impacts)
 
     @property
     def lost_in_impacts(self) -> Floats:
         """(n,) energy lost in impacts and their friction since the start, M g R, J. Needs `restitution=`."""
-        of = self.natural.impacts
-        times, lost = np.array([x.time for x in of]), np.array([0.0, *(x.lost for x in of)])
-        return self._told("energy", np.cumsum(lost)[np.searchsorted(times, self.natural.t)])
+        of = self.natural._impacts
+        if of is None:
+            raise lacks(self, "impacts", ALOFT)
+        lost = np.cumsum([0.0, *of[:, LOST]])
+        return self._told("energy", lost[np.searchsorted(of[:, 0], self.natural.t)])
 
-    @property
+    @cached_property
     def phases(self) -> tuple[Phase, ...]:
         """Phases of the motion, each with the time, kind and state with which it begins.
 
@@ -233,7 +237,7 @@ class Motion(Outputs):
         """
         if self._phases is None:
             raise lacks(self, "phases", FRICTION)
-        return self._phases
+        return phases(self._phases, self._begun)
 
     @property
     def losses(self) -> "Loss | None":
@@ -397,8 +401,7 @@ def rolled(body: Body, state: State, asked: Asked, numbers: tuple[_Six, _Four] |
         "status": status,
         "event": event,
         "_asked": asked,
-        "_phases": phases(found.pop("phases")) if "phases" in found else None,
-        "_impacts": impacts(found.pop("_impacts")) if asked.restitution is not None else None,
+        "_impacts": found.get("_impacts") if asked.restitution is not None else None,
     }
     m = object.__new__(Motion)
     object.__setattr__(m, "__dict__", found)

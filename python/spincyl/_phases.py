@@ -1,6 +1,6 @@
 """Phases (slipping, rolling, flying, lying) and impacts of a motion with friction or restitution."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
@@ -8,7 +8,7 @@ import numpy as np
 from spincyl import _core
 from spincyl._contact import AnyContact, Coulomb, Viscous
 from spincyl._input.numbers import Floats, number
-from spincyl._state import State, gripping, landed
+from spincyl._state import State, gripping, landed, unchecked
 
 if TYPE_CHECKING:
     from spincyl._body import Body
@@ -90,18 +90,18 @@ class Impact(NamedTuple):
     stays: bool
 
 
-def impacts(found: Iterable[tuple[Any, ...]]) -> tuple[Impact, ...]:
-    """Make impacts from the numbers of the core."""
+#: Columns of the lost energy and of the impulse in the rows of impacts.
+LOST, IMPULSE = 4, slice(5, 8)
 
-    def state(four: Sequence[float], u: Sequence[float]) -> State:
-        return State(*four, slip=(u[0], u[1]), height=0.0, lift=u[2])
 
-    def impact(numbers: tuple[Any, ...]) -> Impact:
-        time, other, hit, states, u, (along, across, up), lost, stays = numbers
-        before, after = map(state, states, u)
-        return Impact(time, RIMS[other], HITS[hit], (along, across, up), lost, before, after, stays)
-
-    return tuple(map(impact, found))
+def impacts(rows: Floats) -> tuple[Impact, ...]:
+    """Make impacts from the rows of the core, each with the numbers of one impact."""
+    found = []
+    for time, other, hit, stays, lost, along, across, up, *numbers in rows.tolist():
+        before, after = (unchecked(at[:4], (at[4], at[5]), 0.0, at[6]) for at in (numbers[:7], numbers[7:]))
+        rim, kind, push = RIMS[int(other)], HITS[int(hit)], (along, across, up)
+        found.append(Impact(time, rim, kind, push, lost, before, after, bool(stays)))
+    return tuple(found)
 
 
 def rubs(contact: object) -> bool:
@@ -148,12 +148,17 @@ def slipping(
 ) -> State:
     """The state of theta, w1, w2, w3, of the slip along e_h and e2, and of height and lift; None for none."""
     height, lift = aloft or (None, None)
-    return State(*four, slip=None if slip is None else (slip[0], slip[1]), height=height, lift=lift)
+    return unchecked(four, None if slip is None else (slip[0], slip[1]), height, lift)
 
 
-def phases(found: Iterable[tuple[Any, ...]], state: Callable[..., Any] = slipping) -> tuple[Phase, ...]:
-    """Make phases from the numbers of the core; `state` makes a state from numbers, slip and height."""
-    return tuple(Phase(time, KINDS[kind], state(*numbers), RIMS[rim]) for time, kind, *numbers, rim in found)
+def phases(rows: Floats, state: Callable[..., Any] = slipping) -> tuple[Phase, ...]:
+    """Make phases from the rows of the core; `state` makes a state from numbers, slip and height."""
+    found = []
+    for time, code, rim, along, across, height, lift, *numbers in rows.tolist():
+        kind = KINDS[int(code)]
+        at = state(numbers, (along, across), (height, lift) if kind == "flying" else None)
+        found.append(Phase(time, kind, at, RIMS[int(rim)]))
+    return tuple(found)
 
 
 def told(phases: Sequence[Phase], unit: str = "") -> str:

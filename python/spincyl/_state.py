@@ -1,5 +1,6 @@
 """The state of a body: four numbers, six with a slip, or arrays of them."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
@@ -122,7 +123,11 @@ class State(Hinting):
     @elementwise
     def kicked(self, thetadot: Reals) -> "State":
         """Return the state with `thetadot`, in sqrt(g/R), added to theta'; the slip does not change."""
-        return replace(self, w2=self.w2 - reals("thetadot", thetadot))
+        w2 = self.w2 - reals("thetadot", thetadot)
+        if type(w2) is not float:
+            return replace(self, w2=w2)
+        # the other fields have been checked, and a number fits all of them
+        return unchecked((self.theta, self.w1, w2, self.w3), self.slip, self.height, self.lift)
 
     @property
     def precession(self) -> Result:
@@ -173,6 +178,19 @@ class State(Hinting):
     def _slips(self) -> bool:
         """Whether the state has a slip that is not zero, or that is lazy and may not be."""
         return self.slip is not None and any(is_lazy(x) or bool(np.any(x != 0)) for x in self.slip)
+
+
+def unchecked(
+    four: Iterable[Reals],
+    slip: tuple[Reals, Reals] | None = None,
+    height: Reals | None = None,
+    lift: Reals | None = None,
+) -> State:
+    """The state of floats of the core, or of fields of a state: checks take longer than many a motion."""
+    found = object.__new__(State)
+    theta, w1, w2, w3 = four
+    found.__dict__.update(theta=theta, w1=w1, w2=w2, w3=w3, slip=slip, height=height, lift=lift)
+    return found
 
 
 def numbers(state: object) -> tuple[Reals, Reals, Reals, Reals]:

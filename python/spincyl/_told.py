@@ -18,7 +18,7 @@ def message(m: "Motion") -> str:
         why += f", since {m._limit[1]}"
     elif m.status == Ending.SIDE and not two_rims(m.body):
         why = "another part landed"
-    elif m.event and m._phases == () and m.status == Ending.SIDE and m.event.state.w2 == 0:
+    elif m.event and m.event.state.w2 == 0 and m.status == Ending.SIDE and _begins(m) == 0:
         why = "the other rim does not rise"
     if m.event:
         why += f": the body {ends(m)} at t = {m.event.time:.{_digits(m.event.time, m.error)}g}{_second(m)}"
@@ -30,7 +30,7 @@ def message(m: "Motion") -> str:
     if m.t.size < m._asked.times.size > 1:
         errors += f"; {m.t.size} of {m._asked.times.size} times reached: plot against m.t"
     if m._by_steps or m._phases is not None:
-        phases = told(m._phases or (), _second(m))
+        phases = "" if m._phases is None else told(m.phases, _second(m))
         return "; ".join(filter(None, (why, phases, _how(m), errors, m._doubt)))
     return f"{why}; found {_how(m)}, {errors}"
 
@@ -40,8 +40,13 @@ def given_up(m: "Motion") -> str:
     at = f"t = {m.event.time:.6g}{_second(m)}" if m.event else "its start"
     name, why = m._limit or ("", "")
     more = "; max_nfev= allows more" if name == "evaluations" else ""
-    phases = f" and {len(m._phases)} phases" if m._phases else ""
+    phases = f" and {_begins(m)} phases" if _begins(m) else ""
     return f"given up at {at} after {m.nfev} evaluations{phases}, since {why}{more}; the motion ends there"
+
+
+def _begins(m: "Motion") -> int | None:
+    """The number of phases; None for a motion that is not divided into phases."""
+    return None if m._phases is None else len(m._phases)
 
 
 def _digits(time: float, error: float) -> int:
@@ -69,7 +74,7 @@ def _how(m: "Motion") -> str:
     if m._by_steps:
         return f"found by steps within {m._setting:g}"
     if m._phases is not None:
-        return how_found(m._phases, m._setting)
+        return how_found(m.phases, m._setting)
     how = {
         "exact": "by first integrals",
         "rk4": f"by RK4, step {m._asked.step!r}{_second(m)}",

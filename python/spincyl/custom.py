@@ -1,6 +1,7 @@
 """Custom laws: a couple that takes energy, and a coefficient of friction that depends on the speed.
 
-Each law is a Python function, plain or compiled (``numba.njit``); a motion calls it thousands of times.
+Each law is a Python function, or a C function (``numba.cfunc``, ctypes, ``scipy.LowLevelCallable``), which is
+called without Python in about a hundredth of the time; a motion calls a law thousands of times.
 `sc.roll` checks the law before the motion begins: its values must be finite and without jumps, and a couple
 must not add energy. A dry law contains the sign of a speed, which jumps. Smooth it: ``tanh(x/e)`` in place of
 ``sign(x)``.
@@ -16,7 +17,7 @@ must not add energy. A dry law contains the sign of a speed, which jumps. Smooth
 
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
@@ -24,6 +25,7 @@ from spincyl._body import Body
 from spincyl._contact import Coulomb
 from spincyl._input.equality import key
 from spincyl._input.numbers import Floats, Reals, Result, number
+from spincyl._input.pointers import COUPLE, FRICTION, Pointer, pointer
 from spincyl._loss import Law, Loss
 from spincyl._scale import Scale
 from spincyl._state import State
@@ -56,8 +58,8 @@ class Couple(Loss):
     Raises
     ------
     TypeError
-        If `function` is not callable. Also if the law is used for many motions, for a drift, for a stone, or
-        together with another loss law.
+        If `function` is not callable, or is a C function of another signature. Also if the law is used for
+        many motions, for a drift, for a stone, or together with another loss law.
     ValueError
         In `sc.roll`, if the couple adds energy, is not finite, or jumps; the message gives a value.
 
@@ -68,13 +70,17 @@ class Couple(Loss):
     """
 
     function: CoupleFunction
+    _units: ClassVar[tuple[float, float, float]] = (1.0, 1.0, 1.0)  # of the numbers of a C function
+    _pointer: ClassVar[Pointer | None] = None
 
     def __post_init__(self) -> None:
-        _called("function", self.function, "theta, w and the normal force")
+        object.__setattr__(self, "_pointer", pointer(self.function, COUPLE))
+        if self._pointer is None:
+            _called("function", self.function, "theta, w and the normal force")
 
     @property
-    def _function(self) -> CoupleFunction:
-        return self.function
+    def _function(self) -> Any:
+        return self.function if self._pointer is None else (self._pointer.address, self._units)
 
     @property
     def laws(self) -> tuple[Law, ...]:
@@ -86,6 +92,10 @@ class Couple(Loss):
             return self
         joules, rate = scale._joule("a couple"), 1.0 / scale._units[1]
         newtons = joules / scale._units[0]
+        if self._pointer is not None:
+            found = type(self)(self.function)
+            object.__setattr__(found, "_units", (rate, newtons, joules))
+            return found
 
         def natural(theta: float, w: Floats, normal: float) -> Floats:
             return np.asarray(self.function(theta, rate * w, newtons * normal)) / joules
@@ -95,7 +105,13 @@ class Couple(Loss):
     def couple(self, body: Body, state: State, normal: Reals = 1.0) -> Result:
         """Couple in a single state, along e1, e2, e3, as the function returns it; `body` is not used."""
         w = np.array([state.w1, state.w2, state.w3], dtype=float)
-        return np.asarray(self.function(float(state.theta), w, float(normal)), dtype=float)
+        if self._pointer is None:
+            return np.asarray(self.function(float(state.theta), w, float(normal)), dtype=float)
+        from ctypes import c_double
+
+        found = (c_double * 3)()
+        self._pointer.call((c_double * 5)(state.theta, *w, normal), found)
+        return np.array(found)
 
     def power(self, body: Body, state: State, normal: Reals = 1.0) -> Result:
         """Power that the law takes in a single state, ``-couple @ w``; `body` is not used."""
@@ -120,14 +136,16 @@ class Friction(Coulomb):
     ----------
     function : callable
         ``function(speed)`` returns the coefficient of friction, 0 or more. `speed` is the magnitude of the
-        slip, in sqrt(g R), or in m/s for a measured body.
+        slip, in sqrt(g R), or in m/s for a measured body. Or a C function ``double (double speed)``, as for
+        `Couple`.
     static : float, optional
         Coefficient of static friction, at least ``function(0.0)``. Default: ``function(0.0)``.
 
     Raises
     ------
     TypeError
-        If `function` is not callable. Also if the law is used for many motions, for a stone, or on a page.
+        If `function` is not callable, or is a C function of another signature. Also if the law is used for
+        many motions, for a stone, or on a page.
     ValueError
         In `sc.roll`, if the coefficient is negative, is not finite, or jumps.
 
@@ -145,20 +163,32 @@ class Friction(Coulomb):
     """
 
     def __init__(self, function: Callable[[float], float], static: float | None = None) -> None:
-        _called("function", function, "the speed of the slip")
-        mu = number("function(0.0)", function(0.0))
+        found = pointer(function, FRICTION)
+        if found is None:
+            _called("function", function, "the speed of the slip")
+        mu = number("function(0.0)", (function if found is None else found.call)(0.0))
         super().__init__(mu, mu if static is None else static)
         object.__setattr__(self, "function", function)
+        object.__setattr__(self, "_pointer", found)
+        object.__setattr__(self, "_speed", 1.0)
 
     @property
-    def _function(self) -> Callable[[float], float]:
-        return self.function  # type: ignore[attr-defined, no-any-return]
+    def _function(self) -> Any:
+        given: Any = self
+        if given._pointer is None:
+            return given.function
+        return given._pointer.address, (given._speed, 1.0, 1.0)
 
     def _natural(self, scale: Scale | None) -> Self:
         if scale is None:
             return self
         speed = scale._units[0] / scale._units[1]
-        return type(self)(lambda u: self._function(speed * u), self.static)
+        given: Any = self
+        if given._pointer is None:
+            return type(self)(lambda u: given.function(speed * u), self.static)
+        found = type(self)(given.function, self.static)
+        object.__setattr__(found, "_speed", speed)
+        return found
 
     @classmethod
     def from_si(cls, *_: object, **__: object) -> Self:
@@ -177,10 +207,10 @@ class Friction(Coulomb):
 
     @property
     def _compares(self) -> Hashable:
-        return self._function, key(self.static)
+        return self.function, key(self.static)  # type: ignore[attr-defined]
 
     def __repr__(self) -> str:
-        return f"custom.Friction({_named(self._function)})"
+        return f"custom.Friction({_named(self.function)})"  # type: ignore[attr-defined]
 
 
 def _named(function: Any) -> str:

@@ -110,6 +110,8 @@ pub(crate) fn fault_of_friction(mu: f64, speed: f64) -> Option<Error> {
     (!(0.0..=f64::MAX).contains(&mu)).then_some(Error::Coefficient { mu, expected: AT_LEAST_0, speed })
 }
 
+/// A law is evaluated near rest for states whose index is a multiple of this; all speeds and forces are among them.
+const RESTS: usize = 3;
 /// States whose index is a multiple of this are joined by lines, along which jumps are searched for.
 const LINES: usize = 12;
 /// Number of halvings of such a line.
@@ -120,14 +122,19 @@ fn size(m: [f64; 3]) -> f64 {
 }
 
 /// The jump of a function between 0 and 1. The interval is halved, always towards the half with the larger change, down
-/// to rounding; the change that remains is the jump.
-fn step(f: impl Fn(f64) -> [f64; 3]) -> f64 {
+/// to rounding; the change that remains is the jump. There is none, and halving ends, where both halves together change
+/// by no more than `little`.
+fn step(f: impl Fn(f64) -> [f64; 3], little: f64) -> f64 {
     let apart = |a: [f64; 3], b: [f64; 3]| size(core::array::from_fn(|k| a[k] - b[k]));
     let (mut from, mut to) = ((0.0, f(0.0)), (1.0, f(1.0)));
     for _ in 0..LINE_HALVINGS {
         let middle = 0.5 * (from.0 + to.0);
         let half = (middle, f(middle));
-        if apart(from.1, half.1) > apart(half.1, to.1) { to = half } else { from = half }
+        let [first, second] = [apart(from.1, half.1), apart(half.1, to.1)];
+        if first + second <= little {
+            break;
+        }
+        if first > second { to = half } else { from = half }
     }
     apart(from.1, to.1)
 }
@@ -159,7 +166,10 @@ fn check_couple(law: &dyn CoupleLaw, body: &Body) -> Result<(), Error> {
         if power < -GIVEN_BY_ROUNDING * size(m) * speed {
             return refuse(power, LOSES);
         }
-        let mut jump = size(at(speed * NEARLY).0) / size(m).max(f64::MIN_POSITIVE);
+        let mut jump = 0.0;
+        if (i as usize).is_multiple_of(RESTS) {
+            jump = size(at(speed * NEARLY).0) / size(m).max(f64::MIN_POSITIVE);
+        }
         if (i as usize).is_multiple_of(LINES)
             && let Some(State { theta, w1, w2, w3 }) = before.replace(y)
         {
@@ -170,8 +180,8 @@ fn check_couple(law: &dyn CoupleLaw, body: &Body) -> Result<(), Error> {
                 w2: between(w2, y.w2, x),
                 w3: between(w3, y.w3, x),
             };
-            let found = step(|x| law.couple(body, &along(x), normal));
-            jump = jump.max(found / size(m).max(f64::MIN_POSITIVE));
+            let found = step(|x| law.couple(body, &along(x), normal), STEP * size(m));
+            jump = f64::max(jump, found / size(m).max(f64::MIN_POSITIVE));
         }
         if jump > STEP {
             return refuse(jump, "no step, and no couple at rest: use tanh(x/e) for sgn(x)");
@@ -184,23 +194,19 @@ fn check_friction(law: &dyn FrictionLaw, fixed: f64) -> Result<(), Error> {
     let most = law.coefficient(0.0);
     // In doubles 0.1 + 0.2 exceeds 0.3.
     within("static", fixed, (most * (1.0 - GIVEN_BY_ROUNDING), f64::INFINITY), "static >= mu at rest")?;
-    let speed = |i: f64| 10f64.powf(-6.0 + 9.0 * i / 1000.0);
-    let mu = |i: f64| law.coefficient(if i < 0.0 { 0.0 } else { speed(i) });
-    for i in -1..1000 {
-        let [from, to] = [f64::from(i), f64::from(i + 1)];
-        within("mu", mu(to), (0.0, f64::MAX), AT_LEAST_0)?;
-        let rises = (mu(to) - mu(from)).abs() > STEP * (1.0 + most);
-        if rises
-            && step(|x| {
-                [law.coefficient((1.0 - x) * if i < 0 { 0.0 } else { speed(from) } + x * speed(to)), 0.0, 0.0]
-            }) > STEP
-        {
+    let mut from = (0.0, most);
+    for i in 0..=1000 {
+        let speed = 10f64.powf(-6.0 + 9.0 * f64::from(i) / 1000.0);
+        let to = (speed, within("mu", law.coefficient(speed), (0.0, f64::MAX), AT_LEAST_0)?);
+        let between = |x: f64| [law.coefficient((1.0 - x) * from.0 + x * to.0), 0.0, 0.0];
+        if (to.1 - from.1).abs() > STEP * (1.0 + most) && step(between, STEP) > STEP {
             return Err(Error::OutOfRange {
                 name: "mu",
-                value: mu(to),
+                value: to.1,
                 expected: "a coefficient without a step; round a step, for example with tanh",
             });
         }
+        from = to;
     }
     Ok(())
 }

@@ -47,7 +47,7 @@ pub(super) fn by_first_integrals(
 ) -> Result<Motion, Error> {
     exact::check(body, &start.state)?;
     let course = Course::of(body, start, times, ask.pose, check(ask, start.time, times)?);
-    if !SHORT_CODE && let Some(motion) = quickly(body, course.start, course.t0, times, ask)? {
+    if !SHORT_CODE && let Some(motion) = quickly(body, course.start, course.t0, times, ask, go_on)? {
         return Ok(motion);
     }
     let swing = Swing::new(body, course.start, ask.table.contact(), ask.pose).ok();

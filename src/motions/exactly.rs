@@ -13,8 +13,8 @@ use crate::laws::state::State;
 /// Largest estimated errors of a state and of a pose for which the quick method is as good as the other.
 const QUICK: f64 = 2e-12;
 const QUICK_POSE: f64 = 3e-11;
-/// Motions with more times than this use the other method, which the caller can interrupt.
-const UNINTERRUPTED: usize = 1 << 16;
+/// Number of times after which the caller may interrupt the quick method: their states take about a millisecond.
+const BLOCK: usize = 1 << 14;
 
 /// The exact motion by the quick method, if the swing is narrow and has no event; this takes a tenth of the work.
 pub(crate) fn quickly(
@@ -23,32 +23,50 @@ pub(crate) fn quickly(
     t0: f64,
     times: &[f64],
     ask: &Ask,
+    go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Option<Motion>, Error> {
-    if ask.method != Method::Exact || times.len() > UNINTERRUPTED {
+    if ask.method != Method::Exact || times.is_empty() {
         return Ok(None);
     }
-    let mut motion = Motion::empty(0, ask.pose)?;
     let mut since = copied(times)?;
     since.iter_mut().for_each(|t| *t -= t0);
-    let mut found = QuickMotion { states: room(times.len())?, ..QuickMotion::default() };
-    let pose = ask.pose.then_some(QUICK_POSE);
-    let wanted = QuickTask {
-        contact: ask.table.contact(),
-        body,
-        start,
-        times: &since,
-        mu: ask.table.mu(),
-        tol: QUICK,
-        pose,
+    let count = |wanted| if wanted { times.len() } else { 0 };
+    let mut found =
+        QuickMotion { states: room(times.len())?, poses: room(count(ask.pose))?, ..QuickMotion::default() };
+    let enough = |times: &[f64], found: &mut QuickMotion| {
+        let pose = ask.pose.then_some(QUICK_POSE);
+        let (contact, mu) = (ask.table.contact(), ask.table.mu());
+        quick(&QuickTask { contact, body, start, times, mu, tol: QUICK, pose }, found)
     };
-    if !quick(&wanted, &mut found) {
-        return Ok(None);
+    // Of several blocks the last time comes first, since the error grows with time.
+    if times.len() > BLOCK {
+        if !enough(&since[times.len() - 1..], &mut found) {
+            return Ok(None);
+        }
+        found.states.clear();
+        found.poses.clear();
     }
+    let mut over = false;
+    for block in since.chunks(BLOCK) {
+        over = !found.states.is_empty() && !go_on();
+        if over {
+            break;
+        }
+        if !enough(block, &mut found) {
+            return Ok(None);
+        }
+    }
+    let mut motion = Motion { states: found.states, error: found.error, ..Motion::empty(0, false)? };
     if ask.pose {
         (motion.poses, motion.pose_error) = (Some(found.poses), found.pose_error);
     }
-    let motion = Motion { times: copied(times)?, states: found.states, error: found.error, ..motion };
-    Ok(Some(if ask.force { pressed(motion, ask.table.contact(), body, &mut || true)? } else { motion }))
+    if over {
+        motion = motion.interrupted(times, t0, *start);
+    } else {
+        motion.times = copied(times)?;
+    }
+    let mut go_on = || over || go_on();
+    Ok(Some(if ask.force { pressed(motion, ask.table.contact(), body, &mut go_on)? } else { motion }))
 }
 
 /// The exact motion up to its end.

@@ -9,6 +9,7 @@ mod loss;
 mod motion;
 mod options;
 mod parts;
+mod pointer;
 mod stone;
 mod sweep;
 mod ufunc;

@@ -3,12 +3,14 @@
 use super::BODY;
 use super::custom::{PythonLaw, Raised};
 use super::options::{MotionAsked, contact_of, table_of};
+use super::pointer::GivenLaw;
 use super::stone::{STONE, stone_of};
 use super::watch::Watch;
-use crate::error::{copied, room, spare_for};
+use crate::error::{copied, room};
 use crate::laws::contact::patch;
 use crate::laws::custom::{CoupleLaw, Custom, FrictionLaw};
 use crate::laws::stone::{Ellipsoid, StoneState};
+use crate::motions::custom;
 use crate::motions::exact::Swing;
 use crate::motions::motion;
 use crate::motions::stone;
@@ -248,47 +250,63 @@ pub fn roll<'py>(
     {
         let state = State::from(<[f64; 4]>::from(*state));
         let start = Start { state, slip: start.0, time: start.1, aloft };
-        return custom(py, &Body::of_numbers((*body).into())?, start, times, &asked);
+        return under_own_laws(py, &Body::of_numbers((*body).into())?, start, times, &asked);
     }
     let ask = asked.ask()?;
+    let loses = !ask.losses.is_none();
     match (body, state) {
         (AnyBody::Rim(body), AnyState::Rim(state)) => {
             let body = Body::of_numbers(body.into())?;
             let state = State::from(<[f64; 4]>::from(state));
             let start = Start { state, slip: start.0, time: start.1, aloft };
-            found(py, &body, &ask, |watch| motion::roll_with(&body, start, times, &ask, || watch.still()))
+            found(py, &body, (&ask, loses), |watch| {
+                motion::roll_with(&body, start, times, &ask, || watch.still())
+            })
         }
         (AnyBody::Stone(stone), AnyState::Stone([a, b, c, d, e, f])) => {
             let stone = stone_of(&stone)?;
             let state = StoneState { vertical: [a, b, c], w: [d, e, f] };
             let start = Start { state, slip: start.0, time: start.1, aloft: None };
-            found(py, &stone, &ask, |watch| stone::roll(&stone, start, times, &ask, || watch.still()))
+            found(py, &stone, (&ask, loses), |watch| {
+                stone::roll(&stone, start, times, &ask, || watch.still())
+            })
         }
         _ => Err(PyValueError::new_err("state: expected a state of this kind of body")),
     }
 }
 
-/// The motion of a body under Python functions, which need the GIL.
-fn custom<'py>(
+/// The motion of a body under user-defined laws, of which only functions of Python need the GIL.
+fn under_own_laws<'py>(
     py: Python<'py>,
     body: &Body,
     start: Start,
     times: &[f64],
     asked: &MotionAsked,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let (ask, mut watch, raised) = (asked.ask_without_custom()?, Watch::new(None), Raised::default());
-    let couple = PythonLaw::of(py, asked.couple.as_ref(), &raised);
-    let friction = PythonLaw::of(py, asked.friction.as_ref(), &raised);
-    let laws = Custom {
-        couple: couple.as_ref().map(|law| law as &dyn CoupleLaw),
-        friction: friction.as_ref().map(|law| law as &dyn FrictionLaw),
+    let ask = asked.ask_without_custom()?;
+    let loses = asked.couple.is_some() || !ask.losses.is_none();
+    let given = [&asked.couple, &asked.friction].map(Option::as_ref);
+    let [pushes, rubs_by] = given.map(|law| law.and_then(GivenLaw::pointed));
+    let pointed = || Custom {
+        couple: pushes.as_ref().map(|law| law as &dyn CoupleLaw),
+        friction: rubs_by.as_ref().map(|law| law as &dyn FrictionLaw),
     };
-    let rolled = crate::motions::custom::roll_with(body, start, times, &ask, laws, || watch.still());
+    if given.iter().flatten().all(|law| law.function().is_none()) {
+        return found(py, body, (&ask, loses), |watch| {
+            custom::roll_with(body, start, times, &ask, pointed(), || watch.still())
+        });
+    }
+    let (mut watch, raised) = (Watch::new(None), Raised::default());
+    let [couple, friction] = given.map(|law| PythonLaw::of(py, law.and_then(GivenLaw::function), &raised));
+    let laws = Custom {
+        couple: couple.as_ref().map(|law| law as &dyn CoupleLaw).or(pointed().couple),
+        friction: friction.as_ref().map(|law| law as &dyn FrictionLaw).or(pointed().friction),
+    };
+    let rolled = custom::roll_with(body, start, times, &ask, laws, || watch.still());
     watch.done(py)?;
     raised.end()?;
     let m = rolled?.ok_or_else(|| PyRuntimeError::new_err("the motion was interrupted"))?;
-    let columns = columns(&m, body, (&ask, asked.couple.is_some() || !ask.losses.is_none()), &mut || true)?
-        .unwrap_or_default();
+    let columns = columns(&m, body, (&ask, loses), &mut || true)?.unwrap_or_default();
     dictionary(py, (&m, body), columns, rubs(&ask))
 }
 
@@ -338,7 +356,7 @@ fn rubs(ask: &Ask) -> bool {
 fn found<'py, S: Told + Send + Sync>(
     py: Python<'py>,
     body: &S::Body,
-    ask: &Ask,
+    (ask, loses): (&Ask, bool),
     roll: impl FnOnce(&mut Watch) -> Result<Option<Motion<S>>, Error> + Send,
 ) -> PyResult<Bound<'py, PyDict>>
 where
@@ -348,7 +366,7 @@ where
     let mut watch = Watch::new(None);
     let found = py.detach(|| {
         let Some(motion) = roll(&mut watch)? else { return Ok(None) };
-        let columns = columns(&motion, body, (ask, !ask.losses.is_none()), &mut || watch.still())?;
+        let columns = columns(&motion, body, (ask, loses), &mut || watch.still())?;
         Ok::<_, Error>(columns.map(|columns| (motion, columns)))
     })?;
     watch.done(py)?;
@@ -411,29 +429,32 @@ fn dictionary<'py, S: Told>(
     if let Some(path) = &m.path
         && rubs
     {
-        // Python's own objects take up to a kilobyte for each phase and each impact.
-        spare_for((path.phases.len() + path.impacts.len()) << 10)?;
         let mut codes = room(path.kinds.len())?;
         codes.extend(path.kinds.iter().map(|kind| *kind as u8));
         extra.set_item(intern!(py, "phase"), PyArray1::<u8>::from_vec(py, codes))?;
         if !path.rims.is_empty() {
             extra.set_item("rim", PyArray1::<u8>::from_vec(py, copied(&path.rims)?))?;
         }
-        let mut phases = room(path.phases.len())?;
-        phases.extend(path.phases.iter().map(|phase| {
-            let aloft = (phase.kind == Kind::Flying).then_some(phase.aloft);
-            let numbers = phase.state.numbers().as_ref().to_vec();
-            (phase.time, phase.kind as u8, numbers, phase.slip, aloft, phase.rim)
-        }));
-        out.set_item(intern!(py, "phases"), phases)?;
-        let impacts: Vec<_> = path
-            .impacts
-            .iter()
-            .map(|at| {
-                let states = at.states.map(<[f64; 4]>::from);
-                (at.time, at.other, at.hit as u8, states, at.velocities, at.impulse, at.lost, at.stays)
-            })
-            .collect();
+        let row = 7 + path.phases.first().map_or(0, |phase| phase.state.numbers().as_ref().len());
+        let mut phases = room(path.phases.len() * row)?;
+        for phase in &path.phases {
+            phases.extend([phase.time, f64::from(phase.kind as u8), f64::from(phase.rim)]);
+            phases.extend(phase.slip.iter().chain(&phase.aloft).chain(phase.state.numbers().as_ref()));
+        }
+        out.set_item(
+            intern!(py, "_phases"),
+            PyArray1::from_vec(py, phases).reshape([path.phases.len(), row])?,
+        )?;
+        let mut impacts = room(path.impacts.len() * STRIKE)?;
+        for at in &path.impacts {
+            let codes = [at.other as u8, at.hit as u8, at.stays as u8].map(f64::from);
+            impacts.push(at.time);
+            impacts.extend(codes.iter().chain(&[at.lost]).chain(&at.impulse));
+            for (state, velocity) in at.states.map(<[f64; 4]>::from).iter().zip(&at.velocities) {
+                impacts.extend(state.iter().chain(velocity));
+            }
+        }
+        let impacts = PyArray1::from_vec(py, impacts).reshape([path.impacts.len(), STRIKE])?;
         out.set_item(intern!(py, "_impacts"), impacts)?;
     }
     out.set_item(intern!(py, "_extra"), extra)?;
@@ -457,6 +478,9 @@ pub fn bounds(errors: [f64; 3], size: [f64; 2], most: [f64; 3]) -> BTreeMap<&'st
 
 /// The arrays that the dictionary itself contains; all others are in its `_extra`.
 const FIELDS: [&str; 3] = ["t", "theta", "w"];
+
+/// The numbers of an impact for Python: time, codes, energy, impulse, and both states with their velocities.
+const STRIKE: usize = 22;
 
 /// The largest number of rows that are copied; longer vectors are passed to NumPy.
 const FEW: usize = 64;

@@ -1,5 +1,6 @@
 //! The options of a motion, as Python gives them.
 
+use super::pointer::GivenLaw;
 use crate::laws::contact::{Contact, TableKind};
 use crate::laws::loss::{COUNT, Losses};
 use crate::motions::{Ask, Method};
@@ -69,8 +70,8 @@ options! {
         pose: bool = false,
         force: bool = false,
         /// User-defined laws: a couple, and a coefficient of friction.
-        couple: Option<Py<PyAny>> = None,
-        friction: Option<Py<PyAny>> = None,
+        couple: Option<GivenLaw> = None,
+        friction: Option<GivenLaw> = None,
         /// Whether the states of many motions are returned at all times, not only at the end.
         spread: bool = false,
         /// Whether many motions with friction or losses are computed twice, to estimate their errors.
@@ -93,12 +94,12 @@ impl MotionAsked {
         self.ask_without_custom()
     }
 
-    /// Whether any law is a Python function.
+    /// Whether any law is user-defined.
     pub fn is_custom(&self) -> bool {
         self.couple.is_some() || self.friction.is_some()
     }
 
-    /// The options that are not Python functions.
+    /// The options that are not user-defined laws.
     pub fn ask_without_custom(&self) -> PyResult<Ask> {
         Ok(Ask {
             table: table_of(self.table)?.with(self.coefficients),

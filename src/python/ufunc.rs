@@ -4,7 +4,7 @@
 //! GIL, and they may return an error, here that of Ctrl-C. Numbers of any type other than double are promoted to
 //! double.
 //!
-//! This file is the only one with `unsafe`: NumPy gives its inner loops raw pointers, strides and counts, and keeps the
+//! This file and `pointer.rs` are the only ones with `unsafe`. Here NumPy gives its inner loops raw pointers, strides and counts, and keeps the
 //! data that `make` registers for the life of the process.
 #![expect(unsafe_code, reason = "NumPy's ufunc loops are a C interface")]
 

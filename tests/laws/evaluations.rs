@@ -116,7 +116,6 @@ fn a_ball_whose_slip_has_died_on_a_patch_costs_what_its_turns_cost() {
     for (tol, most) in TOLERANCES.into_iter().zip([400, 600, 1_000]) {
         let [early, late] = [20.0, 40.0].map(|until| ball_on_a_patch(0.0, until, tol));
         let each = (late.evaluations - early.evaluations) / 20;
-        println!("each {tol:e} {each}");
         assert!(each <= most, "{tol:e}: {each} evaluations in a unit of time, {most} allowed");
         let slip = late.path.unwrap().slip[0];
         assert!(slip[0].hypot(slip[1]) < 1e-12, "{tol:e}: {slip:?}");
@@ -127,7 +126,32 @@ fn a_ball_whose_slip_has_died_on_a_patch_costs_what_its_turns_cost() {
 fn a_billiard_ball_that_creeps_on_a_patch_costs_a_few_steps_in_each_turn() {
     for (tol, most) in TOLERANCES.into_iter().zip([15_000, 25_000, 40_000]) {
         let m = ball_on_a_patch(3e-4, 30.0, tol);
-        println!("billiard {tol:e} {}", m.evaluations);
         assert!(m.evaluations <= most, "{tol:e}: {} evaluations, {most} allowed", m.evaluations);
+    }
+}
+
+#[test]
+fn an_output_more_changes_nothing_in_the_others_and_no_count_of_outputs_is_too_long_to_be_interrupted() {
+    let body = Body::solid(2.5).unwrap();
+    let start = steady::state(&body, 1.3).unwrap().kicked(0.05);
+    let all: Vec<f64> = (0..=1 << 16).map(|i| 3e-4 * f64::from(i)).collect();
+    let ask = Ask::default().with_pose(true);
+    let rolled = |times: &[f64]| {
+        let mut looks = 0;
+        let go_on = || {
+            looks += 1;
+            true
+        };
+        let m = roll_with(&body, start, times, &ask, go_on).unwrap().unwrap();
+        (m, looks)
+    };
+    let (whole, looks) = rolled(&all);
+    assert!((3..30).contains(&looks), "{looks}");
+    // The method does not change with the number of outputs, and so neither do the last digits.
+    for count in [1 << 16, 20_000, 100] {
+        let (part, _) = rolled(&all[..count]);
+        assert_eq!(part.states, whole.states[..count]);
+        assert_eq!(part.poses.unwrap(), whole.poses.as_ref().unwrap()[..count]);
+        assert!(part.error <= whole.error && whole.error < 1e-12);
     }
 }

@@ -258,6 +258,10 @@ def floats(value: Reals) -> Floats:
 
     An array from a file, a network or another process may be unaligned. Masked values become NaN.
     """
+    own = type(value) is np.ndarray and value.dtype == np.float64
+    if own and value.flags.c_contiguous and value.flags.aligned:
+        return value  # type: ignore[no-any-return]  # NumPy's checks take ten times as long
+    value = np.array(value) if type(value) is float else value
     if isinstance(value, np.ma.MaskedArray):
         value = np.ma.filled(value.astype(np.float64), np.nan)
     array: Floats = np.require(value, np.float64, ["C", "A", "E"])
@@ -266,13 +270,9 @@ def floats(value: Reals) -> Floats:
 
 def in_columns(values: Iterable[Reals], shape: tuple[int, ...]) -> list[Floats]:
     """`values` as columns of one length for compiled functions; single numbers stay columns of length 1."""
-    found = [
-        floats(x).reshape(-1) if np.size(x) == 1 else floats(np.broadcast_to(floats(x), shape)).reshape(-1)
-        for x in values
-    ]
-    count = math.prod(shape)
-    if count != 1 and all(x.size == 1 for x in found):
-        found[0] = np.full(count, found[0][0])
+    found = [floats(x if np.size(x) == 1 else np.broadcast_to(floats(x), shape)).reshape(-1) for x in values]
+    if math.prod(shape) != 1 and all(x.size == 1 for x in found):
+        found[0] = np.full(math.prod(shape), found[0][0])
     return found
 
 

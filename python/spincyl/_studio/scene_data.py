@@ -259,7 +259,7 @@ def _known(
             for x in m.impacts
         ]
     first = "slipping" if m.contact == "smooth" else "rolling"
-    begun = [(t0, first)] if m._phases is None else [(x.time, x.kind) for x in m._phases]
+    begun = [(t0, first)] if m._phases is None else [(x.time, x.kind) for x in m.phases]
     told["phases"] = [{"time": (t - t0) * second, "kind": name} for t, name in begun]
     last = float(m.t[-1]) if m.event is None else m.event.time
     why = m.message.split(";")[0]

@@ -170,7 +170,7 @@ def motion_rows(m: Motion, scale: Scale | None, *, weighed: bool = False) -> Ite
         yield from _phase_rows(m, scale)
         if m.t.size:
             yield "heat of slipping", *_energy(m, float(end.dissipated[-1]), scale if weighed else None)
-        if m.natural._impacts:
+        if m.natural._impacts is not None and len(m.natural._impacts):
             lost = [impact.lost for impact in m.natural.impacts]
             yield f"lost in {len(lost)} impacts", *_energy(m, sum(lost), scale if weighed else None)
     elif m.losses is None:

@@ -73,14 +73,23 @@ def in_si(found: Any, scale: Scale | None) -> Any:
     if scale is None:
         return found
     for name, array in found.variables.items():
-        natural = array.attrs.get("units", "1")
-        factor, said = si_of(natural, scale)
-        factor = scale._worst if name == "error" else factor
+        factor, attrs = to_si(str(name), array.attrs, scale)
         if factor is not None:
-            attrs = array.attrs | {"units": said}
             found[name] = (array.dims, array.data * factor, attrs)
-    found.attrs |= {"radius": scale.radius, "mass": scale.mass, "gravity": scale.gravity}
+    found.attrs |= sizes(scale)
     return found
+
+
+def to_si(name: str, attrs: dict[str, Any], scale: Scale | None) -> tuple[float | None, dict[str, Any]]:
+    """The factor that converts a variable to SI, None without a conversion, and its attributes after it."""
+    factor, said = si_of(attrs.get("units", "1"), scale)
+    factor = scale._worst if scale is not None and name == "error" else factor
+    return (None, attrs) if factor is None else (factor, attrs | {"units": said})
+
+
+def sizes(scale: Scale) -> dict[str, float]:
+    """The scale of measured bodies as attributes of a result."""
+    return {"radius": scale.radius, "mass": scale.mass, "gravity": scale.gravity}
 
 
 def signature(job: str, inputs: dict[str, object], **parameters: object) -> dict[str, str]:

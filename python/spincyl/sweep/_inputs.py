@@ -107,10 +107,28 @@ def with_inputs(result: "xarray.Dataset", named: dict[str, Any], length: str) ->
     return (result.drop_vars(brought) if brought else result).assign_coords(coords)
 
 
+def plain_inputs(
+    named: dict[str, Reals], shape: tuple[int, ...], dims: list[str], length: str
+) -> dict[str, Any]:
+    """The coordinates of `with_inputs` for arrays without names, which broadcast to `shape`."""
+    lib: Any = extra("xarray", "sweep")
+    found: dict[str, Any] = {}
+    for name, given in named.items():
+        data = floats(given)
+        first = len(shape) - data.ndim
+        once = tuple(i for i in range(data.ndim) if data.shape[i] == 1 < shape[first + i])
+        along = tuple(dims[first + i] for i in range(data.ndim) if i not in once)
+        along, data = _varying(along, data.squeeze(once))
+        if along or data == data:
+            units = {"units": _UNITS[name].replace("R", length)}
+            found[name] = lib.Variable(along, np.asarray(data), units, fastpath=True)
+    return found
+
+
 def _varying(dims: tuple[Any, ...], data: Floats) -> tuple[tuple[Any, ...], Floats]:
     """Dimensions and numbers without those dimensions along which all numbers have the same bits."""
     for dim in dims:
-        bits = np.moveaxis(data, dims.index(dim), 0).view(np.int64)
+        bits = (np.moveaxis(data, dims.index(dim), 0) if data.ndim > 1 else data).view(np.int64)
         if len(bits) > 1 and (bits[0] == bits[-1]).all() and (bits == bits[:1]).all():
             dims, data = tuple(d for d in dims if d != dim), np.take(data, 0, dims.index(dim))
     return dims, data

@@ -66,19 +66,24 @@ def given_up(status: np.ndarray) -> None:
         warn(f"{told}: {why}", RuntimeWarning)
 
 
+def broadcast(fields: dict[str, Reals]) -> tuple[tuple[int, ...], list[str]]:
+    """The common shape of those fields that have no names of dimensions, and the names that we give these."""
+    try:
+        shape = np.broadcast_shapes(*(np.shape(x) for x in fields.values() if not hasattr(x, "dims")))
+    except ValueError:
+        shapes = ", ".join(f"{name} {np.shape(x)}" for name, x in fields.items() if np.shape(x))
+        raise ValueError(f"bodies, states: shapes do not fit: {shapes}") from None
+    return shape, ["motion"] if len(shape) == 1 else [f"motion_{i}" for i in range(len(shape))]
+
+
 def labelled(fields: dict[str, Reals], more: dict[str, Reals]) -> tuple[list[Any], list[str]]:
     """Fields, and then `more`, with named dimensions; and the names that the plain fields have, in order.
 
     Plain fields are arrays without names: their broadcast dimensions are "motion", or "motion_0" and so on.
     """
     lib: Any = extra("xarray", "sweep")
-    plain = [np.shape(x) for x in fields.values() if not hasattr(x, "dims")]
-    try:
-        rank = len(np.broadcast_shapes(*plain))
-    except ValueError:
-        shapes = ", ".join(f"{name} {np.shape(x)}" for name, x in fields.items() if np.shape(x))
-        raise ValueError(f"bodies, states: shapes do not fit: {shapes}") from None
-    dims = ["motion"] if rank == 1 else [f"motion_{i}" for i in range(rank)]
+    shape, dims = broadcast(fields)
+    rank = len(shape)
 
     def label(x: Reals) -> Any:
         if hasattr(x, "dims"):
@@ -129,3 +134,23 @@ def applied(
             keep_attrs=False,
         )
     return dict(zip(names, found, strict=True))
+
+
+def dataset(data: dict[str, Any], coords: dict[str, Any], attrs: dict[str, object]) -> Any:
+    """A Dataset of variables and coordinates along common dimensions of the right lengths.
+
+    The public constructor compares and copies all of them, which takes longer than a small sweep. xarray's
+    own methods avoid that with a constructor that is not public; without it we take the public one.
+    """
+    lib: Any = extra("xarray", "sweep")
+    axes = [name for name, x in coords.items() if x.dims == (name,)]
+    # an index of pandas is not searched for an array of dask, which xarray would import first
+    frames: Any = extra("pandas", "sweep")
+    indexes = {name: lib.indexes.PandasIndex(frames.Index(coords[name].data), name) for name in axes}
+    variables = data | coords
+    for name, axis in indexes.items():
+        variables |= axis.create_variables({name: coords[name]})
+    try:
+        return lib.Dataset._construct_direct(variables, set(coords), attrs=attrs, indexes=indexes)
+    except (AttributeError, TypeError):
+        return lib.Dataset(data, coords, attrs)

@@ -289,9 +289,9 @@ def roll(
     told = kept_bodies(bodies, states, losses) | kept_contact(contact)
     question = Question(fields, names, spread, asked, wanted, scale, seconds, told)
     result = swept(_fill, question, LABELS, threads=threads, progress=progress)
-    result["method"].attrs |= flags(Answer)
-    if "rests_on" in result:
-        result["rests_on"].attrs |= flags(RestsOn)
+    result.variables["method"].attrs |= flags(Answer)
+    if "rests_on" in result.variables:
+        result.variables["rests_on"].attrs |= flags(RestsOn)
     if losses is not None:
         result.attrs["losses"] = repr(losses)
     if asked.step is not None:

@@ -15,15 +15,16 @@ from spincyl._input.threads import thread_count
 from spincyl._measured import speaking
 from spincyl._phases import rubs
 from spincyl._scale import Scale
-from spincyl.sweep._common import in_si, is_lazy, signature
-from spincyl.sweep._inputs import with_inputs
-from spincyl.sweep._labels import Status, applied, flags, free, in_order, labelled
+from spincyl.sweep._common import in_si, is_lazy, signature, sizes, to_si
+from spincyl.sweep._inputs import plain_inputs, with_inputs
+from spincyl.sweep._labels import Status, applied, broadcast, dataset, flags, free, in_order, labelled
 
 if TYPE_CHECKING:
     import xarray
 
-#: Columns of codes.
-CODES = ("method", "status")
+#: Columns of codes; the core writes some of them as numbers.
+CODES = ("method", "status", "rests_on")
+WRITTEN = ("rests_on",)
 
 
 class Question(NamedTuple):
@@ -55,6 +56,33 @@ def swept(
     options = crossing(asked._replace(contact=kind(asked.contact)))
     share = 1 if lazy and threads is None else thread_count(threads)
     fill = partial(_block, law=law, given=tuple(fields), names=names, spread=spread, times=at, asked=options)
+    attrs: dict[str, object] = {"contact": named(asked.contact), "t": float(at[-1]), "tol": asked.tol}
+    if not rubs(asked.contact):
+        attrs["mu"] = asked.mu
+    attrs |= {"beyond": 1} if asked.beyond else {}  # numbers, since netCDF has no booleans
+    attrs |= {} if asked.errors else {"errors": 0}
+    more = {"restitution": asked.restitution, "stop_at": asked.stop_at, "max_nfev": asked.max_nfev}
+    attrs |= {name: x for name, x in more.items() if x is not None}
+    told, unit = at, f"sqrt({length}/g)"
+    if scale is not None:  # the times as the caller gave them
+        told, unit = floats(seconds).reshape(-1), "s"
+        attrs["t"] = float(told[-1])
+    coords = {"t": lib.Variable(("t",), told, {"units": unit}, fastpath=True)} if spread else {}
+    if not any(hasattr(x, "dims") or is_lazy(x) for x in (*fields.values(), *kept.values())):
+        shape, dims = broadcast(fields)
+        with speaking(scale, length), telling(progress, "sweep", by_default=True) as tells:
+            arrays = fill(*fields.values(), threads=share, progress=tells)
+        columns: dict[str, Any] = {}
+        for name, array in zip(names, arrays, strict=True):
+            factor, about = to_si(name, _about(name, labels), scale)
+            along = (*dims, "t") if name in spread else dims
+            if factor is not None:
+                array *= factor
+            # the fast path does not look for arrays of dask, which it would import first
+            columns[name] = lib.Variable(along, array, about, fastpath=True)
+        attrs |= {} if scale is None else sizes(scale)
+        plain: xarray.Dataset = dataset(columns, coords | plain_inputs(kept, shape, dims, length), attrs)
+        return plain
     # an empty block, run first, raises errors about the arguments before any work
     with speaking(scale, length):
         fill(*(np.empty(0) for _ in fields), threads=1, progress=None)
@@ -65,26 +93,18 @@ def swept(
         data = applied(partial(fill, threads=share, progress=tells), *columns)
     data = {name: in_order(array, dims) for name, array in data.items()}
     for name, array in data.items():
-        array.attrs = dict(zip(("units", "long_name"), labels[name], strict=True))
-    data["status"].attrs |= flags(Status)
-    coords = {"t": ("t", at, {"units": f"sqrt({length}/g)"})} if spread else {}
-    attrs: dict[str, object] = {"contact": named(asked.contact), "t": float(at[-1]), "tol": asked.tol}
-    if not rubs(asked.contact):
-        attrs["mu"] = asked.mu
-    attrs |= {"beyond": 1} if asked.beyond else {}  # numbers, since netCDF has no booleans
-    attrs |= {} if asked.errors else {"errors": 0}
-    more = {"restitution": asked.restitution, "stop_at": asked.stop_at, "max_nfev": asked.max_nfev}
-    attrs |= {name: x for name, x in more.items() if x is not None}
+        array.attrs = _about(name, labels)
     if lazy:
         own = {} if scale is None else {"scale": scale}
         attrs["spincyl_sweep"] = signature("roll", fields, t=at.tolist(), want=want, **options, **own)
     result: xarray.Dataset = in_si(lib.Dataset(data, coords, attrs), scale)
-    if scale is not None:  # the times as the caller gave them
-        told = floats(seconds).reshape(-1)
-        result.attrs["t"] = float(told[-1])
-        if spread:
-            result["t"] = ("t", told, {"units": "s"})
     return with_inputs(result, dict(zip(kept, given[len(fields) :], strict=True)), length)
+
+
+def _about(name: str, labels: Mapping[str, tuple[str, str]]) -> dict[str, Any]:
+    """The attributes of an output, in natural units."""
+    unit, meaning = labels[name]
+    return {"units": unit, "long_name": meaning} | (flags(Status) if name == "status" else {})
 
 
 def _block(
@@ -101,9 +121,12 @@ def _block(
     """The arrays of one block of motions."""
     shape = np.broadcast_shapes(*(np.shape(x) for x in fields))
     shapes = {name: (*shape, times.size) if name in spread else shape for name in names}
-    out = {name: np.empty(math.prod(wide), _dtype(name)) for name, wide in shapes.items()}
+    types = {name: np.float64 if name in WRITTEN else _dtype(name) for name in names}
+    out = {name: np.empty(math.prod(wide), types[name]) for name, wide in shapes.items()}
     law(dict(zip(given, in_columns(fields, shape), strict=True)), times, asked, out, threads, progress)
-    return tuple(out[name].reshape(wide) for name, wide in shapes.items())
+    # what no motion has told yet is NaN, and its code 0
+    codes = {name: np.nan_to_num(out[name]).astype(_dtype(name)) for name in names if name in WRITTEN}
+    return tuple((out | codes)[name].reshape(wide) for name, wide in shapes.items())
 
 
 def _dtype(name: str) -> type:

@@ -40,7 +40,7 @@ pub(crate) struct QuickMotion {
     pub pose_error: f64,
 }
 
-/// Computes states and poses at the times. Returns false unless their estimated errors are accepted and the motion
+/// Computes states and poses at the times, after those already found. Returns false unless their estimated errors are accepted and the motion
 /// surely stays in the model up to the last time: no other rim lands, N > 0, and rolling needs no more friction than
 /// `mu`.
 pub(crate) fn quick(asked: &QuickTask<'_>, found: &mut QuickMotion) -> bool {
@@ -66,9 +66,9 @@ fn answer<S: Simd, const ROUND: bool>(simd: S, asked: &QuickTask<'_>, found: &mu
     let swing = Swings::<f64x8<S>, TERMS, PARTS_ALONE>::near(&POINTS, TERMS, law, y);
     let (last, span) = (*times.last()?, number(*times.last()?));
     // The last times come first, since the error grows with time.
-    let (mut k, mut turns) = (times.len(), None);
-    found.states.resize(k, *start);
-    found.poses.resize(if pose.is_some() { k } else { 0 }, Pose::start());
+    let (mut k, mut turns, before) = (times.len(), None, found.states.len());
+    found.states.resize(before + k, *start);
+    found.poses.resize(if pose.is_some() { before + k } else { 0 }, Pose::start());
     while k > 0 {
         let first = k.saturating_sub(LANES);
         let some = &times[first..k];
@@ -76,7 +76,7 @@ fn answer<S: Simd, const ROUND: bool>(simd: S, asked: &QuickTask<'_>, found: &mu
         t[..some.len()].copy_from_slice(some);
         let at = swing.place(f64x8::from_slice(simd, &t));
         let ([theta, w1, w2, w3], error, _) = swing.state_at(f64x8::from_slice(simd, &t), &at);
-        for (i, to) in found.states[first..k].iter_mut().enumerate() {
+        for (i, to) in found.states[before + first..before + k].iter_mut().enumerate() {
             // The state at time 0 is the given start.
             if t[i] != 0.0 {
                 *to = State { theta: theta[i], w1: w1[i], w2: w2[i], w3: w3[i] };
@@ -103,9 +103,9 @@ fn answer<S: Simd, const ROUND: bool>(simd: S, asked: &QuickTask<'_>, found: &mu
                 let mut pose = turns.pose(&spot);
                 if contact == Contact::Smooth {
                     pose.contact_point =
-                        Pose::below_centre(body, start, &found.states[first + i], pose.phi.rest);
+                        Pose::below_centre(body, start, &found.states[before + first + i], pose.phi.rest);
                 }
-                found.poses[first + i] = pose;
+                found.poses[before + first + i] = pose;
                 found.pose_error = larger(found.pose_error, turns.error(&spot, t[i], late[i]) + found.error);
                 if found.pose_error > enough || found.pose_error.is_nan() {
                     return None;
