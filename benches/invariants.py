@@ -187,7 +187,7 @@ def endings(body, m, found):
     # Without a limit of friction nothing says how the motion goes on.
     told = m.status.name in ("SIDE", "SLIP") and m.contact == "rolling"
     # a contact that comes down slowly never ends its bounces if none of them loses anything
-    told = told or m.status.name == "BOUNDED" and m._asked.restitution == 1.0 and "impacts" in m.message
+    told = told or (m.status.name == "BOUNDED" and m._asked.restitution == 1.0 and "impacts" in m.message)
     if m._asked.restitution is not None and m.status.name not in REASONS and not told:
         found.wrong("ends", f"{m.status.name}" + ("" if m.event is None else f" at t = {m.event.time:.6g}"))
 
