@@ -80,7 +80,6 @@ fn a_ball_whose_slip_has_died_on_a_patch_costs_what_its_turns_cost() {
     for (tol, most) in TOLERANCES.into_iter().zip([400, 600, 1_000]) {
         let [early, late] = [20.0, 40.0].map(|until| ball_on_a_patch(0.0, until, tol));
         let each = (late.evaluations - early.evaluations) / 20;
-        println!("each {tol:e} {each}");
         assert!(each <= most, "{tol:e}: {each} evaluations in a unit of time, {most} allowed");
         let slip = late.path.unwrap().slip[0];
         assert!(slip[0].hypot(slip[1]) < 1e-12, "{tol:e}: {slip:?}");
@@ -91,7 +90,6 @@ fn a_ball_whose_slip_has_died_on_a_patch_costs_what_its_turns_cost() {
 fn a_billiard_ball_that_creeps_on_a_patch_costs_a_few_steps_in_each_turn() {
     for (tol, most) in TOLERANCES.into_iter().zip([15_000, 25_000, 40_000]) {
         let m = ball_on_a_patch(3e-4, 30.0, tol);
-        println!("billiard {tol:e} {}", m.evaluations);
         assert!(m.evaluations <= most, "{tol:e}: {} evaluations, {most} allowed", m.evaluations);
     }
 }

@@ -213,7 +213,6 @@ fn the_landing_of_a_coin_is_known_within_its_claim_at_any_tolerance() {
         let m =
             roll_with(&coin, steady::state(&coin, 0.5).unwrap(), &[2000.0], &ask, || true).unwrap().unwrap();
         let off = (m.event.unwrap().time - 301.431_911_184).abs();
-        println!("coin {tol:e}: {off:e} of {:e} {}", m.error, m.evaluations);
         assert!(off <= m.error + 2e-7, "{tol:e}: {off:e} of {:e}", m.error);
         assert!(m.evaluations < most, "{tol:e}: {}", m.evaluations);
     }
