@@ -371,9 +371,10 @@ fn the_mirror_image_of_a_landing_of_both_rims_is_its_landing_along_the_axis_and_
 /// The largest difference of two motions of one start at the times that both reach and at their end, as seen from the
 /// same rim.
 fn apart(a: &Motion, b: &Motion) -> f64 {
+    let far = |x: [f64; 4], y: [f64; 4]| x.iter().zip(y).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
     let of = |x: &State, y: &State| {
         let there = State { theta: PI - y.theta, w2: -y.w2, w3: -y.w3, ..*y };
-        x.distance(y).min(x.distance(&there))
+        far((*x).into(), (*y).into()).min(far((*x).into(), there.into()))
     };
     let ends = a.event.zip(b.event).map(|(a, b)| of(&a.state, &b.state).max((a.time - b.time).abs()));
     a.states.iter().zip(&b.states).map(|(x, y)| of(x, y)).fold(ends.unwrap_or(0.0), f64::max)
