@@ -206,7 +206,7 @@ fn a_coin_whirrs_to_its_face_in_one_phase_with_few_steps() {
 #[test]
 fn the_landing_of_a_coin_is_known_within_its_claim_at_any_tolerance() {
     // The coin nods, also where its creep would allow steps of many nods. The time is that of explicit steps.
-    for (tol, most) in [(1e-6, 60_000), (1e-8, 120_000), (1e-10, 240_000)] {
+    for (tol, most) in [(1e-6, 110_000), (1e-8, 190_000), (1e-10, 450_000)] {
         let coin = Body::solid(2.2 / 25.75).unwrap();
         let losses = Losses::of(Law::RollingResistance, 3e-3);
         let ask = Ask::on(on(0.3, 0.4 / 25.75)).with_losses(losses).with_method(Method::Tolerance(tol));
