@@ -33,7 +33,8 @@ fn is_the_beginning<S: Moving>(
     most: u64,
 ) {
     assert_eq!((part.ending(), part.limit), (Ending::Bounded, Some(Limit::Evaluations)));
-    assert!(part.evaluations >= most && part.evaluations < most + 40, "{} of {most}", part.evaluations);
+    // The series of a slow slip counts as a hundred evaluations, and is never used in part.
+    assert!(part.evaluations >= most && part.evaluations < most + 300, "{} of {most}", part.evaluations);
     let count = part.states.len();
     assert!(count > 2 && count < whole.states.len(), "{count}");
     for (a, b) in part.states.iter().zip(&whole.states) {
@@ -111,7 +112,7 @@ fn an_interrupted_motion_is_the_motion_up_to_there() {
     let mut looks = 0;
     let part = roll_with(&body, start, &times(8000), &ask, || {
         looks += 1;
-        looks < 3
+        looks < 2
     });
     let part = part.unwrap().unwrap();
     assert_eq!(

@@ -218,7 +218,8 @@ fn a_slip_that_almost_ends_and_grows_again_costs_no_more_than_another() {
     let speeds: Vec<f64> = path_of(&motion).slip[100..240].iter().map(|[u, v]| u.hypot(*v)).collect();
     let least = speeds.iter().copied().fold(f64::INFINITY, f64::min);
     assert!(least < 1e-6 && least < 1e-2 * speeds[0] && least < 1e-2 * speeds[139], "{least:e}");
-    assert!(motion.evaluations < 1_000, "{}", motion.evaluations);
+    // Each series counts as a hundred.
+    assert!(motion.evaluations < 4_000, "{}", motion.evaluations);
 }
 
 #[test]

@@ -189,7 +189,7 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
             // The direction of a slow slip returns to its zero of f in a time proportional to the speed, so
             // that an integrator would need tiny steps.
             let speed = y[P::SLIP].hypot(y[P::SLIP + 1]);
-            let stays_slow = whole && on;
+            let stays_slow = whole && on && self.toil() > 0;
             let next = if stays_slow { slow.follow(&y, series.angle.about(until), 0.0, speed) } else { None };
             match next.filter(|next| next.pays) {
                 Some(next) => series = next,
