@@ -112,7 +112,7 @@ fn an_interrupted_motion_is_the_motion_up_to_there() {
     let mut looks = 0;
     let part = roll_with(&body, start, &times(8000), &ask, || {
         looks += 1;
-        looks < 2
+        looks < 3
     });
     let part = part.unwrap().unwrap();
     assert_eq!(

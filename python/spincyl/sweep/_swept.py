@@ -88,9 +88,9 @@ def swept(
         fill(*(np.empty(0) for _ in fields), threads=1, progress=None)
     given, dims = labelled(fields, kept)
     free(given, names, spread)
-    columns = given[: len(fields)], names, [*map(_dtype, names)], [name in spread for name in names], at
+    wanted = given[: len(fields)], names, [*map(_dtype, names)], [name in spread for name in names], at
     with telling(progress, "sweep", by_default=not lazy) as tells:
-        data = applied(partial(fill, threads=share, progress=tells), *columns)
+        data = applied(partial(fill, threads=share, progress=tells), *wanted)
     data = {name: in_order(array, dims) for name, array in data.items()}
     for name, array in data.items():
         array.attrs = _about(name, labels)
@@ -125,7 +125,9 @@ def _block(
     out = {name: np.empty(math.prod(wide), types[name]) for name, wide in shapes.items()}
     law(dict(zip(given, in_columns(fields, shape), strict=True)), times, asked, out, threads, progress)
     # what no motion has told yet is NaN, and its code 0
-    codes = {name: np.nan_to_num(out[name]).astype(_dtype(name)) for name in names if name in WRITTEN}
+    codes: dict[str, np.ndarray] = {
+        name: np.nan_to_num(out[name]).astype(_dtype(name)) for name in names if name in WRITTEN
+    }
     return tuple((out | codes)[name].reshape(wide) for name, wide in shapes.items())
 
 

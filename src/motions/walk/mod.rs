@@ -51,6 +51,8 @@ pub(crate) const MOMENT: f64 = 1e-8;
 
 /// A dry slip is over where its speed has fallen below this share of mu; the rest is extrapolated linearly.
 const OVER: f64 = 1e-13;
+/// Number of steps between two calls of `go_on`, where a series may take up a slip.
+const BREATH: u64 = 256;
 
 /// The speed below which a slip under friction of this strength counts as zero.
 pub(crate) fn slip_over(dry: bool, strength: f64) -> f64 {
@@ -139,6 +141,8 @@ pub(crate) struct Walk<'a, P: Phases<N>, const N: usize> {
     pub perturbation: f64,
     pub spent: Spent,
     looked: slips::Looked,
+    /// Number of steps since `go_on` was asked last, in flows that are shorter than its turn.
+    unasked: u64,
     /// The series of the last slow slip.
     slow: Option<Box<P::Slow>>,
     /// Whether a lane has used up its crawling steps, so that the next flow is tested at once
@@ -185,6 +189,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
             crawling,
             spent: Spent { evaluations: 0, erred: 0.0, patience: crawling, exhausted: None },
             looked: slips::Looked::default(),
+            unasked: 0,
             slow: None,
             tired: false,
         })
@@ -338,7 +343,19 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
             return Err(Error::Lost { theta: P::seen(self, self.kind()).state.theta() });
         }
         match paused {
-            Pause::Here(y, step) if looks < u64::MAX => Ok(self.takes_up(y, step)),
+            Pause::Here(y, step) if looks < u64::MAX => {
+                // A flow this short does not ask `go_on` itself.
+                self.unasked += looks;
+                if self.unasked >= BREATH {
+                    self.unasked = 0;
+                    if !go_on() {
+                        self.made.motion.limit = Some(Limit::Interrupted);
+                        P::slip_halts(self, y, Halt::Endless);
+                        return Ok(Pause::No);
+                    }
+                }
+                Ok(self.takes_up(y, step))
+            }
             paused => Ok(paused),
         }
     }
