@@ -81,7 +81,7 @@ def test_a8_a_motion_with_restitution_at_more_times_than_memory_holds_is_a_memor
 def test_a8_more_impacts_than_memory_holds_are_a_memory_error():
     ball = "ball = sc.Body.ball(0.0, i1=0.4, i3=0.4)\nstart = sc.dropped(ball, 1e-4, 1.0)\n"
     job = "def job(): sc.roll(ball, start, [0.0, 800.0], contact=sc.Coulomb(0.3), restitution=1.0)"
-    survives(ball + job, 128 << 20)
+    survives(ball + job, 24 << 20)
 
 
 @pytest.mark.parametrize(

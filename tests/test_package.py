@@ -191,7 +191,7 @@ def test_the_wrapper_is_thin_and_no_file_is_long():
     assert not {name: n for name, text in texts.items() if (n := len(text.splitlines())) > 450}
     top = [path.read_text("utf-8") for path in PACKAGE.glob("*.py")]
     assert len(top) > 20
-    assert sum(map(code_lines, top)) <= 3640
+    assert sum(map(code_lines, top)) <= 3650
 
 
 @pytest.mark.parametrize(

@@ -6,6 +6,7 @@ use super::slide::Slide;
 use super::write::state;
 use crate::error::Error;
 use crate::laws::loss::Holds;
+use crate::laws::loss::Law;
 use crate::methods::flow::{Flow, FlowPlace, Steps};
 use crate::motions::Ending;
 use crate::motions::halt::{Halt, loses};
@@ -110,12 +111,16 @@ impl<const N: usize> BodyWalk<'_, N> {
     }
 
     /// The error of the time at which a falling face has landed, although it hardly cleared the table or hardly did not:
-    /// where what is left of its turning has the size of rounding errors, these decide whether it lands or goes on to
-    /// rock, a few times at most.
+    /// where rolling resistance has left a turning of the size of rounding errors, these decide whether it lands or goes
+    /// on to rock, a few times at most.
     pub(super) fn rocks_on(&self) -> f64 {
         let ([s, _, w1, w2], i1) = (core::array::from_fn(|i| self.at[i]), self.of.body.i1());
         let barely = turning_share(i1, s, w1, w2) > LANDS_BARELY && w2 * w2 > FALLS_FAST * s;
-        if barely { ROCKINGS * w2.abs() * (1.0 + i1) } else { 0.0 }
+        if barely && self.ask.losses.coefficient(Law::RollingResistance) > 0.0 {
+            ROCKINGS * w2.abs() * (1.0 + i1)
+        } else {
+            0.0
+        }
     }
 
     /// The time at which a slipping whirr ends, and its error, if they are known and no output is
