@@ -8,7 +8,7 @@ use spincyl::contact::Table;
 use spincyl::contact::slip::Friction;
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::path::{Hit, Kind};
-use spincyl::motion::{Ask, Ending, Method, Motion, Moving, Start, roll_with};
+use spincyl::motion::{Ask, Ending, Method, Motion, Start, roll_with};
 use spincyl::{Body, State};
 use std::f64::consts::{FRAC_PI_2, PI};
 

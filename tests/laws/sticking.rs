@@ -8,7 +8,8 @@ use spincyl::motion::{Ask, Ending, Method, Motion, Start, roll_with};
 use spincyl::{Body, Error, State, steady};
 
 /// Motions with the coefficients of sliding and of static friction.
-type Scenes = Vec<(Body, State, [f64; 2])>;
+type Scene = (Body, State, [f64; 2]);
+type Scenes = Vec<Scene>;
 
 /// The columns of a sweep: at all times, at the end, and its summaries.
 #[derive(Default)]
@@ -23,7 +24,7 @@ struct Swept {
 
 impl Swept {
     fn of(all: &Scenes, job: &Job<'_>) -> Self {
-        let column = |f: &dyn Fn(&(Body, State, [f64; 2])) -> f64| all.iter().map(f).collect::<Vec<f64>>();
+        let column = |f: &dyn Fn(&Scene) -> f64| all.iter().map(f).collect::<Vec<f64>>();
         let bodies =
             [Body::ell, Body::i1, Body::i3, Body::fillet, Body::theta_end].map(|x| column(&|a| x(&a.0)));
         let states = [0, 1, 2, 3].map(|k| column(&|a| numbers(&a.1)[k]));

@@ -58,8 +58,7 @@ fn a_uniform_ball_moves_as_one_whose_moments_differ_in_the_last_digits() {
         hops += path_of(&a).impacts.len();
         claims.push(a.error);
         let (path, others) = (path_of(&a), path_of(&b));
-        for i in 0..times.len() {
-            let (y, z) = (a.states[i], b.states[i]);
+        for (i, (y, z)) in a.states.iter().zip(&b.states).enumerate() {
             // The moments differ by 2e-13, which turns the axis by as much in a radian.
             let from = start.state;
             let speeds = [y.w1, y.w2, y.w3, from.w1, from.w2, from.w3, start.slip[0], start.slip[1]];

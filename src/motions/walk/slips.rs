@@ -45,6 +45,8 @@ const STEPS_TO_LOOK: [u64; 2] = [24, 240];
 /// A series takes up a slow slip whose speed changes by a smaller factor than exp(CREEPS) in a step: such steps are
 /// short only because the direction of the slip follows the motion so fast that longer ones would be unstable.
 const CREEPS: f64 = 0.15;
+/// The change of the speed is that of the last steps, fewer than these: a lane looks after 96.
+const RECENT: f64 = 110.0;
 /// The direction of a slip has settled where its distance from the series, times the speed, is below this share of the
 /// tolerance.
 const SETTLED: f64 = 0.5;
@@ -125,7 +127,8 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
         let (speed, spent) = (y[P::SLIP].hypot(y[P::SLIP + 1]), self.spent.evaluations);
         let Looked { speed: before, evaluations, skips: [skips, last] } = self.looked;
         let steps = spent.saturating_sub(evaluations) as f64 / 12.0;
-        let creeps = (before / speed).ln().abs() < CREEPS * steps;
+        // Over many steps a slip changes by a small factor a step even if it ends soon.
+        let creeps = steps < RECENT && (before / speed).ln().abs() < CREEPS * steps;
         self.looked = Looked { speed, evaluations: spent, skips: [skips.saturating_sub(1), last] };
         if speed > SLOW_SLIP || !creeps || skips > 0 {
             return Pause::Here(y, step);
