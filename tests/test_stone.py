@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import spincyl as sc
+from spincyl._ending import MESSAGES
 
 INERTIA = [[0.02, -0.012, 0.0], [-0.012, 0.2, 0.0], [0.0, 0.0, 0.21]]
 STONE = sc.Ellipsoid((1.0, 0.3, 0.2), INERTIA, offset=(0.0, 0.0, -0.07))
@@ -105,6 +106,19 @@ def test_a_motion_says_how_the_stone_stands_and_turns_back():
     found = m.to_xarray()
     assert found["vertical"].dims == ("t", "axis") and "Ellipsoid" in found.attrs["body"]
     assert list(m.to_dataframe().columns[1:7]) == ["w1", "w2", "w3", "energy", "n1", "n2"]
+
+
+def test_every_ending_of_a_stone_is_told():
+    grip = {"contact": sc.Coulomb(0.3)}
+    tables = ({}, {"mu": 0.1}, grip, grip | {"losses": sc.loss.Drilling(0.02)})
+    seen = set()
+    for spin in (0.0, 1e-300, 0.1, 2.0, 15.0):
+        for how in tables:
+            m = sc.roll(STONE, STONE.spinning(spin, pitch=0.3), 20.0, **how)
+            seen.add(m.status)
+            assert MESSAGES[m.status][0] in m.message
+            assert m.message in repr(m)
+    assert seen >= {sc.Ending.DONE, sc.Ending.SLIP, sc.Ending.LIFT_OFF}
 
 
 def test_a_measured_stone_moves_in_seconds():

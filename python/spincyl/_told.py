@@ -18,7 +18,7 @@ def message(m: "Motion") -> str:
         why += f", since {m._limit[1]}"
     elif m.status == Ending.SIDE and not two_rims(m.body):
         why = "another part landed"
-    elif m.event and m.event.state.w2 == 0 and m.status == Ending.SIDE and _begins(m) == 0:
+    elif m.status == Ending.SIDE and _begins(m) == 0 and m.event and m.event.state.w2 == 0:
         why = "the other rim does not rise"
     if m.event:
         why += f": the body {ends(m)} at t = {m.event.time:.{_digits(m.event.time, m.error)}g}{_second(m)}"
