@@ -170,7 +170,7 @@ def roll(
         if that is more. First integrals need no evaluations.
     errors : bool
         Estimate the errors of motions with friction, losses or restitution. Each of these motions is then
-        computed twice. If false, they are computed once, in about two thirds of the time, with the same
+        computed twice. If false, they are computed once, in half to four fifths of the time, with the same
         states, ends and `status`, and their `error` is NaN; only where first integrals solve the whole
         motion (`Answer.LANES`) `error` is known all the same.
     threads : int, optional

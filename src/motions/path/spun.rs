@@ -150,7 +150,8 @@ impl Spun {
         // On its pole the axis keeps the direction in which it leans.
         let (cos, sin) = if flat > 0.0 { (-x / flat, -y / flat) } else { (1.0, 0.0) };
         let (w_h, w_2) = (w_x * cos + w_y * sin, w_y * cos - w_x * sin);
-        let left = (1.0 - self.slows * t).max(0.0);
+        // Exactly zero at the time at which the slip ends.
+        let left = if self.slows > 0.0 { (1.0 / self.slows - t) * self.slows } else { 1.0 };
         let slip = [u * cos + v * sin, v * cos - u * sin].map(|u| left * u);
         // The sum turns -0 into 0.
         let w = [c * w_h + s * w_z, w_2, c * w_z - s * w_h].map(|w| w + 0.0);

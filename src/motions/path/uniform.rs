@@ -78,7 +78,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             self.next = Some(self.gives_up(Limit::Evaluations));
             return;
         }
-        while let Some(t) = self.until().filter(|t| *t <= now + end) {
+        while let Some(t) = self.until().filter(|t| t - now <= end) {
             let at = self.spun(&mut spun, t - now).0;
             let y = self.numbers(&at, t, heat(t - now));
             self.made.slid(&ask, &slide, &y);
@@ -112,12 +112,13 @@ impl<const N: usize> BodyWalk<'_, N> {
         let (mut spun, up) = (Spun::new(&from, [0.0; 3], 0.0), from.lift);
         let fall = (up * up + 2.0 * from.height).sqrt();
         let end = if up < 0.0 { 2.0 * from.height / (fall - up) } else { up + fall };
-        while let Some(t) = self.until().filter(|t| *t <= now + end) {
-            let (t, at) = (t - now, self.spun(&mut spun, t - now).0);
-            let height = (from.height + t * (up - 0.5 * t)).max(0.0);
+        while let Some(t) = self.until().map(|t| t - now).filter(|t| *t <= end) {
+            let at = self.spun(&mut spun, t).0;
+            // A product that vanishes exactly at the landing.
+            let height = if t == 0.0 { from.height } else { 0.5 * (end - t) * (t + (fall - up)) };
             self.writes_with(&Aloft { height, lift: up - t, ..at }, Kind::Flying, 0.0);
         }
-        if self.since.last().is_none_or(|last| now + end > *last) {
+        if self.since.last().is_none_or(|last| end > last - now) {
             return;
         }
         let (at, angle) = self.spun(&mut spun, end);
