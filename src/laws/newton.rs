@@ -22,7 +22,7 @@ use crate::numbers::Real;
 use nalgebra::Vector3;
 
 /// The contact force, in units of the weight.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Force {
     /// The vertical component N.

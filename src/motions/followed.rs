@@ -282,10 +282,6 @@ impl<S: Moving> Followed<S> {
         // larger errors.
         let larger = (grown(off) + least) / tol;
         motion.force_error = settled(motion.force_error * larger.max(1.0), pressed);
-        // Both runs have the same series of a slow slip, whose friction turns with its direction.
-        let forces =
-            motion.forces.iter().flatten().map(|force| S::force_distance(force, &S::Force::default()));
-        motion.force_error += self.path.swerve * forces.fold(0.0, f64::max);
         // Rounding errors of the angles of a pose are proportional to these angles.
         let turning = motion.poses.iter().flatten().last().map_or(0.0, S::turning);
         // After an impact the errors of its time and of its sum are also those of the pose.

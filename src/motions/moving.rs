@@ -16,7 +16,7 @@ pub trait Moving: Copy + Debug + PartialEq {
     /// The position and the orientation of the body.
     type Pose: Copy + Debug + PartialEq;
     /// The contact force.
-    type Force: Copy + Debug + Default + PartialEq;
+    type Force: Copy + Debug + PartialEq;
 
     /// The numbers of the state.
     fn numbers(&self) -> Self::Numbers;

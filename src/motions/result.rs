@@ -357,8 +357,6 @@ pub struct Path<S = State> {
     pub(crate) leaves_turns: bool,
     /// The sum of the estimated errors of all steps.
     pub(crate) erred: f64,
-    /// The error of the direction of slips that are known by series, in radians, where outputs show them.
-    pub(crate) swerve: f64,
     /// The direction in which the current slip began from rest.
     pub(super) way: [f64; 2],
 }
@@ -389,7 +387,6 @@ impl<S> Path<S> {
             rolls_on: false,
             leaves_turns: false,
             erred: 0.0,
-            swerve: 0.0,
             way: [0.0; 2],
         })
     }

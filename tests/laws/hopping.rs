@@ -83,7 +83,7 @@ fn whatever_hops_keeps_its_energy_within_its_estimated_error_and_nothing_sinks_i
         lost += usize::from(m.error > 1e-3);
         for i in 0..m.times.len() {
             let off = (whole(i) - whole(0)).abs();
-            assert!(off < m.error.max(1e-12) * (1.0 + whole(0)), "{off:e} {case}");
+            assert!(off < m.error.max(1e-12) * (1.0 + whole(0).abs()), "{off:e} {case}");
             let [height, _] = path.aloft[i];
             let other = if two_rims(&body) { 2.0 * body.ell() * m.states[i].theta.cos() } else { 0.0 };
             let lowest = height + other.min(0.0);

@@ -1,6 +1,6 @@
 //! A slip from rest: by series in time, until an integrator continues the slip, or the slip ends.
 
-use super::slow::{LAST_TERMS, SLOW_SLIP};
+use super::slow::SLOW_SLIP;
 use super::{Next, Pause, Phases, Walk};
 use crate::laws::contact::standstill::towards;
 use crate::motions::halt::{Halt, TIME};
@@ -177,7 +177,6 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
                 let mut y = series.at(t - series.from);
                 y[TIME] = t;
                 P::write(self, &y);
-                self.made.path.swerve = LAST_TERMS;
             }
             P::passed(self, &series, until);
             let mut y = series.at(until);

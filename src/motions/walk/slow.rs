@@ -24,7 +24,7 @@ use crate::numbers::{Series, TERMS};
 /// Number of coefficients for each digit of the tolerance.
 const PER_DIGIT: f64 = 1.2;
 /// A series is used only while the last two terms of alpha(t) are below this, in radians.
-pub(super) const LAST_TERMS: f64 = 1e-7;
+const LAST_TERMS: f64 = 1e-7;
 /// A slip faster than this is computed by the integrator.
 pub(super) const SLOW_SLIP: f64 = 0.02;
 /// Longest time over which two sweeps for the series of a slow slip must agree, and largest number of sweeps; without
