@@ -60,7 +60,9 @@ def measure(script, title, quick, count):
     best = compared(title, {name: points[name] for name in points.keys() - bare}, errors, "us")
     if bare:
         peers = {name for name in points if not name.startswith("spincyl")}
-        best += compared(f"{title}, errors=False", {name: points[name] for name in bare | peers}, errors, "us")
+        best += compared(
+            f"{title}, errors=False", {name: points[name] for name in bare | peers}, errors, "us"
+        )
     return {"panels": {f"{title}, us a motion": points}, "text": told.stdout.strip() + "\n", "best": best}
 
 
