@@ -242,6 +242,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
                     self.begins_phase(self.kind());
                     if self.ask.stop_at_rolling {
                         self.made.path.rolls_on = true;
+                        self.writes_up_to_now();
                     } else if let Some(step) = P::rolls(self, at_limit, go_on)? {
                         return Ok(step);
                     }
