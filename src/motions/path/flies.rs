@@ -203,6 +203,8 @@ impl<const N: usize> BodyWalk<'_, N> {
         }
         self.claims(late);
         let shown = self.shows() * self.sign_of_rounding();
+        // This part of the difference of the runs is not a step error that has grown.
+        self.made.path.erred += late * shown.abs();
         let t = (t + late * shown).max(0.0);
         let at = if shown == 0.0 { at } else { self.flown(&*course, t, before) };
         self.at[TIME] = now + t;

@@ -270,11 +270,11 @@ impl<const N: usize> Phases<N> for BodyPhases {
         walk.told(kind)
     }
 
-    /// A motion that hops is also perturbed by a share of the step errors since the last time: impacts multiply them,
-    /// and where both runs take the same steps only this shows by how much.
+    /// A motion that has hopped is also perturbed by a share of the step errors since the last time: impacts multiply
+    /// them, and where both runs take the same steps only this shows by how much.
     fn perturbs(walk: &mut BodyWalk<'_, N>) {
         let mut share = walk.perturbation;
-        if share > 0.0 && walk.ask.restitution.is_some() {
+        if share > 0.0 && !walk.made.path.impacts.is_empty() {
             let erred = walk.spent.erred - core::mem::replace(&mut walk.of.shown, walk.spent.erred);
             share += CHANCE * erred * walk.of.slide.tol * walk.sign_of_rounding();
         }

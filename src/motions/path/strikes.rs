@@ -354,7 +354,8 @@ impl<const N: usize> BodyWalk<'_, N> {
             return self.lands_on_both();
         };
         // The last impacts turn a slip that is slower than they are.
-        let turns = if left > 0.0 { (left / from.slip[0].hypot(from.slip[1])).min(1.0) } else { 0.0 };
+        let slips = [from.slip, from.on_other_rim(&self.of.slide.law.shape).slip].map(|[u, v]| u.hypot(v));
+        let turns = if left > 0.0 { (left / slips[0].min(slips[1])).min(1.0) } else { 0.0 };
         let doubt = (left * turns).max(left * left * SUMMED);
         self.claims(doubt);
         self.doubts(doubt);
