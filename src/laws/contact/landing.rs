@@ -241,7 +241,7 @@ pub(crate) fn settled(
     friction: &Friction,
 ) -> (State, [f64; 2]) {
     let (ell, (mu, dry)) = (body.ell(), strength(friction));
-    let least = SLOW * (lift.abs() + ell * y.w2.abs());
+    let least = REVERSES * (lift.abs() + ell * y.w2.abs());
     let drag = |[u, v]: [f64; 2]| {
         let size = u.hypot(v);
         let per = if dry { size } else { 1.0 };
@@ -422,8 +422,8 @@ impl Impact<'_> {
     }
 }
 
-/// A slip of less than this many velocities of the last impacts may turn around in them.
-const SLOW: f64 = 10.0;
+/// A slip of less than this many velocities of a bounce may turn around in the next impacts.
+pub(crate) const REVERSES: f64 = 10.0;
 
 /// An impulse or a speed that is smaller than this fraction of another one counts as zero.
 const SAME: f64 = 1e-12;

@@ -40,9 +40,8 @@ pub(crate) fn passed<const N: usize>(y: &[f64; N], rates: &[f64; N]) -> Option<[
     let (level, upright) = ([c * w1 - s * w3, w2], s * w1 + c * w3);
     let (level_then, slip) = (later(level, [rolling, d2]), later([u_h, u_2], [du_h, du_2]));
     let upright_then = upright + lasts * (ds * w1 + s * d1 + dc * w3 + c * d3);
-    let moves = |[h, two]: [f64; 2], about: f64, lean: [f64; 2]| {
-        [two * c - about * lean[1], about * lean[0] - h * c]
-    };
+    let moves =
+        |[h, two]: [f64; 2], about: f64, lean: [f64; 2]| [two * c - about * lean[1], about * lean[0] - h * c];
     let (lean, early) = ([-s, 0.0], moves(level, upright, [-s, 0.0]));
     let then = [0, 1].map(|i| lean[i] + lasts * early[i]);
     let late = moves(level_then, upright_then, then);
