@@ -4,7 +4,6 @@ A check compares a motion with a law of nature, with `sweep.roll`, or with the s
 never with a stored number. Bounds are multiples of the estimated errors, plus rounding errors.
 """
 
-import inspect
 import math
 
 import numpy as np
@@ -44,8 +43,6 @@ VAGUE = 1e-2
 REST = 1e-6
 #: Endings that the laws do not exclude under a restitution.
 REASONS = {"DONE", "FACE", "STOPS", "PAINLEVE", "LANDING"}
-#: Bounds the work of a motion where `roll` has such an option.
-MAX_NFEV = {"max_nfev": 2_000_000} if "max_nfev" in inspect.signature(sc.roll).parameters else {}
 
 
 class Found:
@@ -286,14 +283,14 @@ def swept(body, state, until, how, m, found):
 def judged(body, state, times, how, found, sweeps=True):
     """Compute a motion, again with another tolerance, and in a sweep, and check all; a ValueError if it is refused."""
     until = float(times[-1])
-    m = sc.roll(body, state, times, t0=0.0, want=("pose", "force"), **how, **MAX_NFEV)
+    m = sc.roll(body, state, times, t0=0.0, want=("pose", "force"), **how)
     found.ending, found.evaluations = m.status.name, m.nfev
     if m.status.name == "BOUNDED":
         found.note("given up")
     balance(body, m, found)
     endings(body, m, found)
     try:
-        again = sc.roll(body, state, times, t0=0.0, tol=OTHER_TOL, **how, **MAX_NFEV)
+        again = sc.roll(body, state, times, t0=0.0, tol=OTHER_TOL, **how)
     except ValueError as error:
         found.wrong("tol", f"refused within {OTHER_TOL:g} only: {error}")
     else:
@@ -301,7 +298,7 @@ def judged(body, state, times, how, found, sweeps=True):
         endings(body, again, found)
         beside(body, m, again, until, found)
         if isinstance(state, sc.State):
-            image = sc.roll(body, mirrored(state), times, t0=0.0, tol=OTHER_TOL, **how, **MAX_NFEV)
+            image = sc.roll(body, mirrored(state), times, t0=0.0, tol=OTHER_TOL, **how)
             beside(body, again, image, until, found, "mirror", np.array([1.0, -1.0, 1.0, -1.0]))
     if sweeps:
         swept(body, state, until, how, m, found)

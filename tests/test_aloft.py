@@ -359,3 +359,68 @@ def test_no_force_is_told_where_a_motion_begins_with_an_impact_that_lifts_a_rim(
     for force in (m.normal, m.friction, m.contact_force[:, 2]):
         assert np.isnan(force[0])
         assert (force[1:] >= 0).all()
+
+
+@pytest.mark.parametrize(
+    "body, state, e",
+    [
+        (TUBE, sc.State(np.pi / 2, 0.0, 0.0, 0.0, slip=(0.3, 0.0)), 0.0),
+        (TUBE, sc.State(np.pi / 2, 0.1, 0.0, 0.4, slip=(0.2, 0.3)), 0.0),
+        (sc.Body.solid(0.5), sc.State(0.5, 0.3, 0.1, 0.4, slip=(0.3, 0.2)), None),
+    ],
+)
+def test_at_the_time_at_which_a_slip_vanishes_the_forces_are_those_of_the_phase_that_follows(body, state, e):
+    how = {"contact": GRIP, "restitution": e, "want": "force"}
+    time = sc.roll(body, state, 10.0, **how).phases[1].time
+    times = [np.nextafter(time, 0), time, np.nextafter(time, 9), time + 1e-9]
+    m = sc.roll(body, state, times, t0=0.0, **how)
+    forces = [m.normal] if e is None else [m.normal, m.normal_other]
+    for force in forces:
+        assert np.isfinite(force).all()
+        assert np.ptp(force[1:]) < 1e-6
+    assert m.phase[0] != m.phase[1] == m.phase[2]
+    assert (m.slip[1] == 0).all()
+
+
+@pytest.mark.parametrize("e", [0.0, 0.2])
+@pytest.mark.parametrize("w3", [0.0, 0.7])
+def test_a_film_that_presses_one_of_both_rims_into_the_table_makes_it_strike(e, w3):
+    # One rim alone would have to carry the body, and its film is so strong that this force would pull it down.
+    tube, film = sc.Body.tube(2.3, bore=0.39), sc.Viscous(3.0)
+    start = sc.State(np.pi / 2, 0.0, 0.0, w3, slip=(-1.3, -2.0))
+    m = sc.roll(tube, start, np.linspace(0, 10, 101), contact=film, restitution=e)
+    assert m.status.name == "DONE"
+    assert m.impacts[0].time == 0.0 and m.impacts[0].impulse[2] > 0
+    whole = m.energy + m.dissipated + m.lost_in_impacts
+    assert np.abs(whole - whole[0]).max() < 1e-8
+
+
+def test_no_force_is_told_where_a_rim_that_rolls_would_have_to_be_pulled_down_before_it_strikes():
+    can = sc.Body.solid(0.79315421049904)
+    start = sc.State(np.pi / 2, 0.0, -0.9328432526946044, -0.30656294280436863)
+    for losses in (None, sc.loss.DryContour(0.0154)):
+        m = sc.roll(can, start, [0.0, 1.0], contact=GRIP, restitution=0.9, losses=losses, want="force")
+        assert np.isnan(m.normal[0])
+
+
+def test_the_last_impacts_on_both_rims_give_no_energy_to_a_body_that_rolls_on_one_of_them():
+    body, air = sc.Body.solid(0.8433562064003812, fillet=0.3862261533615549), 0.003404214098082521
+    start = sc.State(0.7822888573776334, 0.3967129516846794, -0.4044220644955893, -0.8513402372512513)
+    how = {"contact": sc.Coulomb(0.9971057892449586), "restitution": 0.5}
+    m = sc.roll(body, start, np.linspace(0, 20, 101), losses=sc.loss.AirQuadratic(air), **how)
+    assert np.diff(m.dissipated).min() > -1e-9
+
+
+@pytest.mark.parametrize("losses", [sc.loss.Drilling(0.0027), sc.loss.AirLinear(1e-9), None])
+def test_a_ball_that_passes_its_pole_nearer_than_any_time_resolves_goes_on_on_the_other_side(losses):
+    # As the ball in the plane through its axis, where the pole is no special place.
+    ball = sc.Body(ell=0.4, i1=0.46672793091561615, i3=0.4073817586443443, fillet=1.0)
+    how = {"contact": sc.Coulomb(0.7), "losses": losses, "want": "pose"}
+    t = np.linspace(0, 8, 101)
+    plane = sc.roll(ball, sc.State(0.5, 0.0, 0.0, 0.0), t, **how)
+    for near in (1e-8, 1e-12, 1e-14, 1e-17):
+        m = sc.roll(ball, sc.State(0.5, 0.7 * near, 0.0, 0.5 * near), t, **how)
+        assert m.status.name == "DONE"
+        assert m.theta == pytest.approx(plane.theta, abs=1e-7)
+        assert m.centre == pytest.approx(plane.centre, abs=1e-6)
+        assert m.error < 1e-9

@@ -123,3 +123,33 @@ def test_the_estimated_error_follows_bounces_that_multiply_errors():
         # While the bounces are still known, the estimated error is not vague.
         early = sc.roll(body, start, 9.0, **how)
         assert early.error < 1e-7
+
+
+def test_a_motion_that_never_hops_claims_with_a_restitution_what_it_claims_without():
+    body = sc.Body.solid(0.044048104518139015)
+    start = sc.State(
+        0.21119104833208474,
+        1.340993769164863,
+        -0.08754343298544283,
+        -0.8940964032841376,
+        slip=(-1.2784852614934814, 0.44965284078759776),
+    )
+    how = {"contact": sc.Coulomb(0.966171804691438), "losses": sc.loss.AirQuadratic(0.00010457838052103413)}
+    t = np.linspace(0, 20, 101)
+    true = sc.roll(body, start, t, **how)
+    for tol in (1e-10, 1e-9):
+        m, alone = (sc.roll(body, start, t, tol=tol, restitution=e, **how) for e in (0.8, None))
+        assert not m.impacts
+        assert np.abs(m.y - true.y).max() <= m.error
+        assert m.error == pytest.approx(alone.error, rel=0.3)
+
+
+def test_steps_of_a_smooth_motion_claim_a_share_of_the_sum_of_their_errors():
+    tube = sc.Body.tube(5.6076680660088964, bore=0.5600633311566589)
+    start = sc.State(0.11530395187387268, -0.08824418602137107, 0.0, -0.7619233224905091, slip=(0.0, 0.0))
+    how = {"contact": sc.Coulomb(0.8381179756079996), "losses": sc.loss.Drilling(0.0019191455479805344)}
+    t = np.linspace(0, 8, 101)
+    true = sc.roll(tube, start, t, **how)
+    for tol in (1e-12, 1e-11, 1e-10, 1e-9, 1e-8, 1e-7):
+        m = sc.roll(tube, start, t, tol=tol, **how)
+        assert np.abs(m.y - true.y).max() <= 2 * m.error

@@ -30,6 +30,8 @@ const TOGETHER: f64 = 0.3;
 /// that the difference of the runs hides the errors of these steps.
 const ALIKE: f64 = 0.7;
 /// The estimated error is at least this share of the sum of all step errors, since two runs may agree by chance.
+const LEAST_SHARE: f64 = 0.25;
+/// The share of the step errors by which a rougher run that hops is perturbed.
 pub(crate) const CHANCE: f64 = 0.1;
 /// A phase of a motion with impacts that is shorter has no meaning of its own: it belongs to bounces, of which another
 /// run with the same motion before and after may have one more or one less.
@@ -263,7 +265,7 @@ impl<S: Moving> Followed<S> {
         // chance, the estimated error also includes a share of their sum. Where impacts multiply the errors of both runs, it
         // includes that share as grown as it is in the rougher run, which is perturbed by it.
         let grows = if rough.path.erred > 0.0 { (off / rough.path.erred).max(1.0) } else { 1.0 };
-        least += self.path.erred * if alike || hops { grows } else { CHANCE };
+        least += self.path.erred * if alike || hops { grows } else { LEAST_SHARE };
         least += alone;
         // Errors that have grown until the two runs part are no longer proportional to the tolerances.
         let parted = PARTED * fastest;

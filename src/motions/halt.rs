@@ -31,6 +31,8 @@ pub(crate) enum Halt {
     Settles,
     /// The body no longer rolls or rocks; it may drill.
     Rests,
+    /// A ball has passed its pole, nearer than steps resolve.
+    Pole,
     /// One rim of a lying body rises: the other rim, or the rim from which the state is seen.
     Rises,
     Changes,

@@ -51,7 +51,8 @@ fn a_couple_of_the_air_that_a_user_writes_moves_a_body_as_that_of_the_library_do
     let mut r = wander(5301);
     let times: Vec<f64> = (0..=20).map(|i| 0.2 * f64::from(i)).collect();
     let mut ended = 0;
-    for _ in 0..drawn(450) {
+    // The forces of slow slips, whose directions have larger errors, are rare.
+    for _ in 0..450 {
         let (body, start, table) = any(&mut r);
         let (b, b2) = (0.1 * r(), 0.05 * r());
         let air = |_: &Body, y: &State, _: f64| {

@@ -27,7 +27,7 @@ fn energy(body: &Body, y: &State, [u, v, lift]: [f64; 3], height: f64) -> f64 {
 #[test]
 fn a_body_that_is_dropped_flat_lands_on_its_face_at_the_time_of_a_free_fall() {
     let mut r = wander(64);
-    for k in 0..drawn(300) {
+    for k in 0..300 {
         let body = match k % 4 {
             0 => Body::solid(3.0 * r()),
             1 => Body::tube(2.0 * r(), r()),
@@ -119,7 +119,7 @@ fn a_body_that_tumbles_from_upright_flies_as_one_that_hardly_leans() {
 fn round_ends_pass_their_poles_however_near_without_an_end_and_without_a_loss_of_energy() {
     let mut r = wander(66);
     let (mut nearest, mut past) = (1f64, 0);
-    for k in 0..drawn(150) {
+    for k in 0..150 {
         let body = match k % 3 {
             0 => Body::rounded_tube(1.2 + r(), 0.0, 1.0),
             1 => Body::balls(1.0 + r()),
@@ -164,7 +164,7 @@ fn round_ends_pass_their_poles_however_near_without_an_end_and_without_a_loss_of
         }
         past += usize::from(m.states.len() == times.len());
     }
-    assert!(past > drawn(60), "{past} {nearest}");
+    assert!(past > 60, "{past} {nearest}");
 }
 
 #[test]
@@ -181,7 +181,7 @@ fn dry_friction_along_the_contour_takes_energy_also_from_a_ball_that_passes_besi
             moved(&ball, &start, ask, &times)
         };
         let far = run(1e-3, &ask);
-        for near in [1e-4, 1e-5, 1e-6, 1e-7] {
+        for near in [1e-4, 1e-5, 1e-6, 1e-7, 1e-8] {
             for ask in [ask, ask.with_pose(true)] {
                 let m = run(near, &ask);
                 let lost = &m.path.as_deref().unwrap().work_lost;

@@ -230,9 +230,10 @@ fn compressed(
 }
 
 /// The state and the slip after the last impact of a rattle on both rims, whose rim comes down or rises at `lift`.
-/// Impulses of either sign, each with the friction of its slip, take the rest of w2 and of the vertical velocity.
+/// Impulses of either sign, each with the friction of its slip, take the rest of w2 and of the vertical velocity. A slip
+/// that is hardly faster than they are has no direction: without friction the body then gains no energy.
 ///
-/// Error: the square of those velocities, or the velocities themselves at a rim that sticks.
+/// Error: the square of those velocities, or the velocities themselves at a rim that slips so slowly, or sticks.
 pub(crate) fn settled(
     body: &Body,
     y: &State,
@@ -240,9 +241,11 @@ pub(crate) fn settled(
     friction: &Friction,
 ) -> (State, [f64; 2]) {
     let (ell, (mu, dry)) = (body.ell(), strength(friction));
+    let least = REVERSES * (lift.abs() + ell * y.w2.abs());
     let drag = |[u, v]: [f64; 2]| {
-        let size = if dry { u.hypot(v) } else { 1.0 };
-        [u, v].map(|u| if size > 0.0 { mu * u / size } else { 0.0 })
+        let size = u.hypot(v);
+        let per = if dry { size } else { 1.0 };
+        [u, v].map(|u| if !dry || size > least { mu * u / per } else { 0.0 })
     };
     let (low, up) = (drag(slip), drag([slip[0], slip[1] - 2.0 * ell * y.w1]));
     let (down, turn) = (-(lift + ell * y.w2), -body.i1() * y.w2);
@@ -418,6 +421,9 @@ impl Impact<'_> {
         good.then_some(Pushed { y, slip: slips[0], lift, push })
     }
 }
+
+/// A slip of less than this many velocities of a bounce may turn around in the next impacts.
+pub(crate) const REVERSES: f64 = 10.0;
 
 /// An impulse or a speed that is smaller than this fraction of another one counts as zero.
 const SAME: f64 = 1e-12;

@@ -89,7 +89,7 @@ impl<T: Real> Lying<T> {
     }
 
     /// The friction per normal force, with its sign reversed, at a rim that slips with `u`.
-    fn drag(&self, u: [T; 2]) -> [T; 2] {
+    pub fn drag(&self, u: [T; 2]) -> [T; 2] {
         let size = if self.dry { u[0].mac(u[0], u[1] * u[1]).sqrt() } else { u[0].splat(1.0) };
         u.map(|u| self.strength * u / size)
     }

@@ -50,6 +50,8 @@ const TOIL_PER_TIME: f64 = 40_000.0;
 const SPARES: bool = rk8::LOOPS || IN_REGISTERS;
 /// A part of an implicit step is divided into at most 2 to this power.
 const PARTINGS: i32 = 8;
+/// Largest share of the time up to an extrapolated halt at which an output is shown.
+const MOSTLY: f64 = 0.9;
 /// Number of crawling steps between two calls of [`Flow::stuck`].
 const TIRING: u64 = 20_000;
 
@@ -113,7 +115,8 @@ pub(crate) trait Flow<const M: usize>: Copy {
     fn slows<const N: usize>(&self, _: Self::Halt, _: &FlowPlace<N>) -> f64 {
         f64::INFINITY
     }
-    /// Whether the numbers at a halt are extrapolated, so that they hold at all times up to that halt.
+    /// Whether the numbers at a halt are extrapolated linearly, since a slip vanishes there. An output at the very time of
+    /// such a halt belongs to the phase that follows, as the force of a slip that has vanished has no direction.
     fn is_extrapolated(_: Self::Halt) -> bool {
         false
     }
@@ -294,7 +297,8 @@ pub(crate) trait Flow<const M: usize>: Copy {
     }
 
     /// Writes the numbers at those of the `times` that are not after `until`, within a step of `h` between two points, and
-    /// returns the number of those times; `last` gets the numbers at the last of them.
+    /// returns the number of those times; `last` gets the numbers at the last of them. Up to an extrapolated halt the
+    /// numbers are linear in time.
     #[inline(always)]
     fn write_times<const N: usize>(
         &self,
@@ -306,10 +310,19 @@ pub(crate) trait Flow<const M: usize>: Copy {
     ) -> usize {
         let mut count = 0;
         while let Some(t) = times.get(count).copied().filter(|t| *t <= until) {
-            let stopped = stop.filter(|(halt, y)| {
-                Self::is_extrapolated(*halt) && t > after.y[Self::TIME] && t <= y[Self::TIME]
-            });
-            *last = stopped.map_or_else(|| self.at_time(from, after, h, t), |(_, y)| *y);
+            let stopped = stop.filter(|(halt, _)| Self::is_extrapolated(*halt));
+            if stopped.is_some_and(|(_, y)| t == y[Self::TIME]) {
+                break;
+            }
+            *last = match stopped.filter(|_| t > after.y[Self::TIME]) {
+                Some((_, y)) => {
+                    let (begin, end) = (after.y[Self::TIME], y[Self::TIME]);
+                    // Rounding must not make a slip vanish before its end.
+                    let share = ((t - begin) / (end - begin)).min(MOSTLY);
+                    core::array::from_fn(|i| after.y[i] + share * (y[i] - after.y[i]))
+                }
+                None => self.at_time(from, after, h, t),
+            };
             last[Self::TIME] = t;
             write(&self.shown(last));
             count += 1;

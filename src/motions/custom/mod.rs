@@ -14,6 +14,7 @@ use super::ask::{check_flow, check_times_after};
 use super::followed::{Followed, judged};
 use super::halt::{Halt, TIME, lost};
 use super::judge::doubted;
+use super::path::slide::Slide;
 use super::path::without_slip;
 use super::path::write::{pose, state, state_errors};
 use super::row::OutputRow;
@@ -338,8 +339,13 @@ impl Followed {
             }
             Pose { contact_point: Pose::below_centre(flow.body, start, &now, pose.phi.rest), ..pose }
         });
-        let force =
-            ask.force.then(|| doubted(&now, state_errors(&now, flow.tol), |y| flow.force(y, slip, way)));
+        let force = ask.force.then(|| {
+            let (force, doubt) = doubted(&now, state_errors(&now, flow.tol), |y| flow.force(y, slip, way));
+            // Friction turns with the slip, whose direction is as uncertain as the slip is slow.
+            let speed = slip[0].hypot(slip[1]);
+            let turns = if flow.slips && speed > 0.0 { flow.tol * Slide::fastest(y) / speed } else { 0.0 };
+            (force, doubt + turns.min(1.0) * force.along.hypot(force.across))
+        });
         self.push(OutputRow { pose, force, ..OutputRow::on_table(now, slip, [y[8], lost(y)], flow.kind()) });
     }
 }

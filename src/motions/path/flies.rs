@@ -136,7 +136,7 @@ impl<const N: usize> BodyWalk<'_, N> {
                 // An output at the initial time shows the body before it lands, as outputs at other landings do. Where a
                 // table would have to pull at the rim that rises, there is no force.
                 let from = self.aloft();
-                let pulls = self.pressed(&from)[0] < 0.0;
+                let pulls = self.force_here(&self.of.state).normal < 0.0;
                 while self.until().is_some_and(|t| t <= self.at[TIME]) {
                     if pulls {
                         self.writes_with(&from, self.kind(), f64::NAN);
@@ -203,6 +203,8 @@ impl<const N: usize> BodyWalk<'_, N> {
         }
         self.claims(late);
         let shown = self.shows() * self.sign_of_rounding();
+        // This part of the difference of the runs is not a step error that has grown.
+        self.made.path.erred += late * shown.abs();
         let t = (t + late * shown).max(0.0);
         let at = if shown == 0.0 { at } else { self.flown(&*course, t, before) };
         self.at[TIME] = now + t;

@@ -71,12 +71,18 @@ impl<const N: usize> BodyWalk<'_, N> {
         let Some(mut phase) = self.of.lossy.take() else { return Ok(None) };
         let (body, ask) = (self.of.body, self.ask);
         let goes_on = ask.beyond && !matches!(ask.table, Table::Rubs(_));
-        if phase.flow.holds_drilling() && !matches!(found, Halt::Time | Halt::Pause) {
+        if phase.flow.holds_drilling() && !matches!(found, Halt::Time | Halt::Pause | Halt::Pole) {
             self.stops_exactly(Holds { drilling: true, ..Holds::default() });
         }
         let flow = &mut phase.flow;
         let next = match found {
             Halt::Time | Halt::Pause => return Ok(None),
+            Halt::Pole => {
+                self.claims_passage();
+                let y = flow.on_the_way().enter(&self.at);
+                self.of.lossy = Some(phase);
+                return Ok(Some(y));
+            }
             Halt::Contour | Halt::Drilling | Halt::Rocking | Halt::Settles | Halt::Rests => {
                 if self.turns_too_often() {
                     return Ok(None);

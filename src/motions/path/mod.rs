@@ -20,6 +20,7 @@ mod loses;
 pub(crate) mod lossy;
 pub(crate) mod lying;
 mod phases;
+mod pole;
 mod rocks;
 mod rolls;
 pub(crate) mod settled;

@@ -13,7 +13,7 @@ use crate::error::Error;
 use crate::laws::body::Body;
 use crate::laws::contact::slip::{Friction, centre_velocity, painleve};
 use crate::laws::contact::standstill::{Standstill, let_go, standstill, towards};
-use crate::laws::contact::{Contact, Table, force, lossy};
+use crate::laws::contact::{Contact, Force, Table, force, lossy};
 use crate::laws::loss::{Holds, Losses};
 use crate::laws::state::State;
 use crate::methods::flow::{Flow, FlowPlace, Steps};
@@ -170,6 +170,22 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
         self.of.state = state(&self.at);
     }
 
+    /// Whether the contact point slips.
+    fn slips_here(&self) -> bool {
+        let (slip, slide) = ([self.at[5], self.at[6]], &self.of.slide);
+        self.ask.table.rubs() && (slip != [0.0; 2] || !slide.law.dry || slide.creeps(&self.at))
+    }
+
+    /// The force of the table on a body in the state `y`, with the current slip.
+    pub(super) fn force_here(&self, y: &State) -> Force {
+        let (body, losses) = (&self.of.body, &self.ask.losses);
+        match self.slips_here() {
+            true => self.of.slide.law.force(y, [self.at[5], self.at[6]]),
+            false if losses.is_none() => force(self.contact(), body, y),
+            false => lossy::force(self.contact(), body, y, losses),
+        }
+    }
+
     /// Makes motions vanish exactly that have stopped, or that dry friction has held at zero but for the errors of the
     /// steps.
     pub(super) fn stops_exactly(&mut self, stops: Holds) {
@@ -254,11 +270,11 @@ impl<const N: usize> Phases<N> for BodyPhases {
         walk.told(kind)
     }
 
-    /// A motion that hops is also perturbed by a share of the step errors since the last time: impacts multiply them,
-    /// and where both runs take the same steps only this shows by how much.
+    /// A motion that has hopped is also perturbed by a share of the step errors since the last time: impacts multiply
+    /// them, and where both runs take the same steps only this shows by how much.
     fn perturbs(walk: &mut BodyWalk<'_, N>) {
         let mut share = walk.perturbation;
-        if share > 0.0 && walk.ask.restitution.is_some() {
+        if share > 0.0 && !walk.made.path.impacts.is_empty() {
             let erred = walk.spent.erred - core::mem::replace(&mut walk.of.shown, walk.spent.erred);
             share += CHANCE * erred * walk.of.slide.tol * walk.sign_of_rounding();
         }
@@ -274,16 +290,9 @@ impl<const N: usize> Phases<N> for BodyPhases {
     }
 
     fn write_here(walk: &mut BodyWalk<'_, N>) {
-        let (body, y, slip, at) = (&walk.of.body, &walk.of.state, [walk.at[5], walk.at[6]], &walk.at);
-        let (rubs, losses) = (walk.ask.table.rubs(), &walk.ask.losses);
-        let slips = rubs && (slip != [0.0; 2] || !walk.of.slide.law.dry || walk.of.slide.creeps(at));
-        let kind = if slips { Kind::Slipping } else { walk.kind() };
-        let press = |y: &State| match slips {
-            true => walk.of.slide.law.force(y, slip),
-            false if losses.is_none() => force(walk.contact(), body, y),
-            false => lossy::force(walk.contact(), body, y, losses),
-        };
-        let force = walk.ask.force.then(|| doubted(y, [0.0; 2], press));
+        let (y, slip, at) = (&walk.of.state, [walk.at[5], walk.at[6]], &walk.at);
+        let kind = if walk.slips_here() { Kind::Slipping } else { walk.kind() };
+        let force = walk.ask.force.then(|| doubted(y, [0.0; 2], |y| walk.force_here(y)));
         let pose = poses(N).then(|| write::pose(at));
         let row = OutputRow::on_table(*y, slip, [at[8], lost(at)], kind);
         walk.made.push(OutputRow { pose, force, ..row });

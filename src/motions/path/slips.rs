@@ -9,7 +9,7 @@ use crate::laws::loss::Holds;
 use crate::laws::loss::Law;
 use crate::methods::flow::{Flow, FlowPlace, Steps};
 use crate::motions::Ending;
-use crate::motions::halt::{Halt, loses};
+use crate::motions::halt::{Halt, TIME, loses};
 use crate::motions::walk::{Next, Pause, Phases, after_rest, ending};
 
 /// A face barely lands if more than this share of its energy is in the turning, and it falls, rather than whirrs, if the
@@ -73,7 +73,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             (self.at[0], self.at[7]) = (0.0, end);
         }
         self.made.path.slipping += self.at[7] - self.began;
-        if !matches!(halt, Halt::Time | Halt::Pause) {
+        if !matches!(halt, Halt::Time | Halt::Pause | Halt::Pole) {
             let Holds { contour, drilling, rolling } = self.of.slide.holds();
             self.stops_exactly(Holds {
                 contour: contour || halt == Halt::Contour,
@@ -90,6 +90,10 @@ impl<const N: usize> BodyWalk<'_, N> {
         match halt {
             Halt::Time | Halt::Pause => {}
             Halt::Standstill => self.continues_with(after_rest(Phases::rests(self))),
+            Halt::Pole => {
+                self.claims_passage();
+                self.next = Some(Next::SlipsOn);
+            }
             Halt::Settles => {
                 self.of.slide.settled = true;
                 self.claims(Slide::settled_doubt(&y));
@@ -107,6 +111,16 @@ impl<const N: usize> BodyWalk<'_, N> {
                 self.next = Some(Next::SlipsOn);
             }
             halt => self.next = Some(Next::Ends(ending(halt))),
+        }
+    }
+
+    /// Includes the length of the passage of a pole that has just ended in the estimated error, if an output lies in it:
+    /// there the numbers were linear in time.
+    pub(super) fn claims_passage(&mut self) {
+        let lasts = 2.0 * self.at[0] / self.at[2].hypot(self.at[3]);
+        let last = self.made.motion.states.len().checked_sub(1).map(|i| self.since[i]);
+        if last.is_some_and(|t| t > self.at[TIME] - lasts) {
+            self.claims(lasts);
         }
     }
 

@@ -13,7 +13,7 @@ use super::flight::{Aloft, Takeoff};
 use super::phases::{BodyWalk, LONGER};
 use crate::laws::body::Shape;
 use crate::laws::contact::impact::{Hit, RimImpact, Struck, lightness, turned};
-use crate::laws::contact::landing::{Landed, Outcome, bounced, land_at, settled};
+use crate::laws::contact::landing::{Landed, Outcome, REVERSES, bounced, land_at, settled};
 use crate::laws::contact::slip::Friction;
 use crate::laws::contact::{FLAT, Force, Table};
 use crate::laws::loss::{Couples, Kinematics};
@@ -33,8 +33,6 @@ const LONGEST_TAIL: f64 = 1e-10;
 const SUM_ERROR: f64 = 1.0;
 /// The same error of bounces that slip, in units of their velocity over that of the slip.
 const TURNS: f64 = 10.0;
-/// A slip of less than this many velocities of the bounce may turn around in the next impacts.
-const REVERSES: f64 = 10.0;
 /// The same share for a body with losses, which act at a contact, but not on a body that bounces.
 const LOSSY_TAIL: f64 = 1e-8;
 /// The tolerance of a step along an impact.
@@ -354,7 +352,8 @@ impl<const N: usize> BodyWalk<'_, N> {
             return self.lands_on_both();
         };
         // The last impacts turn a slip that is slower than they are.
-        let turns = if left > 0.0 { (left / from.slip[0].hypot(from.slip[1])).min(1.0) } else { 0.0 };
+        let slips = [from.slip, from.on_other_rim(&self.of.slide.law.shape).slip].map(|[u, v]| u.hypot(v));
+        let turns = if left > 0.0 { (left / slips[0].min(slips[1])).min(1.0) } else { 0.0 };
         let doubt = (left * turns).max(left * left * SUMMED);
         self.claims(doubt);
         self.doubts(doubt);

@@ -242,6 +242,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
                     self.begins_phase(self.kind());
                     if self.ask.stop_at_rolling {
                         self.made.path.rolls_on = true;
+                        self.writes_up_to_now();
                     } else if let Some(step) = P::rolls(self, at_limit, go_on)? {
                         return Ok(step);
                     }
@@ -456,7 +457,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         let count = self.made.motion.states.len();
         self.made.motion.times = copied(&self.times[..count])?;
         self.made.motion.evaluations = self.spent.evaluations;
-        self.made.path.erred = self.spent.erred * self.of.tol();
+        self.made.path.erred += self.spent.erred * self.of.tol();
         self.made.path.heat = self.at[P::HEAT];
         self.made.path.lost = if self.ask.losses.is_none() { 0.0 } else { self.at[N - 1] };
         Ok(self.made)
@@ -532,7 +533,7 @@ pub(crate) fn after_rest(found: Standstill) -> Next {
 /// The ending that a halt means for the motion.
 pub(crate) fn ending(halt: Halt) -> Ending {
     match halt {
-        Halt::Time | Halt::Pause | Halt::Standstill => Ending::Done,
+        Halt::Time | Halt::Pause | Halt::Standstill | Halt::Pole => Ending::Done,
         Halt::Face => Ending::Face,
         Halt::Side => Ending::Side,
         Halt::LiftOff => Ending::LiftOff,

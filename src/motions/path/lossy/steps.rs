@@ -10,6 +10,7 @@ use crate::methods::flow::{FASTEST, Flow, FlowPlace};
 use crate::methods::rk8;
 use crate::motions::halt::{Halt, MARGINS, TIME, loses, poses};
 use crate::motions::path::face::{FLAT, lands_at};
+use crate::motions::path::pole;
 use crate::motions::path::settled::{Balance, CLOSE, EFFORT, SLOWER, Turned, balance, settles_within};
 use crate::numbers::{Dual, Real};
 use core::f64::consts::PI;
@@ -79,6 +80,19 @@ impl LossyFlow {
             [if self.hold == Hold::No { s * s * drilling } else { drilling }, 0.0, c * drilling]
         };
         Some(at_rest(place, -speed / (growth * place.rate[TIME]), drills))
+    }
+
+    /// The numbers after a passage of the pole, nearer than steps resolve.
+    fn passes_pole<const N: usize>(&self, place: &FlowPlace<N>) -> Option<[f64; N]> {
+        let (angle, y) = ((place.y[0], place.y[1]), &place.y);
+        let (precession, w) = self.turning([y[0], y[1], y[2], y[3], y[4]]);
+        pole::passage(angle.0, angle.1, [w[0], w[1]])?;
+        let (mut seen, mut rates) = (*y, place.rate.map(|rate| rate / place.rate[TIME]));
+        (seen[2], seen[4]) = (w[0], w[2]);
+        rates[2..5].copy_from_slice(&self.response(angle, precession, w, self.held(0.0)).w);
+        let mut there = pole::passed(&seen, &rates)?;
+        there[2] *= there[0];
+        Some(there)
     }
 
     pub(super) fn margins_of<T: Real>(&self, law: &Lossy<T>, y: [T; 5]) -> [T; MARGINS] {
@@ -173,6 +187,10 @@ impl Flow<MARGINS> for LossyFlow {
     const PAUSE: Halt = Halt::Pause;
     const ENDLESS: Halt = Halt::Endless;
 
+    fn is_extrapolated(halt: Halt) -> bool {
+        halt == Halt::Pole
+    }
+
     fn theta<const N: usize>(&self, y: &[f64; N]) -> f64 {
         y[0].atan2(y[1])
     }
@@ -251,6 +269,9 @@ impl Flow<MARGINS> for LossyFlow {
         let y = &place.y;
         if let Some(rest) = self.comes_to_rest(place) {
             return Some((Halt::Rests, rest));
+        }
+        if self.ball && self.hold == Hold::No {
+            return self.passes_pole(place).map(|there| (Halt::Pole, there));
         }
         let [s, c, w2] = [y[0], y[1], y[3]];
         // `fall` is the speed at which either face falls, and `faster` is the rate of that speed.

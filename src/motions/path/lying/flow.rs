@@ -117,6 +117,16 @@ impl LyingFlow {
         self.lain_of(&self.law, flat(y))
     }
 
+    /// Forces and accelerations at these numbers; a rim at rest from which the state is seen, but which slips, slips off
+    /// along `way`.
+    pub fn lain_along<const N: usize>(&self, y: &[f64; N], way: [f64; 2]) -> Lain<f64> {
+        if self.stance != Stance::Slips || !self.law.dry || [y[5], y[6]] != [0.0; 2] {
+            return self.lain(y);
+        }
+        let (law, y) = (&self.law, flat(y));
+        law.slipping_along(y, [way.map(|x| law.strength * x), law.drag(law.other_slip(y))], self.ways)
+    }
+
     /// The speeds of the slips of both rims.
     fn speeds<const N: usize>(&self, y: &[f64; N]) -> [f64; 2] {
         let [u, v] = self.law.other_slip(flat(y));

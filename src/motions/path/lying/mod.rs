@@ -152,6 +152,9 @@ impl<const N: usize> BodyWalk<'_, N> {
             }
         }
         if stance == Stance::Rolls && self.at[4] == 0.0 && law.held[1] {
+            while self.until().is_some_and(|t| t <= self.at[TIME]) {
+                self.writes_lying(&flow, &{ self.at });
+            }
             return Next::Ends(Ending::Stops);
         }
         self.of.lying = Some(Box::new(LyingPhase { flow }));
@@ -165,8 +168,15 @@ impl<const N: usize> BodyWalk<'_, N> {
         }
         (self.at[0], self.at[1], self.at[3]) = (1.0, 0.0, 0.0);
         self.of.state.w2 = 0.0;
-        let slips = self.at[5] != 0.0 || self.at[6] != 0.0 || !self.of.slide.law.dry;
-        if slips { Next::Slips } else { after_rest(Phases::rests(self)) }
+        let slip = [self.at[5], self.at[6]];
+        if slip == [0.0; 2] && self.of.slide.law.dry {
+            return after_rest(Phases::rests(self));
+        }
+        // The friction of one rim alone may press it into the table: an impact stops the slip or raises the other rim.
+        match self.of.slide.at_start(&self.of.state, slip) {
+            Some(Halt::Jam) => Next::Ends(Ending::Painleve),
+            _ => Next::Slips,
+        }
     }
 
     /// The phase of a body with one rim at rest while the other slips; the other rim is at rest if `other`.
@@ -235,8 +245,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         flow.stance = Stance::Slips;
         let y = [self.at[2], self.at[4], 0.0, 0.0];
         let mu = flow.law.strength;
-        let [u, v] = flow.law.other_slip(y);
-        let up = [u, v].map(|u| mu * u / f64::hypot(0.0, v));
+        let up = flow.law.drag(flow.law.other_slip(y));
         let way = |x: f64| if x == 0.0 { 0.0 } else { x.signum() };
         flow.ways = [way(y[0]), way(y[1])];
         flow.holds([false; 2]);
@@ -299,7 +308,8 @@ impl<const N: usize> BodyWalk<'_, N> {
         let Some(flow) = self.of.lying.as_ref().map(|phase| phase.flow) else { return Ok(Pause::No) };
         let first = self.made.motion.states.len();
         let (ask, over, made) = (self.ask, self.over(), &mut self.made);
-        let mut write = |y: &[f64; N]| made.push(row_of(&ask, &flow, over.as_ref(), y));
+        let seen = (over.as_ref(), made.path.way);
+        let mut write = |y: &[f64; N]| made.push(row_of(&ask, &flow, seen, y));
         let flown = flow.run(flow.place(y), steps, &self.since[first..], &mut write, go_on);
         self.has_spent(flown.spent);
         // Where a dry loss stops w1 or w3, the acceleration changes at a time as uncertain as that of an end.
@@ -387,7 +397,7 @@ impl<const N: usize> BodyWalk<'_, N> {
 
     /// Writes a body on both rims to the outputs.
     pub(super) fn writes_lying(&mut self, flow: &LyingFlow, y: &[f64; N]) {
-        let row = row_of(&self.ask, flow, self.over().as_ref(), y);
+        let row = row_of(&self.ask, flow, (self.over().as_ref(), self.made.path.way), y);
         self.made.push(row);
     }
 
@@ -403,15 +413,15 @@ impl<const N: usize> BodyWalk<'_, N> {
 }
 
 /// The outputs of a body on both rims, as seen from the first rim; `over` are numbers of the same phase if these and `y`
-/// are seen from the other rim.
+/// are seen from the other rim. A rim whose slip just begins slips along `way`.
 fn row_of<const N: usize>(
     ask: &Ask,
     flow: &LyingFlow,
-    over: Option<&Aloft>,
+    (over, way): (Option<&Aloft>, [f64; 2]),
     y: &[f64; N],
 ) -> OutputRow<State> {
     let mut slips = [[y[5], y[6]], flow.law.other_slip([y[2], y[4], y[5], y[6]])];
-    let (mut forces, mut w3, mut seen) = (flow.lain(y).force, y[4], *y);
+    let (mut forces, mut w3, mut seen) = (flow.lain_along(y, way).force, y[4], *y);
     if let Some(over) = over {
         let back = |x: f64| 0.0 - x;
         slips = [slips[1].map(back), slips[0].map(back)];

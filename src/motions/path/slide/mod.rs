@@ -25,6 +25,7 @@ use crate::motions::creep::{IMPLICIT_TURNS, rests_below};
 use crate::motions::halt::{Halt, MARGINS, TIME, loses, poses};
 use crate::motions::path::face::FLAT;
 use crate::motions::path::lossy::REST;
+use crate::motions::path::pole;
 use crate::motions::walk::{MOMENT, slip_over};
 use crate::numbers::{Dual, Real};
 use core::f64::consts::PI;
@@ -243,7 +244,7 @@ impl Flow<MARGINS> for Slide {
     }
 
     fn is_extrapolated(halt: Halt) -> bool {
-        halt == Halt::Standstill
+        matches!(halt, Halt::Standstill | Halt::Pole)
     }
 
     fn theta<const N: usize>(&self, y: &[f64; N]) -> f64 {
@@ -347,6 +348,12 @@ impl Flow<MARGINS> for Slide {
             && let Some(rest) = self.comes_to_rest(place)
         {
             return Some((Halt::Rests, rest));
+        }
+        if self.ball && !self.settled {
+            let rates = place.rate.map(|rate| rate / place.rate[TIME]);
+            if let Some(there) = pole::passed(&place.y, &rates) {
+                return Some((Halt::Pole, there));
+            }
         }
         if loses(N) && self.law.patch().is_none() && self.settles(place) {
             return Some((Halt::Settles, place.y));
