@@ -8,10 +8,11 @@
 //! [`radau`] takes the steps.
 
 use super::Slide;
+use crate::laws::body::Shape;
 use crate::laws::contact::slip::SlipResponse;
 use crate::methods::flow::{Flow, FlowPlace};
 use crate::methods::{radau, rk8};
-use crate::motions::creep::{Rubbing, is_fast, known_slip};
+use crate::motions::creep::{Rubbing, is_fast, known_slip, stable_time};
 use crate::motions::halt::{Halt, TIME, loses};
 use crate::numbers::Dual;
 use nalgebra::SMatrix;
@@ -79,8 +80,20 @@ impl Slide {
     /// Whether u, or psi' under a couple that grows with it, follows the motion much faster than the body turns.
     #[inline(never)]
     pub(super) fn creeps_fast<const N: usize>(&self, place: &FlowPlace<N>) -> bool {
-        let damped = if loses(N) { self.damped(&place.y) } else { f64::INFINITY };
-        is_fast(place.rate[7].min(damped), self.calm(&place.y))
+        is_fast(self.follows_within(place), self.calm(&place.y))
+    }
+
+    /// The longest time step in which u, and a psi' under a couple that grows with it, follow the motion by explicit
+    /// steps. The heat of the friction tells the normal force, and the rims how much a force changes the slip.
+    pub(super) fn follows_within<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
+        let (y, rate, Shape { rim, i1, i3 }) = (&place.y, &place.rate, &self.law.shape);
+        let angle = (y[0], y[1]);
+        let (lever, height, depth, radius) =
+            (rim.lever(angle), rim.height(angle), rim.depth(angle), rim.radius(angle));
+        let eased = (height * height / (i1 + lever * lever)).max(depth * depth / i1 + radius * radius / i3);
+        let turn = self.law.patch().unwrap_or(0.0) * (y[0] * y[2] + y[1] * y[4]);
+        let damped = if loses(N) { self.damped(y) } else { f64::INFINITY };
+        damped.min(stable_time([y[5], y[6], turn], rate[8] / rate[TIME], 1.0 + eased))
     }
 
     /// An implicit step and its stages.

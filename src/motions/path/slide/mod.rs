@@ -19,7 +19,7 @@ use crate::laws::body::{Body, Rim, Shape, landing_angle};
 use crate::laws::contact::slip::{Friction, SlipResponse, Slipping};
 use crate::laws::loss::{Couples, Holds, Losses};
 use crate::laws::state::State;
-use crate::methods::flow::{FASTEST, Flow, FlowPlace, STABLE};
+use crate::methods::flow::{FASTEST, Flow, FlowPlace};
 use crate::methods::{radau, rk8};
 use crate::motions::creep::{IMPLICIT_TURNS, rests_below};
 use crate::motions::halt::{Halt, MARGINS, TIME, loses, poses};
@@ -228,8 +228,7 @@ impl Flow<MARGINS> for Slide {
     }
 
     fn stable<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
-        let damped = if loses(N) { self.damped(&place.y) } else { f64::INFINITY };
-        STABLE.min(damped / place.rate[7])
+        self.follows_within(place) / place.rate[7]
     }
 
     #[inline(never)]
