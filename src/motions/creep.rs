@@ -22,7 +22,7 @@ const MOST_CREEP: f64 = 0.999;
 const STIFF: f64 = 0.4;
 /// The longest stable explicit step, in units of the time in which a friction that is proportional to the slip would stop
 /// it.
-const STABLE: f64 = 5.5;
+const STABLE_STEP: f64 = 5.5;
 /// An implicit step may be this many times longer than an explicit one, since it amplifies no rounding.
 pub(crate) const IMPLICIT_TURNS: f64 = 8.0;
 /// Relative error of the drilling due to rounding of w. The slip need not be known more precisely.
@@ -93,7 +93,7 @@ pub(crate) fn is_fast(stable: f64, calm: f64) -> bool {
 /// at the rate `eased` F/|u|. Friction makes `heat` in a unit of time: with mu N f/|u| at most 3 pi mu N/(8 R) and heat
 /// 3 pi mu N R/16 where k is small, and mu N/|u| and mu N |u| where it is large, their ratio is known within a fifth.
 pub(crate) fn stable_time([u, v, turn]: [f64; 3], heat: f64, eased: f64) -> f64 {
-    STABLE * (u * u + v * v + 0.5 * turn * turn) / (heat * eased)
+    STABLE_STEP * (u * u + v * v + 0.5 * turn * turn) / (heat * eased)
 }
 
 /// The speed of the slip of a patch that rubs with this speed, to which errors of an implicit step are relative; `fast`

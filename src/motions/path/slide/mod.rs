@@ -25,6 +25,7 @@ use crate::motions::creep::{IMPLICIT_TURNS, rests_below};
 use crate::motions::halt::{Halt, MARGINS, TIME, loses, poses};
 use crate::motions::path::face::FLAT;
 use crate::motions::path::lossy::REST;
+use crate::motions::path::spun::is_uniform;
 use crate::motions::walk::{MOMENT, slip_over};
 use crate::numbers::{Dual, Real};
 use core::f64::consts::PI;
@@ -53,6 +54,9 @@ pub(crate) struct Slide {
     flat: f64,
     /// Whether a couple that grows with psi' has almost stopped the contact along the rim.
     pub settled: bool,
+    /// Whether the body is a uniform ball on a patch of contact, whose slip dies; and whether it has died.
+    dies: bool,
+    pub died: bool,
     /// Whether rolling and rocking begin from rest, in the direction that the signs of the losses have.
     rolls_off: bool,
     /// The share by which the couple that holds the contact along the rim may exceed its limit, after it has settled.
@@ -79,6 +83,8 @@ impl Slide {
             sticks: law.dry,
             flat,
             settled: false,
+            dies: law.patch().is_some() && is_uniform(body) && losses.is_none(),
+            died: false,
             rolls_off: false,
             sure: 0.0,
             tol,
@@ -224,7 +230,7 @@ impl Flow<MARGINS> for Slide {
 
     #[inline(always)]
     fn is_stiff<const N: usize>(&self, place: &FlowPlace<N>) -> bool {
-        self.law.patch().is_some() && self.creeps_fast(place)
+        self.law.patch().is_some() && !self.died && self.creeps_fast(place)
     }
 
     fn stable<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
@@ -394,12 +400,13 @@ impl Flow<MARGINS> for Slide {
         // `calm` limits the time, and a step in sigma takes less time where the slip is slow.
         let mut most = self.calm(&place.y);
         if self.is_stiff(place) {
-            return (IMPLICIT_TURNS * most / place.rate[7]).min(self.kinked(place));
+            most *= IMPLICIT_TURNS / place.rate[7];
+        } else {
+            if loses(N) && !self.settled {
+                most = most.min(self.damped(&place.y));
+            }
+            most /= place.rate[7].min(1.0);
         }
-        if loses(N) && !self.settled {
-            most = most.min(self.damped(&place.y));
-        }
-        most /= place.rate[7].min(1.0);
         if self.law.patch().is_some() {
             most = most.min(self.kinked(place));
         }
