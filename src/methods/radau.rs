@@ -215,7 +215,9 @@ where
         let spread = difference(&SPREAD_5, n).hypot(square.min(1.0).sqrt() * difference(&SPREAD_4, n));
         share * spread + unknown
     });
-    (Step { change: all.moved[RADAU_STAGES - 1], fifth, third: [0.0; N] }, all)
+    // The numbers of an iteration that has not converged are not those of the step.
+    let change = if share.is_nan() { [f64::NAN; N] } else { all.moved[RADAU_STAGES - 1] };
+    (Step { change, fifth, third: [0.0; N] }, all)
 }
 
 #[cfg(test)]

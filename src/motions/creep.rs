@@ -18,9 +18,11 @@ use crate::numbers::{Dual, Real};
 pub(crate) const DRILLS: f64 = 1e-10;
 /// A contact point that friction has released begins to creep with at most this share of the friction of a slip.
 const MOST_CREEP: f64 = 0.999;
-/// Steps may be implicit where the body turns by less than this angle in a unit of sigma, which is about the longest stable
-/// explicit step.
-const STIFF: f64 = 0.2;
+/// Steps may be implicit where the body turns by less than this angle in the longest stable explicit step.
+const STIFF: f64 = 0.4;
+/// The longest stable explicit step, in units of the time in which a friction that is proportional to the slip would stop
+/// it.
+const STABLE_STEP: f64 = 5.5;
 /// An implicit step may be this many times longer than an explicit one, since it amplifies no rounding.
 pub(crate) const IMPLICIT_TURNS: f64 = 8.0;
 /// Relative error of the drilling due to rounding of w. The slip need not be known more precisely.
@@ -81,10 +83,17 @@ impl Rubbing<Dual<f64>> {
     }
 }
 
-/// Whether u follows the motion much faster than the body turns, from the pace dt/dsigma of its steps and the time `calm` of
+/// Whether u follows the motion much faster than the body turns, from the longest stable time step and the time `calm` of
 /// three radians of the turning.
-pub(crate) fn is_fast(pace: f64, calm: f64) -> bool {
-    pace < STIFF / 3.0 * calm
+pub(crate) fn is_fast(stable: f64, calm: f64) -> bool {
+    stable < STIFF / 3.0 * calm
+}
+
+/// The longest time step that is stable although friction stops the slip u of a patch, whose rim moves with the speed R,
+/// at the rate `eased` F/|u|. Friction makes `heat` in a unit of time: with mu N f/|u| at most 3 pi mu N/(8 R) and heat
+/// 3 pi mu N R/16 where k is small, and mu N/|u| and mu N |u| where it is large, their ratio is known within a fifth.
+pub(crate) fn stable_time([u, v, turn]: [f64; 3], heat: f64, eased: f64) -> f64 {
+    STABLE_STEP * (u * u + v * v + 0.5 * turn * turn) / (heat * eased)
 }
 
 /// The speed of the slip of a patch that rubs with this speed, to which errors of an implicit step are relative; `fast`

@@ -111,14 +111,58 @@ fn ball_on_a_patch(resistance: f64, until: f64, tol: f64) -> Motion {
 }
 
 #[test]
-fn a_ball_whose_slip_has_died_on_a_patch_costs_what_its_turns_cost() {
+fn a_uniform_ball_whose_slip_has_died_on_a_patch_costs_nothing_and_its_drilling_falls_evenly() {
+    let drilling = |m: &Motion| {
+        let y = m.states.last().unwrap();
+        y.theta.sin() * y.w1 + y.theta.cos() * y.w3
+    };
+    for tol in TOLERANCES {
+        // It drills until t = 210 or so, and rolls on.
+        let [early, late, last] = [20.0, 150.0, 400.0].map(|until| ball_on_a_patch(0.0, until, tol));
+        assert_eq!([late.evaluations, last.evaluations], [early.evaluations; 2]);
+        assert_eq!(late.path.as_ref().unwrap().slip[0], [0.0; 2]);
+        assert!(drilling(&last).abs() < 1e-15);
+        let falls = (drilling(&early) - drilling(&late)) / 130.0;
+        let couple = 3.0 * core::f64::consts::PI / 16.0 * 0.2 * 1e-3;
+        assert!((falls.abs() - couple / 0.4).abs() < 1e-14, "{tol:e}: {falls}");
+    }
+}
+
+#[test]
+fn the_pose_of_a_ball_whose_slip_has_died_on_a_patch_costs_what_its_turns_cost() {
     // It turns by 4.8 rad in a unit of time. Its slip follows the turning 500 times faster.
-    for (tol, most) in TOLERANCES.into_iter().zip([850, 1_100, 1_700]) {
-        let [early, late] = [20.0, 40.0].map(|until| ball_on_a_patch(0.0, until, tol));
+    let ball = Body::ball(0.0, 0.4, 0.4).unwrap();
+    let state = State { theta: 1.0, w1: -2.0, w2: 1.0, w3: 3.0 };
+    let friction = Friction::Coulomb { mu: 0.2, fixed: 0.2, patch: 1e-3 };
+    let start = Start::from(state).with_slip([2.0, 2.0]);
+    for (tol, most) in TOLERANCES.into_iter().zip([330, 450, 700]) {
+        let ask = Ask::on(friction).with_pose(true);
+        let [early, late] = [20.0, 40.0].map(|until| followed(&ball, start, until, ask, tol));
         let each = (late.evaluations - early.evaluations) / 20;
         assert!(each <= most, "{tol:e}: {each} evaluations in a unit of time, {most} allowed");
-        let slip = late.path.unwrap().slip[0];
-        assert!(slip[0].hypot(slip[1]) < 1e-12, "{tol:e}: {slip:?}");
+    }
+}
+
+#[test]
+fn a_disk_on_a_small_patch_that_presses_hard_takes_steps_of_its_motion_also_between_outputs() {
+    let body = Body::solid(0.0).unwrap();
+    let state = State { theta: 1.8250976949901818, w1: 1.0154282256931457, w2: -0.6150799567948172, w3: 0.0 };
+    let start = Start::from(state).with_slip([0.3437367584381417, 0.7428832432326301]);
+    let friction = Friction::Coulomb { mu: 0.7, fixed: 0.7, patch: 1.2643284759524459e-4 };
+    let times: Vec<f64> = (0..=100).map(|i| 0.1 * f64::from(i)).collect();
+    let rolled = |tol: f64| {
+        let ask = Ask::on(friction).with_method(Method::Tolerance(tol));
+        roll_with(&body, start, &times, &ask, || true).unwrap().unwrap()
+    };
+    let fine = rolled(1e-13);
+    for (tol, most) in TOLERANCES.into_iter().zip([8_500, 11_500, 17_000]) {
+        let m = rolled(tol);
+        assert!(m.evaluations <= most, "{tol:e}: {} evaluations, {most} allowed", m.evaluations);
+        assert!(m.error < 1e3 * tol, "{tol:e}: {:e}", m.error);
+        for (one, other) in m.states.iter().zip(&fine.states) {
+            let off = [one.theta - other.theta, one.w1 - other.w1, one.w2 - other.w2, one.w3 - other.w3];
+            assert!(off.iter().all(|x| x.abs() <= m.error + fine.error), "{tol:e}: {off:?}, {:e}", m.error);
+        }
     }
 }
 

@@ -18,8 +18,7 @@ mod stiff;
 
 pub(crate) use ends::{looks, only_zero};
 pub(crate) use place::{Exhausted, FlowPlace, Flown, Spent, Steps, TakenStep};
-pub(crate) use stiff::STABLE;
-use stiff::StiffSteps;
+use stiff::{STABLE, StiffSteps};
 
 use super::radau;
 use super::rk8::{self, growth, plus};

@@ -11,7 +11,7 @@
 use crate::methods::radau::{COST, RADAU_STAGES};
 
 /// About the longest stable explicit step in the variable of a slip, where friction acts within a unit of sigma.
-pub(crate) const STABLE: f64 = 2.0;
+pub(super) const STABLE: f64 = 2.0;
 /// Explicit steps from a failure of an implicit step to the next one, at first and at most.
 const WAITS: [u64; 2] = [8, 128];
 

@@ -297,7 +297,7 @@ impl Flow<CUSTOM_MARGINS> for CustomFlow<'_> {
     /// The smaller a slip that begins, the faster it approaches its slow direction.
     fn is_stiff<const N: usize>(&self, place: &FlowPlace<N>) -> bool {
         let grows = place.y[5] * place.rate[5] + place.y[6] * place.rate[6] > 0.0;
-        grows && is_fast(place.rate[TIME], self.calm(&place.y))
+        grows && is_fast(self.stable(place) * place.rate[TIME], self.calm(&place.y))
     }
 
     fn implicit_step<const N: usize>(

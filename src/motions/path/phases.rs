@@ -369,11 +369,14 @@ impl<const N: usize> Phases<N> for BodyPhases {
     }
 
     fn slips_known(walk: &mut BodyWalk<'_, N>) -> bool {
-        let known = !poses(N) && walk.of.uniform;
-        if known {
-            walk.slips_uniformly();
+        walk.of.slide.died = walk.at[5..7] == [0.0; 2] && walk.of.slide.has_died(&walk.at);
+        match walk.of.slide.law.patch().filter(|_| walk.of.slide.died) {
+            _ if poses(N) => return false,
+            Some(radius) => walk.creeps_uniformly(radius),
+            None if walk.of.uniform => walk.slips_uniformly(),
+            None => return false,
         }
-        known
+        true
     }
     fn slips(walk: &mut BodyWalk<'_, N>) -> [f64; N] {
         walk.of.slide.sets_ways(&walk.of.state, [walk.at[5], walk.at[6]], [0.0; 2], None);

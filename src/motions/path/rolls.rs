@@ -36,7 +36,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         if times.is_empty() {
             return Ok(None);
         }
-        if !poses(N) && self.of.uniform {
+        if !poses(N) && (self.of.uniform || self.of.slide.no_longer_drills(&self.at)) {
             self.rolls_uniformly();
             return Ok(None);
         }

@@ -89,10 +89,18 @@ impl<const N: usize> BodyWalk<'_, N> {
         let slip = [self.at[5], self.at[6]];
         match halt {
             Halt::Time | Halt::Pause => {}
-            Halt::Standstill => self.continues_with(after_rest(Phases::rests(self))),
             Halt::Pole => {
                 self.claims_passage();
                 self.next = Some(Next::SlipsOn);
+            }
+            Halt::Standstill if !self.of.slide.died && self.of.slide.has_died(&self.at) => {
+                self.drops_slip(slip);
+                self.resumes_phase();
+                self.next = Some(Next::Slips);
+            }
+            Halt::Standstill => {
+                self.of.slide.died = false;
+                self.continues_with(after_rest(Phases::rests(self)));
             }
             Halt::Settles => {
                 self.of.slide.settled = true;
@@ -122,6 +130,17 @@ impl<const N: usize> BodyWalk<'_, N> {
         if last.is_some_and(|t| t > self.at[TIME] - lasts) {
             self.claims(lasts);
         }
+    }
+
+    /// Ends the rest of a slip of a uniform ball, which friction turns into rolling.
+    fn drops_slip(&mut self, [u_h, u_2]: [f64; 2]) {
+        let ([s, c], share) = ([self.at[0], self.at[1]], 1.0 / (1.0 + self.of.body.i3()));
+        for (i, turned) in [(2, -(c * u_2)), (3, u_h), (4, s * u_2)] {
+            self.at[i] += share * turned;
+        }
+        self.claims(u_h.hypot(u_2));
+        self.stop_slip();
+        self.of.state = state(&self.at);
     }
 
     /// The error of the time at which a falling face has landed, although it hardly cleared the table or hardly did not:

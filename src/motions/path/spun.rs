@@ -3,6 +3,7 @@
 //! ```text
 //! rolls, flies    w stays in space, and the axis n turns about it
 //! slips           u = u0 (1 - t/T),   T = |u0|/(mu (1 + 1/I)),   w = w0 + a t,   a = mu z x u0/(I |u0|)
+//! creeps, u = 0   w = w0 + a t,   a = -sgn(w_z) mu eps g(0) z/I                           on a patch, until w_z = 0
 //! n' = w x n      n = sum n_k t^k,   (k + 1) n_{k+1} = w0 x n_k + a x n_{k-1}        in parts of a radian
 //! ```
 //! The normal force on the table is the weight, rolling needs no friction, and a slip keeps its direction (Coriolis,
@@ -36,8 +37,12 @@ pub(crate) fn knows(body: &Body, ask: &Ask) -> bool {
         Table::Rubs(Friction::Coulomb { patch, .. }) => patch == 0.0,
         Table::Rubs(Friction::Viscous { .. }) => false,
     };
-    let uniform = body.is_ball() && body.ell() == 0.0 && body.i1() == body.i3() && body.theta_end() >= PI;
-    uniform && dry && !ask.pose && ask.losses.is_none()
+    is_uniform(body) && dry && !ask.pose && ask.losses.is_none()
+}
+
+/// Whether the body is a ball with equal moments and its centre of mass in its centre, on any part of which it rolls.
+pub(super) fn is_uniform(body: &Body) -> bool {
+    body.is_ball() && body.ell() == 0.0 && body.i1() == body.i3() && body.theta_end() >= PI
 }
 
 /// The errors of a motion whose phases are known: roundings of the speeds so far, the error of the axis, and that of the
@@ -88,6 +93,17 @@ impl Spun {
         Self::new(from, [-across, along, 0.0], mu * (1.0 + 1.0 / inertia) / speed)
     }
 
+    /// A ball whose drilling the couple of a patch slows down, in a unit of time by `rate`, while it does not slip.
+    pub fn drilling(from: &Aloft, rate: f64) -> Self {
+        let Self { w: [.., w_z], .. } = Self::new(from, [0.0; 3], 0.0);
+        Self::new(from, [0.0, 0.0, -rate * w_z.signum()], 0.0)
+    }
+
+    /// The velocity of the drilling at the start.
+    pub fn drills(&self) -> f64 {
+        self.w[2]
+    }
+
     fn speeds(&self, t: f64) -> [f64; 3] {
         core::array::from_fn(|i| self.w[i] + self.push[i] * t)
     }
@@ -100,13 +116,13 @@ impl Spun {
 
     /// Whether the series over this time have too many parts.
     pub fn toils(&self, t: f64) -> bool {
-        self.slows > 0.0 && self.angle(t)[1] > MOST_PARTS.max(PARTS_PER_TIME * t)
+        self.push != [0.0; 3] && self.angle(t)[1] > MOST_PARTS.max(PARTS_PER_TIME * t)
     }
 
     /// The axis after a time, and the angle by which the ball has turned at most. The times of a slip ascend.
     fn turned(&mut self, t: f64) -> ([f64; 3], f64) {
         let rate = size(self.w);
-        if self.slows == 0.0 {
+        if self.push == [0.0; 3] {
             if rate == 0.0 {
                 return (self.axis, 0.0);
             }

@@ -10,7 +10,7 @@ use super::flight::Aloft;
 use super::phases::BodyWalk;
 use super::spun::{OF_A_PHASE, Spun};
 use crate::laws::contact::impact::{Hit, Struck};
-use crate::laws::contact::{Contact, Table, force};
+use crate::laws::contact::{Contact, Table, force, patch};
 use crate::laws::state::State;
 use crate::motions::followed::Followed;
 use crate::motions::halt::{Halt, TIME, lost};
@@ -91,6 +91,36 @@ impl<const N: usize> BodyWalk<'_, N> {
             at.slip = [0.0; 2];
         }
         let y = self.numbers(&at, now + length, heat(length));
+        self.slip_ends(y, if over { Halt::Time } else { Halt::Standstill });
+    }
+
+    /// Drills on a patch of contact without a slip, until the drilling ends, or to the last time.
+    pub(super) fn creeps_uniformly(&mut self, radius: f64) {
+        let (now, heat, from) = (self.at[TIME], self.at[8], self.aloft());
+        let (ask, slide, i3) = (self.ask, self.of.slide, self.of.body.i3());
+        let couple = slide.law.strength * radius * patch::of(0.0)[1];
+        let mut spun = Spun::drilling(&from, couple / i3);
+        let fast = spun.drills().abs();
+        let (end, left) = (i3 * fast / couple, self.since.last().map_or(0.0, |t| t - now));
+        let heat = |t: f64| heat + couple * fast * t * (1.0 - 0.5 * t / end);
+        if spun.toils(end.min(left)) {
+            self.next = Some(self.gives_up(Limit::Evaluations));
+            return;
+        }
+        while let Some(t) = self.until().filter(|t| t - now <= end) {
+            let at = self.spun(&mut spun, t - now).0;
+            let y = self.numbers(&at, t, heat(t - now));
+            self.made.slid(&ask, &slide, &y);
+        }
+        let over = self.until().is_none();
+        let length = if over { left } else { end };
+        let (at, angle) = self.spun(&mut spun, length);
+        self.rounds(length, angle, if over { 0.0 } else { spun.fastest * end / fast });
+        let mut y = self.numbers(&at, now + length, heat(length));
+        if !over {
+            let drilling = y[0] * y[2] + y[1] * y[4];
+            (y[2], y[4]) = (y[2] - y[0] * drilling, y[4] - y[1] * drilling);
+        }
         self.slip_ends(y, if over { Halt::Time } else { Halt::Standstill });
     }
 

@@ -14,7 +14,7 @@ use crate::laws::contact::patch;
 use crate::laws::stone::law::{laboratory, turning};
 use crate::methods::flow::{Flow, FlowPlace};
 use crate::methods::{SHORT_CODE, radau, rk8};
-use crate::motions::creep::{DRILLS, Rubbing, is_fast, known_slip, slip_under};
+use crate::motions::creep::{DRILLS, Rubbing, is_fast, known_slip, slip_under, stable_time};
 use crate::motions::halt::{Halt, TIME};
 use crate::numbers::vector::{dot, plus};
 use crate::numbers::{Dual, Real};
@@ -115,7 +115,15 @@ impl StoneFlow<'_> {
     /// True if u follows the forces of rolling much faster than the stone turns.
     #[inline(never)]
     pub(super) fn creeps_fast<const N: usize>(&self, place: &FlowPlace<N>) -> bool {
-        self.touch == Touch::Slips && is_fast(place.rate[TIME], self.calm(&place.y))
+        self.touch == Touch::Slips && is_fast(self.follows_within(place), self.calm(&place.y))
+    }
+
+    /// The longest time step in which u follows the motion by explicit steps. The unit of sigma tells how much a force
+    /// changes the slip at most.
+    pub(super) fn follows_within<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
+        let ([u, v], turn) = (slip_of(&place.y), self.law.patch().unwrap_or(0.0) * self.drilling(&place.y));
+        let eased = 4.0 * self.law.soft / self.law.strength;
+        stable_time([u, v, turn], place.rate[10] / place.rate[TIME], eased)
     }
 
     /// An implicit step and its stages.

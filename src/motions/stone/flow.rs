@@ -365,6 +365,10 @@ impl Flow<STONE_MARGINS> for StoneFlow<'_> {
         N >= ALL && self.law.patch().is_some() && self.creeps_fast(place)
     }
 
+    fn stable<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
+        self.follows_within(place) / place.rate[TIME]
+    }
+
     #[inline(never)]
     fn implicit_step<const N: usize>(
         &self,

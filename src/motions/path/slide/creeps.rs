@@ -8,16 +8,20 @@
 //! [`radau`] takes the steps.
 
 use super::Slide;
+use crate::laws::body::Shape;
 use crate::laws::contact::slip::SlipResponse;
 use crate::methods::flow::{Flow, FlowPlace};
 use crate::methods::{radau, rk8};
-use crate::motions::creep::{Rubbing, is_fast, known_slip};
+use crate::motions::creep::{Rubbing, is_fast, known_slip, stable_time};
 use crate::motions::halt::{Halt, TIME, loses};
 use crate::numbers::Dual;
 use nalgebra::SMatrix;
 
 /// The number of numbers that react to each other: sine, cosine, w and u.
 const REACTING: usize = 7;
+/// The slip of a uniform ball has died where it is below this share of the tolerance.
+const DEAD: f64 = 0.03;
+
 impl Slide {
     /// Writes the rates of the numbers on a patch of contact, whose couple also produces heat.
     #[inline(never)]
@@ -25,6 +29,9 @@ impl Slide {
         let (at, pace, heat) = self.law.answers((y[0], y[1]), [y[2], y[3], y[4]], [y[5], y[6]]);
         self.law.writes(y, all, (&at, pace));
         all[8] += pace * heat;
+        if self.died {
+            (all[5], all[6]) = (0.0, 0.0);
+        }
         at
     }
 
@@ -48,10 +55,24 @@ impl Slide {
         self.sloped.patch().map(|patch| Rubbing::of([u_h, u_2], s * w1 + c * w3, patch))
     }
 
-    /// The halt of a patch that no longer slips or drills.
+    /// Whether the slip of a uniform ball has died, which nothing feeds while the ball drills.
+    #[inline(never)]
+    pub(in crate::motions::path) fn has_died<const N: usize>(&self, y: &[f64; N]) -> bool {
+        self.dies && y[5].hypot(y[6]) <= DEAD * self.tol * Self::fastest(y) && self.creeps(y)
+    }
+
+    /// Whether a uniform ball on a patch does not drill but for rounding, so that it rolls on for ever.
+    pub(in crate::motions::path) fn no_longer_drills<const N: usize>(&self, y: &[f64; N]) -> bool {
+        self.dies && (y[0] * y[2] + y[1] * y[4]).abs() <= f64::EPSILON * Self::fastest(y)
+    }
+
+    /// The halt of a patch that no longer slips or drills, or of a slip that has died.
     #[inline(never)]
     pub(super) fn hardly_rubs<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
         let (radius, rubbing) = (self.law.patch()?, self.rubbing(place)?);
+        if !self.died && self.has_died(&place.y) {
+            return Some((Halt::Standstill, place.y));
+        }
         let left = rubbing.left(place.rate[TIME]);
         let mut rests: [f64; N] = core::array::from_fn(|i| place.y[i] + left * place.rate[i]);
         (rests[5], rests[6]) = (0.0, 0.0);
@@ -79,8 +100,20 @@ impl Slide {
     /// Whether u, or psi' under a couple that grows with it, follows the motion much faster than the body turns.
     #[inline(never)]
     pub(super) fn creeps_fast<const N: usize>(&self, place: &FlowPlace<N>) -> bool {
-        let damped = if loses(N) { self.damped(&place.y) } else { f64::INFINITY };
-        is_fast(place.rate[7].min(damped), self.calm(&place.y))
+        is_fast(self.follows_within(place), self.calm(&place.y))
+    }
+
+    /// The longest time step in which u, and a psi' under a couple that grows with it, follow the motion by explicit
+    /// steps. The heat of the friction tells the normal force, and the rims how much a force changes the slip.
+    pub(super) fn follows_within<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
+        let (y, rate, Shape { rim, i1, i3 }) = (&place.y, &place.rate, &self.law.shape);
+        let angle = (y[0], y[1]);
+        let (lever, height, depth, radius) =
+            (rim.lever(angle), rim.height(angle), rim.depth(angle), rim.radius(angle));
+        let eased = (height * height / (i1 + lever * lever)).max(depth * depth / i1 + radius * radius / i3);
+        let turn = self.law.patch().unwrap_or(0.0) * (y[0] * y[2] + y[1] * y[4]);
+        let damped = if loses(N) { self.damped(y) } else { f64::INFINITY };
+        damped.min(stable_time([y[5], y[6], turn], rate[8] / rate[TIME], 1.0 + eased))
     }
 
     /// An implicit step and its stages.

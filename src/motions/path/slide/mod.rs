@@ -19,13 +19,14 @@ use crate::laws::body::{Body, Rim, Shape, landing_angle};
 use crate::laws::contact::slip::{Friction, SlipResponse, Slipping};
 use crate::laws::loss::{Couples, Holds, Losses};
 use crate::laws::state::State;
-use crate::methods::flow::{FASTEST, Flow, FlowPlace, STABLE};
+use crate::methods::flow::{FASTEST, Flow, FlowPlace};
 use crate::methods::{radau, rk8};
 use crate::motions::creep::{IMPLICIT_TURNS, rests_below};
 use crate::motions::halt::{Halt, MARGINS, TIME, loses, poses};
 use crate::motions::path::face::FLAT;
 use crate::motions::path::lossy::REST;
 use crate::motions::path::pole;
+use crate::motions::path::spun::is_uniform;
 use crate::motions::walk::{MOMENT, slip_over};
 use crate::numbers::{Dual, Real};
 use core::f64::consts::PI;
@@ -54,6 +55,9 @@ pub(crate) struct Slide {
     flat: f64,
     /// Whether a couple that grows with psi' has almost stopped the contact along the rim.
     pub settled: bool,
+    /// Whether the body is a uniform ball on a patch of contact, whose slip dies; and whether it has died.
+    dies: bool,
+    pub died: bool,
     /// Whether rolling and rocking begin from rest, in the direction that the signs of the losses have.
     rolls_off: bool,
     /// The share by which the couple that holds the contact along the rim may exceed its limit, after it has settled.
@@ -80,6 +84,8 @@ impl Slide {
             sticks: law.dry,
             flat,
             settled: false,
+            dies: law.patch().is_some() && is_uniform(body) && losses.is_none(),
+            died: false,
             rolls_off: false,
             sure: 0.0,
             tol,
@@ -225,12 +231,11 @@ impl Flow<MARGINS> for Slide {
 
     #[inline(always)]
     fn is_stiff<const N: usize>(&self, place: &FlowPlace<N>) -> bool {
-        self.law.patch().is_some() && self.creeps_fast(place)
+        self.law.patch().is_some() && !self.died && self.creeps_fast(place)
     }
 
     fn stable<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
-        let damped = if loses(N) { self.damped(&place.y) } else { f64::INFINITY };
-        STABLE.min(damped / place.rate[7])
+        self.follows_within(place) / place.rate[7]
     }
 
     #[inline(never)]
@@ -402,12 +407,13 @@ impl Flow<MARGINS> for Slide {
         // `calm` limits the time, and a step in sigma takes less time where the slip is slow.
         let mut most = self.calm(&place.y);
         if self.is_stiff(place) {
-            return (IMPLICIT_TURNS * most / place.rate[7]).min(self.kinked(place));
+            most *= IMPLICIT_TURNS / place.rate[7];
+        } else {
+            if loses(N) && !self.settled {
+                most = most.min(self.damped(&place.y));
+            }
+            most /= place.rate[7].min(1.0);
         }
-        if loses(N) && !self.settled {
-            most = most.min(self.damped(&place.y));
-        }
-        most /= place.rate[7].min(1.0);
         if self.law.patch().is_some() {
             most = most.min(self.kinked(place));
         }
