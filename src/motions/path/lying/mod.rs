@@ -16,8 +16,8 @@ use super::flies::pose_from;
 use super::flight::Aloft;
 use super::phases::BodyWalk;
 use crate::error::Error;
-use crate::laws::contact::landing::mirrored;
-use crate::laws::contact::lying::Lying;
+use crate::laws::contact::landing::{mirrored, pivoted};
+use crate::laws::contact::lying::{Lain, Lying};
 use crate::laws::contact::slip::Friction;
 use crate::laws::contact::standstill::{Standstill, standstill, towards};
 use crate::laws::contact::{Force, Table};
@@ -35,6 +35,13 @@ use flow::{LyingFlow, LyingPhase, Stance};
 
 /// A slip slower than this, in units of the largest speed, counts as zero where a phase begins.
 const STILL_SLIP: f64 = 1e-12;
+/// A rocking ends in a pivot where one rim slips more slowly than the other one by this factor.
+const SLOWER: f64 = 1e-3;
+/// Error of the pivot after a rocking that is summed, in units of v^2/(mu ell u (1 - f)), with the velocity v of the
+/// rocking, the slip u of the other rim, and the share f of friction that the pivot needs. A rocking with a larger error
+/// than this is computed hop by hop.
+const ROCKS_LONG: f64 = 5.0;
+const ROCKS_LITTLE: f64 = 1e-9;
 /// The slip with which both rims begin to slip together.
 const NUDGED: f64 = 1e-12;
 /// Number of directions at which the growth of a slip is evaluated.
@@ -167,6 +174,48 @@ impl<const N: usize> BodyWalk<'_, N> {
         self.of.state.w2 = 0.0;
         let slips = self.at[5] != 0.0 || self.at[6] != 0.0 || !self.of.slide.law.dry;
         if slips { Next::Slips } else { after_rest(Phases::rests(self)) }
+    }
+
+    /// The phase in which one rim rests, if a rocking that has begun at theta = pi/2 ends in it so soon that it is
+    /// summed.
+    #[inline(never)]
+    pub(super) fn rocks_to_pivot(&mut self) -> Option<Next> {
+        let mut flow = self.flat()?;
+        let (ell, mu) = (self.of.body.ell(), flow.law.strength);
+        let [w1, w2, u_h, u_2] = [2, 3, 5, 6].map(|i| self.at[i]);
+        let speeds = [u_2, u_2 - 2.0 * ell * w1].map(|across| u_h.hypot(across));
+        let other = speeds[1] < speeds[0];
+        let [slow, fast] = if other { [speeds[1], speeds[0]] } else { speeds };
+        let slow = slow + w2.abs();
+        let error = ROCKS_LONG * slow * slow / (mu * ell * fast);
+        if !flow.law.dry || slow > SLOWER * fast || !(error < ROCKS_LITTLE) {
+            return None;
+        }
+        let (begin, state) = (self.at, self.of.state);
+        let after = pivoted(&self.of.body, &State { w2, ..state }, [u_h, u_2], mu, other);
+        let slips = if other { 2.0 * ell * after.w1 } else { 0.0 };
+        (self.at[2], self.at[3], self.at[4], self.at[5], self.at[6]) = (after.w1, 0.0, after.w3, 0.0, slips);
+        flow.stance = Stance::Pivots { other };
+        flow.turn = after.w1.signum();
+        self.sets_ways(&mut flow);
+        let Lain { force, .. } = flow.lain(&self.at);
+        let [n, across, along] = force[usize::from(other)];
+        let held = flow.law.held != [false; 2];
+        // A rim that is only just held takes longer to come to rest.
+        let error = error / (1.0 - across.hypot(along) / (mu * n));
+        let holds = (0.0..ROCKS_LITTLE).contains(&error) && force.iter().all(|force| force[0] > 0.0);
+        if held || !holds || after.w1 * w1 <= 0.0 {
+            self.at = begin;
+            return None;
+        }
+        self.claims(error);
+        self.doubts(error);
+        self.sets_state();
+        let energy = |y: &[f64; N]| self.of.slide.energy(y);
+        let lost = energy(&begin) - energy(&self.at);
+        self.claims(-lost);
+        self.at[8] += lost;
+        Some(self.settles_on_side())
     }
 
     /// The phase of a body with one rim at rest while the other slips; the other rim is at rest if `other`.
@@ -324,8 +373,9 @@ impl<const N: usize> BodyWalk<'_, N> {
             if phase.flow.stance == Stance::Slips { y[TIME] - self.began } else { 0.0 };
         let next = match halt {
             Halt::Time | Halt::Pause => return None,
-            Halt::Rises => self.rises_on(true),
-            Halt::Changes => self.rises_on(false),
+            Halt::Rises | Halt::Changes => {
+                self.rocks_to_pivot().unwrap_or_else(|| self.rises_on(halt == Halt::Rises))
+            }
             Halt::Slips => {
                 let other = phase.flow.stance == Stance::Pivots { other: true };
                 if phase.flow.stance == Stance::Rolls {
