@@ -19,7 +19,7 @@ const SOON_OVER: f64 = 1e-6;
 /// A rocking beside a slow slip is summed only if the slip turns by less than this angle in that time. Dry friction turns
 /// it at a rate of up to this many times mu over its speed.
 const TURNED: f64 = 1e-2;
-const QUICK: f64 = 3.0;
+const TURNS_SLIP: f64 = 3.0;
 
 impl<const N: usize> BodyWalk<'_, N> {
     /// The numbers at the end of a rocking that has just begun another hop at theta = pi/2; None if the end is not
@@ -93,7 +93,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         (end[0], end[1], end[3]) = (1.0, 0.0, 0.0);
         let fastest = [2, 4, 5, 6].into_iter().fold(1.0, |most: f64, i| most.max(begin[i].abs()));
         let left = end[TIME] - begin[TIME];
-        let turns = left * (fastest + self.of.slide.law.strength * QUICK / slowest);
+        let turns = left * (fastest + self.of.slide.law.strength * TURNS_SLIP / slowest);
         (share > 0.0 && left * fastest < SOON_OVER && turns < TURNED).then_some((end, left * turns))
     }
 }

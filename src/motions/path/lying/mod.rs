@@ -36,12 +36,12 @@ use flow::{LyingFlow, LyingPhase, Stance};
 /// A slip slower than this, in units of the largest speed, counts as zero where a phase begins.
 const STILL_SLIP: f64 = 1e-12;
 /// A rocking ends in a pivot where one rim slips more slowly than the other one by this factor.
-const SLOWER: f64 = 1e-3;
-/// Error of the pivot after a rocking that is summed, in units of v^2/(mu ell u (1 - f)), with the velocity v of the
-/// rocking, the slip u of the other rim, and the share f of friction that the pivot needs. A rocking with a larger error
-/// than this is computed hop by hop.
-const ROCKS_LONG: f64 = 5.0;
-const ROCKS_LITTLE: f64 = 1e-9;
+const ROCKS_BESIDE: f64 = 1e-3;
+/// The longest time of a rocking that ends in a pivot, in units of v (1/mu + 1/ell)/(N (1 - f)), with the velocity v of
+/// the rocking, the smaller normal force N of the pivot, and the share f of friction that it needs: 1.55 in 3,100 random
+/// rockings. A longer rocking than `ROCKS_ON` is computed hop by hop.
+const ROCKS_LONG: f64 = 3.0;
+const ROCKS_ON: f64 = 1e-9;
 /// The slip with which both rims begin to slip together.
 const NUDGED: f64 = 1e-12;
 /// Number of directions at which the growth of a slip is evaluated.
@@ -187,8 +187,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         let other = speeds[1] < speeds[0];
         let [slow, fast] = if other { [speeds[1], speeds[0]] } else { speeds };
         let slow = slow + w2.abs();
-        let error = ROCKS_LONG * slow * slow / (mu * ell * fast);
-        if !flow.law.dry || slow > SLOWER * fast || !(error < ROCKS_LITTLE) {
+        if !flow.law.dry || !(slow < ROCKS_BESIDE * fast && slow < ROCKS_ON) {
             return None;
         }
         let (begin, state) = (self.at, self.of.state);
@@ -200,16 +199,17 @@ impl<const N: usize> BodyWalk<'_, N> {
         self.sets_ways(&mut flow);
         let Lain { force, .. } = flow.lain(&self.at);
         let [n, across, along] = force[usize::from(other)];
-        let held = flow.law.held != [false; 2];
-        // A rim that is only just held takes longer to come to rest.
-        let error = error / (1.0 - across.hypot(along) / (mu * n));
-        let holds = (0.0..ROCKS_LITTLE).contains(&error) && force.iter().all(|force| force[0] > 0.0);
-        if held || !holds || after.w1 * w1 <= 0.0 {
+        let least = force[0][0].min(force[1][0]);
+        // A rim that is only just held, or presses little, takes longer to come to rest.
+        let lasts =
+            ROCKS_LONG * slow * (1.0 / mu + 1.0 / ell) / (least * (1.0 - across.hypot(along) / (mu * n)));
+        let held = flow.law.held != [false; 2] || after.w1 * w1 <= 0.0;
+        if held || least <= 0.0 || !(0.0..ROCKS_ON).contains(&lasts) {
             self.at = begin;
             return None;
         }
-        self.claims(error);
-        self.doubts(error);
+        self.claims(lasts);
+        self.doubts(lasts);
         self.sets_state();
         let energy = |y: &[f64; N]| self.of.slide.energy(y);
         let lost = energy(&begin) - energy(&self.at);
