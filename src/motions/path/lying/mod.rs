@@ -209,7 +209,6 @@ impl<const N: usize> BodyWalk<'_, N> {
             return None;
         }
         self.claims(lasts);
-        self.doubts(lasts);
         self.sets_state();
         let energy = |y: &[f64; N]| self.of.slide.energy(y);
         let lost = energy(&begin) - energy(&self.at);
