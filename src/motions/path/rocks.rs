@@ -5,7 +5,7 @@
 //! the rest = the change in one cycle of two hops and two landings, over 1 - r r'
 //! ```
 //! The model is the block of Housner, Bull. Seismol. Soc. Am. 53, 403 (1963). Error: the square of the time that is
-//! summed.
+//! summed, and that time, times the angle by which a slow slip turns.
 
 use super::phases::BodyWalk;
 use crate::laws::contact::landing::{Outcome, land_at};
@@ -16,11 +16,15 @@ use core::f64::consts::FRAC_PI_2;
 
 /// The longest time that is summed, over the time in which the body turns by a radian.
 const SOON_OVER: f64 = 1e-6;
+/// A rocking beside a slow slip is summed only if the slip turns by less than this angle in that time. Dry friction turns
+/// it at a rate of up to this many times mu over its speed.
+const TURNED: f64 = 1e-2;
+const TURNS_SLIP: f64 = 3.0;
 
 impl<const N: usize> BodyWalk<'_, N> {
     /// The numbers at the end of a rocking that has just begun another hop at theta = pi/2; None if the end is not
     /// near.
-    pub(super) fn rocks_out(&mut self) -> Option<[f64; N]> {
+    pub(super) fn rocks_out(&mut self) -> Option<([f64; N], f64)> {
         let (begin, state, takeoff) = (self.at, self.of.state, self.of.takeoff);
         let upside_down = self.made.path.upside_down;
         let found = self.cycle(&begin);
@@ -30,13 +34,17 @@ impl<const N: usize> BodyWalk<'_, N> {
     }
 
     #[inline(never)]
-    fn cycle(&mut self, begin: &[f64; N]) -> Option<[f64; N]> {
+    fn cycle(&mut self, begin: &[f64; N]) -> Option<([f64; N], f64)> {
+        let mut slowest = f64::INFINITY;
         for _ in 0..2 {
             let y = State { theta: FRAC_PI_2, w2: 0.0, ..self.of.state };
             let (slip, rises) = ([self.at[5], self.at[6]], self.at[3]);
             let law = &self.of.slide.law;
             let sticks = law.dry && slip[0].hypot(slip[1]) <= self.of.slide.over();
             let w = [y.w1, 0.0, y.w3];
+            if law.dry && !sticks {
+                slowest = slowest.min(slip[0].hypot(slip[1]));
+            }
             let (rate, drift, warms, taken) = if sticks {
                 let (dy, taken) = lossy::derivative(Contact::Rolling, &self.of.body, &y, &self.ask.losses);
                 ([dy.w1, dy.w2, dy.w3], [0.0; 2], 0.0, taken)
@@ -84,7 +92,8 @@ impl<const N: usize> BodyWalk<'_, N> {
         let mut end: [f64; N] = core::array::from_fn(|i| begin[i] + (self.at[i] - begin[i]) / share);
         (end[0], end[1], end[3]) = (1.0, 0.0, 0.0);
         let fastest = [2, 4, 5, 6].into_iter().fold(1.0, |most: f64, i| most.max(begin[i].abs()));
-        let left = (end[TIME] - begin[TIME]) * fastest;
-        (share > 0.0 && left < SOON_OVER).then_some(end)
+        let left = end[TIME] - begin[TIME];
+        let turns = left * (fastest + self.of.slide.law.strength * TURNS_SLIP / slowest);
+        (share > 0.0 && left * fastest < SOON_OVER && turns < TURNED).then_some((end, left * turns))
     }
 }

@@ -402,11 +402,16 @@ impl<const N: usize> BodyWalk<'_, N> {
             return self.settles_on_side();
         }
         if rises < ROCKED
-            && let Some(end) = self.rocks_out()
+            && let Some((end, error)) = self.rocks_out()
         {
-            self.claims((end[TIME] - self.at[TIME]).powi(2));
+            self.claims(error);
             self.at = end;
             return self.settles_on_side();
+        }
+        if self.at[3] < ROCKED
+            && let Some(next) = self.rocks_to_pivot()
+        {
+            return next;
         }
         self.touches_down()
     }
