@@ -170,6 +170,8 @@ class Viscous(_Law):
 
 #: A law of friction.
 Friction: TypeAlias = Coulomb | Viscous
+#: Where a law works that a user wrote.
+OWN = "a law of your own works only in sc.roll and sc.sweep.roll, for bodies of revolution"
 #: Every kind of contact.
 AnyContact: TypeAlias = Contact | Friction
 
@@ -220,8 +222,7 @@ def table(contact: AnyContact, mu: float, own: bool = False) -> tuple[int, tuple
 def built_in(contact: AnyContact) -> None:
     """Raise TypeError for a law that the user wrote."""
     if getattr(contact, "_function", None) is not None:
-        why = "a law of your own works only in sc.roll and sc.sweep.roll, for bodies of revolution"
-        raise TypeError(f"contact = {contact!r}: {why}")
+        raise TypeError(f"contact = {contact!r}: {OWN}")
 
 
 def kind(contact: AnyContact) -> AnyContact:

@@ -111,7 +111,12 @@ def rubs(contact: object) -> bool:
 
 def struck(restitution: object, contact: AnyContact) -> None:
     """Raise ValueError for impacts on a patch of contact, unless there are several patches."""
-    if isinstance(contact, Coulomb) and is_scalar(contact.patch) and contact.patch:
+    if (
+        restitution is not None
+        and isinstance(contact, Coulomb)
+        and is_scalar(contact.patch)
+        and contact.patch
+    ):
         why = "impacts are computed for contact at a point; give the contact without patch="
         raise ValueError(f"restitution = {restitution!r} cannot be combined with a patch of contact: {why}")
 
@@ -125,8 +130,7 @@ def check(state: State, contact: AnyContact, restitution: object, settings: dict
         landed(state, "give restitution=, the coefficient of restitution of impacts, 0 to 1")
     elif not 0 <= number("restitution", restitution) <= 1:
         raise ValueError(f"restitution = {restitution!r}: expected None, or 0 <= restitution <= 1")
-    else:
-        struck(restitution, contact)
+    struck(restitution, contact)
     if not isinstance(contact, Coulomb | Viscous):
         if restitution is None or state.height is None:
             gripping(state, f"contact={contact!r} has no law of friction; give contact=sc.Coulomb(mu)")

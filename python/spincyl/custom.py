@@ -22,7 +22,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from spincyl._body import Body
-from spincyl._contact import Coulomb
+from spincyl._contact import OWN, Coulomb
 from spincyl._input.equality import key
 from spincyl._input.numbers import Floats, Reals, Result, number
 from spincyl._input.pointers import COUPLE, FRICTION, Pointer, pointer
@@ -34,9 +34,7 @@ __all__ = ["Couple", "Friction"]
 
 #: A couple from theta, w along e1, e2, e3 (an array of 3), and the normal force.
 CoupleFunction = Callable[[float, Floats, float], Sequence[float] | Floats]
-_ALONE = (
-    "a law of your own works only in sc.roll and sc.sweep.roll, for bodies of revolution, as the only law"
-)
+_ALONE = f"{OWN}, as the only loss"
 
 
 def _called(name: str, function: object, arguments: str) -> None:

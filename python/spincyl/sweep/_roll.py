@@ -323,7 +323,7 @@ def _checked(asked: Asked, losses: Loss | None) -> Asked:
         raise ValueError("stop_at: needs contact=sc.Coulomb(...) or contact=sc.Viscous(...)")
     if asked.restitution is not None:
         within("restitution", number("restitution", asked.restitution), 0.0, 1.0, "or None")
-        struck(asked.restitution, contact)
+    struck(asked.restitution, contact)
     one_of("stop_at", asked.stop_at, (None, "rolling"))
     own = [law for law in (contact, losses) if getattr(law, "_function", None) is not None]
     if own and asked.stop_at is not None:
