@@ -142,8 +142,7 @@ class EllipsoidMotion(Motion):
 def unstruck(restitution: object) -> None:
     """Raise ValueError for impacts of a stone."""
     if restitution is not None:
-        why = "the motion of a stone ends where the stone leaves the table"
-        raise ValueError(f"restitution: only for bodies of revolution; {why}")
+        raise ValueError("restitution: only for bodies of revolution; a stone ends where it leaves the table")
 
 
 def roll(

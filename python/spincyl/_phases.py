@@ -111,12 +111,8 @@ def rubs(contact: object) -> bool:
 
 def struck(restitution: object, contact: AnyContact) -> None:
     """Raise ValueError for impacts on a patch of contact, unless there are several patches."""
-    if (
-        restitution is not None
-        and isinstance(contact, Coulomb)
-        and is_scalar(contact.patch)
-        and contact.patch
-    ):
+    patch = isinstance(contact, Coulomb) and is_scalar(contact.patch) and contact.patch
+    if restitution is not None and patch:
         why = "impacts are computed for contact at a point; give the contact without patch="
         raise ValueError(f"restitution = {restitution!r} cannot be combined with a patch of contact: {why}")
 
