@@ -212,13 +212,16 @@ def test_a_stiff_law_is_named_where_its_motion_is_given_up():
         lambda: sc.loss.AirLinear(1e-3) + CUBIC,
         lambda: sc.loss.Sum([CUBIC]),
         lambda: sc.drift(COIN, 0.5, CUBIC),
-        lambda: sc.sweep.roll(COIN, START, T, losses=CUBIC),
-        lambda: sc.sweep.roll(COIN, START, T, contact=FALLING),
+        lambda: sc.sweep.roll(
+            sc.Ellipsoid.egg(1.0, 1.5), sc.Ellipsoid.egg(1.0, 1.5).spinning(1.0), 1.0, contact=FALLING
+        ),
+        lambda: sc.sweep.roll(
+            sc.Ellipsoid.egg(1.0, 1.5), sc.Ellipsoid.egg(1.0, 1.5).spinning(1.0), 1.0, losses=CUBIC
+        ),
         lambda: sc.turning_spin(sc.Body.ball(0.2, i1=0.4, i3=0.4), FALLING),
         lambda: sc.roll(
             sc.Ellipsoid.egg(1.0, 1.5), sc.Ellipsoid.egg(1.0, 1.5).spinning(1.0), T, contact=FALLING
         ),
-        lambda: sc.sweep.flicks(sc.Body.tube(6.0, bore=0.8), 5.0, w1=[1.0, 2.0], launch=1.2, contact=FALLING),
         lambda: sc.scene(sc.roll(COIN, START, T, contact=FALLING)),
         lambda: sc.scene(sc.roll(COIN, START, T, losses=CUBIC)),
         lambda: sc.play(COIN, state=START, contact=FALLING),
@@ -228,6 +231,128 @@ def test_a_stiff_law_is_named_where_its_motion_is_given_up():
 def test_what_cannot_follow_a_law_of_your_own_refuses_it(call):
     with pytest.raises(TypeError, match="of your own|user-defined|expected built-in laws"):
         call()
+
+
+SWEPT = "final", "end", "slip_time", "dissipated", "work_lost", "phases", "rolling_time", "rolling_w3"
+
+
+@pytest.mark.parametrize("of", ["python", "c"])
+@pytest.mark.parametrize("scaled", [False, True])
+def test_a_sweep_under_laws_of_your_own_has_the_bits_of_single_motions(of, scaled):
+    ell, w3, t = np.array([[0.1], [1.0]]), np.array([2.0, -3.0]), 0.5 if scaled else 1.5
+    couple = sc.custom.Couple(drag if of == "c" else lambda theta, w, normal: -0.01 * normal * w)
+    contact = sc.custom.Friction(ERFC if of == "c" else math.erfc)
+
+    def body(ell):
+        found = sc.Body.solid(ell)
+        return found.in_metres(1000.0, radius=1.0) if scaled else found
+
+    def state(w3):
+        return sc.State(1.2, 0.2, 0.1, w3, slip=(0.3, 0.1))
+
+    found = sc.sweep.roll(body(ell), state(w3), t, contact=contact, losses=couple, want=SWEPT, threads=2)
+    assert (found["method"] == sc.sweep.Answer.FLOW).all()
+    assert (found["status"] == sc.sweep.Status.DONE).any()
+    for i, j in np.ndindex(2, 2):
+        row = found.isel(motion_0=i, motion_1=j)
+        m = sc.roll(body(float(ell[i, 0])), state(w3[j]), t, contact=contact, losses=couple)
+        last = m.states if m.event is None else m.event.state
+        assert row["status"] == m.status
+        assert row["error"] == m.error
+        assert row["phases"] == len(m.phases)
+        assert row["end"] == (t if m.event is None else m.event.time)
+        if scaled:
+            continue
+        assert [row[x].item() for x in ("theta", "w1", "w2", "w3")] == [
+            np.ravel(getattr(last, x))[-1] for x in ("theta", "w1", "w2", "w3")
+        ]
+        if m.event is None:
+            assert (row["dissipated"], row["work_lost"]) == (m.dissipated[-1], m.work_lost[-1])
+        rolling = [x for x in m.phases if x.kind == "rolling"]
+        assert row["rolling_time"].item() == (
+            pytest.approx(rolling[-1].time) if rolling else pytest.approx(np.nan, nan_ok=True)
+        )
+    once = sc.sweep.roll(
+        body(ell), state(w3), t, contact=contact, losses=couple, want=SWEPT, errors=False, threads=1
+    )
+    assert once["error"].isnull().all()
+    assert all(once[name].equals(found[name]) for name in ("theta", "w3", "end", "status", "work_lost"))
+
+
+def test_a_sweep_has_the_states_of_your_law_at_all_times():
+    found = sc.sweep.roll(COIN, COIN.steady(np.array([0.4, 0.5])), T, losses=CUBIC)
+    m = sc.roll(COIN, START, T, losses=CUBIC)
+    assert (found["w3"].values[1] == m.w[:, 2]).all()
+    assert "custom.Couple" in found.attrs["losses"]
+
+
+def test_what_a_law_does_wrong_is_the_error_of_its_sweep():
+    starts, calls = COIN.steady(np.array([0.3, 0.5])), []
+
+    def law(theta, w, normal):
+        calls.append(theta)
+        if len(calls) >= CHECKED + 5000:
+            raise ZeroDivisionError("mine")
+        return -0.01 * w
+
+    with pytest.raises(ZeroDivisionError, match="mine"):
+        sc.sweep.roll(COIN, starts, 500.0, losses=sc.custom.Couple(law))
+    assert len(calls) == CHECKED + 5000
+    with pytest.raises(ValueError, match="takes energy"):
+        sc.sweep.roll(COIN, starts, 5.0, losses=sc.custom.Couple(lambda theta, w, normal: 0.1 * w))
+    window = sc.custom.Couple(
+        lambda theta, w, normal: -0.01 * w * (np.nan if 0.4799 < theta < 0.4801 else 1.0)
+    )
+    with pytest.raises(ValueError, match=r"^couple: power = NaN at theta = 0\.4[78]"):
+        sc.sweep.roll(COIN, starts, 5.0, losses=window)
+    calls.clear()
+    bad = sc.State(np.array([0.5, np.nan]), 0.0, 0.0, 3.0)
+    status = sc.sweep.roll(COIN, bad, 1.0, losses=CUBIC)["status"].values
+    assert status.tolist() == [sc.sweep.Status.DONE, sc.sweep.Status.INVALID]
+
+
+def test_ctrl_c_in_a_law_ends_its_sweep():
+    calls = []
+
+    def law(theta, w, normal):
+        calls.append(theta)
+        if len(calls) == CHECKED + 2000:
+            os.kill(os.getpid(), signal.SIGINT)
+        return -0.01 * w
+
+    with pytest.raises(KeyboardInterrupt):
+        sc.sweep.roll(COIN, COIN.steady(np.full(9, 0.5)), 500.0, losses=sc.custom.Couple(law))
+    assert len(calls) <= CHECKED + 2001
+
+
+def test_a_result_does_not_contain_a_law_of_your_own():
+    pytest.importorskip("dask")
+    found = sc.sweep.roll(COIN, START, 1.0, losses=CUBIC)
+    with pytest.raises(
+        ValueError, match="rows: a result does not contain a law of your own, losses = custom.Couple"
+    ):
+        sc.sweep.inputs(found)
+    slides = sc.State(0.5, 0.0, 0.0, 3.0, slip=(0.1, 0.0))
+    with pytest.raises(ValueError, match="contact = custom.Friction"):
+        sc.sweep.inputs(sc.sweep.roll(COIN, slides, 1.0, contact=FALLING))
+    import dask.array as da
+
+    lazy = COIN.steady(da.full(4, 0.5, chunks=2))
+    with pytest.raises(TypeError, match="only for arrays in memory"):
+        sc.sweep.roll(COIN, lazy, 1.0, losses=CUBIC)
+
+
+def test_a_sweep_under_a_law_of_your_own_does_not_stop_at_rolling():
+    with pytest.raises(ValueError, match="^stop_at = 'rolling': not available with a law of your own"):
+        sc.sweep.roll(COIN, START, 1.0, contact=FALLING, stop_at="rolling")
+
+
+def test_flicks_slip_under_a_law_of_your_own():
+    tube, how = sc.Body.tube(6.0, bore=0.8), {"w1": [1.0, 2.0], "launch": 1.2}
+    own = sc.custom.Friction(lambda u: 0.3)
+    found, known = (sc.sweep.flicks(tube, 5.0, **how, contact=law) for law in (own, sc.Coulomb(0.3)))
+    assert found["outcome"].equals(known["outcome"])
+    assert abs(found["end"] - known["end"]).max() < 1e-7
 
 
 def test_a_custom_motion_is_shown_and_plotted():

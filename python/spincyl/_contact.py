@@ -170,6 +170,8 @@ class Viscous(_Law):
 
 #: A law of friction.
 Friction: TypeAlias = Coulomb | Viscous
+#: Where a law works that a user wrote.
+OWN = "a law of your own works only in sc.roll and sc.sweep.roll, for bodies of revolution"
 #: Every kind of contact.
 AnyContact: TypeAlias = Contact | Friction
 
@@ -220,13 +222,15 @@ def table(contact: AnyContact, mu: float, own: bool = False) -> tuple[int, tuple
 def built_in(contact: AnyContact) -> None:
     """Raise TypeError for a law that the user wrote."""
     if getattr(contact, "_function", None) is not None:
-        raise TypeError(f"contact = {contact!r}: a law of your own works only in sc.roll, for a single body")
+        raise TypeError(f"contact = {contact!r}: {OWN}")
 
 
 def kind(contact: AnyContact) -> AnyContact:
-    """The same contact with coefficient 0, for many motions, whose coefficients are in columns."""
-    built_in(contact)
-    return contact if isinstance(contact, str) else type(contact)(0.0)
+    """The same contact with coefficient 0, for many motions, whose coefficients are in columns.
+
+    A law that the user wrote stays the same.
+    """
+    return contact if isinstance(contact, str) or contact._function is not None else type(contact)(0.0)
 
 
 def fitting(contact: AnyContact, scale: Scale | None) -> None:

@@ -7,7 +7,7 @@ import numpy as np
 
 from spincyl import _core
 from spincyl._asked import Asked, Method, Want, ask, chosen, crossing, times_of
-from spincyl._contact import AnyContact, fitting
+from spincyl._contact import AnyContact, built_in, fitting
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._ellipsoid_state import EllipsoidState
 from spincyl._ending import Event
@@ -139,6 +139,12 @@ class EllipsoidMotion(Motion):
         raise AttributeError(f"{name}: only for bodies of revolution; for a stone use orientation")
 
 
+def unstruck(restitution: object) -> None:
+    """Raise ValueError for impacts of a stone."""
+    if restitution is not None:
+        raise ValueError("restitution: only for bodies of revolution; a stone ends where it leaves the table")
+
+
 def roll(
     body: Ellipsoid,
     state: EllipsoidState,
@@ -165,9 +171,8 @@ def roll(
         raise ValueError(
             "step, method: only for bodies of revolution; for a stone leave them out, or give tol="
         )
-    if restitution is not None:
-        why = "the motion of a stone ends where the stone leaves the table"
-        raise ValueError(f"restitution: only for bodies of revolution; {why}")
+    unstruck(restitution)
+    built_in(contact)
     if losses is not None:
         narrow(of_stone(losses, body), contact)
     scale, seconds = body.scale, t

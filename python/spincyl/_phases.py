@@ -7,7 +7,7 @@ import numpy as np
 
 from spincyl import _core
 from spincyl._contact import AnyContact, Coulomb, Viscous
-from spincyl._input.numbers import Floats, number
+from spincyl._input.numbers import Floats, is_scalar, number
 from spincyl._state import State, gripping, landed, unchecked
 
 if TYPE_CHECKING:
@@ -109,6 +109,14 @@ def rubs(contact: object) -> bool:
     return isinstance(contact, Coulomb | Viscous)
 
 
+def struck(restitution: object, contact: AnyContact) -> None:
+    """Raise ValueError for impacts on a patch of contact, unless there are several patches."""
+    patch = isinstance(contact, Coulomb) and is_scalar(contact.patch) and contact.patch
+    if restitution is not None and patch:
+        why = "impacts are computed for contact at a point; give the contact without patch="
+        raise ValueError(f"restitution = {restitution!r} cannot be combined with a patch of contact: {why}")
+
+
 def check(state: State, contact: AnyContact, restitution: object, settings: dict[str, Any]) -> None:
     """Raise ValueError for arguments that the contact excludes, such as a slip without friction.
 
@@ -118,9 +126,7 @@ def check(state: State, contact: AnyContact, restitution: object, settings: dict
         landed(state, "give restitution=, the coefficient of restitution of impacts, 0 to 1")
     elif not 0 <= number("restitution", restitution) <= 1:
         raise ValueError(f"restitution = {restitution!r}: expected None, or 0 <= restitution <= 1")
-    elif isinstance(contact, Coulomb) and contact.patch:
-        why = "impacts are computed for contact at a point; give the contact without patch="
-        raise ValueError(f"restitution = {restitution!r} cannot be combined with a patch of contact: {why}")
+    struck(restitution, contact)
     if not isinstance(contact, Coulomb | Viscous):
         if restitution is None or state.height is None:
             gripping(state, f"contact={contact!r} has no law of friction; give contact=sc.Coulomb(mu)")

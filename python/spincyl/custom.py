@@ -2,9 +2,9 @@
 
 Each law is a Python function, or a C function (``numba.cfunc``, ctypes, ``scipy.LowLevelCallable``), which is
 called without Python in about a hundredth of the time; a motion calls a law thousands of times.
-`sc.roll` checks the law before the motion begins: its values must be finite and without jumps, and a couple
-must not add energy. A dry law contains the sign of a speed, which jumps. Smooth it: ``tanh(x/e)`` in place of
-``sign(x)``.
+`sc.roll` and `sc.sweep.roll` check the law before a motion begins: its values must be finite and without
+jumps, and a couple must not add energy. A dry law contains the sign of a speed, which jumps. Smooth it:
+``tanh(x/e)`` in place of ``sign(x)``.
 
 >>> import numpy as np
 >>> import spincyl as sc
@@ -22,7 +22,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from spincyl._body import Body
-from spincyl._contact import Coulomb
+from spincyl._contact import OWN, Coulomb
 from spincyl._input.equality import key
 from spincyl._input.numbers import Floats, Reals, Result, number
 from spincyl._input.pointers import COUPLE, FRICTION, Pointer, pointer
@@ -34,7 +34,7 @@ __all__ = ["Couple", "Friction"]
 
 #: A couple from theta, w along e1, e2, e3 (an array of 3), and the normal force.
 CoupleFunction = Callable[[float, Floats, float], Sequence[float] | Floats]
-_ALONE = "a law of your own works only in sc.roll, for a single body of revolution, as the only loss"
+_ALONE = f"{OWN}, as the only loss"
 
 
 def _called(name: str, function: object, arguments: str) -> None:
@@ -59,9 +59,10 @@ class Couple(Loss):
     ------
     TypeError
         If `function` is not callable, or is a C function of another signature. Also if the law is used for
-        many motions, for a drift, for a stone, or together with another loss law.
+        a drift, for a stone, for lazy arrays, or together with another loss law.
     ValueError
-        In `sc.roll`, if the couple adds energy, is not finite, or jumps; the message gives a value.
+        In `sc.roll` and `sc.sweep.roll`, if the couple adds energy, is not finite, or jumps; the message
+        gives a value.
 
     Notes
     -----
@@ -145,9 +146,9 @@ class Friction(Coulomb):
     ------
     TypeError
         If `function` is not callable, or is a C function of another signature. Also if the law is used for
-        many motions, for a stone, or on a page.
+        a stone, for lazy arrays, or on a page.
     ValueError
-        In `sc.roll`, if the coefficient is negative, is not finite, or jumps.
+        In `sc.roll` and `sc.sweep.roll`, if the coefficient is negative, is not finite, or jumps.
 
     Examples
     --------

@@ -1,8 +1,10 @@
 //! Laws of loss and friction that are Python functions.
 
+use super::options::MotionAsked;
+use super::pointer::GivenLaw;
 use super::watch::ASK;
 use crate::laws::body::Body;
-use crate::laws::custom::{CoupleLaw, FrictionLaw};
+use crate::laws::custom::{CoupleLaw, Custom, FrictionLaw};
 use crate::laws::state::State;
 use numpy::PyArray1;
 use pyo3::exceptions::PyTypeError;
@@ -10,16 +12,33 @@ use pyo3::prelude::*;
 use std::cell::{Cell, RefCell};
 use std::time::Instant;
 
+/// Calls `run` with the user-defined laws of a motion, or of many, and returns the first error of a law.
+pub(super) fn with_laws<T>(
+    py: Python<'_>,
+    asked: &MotionAsked,
+    run: impl FnOnce(Custom<'_>) -> T,
+) -> PyResult<T> {
+    let (raised, pointed) = (Raised::default(), asked.pointed());
+    let [couple, friction] = [&asked.couple, &asked.friction]
+        .map(|law| PythonLaw::of(py, law.as_ref().and_then(GivenLaw::function), &raised));
+    let found = run(Custom {
+        couple: couple.as_ref().map(|law| law as &dyn CoupleLaw).or(pointed.custom().couple),
+        friction: friction.as_ref().map(|law| law as &dyn FrictionLaw).or(pointed.custom().friction),
+    });
+    raised.end()?;
+    Ok(found)
+}
+
 /// The first error that a law has raised, or Ctrl-C between two calls of a law, which need not be Python code.
 #[derive(Default)]
-pub(super) struct Raised {
+struct Raised {
     error: RefCell<Option<PyErr>>,
     asked: Cell<Option<Instant>>,
 }
 
 impl Raised {
     /// The error, if there is one.
-    pub fn end(&self) -> PyResult<()> {
+    fn end(&self) -> PyResult<()> {
         self.error.take().map_or(Ok(()), Err)
     }
 
@@ -34,13 +53,13 @@ impl Raised {
 }
 
 /// A Python function as a law. After the first error of any law no law is called, and their values are NaN.
-pub(super) struct PythonLaw<'py, 'a> {
+struct PythonLaw<'py, 'a> {
     function: Bound<'py, PyAny>,
     raised: &'a Raised,
 }
 
 impl<'py, 'a> PythonLaw<'py, 'a> {
-    pub fn of(py: Python<'py>, function: Option<&Py<PyAny>>, raised: &'a Raised) -> Option<Self> {
+    fn of(py: Python<'py>, function: Option<&Py<PyAny>>, raised: &'a Raised) -> Option<Self> {
         function.map(|f| Self { function: f.bind(py).clone(), raised })
     }
 

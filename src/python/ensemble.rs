@@ -1,11 +1,14 @@
 //! Many motions: the functions read and fill columns by name.
 
 use super::columns::{FilledColumns, GivenColumns, STATE, codes};
+use super::custom::with_laws;
 use super::loss::parameters;
 use super::options::{MotionAsked, table_of};
 use super::watch::Watch;
 use crate::many::columns::LossColumns;
-use crate::many::motions::{Job, MotionOutput, MotionStarts, SUMMARIES, Summary, roll_among};
+use crate::many::motions::{
+    CustomLaws, Job, MotionOutput, MotionStarts, SUMMARIES, Summary, roll_among, roll_custom,
+};
 use numpy::{PyReadonlyArray1, PyReadwriteArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -105,6 +108,17 @@ pub fn ensemble<'py>(
     let (method, status) = (method.as_slice_mut()?, status.as_slice_mut()?);
     let out = MotionOutput { states, slips, rims, last, last_slip, last_rim, summary, error, method, status };
     let mut watch = Watch::new(progress);
-    py.detach(|| roll_among(&starts, &job, out, threads, &mut |share| watch.go_on(share)))?;
+    let mut go_on = |share: f64| watch.go_on(share);
+    if asked.calls_python() {
+        with_laws(py, &asked, |laws| {
+            roll_custom(&starts, &job, out, (&CustomLaws::Here(laws), threads), &mut go_on)
+        })??;
+    } else if asked.is_custom() {
+        let pointed = asked.pointed();
+        let of = || pointed.custom();
+        py.detach(|| roll_custom(&starts, &job, out, (&CustomLaws::Anywhere(&of), threads), &mut go_on))?;
+    } else {
+        py.detach(|| roll_among(&starts, &job, out, threads, &mut go_on))?;
+    }
     watch.done(py)
 }

@@ -1,14 +1,12 @@
 //! Motions: the functions take plain arrays and return a dictionary of plain arrays.
 
 use super::BODY;
-use super::custom::{PythonLaw, Raised};
+use super::custom::with_laws;
 use super::options::{MotionAsked, contact_of, table_of};
-use super::pointer::GivenLaw;
 use super::stone::{STONE, stone_of};
 use super::watch::Watch;
 use crate::error::{copied, room};
 use crate::laws::contact::patch;
-use crate::laws::custom::{CoupleLaw, Custom, FrictionLaw};
 use crate::laws::stone::{Ellipsoid, StoneState};
 use crate::motions::custom;
 use crate::motions::exact::Swing;
@@ -285,26 +283,16 @@ fn under_own_laws<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let ask = asked.ask_without_custom()?;
     let loses = asked.couple.is_some() || !ask.losses.is_none();
-    let given = [&asked.couple, &asked.friction].map(Option::as_ref);
-    let [pushes, rubs_by] = given.map(|law| law.and_then(GivenLaw::pointed));
-    let pointed = || Custom {
-        couple: pushes.as_ref().map(|law| law as &dyn CoupleLaw),
-        friction: rubs_by.as_ref().map(|law| law as &dyn FrictionLaw),
-    };
-    if given.iter().flatten().all(|law| law.function().is_none()) {
+    if !asked.calls_python() {
+        let pointed = asked.pointed();
         return found(py, body, (&ask, loses), |watch| {
-            custom::roll_with(body, start, times, &ask, pointed(), || watch.still())
+            custom::roll_with(body, start, times, &ask, pointed.custom(), || watch.still())
         });
     }
-    let (mut watch, raised) = (Watch::new(None), Raised::default());
-    let [couple, friction] = given.map(|law| PythonLaw::of(py, law.and_then(GivenLaw::function), &raised));
-    let laws = Custom {
-        couple: couple.as_ref().map(|law| law as &dyn CoupleLaw).or(pointed().couple),
-        friction: friction.as_ref().map(|law| law as &dyn FrictionLaw).or(pointed().friction),
-    };
-    let rolled = custom::roll_with(body, start, times, &ask, laws, || watch.still());
+    let mut watch = Watch::new(None);
+    let rolled =
+        with_laws(py, asked, |laws| custom::roll_with(body, start, times, &ask, laws, || watch.still()))?;
     watch.done(py)?;
-    raised.end()?;
     let m = rolled?.ok_or_else(|| PyRuntimeError::new_err("the motion was interrupted"))?;
     let columns = columns(&m, body, (&ask, loses), &mut || true)?.unwrap_or_default();
     dictionary(py, (&m, body), columns, rubs(&ask))

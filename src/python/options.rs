@@ -1,6 +1,6 @@
 //! The options of a motion, as Python gives them.
 
-use super::pointer::GivenLaw;
+use super::pointer::{GivenLaw, PointedLaws};
 use crate::laws::contact::{Contact, TableKind};
 use crate::laws::loss::{COUNT, Losses};
 use crate::motions::{Ask, Method};
@@ -88,7 +88,7 @@ pub fn motion_options() -> [&'static str; MotionAsked::NAMES.len()] {
 impl MotionAsked {
     pub fn ask(&self) -> PyResult<Ask> {
         if self.is_custom() {
-            let told = "a law of your own works only for a single body of revolution: sc.roll(body, ...)";
+            let told = "a law of your own works only for bodies of revolution";
             return Err(PyTypeError::new_err(told));
         }
         self.ask_without_custom()
@@ -97,6 +97,16 @@ impl MotionAsked {
     /// Whether any law is user-defined.
     pub fn is_custom(&self) -> bool {
         self.couple.is_some() || self.friction.is_some()
+    }
+
+    /// Whether a user-defined law is a function of Python, for which the GIL is needed.
+    pub fn calls_python(&self) -> bool {
+        [&self.couple, &self.friction].into_iter().flatten().any(|law| law.function().is_some())
+    }
+
+    /// The user-defined laws that are C functions.
+    pub fn pointed(&self) -> PointedLaws {
+        PointedLaws::of(self.couple.as_ref(), self.friction.as_ref())
     }
 
     /// The options that are not user-defined laws.

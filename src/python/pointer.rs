@@ -5,7 +5,7 @@
 #![expect(unsafe_code, reason = "a C function is called by its address")]
 
 use crate::laws::body::Body;
-use crate::laws::custom::{CoupleLaw, FrictionLaw};
+use crate::laws::custom::{CoupleLaw, Custom, FrictionLaw};
 use crate::laws::state::State;
 use core::mem::transmute;
 use core::num::NonZeroUsize;
@@ -23,15 +23,35 @@ impl GivenLaw {
         if let Self::Function(function) = self { Some(function) } else { None }
     }
 
-    pub fn pointed(&self) -> Option<PointedLaw> {
+    fn pointed(&self) -> Option<PointedLaw> {
         if let Self::Address((address, units)) = *self { Some(PointedLaw { address, units }) } else { None }
+    }
+}
+
+/// The couple and the friction of a motion, where these are C functions.
+pub struct PointedLaws {
+    couple: Option<PointedLaw>,
+    friction: Option<PointedLaw>,
+}
+
+impl PointedLaws {
+    pub fn of(couple: Option<&GivenLaw>, friction: Option<&GivenLaw>) -> Self {
+        let [couple, friction] = [couple, friction].map(|law| law.and_then(GivenLaw::pointed));
+        Self { couple, friction }
+    }
+
+    pub fn custom(&self) -> Custom<'_> {
+        Custom {
+            couple: self.couple.as_ref().map(|law| law as &dyn CoupleLaw),
+            friction: self.friction.as_ref().map(|law| law as &dyn FrictionLaw),
+        }
     }
 }
 
 /// A C function as a law. `units` are those of its numbers: of angular velocities, forces and couples, or of the speed of
 /// a slip.
 #[derive(Clone, Copy)]
-pub struct PointedLaw {
+struct PointedLaw {
     address: NonZeroUsize,
     units: [f64; 3],
 }

@@ -63,7 +63,7 @@ def kept_bodies(bodies: Body, states: State, losses: Loss | None) -> dict[str, R
         found |= zip(("start_slip_along", "start_slip_across"), states.slip, strict=True)
     if states.height is not None:
         found |= {"start_height": states.height, "start_lift": states.lift}
-    if losses is not None:
+    if losses is not None and losses._function is None:
         found |= {f"loss_{law._parameter}": law.coefficient for law in losses.laws}
     return found
 
@@ -82,7 +82,7 @@ def kept_contact(contact: AnyContact) -> dict[str, Reals]:
     """The coefficients of a law of friction, by the names of their coordinates."""
     if isinstance(contact, Viscous):
         return {"contact_c": contact.c}
-    if not isinstance(contact, Coulomb):
+    if not isinstance(contact, Coulomb) or contact._function is not None:
         return {}
     own = {} if contact.static is contact.mu else {"contact_static": contact.static}
     return {"contact_mu": contact.mu, **own, "contact_patch": contact.patch}
@@ -154,8 +154,9 @@ def inputs(rows: "xarray.Dataset") -> dict[str, Any]:
     Raises
     ------
     TypeError, ValueError
-        If `rows` is not a Dataset, or lacks the coordinates or attributes of a sweep. If `rows` is a single
-        row whose body is invalid; the message names the number. (A state with NaN is returned with NaN.)
+        If `rows` is not a Dataset, or lacks the coordinates or attributes of a sweep, or is the result of a
+        law of your own, which it does not contain. If `rows` is a single row whose body is invalid; the
+        message names the number. (A state with NaN is returned with NaN.)
 
     Notes
     -----
@@ -183,6 +184,9 @@ def inputs(rows: "xarray.Dataset") -> dict[str, Any]:
     missing += [name for name in ("contact", "t", "tol") if name not in at]
     if missing:
         raise ValueError(f"rows: expected a result of sweep.roll, but {missing[0]!r} is missing")
+    for name in ("contact", "losses"):
+        if str(at.get(name, "")).startswith("custom."):
+            raise ValueError(f"rows: a result does not contain a law of your own, {name} = {at[name]}")
     given: dict[str, Any] = {name: _input(rows[name]) for name in _UNITS if name in rows.coords}
     scale = Scale(*(at[name] for name in ("radius", "mass", "gravity"))) if "radius" in at else None
     known: Any = True if scale is None else scale

@@ -31,9 +31,10 @@ from spincyl._input.threads import is_roomy
 from spincyl._loss import Loss, made_law
 from spincyl._lossy import narrow
 from spincyl._measured import natural_time, speaking
-from spincyl._phases import rubs
+from spincyl._phases import rubs, struck
 from spincyl._roll import is_stone
 from spincyl._state import State, gripping, landed
+from spincyl.sweep._common import is_lazy
 from spincyl.sweep._inputs import kept_bodies, kept_contact
 from spincyl.sweep._labels import flags, given_up
 from spincyl.sweep._swept import Question, swept
@@ -137,7 +138,9 @@ def roll(
           refer, as in `Motion.rim`: theta alone does not tell which face is up.
     contact : {"rolling", "smooth"}, Coulomb or Viscous
         Rolling without slipping, a frictionless table, or a law of friction. The coefficients of a law, and
-        the slips of the states, may be arrays that broadcast with the other arrays.
+        the slips of the states, may be arrays that broadcast with the other arrays. Motions with a
+        `custom.Friction` or a `custom.Couple` are computed one at a time, and in one thread if the law is a
+        Python function. An error of such a law is raised, whatever the motion.
     tol : float
         Largest allowed error of a motion (absolute, 1e-15 to 0.1); a smaller value needs more time. Eight
         motions are computed at a time; a motion that does not reach `tol` in this way is computed alone, as
@@ -160,10 +163,10 @@ def roll(
         the motion is not computed. Only with a law of friction.
     losses : Loss, optional
         Law of `spincyl.loss` that takes energy, or a sum of several laws, with any contact. Coefficients
-        may be arrays that broadcast with the other arrays. A motion with losses ends where the body comes
-        to rest (`Status.STOPS`) or the face lands (`Status.FACE`). Motions that roll or slide without
-        friction are computed eight at a time, each with its own steps; motions with friction are computed one
-        at a time.
+        may be arrays that broadcast with the other arrays. Or a `custom.Couple`. A motion with losses ends
+        where the body comes to rest (`Status.STOPS`) or the face lands (`Status.FACE`). Motions that roll or
+        slide without friction are computed eight at a time, each with its own steps; motions with friction
+        are computed one at a time.
     max_nfev : int, optional
         Largest number of evaluations of the equations of motion for each motion, as in `spincyl.roll`. A
         motion that needs more is given up (`Status.BOUNDED`). Default: 8 million, or 40,000 per unit of time
@@ -242,12 +245,13 @@ def roll(
     """
     extra("xarray", "sweep")
     if is_stone(bodies):
+        from spincyl._ellipsoid_motion import unstruck
         from spincyl.sweep import _stones
 
-        if step is not None or beyond or restitution is not None or stop_at is not None or not errors:
+        unstruck(restitution)
+        if step is not None or beyond or stop_at is not None or not errors:
             raise ValueError(
-                "step, beyond, restitution, stop_at, errors: only for bodies of revolution; leave them out"
-                " for stones"
+                "step, beyond, stop_at, errors: only for bodies of revolution; leave them out for stones"
             )
         stones = _stones.question(bodies, states, t, want, contact, tol, mu, losses, max_nfev)
         labels = LABELS | _stones.LABELS
@@ -281,6 +285,14 @@ def roll(
     wanted = _wanted(want, several, tuple(summaries), (of, losses is not None, restitution is not None))
     asked = asked._replace(spread="states" in wanted)
     fields = _fields(bodies, states, contact, losses)
+    if losses is not None and losses._function is not None:
+        asked = asked._replace(losses=losses._natural(scale))
+    if not isinstance(contact, str):
+        asked = asked._replace(contact=contact._natural(scale))
+    for name, own in (("contact", contact), ("losses", losses)):
+        if getattr(own, "_function", None) is not None and is_lazy(*fields.values()):
+            why = "for arrays in memory, since nothing shows whether a saved sweep had the same law"
+            raise TypeError(f"{name} = {own!r}: a law of your own is only {why}")
     slips = rubs(contact) or restitution is not None
     shown = (*_STATE, *(_SLIP if slips else ()), *(_RIM if restitution is not None else ()))
     names = [*shown] if {"final", "states"} & {*wanted} else []
@@ -311,7 +323,11 @@ def _checked(asked: Asked, losses: Loss | None) -> Asked:
         raise ValueError("stop_at: needs contact=sc.Coulomb(...) or contact=sc.Viscous(...)")
     if asked.restitution is not None:
         within("restitution", number("restitution", asked.restitution), 0.0, 1.0, "or None")
+    struck(asked.restitution, contact)
     one_of("stop_at", asked.stop_at, (None, "rolling"))
+    own = [law for law in (contact, losses) if getattr(law, "_function", None) is not None]
+    if own and asked.stop_at is not None:
+        raise ValueError(f"stop_at = {asked.stop_at!r}: not available with a law of your own, {own[0]!r}")
     if rubs(contact) or losses is not None or asked.restitution is not None:
         if asked.times[-1] < 0:
             raise ValueError(
@@ -336,7 +352,7 @@ def _fields(bodies: Body, states: State, contact: AnyContact, losses: Loss | Non
         fields |= zip(_SLIP, states._slip, strict=True)
     if states.height is not None:
         fields |= {"height": states.height, "lift": states.lift}
-    if losses is not None:
+    if losses is not None and losses._function is None:
         names = (name for name, _ in _core.loss_laws())
         fields |= zip(names, losses._coefficients, strict=True)
     return fields

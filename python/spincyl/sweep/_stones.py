@@ -7,7 +7,7 @@ import numpy as np
 
 from spincyl import _core
 from spincyl._asked import Asked, evaluations
-from spincyl._contact import AnyContact, Coulomb, Viscous, code, fitting
+from spincyl._contact import AnyContact, Coulomb, Viscous, built_in, code, fitting
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._ellipsoid_state import EllipsoidState
 from spincyl._ending import ErrorWarning
@@ -38,6 +38,7 @@ def question(
     max_nfev: int | None,
 ) -> Question:
     """The arguments of `spincyl.sweep.roll` for stones, checked; an error names the argument."""
+    built_in(contact)
     states, scale, seconds = made("states", states, EllipsoidState), stones.scale, t
     if scale is not None:
         fitting(contact, scale)

@@ -176,7 +176,7 @@ impl<'a> MotionBlock<'a> {
     }
 
     /// Writes the results of motion `i` of the block, or why it has none; the memory may not suffice for any.
-    fn puts(
+    pub(super) fn puts(
         &self,
         out: &mut MotionOutput<'_>,
         i: usize,

@@ -13,6 +13,7 @@
 //! threads, any SIMD width and any other motions in the call. RK4 with a fixed step is used on request (`steps`).
 
 mod columns;
+mod customs;
 mod ends;
 mod flows;
 mod lanes;
@@ -38,6 +39,7 @@ use crate::motions::{Ask, Method};
 use crate::numbers::codes::coded;
 use columns::TimedOutput;
 pub use columns::{MotionColumns, MotionOutput, MotionStarts, SUMMARIES, Summary};
+pub(crate) use customs::{CustomLaws, roll_custom};
 use fearless_simd::Level;
 use std::sync::OnceLock;
 

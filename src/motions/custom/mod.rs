@@ -72,31 +72,54 @@ pub fn roll_with(
     mut go_on: impl FnMut() -> bool,
 ) -> Result<Option<Motion>, Error> {
     let start = start.into();
-    let tol = check(body, &start, ask, &custom)?;
+    check(body, &start, ask, &custom)?;
+    custom.check(body, ask.table.mu())?;
+    Ok(Motion::from(followed(body, &start, times, (ask, true), custom, &mut go_on)?).advanced(start.time))
+}
+
+/// The motion of [`roll_with`] under laws that are checked. Its error is NaN unless it `is_judged`, by a second run.
+pub(crate) fn followed(
+    body: &Body,
+    start: &Start,
+    times: &[f64],
+    (ask, is_judged): (&Ask, bool),
+    custom: Custom<'_>,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<Followed, Error> {
+    let tol = check(body, start, ask, &custom)?;
     check_times_after(start.time, times)?;
     let fault = Cell::new(None);
     let mut go_on = || !custom.has_failed() && go_on();
-    let run = |tol: f64, times: &[f64]| {
+    let mut run = |tol: f64, times: &[f64]| {
         let flow = CustomFlow { body, ask, custom, fault: &fault, slips: false, tol };
-        CustomRun::new(flow, &start, times)?.run(&mut go_on)
+        CustomRun::new(flow, start, times)?.run(&mut go_on)
     };
-    Ok(Motion::from(judged(tol, times, run)?).advanced(start.time))
+    if is_judged {
+        return judged(tol, times, run);
+    }
+    let mut found = run(tol, times)?;
+    found.motion.error = f64::NAN;
+    Ok(found)
 }
 
-/// Checks the options of such a motion. Returns the tolerance of its steps.
+/// Checks a motion under such laws. Returns the tolerance of its steps.
 fn check(body: &Body, start: &Start, ask: &Ask, custom: &Custom<'_>) -> Result<f64, Error> {
     exact::check(body, &start.state)?;
     ask.table.check()?;
     ask.losses.check_for(body)?;
     let tol = check_flow(ask)?;
+    check_options(ask, start, custom)?;
+    if !ask.table.rubs() {
+        without_slip(start.slip)?;
+    }
+    Ok(if ask.method == Method::Exact { FAIR } else { tol })
+}
+
+/// Returns an error for options that such laws exclude.
+pub(crate) fn check_options(ask: &Ask, start: &Start, custom: &Custom<'_>) -> Result<(), Error> {
     let refuse = |name: &'static str, value: f64| {
         Err(Error::OutOfRange { name, value, expected: "none together with a user-defined law" })
     };
-    if let Some((law, value)) = ask.losses.iter().find(|(law, value)| law.presses() && *value > 0.0) {
-        let expected =
-            "only laws without the normal force together with a user-defined law; add this one to it";
-        return Err(Error::OutOfRange { name: law.parameter(), value, expected });
-    }
     if ask.restitution.is_some() || start.aloft.is_some() {
         return refuse("restitution", ask.restitution.unwrap_or(f64::NAN));
     }
@@ -106,15 +129,16 @@ fn check(body: &Body, start: &Start, ask: &Ask, custom: &Custom<'_>) -> Result<f
     if ask.beyond || ask.stop_at_rolling {
         return refuse(if ask.beyond { "beyond" } else { "stop_at_rolling" }, 1.0);
     }
-    if !ask.table.rubs() {
-        without_slip(start.slip)?;
+    if let Some((law, value)) = ask.losses.iter().find(|(law, value)| law.presses() && *value > 0.0) {
+        let expected =
+            "only laws without the normal force together with a user-defined law; add this one to it";
+        return Err(Error::OutOfRange { name: law.parameter(), value, expected });
     }
     if custom.friction.is_some() && !matches!(ask.table, Table::Rubs(Friction::Coulomb { .. })) {
         let expected = "Coulomb friction as the contact of a user-defined law of friction";
         return Err(Error::OutOfRange { name: "contact", value: f64::NAN, expected });
     }
-    custom.check(body, ask.table.mu())?;
-    Ok(if ask.method == Method::Exact { FAIR } else { tol })
+    Ok(())
 }
 
 /// The least growth of a slip that begins, so that it has a direction.

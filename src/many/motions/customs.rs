@@ -1,0 +1,111 @@
+//! Many motions under user-defined laws, each computed alone.
+
+use super::columns::TimedOutput;
+use super::{Job, MotionBlock, MotionOutput, MotionStarts, RowBlock, blocks};
+use crate::error::{Error, spare};
+use crate::laws::custom::Custom;
+use crate::laws::loss::Losses;
+use crate::many::threads::share_aside;
+use crate::methods::beat::Beat;
+use crate::motions::custom::{check_options, followed};
+use crate::motions::{Ask, Method, Start};
+use std::sync::OnceLock;
+
+/// Number of such motions in a block.
+const CUSTOMS: usize = 16;
+
+/// The user-defined laws of many motions.
+pub(crate) enum CustomLaws<'a> {
+    /// Laws for the calling thread alone, such as functions of Python.
+    Here(Custom<'a>),
+    /// Laws for any thread.
+    Anywhere(&'a (dyn Fn() -> Custom<'a> + Sync)),
+}
+
+/// Computes all motions under these laws, as [`roll_among`](super::roll_among) does without them. The errors are those
+/// of [`custom::roll_with`](crate::custom::roll_with) that a law causes, or an option that is the same for all motions.
+pub(crate) fn roll_custom(
+    starts: &MotionStarts<'_>,
+    job: &Job<'_>,
+    out: MotionOutput<'_>,
+    (laws, threads): (&CustomLaws<'_>, (usize, bool)),
+    go_on: &mut dyn FnMut(f64) -> bool,
+) -> Result<bool, Error> {
+    let (count, times) = (starts.len(), job.times.len());
+    assert!(starts.fit(), "columns of different lengths");
+    assert!(out.fits(count, times), "an array does not fit");
+    job.check(true, starts.coefficients.is_some())?;
+    let custom = match laws {
+        CustomLaws::Here(custom) => *custom,
+        CustomLaws::Anywhere(of) => of(),
+    };
+    let any = Start::from(crate::State::from([0.0; 4]));
+    check_options(&job.ask(None, Losses::NONE), &any, &custom)?;
+    spare()?;
+    let mut out = TimedOutput { out, times };
+    match laws {
+        CustomLaws::Here(custom) => {
+            let (mut beat, mut all) = (Beat::new(), true);
+            let work = MotionBlock { starts, job, first: 0, since: None };
+            let mut still = |done: usize| {
+                all = all && (!beat.is_due() || go_on(done as f64 / count as f64));
+                all
+            };
+            work.customs(count, &mut out.out, *custom, &mut still)?;
+            Ok(all)
+        }
+        CustomLaws::Anywhere(of) => {
+            let failed = OnceLock::new();
+            let mut go_on = |share| failed.get().is_none() && go_on(share);
+            let blocks = blocks(out, count, CUSTOMS)?;
+            let all = share_aside(blocks, threads, &mut go_on, |RowBlock { first, count, out }, still| {
+                let (work, mut out) = (MotionBlock { starts, job, first, since: None }, out.out);
+                if let Err(e) = work.customs(count, &mut out, of(), &mut |_| still()) {
+                    let _ = failed.set(e);
+                }
+            });
+            failed.into_inner().map_or(Ok(all), Err)
+        }
+    }
+}
+
+impl MotionBlock<'_> {
+    /// Computes the motions of the block; `go_on` is called with the number of motions that are done.
+    fn customs(
+        &self,
+        count: usize,
+        out: &mut MotionOutput<'_>,
+        custom: Custom<'_>,
+        go_on: &mut dyn FnMut(usize) -> bool,
+    ) -> Result<(), Error> {
+        let (starts, job, mut checked) = (self.starts, self.job, None);
+        for k in 0..count {
+            let i = self.first + k;
+            let ask = Ask {
+                method: Method::Tolerance(job.tol),
+                ..job.ask(starts.coefficients(i), starts.losses(i))
+            };
+            let body = starts.body(i);
+            // A law may be checked once for all motions of a body, but it is at fault for whatever it does.
+            if let Ok(body) = body
+                && checked != Some((body, ask.table.mu()))
+            {
+                custom.check(&body, ask.table.mu())?;
+                checked = Some((body, ask.table.mu()));
+            }
+            let found = body.and_then(|body| {
+                let mut still = || go_on(k);
+                let how = (&ask, job.errors);
+                Ok((body, followed(&body, &starts.start(i), job.times, how, custom, &mut still)?))
+            });
+            if let Err(e @ (Error::Couple { .. } | Error::Coefficient { .. })) = found {
+                return Err(e);
+            }
+            if custom.has_failed() || !go_on(k) {
+                return Ok(());
+            }
+            self.puts(out, k, found)?;
+        }
+        Ok(())
+    }
+}
