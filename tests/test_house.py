@@ -234,17 +234,17 @@ def test_no_layer_uses_a_later_one():
         ("crate::Body", ("laws", "body")),
         ("crate::rolling::energy", ("laws", "contact", "rolling")),
         ("crate::ensemble::Job", ("many", "motions")),
-        ("super::lossy::free", ("motions", "path", "lossy", "free")),
+        ("super::roll::lossy::free", ("motions", "body", "roll", "lossy", "free")),
         ("super::super::Ask", ("motions",)),
         (
             "walk::Walk",
-            ("motions", "path", "slide", "walk") if ("motions", "path", "slide", "walk") in HOMES else None,
+            ("motions", "body", "slide", "walk") if ("motions", "body", "slide", "walk") in HOMES else None,
         ),
         ("core::f64", None),
     ],
 )
 def test_a_path_is_followed_through_the_front_door_and_upward(words, found):
-    assert resolved(words.split("::"), ("motions", "path", "slide"), front_door()) == found
+    assert resolved(words.split("::"), ("motions", "body", "slide"), front_door()) == found
 
 
 def paths(tree):

@@ -5,11 +5,11 @@ use crate::error::{Error, room};
 use crate::laws::loss::Losses;
 use crate::laws::stone::{Ellipsoid, StoneState};
 use crate::motions::Path;
-use crate::motions::followed::Followed;
 use crate::motions::stone::check;
 use crate::motions::stone::followed;
 use crate::motions::stone::known::Recorded;
 use crate::motions::stone::turns::Reversals;
+use crate::motions::walk::two_runs::Followed;
 use crate::motions::{Ask, Ending, Motion, Moving, Start};
 use core::cell::RefCell;
 

@@ -11,14 +11,16 @@
 //! The first assumption that fails is the [`Event`] that ends the motion; states after the event are computed only with
 //! [`Ask::beyond`].
 
-use super::conserved::conserved;
 use super::exact::Swing;
-use super::limits::{self, Limits};
-pub use super::{Ask, Bounds, Ending, Event, Limit, Method, Motion, Moving, RestsOn, Sample, Start, path};
+pub use super::{
+    Ask, Bounds, Ending, Event, Limit, Method, Motion, Moving, RestsOn, Sample, Start, body as path,
+};
 use crate::error::Error;
 use crate::laws::body::Body;
 use crate::laws::contact::{Contact, Table};
 use crate::laws::state::State;
+use crate::motions::exact::event::{self, Limits};
+use crate::motions::exact::method::conserved;
 
 /// Computes the motion of `body`, which rolls, from the state `start` at the first of the `times`, up to the event that
 /// ends it.
@@ -110,7 +112,7 @@ fn rolled(
 /// # Ok::<(), spincyl::Error>(())
 /// ```
 pub fn first_event(swing: &Swing, mu: f64) -> Option<Event> {
-    limits::first_event(swing, &Limits::new(swing.body(), &Table::of(swing.contact(), mu)), 1.0)
+    event::first_event(swing, &Limits::new(swing.body(), &Table::of(swing.contact(), mu)), 1.0)
 }
 
 /// The initial data of a motion: sine and cosine of theta, the rate of the state, and the ending if the motion is over

@@ -7,7 +7,7 @@
 //! ```
 //! A slip with additional losses is computed alone. A lane whose phase ends takes the next phase at once. The steps of
 //! a motion do not depend on the other lanes, so that the result has the same bits for any number of threads and any
-//! SIMD width. [`motion::path`](crate::motions::path) has the law and the estimate of the error.
+//! SIMD width. [`motion::path`](crate::motions::body) has the law and the estimate of the error.
 
 use super::lossy_lanes::LossyLanes;
 use super::rolls::can_roll_among;
@@ -17,10 +17,10 @@ use super::{Answer, MotionBlock, MotionOutput, Summary};
 use crate::error::{Error, room, spare_for};
 use crate::laws::body::Body;
 use crate::laws::state::State;
-use crate::motions::followed::{Followed, rougher};
-use crate::motions::path::BodyWalk;
-use crate::motions::path::spun::knows;
+use crate::motions::body::BodyWalk;
+use crate::motions::body::spun::knows;
 use crate::motions::walk::Pause;
+use crate::motions::walk::two_runs::{Followed, rougher};
 use crate::motions::{Ask, Ending, Method};
 use crate::motions::{Kind, Phase};
 use crate::numbers::in_lanes;

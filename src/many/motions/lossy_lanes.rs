@@ -7,7 +7,7 @@ use crate::laws::contact::reduced::Rates;
 use crate::laws::loss::COUNT;
 use crate::methods::flow::lanes::{Flows, NUMBERS};
 use crate::methods::rk8;
-use crate::motions::path::lossy::{LOSSY_NUMBERS, LossyUnheld};
+use crate::motions::body::roll::lossy::{LOSSY_NUMBERS, LossyUnheld};
 use crate::numbers::side_by_side::SideBySide;
 
 const _: () = assert!(4 + LOSSY_NUMBERS <= NUMBERS);

@@ -21,10 +21,10 @@ use crate::laws::contact::standstill::is_certain;
 use crate::laws::contact::{Contact, Table, TableKind};
 use crate::laws::state::State;
 use crate::many::columns::at;
-use crate::motions::halt::TIME;
-use crate::motions::path::BodyWalk;
-use crate::motions::rests::rolled_rests_on;
+use crate::motions::ask::rests_on::rolled_rests_on;
+use crate::motions::body::BodyWalk;
 use crate::motions::walk::Pause;
+use crate::motions::walk::numbers::TIME;
 use crate::motions::{Ending, Event, Kind, Motion};
 use fearless_simd::Level;
 

@@ -6,7 +6,7 @@ use crate::laws::body::Body;
 use crate::laws::loss::Losses;
 use crate::laws::state::State;
 use crate::motions::exact::Swing;
-use crate::motions::extent;
+use crate::motions::exact::extrema;
 use crate::motions::motion;
 use crate::motions::{Ending, Method};
 use crate::numbers::larger;
@@ -140,11 +140,11 @@ pub(super) fn roll(
     }
     if extremes_wanted {
         let found = match &swing {
-            Some(swing) if answer == Answer::Single => Some(extent::extremes(swing, &body, end)),
+            Some(swing) if answer == Answer::Single => Some(extrema::extremes(swing, &body, end)),
             _ => {
                 let times: Vec<f64> = (1..=LOOKS).map(|k| end * k as f64 / LOOKS as f64).collect();
                 followed(&body, &start, &times, job, go_on)?.map(|all| {
-                    extent::extremes_of(all.states.iter().chain([&start, &last]), &body, job.contact())
+                    extrema::extremes_of(all.states.iter().chain([&start, &last]), &body, job.contact())
                 })
             }
         };

@@ -8,9 +8,9 @@ use crate::laws::body::Shape;
 use crate::laws::contact::slip::{SlipResponse, Slipping};
 use crate::methods::flow::lanes::{Flows, NUMBERS};
 use crate::methods::rk8;
-use crate::motions::path::face::FLAT;
-use crate::motions::path::lossy::from_side;
-use crate::motions::path::slide::{Slide, longest};
+use crate::motions::body::face::FLAT;
+use crate::motions::body::roll::lossy::from_side;
+use crate::motions::body::slide::{Slide, longest};
 use crate::numbers::side_by_side::SideBySide;
 
 /// Bodies in lanes that slip.

@@ -11,13 +11,6 @@
 mod flow;
 
 use super::ask::{check_flow, check_times_after};
-use super::followed::{Followed, judged};
-use super::halt::{Halt, TIME, lost};
-use super::judge::doubted;
-use super::path::slide::Slide;
-use super::path::without_slip;
-use super::path::write::{pose, state, state_errors};
-use super::row::OutputRow;
 use super::walk::{MOMENT, STILL, ending, most_phases, slip_over};
 use super::{Ask, Ending, Event, Limit, Method, Motion, Phase, Start, exact};
 use crate::error::{Error, copied, grow, room};
@@ -29,6 +22,13 @@ use crate::laws::custom::Custom;
 use crate::laws::pose::Pose;
 use crate::laws::state::State;
 use crate::methods::flow::{Exhausted, Flow, PATIENCE, Steps, toil_of};
+use crate::motions::ask::row::OutputRow;
+use crate::motions::body::slide::Slide;
+use crate::motions::body::without_slip;
+use crate::motions::body::write::{pose, state, state_errors};
+use crate::motions::walk::errors::doubted;
+use crate::motions::walk::numbers::{Halt, TIME, lost};
+use crate::motions::walk::two_runs::{Followed, judged};
 use core::cell::Cell;
 use flow::CustomFlow;
 

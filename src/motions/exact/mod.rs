@@ -18,12 +18,18 @@
 
 mod carry;
 mod claim;
+pub(crate) mod course;
+pub(crate) mod event;
+pub(crate) mod extrema;
 pub(crate) mod lanes;
 mod lines;
+pub(crate) mod method;
+pub(crate) mod motion;
 mod panel;
 mod passage;
 mod place;
 mod stretch;
+pub(crate) mod tolerance;
 
 use crate::error::{Error, within};
 use crate::laws::body::Body;

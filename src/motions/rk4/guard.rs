@@ -11,9 +11,9 @@
 
 use crate::error::Error;
 use crate::laws::state::State;
-use crate::motions::course::Course;
 use crate::motions::exact::Swing;
-use crate::motions::limits::{Limits, first_event};
+use crate::motions::exact::course::Course;
+use crate::motions::exact::event::{Limits, first_event};
 use crate::states::stability::stiffness;
 
 /// How much a fixed step damps the nutation, and a step that is short enough.

@@ -3,11 +3,11 @@
 use super::guard::guard;
 use super::steps;
 use crate::error::Error;
-use crate::motions::course::Course;
 use crate::motions::exact::Swing;
-use crate::motions::judge::{compare, judge};
-use crate::motions::limits::Limits;
-use crate::motions::within::{Known, within};
+use crate::motions::exact::course::Course;
+use crate::motions::exact::event::Limits;
+use crate::motions::exact::tolerance::{Known, within};
+use crate::motions::walk::errors::{compare, judge};
 use crate::motions::{Ask, Motion};
 
 /// Tolerance of the run with which a fixed step is compared where no exact solution is accurate enough. The error of

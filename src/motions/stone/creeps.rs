@@ -4,8 +4,8 @@
 //! |M| <= mu_s N eps g(k),   f(k) = F/(mu_s N)                            holds the drilling
 //! |w.n| = 2 DRILLS, or F = mu N                                          begins to slip, with the slip of the creep
 //! ```
-//! [`creep`](crate::motions::creep) computes the creep. When the drilling passes zero, the stone rolls through it, as a
-//! body of revolution does ([`lossy`](crate::motions::path::lossy)); the couple acts only briefly and is left out.
+//! [`creep`](crate::motions::dry::creep) computes the creep. When the drilling passes zero, the stone rolls through it, as a
+//! body of revolution does ([`lossy`](crate::motions::body::roll::lossy)); the couple acts only briefly and is left out.
 //!
 //! Error: the slip that is left out, at most DRILLS eps, and the couple times the time in which w.n passes DRILLS.
 
@@ -14,8 +14,8 @@ use crate::laws::contact::patch;
 use crate::laws::stone::law::{laboratory, turning};
 use crate::methods::flow::{Flow, FlowPlace};
 use crate::methods::{SHORT_CODE, radau, rk8};
-use crate::motions::creep::{DRILLS, Rubbing, is_fast, known_slip, slip_under, stable_time};
-use crate::motions::halt::{Halt, TIME};
+use crate::motions::dry::creep::{DRILLS, Rubbing, is_fast, known_slip, slip_under, stable_time};
+use crate::motions::walk::numbers::{Halt, TIME};
 use crate::numbers::vector::{dot, plus};
 use crate::numbers::{Dual, Real};
 use nalgebra::SMatrix;

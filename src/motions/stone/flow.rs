@@ -15,9 +15,9 @@ use crate::laws::stone::law::{StoneLaw, StoneResponse, Touching, across, laborat
 use crate::laws::stone::{StonePose, StoneState};
 use crate::methods::flow::{Flow, FlowPlace, TakenStep, looks};
 use crate::methods::{SHORT_CODE, radau, rk8};
-use crate::motions::creep::{IMPLICIT_TURNS, rests_below};
-use crate::motions::halt::{Halt, TIME, loses};
-use crate::motions::path::lossy::REST;
+use crate::motions::body::roll::lossy::REST;
+use crate::motions::dry::creep::{IMPLICIT_TURNS, rests_below};
+use crate::motions::walk::numbers::{Halt, TIME, loses};
 use crate::motions::walk::{MOMENT, slip_over};
 use crate::numbers::vector::{dot, plus};
 use crate::numbers::{Dual, Real};

@@ -14,7 +14,7 @@ use super::turns::Reversals;
 use crate::error::Error;
 use crate::laws::stone::StoneState;
 use crate::motions::Moving;
-use crate::motions::followed::Followed;
+use crate::motions::walk::two_runs::Followed;
 
 /// Largest error of a state that is known, as a share of the largest speed.
 const KNOWN: f64 = 0.01;

@@ -18,9 +18,9 @@ use crate::laws::contact::together::{Resting, Together};
 use crate::laws::loss::{Couple, Holds, Law, NEAR, Ways, rounded};
 use crate::laws::stone::law::{StoneLaw, Touching, across, laboratory};
 use crate::methods::flow::{Flow, FlowPlace};
-use crate::motions::halt::TIME;
-pub(super) use crate::motions::path::lossy::REST;
-use crate::motions::path::slide::ways;
+pub(super) use crate::motions::body::roll::lossy::REST;
+use crate::motions::body::slide::ways;
+use crate::motions::walk::numbers::TIME;
 use crate::numbers::vector::{dot, plus};
 use crate::numbers::{Dual, Real};
 

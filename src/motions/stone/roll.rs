@@ -13,7 +13,7 @@ use super::known::{Recorded, Runs, settle};
 use super::phases::StoneWalk;
 use crate::error::Error;
 use crate::laws::stone::{Ellipsoid, StoneState};
-use crate::motions::followed::{Followed, judged, rougher};
+use crate::motions::walk::two_runs::{Followed, judged, rougher};
 use crate::motions::{Ask, Motion, Start};
 use core::cell::RefCell;
 

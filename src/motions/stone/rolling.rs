@@ -15,7 +15,7 @@ use crate::laws::stone::law::{StoneLaw, laboratory, turning};
 use crate::methods::flow::{Flow, FlowPlace, PATIENCE, Steps, toil_of};
 use crate::methods::rk8;
 use crate::motions::Moving;
-use crate::motions::followed::rougher;
+use crate::motions::walk::two_runs::rougher;
 use crate::numbers::Dual;
 use crate::numbers::vector::{cross, dot};
 

@@ -1,7 +1,7 @@
 //! The slow slips of a stone, as power series of all of its numbers.
 
 use crate::laws::stone::law::{StoneLaw, across, laboratory, turning};
-use crate::motions::halt::{TIME, loses};
+use crate::motions::walk::numbers::{TIME, loses};
 use crate::motions::walk::slow::{SlowRates, SlowSlips};
 use crate::motions::walk::{SlowLaw, SlowSeries};
 use crate::numbers::Series;

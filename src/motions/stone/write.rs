@@ -5,10 +5,10 @@ use crate::laws::stone::StoneState;
 use crate::methods::flow::Flow;
 use crate::motions::Ask;
 use crate::motions::Kind;
-use crate::motions::followed::Followed;
-use crate::motions::halt::lost;
-use crate::motions::judge::doubted_of;
-use crate::motions::row::OutputRow;
+use crate::motions::ask::row::OutputRow;
+use crate::motions::walk::errors::doubted_of;
+use crate::motions::walk::numbers::lost;
+use crate::motions::walk::two_runs::Followed;
 use nalgebra::Vector3;
 
 /// Adds a point to the outputs.

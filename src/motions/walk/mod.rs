@@ -11,20 +11,23 @@
 //! Bodies of revolution and stones share the walk. [`Phases`] has the differences: the numbers, the equations
 //! along a phase, and the conditions for its beginning and its end.
 
+pub(crate) mod errors;
+pub(crate) mod numbers;
 mod phases;
 mod slips;
 pub(crate) mod slow;
+pub(crate) mod two_runs;
 
 use super::ask::Ask;
-use super::followed::{BRIEF, Followed};
-use super::halt::{Halt, TIME};
-use super::result::{Ending, Event, Kind, Limit, Phase, Strike};
 use super::{Method, Moving};
 use crate::error::{Error, copied, grow};
 use crate::laws::contact::Table;
 use crate::laws::contact::slip::Friction;
 use crate::laws::contact::standstill::Standstill;
 use crate::methods::flow::{PATIENCE, Spent, Steps, toil_of};
+use crate::motions::ask::result::{Ending, Event, Kind, Limit, Phase, Strike};
+use crate::motions::walk::numbers::{Halt, TIME};
+use crate::motions::walk::two_runs::{BRIEF, Followed};
 pub(crate) use phases::Phases;
 pub(crate) use slips::{SlowLaw, SlowSeries};
 

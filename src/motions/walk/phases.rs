@@ -1,10 +1,10 @@
 //! The differences between the walks of a body of revolution and of a stone.
 
+use super::numbers::Halt;
 use super::{Next, Pause, SlowLaw, SlowSeries, Walk, WalkStep};
 use crate::error::Error;
 use crate::laws::contact::standstill::Standstill;
 use crate::methods::flow::Steps;
-use crate::motions::halt::Halt;
 use crate::motions::{Ending, Kind, Moving, Phase};
 
 /// The phases of a body of revolution or of a stone, whose motion has N numbers.

@@ -1,10 +1,10 @@
 //! A slip from rest: by series in time, until an integrator continues the slip, or the slip ends.
 
+use super::numbers::{Halt, TIME};
 use super::slow::SLOW_SLIP;
 use super::{Next, Pause, Phases, Walk};
 use crate::laws::contact::standstill::towards;
-use crate::motions::halt::{Halt, TIME};
-use crate::motions::result::Ending;
+use crate::motions::ask::result::Ending;
 use crate::numbers::Series;
 
 /// A slip from rest whose speed grows faster than this does not stay slow: an integrator continues it after its first

@@ -1,0 +1,72 @@
+//! Bounds of the errors of what follows from states, poses and forces.
+//!
+//! ```text
+//! e, p, f             estimated errors of the states, of the poses and of the forces
+//! position            p + reach (e + p)         the contact point, and the centre as seen from it
+//! orientation         e + 2 p                   theta, phi and psi
+//! velocity            u + |v| p,   u = e (sqrt(3) (1 + reach) + |w| reach)
+//! angular velocity    sqrt(3) e + |w| (e + p)
+//! force               sqrt(3) f + |F| p
+//! energy              |v| u + I |w| sqrt(3) e + reach e
+//! ```
+//! |w|, |v| and |F| are the largest along the motion, I is the largest moment of inertia, and reach the largest distance of
+//! the surface from the centre. Error: to first order in e, p and f.
+
+use crate::laws::body::Body;
+use crate::motions::Motion;
+
+/// Bounds of the errors at any time of a motion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct Bounds {
+    /// Of every number of the states, of slips and of the times of phases and of the end.
+    pub state: f64,
+    /// Of the centre of mass; NaN without poses, as those of orientation, velocities, force and energy.
+    pub position: f64,
+    /// Of the angle between orientations, in radians.
+    pub orientation: f64,
+    /// Of the velocity of the centre of mass.
+    pub velocity: f64,
+    /// Of the angular velocity along the axes of the laboratory.
+    pub angular_velocity: f64,
+    /// Of the force of the table along the axes of the laboratory; NaN without forces.
+    pub force: f64,
+    /// Of the energy.
+    pub energy: f64,
+}
+
+impl Bounds {
+    /// The bounds from the errors of states, poses and forces; from the largest distance of the surface from the centre
+    /// and the largest moment of inertia; and from the largest angular velocity, velocity and force.
+    pub(crate) fn of([e, p, f]: [f64; 3], [reach, inertia]: [f64; 2], [w, v, press]: [f64; 3]) -> Self {
+        let root = 3f64.sqrt();
+        let moved = e * (root * (1.0 + reach) + w * reach);
+        Self {
+            state: e,
+            position: p + reach * (e + p),
+            orientation: e + 2.0 * p,
+            velocity: moved + v * p,
+            angular_velocity: root * e + w * (e + p),
+            force: root * f + press * p,
+            energy: v * moved + inertia * w * root * e + reach * e,
+        }
+    }
+}
+
+impl Motion {
+    /// Bounds of the errors at any time of the motion of this body.
+    pub fn bounds(&self, body: &Body) -> Bounds {
+        let mut most = [0f64; 3];
+        for now in self.samples() {
+            let force = now.force_in_laboratory().map_or(0.0, |force| force.norm());
+            let speed = now.velocity(body).map_or(0.0, |v| v.norm());
+            for (most, x) in most.iter_mut().zip([now.state.angular_velocity().norm(), speed, force]) {
+                *most = most.max(x);
+            }
+        }
+        let reach = body.ell().hypot(body.rim()) + body.fillet();
+        let size = [reach, body.i1().max(body.i3())];
+        Bounds::of([self.error, self.pose_error, self.force_error], size, most)
+    }
+}

@@ -1,0 +1,328 @@
+//! The options of a motion, and their checks.
+
+pub(crate) mod bounds;
+pub(crate) mod moving;
+pub(crate) mod rests_on;
+pub(crate) mod result;
+pub(crate) mod row;
+pub(crate) mod sample;
+
+use crate::error::{Error, within};
+use crate::laws::body::Body;
+use crate::laws::contact::Table;
+use crate::laws::contact::slip::{centre_rise, centre_velocity};
+use crate::laws::loss::{Law, Losses};
+use crate::laws::pose::{axes, euler_angles};
+use crate::laws::state::State;
+use nalgebra::{UnitQuaternion, Vector3};
+
+/// The default tolerance of a step of a motion with friction or losses.
+pub const FINE: f64 = 1e-14;
+
+/// Share of the velocities below which a vertical velocity of the lowest point counts as a rounding error of the input.
+const NO_RISE: f64 = 1e-9;
+/// Share of the velocities below which a slip counts as zero: 16 ulp.
+const NO_SLIP: f64 = 16.0 * f64::EPSILON;
+
+/// The method that computes a motion.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Method {
+    /// The first integrals, or an integrator within a tolerance where these lose all their digits. A motion that slips
+    /// or loses energy is integrated to the accuracy of double precision.
+    #[default]
+    Exact,
+    /// RK4 with this fixed step; an error for a motion that slips or loses energy.
+    Step(f64),
+    /// Steps of eighth order whose errors are below this tolerance.
+    Tolerance(f64),
+}
+
+/// The options of a motion, with any contact and any losses. Each option has a method `with_` and its name.
+///
+/// ```
+/// use spincyl::{contact::Friction, loss::{Law, Losses}, motion::Ask};
+///
+/// let ask = Ask::on(Friction::coulomb(0.3)).with_losses(Losses::of(Law::Drilling, 1e-3)).with_pose(true);
+/// assert!(ask.pose && !ask.force);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
+#[non_exhaustive]
+pub struct Ask {
+    /// The law of the contact with the table.
+    pub table: Table,
+    /// The loss laws, in addition to the friction of a slip.
+    pub losses: Losses,
+    /// The method that computes the motion.
+    pub method: Method,
+    /// Whether the motion continues past events other than a landing of the face; with a law of friction it never does.
+    pub beyond: bool,
+    /// The coefficient of restitution of impacts, from 0 to 1. With `None` the motion ends where the body leaves the
+    /// table or its other rim lands; otherwise the motion continues in the air, on the other rim and on both rims.
+    pub restitution: Option<f64>,
+    /// Whether the motion ends where the body begins to roll; only with a law of friction.
+    pub stop_at_rolling: bool,
+    /// The largest number of evaluations of the equations of motion ([`Motion::evaluations`](super::Motion)); a motion
+    /// that needs more ends where it is, with [`Ending::Bounded`](super::Ending::Bounded). With `None` a motion that
+    /// slips, loses energy or hops, and steps within a tolerance, may take 8 million, or 40,000 for each unit of time if
+    /// this is more, and steps of fixed length as many as they are. First integrals need none.
+    pub max_evaluations: Option<u64>,
+    /// Whether poses are computed.
+    pub pose: bool,
+    /// Whether contact forces are computed.
+    pub force: bool,
+}
+
+impl Ask {
+    /// The options of an exact motion with this contact up to its first event, without losses, poses and forces.
+    pub fn on(table: impl Into<Table>) -> Self {
+        Self::default().with_table(table)
+    }
+
+    /// Returns these options with another contact.
+    #[must_use]
+    pub fn with_table(self, table: impl Into<Table>) -> Self {
+        Self { table: table.into(), ..self }
+    }
+
+    /// Returns these options with these losses.
+    #[must_use]
+    pub fn with_losses(self, losses: Losses) -> Self {
+        Self { losses, ..self }
+    }
+
+    /// Returns these options with this method.
+    #[must_use]
+    pub fn with_method(self, method: Method) -> Self {
+        Self { method, ..self }
+    }
+
+    /// Returns these options, with or without a continuation past events.
+    #[must_use]
+    pub fn with_beyond(self, beyond: bool) -> Self {
+        Self { beyond, ..self }
+    }
+
+    /// Returns these options with this coefficient of restitution, or with `None`.
+    #[must_use]
+    pub fn with_restitution(self, restitution: impl Into<Option<f64>>) -> Self {
+        Self { restitution: restitution.into(), ..self }
+    }
+
+    /// Returns these options, with or without an end at rolling.
+    #[must_use]
+    pub fn with_stop_at_rolling(self, stop_at_rolling: bool) -> Self {
+        Self { stop_at_rolling, ..self }
+    }
+
+    /// Returns these options with this largest number of evaluations, or with `None`.
+    #[must_use]
+    pub fn with_max_evaluations(self, most: impl Into<Option<u64>>) -> Self {
+        Self { max_evaluations: most.into(), ..self }
+    }
+
+    /// Returns these options, with poses or without them.
+    #[must_use]
+    pub fn with_pose(self, pose: bool) -> Self {
+        Self { pose, ..self }
+    }
+
+    /// Returns these options, with contact forces or without them.
+    #[must_use]
+    pub fn with_force(self, force: bool) -> Self {
+        Self { force, ..self }
+    }
+
+    /// Whether energy is conserved and no law of friction acts, so that three first integrals
+    /// determine the motion.
+    pub fn conserves(&self) -> bool {
+        !self.table.rubs() && self.losses.is_none() && self.restitution.is_none()
+    }
+}
+
+/// The initial conditions of a motion: `Start::from` a state, then optionally slip, time and height.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[non_exhaustive]
+pub struct Start<S = State> {
+    /// The initial state.
+    pub state: S,
+    /// The initial slip of the contact point along the lean and across it, in sqrt(g R); for a stone along x and y
+    /// ([`stone::roll`](super::stone::roll)).
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub slip: [f64; 2],
+    /// The initial time.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub time: f64,
+    /// The height of the lowest point of the rim above the table and its vertical velocity, for a body that starts in
+    /// the air; this needs a restitution.
+    pub aloft: Option<[f64; 2]>,
+}
+
+impl<S> From<S> for Start<S> {
+    /// The state at time 0 on the table, without a slip.
+    fn from(state: S) -> Self {
+        Self { state, slip: [0.0; 2], time: 0.0, aloft: None }
+    }
+}
+
+impl<S> Start<S> {
+    /// Returns this start with this slip.
+    #[must_use]
+    pub fn with_slip(self, slip: [f64; 2]) -> Self {
+        Self { slip, ..self }
+    }
+
+    /// Returns this start at this time.
+    #[must_use]
+    pub fn with_time(self, time: f64) -> Self {
+        Self { time, ..self }
+    }
+
+    /// Returns this start in the air, with this height of the lowest point and its vertical velocity, or with `None`.
+    #[must_use]
+    pub fn with_aloft(self, aloft: impl Into<Option<[f64; 2]>>) -> Self {
+        Self { aloft: aloft.into(), ..self }
+    }
+}
+
+impl Start {
+    /// The initial conditions of a body from its orientation, its angular velocity and the velocity of its centre of
+    /// mass. The orientation is the rotation from the axes of the body to those of the laboratory, of which the third
+    /// is the vertical; the vectors are along the axes of the laboratory, in sqrt(g/R) and sqrt(g R). `height` is that
+    /// of the centre above the table, for a body in the air; with `None` the body is on the table. The motion counts
+    /// phi and psi from this orientation, which has the angles [`euler_angles`](crate::laws::pose::euler_angles);
+    /// [`readings_from`](crate::measured::MeasuredMotion::readings_from) puts it back to where it began.
+    ///
+    /// Errors: `OutOfRange` for a velocity that is not finite or that, on the table, would move the lowest point up or
+    /// down. Error of the slip: 16 ulp of the velocities, divided by sin theta; a slip below 16 ulp counts as zero.
+    ///
+    /// ```
+    /// use spincyl::nalgebra::{UnitQuaternion, Vector3};
+    /// use spincyl::{Body, motion::Start};
+    ///
+    /// let (ball, w) = (Body::ball(0.0, 0.4, 0.4)?, Vector3::new(0.0, 2.0, 0.3));
+    /// let turned = UnitQuaternion::from_euler_angles(0.1, 0.2, 0.3);
+    /// let rolls = Start::from_twist(&ball, &turned, w, w.cross(&Vector3::z()), None)?;
+    /// assert_eq!(rolls.slip, [0.0, 0.0]);
+    /// assert!(Start::from_twist(&ball, &turned, w, Vector3::z(), None).is_err());
+    /// # Ok::<(), spincyl::Error>(())
+    /// ```
+    pub fn from_twist(
+        body: &Body,
+        orientation: &UnitQuaternion<f64>,
+        angular_velocity: Vector3<f64>,
+        velocity: Vector3<f64>,
+        height: Option<f64>,
+    ) -> Result<Self, Error> {
+        let state = State::from_twist(orientation, angular_velocity);
+        let v = axes(-euler_angles(orientation)[0], 0.0) * velocity;
+        let (rim, angle) = (body.shape().rim, state.theta.sin_cos());
+        let fastest = velocity.amax() + angular_velocity.amax() * (1.0 + rim.ell.abs());
+        let most = if height.is_some() { f64::MAX } else { NO_RISE * fastest };
+        let expected = "a velocity of the centre that keeps the lowest point on the table; or give a height";
+        let rise = within("velocity", v.z - centre_rise(body, &state), (-most, most), expected)?;
+        let [along, across] = centre_velocity(body, &state, [0.0; 2]);
+        let slip = [v.x - along, v.y - across].map(|u| if u.abs() <= NO_SLIP * fastest { 0.0 } else { u });
+        let aloft = height.map(|height| [height - rim.height(angle), rise]);
+        Ok(Self::from(state).with_slip(slip).with_aloft(aloft))
+    }
+}
+
+impl From<&State> for Start {
+    fn from(state: &State) -> Self {
+        Self::from(*state)
+    }
+}
+
+/// Checks the options of a motion that conserves energy. Returns the signed span from the initial to the last time.
+pub(crate) fn check(ask: &Ask, t0: f64, times: &[f64]) -> Result<f64, Error> {
+    ask.table.check()?;
+    check_stop_at_rolling(ask)?;
+    let span = check_times(t0, times)?;
+    check_method(ask.method, span)?;
+    Ok(span)
+}
+
+/// Returns an error for `stop_at_rolling` without a law of friction.
+fn check_stop_at_rolling(ask: &Ask) -> Result<(), Error> {
+    if ask.stop_at_rolling && !ask.table.rubs() {
+        let expected = "false without a law of friction, where no slip turns into rolling";
+        return Err(Error::OutOfRange { name: "stop_at_rolling", value: 1.0, expected });
+    }
+    Ok(())
+}
+
+/// Checks the times. Returns the signed span from the initial to the last time.
+fn check_times(t0: f64, times: &[f64]) -> Result<f64, Error> {
+    within("t0", t0, (-1e15, 1e15), "|t0| <= 1e15")?;
+    let expected = "at least one time, in order, all before or all after t0, |t| <= 1e15";
+    let &last = times.last().ok_or(Error::OutOfRange { name: "t", value: f64::NAN, expected })?;
+    let way = if last < t0 { -1.0 } else { 1.0 };
+    let mut before = 0.0;
+    for &t in times {
+        let since = way * (t - t0);
+        if !(since >= before && t.abs() <= 1e15) {
+            return Err(Error::OutOfRange { name: "t", value: t, expected });
+        }
+        before = since;
+    }
+    Ok(last - t0)
+}
+
+/// Returns an error for times before the initial time of a motion with friction or losses.
+pub(crate) fn check_times_after(t0: f64, times: &[f64]) -> Result<(), Error> {
+    if check_times(t0, times)? < 0.0 {
+        let expected = "times after t0: with friction or losses the past is not determined";
+        return Err(Error::OutOfRange { name: "t", value: times[times.len() - 1], expected });
+    }
+    Ok(())
+}
+
+/// Checks the options of a motion with friction or losses. Returns the tolerance of its steps.
+pub(crate) fn check_flow(ask: &Ask) -> Result<f64, Error> {
+    within("restitution", ask.restitution.unwrap_or(0.0), (0.0, 1.0), "0 <= restitution <= 1")?;
+    check_stop_at_rolling(ask)?;
+    match ask.method {
+        Method::Exact => Ok(FINE),
+        Method::Tolerance(tol) => within("tol", tol, (FINE, 1e-1), "1e-14 <= tol <= 0.1"),
+        Method::Step(value) => {
+            let expected = "no fixed step with friction or losses: give a tolerance";
+            Err(Error::OutOfRange { name: "step", value, expected })
+        }
+    }
+}
+
+/// Returns an error for options that a patch of contact does not allow.
+pub(crate) fn check_patch(ask: &Ask) -> Result<(), Error> {
+    let patch = ask.table.friction().patch();
+    if patch > 0.0 && ask.losses.coefficients[Law::Drilling as usize] > 0.0 {
+        let expected = "0 together with drilling friction, which gives the same couple";
+        return Err(Error::OutOfRange { name: "patch", value: patch, expected });
+    }
+    if patch > 0.0 && ask.restitution.is_some() {
+        let expected = "0 together with a restitution";
+        return Err(Error::OutOfRange { name: "patch", value: patch, expected });
+    }
+    Ok(())
+}
+
+fn check_method(method: Method, span: f64) -> Result<(), Error> {
+    match method {
+        Method::Step(step) => {
+            let expected = "a step with the sign of time, at least 1e-12 and 1e-15 of the span";
+            let named = |ok: bool| {
+                if ok { Ok(()) } else { Err(Error::OutOfRange { name: "step", value: step, expected }) }
+            };
+            named(step.abs() >= 1e-12 && step.is_finite() && span.abs() / step.abs() <= 1e15)?;
+            named(step > 0.0 || span <= 0.0)
+        }
+        Method::Tolerance(tol) => within("tol", tol, (1e-14, 1e-1), "1e-14 <= tol <= 0.1").map(|_| ()),
+        Method::Exact => Ok(()),
+    }
+}

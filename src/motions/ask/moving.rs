@@ -1,0 +1,78 @@
+//! The states of a moving body or stone, with the types of its poses and contact forces.
+
+use crate::laws::contact::Force;
+use crate::laws::pose::Pose;
+use crate::laws::state::State;
+use crate::motions::walk::errors::{force_distance, pose_distance, pose_distance_over};
+use core::f64::consts::PI;
+use core::fmt::Debug;
+
+/// A state of a moving body, as a few numbers, with the types of its pose and of its contact force.
+pub trait Moving: Copy + Debug + PartialEq {
+    /// Safety factor in the estimated error, which multiplies the scaled difference of two runs.
+    const SAFETY: f64 = 30.0;
+    /// The numbers of the state.
+    type Numbers: AsRef<[f64]>;
+    /// The position and the orientation of the body.
+    type Pose: Copy + Debug + PartialEq;
+    /// The contact force.
+    type Force: Copy + Debug + PartialEq;
+
+    /// The numbers of the state.
+    fn numbers(&self) -> Self::Numbers;
+    /// The inclination, in radians.
+    fn theta(&self) -> f64;
+    /// The largest angular velocity in the state.
+    fn fastest(&self) -> f64;
+    /// The largest difference between the numbers of two poses.
+    fn pose_distance(a: &Self::Pose, b: &Self::Pose) -> f64;
+    /// The sum of the sizes of a pose's angles, in radians, to which their rounding errors are proportional.
+    fn turning(pose: &Self::Pose) -> f64;
+    /// The largest difference between the numbers of two forces.
+    fn force_distance(a: &Self::Force, b: &Self::Force) -> f64;
+    /// The same state as seen from the other one of two equal rims; None for a stone.
+    fn seen_from_other_rim(&self) -> Option<Self> {
+        None
+    }
+    /// The largest difference between two poses that are seen from different rims, `a` from the one that was not down at
+    /// the start.
+    fn pose_distance_over(a: &Self::Pose, b: &Self::Pose) -> f64 {
+        Self::pose_distance(a, b)
+    }
+    /// The largest difference between the numbers of two states.
+    fn distance(&self, other: &Self) -> f64 {
+        let (a, b) = (self.numbers(), other.numbers());
+        a.as_ref().iter().zip(b.as_ref()).fold(0f64, |most, (a, b)| most.max((a - b).abs()))
+    }
+}
+
+impl Moving for State {
+    type Numbers = [f64; 4];
+    type Pose = Pose;
+    type Force = Force;
+
+    fn numbers(&self) -> [f64; 4] {
+        (*self).into()
+    }
+    fn theta(&self) -> f64 {
+        self.theta
+    }
+    fn fastest(&self) -> f64 {
+        self.w1.abs().max(self.w3.abs())
+    }
+    fn pose_distance(a: &Pose, b: &Pose) -> f64 {
+        pose_distance(a, b)
+    }
+    fn seen_from_other_rim(&self) -> Option<Self> {
+        Some(Self { theta: PI - self.theta, w1: self.w1, w2: -self.w2, w3: -self.w3 })
+    }
+    fn pose_distance_over(a: &Pose, b: &Pose) -> f64 {
+        pose_distance_over(a, b)
+    }
+    fn turning(pose: &Pose) -> f64 {
+        pose.phi.radians().abs() + pose.psi.radians().abs()
+    }
+    fn force_distance(a: &Force, b: &Force) -> f64 {
+        force_distance(a, b)
+    }
+}

@@ -1,0 +1,118 @@
+//! What a body lies or stands on once it is at rest: heads or tails.
+//!
+//! ```text
+//! a face    the motion ended where a face landed; e3 points up on the first face, and down on the other one
+//! its side  no velocity is left, and both rims touch the table, or theta has reached theta_end
+//! an edge   no velocity is left, and dry losses hold the body, or it is balanced: theta'' = 0
+//! ```
+//! A bounce of the face and a spin on it are not computed, and neither changes which face lies on the table. A motion that
+//! ends where its other rim lands is not computed to its rest.
+//!
+//! Error: none, unless the estimated error of the motion is so large that another motion is as likely.
+
+use crate::laws::body::Body;
+use crate::laws::contact::Contact;
+use crate::laws::state::State;
+use crate::motions::body::roll::lossy::REST;
+#[cfg(feature = "many")]
+use crate::motions::walk::two_runs::Followed;
+use crate::motions::{Ending, Kind, Motion, Path};
+use crate::numbers::codes::coded;
+
+/// A balanced body has a smaller angular acceleration than this, in g/R, from rounding.
+const BALANCED: f64 = 1e-14;
+
+coded! {
+    /// The part of a body at rest that touches the table.
+    pub enum RestsOn {
+        /// The body is not at rest, or its motion was not computed to its rest.
+        None = 0,
+        /// The face at the rim from which the initial state was seen: its axis points up.
+        Face = 1,
+        /// The face at the other end: its axis points down.
+        OtherFace = 2,
+        /// Its side: both rims, or a rim and another part.
+        Side = 3,
+        /// A rim: the body stands upright or leans, balanced or held by dry losses. A ball rests anywhere.
+        Edge = 4,
+    }
+}
+
+/// The last numbers of a motion.
+struct AtLast {
+    ending: Ending,
+    state: State,
+    slip: [f64; 2],
+    rim: u8,
+    /// The kind of the last phase, if the motion has phases.
+    kind: Option<Kind>,
+}
+
+impl AtLast {
+    fn of(motion: &Motion, path: Option<&Path>) -> Option<Self> {
+        let (ending, kind) =
+            (motion.ending(), path.and_then(|path| path.phases.last()).map(|phase| phase.kind));
+        let (state, slip, rim) = match motion.event {
+            Some(event) => (event.state, path.map_or([0.0; 2], |path| path.last_slip), event.rim),
+            None => {
+                let slip = path.and_then(|path| path.slip.last().copied()).unwrap_or_default();
+                let rim = path.and_then(|path| path.rims.last().copied()).unwrap_or_default();
+                (*motion.states.last()?, slip, rim)
+            }
+        };
+        Some(Self { ending, state, slip, rim, kind })
+    }
+
+    fn rests_on(&self, body: &Body) -> RestsOn {
+        let State { theta, w1, w2, w3 } = self.state;
+        if self.ending == Ending::Face {
+            return if self.state.axis_up(self.rim) > 0.0 { RestsOn::Face } else { RestsOn::OtherFace };
+        }
+        let moves = [w1, w2, w3].into_iter().chain(self.slip).any(|x| x.abs() > REST);
+        if moves || self.kind == Some(Kind::Flying) && self.ending == Ending::Done {
+            return RestsOn::None;
+        }
+        match self.ending {
+            Ending::Done | Ending::Stops | Ending::Side if theta >= body.theta_end() => RestsOn::Side,
+            Ending::Stops => RestsOn::Edge,
+            Ending::Done if Contact::Rolling.derivative(body, &self.state).w2.abs() < BALANCED => {
+                RestsOn::Edge
+            }
+            _ => RestsOn::None,
+        }
+    }
+}
+
+impl Motion {
+    /// What the body lies or stands on at the end of the motion, if it is then at rest.
+    ///
+    /// ```
+    /// use spincyl::contact::Friction;
+    /// use spincyl::motion::{Ask, RestsOn, Start, roll_with};
+    /// use spincyl::{Body, State};
+    ///
+    /// let coin = Body::solid(0.25)?;
+    /// let start = Start::from(State { theta: 0.4, w1: 0.0, w2: 0.0, w3: 0.0 }).with_aloft([2.0, 0.0]);
+    /// let ask = Ask::on(Friction::coulomb(0.3)).with_restitution(0.0);
+    /// let motion = roll_with(&coin, start, &[0.0, 50.0], &ask, || true)?.expect("not interrupted");
+    /// assert_eq!(motion.rests_on(&coin), RestsOn::Face);
+    /// # Ok::<(), spincyl::Error>(())
+    /// ```
+    pub fn rests_on(&self, body: &Body) -> RestsOn {
+        AtLast::of(self, self.path.as_deref()).map_or(RestsOn::None, |last| last.rests_on(body))
+    }
+}
+
+/// The same for a body that has rolled on its first rim without a change of phase.
+#[cfg(feature = "many")]
+pub(crate) fn rolled_rests_on(body: &Body, state: State, ending: Ending) -> RestsOn {
+    AtLast { ending, state, slip: [0.0; 2], rim: 0, kind: Some(Kind::Rolling) }.rests_on(body)
+}
+
+#[cfg(feature = "many")]
+impl Followed {
+    /// The same for a motion whose path is apart.
+    pub(crate) fn rests_on(&self, body: &Body) -> RestsOn {
+        AtLast::of(&self.motion, Some(&self.path)).map_or(RestsOn::None, |last| last.rests_on(body))
+    }
+}

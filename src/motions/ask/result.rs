@@ -1,0 +1,393 @@
+//! The result of a motion: times and states, the event that ended it, its phases, and the path of the
+//! contact point.
+
+use super::Method;
+use crate::error::{Error, room};
+pub use crate::laws::contact::impact::Hit;
+use crate::laws::state::State;
+use crate::methods::flow::Exhausted;
+use crate::motions::Moving;
+use crate::numbers::codes::coded;
+
+coded! {
+    /// The way in which a motion ended. Its number is the status of a result.
+    pub enum Ending {
+        /// The motion reached the last requested time.
+        Done = 0,
+        /// The face landed on the table (theta = 0 or pi). The body may still spin on its face, with the last w3; that
+        /// spin is not computed.
+        Face = 1,
+        /// The other rim landed: the body lies on its side (theta = pi/2, ell > 0).
+        Side = 2,
+        /// The normal force vanished.
+        LiftOff = 3,
+        /// Rolling needed more friction than mu N.
+        Slip = 4,
+        /// The body, state or contact is invalid, or the step is too long. Only a row of many motions has this status,
+        /// with NaN in place of numbers; a single motion returns an error.
+        Invalid = 5,
+        /// No contact force, or more than one, obeys the law of friction.
+        Painleve = 6,
+        /// The body is at rest, and dry friction holds it.
+        Stops = 7,
+        /// The computation stopped at this time, at the limit [`Motion::limit`].
+        Bounded = 8,
+        /// A landing on both rims has no outcome, or more than one, under the law of friction.
+        Landing = 9,
+    }
+}
+
+coded! {
+    /// The limit at which the computation of a motion stopped.
+    pub enum Limit {
+        /// The number of evaluations is the largest allowed ([`Ask::max_evaluations`](crate::motions::Ask::max_evaluations)).
+        Evaluations = 1,
+        /// 600,000 steps have hardly advanced the time, or as many as the allowed evaluations if these are more.
+        Crawling = 2,
+        /// Slipping, rolling and the like, and the motions that dry losses hold and let go, have changed too often: more
+        /// than 20 times in each unit of time, at least 5,000 and at most 10,000 times.
+        Changes = 3,
+        /// These changes follow each other without an advance of time.
+        Chatter = 4,
+        /// There are more than 30,000 impacts, or impacts follow each other without end.
+        Impacts = 5,
+        /// Rounding errors outweigh the terms of the equations.
+        Rounding = 6,
+        /// The caller has interrupted the computation.
+        Interrupted = 7,
+        /// A user-defined law acts in a time far shorter than the motion, so that no step may be longer.
+        Stiff = 8,
+    }
+}
+
+impl Limit {
+    /// The reason for which the computation stopped, as a clause.
+    pub fn reason(self) -> &'static str {
+        match self {
+            Self::Evaluations => "the number of evaluations is the largest allowed",
+            Self::Crawling => "time hardly advances: forces change ever faster",
+            Self::Changes => "slipping, rolling and sticking alternate too often",
+            Self::Chatter => "slipping, rolling and sticking alternate without an advance of time",
+            Self::Impacts => "there are too many impacts",
+            Self::Rounding => "rounding errors outweigh the motion",
+            Self::Interrupted => "the computation was interrupted",
+            Self::Stiff => "the law is stiff: it acts in a time far shorter than the motion",
+        }
+    }
+}
+
+impl From<Exhausted> for Limit {
+    fn from(why: Exhausted) -> Self {
+        match why {
+            Exhausted::Evaluations => Self::Evaluations,
+            Exhausted::Crawling => Self::Crawling,
+            Exhausted::Rounding => Self::Rounding,
+            Exhausted::Interrupted => Self::Interrupted,
+        }
+    }
+}
+
+/// The event at which a motion leaves the range of the model.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[non_exhaustive]
+pub struct Event<S = State> {
+    /// The kind of the event.
+    pub ending: Ending,
+    /// The time of the event.
+    pub time: f64,
+    /// The state at the event.
+    pub state: S,
+    /// The rim from which the state is seen, as in [`Path::rims`].
+    pub rim: u8,
+}
+
+impl<S> Event<S> {
+    /// Whether the event ends the motion. A motion that continues `beyond` events ends only where the face lands.
+    pub(crate) fn ends(&self, beyond: bool) -> bool {
+        !beyond || self.ending == Ending::Face
+    }
+}
+
+/// Times and states of a body, and the event that ended its motion.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields),
+    serde(bound(
+        serialize = "S: serde::Serialize, S::Pose: serde::Serialize, S::Force: serde::Serialize",
+        deserialize = "S: serde::Deserialize<'de>, S::Pose: serde::Deserialize<'de>, S::Force: serde::Deserialize<'de>"
+    ))
+)]
+#[non_exhaustive]
+pub struct Motion<S: Moving = State> {
+    /// The requested times, up to the event.
+    pub times: Vec<f64>,
+    /// The state at each time.
+    pub states: Vec<S>,
+    /// The pose at each time, if poses were requested.
+    pub poses: Option<Vec<S::Pose>>,
+    /// The contact force at each time, if forces were requested.
+    pub forces: Option<Vec<S::Force>>,
+    /// The first event that the model does not cover, if one happened before the last time.
+    pub event: Option<Event<S>>,
+    /// The method that computed the motion: `Exact`, `Step` or `Tolerance`.
+    pub method: Method,
+    /// Estimated error: the largest over all numbers of all states, and over the time and the
+    /// state of the event.
+    #[cfg_attr(feature = "serde", serde(with = "crate::numbers::file"))]
+    pub error: f64,
+    /// Estimated error of the poses: the largest over all of their numbers; NaN without poses.
+    #[cfg_attr(feature = "serde", serde(with = "crate::numbers::file"))]
+    pub pose_error: f64,
+    /// Estimated error of the contact forces per weight: the largest over all of their numbers; NaN
+    /// without forces.
+    #[cfg_attr(feature = "serde", serde(with = "crate::numbers::file"))]
+    pub force_error: f64,
+    /// Predicted share of the amplitude of the nutation that a fixed step takes away; 0 with the other methods.
+    pub step_loss: f64,
+    /// A fixed step that takes away less than a thousandth of this amplitude; infinite with the other methods.
+    #[cfg_attr(feature = "serde", serde(with = "crate::numbers::file"))]
+    pub advice: f64,
+    /// Whether the loss of amplitude, the nutation or the precession makes the fixed step questionable.
+    pub coarse: bool,
+    /// Number of evaluations of the equations of motion.
+    pub evaluations: u64,
+    /// The limit at which the computation stopped, if it did: its motion ends there with [`Ending::Bounded`]. A motion
+    /// that is interrupted only while its error is estimated has its own ending and this limit, and an infinite error.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub limit: Option<Limit>,
+    /// Slip, phases and lost energy, with a law of friction or for a body with losses.
+    pub path: Option<Box<Path<S>>>,
+    /// Whether the table is smooth, so that the centre moves only up and down.
+    pub(crate) smooth: bool,
+}
+
+impl<S: Moving> Motion<S> {
+    /// An empty motion with space for `count` outputs.
+    pub(crate) fn empty(count: usize, pose: bool) -> Result<Self, Error> {
+        Ok(Self {
+            times: Vec::new(),
+            states: room(count)?,
+            poses: pose.then(|| room(count)).transpose()?,
+            forces: None,
+            event: None,
+            method: Method::Exact,
+            error: 0.0,
+            pose_error: if pose { 0.0 } else { f64::NAN },
+            force_error: f64::NAN,
+            step_loss: 0.0,
+            advice: f64::INFINITY,
+            coarse: false,
+            evaluations: 0,
+            limit: None,
+            path: None,
+            smooth: false,
+        })
+    }
+
+    /// Removes the outputs at times farther than `limit` from the initial time.
+    pub(crate) fn keep(&mut self, t0: f64, limit: f64) {
+        let kept = self.times.partition_point(|t| (t - t0).abs() <= limit);
+        self.times.truncate(kept);
+        self.states.truncate(kept);
+        if let Some(poses) = &mut self.poses {
+            poses.truncate(kept);
+        }
+    }
+
+    /// Ends the motion at the limit `Interrupted`, after the outputs that are written; its last state is `then`.
+    pub(crate) fn interrupted(mut self, times: &[f64], t0: f64, start: S) -> Self {
+        self.times = times[..self.states.len()].to_vec();
+        let (time, state) = (self.times.last().copied().unwrap_or(t0), self.states.last().copied());
+        self.event = Some(Event { ending: Ending::Bounded, time, state: state.unwrap_or(start), rim: 0 });
+        self.limit = Some(Limit::Interrupted);
+        self
+    }
+
+    /// Ends the motion at the limit `Interrupted`, after its first `count` outputs.
+    pub(crate) fn cut(mut self, count: usize) -> Self {
+        let at =
+            self.times.get(count.saturating_sub(1)).copied().zip(self.states.get(count.saturating_sub(1)));
+        self.event = at.map(|(time, &state)| Event { ending: Ending::Bounded, time, state, rim: 0 });
+        self.limit = Some(Limit::Interrupted);
+        self.times.truncate(count);
+        self.states.truncate(count);
+        self.poses.iter_mut().for_each(|poses| poses.truncate(count));
+        self
+    }
+
+    /// Whether the computation was interrupted.
+    pub fn is_interrupted(&self) -> bool {
+        self.limit == Some(Limit::Interrupted)
+    }
+
+    /// Makes the estimated errors infinite, since the run that shows them is missing.
+    pub(crate) fn forgets_error(&mut self) {
+        self.error = f64::INFINITY;
+        for (error, some) in
+            [(&mut self.pose_error, self.poses.is_some()), (&mut self.force_error, self.forces.is_some())]
+        {
+            *error = if some { f64::INFINITY } else { *error };
+        }
+    }
+
+    /// The motion; None if it was interrupted before it advanced from its initial time.
+    pub(crate) fn advanced(self, t0: f64) -> Option<Self> {
+        let stays = self.is_interrupted() && self.event.is_some_and(|event| event.time == t0);
+        (!stays).then_some(self)
+    }
+
+    /// The ending of the motion; `Done` without an event.
+    pub fn ending(&self) -> Ending {
+        self.event.map_or(Ending::Done, |e| e.ending)
+    }
+}
+
+coded! {
+    /// The kind of a phase.
+    pub enum Kind {
+        /// The contact point is at rest.
+        Rolling = 0,
+        /// The contact point slips.
+        Slipping = 1,
+        /// The body is in the air.
+        Flying = 2,
+        /// The body lies on both rims, and both slip.
+        Lying = 3,
+        /// The body lies on both rims, and one of them sticks.
+        Pivoting = 4,
+        /// The body lies on both rims and rolls straight on.
+        RollingOnItsSide = 5,
+    }
+}
+
+/// A part of a motion of one kind, such as rolling or slipping.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[non_exhaustive]
+pub struct Phase<S = State> {
+    /// The time at which the phase begins.
+    pub time: f64,
+    /// The kind of the phase.
+    pub kind: Kind,
+    /// The state at the beginning of the phase.
+    pub state: S,
+    /// The slip at the beginning of the phase, along the lean and across it.
+    pub slip: [f64; 2],
+    /// The height of the lowest point of the rim and its vertical velocity, which are 0 on the table.
+    pub aloft: [f64; 2],
+    /// The rim from which the state is seen, as in [`Path::rims`].
+    pub rim: u8,
+}
+
+/// An impact of a rim on the table.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[non_exhaustive]
+pub struct Strike {
+    /// The time of the impact.
+    pub time: f64,
+    /// Whether the rim that lands is not the one from which the initial state was seen.
+    pub other: bool,
+    /// The motion of the contact point in the impact.
+    pub hit: Hit,
+    /// The state before and after the impact, as seen from the rim that lands.
+    pub states: [State; 2],
+    /// The velocity of the lowest point of that rim before and after: along the lean, across it, and upwards.
+    pub velocities: [[f64; 3]; 2],
+    /// The impulses along the lean, across it, and upwards, in M sqrt(g R), summed over both rims if both receive an
+    /// impulse.
+    pub impulse: [f64; 3],
+    /// The energy lost, in M g R; if the body stays, also the friction of the bounces that are summed.
+    pub lost: f64,
+    /// Whether this is the last of a sequence of bounces, after which the body stays on the table.
+    pub stays: bool,
+}
+
+/// The slip, the phases and the losses of a motion. The estimated error of the motion also covers the slips, and the
+/// times and states of the phases and of the end; the error of the heat is that error times the largest speed.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[non_exhaustive]
+pub struct Path<S = State> {
+    /// The slip at each time, along the lean and across it.
+    pub slip: Vec<[f64; 2]>,
+    /// The heat of friction up to each time, in M g R, without the friction of impacts.
+    pub dissipated: Vec<f64>,
+    /// The energy lost to the losses up to each time, in M g R; empty without losses.
+    pub work_lost: Vec<f64>,
+    /// Whether the contact point is at rest or slips at each time.
+    pub kinds: Vec<Kind>,
+    /// The phases, from the initial one on.
+    pub phases: Vec<Phase<S>>,
+    /// The total heat of friction up to the last time or the end, in M g R.
+    pub heat: f64,
+    /// The total energy lost to the losses, in M g R.
+    pub lost: f64,
+    /// The total time of slipping.
+    pub slipping: f64,
+    /// The height of the lowest point of the rim and its vertical velocity at each time; empty if the motion ends where
+    /// the body leaves the table.
+    pub aloft: Vec<[f64; 2]>,
+    /// The impacts.
+    pub impacts: Vec<Strike>,
+    /// Slip and force (N, across the lean, along it) of the other rim at each time, NaN unless the body lies on both;
+    /// empty if the motion ends where the body comes to lie on its side.
+    #[cfg_attr(feature = "serde", serde(with = "crate::numbers::file::rows"))]
+    pub other_rim: Vec<[f64; 5]>,
+    /// The rim from which state, slip, pose and force at each time are seen: 0 is the rim from which the initial state is
+    /// seen, and 1 the other one. Empty if the motion ends where the body leaves the table: then it is always 0.
+    pub rims: Vec<u8>,
+    /// The slip at the event that ended the motion.
+    pub last_slip: [f64; 2],
+    /// For a stone, the time up to which the estimated error is at most 1 % of the largest speed (at most 0.01 for slow
+    /// motions); infinite if this holds up to the end.
+    #[cfg_attr(feature = "serde", serde(with = "crate::numbers::file"))]
+    pub known_until: f64,
+    /// Whether the rows have the lost energy, and whether the motion continues in the air and on both rims.
+    pub(crate) loses: bool,
+    pub(crate) goes_on: bool,
+    /// Whether the body is now seen from its other rim.
+    pub(crate) upside_down: bool,
+    /// Whether the computation stopped where the body began to roll.
+    pub(crate) rolls_on: bool,
+    /// Whether the last turns of a whirr were left out, because its end is known without them.
+    pub(crate) leaves_turns: bool,
+    /// The sum of the estimated errors of all steps.
+    pub(crate) erred: f64,
+    /// The direction in which the current slip began from rest.
+    pub(crate) way: [f64; 2],
+}
+
+impl<S> Path<S> {
+    /// A path with space for `count` rows; `loses` if they have the lost energy, and `goes_on` if they have what bodies
+    /// in the air and on both rims need.
+    pub(crate) fn empty(count: usize, loses: bool, goes_on: bool) -> Result<Self, Error> {
+        let (losing, going) = (if loses { count } else { 0 }, if goes_on { count } else { 0 });
+        Ok(Self {
+            slip: room(count)?,
+            dissipated: room(count)?,
+            work_lost: room(losing)?,
+            kinds: room(count)?,
+            phases: Vec::new(),
+            heat: 0.0,
+            lost: 0.0,
+            slipping: 0.0,
+            aloft: room(going)?,
+            impacts: Vec::new(),
+            other_rim: room(going)?,
+            rims: room(going)?,
+            loses,
+            goes_on,
+            last_slip: [0.0; 2],
+            known_until: f64::INFINITY,
+            upside_down: false,
+            rolls_on: false,
+            leaves_turns: false,
+            erred: 0.0,
+            way: [0.0; 2],
+        })
+    }
+}

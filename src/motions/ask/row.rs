@@ -1,0 +1,67 @@
+//! The outputs of a walk, row by row: each row is written in one place, into memory that was reserved before the first
+//! step.
+
+use crate::error::{Error, room};
+use crate::motions::walk::two_runs::Followed;
+use crate::motions::{Ask, Kind, Motion, Moving, Path};
+use crate::numbers::larger;
+
+/// The outputs at one time.
+pub(crate) struct OutputRow<S: Moving> {
+    pub state: S,
+    pub slip: [f64; 2],
+    /// The heat of friction, and the energy lost to the losses, since the start.
+    pub spent: [f64; 2],
+    pub kind: Kind,
+    /// The pose, if poses were requested.
+    pub pose: Option<S::Pose>,
+    /// The force and its error, if forces were requested.
+    pub force: Option<(S::Force, f64)>,
+    /// The height of the lowest point of the rim and its vertical velocity.
+    pub aloft: [f64; 2],
+    /// Slip and force of the other rim of a body that lies on both, which is seen from its first rim.
+    pub other_rim: Option<[f64; 5]>,
+}
+
+impl<S: Moving> OutputRow<S> {
+    /// A row of a body on the table, without pose and force.
+    pub fn on_table(state: S, slip: [f64; 2], spent: [f64; 2], kind: Kind) -> Self {
+        Self { state, slip, spent, kind, pose: None, force: None, aloft: [0.0; 2], other_rim: None }
+    }
+}
+
+impl<S: Moving> Followed<S> {
+    /// A motion without rows, with memory for `count` rows of the outputs that `ask` wants; `loses` if they include
+    /// lost energy.
+    pub fn empty(count: usize, ask: &Ask, loses: bool) -> Result<Self, Error> {
+        let mut motion = Motion::empty(count, ask.pose)?;
+        if ask.force {
+            (motion.forces, motion.force_error) = (Some(room(count)?), 0.0);
+        }
+        Ok(Self { motion, path: Path::empty(count, loses, ask.restitution.is_some())? })
+    }
+
+    /// Adds a row to the outputs.
+    pub fn push(&mut self, row: OutputRow<S>) {
+        let Self { motion, path } = self;
+        motion.states.push(row.state);
+        path.slip.push(row.slip);
+        path.dissipated.push(row.spent[0]);
+        path.kinds.push(row.kind);
+        if path.loses {
+            path.work_lost.push(row.spent[1]);
+        }
+        if path.goes_on {
+            path.aloft.push(row.aloft);
+            path.rims.push(u8::from(path.upside_down && row.other_rim.is_none()));
+            path.other_rim.push(row.other_rim.unwrap_or([f64::NAN; 5]));
+        }
+        if let Some((poses, pose)) = motion.poses.as_mut().zip(row.pose) {
+            poses.push(pose);
+        }
+        if let Some((forces, (force, doubt))) = motion.forces.as_mut().zip(row.force) {
+            forces.push(force);
+            motion.force_error = larger(motion.force_error, doubt);
+        }
+    }
+}

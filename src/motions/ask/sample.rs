@@ -1,0 +1,151 @@
+//! The outputs of a motion, one time after the other.
+//!
+//! ```text
+//! v = (u_h + h w2) e_h + (u_2 - L w1 + A w3) e2 + (g w2 + lift) z      u the slip, lift the rise of the lowest point
+//! ```
+//! On a smooth table the centre moves only up and down. Error: that of the motion, and a few roundings.
+
+use crate::laws::body::Body;
+use crate::laws::contact::Force;
+use crate::laws::contact::slip::{centre_rise, centre_velocity};
+use crate::laws::pose::{Pose, axes};
+use crate::laws::state::State;
+use crate::motions::{Kind, Motion, Moving};
+use core::f64::consts::PI;
+use nalgebra::{UnitQuaternion, Vector3};
+
+/// A motion at one of its times.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields),
+    serde(bound(
+        serialize = "S: serde::Serialize, S::Pose: serde::Serialize, S::Force: serde::Serialize",
+        deserialize = "S: serde::Deserialize<'de>, S::Pose: serde::Deserialize<'de>, S::Force: serde::Deserialize<'de>"
+    ))
+)]
+#[non_exhaustive]
+pub struct Sample<S: Moving = State> {
+    /// The time.
+    pub time: f64,
+    /// The state.
+    pub state: S,
+    /// The pose, if poses were requested.
+    pub pose: Option<S::Pose>,
+    /// The contact force, if forces were requested.
+    pub force: Option<S::Force>,
+    /// The slip of the contact point, along the lean and across it, with a law of friction; for a stone along x and y.
+    pub slip: Option<[f64; 2]>,
+    /// The kind of the phase, with a law of friction, losses or a restitution.
+    pub kind: Option<Kind>,
+    /// The height of the lowest point and its vertical velocity.
+    pub aloft: [f64; 2],
+    /// Slip and force (N, across the lean, along it) of the other rim of a body that lies on both.
+    pub other_rim: Option<[f64; 5]>,
+    /// The rim from which state, slip, pose and force are seen: 0 is that of the initial state, and 1 the other one.
+    pub rim: u8,
+    smooth: bool,
+}
+
+impl<S: Moving> Motion<S> {
+    /// The motion at each of its times.
+    ///
+    /// ```
+    /// use spincyl::{Body, motion::{Ask, roll_with}, steady};
+    ///
+    /// let body = Body::solid(2.5)?;
+    /// let start = steady::state(&body, 1.3)?.kicked(0.05);
+    /// let ask = Ask::default().with_pose(true).with_force(true);
+    /// let motion = roll_with(&body, start, &[0.0, 1.0, 2.0], &ask, || true)?.expect("not interrupted");
+    /// for now in motion.samples() {
+    ///     let (centre, force) = (now.centre(&body).unwrap(), now.force.unwrap());
+    ///     assert!(centre.z > 0.0 && force.normal > 0.0, "at {}", now.time);
+    /// }
+    /// # Ok::<(), spincyl::Error>(())
+    /// ```
+    pub fn samples(&self) -> impl ExactSizeIterator<Item = Sample<S>> {
+        (0..self.states.len()).map(|i| self.sample(i))
+    }
+
+    /// The motion at the time of this index.
+    pub(crate) fn sample(&self, i: usize) -> Sample<S> {
+        let path = self.path.as_deref();
+        Sample {
+            time: self.times.get(i).copied().unwrap_or(f64::NAN),
+            state: self.states[i],
+            pose: self.poses.as_ref().and_then(|all| all.get(i).copied()),
+            force: self.forces.as_ref().and_then(|all| all.get(i).copied()),
+            slip: path.and_then(|path| path.slip.get(i).copied()),
+            kind: path.and_then(|path| path.kinds.get(i).copied()),
+            aloft: path.and_then(|path| path.aloft.get(i).copied()).unwrap_or_default(),
+            other_rim: path.and_then(|path| path.other_rim.get(i).copied().filter(|x| !x[2].is_nan())),
+            rim: path.and_then(|path| path.rims.get(i).copied()).unwrap_or_default(),
+            smooth: self.smooth,
+        }
+    }
+}
+
+impl Motion {
+    /// The orientation at each time, if poses were requested. It refers to the axes of the body at the start, whichever
+    /// rim touches the table.
+    pub fn orientations(&self) -> impl Iterator<Item = UnitQuaternion<f64>> {
+        self.samples().filter_map(|now| now.orientation())
+    }
+}
+
+impl Sample {
+    /// The cosine of the angle from the vertical to the axis of the body at the start: 1 where the body lies on its
+    /// first face, and -1 where it lies on the other one.
+    pub fn axis_up(&self) -> f64 {
+        self.state.axis_up(self.rim)
+    }
+
+    /// The rotation from the axes of the body to those of the laboratory, if poses were requested; see
+    /// [`Motion::orientations`].
+    pub fn orientation(&self) -> Option<UnitQuaternion<f64>> {
+        // A pose on the other rim describes the body after a half turn about its own first axis.
+        let over = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), if self.rim == 1 { PI } else { 0.0 });
+        self.pose.map(|pose| pose.orientation(&self.state) * over)
+    }
+
+    /// The centre of mass, in R, if poses were requested.
+    pub fn centre(&self, body: &Body) -> Option<nalgebra::Point3<f64>> {
+        self.pose.map(|pose| pose.centre(body, &self.state))
+    }
+
+    /// The angular velocity along the axes of the laboratory, in sqrt(g/R), if poses were requested.
+    pub fn angular_velocity(&self) -> Option<Vector3<f64>> {
+        self.pose.map(|Pose { phi, .. }| axes(phi.rest, self.state.theta) * self.state.angular_velocity())
+    }
+
+    /// The force of the table along the axes of the laboratory, in weights, if poses and forces were requested: for a body
+    /// that lies on both rims the sum of both forces, and zero in the air.
+    pub fn force_in_laboratory(&self) -> Option<Vector3<f64>> {
+        let own = self.pose.zip(self.force).map(|(pose, force)| force.in_laboratory(pose.phi.rest));
+        own.map(|own| own + self.force_on_other_rim().unwrap_or_default())
+    }
+
+    /// The part of that force on the other rim; None unless the body lies on both rims.
+    pub fn force_on_other_rim(&self) -> Option<Vector3<f64>> {
+        let [_, _, normal, along, across] = self.force.and(self.other_rim)?;
+        self.pose.map(|pose| Force { normal, along, across }.in_laboratory(pose.phi.rest))
+    }
+
+    /// The velocity of the centre of mass along the axes of the laboratory, in sqrt(g R), if poses were requested.
+    pub fn velocity(&self, body: &Body) -> Option<Vector3<f64>> {
+        let [along, across] = if self.smooth {
+            [0.0; 2]
+        } else {
+            centre_velocity(body, &self.state, self.slip.unwrap_or_default())
+        };
+        let rise = centre_rise(body, &self.state) + self.aloft[1];
+        self.pose.map(|pose| axes(pose.phi.rest, 0.0) * Vector3::new(along, across, rise))
+    }
+
+    /// Kinetic and potential energy in M g R, with heights above the table, if poses were requested.
+    pub fn energy(&self, body: &Body) -> Option<f64> {
+        let turning = self.state.angular_velocity().dot(&self.state.angular_momentum(body));
+        self.velocity(body).zip(self.centre(body)).map(|(v, at)| 0.5 * (turning + v.norm_squared()) + at.z)
+    }
+}

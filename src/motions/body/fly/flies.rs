@@ -1,0 +1,281 @@
+//! A body in the air: the point at which it leaves the table, its flight and its landing.
+//!
+//! ```text
+//! leaves the table    a slip as t^3 where N0 = 0 falls;  a contact at rest with N0 < 0 as t^2;  a bounce as t
+//! ```
+//! N0 is the normal force without friction, whose sign decides, since friction scales the normal force by a positive
+//! factor. [`strikes`](crate::motions::body::strike) has the impacts.
+
+use super::air::{AirFlight, in_air};
+use super::lands::TOUCH;
+use crate::laws::body::Shape;
+use crate::laws::contact::{Force, Table};
+use crate::laws::newton;
+use crate::laws::state::State;
+use crate::methods::flow::Spent;
+use crate::motions::ask::row::OutputRow;
+use crate::motions::body::fly::{Aloft, Flies, Flight, Takeoff};
+use crate::motions::body::phases::{BodyPhases, BodyWalk, LONGER};
+use crate::motions::body::strike::{RATTLED, ROUNDED};
+use crate::motions::walk::numbers::{TIME, loses, lost, poses};
+use crate::motions::walk::{Next, Phases};
+use crate::motions::{Ending, Kind, Limit};
+use core::f64::consts::{FRAC_PI_2, PI, TAU};
+
+/// A pose as seen from the other rim; `over` if it is that of the other rim. Applied twice it returns the same pose.
+pub(crate) fn pose_from(at: &Aloft, shape: &Shape<f64>, over: bool, pose: [f64; 4]) -> [f64; 4] {
+    let mut other = Aloft { pose, ..*at }.on_other_rim(shape).pose;
+    if over {
+        other[0] -= TAU;
+    }
+    other
+}
+
+/// A bounce in which the body turns by less than this angle is short; its landing is that of a power series.
+const SHORT_BOUNCE: f64 = 0.1;
+
+impl<const N: usize> BodyWalk<'_, N> {
+    pub(crate) fn has_two_rims(&self) -> bool {
+        self.of.body.ell() > 0.0 && self.of.body.theta_end() == FRAC_PI_2
+    }
+
+    /// Whether both rims touch the table; both or one of them may carry the body.
+    pub(crate) fn is_level(&self) -> bool {
+        let State { theta, w2, .. } = self.of.state;
+        self.ask.restitution.is_some() && self.has_two_rims() && theta == FRAC_PI_2 && w2 == 0.0
+    }
+
+    /// The current numbers, with those of a flight.
+    pub(crate) fn aloft(&self) -> Aloft {
+        let [s, c, w1, w2, w3, u, v] = core::array::from_fn(|i| self.at[i]);
+        let pose = if poses(N) { core::array::from_fn(|i| self.at[9 + i]) } else { [0.0; 4] };
+        let Takeoff { height, lift, .. } = self.of.takeoff;
+        Aloft { angle: (s, c), w: [w1, w2, w3], slip: [u, v], lift, height, pose }
+    }
+
+    /// The state with these numbers. Its inclination is computed once in an impact of a uniform ball, whose bounces cost
+    /// little else.
+    pub(crate) fn state_of(&self, at: &Aloft) -> State {
+        let ([w1, w2, w3], here) = (at.w, (self.at[0], self.at[1]));
+        if self.of.uniform && at.angle == here { State { w1, w2, w3, ..self.of.state } } else { at.state() }
+    }
+
+    /// Moves the walk to these numbers.
+    pub(crate) fn sets(&mut self, to: &Aloft) {
+        let ((s, c), [mut w1, w2, mut w3], [u, mut v]) = (to.angle, to.w, to.slip);
+        if self.of.planar {
+            (w1, w3, v) = (0.0, 0.0, 0.0);
+        }
+        let theta = self.state_of(to).theta;
+        self.at[..7].copy_from_slice(&[s, c, w1, w2, w3, u, v]);
+        if poses(N) {
+            self.at[9..13].copy_from_slice(&to.pose);
+        }
+        self.of.state = State { theta: if c == 0.0 { FRAC_PI_2 } else { theta }, w1, w2, w3 };
+        (self.of.takeoff.height, self.of.takeoff.lift) = (to.height, to.lift);
+    }
+
+    /// Changes to the view from the other rim.
+    pub(crate) fn turns_over(&mut self) {
+        let (from, shape) = (self.aloft(), self.of.slide.law.shape);
+        let pose = pose_from(&from, &shape, self.made.path.upside_down, from.pose);
+        self.made.path.upside_down = !self.made.path.upside_down;
+        self.sets(&Aloft { pose, ..from.on_other_rim(&shape) });
+    }
+
+    /// The flight of a body that starts in the air, or its landing if it starts on the table and comes down.
+    pub(crate) fn starts_in_air(&mut self, [height, lift]: [f64; 2]) -> Next {
+        if self.of.state.theta == FRAC_PI_2 {
+            (self.at[0], self.at[1]) = (1.0, 0.0);
+        } else if self.of.state.theta == PI {
+            (self.at[0], self.at[1]) = (0.0, -1.0);
+        }
+        self.of.takeoff = Takeoff { height, lift, leaves: (height == 0.0).then_some(1) };
+        Next::Own(Kind::Flying)
+    }
+
+    /// N0, the normal force without friction, and the size of its terms.
+    pub(crate) fn pressed(&self, from: &Aloft) -> [f64; 2] {
+        if self.of.uniform {
+            return [1.0; 2];
+        }
+        let law = &self.of.slide.law;
+        let (shape, angle) = (&law.shape, from.angle);
+        let at = law.towards(angle, from.w, [0.0; 2], [0.0; 2]);
+        let (lever, [w1, w2, w3]) = (shape.rim.lever(angle), from.w);
+        let square = (shape.rim.slope(angle) * w2 * w2).abs();
+        let turning = shape.i3 * w1 * w3 - shape.i1 * angle.1 / angle.0 * w1 * w1;
+        let size = (shape.i1 * (1.0 + square) + (lever * turning).abs()) / (shape.i1 + lever * lever);
+        [at.force[0], size]
+    }
+
+    /// The phase after an ending past which a motion with restitution continues.
+    #[inline(never)]
+    pub(crate) fn continues_after(&mut self, ending: Ending) -> Next {
+        let Some(e) = self.ask.restitution else { return Next::Ends(ending) };
+        match ending {
+            // Another part of a body, which may land first, has no known shape.
+            Ending::LiftOff if self.of.body.lands_on_rims() => {
+                let [free, size] = self.pressed(&self.aloft());
+                let rolls = matches!(self.ask.table, Table::Rolling { .. });
+                if rolls && free > ROUNDED * size {
+                    // Friction lifts the body, and on a real table the contact point would slip first.
+                    return Next::Ends(Ending::Slip);
+                }
+                let leaves = if free < -ROUNDED * size { 2 } else { 3 };
+                self.of.takeoff = Takeoff { leaves: Some(leaves), ..Takeoff::default() };
+                Next::Own(Kind::Flying)
+            }
+            Ending::Side if self.has_two_rims() && self.of.state.theta == FRAC_PI_2 => {
+                (self.at[0], self.at[1]) = (1.0, 0.0);
+                self.of.takeoff = Takeoff::default();
+                let down = -self.at[3];
+                if down == 0.0 {
+                    return self.settles_on_side();
+                }
+                // An output at the initial time shows the body before it lands, as outputs at other landings do. Where a
+                // table would have to pull at the rim that rises, there is no force.
+                let from = self.aloft();
+                let pulls = self.force_here(&self.of.state).normal < 0.0;
+                while self.until().is_some_and(|t| t <= self.at[TIME]) {
+                    if pulls {
+                        self.writes_with(&from, self.kind(), f64::NAN);
+                    } else {
+                        BodyPhases::write_here(self);
+                    }
+                }
+                if e == 0.0 || down * self.of.body.ell() <= RATTLED {
+                    self.lands_on_both()
+                } else {
+                    self.rattles(e)
+                }
+            }
+            Ending::Painleve if self.of.lying.is_none() && self.of.body.lands_on_rims() => {
+                self.jams(e).unwrap_or(Next::Ends(ending))
+            }
+            ending => Next::Ends(ending),
+        }
+    }
+
+    /// Computes a flight to its end, which sets the next phase.
+    #[inline(never)]
+    pub(crate) fn flies(&mut self) {
+        if !poses(N) && self.of.uniform {
+            return self.flies_uniformly();
+        }
+        let shape = self.of.slide.law.shape;
+        let (from, now) = (self.aloft(), self.at[TIME]);
+        let Takeoff { leaves, .. } = self.of.takeoff;
+        let mut course: Box<dyn Flies> = match in_air(&self.ask.losses) {
+            Some(losses) => {
+                // The first step of a rougher run is longer, so that the two runs take different steps.
+                let longer = if self.perturbation > 0.0 { LONGER } else { 1.0 };
+                Box::new(AirFlight::new(&shape, &from, losses, (self.of.slide.tol, longer)))
+            }
+            None => Box::new(Flight::new(&shape, &from)),
+        };
+        let other = from.on_other_rim(&shape);
+        let touches = other.height.abs() <= 2.0 * TOUCH;
+        let leaves = [leaves, touches.then_some(if other.lift == 0.0 { 2 } else { 1 })];
+        let left = self.since.last().map_or(0.0, |t| t - now);
+        let Ok(landing) = course.lands(leaves, self.has_two_rims(), left) else {
+            self.next = Some(self.gives_up(Limit::Evaluations));
+            return;
+        };
+        if let Some(spent) = course.spent() {
+            self.has_spent(Spent { patience: self.spent.patience, ..spent });
+        }
+        let before = lost(&self.at);
+        let end = landing.map_or(f64::INFINITY, |(t, _)| t);
+        while let Some(t) = self.until().filter(|t| *t <= now + end) {
+            let at = self.flown(&*course, t - now, before);
+            self.writes_with(&at, Kind::Flying, 0.0);
+        }
+        let Some((t, upper)) = landing else { return };
+        // The time of a landing is as uncertain as the height, over the normal velocity; that of a short bounce has the
+        // roundings of a power series. A rougher run lands sooner or later by more than this error.
+        let (at, free) = (self.flown(&*course, t, before), *course.free());
+        let high = free.doubt_of_height(t);
+        let lift = if upper { at.on_other_rim(&shape).lift } else { at.lift };
+        let mut late = (high / lift.abs()).min(high.sqrt());
+        if leaves[0] == Some(1) && !upper && free.turns(t) < SHORT_BOUNCE {
+            late = late.min(free.roundings(t) * f64::EPSILON * t);
+        }
+        self.claims(late);
+        let shown = self.shows() * self.sign_of_rounding();
+        // This part of the difference of the runs is not a step error that has grown.
+        self.made.path.erred += late * shown.abs();
+        let t = (t + late * shown).max(0.0);
+        let at = if shown == 0.0 { at } else { self.flown(&*course, t, before) };
+        self.at[TIME] = now + t;
+        self.sets(&Aloft { height: if upper { at.height } else { 0.0 }, ..at });
+        if upper {
+            self.turns_over();
+        }
+        self.doubts(free.roundings(t) * f64::EPSILON);
+        self.of.takeoff.height = 0.0;
+        let next = self.strikes();
+        self.continues_with(next);
+    }
+
+    /// The body at a time of its flight. The energy lost to the air until then is added to the energy lost `before`. A
+    /// rim below the table is an error of the motion: the estimated error is at least its depth.
+    fn flown(&mut self, course: &dyn Flies, t: f64, before: f64) -> Aloft {
+        let (mut at, lost) = course.at(t);
+        if loses(N) {
+            self.at[N - 1] = before + lost;
+        }
+        self.claims(course.free().doubt(t, &at));
+        let other = if self.has_two_rims() { self.of.slide.law.shape.rim.between(at.angle) } else { 0.0 };
+        self.claims(-(at.height + other.min(0.0)));
+        if at.height < 0.0 && -at.height <= course.free().doubt_of_height(t) {
+            at.height = 0.0;
+        }
+        at
+    }
+
+    /// Compares the energy, with all that has been taken from it, with that at the start. Their difference, over the
+    /// largest speed, is an error of the numbers.
+    pub(crate) fn compares_energy(&mut self) {
+        if self.ask.restitution.is_none() || self.perturbation > 0.0 {
+            return;
+        }
+        let (from, law) = (self.aloft(), &self.of.slide.law);
+        let [v_h, v_2] = law.centre(from.angle, from.w, from.slip);
+        let v_z = from.lift + law.shape.rim.lever(from.angle) * from.w[1];
+        let has = newton::energy(&law.shape, from.angle, from.w, [v_h, v_2, v_z]) + from.height;
+        let last = self.made.path.impacts.last().map_or(0.0, |hit| hit.lost);
+        let whole = has + self.at[8] + self.of.struck + last + if loses(N) { self.at[N - 1] } else { 0.0 };
+        let fastest = [v_h, v_2, v_z].into_iter().chain(from.w).fold(1.0, |most: f64, x| most.max(x.abs()));
+        let first = *self.of.energy.get_or_insert(whole);
+        self.claims((whole - first).abs() / fastest);
+    }
+
+    /// Includes a relative error of the numbers in the estimated error, although both runs make the same error: the
+    /// rougher run is perturbed by as much as the difference of the runs has to show. The growth of the error is then
+    /// that of the difference.
+    pub(crate) fn doubts(&mut self, share: f64) {
+        BodyPhases::perturbs_by(self, share * self.shows() * self.sign_of_rounding());
+    }
+
+    /// The sign of a perturbation after this impact, as irregular as that of a rounding error: thousands of errors of one sign
+    /// would add up to more than roundings do.
+    pub(crate) fn sign_of_rounding(&self) -> f64 {
+        let mixed = (self.made.path.impacts.len() as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        if mixed >> 63 == 0 { 1.0 } else { -1.0 }
+    }
+
+    /// The contact that begins where the normal velocity is zero.
+    pub(crate) fn touches_down(&mut self) -> Next {
+        self.of.takeoff = Takeoff::default();
+        self.first_phase().unwrap_or(Next::Ends(Ending::Painleve))
+    }
+
+    /// Writes a point to the outputs, with all force components set to `force`.
+    pub(crate) fn writes_with(&mut self, at: &Aloft, kind: Kind, force: f64) {
+        let force = self.ask.force.then_some((Force { normal: force, along: force, across: force }, 0.0));
+        let pose = poses(N).then(|| at.pose());
+        let row = OutputRow::on_table(at.state(), at.slip, [self.at[8], lost(&self.at)], kind);
+        self.made.push(OutputRow { pose, force, aloft: [at.height, at.lift], ..row });
+    }
+}

@@ -1,0 +1,302 @@
+//! The first landing of a rim in a flight; no landing is missed.
+//!
+//! ```text
+//! height of a rim   h = z - (side l c + a s + rho)     side = 1 for the rim that was down last, -1 for the other one
+//! h'' <= K = Lam^2 (|l| sin a sin b + a sin b) - 1     at all times, also where theta passes a pole
+//! no landing in [t1, t2]    if the least value of chord - K (t - t1)(t2 - t)/2 is positive
+//! one landing               if h(t1) > 0 >= h(t2) and h'(t1) + K (t2 - t1) < 0
+//! no landing after          z falls below the least height of a landing: 0 with two rims, else min(0, rho - |l|)
+//! ```
+//! The bound is one-sided: s is the length of the horizontal part x of e3, so that s s'' >= x.x'' and s'' >= -Lam^2 sin
+//! b, while s'' has no upper bound. An interval that is neither free nor certain is halved. The height of a rim that
+//! touches at the start grows as t^k: k = 1 after a bounce, 2 where a contact at rest loses its normal force, 3 where
+//! the normal force of a slip vanishes. There a power series, divided by the known zeros, gives the height.
+//!
+//! Error: that of h divided by the normal velocity; a rim that only grazes the table lands where h is a rounding error.
+
+use super::{Aloft, Flies, Flight};
+use crate::laws::body::Shape;
+
+/// Number of terms of the series at the start.
+pub(crate) const RIM_TERMS: usize = 30;
+/// Within `near` the terms of the series fall by this factor; a landing before this share of `near` is sought with
+/// fewer terms, of which the last is below exp(-DIGITS).
+const NARROWS: f64 = 3.0;
+const EARLY: f64 = 0.5;
+const DIGITS: f64 = 36.0;
+/// A cell shorter than this, in units of the time since the start, in which the height is below `TOUCH` counts as a
+/// touch.
+const SHORT_CELL: f64 = 1e-9;
+pub(crate) const TOUCH: f64 = 1e-15;
+/// Largest number of evaluations of the height.
+const HEIGHTS: u32 = 1_000_000;
+
+/// The beginning of a rim's flight: above the table, or on the table with a height that grows as t^k.
+pub(crate) type Leaves = Option<usize>;
+
+/// Sine and cosine of theta as power series in the time since the start.
+pub(crate) type AngleSeries = [[f64; RIM_TERMS]; 2];
+
+/// A function of time with its derivative, whose second derivative is at most `bend`, and its rounding error.
+pub(crate) struct Falling<F: FnMut(f64) -> [f64; 2]> {
+    pub of: F,
+    pub bend: f64,
+    pub touch: f64,
+    pub noise: f64,
+}
+
+impl<F: FnMut(f64) -> [f64; 2]> Falling<F> {
+    /// The first zero in [from, to], where the function is known to be positive up to `from`. An error if it is
+    /// negative there, and after too many evaluations.
+    pub fn first_zero(&mut self, from: f64, to: f64) -> Result<Option<f64>, NoLanding> {
+        let (mut t, [mut here, mut rate]) = (from, (self.of)(from));
+        if here <= 0.0 {
+            return if here >= -self.noise { Ok(Some(from)) } else { Err(NoLanding) };
+        }
+        let (mut ends, mut count) = (vec![to], 0);
+        while let Some(&end) = ends.last() {
+            count += 1;
+            if count > HEIGHTS {
+                return Err(NoLanding);
+            }
+            let [there, fall] = (self.of)(end);
+            let wide = end - t;
+            let tiny = wide < SHORT_CELL * end;
+            if there > 0.0 {
+                let tilt = (here - there) / (self.bend * wide);
+                let low = if tilt.abs() >= 0.5 * wide {
+                    here.min(there)
+                } else {
+                    0.5 * (here + there) - 0.5 * self.bend * (0.25 * wide * wide + tilt * tilt)
+                };
+                if low > 0.0 || tiny {
+                    if low <= 0.0 && here.min(there) < self.touch {
+                        return Ok(Some(end));
+                    }
+                    (t, here, rate) = (end, there, fall);
+                    ends.pop();
+                    continue;
+                }
+            } else if rate + self.bend * wide < 0.0 || tiny {
+                return Ok(Some(self.root(t, end)));
+            }
+            ends.push(t + 0.5 * wide);
+        }
+        Ok(None)
+    }
+
+    /// The zero between two times, between which the function falls.
+    fn root(&mut self, mut low: f64, mut high: f64) -> f64 {
+        let mut x = 0.5 * (low + high);
+        for _ in 0..100 {
+            let [value, slope] = (self.of)(x);
+            if value > 0.0 {
+                low = x;
+            } else {
+                high = x;
+            }
+            let newton = x - value / slope;
+            let next = if low < newton && newton < high { newton } else { 0.5 * (low + high) };
+            if (next - x).abs() <= 0.5 * f64::EPSILON * x {
+                break;
+            }
+            x = next;
+        }
+        x
+    }
+}
+
+/// The search for a landing takes too many evaluations, or a rim is below the table where it begins.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct NoLanding;
+
+impl Flight {
+    /// Height and vertical velocity of the lowest point of a rim. The height is the sum of the initial height and its
+    /// change, which keeps the digits of a small change.
+    fn rim(&self, side: f64, t: f64) -> [f64; 2] {
+        let ([cosine, cosine_rate], (s0, c0), rim) = (self.cosine(t), self.from.angle, self.shape.rim);
+        let (s, c) = self.angle_of(t, cosine);
+        let sine_rate = if s > 0.0 { -(c * cosine_rate / s) } else { 0.0 };
+        // A body that stays upright, as one that is dropped flat, has no sine at all.
+        let sine = if s + s0 > 0.0 { -(cosine * (c + c0) / (s + s0)) } else { 0.0 };
+        let first = self.from.height + if side > 0.0 { 0.0 } else { rim.between(self.from.angle) };
+        let [.., up] = self.velocity;
+        [
+            first + t * (up - 0.5 * t) - rim.slope((sine, side * cosine)),
+            up - t - rim.slope((sine_rate, side * cosine_rate)),
+        ]
+    }
+
+    fn lands_on(&self, side: f64, leaves: Leaves, two: bool, until: f64) -> Result<Option<f64>, NoLanding> {
+        let Shape { rim, .. } = self.shape;
+        let [.., up] = self.velocity;
+        let reach = rim.ell.hypot(rim.a) + rim.rho;
+        // The centre is low enough for a landing before `rises` and after `comes`. At `end` it is so low that a rim is
+        // below the table, whatever the inclination: the centre of one rim may itself be below the table.
+        let lowest = if two { 0.0 } else { (rim.rho - rim.ell.abs()).min(0.0) };
+        let passes = |height: f64| {
+            let square = up * up + 2.0 * (self.height - height);
+            (square >= 0.0).then(|| (up - square.sqrt(), up + square.sqrt()))
+        };
+        let end = (passes(lowest).map_or(up, |(_, end)| end) + 1e-6).min(until);
+        let (rises, comes) = passes(reach).unwrap_or((end, end));
+        let bend =
+            (self.rate * self.rate * (rim.ell.abs() * self.wide + rim.a * self.b.sin()) - 1.0).max(1e-9);
+        let touch = TOUCH * (1.0 + reach + self.height);
+        let mut from = 0.0;
+        if let Some(order) = leaves {
+            let near = self.near();
+            let found = self.leaves(side, order, near, &|near, terms| self.swung(near, terms))?;
+            if found.is_some() {
+                return Ok(found.filter(|t| *t <= until));
+            }
+            from = near;
+        }
+        let noise = touch + 4.0 * self.doubt_of_height(from);
+        let mut falling = Falling { of: |t: f64| self.rim(side, t), bend, touch, noise };
+        // While the centre is too high no rim lands.
+        let parts = if rises > 0.0 {
+            [(from, rises.min(end)), (comes.max(from), end)]
+        } else {
+            [(from, from), (comes.max(from), end)]
+        };
+        for (from, to) in parts {
+            if to > from
+                && let Some(t) = falling.first_zero(from, to)?
+            {
+                return Ok(Some(t));
+            }
+        }
+        Ok(None)
+    }
+
+    /// The time up to which the series of a rim that touches at the start is used.
+    pub(crate) fn near(&self) -> f64 {
+        let (s, sine) = (self.from.angle.0, self.b.sin());
+        if sine * self.rate > 0.0 && self.shape.rim.a > 0.0 {
+            (0.4 * s / sine).ln_1p() / (3.0 * self.rate)
+        } else {
+            1.0 / (1.0 + self.rate)
+        }
+    }
+
+    /// The landing up to the time `near` of a rim that touches at the start; 0 if it does not leave the table. `swung`
+    /// gives the series of the inclination.
+    pub(crate) fn leaves(
+        &self,
+        side: f64,
+        order: usize,
+        near: f64,
+        swung: &dyn Fn(f64, usize) -> AngleSeries,
+    ) -> Result<Option<f64>, NoLanding> {
+        // A bounce that is over much earlier needs few terms, up to twice the time that the first two give.
+        let first = self.heights(side, near, &swung(near, order + 2));
+        let early = -(2.0 * first[order] / first[order + 1]);
+        if early > 0.0 && early < EARLY {
+            let terms = order + 2 + (DIGITS / (NARROWS / early).ln()) as usize;
+            let found = self.lands_near(side, order, early * near, (terms, swung))?;
+            if found.is_some() {
+                return Ok(found);
+            }
+        }
+        self.lands_near(side, order, near, (RIM_TERMS, swung))
+    }
+
+    /// The landing up to the time `near`, by a series of h/t^k.
+    fn lands_near(
+        &self,
+        side: f64,
+        order: usize,
+        near: f64,
+        (terms, swung): (usize, &dyn Fn(f64, usize) -> AngleSeries),
+    ) -> Result<Option<f64>, NoLanding> {
+        let series = &self.heights(side, near, &swung(near, terms))[order..terms];
+        if series[0] <= 0.0 {
+            return Ok(Some(0.0));
+        }
+        let power = |x: f64| {
+            let value = series.iter().rev().fold(0.0, |sum, c| sum * x + c);
+            let rate = (1..series.len()).rev().fold(0.0, |sum, k| sum * x + k as f64 * series[k]);
+            [value, rate]
+        };
+        let bend: f64 = (2..series.len()).map(|k| (k * (k - 1)) as f64 * series[k].abs()).sum();
+        let mut falling = Falling { of: power, bend: bend.max(1e-9 * series[0]), touch: 0.0, noise: 0.0 };
+        Ok(falling.first_zero(0.0, 1.0)?.map(|x| x * near))
+    }
+
+    /// The series of the inclination in units of the time `near`.
+    fn swung(&self, near: f64, terms: usize) -> AngleSeries {
+        let ((s, c), [p, q]) = (self.from.angle, self.swing);
+        let (mut cosines, mut sines) = ([0.0; RIM_TERMS], [0.0; RIM_TERMS]);
+        let mut scale = 1.0;
+        for k in 0..terms {
+            cosines[k] = [p, -q, -p, q][k % 4] * scale;
+            scale *= self.rate * near / (k + 1) as f64;
+        }
+        (cosines[0], sines[0]) = (c, s);
+        // The height of a ball does not depend on s, which may be zero.
+        let terms = if self.shape.rim.a > 0.0 { terms } else { 0 };
+        // The coefficients of s from s^2 = 1 - c^2.
+        for k in 1..terms {
+            let square: f64 = (0..=k).map(|i| cosines[i] * cosines[k - i]).sum();
+            let known: f64 = (1..k).map(|i| sines[i] * sines[k - i]).sum();
+            sines[k] = -(square + known) / (2.0 * s);
+        }
+        [sines, cosines]
+    }
+
+    /// The series of the height of a rim that touches at the start, in units of the time `near`.
+    fn heights(&self, side: f64, near: f64, [sines, cosines]: &AngleSeries) -> [f64; RIM_TERMS] {
+        let rim = &self.shape.rim;
+        let mut all = core::array::from_fn(|k| -rim.slope((sines[k], side * cosines[k])));
+        // The first coefficient is the normal velocity, which is known without a difference.
+        all[1] = near * if side > 0.0 { self.from.lift } else { self.from.on_other_rim(&self.shape).lift };
+        all[2] -= 0.5 * near * near;
+        all
+    }
+}
+
+impl Flies for Flight {
+    fn lands(
+        &mut self,
+        leaves: [Leaves; 2],
+        two: bool,
+        until: f64,
+    ) -> Result<Option<(f64, bool)>, NoLanding> {
+        let mut first = None;
+        for (i, side) in [1.0, -1.0].into_iter().enumerate().take(if two { 2 } else { 1 }) {
+            // Of two rims that land at the same time the first one counts; an impact looks at both.
+            let until = first.map_or(until, |(t, _)| t);
+            if let Some(t) = self.lands_on(side, leaves[i], two, until)?
+                && first.is_none_or(|(before, _)| t < before)
+            {
+                first = Some((t, i == 1));
+            }
+        }
+        Ok(first)
+    }
+
+    fn at(&self, t: f64) -> (Aloft, f64) {
+        (self.flown(t), 0.0)
+    }
+
+    fn free(&self) -> &Flight {
+        self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_search_that_begins_below_the_table_by_more_than_rounding_finds_no_landing() {
+        let from = |height: f64| {
+            let of = move |t: f64| [height - t, -1.0];
+            Falling { of, bend: 1e-9, touch: 1e-15, noise: 1e-12 }.first_zero(0.0, 1.0)
+        };
+        assert!(from(-0.1).is_err() && from(-2e-12).is_err());
+        assert_eq!(from(-1e-13).unwrap(), Some(0.0));
+        assert!((from(0.1).unwrap().unwrap() - 0.1).abs() < 1e-15);
+    }
+}

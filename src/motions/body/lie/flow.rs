@@ -1,0 +1,316 @@
+//! The flow of a body that lies on both rims: its rates, its margins, and the ends of its slips.
+//!
+//! ```text
+//! y = (1, 0, w1, 0, w3, u_h, u_2, t, heat; phi, psi, x, y; lost)
+//! both slip   dt = k/(k + soft) dsigma,   k = |u||u'|/(|u| + |u'|)        smooth up to u = 0 or u' = 0
+//! margins     N', N,  (mu_s N)^2 - F^2,  |w1| of a pivot,  |w1| or its hold,  |w3| or its hold
+//! ```
+//! [`contact::lying`](crate::laws::contact) has the equations. Error: the tolerance of the steps.
+
+use crate::laws::body::Shape;
+use crate::laws::contact::grip;
+use crate::laws::contact::lying::{Flat, Lain, Lying};
+use crate::laws::loss::{GRACE, SLACK};
+use crate::methods::flow::{Flow, FlowPlace};
+use crate::methods::rk8;
+use crate::motions::Kind;
+use crate::motions::body::slide::longest;
+use crate::motions::walk::MOMENT;
+use crate::motions::walk::numbers::{Halt, MARGINS, TIME, loses, poses};
+use crate::numbers::{Dual, Real};
+use core::f64::consts::FRAC_PI_2;
+
+/// The motion of the rims of a lying body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Stance {
+    /// Both slip.
+    Slips,
+    /// One rim sticks: the one from which the state is seen, or the other one.
+    Pivots { other: bool },
+    /// Both stick.
+    Rolls,
+}
+
+impl Stance {
+    pub fn kind(self) -> Kind {
+        match self {
+            Self::Slips => Kind::Lying,
+            Self::Pivots { .. } => Kind::Pivoting,
+            Self::Rolls => Kind::RollingOnItsSide,
+        }
+    }
+}
+
+const LYING_ENDS: [Halt; MARGINS] =
+    [Halt::Rises, Halt::Changes, Halt::Slips, Halt::Turned, Halt::Drilling, Halt::Contour];
+
+/// The longest step in units of the time in which the slips of both rims turn to their common direction. The estimated
+/// error of an explicit step vanishes for a decay by 5.65 such times in a step, where the true error does not.
+const TURNS_WITHIN: f64 = 5.0;
+
+/// A phase on both rims.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct LyingPhase {
+    pub flow: LyingFlow,
+}
+
+/// A body on both rims, and the motions that dry losses hold.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct LyingFlow {
+    pub law: Lying<f64>,
+    sloped: Lying<Dual<f64>>,
+    pub stance: Stance,
+    /// The signs of w1 and w3 for the dry losses, and of w1 in a pivot.
+    pub ways: [f64; 2],
+    pub turn: f64,
+    /// The largest couples with which dry losses hold w1 and w3.
+    pub limits: [f64; 2],
+    /// The coefficient of static friction.
+    pub fixed: f64,
+    /// The speed below which a slip counts as zero.
+    over: f64,
+    soft: f64,
+    pub tol: f64,
+}
+
+/// w1, w3, u_h and u_2 among the numbers.
+fn flat<T: Copy>(y: &[T]) -> Flat<T> {
+    [y[2], y[4], y[5], y[6]]
+}
+
+impl LyingFlow {
+    pub fn new(law: Lying<f64>, fixed: f64, (over, tol): (f64, f64)) -> Self {
+        let (ell, i1, i3) = (law.shape.rim.ell, law.shape.i1, law.shape.i3);
+        let soft = if law.dry { 0.25 * law.strength * (1.0 + ell * ell / i1 + 1.0 / i3) } else { 0.0 };
+        let mut flow = Self {
+            law,
+            sloped: law.map(|value| Dual { value, slope: 0.0 }),
+            stance: Stance::Slips,
+            ways: [0.0; 2],
+            turn: 0.0,
+            limits: law.limits(),
+            fixed,
+            over,
+            soft,
+            tol,
+        };
+        flow.holds([false; 2]);
+        flow
+    }
+
+    /// Sets which of w1 and w3 dry losses hold.
+    pub fn holds(&mut self, held: [bool; 2]) {
+        self.law.held = held;
+        self.sloped.held = held;
+    }
+
+    fn lain_of<T: Real>(&self, law: &Lying<T>, y: Flat<T>) -> Lain<T> {
+        match self.stance {
+            Stance::Slips => law.slipping(y, self.ways),
+            Stance::Pivots { other } => law.pivots(y, other, self.turn, self.ways),
+            Stance::Rolls => law.rolls(y, self.ways),
+        }
+    }
+
+    /// Forces and accelerations at these numbers.
+    pub fn lain<const N: usize>(&self, y: &[f64; N]) -> Lain<f64> {
+        self.lain_of(&self.law, flat(y))
+    }
+
+    /// Forces and accelerations at these numbers; a rim at rest from which the state is seen, but which slips, slips off
+    /// along `way`.
+    pub fn lain_along<const N: usize>(&self, y: &[f64; N], way: [f64; 2]) -> Lain<f64> {
+        if self.stance != Stance::Slips || !self.law.dry || [y[5], y[6]] != [0.0; 2] {
+            return self.lain(y);
+        }
+        let (law, y) = (&self.law, flat(y));
+        law.slipping_along(y, [way.map(|x| law.strength * x), law.drag(law.other_slip(y))], self.ways)
+    }
+
+    /// The speeds of the slips of both rims.
+    fn speeds<const N: usize>(&self, y: &[f64; N]) -> [f64; 2] {
+        let [u, v] = self.law.other_slip(flat(y));
+        [y[5].hypot(y[6]), u.hypot(v)]
+    }
+
+    fn margins_of<T: Real>(&self, law: &Lying<T>, y: Flat<T>) -> [T; MARGINS] {
+        let at = self.lain_of(law, y);
+        let one = y[0].splat(1.0);
+        let [here, there] = at.force;
+        let hold = |i: usize| {
+            let limit = one.splat(self.limits[i] * self.limits[i] * (1.0 + 2.0 * GRACE));
+            if law.held[i] {
+                limit - at.couple[i] * at.couple[i]
+            } else if self.limits[i] > 0.0 && self.ways[i] != 0.0 {
+                one.splat(self.ways[i]) * y[i] + one.splat(SLACK)
+            } else {
+                one
+            }
+        };
+        let fixed = one.splat(self.fixed);
+        let grips = |[n, across, along]: [T; 3]| {
+            if self.fixed.is_finite() { grip(fixed, n, across * across + along * along) } else { one }
+        };
+        match self.stance {
+            Stance::Slips => [there[0], here[0], one, one, hold(0), hold(1)],
+            Stance::Pivots { other } => {
+                let turning = one.splat(self.turn) * y[0];
+                [there[0], here[0], grips(if other { there } else { here }), turning, one, hold(1)]
+            }
+            Stance::Rolls => [one, one, grips(here), one, one, hold(1)],
+        }
+    }
+
+    /// The largest speed, at least 1.
+    fn swiftest<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        let [here, there] = self.speeds(y);
+        here.max(there).max(y[2].abs()).max(y[4].abs()).max(1.0)
+    }
+
+    /// The rate at which dry friction turns the slips of both rims to their common direction: the larger rate of the two
+    /// decays of w1 and of the slip across the axis.
+    fn aligns<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        if self.stance != Stance::Slips || !self.law.dry {
+            return 0.0;
+        }
+        let Shape { rim, i1, i3 } = self.law.shape;
+        let (turns, shifts) = (rim.ell * rim.ell / i1, 1.0 + 1.0 / i3);
+        let ([here, there], [a, b]) = (self.lain(y).force, self.speeds(y));
+        let (low, up) = (here[0] / a, there[0] / b);
+        let (sum, product) = ((low + up) * (turns + shifts), 4.0 * low * up * turns * shifts);
+        0.5 * self.law.strength * (sum + (sum * sum - 4.0 * product).max(0.0).sqrt())
+    }
+
+    /// The numbers at the time `MOMENT` after the beginning of a slip along `way`, of the rim from which the state is
+    /// seen.
+    pub fn nudged<const N: usize>(&self, start: &[f64; N], way: [f64; 2], growth: f64) -> [f64; N] {
+        let mut y = *start;
+        (y[5], y[6]) = (MOMENT * growth * way[0], MOMENT * growth * way[1]);
+        let at = self.law.slipping(flat(&y), self.ways);
+        (y[2], y[4]) = (y[2] + MOMENT * at.w[0], y[4] + MOMENT * at.w[1]);
+        y[TIME] += MOMENT;
+        y
+    }
+}
+
+impl Flow<MARGINS> for LyingFlow {
+    type Halt = Halt;
+    const TIME: usize = TIME;
+    const OVER: Halt = Halt::Time;
+    const PAUSE: Halt = Halt::Pause;
+    const ENDLESS: Halt = Halt::Endless;
+
+    fn is_extrapolated(halt: Halt) -> bool {
+        matches!(halt, Halt::Standstill | Halt::OtherStandstill)
+    }
+
+    fn theta<const N: usize>(&self, _: &[f64; N]) -> f64 {
+        FRAC_PI_2
+    }
+
+    fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {
+        let at = self.lain(y);
+        let [w1, w3, u_h, u_2] = flat(y);
+        let mut pace = 1.0;
+        if self.stance == Stance::Slips && self.law.dry {
+            let [a, b] = self.speeds(y);
+            let k = a * b / (a + b);
+            pace = k / (k + self.soft);
+        }
+        let [[_, low_2, low_h], [_, up_2, up_h]] = at.force;
+        let [other_h, other_2] = self.law.other_slip(flat(y));
+        let heat = -(low_2 * u_2 + low_h * u_h + up_2 * other_2 + up_h * other_h);
+        all[..9].copy_from_slice(&[0.0, 0.0, at.w[0], 0.0, at.w[1], at.u[0], at.u[1], 1.0, heat]);
+        if poses(N) {
+            let (sin, cos) = y[9].sin_cos();
+            let (out, on) = (u_h, u_2 + w3);
+            all[9..13].copy_from_slice(&[w1, w3, out * cos - on * sin, out * sin + on * cos]);
+        }
+        if loses(N) {
+            all[N - 1] = -(at.couple[0] * w1 + at.couple[1] * w3);
+        }
+        all.iter_mut().for_each(|x| *x *= pace);
+    }
+
+    fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; MARGINS] {
+        let y: [Dual<f64>; 7] = core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
+        self.margins_of(&self.sloped, flat(&y))
+    }
+
+    fn margin<const N: usize>(&self, y: &[f64; N], i: usize) -> f64 {
+        self.margins_of(&self.law, flat(y))[i]
+    }
+
+    fn end(&self, i: usize) -> Halt {
+        LYING_ENDS[i]
+    }
+
+    /// The error of a dry slip is relative to its speed, so that a vanishing slip keeps its direction.
+    fn error<const N: usize>(&self, y: &[f64; N], made: &rk8::Step<f64, N>) -> f64 {
+        let (per_tol, per_speed) = (1.0 / self.tol, 1.0 / (self.tol * self.swiftest(y)));
+        let [here, there] = self.speeds(y);
+        let slips = self.stance == Stance::Slips && self.law.dry;
+        let per_slip = if slips { per_speed.max(1e3 / here.min(there)) } else { per_speed };
+        let per_turn = if slips { per_speed.max(2e3 * self.law.shape.rim.ell / there) } else { per_speed };
+        let per = |i: usize| match i {
+            0 | 1 | 7 => per_tol,
+            2 => per_turn,
+            5 | 6 => per_slip,
+            _ => per_speed,
+        };
+        made.error(per, N as f64) * made.strictness(self.tol, TIME, TIME)
+    }
+
+    fn fastest<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        self.swiftest(y)
+    }
+
+    fn first<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        0.02 / self.swiftest(y)
+    }
+
+    fn calm<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        longest(y, &self.law.shape)
+    }
+
+    fn longest<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
+        let most = self.calm(&place.y) / place.rate[TIME].min(1.0);
+        let most = most.min(TURNS_WITHIN / (self.aligns(&place.y) * place.rate[TIME]));
+        let Some(losses) = &self.sloped.losses else { return most };
+        let dual = |i: usize| Dual { value: place.y[i], slope: place.rate[i] };
+        let (one, zero) = (dual(2).splat(1.0), dual(2).splat(0.0));
+        let w = [dual(2), zero, dual(4)];
+        most.min(losses.longest(&losses.seen(&self.sloped.shape.rim, (one, zero), w[0], w), true))
+    }
+
+    /// The halt of an almost vanished slip, extrapolated linearly to zero.
+    fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
+        if self.stance != Stance::Slips || !self.law.dry {
+            return None;
+        }
+        let ell = self.law.shape.rim.ell;
+        let slips = [[place.y[5], place.y[6]], self.law.other_slip(flat(&place.y))];
+        let rates = [[place.rate[5], place.rate[6]], self.law.other_slip(flat(&place.rate))];
+        let (mut halt, mut y) = (None, place.y);
+        for (i, ([u, v], [du, dv])) in slips.into_iter().zip(rates).enumerate() {
+            let speed = u.hypot(v);
+            let slowing = -(u * du + v * dv) / speed;
+            if speed > self.over || speed > 0.0 && slowing <= 0.0 || halt.is_some() {
+                continue;
+            }
+            let left = if speed > 0.0 { speed / slowing } else { 0.0 };
+            y = core::array::from_fn(|i| place.y[i] + left * place.rate[i]);
+            (y[5], y[6]) = if i == 0 { (0.0, 0.0) } else { (0.0, 2.0 * ell * y[2]) };
+            halt = Some(if i == 0 { Halt::Standstill } else { Halt::OtherStandstill });
+        }
+        halt.map(|halt| (halt, y))
+    }
+
+    fn stuck<const N: usize>(&self, _: &FlowPlace<N>, _: &[Dual<f64>; MARGINS]) -> Option<Halt> {
+        None
+    }
+
+    fn shown<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
+        *y
+    }
+}

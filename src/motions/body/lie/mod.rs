@@ -1,0 +1,495 @@
+//! A body that lies on both rims: the choice of its phases, and the end of each.
+//!
+//! ```text
+//! both slip     to u = 0 of a rim: it sticks, or slips on in another direction;  both together: rolls straight
+//! one sticks    to w1 = 0: rolls straight;   to |F| = mu_s N: both slip
+//! both of these to N = 0 of a rim: the other one carries the body alone, with w2 = w2' = 0, and theta leaves as t^3
+//! rolls straight at constant speed, or until dry losses stop it
+//! ```
+//! The rim from which the state is seen changes only where the other rim carries the body alone, or slips off first.
+//!
+//! Error: the tolerance of the steps; rolling straight without losses is exact.
+
+pub(crate) mod flow;
+mod rocks;
+
+use super::fly::Aloft;
+use super::fly::flies::pose_from;
+use super::phases::BodyWalk;
+use super::write;
+use crate::error::Error;
+use crate::laws::contact::landing::{mirrored, pivoted};
+use crate::laws::contact::lying::{Lain, Lying};
+use crate::laws::contact::slip::Friction;
+use crate::laws::contact::standstill::{Standstill, standstill, towards};
+use crate::laws::contact::{Force, Table};
+use crate::laws::loss::GRACE;
+use crate::laws::state::State;
+use crate::methods::flow::{Flow, Steps};
+use crate::methods::search::crossing;
+use crate::motions::ask::row::OutputRow;
+use crate::motions::walk::numbers::{Halt, TIME, lost, poses};
+use crate::motions::walk::{Next, Pause, Phases, WalkStep, after_rest, ending};
+use crate::motions::{Ask, Ending, Kind, Phase};
+use core::f64::consts::{FRAC_PI_2, PI};
+use flow::{LyingFlow, LyingPhase, Stance};
+
+/// A slip slower than this, in units of the largest speed, counts as zero where a phase begins.
+const STILL_SLIP: f64 = 1e-12;
+/// A rocking ends in a pivot where one rim slips more slowly than the other one by this factor.
+const ROCKS_BESIDE: f64 = 1e-3;
+/// The longest time of a rocking that ends in a pivot, in units of v (1/mu + 1/ell)/(N (1 - f)), with the velocity v of
+/// the rocking, the smaller normal force N of the pivot, and the share f of friction that it needs: 1.55 in 3,100 random
+/// rockings. A longer rocking than `ROCKS_ON` is computed hop by hop.
+const ROCKS_LONG: f64 = 3.0;
+const ROCKS_ON: f64 = 1e-9;
+/// The slip with which both rims begin to slip together.
+const NUDGED: f64 = 1e-12;
+/// Number of directions at which the growth of a slip is evaluated.
+const DIRECTIONS: usize = 240;
+/// A growth rate of the speed below this counts as zero.
+const SLIPS_FASTER: f64 = 1e-11;
+
+impl<const N: usize> BodyWalk<'_, N> {
+    /// The laws of the body on both rims; None for a rolling contact, with which the body cannot turn.
+    fn flat(&self) -> Option<LyingFlow> {
+        let friction = match self.ask.table {
+            Table::Rubs(friction) => friction,
+            Table::Rolling { mu } if self.at[2] == 0.0 && self.at[5] == 0.0 && self.at[6] == 0.0 => {
+                Friction::coulomb(mu.min(1e100))
+            }
+            _ => return None,
+        };
+        let law = Lying::on(&self.of.body, &friction, &self.ask.losses);
+        let fixed = match friction {
+            Friction::Coulomb { fixed, .. } => fixed,
+            Friction::Viscous { .. } => 0.0,
+        };
+        Some(LyingFlow::new(law, fixed, (self.of.slide.over(), self.of.slide.tol)))
+    }
+
+    /// The phase of a body at theta = pi/2 with w2 = 0: on both rims, or on one of them that rises.
+    ///
+    /// The state on both rims is seen from the first one, whatever came before.
+    #[inline(never)]
+    pub(crate) fn settles_on_side(&mut self) -> Next {
+        if self.made.path.upside_down {
+            self.turns_over();
+        }
+        (self.at[0], self.at[1], self.at[3]) = (1.0, 0.0, 0.0);
+        self.of.state = State { theta: FRAC_PI_2, w2: 0.0, ..self.of.state };
+        let Some(mut flow) = self.flat() else { return Next::Ends(Ending::Side) };
+        let ell = self.of.body.ell();
+        let [w1, w3, u_h, u_2] = [self.at[2], self.at[4], self.at[5], self.at[6]];
+        let other = u_2 - 2.0 * ell * w1;
+        let size =
+            STILL_SLIP * [w1 * ell, w3, u_h, u_2].into_iter().fold(1.0, |most: f64, x| most.max(x.abs()));
+        let still = [u_2, other].map(|across| flow.law.dry && u_h.hypot(across) <= size);
+        for (sticks, across) in still.into_iter().zip([u_2, other]) {
+            if sticks {
+                self.claims(u_h.hypot(across));
+            }
+        }
+        match still {
+            [true, true] => {
+                (self.at[2], self.at[5], self.at[6]) = (0.0, 0.0, 0.0);
+                self.sets_state();
+                self.begins_stance(flow, Stance::Rolls)
+            }
+            [false, false] => {
+                let [here, there] = self.normals(&mut flow);
+                let mu = flow.law.strength;
+                let room = if flow.law.dry {
+                    ell + ell + mu * (u_h / u_h.hypot(other) - u_h / u_h.hypot(u_2))
+                } else {
+                    1.0
+                };
+                match (here >= 0.0, there >= 0.0) {
+                    (true, true) if room > 0.0 => self.begins_stance(flow, Stance::Slips),
+                    (true, true) => Next::Ends(Ending::Painleve),
+                    (carries, _) => self.rises_on(carries == (room > 0.0)),
+                }
+            }
+            [here, _] => {
+                (self.at[5], self.at[6]) = (0.0, if here { 0.0 } else { 2.0 * ell * w1 });
+                self.sets_state();
+                self.rests_on_one(flow, !here)
+            }
+        }
+    }
+
+    fn sets_state(&mut self) {
+        self.of.state = State { w1: self.at[2], w3: self.at[4], ..self.of.state };
+    }
+
+    /// The normal forces of both rims while both slip, with the signs of the dry losses set.
+    fn normals(&self, flow: &mut LyingFlow) -> [f64; 2] {
+        self.sets_ways(flow);
+        let [here, there] = flow.lain(&self.at).force;
+        [here[0], there[0]]
+    }
+
+    /// Sets the signs of the motions that dry losses resist, and which of them they hold.
+    fn sets_ways(&self, flow: &mut LyingFlow) {
+        let moving = [self.at[2], self.at[4]];
+        let way = |x: f64| if x == 0.0 { 0.0 } else { x.signum() };
+        flow.ways = moving.map(way);
+        let rolls = flow.stance == Stance::Rolls;
+        flow.holds([0, 1].map(|i| moving[i] == 0.0 && flow.limits[i] > 0.0 && !(i == 0 && rolls)));
+        let needs = flow.lain(&self.at).couple;
+        let held = flow.law.held;
+        for i in 0..2 {
+            if held[i] && needs[i].abs() > flow.limits[i] * (1.0 + GRACE) {
+                flow.ways[i] = -needs[i].signum();
+            }
+        }
+        flow.holds([0, 1].map(|i| held[i] && flow.ways[i] == 0.0));
+    }
+
+    /// Begins a phase on both rims.
+    fn begins_stance(&mut self, mut flow: LyingFlow, stance: Stance) -> Next {
+        (flow.stance, flow.turn) = (stance, self.at[2].signum());
+        self.sets_ways(&mut flow);
+        let law = &flow.law;
+        if stance == Stance::Rolls {
+            let slows = flow.lain(&self.at).w[1];
+            if slows.abs() > flow.fixed * (1.0 + GRACE) {
+                // Both rims slip across, since friction cannot slow the body as much as the losses do.
+                self.at[6] = -slows.signum() * NUDGED;
+                return self.begins_stance(flow, Stance::Slips);
+            }
+        }
+        if stance == Stance::Rolls && self.at[4] == 0.0 && law.held[1] {
+            while self.until().is_some_and(|t| t <= self.at[TIME]) {
+                self.writes_lying(&flow, &{ self.at });
+            }
+            return Next::Ends(Ending::Stops);
+        }
+        self.of.lying = Some(Box::new(LyingPhase { flow }));
+        Next::Own(stance.kind())
+    }
+
+    /// The phase in which one rim alone carries the body: the rim from which the state is seen if `here`.
+    fn rises_on(&mut self, here: bool) -> Next {
+        if !here {
+            self.turns_over();
+        }
+        (self.at[0], self.at[1], self.at[3]) = (1.0, 0.0, 0.0);
+        self.of.state.w2 = 0.0;
+        let slip = [self.at[5], self.at[6]];
+        if slip == [0.0; 2] && self.of.slide.law.dry {
+            return after_rest(Phases::rests(self));
+        }
+        // The friction of one rim alone may press it into the table: an impact stops the slip or raises the other rim.
+        match self.of.slide.at_start(&self.of.state, slip) {
+            Some(Halt::Jam) => Next::Ends(Ending::Painleve),
+            _ => Next::Slips,
+        }
+    }
+
+    /// The phase in which one rim rests, if a rocking that has begun at theta = pi/2 ends in it so soon that it is
+    /// summed.
+    #[inline(never)]
+    pub(crate) fn rocks_to_pivot(&mut self) -> Option<Next> {
+        let mut flow = self.flat()?;
+        let (ell, mu) = (self.of.body.ell(), flow.law.strength);
+        let [w1, w2, u_h, u_2] = [2, 3, 5, 6].map(|i| self.at[i]);
+        let speeds = [u_2, u_2 - 2.0 * ell * w1].map(|across| u_h.hypot(across));
+        let other = speeds[1] < speeds[0];
+        let [slow, fast] = if other { [speeds[1], speeds[0]] } else { speeds };
+        let slow = slow + w2.abs();
+        if !flow.law.dry || !(slow < ROCKS_BESIDE * fast && slow < ROCKS_ON) {
+            return None;
+        }
+        let (begin, state) = (self.at, self.of.state);
+        let after = pivoted(&self.of.body, &State { w2, ..state }, [u_h, u_2], mu, other);
+        let slips = if other { 2.0 * ell * after.w1 } else { 0.0 };
+        (self.at[2], self.at[3], self.at[4], self.at[5], self.at[6]) = (after.w1, 0.0, after.w3, 0.0, slips);
+        flow.stance = Stance::Pivots { other };
+        flow.turn = after.w1.signum();
+        self.sets_ways(&mut flow);
+        let Lain { force, .. } = flow.lain(&self.at);
+        let [n, across, along] = force[usize::from(other)];
+        let least = force[0][0].min(force[1][0]);
+        // A rim that is only just held, or presses little, takes longer to come to rest.
+        let lasts =
+            ROCKS_LONG * slow * (1.0 / mu + 1.0 / ell) / (least * (1.0 - across.hypot(along) / (mu * n)));
+        let held = flow.law.held != [false; 2] || after.w1 * w1 <= 0.0;
+        if held || least <= 0.0 || !(0.0..ROCKS_ON).contains(&lasts) {
+            self.at = begin;
+            return None;
+        }
+        self.claims(lasts);
+        self.sets_state();
+        let energy = |y: &[f64; N]| self.of.slide.energy(y);
+        let lost = energy(&begin) - energy(&self.at);
+        self.claims(-lost);
+        self.at[8] += lost;
+        Some(self.settles_on_side())
+    }
+
+    /// The phase of a body with one rim at rest while the other slips; the other rim is at rest if `other`.
+    #[inline(never)]
+    fn rests_on_one(&mut self, mut flow: LyingFlow, other: bool) -> Next {
+        let ways = flow.ways;
+        flow.stance = Stance::Pivots { other };
+        flow.turn = self.at[2].signum();
+        self.sets_ways(&mut flow);
+        let at = flow.lain(&self.at);
+        let [n, across, along] = at.force[usize::from(other)];
+        let presses = at.force.iter().all(|force| force[0] >= 0.0);
+        if presses && across.hypot(along) <= flow.fixed * n * (1.0 + GRACE) {
+            return self.begins_stance(flow, Stance::Pivots { other });
+        }
+        flow.ways = ways;
+        // The rim at rest, or the other one, carries the body alone.
+        let seen = |view: bool| {
+            let slip = [self.at[5], self.at[6]];
+            if view { mirrored(&self.of.body, &self.of.state, slip) } else { (self.of.state, slip) }
+        };
+        let (state, _) = seen(other);
+        let friction = self.friction();
+        let found = standstill(&self.of.body, &state, &friction, &self.ask.losses);
+        let alone = matches!(found, Standstill::Sticks | Standstill::Slips { .. });
+        if alone && self.lifts(&state, found) {
+            if other {
+                self.turns_over();
+            }
+            self.at[3] = 0.0;
+            return after_rest(found);
+        }
+        let (state, slip) = seen(!other);
+        let law = &self.of.slide.law;
+        let (one, _) = law.at((1.0, 0.0), [state.w1, 0.0, state.w3], slip);
+        if one.room > 0.0 && one.force[0] > 0.0 && one.w[1] > 0.0 {
+            return self.rises_on(other);
+        }
+        self.slips_off_two(flow, other, None)
+    }
+
+    /// Whether the other rim rises while this rim, which is at rest, carries the body alone.
+    fn lifts(&self, state: &State, found: Standstill) -> bool {
+        let law = &self.of.slide.law;
+        let w = [state.w1, 0.0, state.w3];
+        match found {
+            Standstill::Slips { alpha, .. } => {
+                law.towards((1.0, 0.0), w, [0.0; 2], towards(alpha)).w[1] > 0.0
+            }
+            _ => {
+                let ell = self.of.body.ell();
+                let (i3, w1, w3) = (self.of.body.i3(), state.w1, state.w3);
+                w1 * ((1.0 + i3) * w3 - ell * w1) > ell
+            }
+        }
+    }
+
+    /// A slip of the rim at rest, from which the state is seen from now on, while the other rim slips as well.
+    /// `against` is the direction of a slip that begins continuously.
+    #[inline(never)]
+    fn slips_off_two(&mut self, mut flow: LyingFlow, other: bool, against: Option<f64>) -> Next {
+        if other {
+            self.turns_over();
+        }
+        (self.at[5], self.at[6]) = (0.0, 0.0);
+        flow.stance = Stance::Slips;
+        let y = [self.at[2], self.at[4], 0.0, 0.0];
+        let mu = flow.law.strength;
+        let up = flow.law.drag(flow.law.other_slip(y));
+        let way = |x: f64| if x == 0.0 { 0.0 } else { x.signum() };
+        flow.ways = [way(y[0]), way(y[1])];
+        flow.holds([false; 2]);
+        let ways = flow.ways;
+        // f and lambda; f is multiplied by the factor of the normal forces, so that it has no poles.
+        let turns = |alpha: f64| {
+            let [cos, sin] = towards(alpha);
+            let at = flow.law.slipping_along(y, [[mu * cos, mu * sin], up], ways);
+            let room = 2.0 * flow.law.shape.rim.ell + up[0] - mu * cos;
+            let sound = at.force.iter().all(|force| force[0] >= 0.0);
+            (room * (cos * at.u[1] - sin * at.u[0]), cos * at.u[0] + sin * at.u[1], sound)
+        };
+        let found = against.map(|alpha| (alpha, 0.0)).or_else(|| {
+            let place = |k: usize| -PI + 1e-3 + core::f64::consts::TAU * k as f64 / DIRECTIONS as f64;
+            let all = (0..DIRECTIONS).filter_map(|k| {
+                let (low, high) = (place(k), place(k + 1));
+                let (a, b) = (turns(low).0, turns(high).0);
+                (a.signum() != b.signum()).then(|| crossing(|alpha| turns(alpha).0, low, high, a, b))
+            });
+            let grows = all
+                .map(|alpha| (alpha, turns(alpha)))
+                .filter(|(_, (_, growth, sound))| *sound && *growth > SLIPS_FASTER);
+            grows.map(|(alpha, (_, growth, _))| (alpha, growth)).max_by(|a, b| a.1.total_cmp(&b.1))
+        });
+        let Some((alpha, growth)) = found else { return Next::Ends(Ending::Painleve) };
+        self.of.lying = Some(Box::new(LyingPhase { flow }));
+        Next::SlipsOff { alpha, growth }
+    }
+
+    /// Computes a phase on both rims, or begins its flow.
+    #[inline(never)]
+    pub(crate) fn lies(&mut self) -> Option<WalkStep<N>> {
+        let flow = self.of.lying.as_ref()?.flow;
+        if flow.stance == Stance::Rolls && self.ask.losses.is_none() {
+            let (begin, began) = (self.at, self.at[TIME]);
+            while let Some(t) = self.until() {
+                let mut y = begin;
+                y[TIME] = t;
+                if poses(N) {
+                    let (sin, cos) = begin[9].sin_cos();
+                    let way = begin[4] * (t - began);
+                    (y[10], y[11], y[12]) = (begin[10] + way, begin[11] - way * sin, begin[12] + way * cos);
+                }
+                self.writes_lying(&flow, &y);
+            }
+            self.of.lying = None;
+            return None;
+        }
+        Some(WalkStep::Flows(self.at))
+    }
+
+    /// Computes the flow of a phase on both rims.
+    #[inline(never)]
+    pub(crate) fn lies_on(
+        &mut self,
+        y: [f64; N],
+        steps: Steps,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Pause<N>, Error> {
+        let Some(flow) = self.of.lying.as_ref().map(|phase| phase.flow) else { return Ok(Pause::No) };
+        let first = self.made.motion.states.len();
+        let (ask, over, made) = (self.ask, self.over(), &mut self.made);
+        let seen = (over.as_ref(), made.path.way);
+        let mut write = |y: &[f64; N]| made.push(row_of(&ask, &flow, seen, y));
+        let flown = flow.run(flow.place(y), steps, &self.since[first..], &mut write, go_on);
+        self.has_spent(flown.spent);
+        // Where a dry loss stops w1 or w3, the acceleration changes at a time as uncertain as that of an end.
+        let stops = matches!(flown.halt, Halt::Drilling | Halt::Contour);
+        let halt = if stops { Halt::Turned } else { flown.halt };
+        self.claims_time_error(halt, flown.steep, &flown.y);
+        if flown.halt == Halt::Pause {
+            return Ok(Pause::Here(flown.y, Some(flown.step)));
+        }
+        Ok(self.stops_lying(flown.y, flown.halt).map_or(Pause::No, |y| Pause::Here(y, None)))
+    }
+
+    /// Ends a phase on both rims at the numbers `y`, and chooses the next one. Returns the numbers from which the same
+    /// phase continues, if it does.
+    #[inline(never)]
+    pub(crate) fn stops_lying(&mut self, y: [f64; N], halt: Halt) -> Option<[f64; N]> {
+        let mut phase = self.of.lying.take()?;
+        self.at = y;
+        (self.at[0], self.at[1], self.at[3]) = (1.0, 0.0, 0.0);
+        self.sets_state();
+        self.made.path.slipping +=
+            if phase.flow.stance == Stance::Slips { y[TIME] - self.began } else { 0.0 };
+        let next = match halt {
+            Halt::Time | Halt::Pause => return None,
+            Halt::Rises | Halt::Changes => {
+                self.rocks_to_pivot().unwrap_or_else(|| self.rises_on(halt == Halt::Rises))
+            }
+            Halt::Slips => {
+                let other = phase.flow.stance == Stance::Pivots { other: true };
+                if phase.flow.stance == Stance::Rolls {
+                    self.begins_stance(phase.flow, Stance::Rolls)
+                } else {
+                    let [_, across, along] = phase.flow.lain(&self.at).force[usize::from(other)];
+                    let way = if other { 1.0 } else { -1.0 };
+                    let against = f64::atan2(way * across, way * along);
+                    let equal = matches!(self.friction(), Friction::Coulomb { mu, fixed, .. } if mu == fixed);
+                    self.slips_off_two(phase.flow, other, equal.then_some(against))
+                }
+            }
+            Halt::Drilling | Halt::Contour => {
+                if self.turns_too_often() {
+                    return None;
+                }
+                let i = usize::from(halt == Halt::Contour);
+                let which = [2, 4][i];
+                if phase.flow.law.held[i] {
+                    // The push exceeds the limit: the motion begins against the couple that has held it.
+                    let needs = phase.flow.lain(&self.at).couple[i];
+                    phase.flow.ways[i] = -needs.signum();
+                    let mut held = phase.flow.law.held;
+                    held[i] = false;
+                    phase.flow.holds(held);
+                } else {
+                    self.at[which] = 0.0;
+                    self.sets_state();
+                    self.sets_ways(&mut phase.flow);
+                }
+                let rests = phase.flow.stance == Stance::Rolls && phase.flow.law.held[1];
+                if !rests {
+                    self.of.lying = Some(phase);
+                    return Some(self.at);
+                }
+                Next::Ends(Ending::Stops)
+            }
+            Halt::Turned => {
+                (self.at[2], self.at[5], self.at[6]) = (0.0, 0.0, 0.0);
+                self.settles_on_side()
+            }
+            Halt::Standstill | Halt::OtherStandstill => self.settles_on_side(),
+            halt => Next::Ends(ending(halt)),
+        };
+        self.continues_with(next);
+        None
+    }
+
+    /// A phase of this kind that begins at the current numbers; a body on both rims is seen from the first rim.
+    pub(crate) fn told(&self, kind: Kind) -> Phase {
+        let (y, slip, over) = (self.of.state, [self.at[5], self.at[6]], self.made.path.upside_down);
+        let lies = self.of.lying.is_some();
+        let (state, slip) = if over && lies { mirrored(&self.of.body, &y, slip) } else { (y, slip) };
+        let flies = kind == Kind::Flying;
+        let aloft = if flies { [self.of.takeoff.height, self.of.takeoff.lift] } else { [0.0; 2] };
+        let (time, rim) = (self.t0 + self.at[TIME], u8::from(over && !lies));
+        Phase { time, kind, state, slip, aloft, rim }
+    }
+
+    /// Writes a body on both rims to the outputs.
+    pub(crate) fn writes_lying(&mut self, flow: &LyingFlow, y: &[f64; N]) {
+        let row = row_of(&self.ask, flow, (self.over().as_ref(), self.made.path.way), y);
+        self.made.push(row);
+    }
+
+    /// The current numbers, if they are seen from the other rim.
+    fn over(&self) -> Option<Aloft> {
+        self.made.path.upside_down.then(|| self.aloft())
+    }
+
+    /// The kind of a slip from rest; for a body that lies, the kind with both rims slipping.
+    pub(crate) fn kind_of_slip(&self) -> Kind {
+        if self.of.lying.is_some() { Kind::Lying } else { Kind::Slipping }
+    }
+}
+
+/// The outputs of a body on both rims, as seen from the first rim; `over` are numbers of the same phase if these and `y`
+/// are seen from the other rim. A rim whose slip just begins slips along `way`.
+fn row_of<const N: usize>(
+    ask: &Ask,
+    flow: &LyingFlow,
+    (over, way): (Option<&Aloft>, [f64; 2]),
+    y: &[f64; N],
+) -> OutputRow<State> {
+    let mut slips = [[y[5], y[6]], flow.law.other_slip([y[2], y[4], y[5], y[6]])];
+    let (mut forces, mut w3, mut seen) = (flow.lain_along(y, way).force, y[4], *y);
+    if let Some(over) = over {
+        let back = |x: f64| 0.0 - x;
+        slips = [slips[1].map(back), slips[0].map(back)];
+        let turned = |[n, across, along]: [f64; 3]| [n, back(across), back(along)];
+        (forces, w3) = ([turned(forces[1]), turned(forces[0])], back(w3));
+        if poses(N) {
+            let pose = core::array::from_fn(|i| y[9 + i]);
+            seen[9..13].copy_from_slice(&pose_from(over, &flow.law.shape, true, pose));
+        }
+    }
+    let force = |[normal, along, across]: [f64; 3]| Force { normal, along, across };
+    let doubt = flow.tol * (1.0 + y[2].abs().max(y[4].abs()));
+    let ([u, v], [normal, across, along]) = (slips[1], forces[1]);
+    let state = State { theta: FRAC_PI_2, w1: y[2], w2: 0.0, w3 };
+    OutputRow {
+        pose: poses(N).then(|| write::pose(&seen)),
+        force: ask.force.then(|| (force(forces[0]), doubt)),
+        other_rim: Some([u, v, normal, across, along]),
+        ..OutputRow::on_table(state, slips[0], [y[8], lost(y)], flow.stance.kind())
+    }
+}

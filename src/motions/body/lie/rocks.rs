@@ -1,0 +1,99 @@
+//! Rocking from rim to rim without a bounce: infinitely many hops in a finite time, of which the last ones are summed.
+//!
+//! ```text
+//! a hop lasts 2 w/gamma, gamma = -w2' on one rim at theta = pi/2;   a landing turns w into r w
+//! the rest = the change in one cycle of two hops and two landings, over 1 - r r'
+//! ```
+//! The model is the block of Housner, Bull. Seismol. Soc. Am. 53, 403 (1963). Error: the square of the time that is
+//! summed, and that time, times the angle by which a slow slip turns.
+
+use crate::laws::contact::landing::{Outcome, land_at};
+use crate::laws::contact::{Contact, lossy};
+use crate::laws::state::State;
+use crate::motions::body::phases::BodyWalk;
+use crate::motions::walk::numbers::{TIME, loses, poses};
+use core::f64::consts::FRAC_PI_2;
+
+/// The longest time that is summed, over the time in which the body turns by a radian.
+const SOON_OVER: f64 = 1e-6;
+/// A rocking beside a slow slip is summed only if the slip turns by less than this angle in that time. Dry friction turns
+/// it at a rate of up to this many times mu over its speed.
+const TURNED: f64 = 1e-2;
+const TURNS_SLIP: f64 = 3.0;
+
+impl<const N: usize> BodyWalk<'_, N> {
+    /// The numbers at the end of a rocking that has just begun another hop at theta = pi/2; None if the end is not
+    /// near.
+    pub(crate) fn rocks_out(&mut self) -> Option<([f64; N], f64)> {
+        let (begin, state, takeoff) = (self.at, self.of.state, self.of.takeoff);
+        let upside_down = self.made.path.upside_down;
+        let found = self.cycle(&begin);
+        (self.at, self.of.state, self.of.takeoff) = (begin, state, takeoff);
+        self.made.path.upside_down = upside_down;
+        found
+    }
+
+    #[inline(never)]
+    fn cycle(&mut self, begin: &[f64; N]) -> Option<([f64; N], f64)> {
+        let mut slowest = f64::INFINITY;
+        for _ in 0..2 {
+            let y = State { theta: FRAC_PI_2, w2: 0.0, ..self.of.state };
+            let (slip, rises) = ([self.at[5], self.at[6]], self.at[3]);
+            let law = &self.of.slide.law;
+            let sticks = law.dry && slip[0].hypot(slip[1]) <= self.of.slide.over();
+            let w = [y.w1, 0.0, y.w3];
+            if law.dry && !sticks {
+                slowest = slowest.min(slip[0].hypot(slip[1]));
+            }
+            let (rate, drift, warms, taken) = if sticks {
+                let (dy, taken) = lossy::derivative(Contact::Rolling, &self.of.body, &y, &self.ask.losses);
+                ([dy.w1, dy.w2, dy.w3], [0.0; 2], 0.0, taken)
+            } else {
+                let at = law.at((1.0, 0.0), w, slip).0;
+                (
+                    at.w,
+                    at.u,
+                    -(at.force[1] * slip[1] + at.force[2] * slip[0]),
+                    law.power((1.0, 0.0), w, at.force[0]),
+                )
+            };
+            if rate[1] >= 0.0 {
+                return None;
+            }
+            let lasts = 2.0 * rises / -rate[1];
+            for (i, rate) in
+                [(2, rate[0]), (4, rate[2]), (5, drift[0]), (6, drift[1]), (TIME, 1.0), (8, warms)]
+            {
+                self.at[i] += lasts * rate;
+            }
+            if loses(N) {
+                self.at[N - 1] += lasts * taken;
+            }
+            if poses(N) {
+                let (sin, cos) = self.at[9].sin_cos();
+                let (out, on) = (slip[0], slip[1] + y.w3);
+                for (i, rate) in
+                    [(9, y.w1), (10, y.w3), (11, out * cos - on * sin), (12, out * sin + on * cos)]
+                {
+                    self.at[i] += lasts * rate;
+                }
+            }
+            self.at[3] = -rises;
+            let before = State { theta: FRAC_PI_2, w1: self.at[2], w2: -rises, w3: self.at[4] };
+            let slip = [self.at[5], self.at[6]];
+            let landed = land_at(&self.of.body, &before, (slip, 0.0), &self.friction()).ok()?;
+            if landed.outcome != Outcome::Changes {
+                return None;
+            }
+            self.lands_as(&landed);
+            self.at[8] += landed.lost;
+        }
+        let share = 1.0 - self.at[3] / begin[3];
+        let mut end: [f64; N] = core::array::from_fn(|i| begin[i] + (self.at[i] - begin[i]) / share);
+        (end[0], end[1], end[3]) = (1.0, 0.0, 0.0);
+        let fastest = [2, 4, 5, 6].into_iter().fold(1.0, |most: f64, i| most.max(begin[i].abs()));
+        let left = end[TIME] - begin[TIME];
+        let turns = left * (fastest + self.of.slide.law.strength * TURNS_SLIP / slowest);
+        (share > 0.0 && left * fastest < SOON_OVER && turns < TURNED).then_some((end, left * turns))
+    }
+}

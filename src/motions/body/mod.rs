@@ -1,0 +1,140 @@
+//! The path of a body under friction, through phases of slipping and of rolling.
+//!
+//! ```text
+//! slip    until u = 0: then it rolls if |F_roll| <= mu_s N, else it slips in another direction
+//! roll    until |F_roll| = mu_s N: then it slips
+//! both    until N = 0, or a face or the other rim lands: the end
+//! ```
+//! A slipping phase is integrated (`body::slide`). A rolling phase without losses is the exact solution, so that its
+//! cost does not depend on its length. Where no contact force, or more than one, obeys the law of friction (Painleve),
+//! an initial state is an error and a motion ends.
+//!
+//! Error: the path is computed twice, the second time with a tolerance up to ten thousand times as large, in about a
+//! third of the time. The estimated error is thirty times the difference of the two paths, scaled by the ratio of the
+//! tolerances.
+
+pub(crate) mod face;
+pub(crate) mod fly;
+pub(crate) mod lie;
+mod phases;
+pub(crate) mod pole;
+pub(crate) mod roll;
+pub(crate) mod slide;
+pub(crate) mod spun;
+mod strike;
+mod tail;
+mod uniform;
+pub(crate) mod write;
+
+use super::{Ask, Motion, Start};
+pub use super::{Hit, Kind, Path, Phase, Strike};
+use crate::error::{Error, within};
+use crate::laws::body::Body;
+use crate::methods::SHORT_CODE;
+pub use crate::motions::ask::FINE;
+use crate::motions::ask::{check_flow, check_patch, check_times_after};
+use crate::motions::exact;
+use crate::motions::walk::two_runs::{Followed, judged};
+pub(crate) use phases::BodyWalk;
+
+/// The motion of a body that slips or loses energy, for [`roll_with`](crate::motions::motion::roll_with).
+/// A web page that needs no other motion calls this function directly, so that its program contains no other code. A
+/// motion that is too much work, or whose equations lose their digits on the way, ends there with
+/// [`Ending::Bounded`](crate::motions::Ending::Bounded) and the [`Limit`](crate::motions::Limit) that it has reached; so does a motion
+/// that `go_on` interrupts. Error: `Lost` where the equations have lost their digits at the start.
+pub fn follow(
+    body: &Body,
+    start: &Start,
+    times: &[f64],
+    ask: &Ask,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<Motion, Error> {
+    let fine = check(body, start, ask)?;
+    check_times_after(start.time, times)?;
+    let mut run = |tol: f64, times: &[f64]| walked((body, start), ask, (tol, false), times, go_on);
+    if !SHORT_CODE && spun::knows(body, ask) {
+        let mut found = run(fine, times)?;
+        found.knows_itself(fine);
+        return Ok(found.into());
+    }
+    Ok(judged(fine, times, run)?.into())
+}
+
+/// One run of a body's walk, with the tolerance `tol` of its steps. Its numbers include a pose and the lost energy only
+/// if `ask` needs them. With `integrates` a phase without a slip is integrated although no energy is lost.
+pub(crate) fn walked(
+    (body, start): (&Body, &Start),
+    ask: &Ask,
+    (tol, integrates): (f64, bool),
+    times: &[f64],
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<Followed, Error> {
+    // `SHORT_CODE` compiles one kind of walk only, with the pose and the lost energy.
+    let loses = !ask.losses.is_none() || ask.table.friction().patch() > 0.0;
+    match (SHORT_CODE || ask.pose, !SHORT_CODE && !loses) {
+        (true, true) => walk::<13>((body, start), ask, (tol, integrates), times)?.run(go_on),
+        (true, false) => walk::<14>((body, start), ask, (tol, integrates), times)?.run(go_on),
+        (false, true) => walk::<9>((body, start), ask, (tol, integrates), times)?.run(go_on),
+        (false, false) => walk::<10>((body, start), ask, (tol, integrates), times)?.run(go_on),
+    }
+}
+
+/// A walk from its initial state, on the heap, since the walk runs on threads with a small stack.
+#[inline(never)]
+fn walk<'a, const N: usize>(
+    (body, start): (&Body, &Start),
+    ask: &Ask,
+    (tol, integrates): (f64, bool),
+    times: &'a [f64],
+) -> Result<Box<BodyWalk<'a, N>>, Error> {
+    let mut walk = Box::new(BodyWalk::of_body(body, ask, tol, times, start)?);
+    walk.of.integrates |= integrates;
+    walk.of.uniform &= !integrates;
+    Ok(walk)
+}
+
+/// Returns the tolerance of the steps, or an error for a body, an initial state or options out of range.
+fn check(body: &Body, start: &Start, ask: &Ask) -> Result<f64, Error> {
+    match start.aloft {
+        Some([height, _]) if height > 0.0 => exact::check_in_air(body, &start.state)?,
+        _ => exact::check(body, &start.state)?,
+    }
+    ask.table.check()?;
+    ask.losses.check_for(body)?;
+    check_patch(ask)?;
+    let fine = check_flow(ask)?;
+    for (name, u) in ["slip along the lean", "slip across"].into_iter().zip(start.slip) {
+        within(name, u, (-1e6, 1e6), "at most 1e6 sqrt(g R) for a motion")?;
+    }
+    if let Some([height, lift]) = start.aloft {
+        within("height", height, (0.0, 1e6), "0 to 1e6 R")?;
+        within("lift", lift, (-1e6, 1e6), "at most 1e6 sqrt(g R)")?;
+        if ask.restitution.is_none() {
+            let expected = "None without a restitution, which a motion that starts in the air needs";
+            return Err(Error::OutOfRange { name: "height", value: height, expected });
+        }
+        if !body.lands_on_rims() {
+            let expected = "none for a body of which another part than a rim may land: its shape is unknown";
+            return Err(Error::OutOfRange { name: "theta_end", value: body.theta_end(), expected });
+        }
+        if body.ell() > 0.0 && body.theta_end() == core::f64::consts::FRAC_PI_2 {
+            let other = height + body.shape().rim.between(start.state.theta.sin_cos());
+            within(
+                "height",
+                if other < -1e-15 { -height } else { height },
+                (0.0, 1e6),
+                "both rims above the table",
+            )?;
+        }
+    }
+    if ask.table.rubs() || start.aloft.is_some() { Ok(fine) } else { without_slip(start.slip).map(|()| fine) }
+}
+
+/// Returns an error for a slip without a law of friction.
+pub(crate) fn without_slip([along, across]: [f64; 2]) -> Result<(), Error> {
+    let value = if along == 0.0 { across } else { along };
+    if value == 0.0 {
+        return Ok(());
+    }
+    Err(Error::OutOfRange { name: "slip", value, expected: "0 without a law of friction" })
+}

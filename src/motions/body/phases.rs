@@ -1,0 +1,514 @@
+//! The phases of a body of revolution: their beginnings, their flows and their ends.
+
+use super::check;
+use super::fly::Takeoff;
+use super::lie::flow::LyingPhase;
+use super::roll::lossy::{LossyFlow, with_patch};
+use super::slide::Slide;
+use super::slide::slow::{BodySlips, Slippery};
+use super::spun::{Roundings, knows};
+use super::tail::LastTurns;
+use super::write::{self, state};
+use crate::error::Error;
+use crate::laws::body::Body;
+use crate::laws::contact::slip::{Friction, centre_velocity, painleve};
+use crate::laws::contact::standstill::{Standstill, let_go, standstill, towards};
+use crate::laws::contact::{Contact, Force, Table, force, lossy};
+use crate::laws::loss::{Holds, Losses};
+use crate::laws::state::State;
+use crate::methods::flow::{Flow, FlowPlace, Steps};
+use crate::motions::ask::row::OutputRow;
+use crate::motions::walk::errors::doubted;
+use crate::motions::walk::numbers::{Halt, loses, lost, poses};
+use crate::motions::walk::slow::clear_until;
+use crate::motions::walk::two_runs::CHANCE;
+use crate::motions::walk::{Next, Pause, Phases, STILL, SlowSeries, Walk, WalkStep};
+use crate::motions::{Ask, Ending, Kind, Phase, Start};
+use core::f64::consts::{FRAC_PI_2, PI};
+
+/// The walk of a body of revolution.
+pub(crate) type BodyWalk<'a, const N: usize> = Walk<'a, BodyPhases, N>;
+
+/// Sine of theta below which a falling face counts as landed if slipping and sticking alternate without an advance of
+/// time.
+const ALL_BUT_FLAT: f64 = 1e-6;
+/// The first step of a rougher run is this many times as long as that of the finer run, so that
+/// their steps differ.
+pub(crate) const LONGER: f64 = 3.0;
+
+/// Size of cos theta below which a rougher run perturbs this number and not theta.
+const LEVEL: f64 = 1e-3;
+
+/// The data of a body's walk: its equations, and the current phase.
+pub(crate) struct BodyPhases {
+    pub body: Body,
+    pub slide: Slide,
+    /// The state where the current phase begins or has ended, and the initial state.
+    pub(crate) state: State,
+    pub(crate) start: State,
+    /// Whether a phase without a slip is integrated; otherwise the first integrals solve it, as long as no energy is
+    /// lost.
+    pub(crate) integrates: bool,
+    /// Whether the last phase of rolling by the first integrals was brief, and whether the current one, without losses, is
+    /// integrated.
+    pub(crate) rolls_briefly: bool,
+    pub(crate) by_steps: bool,
+    /// Whether the body is a uniform ball, whose phases are known; and their errors.
+    pub(crate) uniform: bool,
+    pub(crate) roundings: Roundings,
+    /// Whether the caller computes the phases of rolling that the first integrals solve, among those of other walks.
+    #[cfg(feature = "many")]
+    pub(crate) rolls_among: bool,
+    /// The losses of a body that does not slip, with the drilling friction of a patch of contact.
+    pub(crate) rolling_losses: Losses,
+    /// The current phase, if it loses energy without a slip.
+    pub(crate) lossy: Option<LossyPhase>,
+    /// The current phase, if the body lies on both rims.
+    pub(crate) lying: Option<Box<LyingPhase>>,
+    /// The beginning of the next flight, or the height and the vertical velocity of a body in the air.
+    pub(crate) takeoff: Takeoff,
+    /// The energy that the impacts before the last one have taken, and the sum of energy, heat and all that was lost
+    /// at the start.
+    pub(crate) struck: f64,
+    pub(crate) energy: Option<f64>,
+    /// The step errors by which a rougher run has been perturbed.
+    pub(crate) shown: f64,
+    /// Whether only theta changes, so that rounding must not make the body turn.
+    pub(crate) planar: bool,
+    /// Estimates of the end of a slipping whirr; None if the losses do not let a whirr last for infinitely many turns.
+    pub(crate) tail: Option<LastTurns>,
+}
+
+/// A phase that loses energy without a slip.
+#[derive(Clone, Copy)]
+pub(crate) struct LossyPhase {
+    pub(crate) flow: LossyFlow,
+}
+
+impl<'a, const N: usize> BodyWalk<'a, N> {
+    /// A walk from its initial state, with steps of the tolerance `tol`, which is the requested tolerance or a larger
+    /// one.
+    pub fn of_body(body: &Body, ask: &Ask, tol: f64, times: &'a [f64], start: &Start) -> Result<Self, Error> {
+        let fine = check(body, start, ask)?;
+        let &Start { state: start, mut slip, time, aloft } = start;
+        let mut ask = *ask;
+        if ask.table == Table::Smooth && ask.restitution.is_some() {
+            // On a smooth table the centre is at rest until an impact; then the body slips without friction.
+            ask.table = Friction::coulomb(0.0).into();
+            if aloft.is_none() {
+                let [v_h, v_2] = centre_velocity(body, &start, [0.0; 2]);
+                slip = [0.0 - v_h, 0.0 - v_2];
+            }
+        }
+        let ask = &ask;
+        let (s, c) = start.theta.sin_cos();
+        let mut at = [0.0; N];
+        at[..7].copy_from_slice(&[s, c, start.w1, start.w2, start.w3, slip[0], slip[1]]);
+        let rolling_losses = with_patch(&ask.losses, &ask.table.friction());
+        let of = BodyPhases {
+            body: *body,
+            slide: Slide::new(body, &ask.table.friction(), &ask.losses, tol),
+            state: start,
+            start,
+            integrates: ask.table == Table::Smooth || !rolling_losses.is_none(),
+            rolls_briefly: false,
+            by_steps: false,
+            uniform: !poses(N) && knows(body, ask),
+            roundings: Roundings::default(),
+            #[cfg(feature = "many")]
+            rolls_among: false,
+            rolling_losses,
+            lossy: None,
+            lying: None,
+            takeoff: Takeoff::default(),
+            struck: 0.0,
+            energy: None,
+            shown: 0.0,
+            planar: start.w1 == 0.0 && start.w3 == 0.0 && slip[1] == 0.0,
+            tail: (!body.is_ball() && ask.losses.turn_endlessly()).then(LastTurns::default),
+        };
+        let mut walk = Self::new(of, at, ask, fine, (time, times))?;
+        walk.next = Some(match aloft {
+            Some(aloft) => walk.starts_in_air(aloft),
+            None => walk.first_phase()?,
+        });
+        if start.theta < body.theta_end() {
+            BodyPhases::perturbs(&mut walk);
+        }
+        Ok(walk)
+    }
+
+    /// The flow of the current phase, if the body loses energy without a slip.
+    pub fn lossy(&self) -> Option<&LossyFlow> {
+        self.of.lossy.as_ref().map(|phase| &phase.flow)
+    }
+
+    pub fn contact(&self) -> Contact {
+        self.ask.table.contact()
+    }
+
+    /// All numbers of a flow of which a lane has computed only the first ones. The missing energy has become heat, or
+    /// is lost to the losses.
+    pub fn followed(&self, from: &[f64; N], y: [f64; N]) -> [f64; N] {
+        let mut all = y;
+        all[8..].copy_from_slice(&from[8..]);
+        match self.lossy() {
+            Some(flow) => {
+                let energy = |y: &[f64; N]| self.contact().energy(&self.of.body, &state(&flow.shown(y)));
+                all[N - 1] += energy(from) - energy(&y);
+            }
+            None => all[8] += self.of.slide.energy(from) - self.of.slide.energy(&y),
+        }
+        all
+    }
+
+    /// Moves the walk to the numbers at which a flow has halted. The axis of a ball may have passed the vertical, where
+    /// s is negative: then the ball leans to the other side, so that s, w1, w2 and the slip change their signs.
+    pub(crate) fn arrives(&mut self, at: [f64; N]) {
+        self.at = at;
+        if self.at[0] < 0.0 {
+            [0, 2, 3, 5, 6].into_iter().for_each(|i| self.at[i] = -self.at[i]);
+            if poses(N) {
+                (self.at[9], self.at[10]) = (self.at[9] + PI, self.at[10] - PI);
+            }
+            self.of.slide.leans_over();
+        }
+        self.of.state = state(&self.at);
+    }
+
+    /// Whether the contact point slips.
+    fn slips_here(&self) -> bool {
+        let (slip, slide) = ([self.at[5], self.at[6]], &self.of.slide);
+        self.ask.table.rubs() && (slip != [0.0; 2] || !slide.law.dry || slide.creeps(&self.at))
+    }
+
+    /// The force of the table on a body in the state `y`, with the current slip.
+    pub(crate) fn force_here(&self, y: &State) -> Force {
+        let (body, losses) = (&self.of.body, &self.ask.losses);
+        match self.slips_here() {
+            true => self.of.slide.law.force(y, [self.at[5], self.at[6]]),
+            false if losses.is_none() => force(self.contact(), body, y),
+            false => lossy::force(self.contact(), body, y, losses),
+        }
+    }
+
+    /// Makes motions vanish exactly that have stopped, or that dry friction has held at zero but for the errors of the
+    /// steps.
+    pub(crate) fn stops_exactly(&mut self, stops: Holds) {
+        if stops == Holds::default() {
+            return;
+        }
+        let (s, c) = state(&self.at).theta.sin_cos();
+        let [w1, w2, w3] = [self.at[2], self.at[3], self.at[4]];
+        let (drilling, rolling) = (s * w1 + c * w3, c * w1 - s * w3);
+        let mut left = 0f64;
+        if stops.drilling {
+            (self.at[2], self.at[4]) = (w1 - s * drilling, w3 - c * drilling);
+            left = drilling.abs();
+        }
+        if stops.contour || stops.rolling {
+            (self.at[2], self.at[4]) = (self.at[2] - c * rolling, self.at[4] + s * rolling);
+            left = left.max(rolling.abs());
+        }
+        if stops.rolling {
+            (self.at[3], left) = (0.0, left.max(w2.abs()));
+        }
+        if stops.drilling && (stops.contour || stops.rolling) {
+            (self.at[2], self.at[4]) = (0.0, 0.0);
+        }
+        self.claims(left);
+        self.of.state = state(&self.at);
+    }
+
+    /// Whether a body at theta_end, whose contact point rests, rises under the contact force.
+    fn rises(&self, found: Standstill) -> bool {
+        let y = &self.of.state;
+        let rate = match found {
+            Standstill::Slips { alpha, .. } => {
+                let w = [y.w1, y.w2, y.w3];
+                self.of.slide.law.towards(y.theta.sin_cos(), w, [0.0; 2], towards(alpha)).w[1]
+            }
+            _ if self.ask.losses.is_none() => Contact::Rolling.derivative(&self.of.body, y).w2,
+            _ => lossy::derivative(Contact::Rolling, &self.of.body, y, &self.ask.losses).0.w2,
+        };
+        y.w2 > 0.0 || (y.w2 == 0.0 && rate > 0.0)
+    }
+}
+
+impl BodyPhases {
+    /// Perturbs the state by this share.
+    pub(crate) fn perturbs_by<const N: usize>(walk: &mut BodyWalk<'_, N>, share: f64) {
+        if share == 0.0 || walk.of.lying.is_some() {
+            return;
+        }
+        let (down, up) = (1.0 - share, 1.0 + share);
+        let State { theta, w1, w2, w3 } = walk.of.state;
+        // Drilling w_z, rolling w_h and rocking w2 are each changed by a share of themselves: a motion that is zero
+        // stays zero.
+        let (s, c) = theta.sin_cos();
+        let (drilling, rolling) = ((s * w1 + c * w3) * up, (c * w1 - s * w3) * up);
+        // Near its other rim the height of the body is known from cos theta, not from theta.
+        let near = walk.ask.restitution.is_some() && walk.at[1].abs() < LEVEL;
+        let theta = if near { theta } else { theta * down };
+        let (s, c) = if near { (walk.at[0], walk.at[1] * down) } else { theta.sin_cos() };
+        let (w1, w3) = (s * drilling + c * rolling, c * drilling - s * rolling);
+        walk.of.state = State { theta, w1, w2: w2 * down, w3 };
+        walk.at[..5].copy_from_slice(&[s, c, w1, w2 * down, w3]);
+    }
+}
+
+impl<const N: usize> Phases<N> for BodyPhases {
+    type State = State;
+    type Slow = BodySlips;
+    const SLIP: usize = 5;
+    const HEAT: usize = 8;
+
+    fn tol(&self) -> f64 {
+        self.slide.tol
+    }
+    fn is_dry(&self) -> bool {
+        self.slide.law.dry
+    }
+    fn over(&self) -> f64 {
+        self.slide.over()
+    }
+    fn seen(walk: &BodyWalk<'_, N>, kind: Kind) -> Phase {
+        walk.told(kind)
+    }
+
+    /// A motion that has hopped is also perturbed by a share of the step errors since the last time: impacts multiply
+    /// them, and where both runs take the same steps only this shows by how much.
+    fn perturbs(walk: &mut BodyWalk<'_, N>) {
+        let mut share = walk.perturbation;
+        if share > 0.0 && !walk.made.path.impacts.is_empty() {
+            let erred = walk.spent.erred - core::mem::replace(&mut walk.of.shown, walk.spent.erred);
+            share += CHANCE * erred * walk.of.slide.tol * walk.sign_of_rounding();
+        }
+        BodyPhases::perturbs_by(walk, share);
+    }
+
+    fn write(walk: &mut BodyWalk<'_, N>, y: &[f64; N]) {
+        if let Some(phase) = &walk.of.lying {
+            let flow = phase.flow;
+            return walk.writes_lying(&flow, y);
+        }
+        walk.made.slid(&walk.ask, &walk.of.slide, y);
+    }
+
+    fn write_here(walk: &mut BodyWalk<'_, N>) {
+        let (y, slip, at) = (&walk.of.state, [walk.at[5], walk.at[6]], &walk.at);
+        let kind = if walk.slips_here() { Kind::Slipping } else { walk.kind() };
+        let force = walk.ask.force.then(|| doubted(y, [0.0; 2], |y| walk.force_here(y)));
+        let pose = poses(N).then(|| write::pose(at));
+        let row = OutputRow::on_table(*y, slip, [at[8], lost(at)], kind);
+        walk.made.push(OutputRow { pose, force, ..row });
+    }
+
+    fn ends_slip(walk: &mut BodyWalk<'_, N>) -> Option<Halt> {
+        if walk.is_level() {
+            return Some(Halt::Side);
+        }
+        walk.of.slide.at_start(&walk.of.state, [walk.at[5], walk.at[6]])
+    }
+
+    fn lies(walk: &mut BodyWalk<'_, N>, found: Standstill) -> Option<Ending> {
+        let (end, theta) = (walk.of.body.theta_end(), walk.of.state.theta);
+        let lies = end < PI && (theta > end || theta == end && (walk.is_level() || !walk.rises(found)));
+        lies.then_some(Ending::Side)
+    }
+
+    /// A phase without a slip checks its own margins when it begins.
+    fn begins_without_slip(_: &mut BodyWalk<'_, N>) -> Next {
+        Next::Rolls { at_limit: false }
+    }
+
+    fn rests(walk: &BodyWalk<'_, N>) -> Standstill {
+        let (of, losses) = (&walk.of, &walk.ask.losses);
+        standstill(&of.body, &of.state, &walk.friction(), losses)
+    }
+    fn lets_go(walk: &BodyWalk<'_, N>) -> Standstill {
+        let_go(&walk.of.body, &walk.of.state, &walk.friction(), &walk.ask.losses)
+    }
+
+    fn no_unique_force(walk: &BodyWalk<'_, N>) -> Error {
+        let (mu, theta) = (walk.friction().strength(), walk.of.state.theta);
+        Error::Painleve { mu, theta, limit: painleve(&walk.of.body, theta) }
+    }
+
+    fn audits(walk: &mut BodyWalk<'_, N>) {
+        walk.compares_energy();
+    }
+    fn is_over(walk: &mut BodyWalk<'_, N>, next: &Next) -> bool {
+        let fall = walk.at[1] * walk.at[3];
+        if loses(N) && walk.still > STILL && walk.at[0] < ALL_BUT_FLAT && fall > 0.0 {
+            // Whether the face slips or sticks no longer matters, since it is almost on the table.
+            let left = walk.at[0] / fall;
+            walk.lies_flat([walk.at[7] + left, left]);
+            return true;
+        }
+        if matches!(next, Next::Slips | Next::SlipsOff { .. })
+            && let Some(end) = walk.whirr_ends(&{ walk.at })
+        {
+            walk.made.path.leaves_turns = true;
+            walk.lies_flat(end);
+            return true;
+        }
+        false
+    }
+
+    fn goes_on(walk: &mut BodyWalk<'_, N>, ending: Ending) -> Next {
+        walk.continues_after(ending)
+    }
+    fn goes(
+        walk: &mut BodyWalk<'_, N>,
+        kind: Kind,
+        _: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<WalkStep<N>>, Error> {
+        if kind != Kind::Flying {
+            return Ok(walk.lies());
+        }
+        walk.flies();
+        Ok(None)
+    }
+    fn slip_kind(walk: &BodyWalk<'_, N>) -> Kind {
+        walk.kind_of_slip()
+    }
+
+    fn slips_known(walk: &mut BodyWalk<'_, N>) -> bool {
+        walk.of.slide.died = walk.at[5..7] == [0.0; 2] && walk.of.slide.has_died(&walk.at);
+        match walk.of.slide.law.patch().filter(|_| walk.of.slide.died) {
+            _ if poses(N) => return false,
+            Some(radius) => walk.creeps_uniformly(radius),
+            None if walk.of.uniform => walk.slips_uniformly(),
+            None => return false,
+        }
+        true
+    }
+    fn slips(walk: &mut BodyWalk<'_, N>) -> [f64; N] {
+        walk.of.slide.sets_ways(&walk.of.state, [walk.at[5], walk.at[6]], [0.0; 2], None);
+        Self::slips_on(walk)
+    }
+    fn slips_on(walk: &mut BodyWalk<'_, N>) -> [f64; N] {
+        if walk.of.slide.begins_to_roll().is_some() {
+            return walk.begins_at_once([0.0; 2], 0.0);
+        }
+        walk.of.slide.enter(&walk.at)
+    }
+
+    fn rubbing(walk: &BodyWalk<'_, N>) -> f64 {
+        walk.of.slide.rubs(&walk.at)
+    }
+    fn begins_slowly(walk: &BodyWalk<'_, N>) -> bool {
+        walk.of.slide.law.patch().is_none() && walk.of.slide.begins_to_roll().is_none()
+    }
+
+    fn has_series(walk: &BodyWalk<'_, N>) -> bool {
+        let (of, slide) = (&walk.of, &walk.of.slide);
+        let alone = of.lossy.is_none() && of.lying.is_none();
+        alone && slide.law.dry && !slide.settled && Self::begins_slowly(walk)
+    }
+
+    fn lets_slip(walk: &mut BodyWalk<'_, N>, way: [f64; 2]) {
+        if walk.of.lying.is_none() {
+            walk.of.slide.sets_ways(&walk.of.state, [0.0; 2], way, None);
+        }
+    }
+    fn slow(walk: &BodyWalk<'_, N>) -> BodySlips {
+        let tol = walk.of.slide.tol;
+        match &walk.of.lying {
+            Some(phase) => BodySlips::of(&Slippery::Two(phase.flow.law, phase.flow.ways), tol, N),
+            None => BodySlips::of(&Slippery::One(walk.of.slide.law), tol, N),
+        }
+    }
+
+    fn is_slow(walk: &BodyWalk<'_, N>, known: &BodySlips) -> bool {
+        walk.of.lying.is_none() && known.are_under(&walk.of.slide.law)
+    }
+
+    fn clear_until(walk: &BodyWalk<'_, N>, series: &SlowSeries<N>) -> f64 {
+        if let Some(phase) = &walk.of.lying {
+            return clear_until(series.until, |_, moment| {
+                let place = FlowPlace { y: series.at(moment), carry: [0.0; N], rate: [0.0; N] };
+                phase.flow.margins(&place).map(|margin| margin.value)
+            });
+        }
+        let slide = &walk.of.slide;
+        clear_until(series.until, |t, moment| {
+            let moved = series.at(moment);
+            let place = FlowPlace { y: moved, carry: [0.0; N], rate: [0.0; N] };
+            let mut all = slide.margins(&place).map(|margin| margin.value);
+            // The margins of a face and of the other rim do not depend on the slip, and are those at the time itself.
+            let y = series.at(t);
+            (0..2).filter(|i| slide.watches(*i)).for_each(|i| all[i] = slide.margin(&y, i));
+            // The margin of a jam is proportional to the speed of a dry slip, and that speed may dip.
+            all[3] /= if slide.law.dry { moved[5].hypot(moved[6]) } else { 1.0 };
+            all
+        })
+    }
+
+    fn nudged(walk: &mut BodyWalk<'_, N>, way: [f64; 2], growth: f64) -> [f64; N] {
+        if let Some(phase) = &walk.of.lying {
+            return phase.flow.nudged(&walk.at, way, growth);
+        }
+        let y = walk.of.slide.nudged(&walk.at, way, growth);
+        walk.of.slide.rolls_freely();
+        y
+    }
+
+    fn rolls(
+        walk: &mut BodyWalk<'_, N>,
+        at_limit: bool,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<WalkStep<N>>, Error> {
+        walk.rolls_on(at_limit, go_on)
+    }
+
+    /// The first step of a rougher run is longer. Two runs with the same steps would have the same errors, and their
+    /// difference would not show the growth of these errors from an unstable initial state.
+    fn first(walk: &BodyWalk<'_, N>, y: &[f64; N]) -> f64 {
+        let first = match (&walk.of.lying, walk.lossy()) {
+            (Some(phase), _) => phase.flow.first(y),
+            (_, Some(flow)) => flow.first(y),
+            _ => walk.of.slide.first(y),
+        };
+        if walk.perturbation > 0.0 { LONGER * first } else { first }
+    }
+
+    fn flows(
+        walk: &mut BodyWalk<'_, N>,
+        y: [f64; N],
+        steps: Steps,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Pause<N>, Error> {
+        if walk.of.lying.is_some() {
+            return walk.lies_on(y, steps, go_on);
+        }
+        match walk.of.lossy {
+            Some(LossyPhase { flow, .. }) => walk.loses(&flow, y, steps, go_on),
+            None => walk.slides(walk.of.slide.place(y), steps, go_on),
+        }
+    }
+
+    fn slip_halts(walk: &mut BodyWalk<'_, N>, y: [f64; N], halt: Halt) {
+        if walk.of.lying.is_some() {
+            walk.stops_lying(y, halt);
+            return;
+        }
+        walk.slip_ends(y, halt);
+    }
+
+    fn leaves_margin(walk: &BodyWalk<'_, N>, halt: Halt) -> bool {
+        halt == Halt::Side
+            && walk.of.body.theta_end() == FRAC_PI_2
+            && walk.made.path.phases.last().is_some_and(|phase| phase.state.theta == FRAC_PI_2)
+    }
+
+    /// The error of a margin that depends on a force is proportional to the largest speed.
+    fn grows(&self, halt: Halt, y: &[f64; N]) -> Option<f64> {
+        match halt {
+            Halt::Side | Halt::Rests | Halt::Rises | Halt::Changes | Halt::Turned => Some(1.0),
+            Halt::LiftOff | Halt::Slips | Halt::Jam => Some(Slide::fastest(y)),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,61 @@
+//! A ball whose axis passes beside its pole, nearer than steps resolve.
+//!
+//! ```text
+//! L = -s e_h   horizontal part of the axis:   L' = (w x e3)_h,   in the laboratory
+//! past the pole   2 s c w2/(w1^2 + c^2 w2^2) later: L, w and the slip at constant accelerations, seen from the new e_h
+//! ```
+//! Along e_h and e2 the numbers change by themselves within this short time, since e_h turns around; in the laboratory
+//! nothing happens. The differences that give the accelerations there lose no digits: e_h turns by an angle of order 1.
+//!
+//! Error: the square of the time of the passage. A couple along the rim turns with e_h; it counts as constant.
+
+use crate::motions::walk::numbers::{TIME, poses};
+
+/// A ball whose axis approaches its pole passes it in one step from this sine of theta on.
+const BESIDE: f64 = 1e-9;
+
+/// A vector of the table, in the basis that is turned by the angle with this cosine and sine.
+fn turned([cos, sin]: [f64; 2], [h, two]: [f64; 2]) -> [f64; 2] {
+    [cos * h + sin * two, cos * two - sin * h]
+}
+
+/// The time that a ball beside its pole takes to pass it; None if it is not near its pole, or moves away from it.
+pub(crate) fn passage(s: f64, c: f64, [w1, w2]: [f64; 2]) -> Option<f64> {
+    let nears = s * c * w2;
+    (s.abs() < BESIDE && nears > 0.0).then(|| 2.0 * nears / (w1 * w1 + c * c * w2 * w2))
+}
+
+/// The numbers at the same inclination on the other side of the pole, from the numbers y of [`halt`](crate::motions::walk::numbers)
+/// and their rates in time.
+pub(crate) fn passed<const N: usize>(y: &[f64; N], rates: &[f64; N]) -> Option<[f64; N]> {
+    let [s, c, w1, w2, w3, u_h, u_2] = core::array::from_fn(|i| y[i]);
+    let lasts = passage(s, c, [w1, w2])?;
+    let [ds, dc, d1, d2, d3, du_h, du_2] = core::array::from_fn(|i| rates[i]);
+    let precession = w1 / s;
+    let later = |x: [f64; 2], rate: [f64; 2]| {
+        let rate = [rate[0] - precession * x[1], rate[1] + precession * x[0]];
+        [x[0] + lasts * rate[0], x[1] + lasts * rate[1]]
+    };
+    let rolling = dc * w1 + c * d1 - ds * w3 - s * d3;
+    let (level, upright) = ([c * w1 - s * w3, w2], s * w1 + c * w3);
+    let (level_then, slip) = (later(level, [rolling, d2]), later([u_h, u_2], [du_h, du_2]));
+    let upright_then = upright + lasts * (ds * w1 + s * d1 + dc * w3 + c * d3);
+    let moves =
+        |[h, two]: [f64; 2], about: f64, lean: [f64; 2]| [two * c - about * lean[1], about * lean[0] - h * c];
+    let (lean, early) = ([-s, 0.0], moves(level, upright, [-s, 0.0]));
+    let then = [0, 1].map(|i| lean[i] + lasts * early[i]);
+    let late = moves(level_then, upright_then, then);
+    let lean: [f64; 2] = core::array::from_fn(|i| lean[i] + 0.5 * lasts * (early[i] + late[i]));
+    let s = lean[0].hypot(lean[1]).copysign(s);
+    let way = lean.map(|x| -x / s);
+    let ([h, w2], [u_h, u_2]) = (turned(way, level_then), turned(way, slip));
+    let c = (1.0 - s * s).sqrt().copysign(c);
+    let mut there: [f64; N] = core::array::from_fn(|i| y[i] + lasts * rates[i]);
+    let w = [c * h + s * upright_then, w2, c * upright_then - s * h];
+    there[..TIME].copy_from_slice(&[s, c, w[0], w[1], w[2], u_h, u_2]);
+    if poses(N) {
+        let turn = way[1].atan2(way[0]);
+        (there[9], there[10]) = (y[9] + turn, y[10] + lasts * w3 - c * turn);
+    }
+    Some(there)
+}

@@ -1,0 +1,163 @@
+//! The phases in which a body loses energy while it rolls, or slides on a smooth table.
+
+use super::FEW_STEPS;
+use super::lossy::LossyFlow;
+use crate::error::Error;
+use crate::laws::contact::Table;
+use crate::laws::loss::Holds;
+use crate::laws::state::State;
+use crate::methods::flow::{Flow, Spent, Steps};
+use crate::motions::Ending;
+use crate::motions::body::phases::{BodyWalk, LossyPhase};
+use crate::motions::body::write::state;
+use crate::motions::dry::creep::LOST_DRILLING;
+use crate::motions::walk::numbers::Halt;
+use crate::motions::walk::{Next, Pause, Phases, after_rest, ending};
+
+/// Tolerance of steps that take the place of an exact solution, as a share of that of the motion.
+const EXACTLY: f64 = 0.1;
+
+impl<const N: usize> BodyWalk<'_, N> {
+    /// Begins a phase that loses energy and rolls with friction up to `mu` N, or slides freely. Returns the
+    /// numbers of the flow, None if the phase is over at once.
+    pub(crate) fn begins_to_lose(&mut self, mu: f64) -> Result<Option<[f64; N]>, Error> {
+        let on = (&self.of.body, self.contact());
+        let (losses, y, friction) = (self.of.rolling_losses, self.of.state, self.friction());
+        // Such steps add little to the error.
+        let tol = if self.of.by_steps { EXACTLY * self.of.slide.tol } else { self.of.slide.tol };
+        let flow = LossyFlow::new(on, mu, &losses, tol, &y).on_patch(&friction, &y);
+        if flow.is_patch() && flow.holds_drilling() {
+            self.claims(LOST_DRILLING * drilling(&self.of.state).abs());
+        }
+        let halt = flow.at_start(&self.of.state);
+        // The friction that would hold a moving contact point is not that of a body at rest.
+        let rests = halt.is_none_or(|halt| halt == Halt::Slips) && flow.has_stopped(&self.of.state);
+        self.of.lossy = Some(LossyPhase { flow });
+        match halt {
+            _ if rests => {
+                (self.of.lossy, self.next) = (None, Some(Next::Ends(Ending::Stops)));
+                Ok(None)
+            }
+            Some(halt) => self.meets_halt(halt),
+            None => Ok(Some(flow.enter(&self.at))),
+        }
+    }
+
+    /// Computes a phase that loses energy without a slip from the numbers `y`, within the limits `steps`.
+    pub(crate) fn loses(
+        &mut self,
+        flow: &LossyFlow,
+        y: [f64; N],
+        steps: Steps,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Pause<N>, Error> {
+        let first = self.made.motion.states.len();
+        let (body, ask, kind, start) = (self.of.body, self.ask, self.kind(), self.of.start);
+        let made = &mut self.made;
+        let mut write = |y: &[f64; N]| made.lossy(&ask, (&body, &start, flow), y, kind);
+        let times = &self.since[first..];
+        let by_steps = self.of.by_steps;
+        let steps = if by_steps { Steps { most: steps.most.min(FEW_STEPS), ..steps } } else { steps };
+        let flown = flow.run(flow.place(y), steps, times, &mut write, go_on);
+        let erred = if by_steps { EXACTLY * flown.spent.erred } else { flown.spent.erred };
+        self.has_spent(Spent { erred, ..flown.spent });
+        self.claims_time_error(flown.halt, flown.steep, &flown.y);
+        if flown.halt == Halt::Pause && by_steps {
+            // The first integrals continue the phase.
+            self.arrives(flown.y);
+            (self.of.lossy, self.of.rolls_briefly) = (None, false);
+            self.resumes_phase();
+            self.next = Some(Next::Rolls { at_limit: false });
+            return Ok(Pause::No);
+        }
+        if flown.halt == Halt::Pause {
+            return Ok(Pause::Here(flow.on_the_way().enter(&flown.y), Some(flown.step)));
+        }
+        self.halts(flown.y, flown.halt)
+    }
+
+    /// Continues the phase after a halt, or ends it; `shown` are the numbers that all flows share.
+    fn halts(&mut self, shown: [f64; N], halt: Halt) -> Result<Pause<N>, Error> {
+        self.arrives(shown);
+        Ok(self.meets_halt(halt)?.map_or(Pause::No, |y| Pause::Here(y, None)))
+    }
+
+    /// Applies a halt to the walk. Returns the numbers from which the phase continues, None if the
+    /// phase is over.
+    fn meets_halt(&mut self, found: Halt) -> Result<Option<[f64; N]>, Error> {
+        let Some(mut phase) = self.of.lossy.take() else { return Ok(None) };
+        let (body, ask) = (self.of.body, self.ask);
+        let goes_on = ask.beyond && !matches!(ask.table, Table::Rubs(_));
+        if phase.flow.holds_drilling() && !matches!(found, Halt::Time | Halt::Pause | Halt::Pole) {
+            self.stops_exactly(Holds { drilling: true, ..Holds::default() });
+        }
+        let flow = &mut phase.flow;
+        let next = match found {
+            Halt::Time | Halt::Pause => return Ok(None),
+            Halt::Pole => {
+                self.claims_passage();
+                let y = flow.on_the_way().enter(&self.at);
+                self.of.lossy = Some(phase);
+                return Ok(Some(y));
+            }
+            Halt::Contour | Halt::Drilling | Halt::Rocking | Halt::Settles | Halt::Rests => {
+                if self.turns_too_often() {
+                    return Ok(None);
+                }
+                Phases::perturbs(self);
+                self.allows_crawling();
+                let doubt = match found {
+                    Halt::Contour => flow.doubt(&self.of.state, self.spent.erred * self.of.slide.tol),
+                    Halt::Settles => flow.settled_doubt(&self.of.state),
+                    _ => 0.0,
+                };
+                self.claims(doubt);
+                let stops = flow.after(found, &self.of.state);
+                if !stops {
+                    let y = flow.enter(&self.at);
+                    self.of.lossy = Some(phase);
+                    return Ok(Some(y));
+                }
+                Next::Ends(Ending::Stops)
+            }
+            Halt::Face => {
+                let (left, doubt) = flow.rest_of(&self.at);
+                self.claims(doubt + self.rocks_on());
+                self.at[7] += left;
+                self.at[0] = 0.0;
+                self.of.state = state(&self.at);
+                Next::Ends(Ending::Face)
+            }
+            _ if goes_on && !matches!(found, Halt::Rests | Halt::Endless) => {
+                self.records_event(ending(found));
+                flow.go_beyond();
+                let y = flow.enter(&self.at);
+                self.of.lossy = Some(phase);
+                return Ok(Some(y));
+            }
+            Halt::Side => {
+                self.of.state.theta = body.theta_end();
+                Next::Ends(Ending::Side)
+            }
+            Halt::Slips if let Some(slip) = flow.creeps(&self.of.state) => {
+                (self.at[5], self.at[6]) = (slip[0], slip[1]);
+                self.claims(LOST_DRILLING * drilling(&self.of.state).abs());
+                self.forgets_a_moment(self.at[7]);
+                Next::Slips
+            }
+            Halt::Slips if matches!(ask.table, Table::Rubs(_)) && flow.jumps(&self.of.state) => {
+                let stops = flow.hardly_moves(&self.of.state);
+                self.stops_exactly(stops);
+                after_rest(Phases::rests(self))
+            }
+            Halt::Slips if ask.table.rubs() => after_rest(Phases::lets_go(self)),
+            found => Next::Ends(ending(found)),
+        };
+        self.continues_with(next);
+        Ok(None)
+    }
+}
+
+fn drilling(y: &State) -> f64 {
+    y.theta.sin() * y.w1 + y.theta.cos() * y.w3
+}

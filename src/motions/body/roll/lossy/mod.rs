@@ -1,0 +1,470 @@
+//! A body that loses energy while it rolls or slides freely, computed to its last turn.
+//!
+//! ```text
+//! y = (s, c, p, w2, w3, 0, 0, t, 0; phi, psi, x, y; lost)       p = w1 s = phi' s^2, in time
+//! held   y = (s, c, q, w2, -, ...),   w1 = s (q - c psi'),   w3 = c q + s^2 psi',   q = w_z
+//! margins   s,  theta_end - theta,  N,  (mu N)^2 - F^2,  |psi'| or its hold,  |w_z| or its hold or |w2|
+//! ```
+//! Near the table p is almost conserved, while w1 = p/s is not; so a whirr is computed to its end with bounded numbers.
+//! Dry friction can hold a motion that it has stopped ([`lossy`](crate::laws::contact::lossy)). A couple that grows
+//! with a power of psi' stops the contact of a falling face faster and faster. Where this stop is thousands of times
+//! faster than the fall, psi' follows from the balance of that couple with the couple that turns the contact, the term
+//! of psi'' included (Tikhonov 1952).
+//!
+//! Error: the tolerance of the steps; `test_losses_reference` has motions to 25 digits from another model.
+
+mod doubts;
+mod free;
+mod patched;
+mod steps;
+
+use crate::laws::body::Body;
+use crate::laws::contact::lossy::{Acted, Held, Lossy};
+use crate::laws::contact::together::{Resting, Rubs, Together};
+use crate::laws::contact::{Contact, Force};
+use crate::laws::loss::{COUNT, GRACE, Holds, Law, Losses, SLACK, Ways, holds, rounded};
+use crate::laws::state::State;
+use crate::motions::body::face::{FLAT, turning_share};
+use crate::motions::walk::numbers::Halt;
+use crate::numbers::{Dual, Real};
+use core::f64::consts::PI;
+use free::pace_of;
+pub(crate) use free::{LossyUnheld, from_side};
+pub(crate) use patched::with_patch;
+pub(crate) use steps::at_rest;
+
+/// The reason why the contact point does not move along the rim.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Hold {
+    /// The contact point moves.
+    No,
+    /// The body only rocks, since no couple turns it.
+    Planar,
+    /// Dry friction holds the contact point.
+    Dry,
+    /// A couple that grows with psi' has almost stopped the contact point (see `settled`).
+    Settled,
+    /// Rolling resistance holds rolling and rocking: the body only turns about the vertical.
+    Still,
+}
+
+/// If the required friction exceeds mu N by more than this share, it has jumped beyond mu N, as at a reversal of a dry
+/// couple, and has not crossed mu N continuously.
+pub(crate) const JUMP: f64 = 1e-6;
+/// A body with a smaller joint speed of rolling and rocking is at rest for the law of rolling resistance.
+pub(crate) const REST: f64 = 1e-13;
+
+/// Length of [`LossyFlow::numbers`].
+pub(crate) const LOSSY_NUMBERS: usize = 4 + COUNT + 2;
+
+/// A body, its contact and its losses, and the motions that are held at rest.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct LossyFlow {
+    law: Lossy<f64>,
+    sloped: Lossy<Dual<f64>>,
+    /// The law without the couples along the contour.
+    bare: Lossy<f64>,
+    hold: Hold,
+    /// Whether the flow starts from a state in which w_z vanishes exactly.
+    starts_still: bool,
+    /// The direction of (w_h, w2) in which rolling and rocking begin from rest.
+    push: [f64; 2],
+    /// Allowances for the rounding of psi', and of w_z (of w2 if the body only rocks), where these start from zero.
+    slack: [f64; 2],
+    ways: Ways,
+    /// The sign of psi' of a settled contact.
+    settled_way: f64,
+    mu: f64,
+    theta_end: f64,
+    ball: bool,
+    pub tol: f64,
+    /// Whether events other than a landing of the face end the flow.
+    watch: bool,
+    /// The coefficient of sliding friction on a patch, whose couple is that of drilling friction with a length that
+    /// depends on the force; 0 without a patch.
+    slides: f64,
+}
+
+impl LossyFlow {
+    /// The flow of a body from a state; the body rolls with friction up to mu N, or slides on a smooth table.
+    pub fn new((body, contact): (&Body, Contact), mu: f64, losses: &Losses, tol: f64, y: &State) -> Self {
+        let law = Lossy::of(contact, body, losses);
+        let dual = |value: f64| Dual { value, slope: 0.0 };
+        let rates =
+            crate::laws::contact::reduced::Rates::of(contact, &body.shape().map(dual), !body.is_sharp());
+        let sloped = Lossy { rates, losses: law.losses.map(dual) };
+        let (theta_end, ball) = (body.theta_end(), body.is_ball());
+        let mu = if contact == Contact::Smooth { f64::INFINITY } else { mu };
+        let (hold, ways) = (Hold::No, Ways::default());
+        let bare = Lossy { losses: law.losses.off_the_contour(), ..law };
+        let (settled_way, starts_still, slack, watch) = (0.0, false, [0.0; 2], true);
+        let mut lossy = Self {
+            law,
+            sloped,
+            bare,
+            hold,
+            starts_still,
+            push: [0.0; 2],
+            slack,
+            ways,
+            settled_way,
+            mu,
+            theta_end,
+            ball,
+            tol,
+            watch,
+            slides: 0.0,
+        };
+        lossy.sets_holds(y);
+        lossy
+    }
+
+    pub fn holds_drilling(&self) -> bool {
+        self.ways.holds.drilling
+    }
+
+    /// Makes a landing of the face the only event that ends the flow.
+    pub fn go_beyond(&mut self) {
+        self.watch = false;
+    }
+
+    fn has(&self, law: Law) -> bool {
+        self.law.losses.has(law)
+    }
+
+    /// Sets which motions are held at a state, and the signs (`ways`) of the others.
+    fn sets_holds(&mut self, y: &State) {
+        let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
+        let (s, c) = angle;
+        let (spin, drilling) = (y.w3 - c / s * y.w1, s * y.w1 + c * y.w3);
+        let way = |x: f64| if x == 0.0 { 0.0 } else { x.signum() };
+        self.ways = Ways { contour: way(spin), drilling: way(drilling), ..Ways::default() };
+        self.hold = Hold::No;
+        // What a slip has held is at rest up to rounding.
+        let still = rounded(s, w);
+        let along = spin.abs() <= still && self.has(Law::DryContour);
+        let about = drilling.abs() <= still && self.has(Law::Drilling);
+        if y.w1 == 0.0 && y.w3 == 0.0 || along && about {
+            self.only_rocks(angle, y.w2);
+        } else {
+            if along {
+                self.stop_contour(angle, w, false);
+            }
+            if about {
+                self.stop_drilling(angle, w);
+            }
+            if self.has(Law::RollingResistance) && pace_of(angle, y.precession(), w) < REST {
+                self.stop_rolling(angle, drilling);
+            }
+        }
+        self.turn(self.ways);
+        self.sets_slack(y);
+    }
+
+    /// Sets the allowances for motions that start from rest against a dry loss, where rounding may give either sign.
+    fn sets_slack(&mut self, y: &State) {
+        let size = SLACK * (1.0 + y.precession().abs());
+        let (s, c) = y.theta.sin_cos();
+        let slow = |x: f64| if x.abs() < 16.0 * size { SLACK } else { 0.0 };
+        let other = if self.hold == Hold::Planar { y.w2 } else { s * y.w1 + c * y.w3 };
+        self.slack = [slow(y.spin()), slow(other)];
+    }
+
+    fn turn(&mut self, ways: Ways) {
+        self.ways = ways;
+        (self.law.losses.ways, self.bare.losses.ways) = (Some(ways), Some(ways));
+        self.sloped.losses = self.law.losses.map(|value| Dual { value, slope: 0.0 });
+    }
+
+    fn response(&self, angle: (f64, f64), precession: f64, w: [f64; 3], held: Held<f64>) -> Acted<f64> {
+        if self.is_patch() {
+            return self.acts_on_patch(&self.law, angle, precession, (w, held)).0;
+        }
+        self.law.at(angle, precession, w, held)
+    }
+
+    /// Makes dry friction hold the contact point if its limit suffices, or always if `surely`; else the push moves the
+    /// contact point.
+    fn stop_contour(&mut self, angle: (f64, f64), w: [f64; 3], surely: bool) {
+        self.turn(Ways { contour: 0.0, ..self.ways });
+        let needs = self.response(angle, w[0] / angle.0, w, Held::Contour(0.0)).held;
+        let held = surely || holds(needs);
+        self.hold = if held { Hold::Dry } else { Hold::No };
+        self.turn(Ways { contour: if held { 0.0 } else { needs[0].signum() }, ..self.ways });
+        if held && self.ways.holds.drilling {
+            self.only_rocks(angle, w[1]);
+        }
+    }
+
+    /// Makes the body only rock, since no couple turns it any more.
+    fn only_rocks(&mut self, angle: (f64, f64), w2: f64) {
+        self.hold = Hold::Planar;
+        self.turn(Ways::default());
+        let falls = self.response(angle, 0.0, [0.0, w2, 0.0], Held::Nothing).w[1];
+        let rocking = if w2 != 0.0 { w2.signum() } else { falls.signum() };
+        self.turn(Ways { rocking, ..Ways::default() });
+    }
+
+    /// Makes dry friction hold the drilling, or makes the drilling begin anew.
+    fn stop_drilling(&mut self, angle: (f64, f64), w: [f64; 3]) {
+        self.turn(self.ways.holding_drilling());
+        let needs = self.response(angle, w[0] / angle.0, w, Held::Drilling).held;
+        self.turn(self.ways.drilling_stopped(needs));
+    }
+
+    /// Whether the required friction has jumped beyond mu N, as where a dry couple has just reversed.
+    pub fn jumps(&self, y: &State) -> bool {
+        self.force(y).friction_coefficient() > self.mu * (1.0 + JUMP)
+    }
+
+    /// The motions that are at rest at this state, or have just begun.
+    pub fn hardly_moves(&self, y: &State) -> Holds {
+        let little = 4.0 * REST * (1.0 + y.precession().abs());
+        let angle = y.theta.sin_cos();
+        let slow = |x: f64| x.abs() < little;
+        Holds {
+            contour: slow(y.spin()) && self.has(Law::DryContour),
+            drilling: slow(angle.0 * y.w1 + angle.1 * y.w3) && self.has(Law::Drilling),
+            rolling: slow(pace_of(angle, y.precession(), [y.w1, y.w2, y.w3]))
+                && self.has(Law::RollingResistance),
+        }
+    }
+
+    /// Makes rolling resistance hold a body that neither rolls nor rocks, if its limit suffices; else rolling and rocking
+    /// begin, in the direction of their push. Dry friction along the contour holds the contact point, or lets it go.
+    fn stop_rolling(&mut self, angle: (f64, f64), drilling: f64) {
+        if self.keeps_still(angle, drilling) {
+            self.hold = Hold::Still;
+            let holds = Holds { rolling: true, ..Holds::default() };
+            self.turn(Ways { contour: 0.0, rolling: 0.0, rocking: 0.0, holds, ..self.ways });
+        } else {
+            self.leave(angle, drilling);
+        }
+    }
+
+    /// Lets rolling and rocking begin.
+    fn leave(&mut self, angle: (f64, f64), drilling: f64) {
+        let (reduced, w) = (self.law.rates.reduced(), [angle.0 * drilling, 0.0, angle.1 * drilling]);
+        let rubs = match reduced.contact {
+            Contact::Rolling => Rubs::Rests,
+            Contact::Smooth => Rubs::Slips { pull: [0.0; 2], twist: 0.0 },
+        };
+        let Some(rests) = Together::of_body(&reduced.shape, &self.law.losses, (angle, w), [0.0; 2], rubs)
+        else {
+            return;
+        };
+        let [_, rolling, contour, _] = rests.knowing(Some((Resting::Rolling, true))).fates();
+        self.push = rolling.way;
+        self.hold = Hold::No;
+        let mut ways = Ways { holds: Holds { rolling: false, ..self.ways.holds }, ..self.ways };
+        if rests.has(Resting::Contour) {
+            self.hold = if contour.begins() { Hold::No } else { Hold::Dry };
+            ways.contour = if contour.begins() { -contour.way[0].signum() } else { 0.0 };
+        }
+        self.turn(ways);
+    }
+
+    /// Whether a body that only turns about the vertical, with this w_z, neither rolls nor rocks.
+    fn keeps_still(&self, angle: (f64, f64), drilling: f64) -> bool {
+        let mut still = *self;
+        still.turn(Ways {
+            contour: 0.0,
+            rocking: 0.0,
+            holds: Holds { rolling: true, ..Holds::default() },
+            ..self.ways
+        });
+        let w = [angle.0 * drilling, 0.0, angle.1 * drilling];
+        holds(still.response(angle, drilling, w, Held::Rolling).held)
+    }
+
+    /// Whether the body is at rest, and rolling resistance keeps it there.
+    pub fn has_stopped(&self, y: &State) -> bool {
+        let (s, c) = y.theta.sin_cos();
+        let w = [y.w1, y.w2, y.w3];
+        let turns = (s * y.w1 + c * y.w3).abs() > rounded(s, w);
+        match self.hold {
+            Hold::Still => !turns,
+            Hold::Planar => {
+                self.has(Law::RollingResistance) && y.w2.abs() < REST && self.keeps_still((s, c), 0.0)
+            }
+            _ => false,
+        }
+    }
+
+    /// w, with a small speed in the direction in which rolling and rocking begin from rest.
+    fn pushed(&self, y: &State) -> [f64; 3] {
+        let mut numbers = [y.theta.sin(), y.theta.cos(), y.w1, y.w2, y.w3];
+        self.pushed_off(&mut numbers);
+        [numbers[2], numbers[3], numbers[4]]
+    }
+
+    /// Applies the changes of a halt. Returns whether the body is at rest.
+    pub fn after(&mut self, halt: Halt, y: &State) -> bool {
+        let stops = self.turned_by(halt, y);
+        self.sets_slack(y);
+        stops
+    }
+
+    fn turned_by(&mut self, halt: Halt, y: &State) -> bool {
+        let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
+        self.starts_still = halt == Halt::Drilling;
+        let drilling = angle.0 * y.w1 + angle.1 * y.w3;
+        match halt {
+            Halt::Contour if self.hold == Hold::Still => self.leave(angle, drilling),
+            Halt::Contour if self.hold == Hold::Dry => {
+                let push = self.response(angle, w[0] / angle.0, w, Held::Contour(0.0)).held[0];
+                self.hold = Hold::No;
+                self.turn(Ways { contour: push.signum(), ..self.ways });
+            }
+            Halt::Contour => {
+                // A settled contact stops where dry friction balances the push, so that friction holds
+                // it in any case.
+                let settled = self.hold == Hold::Settled;
+                self.stop_contour(angle, w, settled);
+            }
+            Halt::Drilling if self.ways.holds.drilling => {
+                let push = self.response(angle, w[0] / angle.0, w, Held::Drilling).held[0];
+                self.turn(self.ways.drilling_from(push));
+            }
+            Halt::Drilling if self.hold == Hold::Still => {
+                // Without the drilling the body may begin to rock.
+                self.only_rocks(angle, 0.0);
+                return !self.rocks_back(angle);
+            }
+            // A body that neither rolls along its rim nor drills does not turn at all.
+            Halt::Drilling if self.hold != Hold::No => self.only_rocks(angle, w[1]),
+            Halt::Drilling => self.stop_drilling(angle, w),
+            Halt::Rocking => return !self.rocks_back(angle),
+            Halt::Rests => {
+                self.stop_rolling(angle, drilling);
+                return self.has_stopped(y);
+            }
+            Halt::Settles if self.ways.holds.drilling => self.only_rocks(angle, w[1]),
+            Halt::Settles => {
+                (self.hold, self.settled_way) = (Hold::Settled, self.ways.contour);
+                self.turn(Ways { contour: 0.0, ..self.ways });
+            }
+            _ => {}
+        }
+        false
+    }
+
+    /// Whether a body that only rocks, and has come to rest, rocks back; otherwise rolling resistance holds the body.
+    fn rocks_back(&mut self, angle: (f64, f64)) -> bool {
+        self.only_rocks(angle, 0.0);
+        !self.keeps_still(angle, 0.0)
+    }
+
+    /// The same flow after its start, where w_z no longer vanishes exactly.
+    pub fn on_the_way(&self) -> Self {
+        Self { starts_still: false, ..*self }
+    }
+
+    /// Whether sigma differs from time: under rolling resistance, except for a body that only rocks.
+    fn is_paced(&self) -> bool {
+        self.has(Law::RollingResistance) && !matches!(self.hold, Hold::Planar | Hold::Still)
+    }
+
+    /// Gives a body that neither rolls nor rocks, but is not held, a small speed in the direction of the push.
+    fn pushed_off<const N: usize>(&self, y: &mut [f64; N]) {
+        let [s, c, w1, w2, w3] = core::array::from_fn(|i| y[i]);
+        if !self.is_paced() || pace_of((s, c), w1 / s, [w1, w2, w3]) >= REST {
+            return;
+        }
+        let drilling = s * w1 + c * w3;
+        let [rolling, rocking] = self.push.map(|n| 2.0 * REST * n);
+        (y[2], y[3], y[4]) = (s * drilling + c * rolling, rocking, c * drilling - s * rolling);
+    }
+
+    /// The numbers of this flow, from the numbers `shown` that are common to all flows.
+    pub fn enter<const N: usize>(&self, shown: &[f64; N]) -> [f64; N] {
+        let mut y = *shown;
+        self.pushed_off(&mut y);
+        let [s, c, mut w1, mut w3] = [y[0], y[1], y[2], y[4]];
+        if self.starts_still && self.hold == Hold::No {
+            // Here w_z vanishes exactly, and its rounding error is removed.
+            let off = s * w1 + c * w3;
+            if c.abs() > 0.5 {
+                w3 -= off / c
+            } else {
+                w1 -= off / s
+            }
+            y[4] = w3;
+        }
+        y[2] = match self.hold {
+            Hold::No => w1 * s,
+            Hold::Planar => 0.0,
+            Hold::Dry | Hold::Settled | Hold::Still => s * w1 + c * w3,
+        };
+        (y[5], y[6]) = (0.0, 0.0);
+        y
+    }
+
+    fn held<T: Real>(&self, like: T) -> Held<T> {
+        match self.hold {
+            Hold::No if self.ways.holds.drilling => Held::Drilling,
+            Hold::No => Held::Nothing,
+            Hold::Still => Held::Rolling,
+            _ => Held::Contour(like.splat(0.0)),
+        }
+    }
+
+    /// phi' and w from the numbers; psi' of a held or settled contact point counts as zero.
+    #[inline(always)]
+    fn turning<T: Real>(&self, y: [T; 5]) -> (T, [T; 3]) {
+        let [s, c, p, w2, _] = y;
+        if self.hold == Hold::No { free::turning(y) } else { (p, [s * p, w2, c * p]) }
+    }
+
+    /// The halt by the first margin that fails at the start of a flow; None if all margins hold.
+    pub fn at_start(&self, y: &State) -> Option<Halt> {
+        let (angle, w) = (y.theta.sin_cos(), self.pushed(y));
+        let acted = self.response(angle, w[0] / angle.0, w, self.held(0.0));
+        let rises = y.w2 > 0.0 || (y.w2 == 0.0 && acted.w[1] > 0.0);
+        let side = self.theta_end - y.theta;
+        let [normal, along, across] = acted.force;
+        if self.theta_end < PI && (side < 0.0 || (side == 0.0 && !rises)) {
+            Some(Halt::Side)
+        } else if normal <= 0.0 {
+            Some(Halt::LiftOff)
+        } else if self.mu.is_finite() && along.hypot(across) > self.mu * normal * (1.0 + GRACE) + 1e-15 {
+            Some(Halt::Slips)
+        } else {
+            None
+        }
+    }
+
+    /// The contact force at a state of the flow.
+    pub fn force(&self, y: &State) -> Force {
+        let (angle, w) = (y.theta.sin_cos(), self.pushed(y));
+        let [normal, along, across] = self.response(angle, w[0] / angle.0, w, self.held(0.0)).force;
+        Force { normal, along, across }
+    }
+
+    /// The time that an almost flat face still needs to land, and the error of that time.
+    pub fn rest_of<const N: usize>(&self, shown: &[f64; N]) -> (f64, f64) {
+        let [s, c, w1, w2, w3] = core::array::from_fn(|i| shown[i]);
+        let (falls, i1) = (if c * w2 > 0.0 { s / (c * w2) } else { 0.0 }, self.law.rates.reduced().shape.i1);
+        let acted = self.response((s, c), w1 / s, [w1, w2, w3], self.held(0.0));
+        if self.hold != Hold::No || falls > 0.0 && turning_share(i1, s, w1, w2) < 0.25 {
+            if w2 * w2 > s || falls == 0.0 {
+                return (falls, falls * falls.max(s));
+            }
+            // The face falls more and more slowly, with w2 ~ s^a. For a = 1 it never lands: s falls by a
+            // factor e in each time `falls`, and the landing is set to ten such times after `FLAT`.
+            let slower = -(c * acted.w[1] * s) / (w2 * w2);
+            let nearer = (s / FLAT).max(1.0).ln() + 10.0;
+            let times = if slower < 0.9 { 1.0 / (1.0 - slower.max(0.0)) } else { nearer };
+            return (falls * times, falls);
+        }
+        // If a body lands after infinitely many turns, its energy E = (3/2) a s falls as the square of
+        // the time left.
+        let resisted = self.law.losses.coefficient(Law::RollingResistance) * acted.force[0];
+        // Only the power of rolling resistance counts, since drilling friction takes energy of the
+        // drilling alone.
+        let power =
+            if resisted > 0.0 { resisted * pace_of((s, c), w1 / s, [w1, w2, w3]) } else { acted.power };
+        let left = if power > 0.0 { 3.0 * s * self.law.rates.reduced().shape.rim.a / power } else { 0.0 };
+        (left, if s > 2.0 * FLAT { left } else { left * left })
+    }
+}

@@ -1,0 +1,328 @@
+//! The flow of a body that loses energy: its rates, its margins, and the settling of its contact.
+
+use super::free::{error, fastest_of, from_side, pace_of, three_radians};
+use super::{Hold, LossyFlow, REST};
+use crate::laws::body::landing_angle;
+use crate::laws::contact::lossy::{Acted, Held, Lossy};
+use crate::laws::contact::{Contact, grip};
+use crate::laws::loss::{GRACE, Law, rolling_growth};
+use crate::methods::flow::{FASTEST, Flow, FlowPlace};
+use crate::methods::rk8;
+use crate::motions::body::face::{FLAT, lands_at};
+use crate::motions::body::pole;
+use crate::motions::dry::settled::{Balance, CLOSE, EFFORT, SLOWER, Turned, balance, settles_within};
+use crate::motions::walk::numbers::{Halt, MARGINS, TIME, loses, poses};
+use crate::numbers::{Dual, Real};
+use core::f64::consts::PI;
+
+const ROLLING_ENDS: [Halt; MARGINS] =
+    [Halt::Face, Halt::Side, Halt::LiftOff, Halt::Slips, Halt::Contour, Halt::Drilling];
+
+/// The numbers where the body only drills, extrapolated linearly by `left` in sigma; `drills` computes the three
+/// numbers of its angular velocity from the extrapolated numbers.
+pub(crate) fn at_rest<const N: usize>(
+    place: &FlowPlace<N>,
+    left: f64,
+    drills: impl Fn([f64; 5]) -> [f64; 3],
+) -> [f64; N] {
+    let mut rest: [f64; N] = core::array::from_fn(|i| place.y[i] + left * place.rate[i]);
+    let turning = drills(core::array::from_fn(|i| rest[i]));
+    rest[2..5].copy_from_slice(&turning);
+    rest
+}
+
+impl LossyFlow {
+    /// phi', w, the response of the body, and psi' of a settled contact.
+    fn settled(&self, angle: (f64, f64), drilling: f64, w2: f64) -> (f64, [f64; 3], Acted<f64>, f64) {
+        let radius = self.law.rates.reduced().shape.rim.radius(angle);
+        let way = if self.hold == Hold::Settled { self.settled_way } else { self.ways.contour };
+        let act = |precession: f64, w: [f64; 3], rate: f64| {
+            let held = Held::Contour(rate);
+            let acted = if self.is_patch() {
+                self.acts_on_patch(&self.bare, angle, precession, (w, held)).0
+            } else {
+                self.bare.at(angle, precession, w, held)
+            };
+            Turned { acted, push: acted.held[0], normal: acted.force[0] }
+        };
+        let Balance { precession, w, turned: Turned { acted, push, .. }, spin } =
+            balance(&self.law.losses, (angle, radius), (drilling, w2), way, act);
+        (precession, w, Acted { power: acted.power + push * spin, ..acted }, spin)
+    }
+
+    /// The error of s psi' due to steps where the contact point stops so fast that stability limits the steps.
+    fn noise(&self, w: [f64; 3]) -> f64 {
+        100.0 * self.tol * w.iter().fold(1.0, |most: f64, x| most.max(x.abs()))
+    }
+
+    /// The speed of rolling and rocking together, and its time derivative.
+    fn rolling_growth<const N: usize>(&self, place: &FlowPlace<N>) -> [f64; 2] {
+        let y = &place.y;
+        let angle = (y[0], y[1]);
+        let (_, w) = self.turning([y[0], y[1], y[2], y[3], y[4]]);
+        let acted = self.response(angle, w[0] / angle.0, w, self.held(0.0));
+        rolling_growth(angle, w, acted.w)
+    }
+
+    /// The end, by linear extrapolation, of rolling and rocking that rolling resistance has almost stopped.
+    fn comes_to_rest<const N: usize>(&self, place: &FlowPlace<N>) -> Option<[f64; N]> {
+        // A whirr rolls as slowly before its face lands, but is not at rest.
+        if !self.is_paced() || place.y[0].abs() < FLAT {
+            return None;
+        }
+        let [speed, growth] = self.rolling_growth(place);
+        if speed > REST || speed == 0.0 || growth >= 0.0 {
+            return None;
+        }
+        let drills = |y: [f64; 5]| {
+            let ([s, c, ..], (_, w)) = (y, self.turning(y));
+            let drilling = s * w[0] + c * w[2];
+            [if self.hold == Hold::No { s * s * drilling } else { drilling }, 0.0, c * drilling]
+        };
+        Some(at_rest(place, -speed / (growth * place.rate[TIME]), drills))
+    }
+
+    /// The numbers after a passage of the pole, nearer than steps resolve.
+    fn passes_pole<const N: usize>(&self, place: &FlowPlace<N>) -> Option<[f64; N]> {
+        let (angle, y) = ((place.y[0], place.y[1]), &place.y);
+        let (precession, w) = self.turning([y[0], y[1], y[2], y[3], y[4]]);
+        pole::passage(angle.0, angle.1, [w[0], w[1]])?;
+        let (mut seen, mut rates) = (*y, place.rate.map(|rate| rate / place.rate[TIME]));
+        (seen[2], seen[4]) = (w[0], w[2]);
+        rates[2..5].copy_from_slice(&self.response(angle, precession, w, self.held(0.0)).w);
+        let mut there = pole::passed(&seen, &rates)?;
+        there[2] *= there[0];
+        Some(there)
+    }
+
+    pub(crate) fn margins_of<T: Real>(&self, law: &Lossy<T>, y: [T; 5]) -> [T; MARGINS] {
+        let [s, c, _, w2, _] = y;
+        let (precession, w) = self.turning(y);
+        let one = s.splat(1.0);
+        let acted = law.at((s, c), precession, w, self.held(s));
+        let endless = self.hold == Hold::No && self.law.losses.turn_endlessly();
+        let face = if self.ball {
+            one
+        } else {
+            s - lands_at(law.rates.reduced().shape.i1, (s, c), [w[0], w2], acted.w[1], endless)
+        };
+        let number = |x: f64| s.splat(x);
+        let (high, far) = landing_angle(self.theta_end);
+        let there = f64::from(u8::from(self.theta_end < PI));
+        let side = from_side([high, far, there].map(number), (s, c));
+        let [normal, along, across] = acted.force;
+        let square = along * along + across * across;
+        let grip = if self.mu.is_finite() { grip(number(self.mu), normal, square) } else { one };
+        let [push, limit] = acted.held;
+        let within = limit * limit * number(1.0 + 2.0 * GRACE) - push * push;
+        let slack = self.slack.map(|slack| number(slack) * (one + precession.abs()));
+        let contour = match self.hold {
+            Hold::Dry | Hold::Still => within,
+            Hold::Settled if self.has(Law::DryContour) => number(self.settled_way) * push - limit,
+            Hold::No if self.has(Law::DryContour) => {
+                number(self.ways.contour) * (w[2] - c * precession) + slack[0]
+            }
+            _ => one,
+        };
+        let drilling = if self.hold == Hold::Planar {
+            if self.has(Law::RollingResistance) { number(self.ways.rocking) * w2 + slack[1] } else { one }
+        } else if self.ways.holds.drilling {
+            within
+        } else if self.has(Law::Drilling) && self.ways.drilling != 0.0 {
+            number(self.ways.drilling) * (s * w[0] + c * w[2]) + slack[1]
+        } else {
+            one
+        };
+        if self.watch {
+            [face, side, normal, grip, contour, drilling]
+        } else {
+            [face, one, one, one, contour, drilling]
+        }
+    }
+
+    /// Writes the rates of the numbers. Returns w and the contact force.
+    #[inline(always)]
+    pub(crate) fn rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) -> ([f64; 3], [f64; 3]) {
+        let [s, c, w2] = [y[0], y[1], y[3]];
+        let (precession, w, acted) = if self.hold == Hold::Settled {
+            let (precession, w, acted, _) = self.settled((s, c), y[2], w2);
+            (precession, w, acted)
+        } else {
+            let (precession, w) = self.turning([s, c, y[2], w2, y[4]]);
+            (precession, w, self.response((s, c), precession, w, self.held(0.0)))
+        };
+        let [d1, d2, d3] = acted.w;
+        let (turn, free) = if self.hold == Hold::No {
+            (s * d1 - c * w2 * w[0], d3)
+        } else {
+            (s * d1 + c * d3 - w2 * (c * w[0] - s * w[2]), 0.0)
+        };
+        all[..9].copy_from_slice(&[-(c * w2), s * w2, turn, d2, free, 0.0, 0.0, 1.0, 0.0]);
+        if loses(N) {
+            all[N - 1] = acted.power;
+        }
+        if poses(N) {
+            let moves = matches!(self.hold, Hold::No | Hold::Settled);
+            let spin = if moves { w[2] - c * precession } else { 0.0 };
+            let reduced = self.law.rates.reduced();
+            let (sin, cos) = y[9].sin_cos();
+            let (out, on) = match reduced.contact {
+                Contact::Rolling => (reduced.shape.rim.rho * w2, reduced.shape.rim.radius((s, c)) * spin),
+                Contact::Smooth => (0.0, 0.0),
+            };
+            all[9..13].copy_from_slice(&[precession, spin, out * cos - on * sin, out * sin + on * cos]);
+        }
+        if self.is_paced() {
+            let pace = self.law.pace((s, c), pace_of((s, c), precession, w));
+            all.iter_mut().for_each(|x| *x *= pace);
+        }
+        (w, acted.force)
+    }
+}
+
+impl Flow<MARGINS> for LossyFlow {
+    type Halt = Halt;
+    const TIME: usize = TIME;
+    const OVER: Halt = Halt::Time;
+    const PAUSE: Halt = Halt::Pause;
+    const ENDLESS: Halt = Halt::Endless;
+
+    fn is_extrapolated(halt: Halt) -> bool {
+        halt == Halt::Pole
+    }
+
+    fn theta<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        y[0].atan2(y[1])
+    }
+
+    #[inline(always)]
+    fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {
+        if self.is_patch() {
+            return self.rates_on_patch(y, all);
+        }
+        self.rates(y, all);
+    }
+
+    fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; MARGINS] {
+        let y = core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
+        if self.is_patch() {
+            return self.margins_on_patch(y);
+        }
+        self.margins_of(&self.sloped, y)
+    }
+
+    fn margin<const N: usize>(&self, y: &[f64; N], i: usize) -> f64 {
+        let y = core::array::from_fn(|k| y[k]);
+        if self.is_patch() {
+            return self.margin_on_patch(y, i);
+        }
+        self.margins_of(&self.law, y)[i]
+    }
+
+    fn end(&self, i: usize) -> Halt {
+        if i == 5 && self.hold == Hold::Planar { Halt::Rocking } else { ROLLING_ENDS[i] }
+    }
+
+    #[inline(always)]
+    fn error<const N: usize>(&self, y: &[f64; N], made: &rk8::Step<f64, N>) -> f64 {
+        // A ball that only rocks passes through its pole, where an error relative to s has no meaning.
+        let s = if self.ball && self.hold != Hold::No { 1.0 } else { y[0].abs() };
+        let (precession, w) = self.turning([y[0], y[1], y[2], y[3], y[4]]);
+        let paced = self.is_paced().then(|| pace_of((y[0], y[1]), precession, w));
+        error(self.tol, (s, w), (self.hold == Hold::No, paced), made, if poses(N) { 9..13 } else { 0..0 })
+    }
+
+    fn fastest<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        fastest_of(self.turning([y[0], y[1], y[2], y[3], y[4]]).1)
+    }
+
+    fn effort(&self) -> u64 {
+        if self.hold == Hold::Settled { EFFORT } else { 1 }
+    }
+
+    fn first<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        let (precession, w) = self.turning([y[0], y[1], y[2], y[3], y[4]]);
+        let falls = (w[1] / y[0]).abs().min(FASTEST);
+        0.02 / (1.0 + w.iter().fold(precession.abs().max(falls), |most, x| most.max(x.abs())))
+    }
+
+    fn calm<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        let (precession, w) = self.turning([y[0], y[1], y[2], y[3], y[4]]);
+        three_radians(&self.law.rates.reduced().shape, precession, w)
+    }
+
+    fn longest<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
+        let y: [Dual<f64>; 5] = core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
+        let (precession, w) = self.turning(y);
+        let losses = &self.sloped.losses;
+        let seen = losses.seen(&self.sloped.rates.reduced().shape.rim, (y[0], y[1]), precession, w);
+        // `calm` limits the time, and a step in sigma takes less time where the body hardly rolls.
+        let mut most = self.calm(&place.y);
+        if self.hold == Hold::No && losses.is_soft() {
+            let spin = w[2] - y[1] * precession;
+            most = most.min(self.law.damped((place.y[0], place.y[1]), spin.value));
+        }
+        (most / place.rate[7].min(1.0)).min(losses.longest(&seen, self.is_paced()))
+    }
+
+    fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
+        let y = &place.y;
+        if let Some(rest) = self.comes_to_rest(place) {
+            return Some((Halt::Rests, rest));
+        }
+        if self.ball && self.hold == Hold::No {
+            return self.passes_pole(place).map(|there| (Halt::Pole, there));
+        }
+        let [s, c, w2] = [y[0], y[1], y[3]];
+        // `fall` is the speed at which either face falls, and `faster` is the rate of that speed.
+        let (fall, faster) = (c * w2, c * place.rate[3] / place.rate[7]);
+        if self.hold != Hold::No || self.ball || fall <= 0.0 || faster <= 0.0 || s > CLOSE {
+            return None;
+        }
+        let angle = (s, c);
+        let (precession, w) = self.turning([s, c, y[2], w2, y[4]]);
+        let spin = w[2] - c * precession;
+        let noise = self.noise(w);
+        if s * spin.abs() > SLOWER * fall + noise {
+            return None;
+        }
+        let slope = self.law.losses.slope(s, self.law.rates.reduced().shape.rim.radius(angle), spin);
+        let rate = self.law.stiffness(angle, slope);
+        let within = settles_within(&self.law.losses, (s, fall), rate, s * spin / self.tol)? * 0.01 * noise;
+        let settled = self.settled(angle, s * w[0] + c * w[2], w2).3;
+        let close = s * settled.abs() <= SLOWER * fall
+            && s * (spin - settled).abs() <= within + 1e-8 * s * settled.abs();
+        close.then_some((Halt::Settles, *y))
+    }
+
+    fn slows<const N: usize>(&self, halt: Halt, place: &FlowPlace<N>) -> f64 {
+        if halt == Halt::Rests { self.rolling_growth(place)[1].abs() } else { f64::INFINITY }
+    }
+
+    fn stuck<const N: usize>(&self, place: &FlowPlace<N>, _: &[Dual<f64>; MARGINS]) -> Option<Halt> {
+        let [s, c, p, w2, w3] = core::array::from_fn(|i| place.y[i]);
+        if self.ball || s > CLOSE {
+            return None;
+        }
+        if s < 1e-8 || (s < 1e-5 && self.hold != Hold::No && c * w2 > 0.0) {
+            return Some(Halt::Face);
+        }
+        // Roots of an almost vanishing psi' make the steps short here.
+        let (precession, w) = self.turning([s, c, p, w2, w3]);
+        let slow = s * (w3 - c * precession).abs() <= SLOWER * c * w2 + self.noise(w);
+        let soft = self.law.losses.slope(s, 1.0, 1.0) > 0.0;
+        (self.hold == Hold::No && slow && soft).then_some(Halt::Settles)
+    }
+
+    fn shown<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
+        let mut shown = *y;
+        let [s, c, q] = [y[0], y[1], y[2]];
+        let (_, [w1, _, w3]) = self.turning([s, c, q, y[3], y[4]]);
+        (shown[2], shown[4]) = (w1, w3);
+        if self.hold == Hold::Settled {
+            let (.., spin) = self.settled((s, c), q, y[3]);
+            (shown[2], shown[4]) = (s * (q - c * spin), c * q + s * s * spin);
+        }
+        shown
+    }
+}

@@ -1,0 +1,345 @@
+//! Losses during a slip: the signs of the motions that dry losses resist, the settling of the contact of a
+//! falling face, and the end of the rolling.
+
+use super::Slide;
+use crate::laws::body::Shape;
+use crate::laws::contact::grip;
+use crate::laws::contact::lossy::DAMPED;
+use crate::laws::contact::patch::rubs;
+use crate::laws::contact::slip::{SlipResponse, Slipping};
+use crate::laws::contact::together::{Resting, Rubs, Together};
+use crate::laws::loss::{
+    Couples, GRACE, Holds, Kinematics, Law, Losses, NEAR, SLACK, Ways, going, mirrored, rolling_growth,
+};
+use crate::laws::state::State;
+use crate::methods::flow::FlowPlace;
+use crate::motions::body::face::FLAT;
+use crate::motions::body::roll::lossy::at_rest;
+use crate::motions::dry::settled::{Balance, CLOSE, SLOWER, Turned, balance, lag, settles_within};
+use crate::motions::walk::numbers::{Halt, TIME};
+use crate::numbers::{Dual, Real};
+
+/// The share by which a couple may exceed the limit of friction that holds a contact which had settled.
+const HELD_SURELY: f64 = 1e-6;
+
+impl Slide {
+    /// Sets the signs (`ways`) of the motions that dry losses resist, and which of them friction holds, at a state whose
+    /// contact has not settled. `toward` is the direction of a slip from rest, and `known` a motion that friction has
+    /// just ceased to hold (true), or that it holds in any case.
+    pub fn sets_ways(&mut self, y: &State, slip: [f64; 2], toward: [f64; 2], known: Option<(Resting, bool)>) {
+        (self.settled, self.rolls_off) = (false, false);
+        // A settled contact stops at the very limit of friction, and the push on it falls from there on.
+        self.sure = if known == Some((Resting::Contour, false)) { HELD_SURELY } else { 0.0 };
+        let Some(losses) = self.law.losses else { return };
+        let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
+        let way = |speed: f64| if speed == 0.0 { 0.0 } else { speed.signum() };
+        let moving = Ways {
+            contour: way(w[2] - angle.1 / angle.0 * w[0]),
+            drilling: way(angle.0 * w[0] + angle.1 * w[2]),
+            ..Ways::default()
+        };
+        let (pull, twist) = self.pulls(angle, w, slip, toward);
+        let rests =
+            Together::of_body(&self.law.shape, &losses, (angle, w), slip, Rubs::Slips { pull, twist });
+        let fates = rests.map(|rests| (rests, rests.knowing(known).fates()));
+        let mut ways = moving;
+        if w[0] == 0.0 && w[2] == 0.0 && pull[1] == 0.0 && twist == 0.0 {
+            // The body only rocks, since no couple turns it.
+            ways = Ways { rocking: way(w[1]), ..Ways::default() };
+        }
+        if let Some((rests, [_, rolling, contour, drilling])) = fates {
+            if rests.has(Resting::Contour) {
+                ways.contour = -way(contour.way[0]);
+                ways.holds.contour = !contour.begins();
+            }
+            if rests.has(Resting::Drilling) {
+                ways.drilling = way(drilling.way[0]);
+                ways.holds.drilling = !drilling.begins();
+            }
+            if rests.has(Resting::Rolling) {
+                ways.holds.rolling = !rolling.begins();
+                [ways.rolling, ways.rocking] = rolling.way;
+                self.rolls_off = ways.rolling != 0.0 || w[0] != 0.0 || w[2] != 0.0 || pull[1] != 0.0;
+                self.rolls_off &= rolling.begins();
+            }
+        }
+        self.turn(ways);
+    }
+
+    /// The couple that holds the contact along the rim, and its limit, with the allowance for a contact that had settled.
+    pub(crate) fn surely<T: Real>(&self, [push, limit]: [T; 2]) -> [T; 2] {
+        [push, limit * limit.splat(1.0 + self.sure)]
+    }
+
+    /// The friction of a slip, or of one that begins in the direction `toward`: the force -N pull and the couple N twist.
+    fn pulls(&self, (s, c): (f64, f64), w: [f64; 3], slip: [f64; 2], toward: [f64; 2]) -> ([f64; 2], f64) {
+        let mu = self.law.strength;
+        if !self.law.dry {
+            return (slip.map(|u| mu * u), 0.0);
+        }
+        let (drilling, size) = (s * w[0] + c * w[2], slip[0].hypot(slip[1]));
+        match self.law.patch() {
+            Some(patch) if size > 0.0 || drilling != 0.0 => {
+                let [share, twist, _] = rubs(size, drilling, patch);
+                (slip.map(|u| mu * share * u), mu * twist)
+            }
+            _ if size > 0.0 => (slip.map(|u| mu * u / size), 0.0),
+            _ => (toward.map(|e| mu * e), 0.0),
+        }
+    }
+
+    pub fn holds(&self) -> Holds {
+        self.law.losses.map_or(Holds::default(), |losses| losses.holds())
+    }
+
+    /// Frees the direction of a rolling that has begun.
+    pub fn rolls_freely(&mut self) {
+        if let Some(ways) = self.law.losses.and_then(|losses| losses.ways).filter(|_| self.rolls_off) {
+            self.rolls_off = false;
+            self.turn(Ways { rolling: 0.0, rocking: 0.0, ..ways });
+        }
+    }
+
+    /// The direction of (w_h, w2) in which a rolling begins.
+    pub fn begins_to_roll(&self) -> Option<[f64; 2]> {
+        let ways = self.law.losses.and_then(|losses| losses.ways).filter(|_| self.rolls_off)?;
+        Some([ways.rolling, ways.rocking])
+    }
+
+    fn turn(&mut self, ways: Ways) {
+        if let (Some(losses), Some(sloped)) = (&mut self.law.losses, &mut self.sloped.losses) {
+            losses.ways = Some(ways);
+            *sloped = losses.map(|value| Dual { value, slope: 0.0 });
+            self.bare.losses = Some(losses.off_the_contour());
+        }
+    }
+
+    /// Reverses the sign of the rocking where a ball now leans to the other side, so that its direction in space stays
+    /// the same.
+    pub fn leans_over(&mut self) {
+        if let Some(ways) = self.law.losses.and_then(|losses| losses.ways) {
+            self.turn(Ways { rocking: -ways.rocking, ..ways });
+        }
+    }
+
+    /// The motion that friction ceases to hold at this halt; None if the halt stops a motion. A settled contact stops
+    /// where dry friction balances its push, so that friction holds it in any case.
+    pub fn known(&self, halt: Halt) -> Option<(Resting, bool)> {
+        let holds = self.holds();
+        match halt {
+            Halt::Contour if self.settled => Some((Resting::Contour, false)),
+            Halt::Contour if holds.rolling => Some((Resting::Rolling, true)),
+            Halt::Contour if holds.contour => Some((Resting::Contour, true)),
+            Halt::Drilling if holds.drilling => Some((Resting::Drilling, true)),
+            _ => None,
+        }
+    }
+
+    /// Whether a couple that grows with psi' has almost stopped the contact along the rim, while
+    /// the face falls.
+    pub(crate) fn settles<const N: usize>(&self, place: &FlowPlace<N>) -> bool {
+        let ([s, c, w1, w2, w3], shape) = (core::array::from_fn(|i| place.y[i]), &self.law.shape);
+        // `fall` is the speed at which either face falls.
+        let fall = c * w2;
+        let Some(losses) =
+            self.law.losses.filter(|_| s <= CLOSE && !self.ball && !self.settled && fall > 0.0)
+        else {
+            return false;
+        };
+        let spin = w3 - c / s * w1;
+        if s * spin.abs() > SLOWER * fall {
+            return false;
+        }
+        let slope = losses.slope(s, shape.rim.radius((s, c)), spin);
+        let rate = slope * self.lightness((s, c));
+        let Some(within) = settles_within(&losses, (s, fall), rate, s * spin / self.tol) else {
+            return false;
+        };
+        let (fastest, q) = (Self::fastest(&place.y), s * w1 + c * w3);
+        // Where dry friction exceeds the push, the contact point stops at a finite time and does not settle.
+        if self.pushed_on(&self.bare, (s, c), [s * q, w2, c * q], [place.y[5], place.y[6]])[0] <= 0.0 {
+            return false;
+        }
+        let balanced = self.balance((s, c), q, w2, [place.y[5], place.y[6]]).spin;
+        s * (spin - balanced).abs() <= within * self.tol * fastest + 1e-8 * s * balanced.abs()
+    }
+
+    /// The longest time step that damps a psi' which stops fast near the table, as in [`Lossy::damped`].
+    ///
+    /// [`Lossy::damped`]: crate::laws::contact::lossy::Lossy::damped
+    pub(crate) fn damped<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        let ([s, c, w1, _, w3], rim) = (core::array::from_fn(|i| y[i]), &self.law.shape.rim);
+        let Some(losses) = self
+            .law
+            .losses
+            .filter(|losses| losses.is_soft() && !losses.holds().contour && !losses.holds().rolling)
+        else {
+            return f64::INFINITY;
+        };
+        let slope = losses.slope(s.abs(), rim.radius((s, c)), w3 - c / s * w1);
+        DAMPED / (slope * self.lightness((s, c)))
+    }
+
+    /// The balance of a settled contact, from w_z, w2 and the slip.
+    fn balance(
+        &self,
+        angle: (f64, f64),
+        drilling: f64,
+        w2: f64,
+        u: [f64; 2],
+    ) -> Balance<(SlipResponse<f64>, f64)> {
+        let losses = self.law.losses.unwrap_or(Couples::of(&Losses::NONE, |x| x));
+        let way = losses.ways.map_or(0.0, |ways| ways.contour);
+        let act = |_: f64, w: [f64; 3], rate: f64| {
+            let (at, pace, push) = self.bare.settled(angle, w, u, rate);
+            Turned { acted: (at, pace), push, normal: at.force[0] }
+        };
+        balance(&losses, (angle, self.law.shape.rim.radius(angle)), (drilling, w2), way, act)
+    }
+
+    /// The excess of the push on a settled contact over the limit of dry friction, and the margin of
+    /// held drilling. `w` is that of a contact point at rest, and `bare` is the law without the couples
+    /// along the contour.
+    pub(crate) fn pushed_on<T: Real>(
+        &self,
+        bare: &Slipping<T>,
+        angle: (T, T),
+        w: [T; 3],
+        u: [T; 2],
+    ) -> [T; 2] {
+        let one = w[0].splat(1.0);
+        let Some(losses) = self.law.losses else { return [one; 2] };
+        let (resists, holds) = (losses.has(Law::DryContour), losses.holds().drilling);
+        if !resists && !holds {
+            return [one; 2];
+        }
+        let (at, _, push) = bare.settled(angle, w, u, one.splat(0.0));
+        let kept = if holds { hold(at.held) } else { one };
+        if !resists {
+            return [one, kept];
+        }
+        let dry = one.splat(losses.coefficient(Law::DryContour)) * at.force[0] * bare.shape.rim.radius(angle);
+        let way = losses.ways.map_or(0.0, |ways| ways.contour);
+        [one.splat(way) * push - dry, kept]
+    }
+
+    /// The numbers of this flow, from the common numbers `shown`; the third is w_z for a settled contact.
+    pub fn enter<const N: usize>(&self, shown: &[f64; N]) -> [f64; N] {
+        let mut y = *shown;
+        if self.settled {
+            (y[2], y[4]) = (y[0] * y[2] + y[1] * y[4], 0.0);
+        }
+        y
+    }
+
+    /// The numbers common to all flows, from the numbers of this flow.
+    pub(crate) fn common_numbers<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
+        let mut shown = *y;
+        if self.settled {
+            let [_, w2, _] = [y[2], y[3], y[4]];
+            let Balance { spin, .. } = self.balance((y[0], y[1]), y[2], w2, [y[5], y[6]]);
+            (shown[2], shown[4]) = (y[0] * (y[2] - y[1] * spin), y[1] * y[2] + y[0] * y[0] * spin);
+        }
+        shown
+    }
+
+    /// Writes the rates of the numbers of a settled contact. Returns precession, psi', and the power
+    /// of the losses.
+    pub(crate) fn settled_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) -> ([f64; 2], f64) {
+        let ([s, c, q, w2], u) = (core::array::from_fn(|i| y[i]), [y[5], y[6]]);
+        let Balance { precession, w: [w1, _, w3], turned, spin } = self.balance((s, c), q, w2, u);
+        let Turned { acted: (at, pace), push, normal } = turned;
+        let ([d1, d2, d3], [_, along, across]) = (at.w, at.force);
+        let turn = s * d1 + c * d3 - w2 * (c * w1 - s * w3);
+        let rates = [-(c * w2), s * w2, turn, d2, 0.0, at.u[0], at.u[1], 1.0];
+        for (to, rate) in all.iter_mut().zip(rates) {
+            *to = pace * rate;
+        }
+        all[8] = -(pace * (along * u[1] + across * u[0]));
+        let power = self.bare.power((s, c), [w1, w2, w3], normal) + push * spin;
+        ([precession, spin], power)
+    }
+
+    /// The rate of change of psi' under a unit couple along the contour.
+    fn lightness(&self, (s, c): (f64, f64)) -> f64 {
+        let Shape { i1, i3, .. } = self.law.shape;
+        1.0 / i3 + c / s * (c / s) / i1
+    }
+
+    /// Upper bound of the delay of a settled contact, which stops after dry friction has balanced the push.
+    pub fn settled_lag(&self, y: &State, slip: [f64; 2]) -> f64 {
+        let ((s, c), shape) = (y.theta.sin_cos(), &self.law.shape);
+        let turned = self.balance((s, c), s * y.w1 + c * y.w3, y.w2, slip).turned;
+        let (lightness, radius) = (self.lightness((s, c)), shape.rim.radius((s, c)));
+        self.law.losses.map_or(0.0, |losses| lag(&losses, (s, c * y.w2), radius, turned.push, lightness))
+    }
+
+    /// Error of w1 and w3 while psi' follows its balance: s abs(psi'), times the ratio of s abs(psi') to the
+    /// speed of fall if this is below 1.
+    pub fn settled_doubt(y: &State) -> f64 {
+        let fall = y.theta.cos() * y.w2;
+        let slower = y.theta.sin() * y.spin() / fall;
+        y.theta.sin() * y.spin().abs() * slower.abs().min(1.0)
+    }
+
+    /// The speed of rolling and rocking together, and its time derivative, with this w at a place.
+    pub(crate) fn rolling_growth<const N: usize>(&self, place: &FlowPlace<N>, w: [f64; 3]) -> [f64; 2] {
+        let [s, c, _, _, _, u_h, u_2] = core::array::from_fn(|i| place.y[i]);
+        rolling_growth((s, c), w, self.acts((s, c), w, [u_h, u_2]).w)
+    }
+
+    /// The end, by linear extrapolation, of rolling and rocking that rolling resistance has almost stopped,
+    /// and would also stop in the opposite direction.
+    pub(crate) fn comes_to_rest<const N: usize>(&self, place: &FlowPlace<N>) -> Option<[f64; N]> {
+        let there = |losses: &Couples<f64>| {
+            let planar = losses.ways.is_some_and(|ways| ways.rocking != 0.0);
+            losses.has(Law::RollingResistance) && !planar && !losses.holds().rolling
+        };
+        if !self.law.losses.as_ref().is_some_and(there) || place.y[0].abs() < FLAT {
+            return None;
+        }
+        let [s, c, w1, w2, w3] = core::array::from_fn(|i| place.y[i]);
+        let [speed, rate] = self.rolling_growth(place, [w1, w2, w3]);
+        let back = mirrored((s, c), [w1, w2, w3]);
+        if speed > 4.0 * NEAR || rate >= 0.0 || self.rolling_growth(place, back)[1] >= 0.0 {
+            return None;
+        }
+        let drills = |[s, c, w1, _, w3]: [f64; 5]| {
+            let drilling = s * w1 + c * w3;
+            [s * drilling, 0.0, c * drilling]
+        };
+        Some(at_rest(place, -speed / (rate * place.rate[TIME]), drills))
+    }
+}
+
+/// The margin of a motion that dry friction holds, from the couple that this needs and its limit.
+fn hold<T: Real>([push, limit]: [T; 2]) -> T {
+    grip(push.splat(1.0 + GRACE), limit, push * push)
+}
+
+/// The margins of the motions that dry losses resist: along the rim or, if it is held, of the rolling; and drilling (or
+/// rocking if the body only rocks). `held` has the couple that holds the drilling, and the limit of friction, and `kept`
+/// those of a motion along the rim or of rolling that is held.
+pub(crate) fn ways<T: Real>(losses: &Couples<T>, seen: &Kinematics<T>, held: [T; 2], kept: [T; 2]) -> [T; 2] {
+    let one = seen.spin.splat(1.0);
+    let size = one + seen.w[0].abs() / seen.angle.0.abs();
+    let slack = one.splat(SLACK) * size;
+    let Some(of) = losses.ways else { return [one; 2] };
+    let contour = if of.holds.contour || of.holds.rolling {
+        hold(kept)
+    } else if losses.has(Law::DryContour) {
+        going(of.contour, seen.spin, slack)
+    } else {
+        one
+    };
+    if of.rocking != 0.0 {
+        let way = one.splat(of.rocking);
+        let there = losses.has(Law::RollingResistance);
+        return [contour, if there { going(way, seen.w[1], slack) } else { one }];
+    }
+    if of.holds.drilling {
+        return [contour, hold(held)];
+    }
+    let there = losses.has(Law::Drilling);
+    [contour, if there { going(of.drilling, seen.drilling(), slack) } else { one }]
+}

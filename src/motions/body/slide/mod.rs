@@ -1,0 +1,528 @@
+//! A body that slips, from an initial slip or from rest, to the end of its slip.
+//!
+//! ```text
+//! y = (s, c, w1, w2, w3, u_h, u_2, t, heat; phi, psi, x, y)        in sigma, dt = |u|/(|u| + soft) dsigma
+//! u = 0   reached as exp(-sigma); the last part, below a hundredth of a tolerance, is extrapolated linearly
+//! N0 = 0,   eps = 1,   theta = 0,   theta = theta_end                margins that turn negative
+//! ```
+//! [`rk8`] takes the steps. A margin that becomes negative within a step, even if it is positive again at the
+//! end, is located on parts of the step; states at requested times are computed on such parts, too.
+//! [`contact::slip`](crate::laws::contact::slip) has the equations.
+//!
+//! Error: 1e-11 in states and 1e-12 in times; a test of `test_slip_reference` has 25 motions to 25 digits.
+
+mod creeps;
+mod lossy;
+mod slips;
+pub(crate) mod slow;
+
+use super::face::FLAT;
+use super::pole;
+use super::roll::lossy::REST;
+use super::spun::is_uniform;
+use crate::laws::body::{Body, Rim, Shape, landing_angle};
+use crate::laws::contact::slip::{Friction, SlipResponse, Slipping};
+use crate::laws::loss::{Couples, Holds, Losses};
+use crate::laws::state::State;
+use crate::methods::flow::{FASTEST, Flow, FlowPlace};
+use crate::methods::{radau, rk8};
+use crate::motions::dry::creep::{IMPLICIT_TURNS, rests_below};
+use crate::motions::dry::settled::EFFORT;
+use crate::motions::walk::numbers::{Halt, MARGINS, TIME, loses, poses};
+use crate::motions::walk::{MOMENT, slip_over};
+use crate::numbers::{Dual, Real};
+use core::f64::consts::PI;
+pub(crate) use lossy::ways;
+
+/// The halts of the margins, in the order of the margins.
+const SLIP_ENDS: [Halt; MARGINS] =
+    [Halt::Face, Halt::Side, Halt::LiftOff, Halt::Jam, Halt::Contour, Halt::Drilling];
+
+/// Error of the end of a slip that is extrapolated, in tolerances.
+const AT_ONCE: f64 = 0.01;
+/// Largest angle by which such a slip still turns.
+const STRAIGHT: f64 = 1e-3;
+/// Angle by which a direction beside that of a slip differs from it.
+const BESIDE: f64 = 1e-3;
+
+/// Sine of theta at which a slipping face has landed if it comes down by infinitely many turns. It is smaller
+/// than `FLAT`, since the time of the landing is extrapolated from the last turns.
+const FLATTER: f64 = 1e-14;
+
+/// The equations of a body that slips, and the ends of its slip.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Slide {
+    pub law: Slipping<f64>,
+    /// The law for numbers with a slope.
+    sloped: Slipping<Dual<f64>>,
+    /// The law without the couples along the contour.
+    bare: Slipping<f64>,
+    theta_end: f64,
+    ball: bool,
+    sticks: bool,
+    /// Sine of theta at which a face has landed.
+    flat: f64,
+    /// Whether a couple that grows with psi' has almost stopped the contact along the rim.
+    pub settled: bool,
+    /// Whether the body is a uniform ball on a patch of contact, whose slip dies; and whether it has died.
+    dies: bool,
+    pub died: bool,
+    /// Whether rolling and rocking begin from rest, in the direction that the signs of the losses have.
+    rolls_off: bool,
+    /// The share by which the couple that holds the contact along the rim may exceed its limit, after it has settled.
+    sure: f64,
+    pub tol: f64,
+}
+
+impl Slide {
+    pub fn new(body: &Body, friction: &Friction, losses: &Losses, tol: f64) -> Self {
+        let law = Slipping::on_losing(body, friction, losses);
+        let dual = |value: f64| Dual { value, slope: 0.0 };
+        let sloped = Slipping::of(&law.shape.map(dual), dual(law.strength), law.dry);
+        let sloped =
+            sloped.with_losses(law.losses.map(|losses| losses.map(dual))).with_patch(law.patch().map(dual));
+        let (theta_end, ball) = (body.theta_end(), body.is_ball());
+        let bare = law.with_losses(law.losses.map(Couples::off_the_contour));
+        let flat = if losses.turn_endlessly() { FLATTER } else { FLAT };
+        Self {
+            law,
+            sloped,
+            bare,
+            theta_end,
+            ball,
+            sticks: law.dry,
+            flat,
+            settled: false,
+            dies: law.patch().is_some() && is_uniform(body) && losses.is_none(),
+            died: false,
+            rolls_off: false,
+            sure: 0.0,
+            tol,
+        }
+    }
+
+    /// The speed below which a slip counts as zero.
+    pub fn over(&self) -> f64 {
+        self.law.patch().map_or(slip_over(self.law.dry, self.law.strength), rests_below)
+    }
+
+    /// Whether the rest of the slip is so short that a linear extrapolation to its end has an error below `AT_ONCE`
+    /// tolerances: the square of the angle by which the body turns meanwhile, and its product with the angle by which
+    /// the slip turns.
+    #[inline(never)]
+    fn ends_at_once<const N: usize>(&self, place: &FlowPlace<N>) -> bool {
+        let ([u, v], [du, dv]) = ([5, 6].map(|i| place.y[i]), [5, 6].map(|i| place.rate[i]));
+        let (square, pace) = (u * u + v * v, place.rate[TIME]);
+        let left = square / -(u * du + v * dv);
+        let allowed = AT_ONCE * self.tol;
+        // `turns` is at least `pace`.
+        if !(left > 0.0 && left * pace * (left * pace) < allowed) {
+            return false;
+        }
+        let falls = (place.y[3] / place.y[0]).abs();
+        let turns = (3.0 / self.calm(&place.y)).max(falls) * pace;
+        let bends = (u * dv - v * du).abs() / square;
+        let small = left * turns * (left * turns.max(bends)) < allowed;
+        small && left * bends < STRAIGHT && self.keeps_way(&place.y)
+    }
+
+    /// Whether a slip returns to its direction. A slip that leaves its direction the faster, the slower it is, may pass
+    /// by zero, however near.
+    fn keeps_way<const N: usize>(&self, y: &[f64; N]) -> bool {
+        let [s, c, w1, w2, w3, u, v] = core::array::from_fn(|i| y[i]);
+        let turns = |by: f64| {
+            let (u, v) = (u - by * v, v + by * u);
+            let at = self.acts((s, c), [w1, w2, w3], [u, v]).u;
+            u * at[1] - v * at[0]
+        };
+        !self.settled && turns(BESIDE) < turns(-BESIDE)
+    }
+
+    /// The energy of the body with these numbers.
+    pub fn energy<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        let state = State { theta: y[0].atan2(y[1]), w1: y[2], w2: y[3], w3: y[4] };
+        self.law.energy(&state, [y[5], y[6]])
+    }
+
+    /// The response of the body, as one compiled copy of the law for callers that need it only
+    /// once in a step.
+    #[inline(never)]
+    pub(crate) fn acts(&self, angle: (f64, f64), w: [f64; 3], u: [f64; 2]) -> SlipResponse<f64> {
+        self.law.answers(angle, w, u).0
+    }
+
+    /// The halt by the first margin that fails at the start of a slip; None if all margins are positive.
+    pub fn at_start(&self, y: &State, u: [f64; 2]) -> Option<Halt> {
+        let (s, c) = y.theta.sin_cos();
+        let at = self.acts((s, c), [y.w1, y.w2, y.w3], u);
+        let rises = y.w2 > 0.0 || (y.w2 == 0.0 && at.w[1] > 0.0);
+        let side = self.theta_end - y.theta;
+        if at.room <= 0.0 {
+            Some(Halt::Jam)
+        } else if self.theta_end < PI && (side < 0.0 || (side == 0.0 && !rises)) {
+            Some(Halt::Side)
+        } else if at.free <= 0.0 {
+            Some(Halt::LiftOff)
+        } else {
+            None
+        }
+    }
+
+    /// The error of a step in units of `tol`, where 1 is allowed; speeds count relative to the largest speed.
+    #[inline(always)]
+    pub fn error<T: Real, const N: usize>(tol: T, y: &[T; N], made: &rk8::Step<T, N>, dry: bool) -> T {
+        Self::error_beside(tol, y, made, dry, y[5].mac(y[5], y[6] * y[6]).sqrt())
+    }
+
+    /// The error of a step, where that of a dry slip is relative to the speed `slip`.
+    #[inline(always)]
+    fn error_beside<T: Real, const N: usize>(
+        tol: T,
+        y: &[T; N],
+        made: &rk8::Step<T, N>,
+        dry: bool,
+        slip: T,
+    ) -> T {
+        let one = tol.splat(1.0);
+        let fastest = Self::fastest(y);
+        let (per_tol, per_speed) = (one / tol, one / (tol * fastest));
+        // The error of a dry slip is relative to its speed, so that a vanishing slip keeps its direction.
+        let per_slip = if dry { per_speed.max(one.splat(1e3) / slip) } else { per_speed };
+        // The error of the sine is relative where the face is almost flat.
+        let per_sine = per_tol / y[0].abs().max(one.splat(1e-6)).min(one);
+        let per = |i: usize| match i {
+            0 => per_sine,
+            1 | 7 => per_tol,
+            5 | 6 => per_slip,
+            _ => per_speed,
+        };
+        made.error(per, N as f64) * made.strictness(tol, TIME, TIME)
+    }
+
+    /// The largest speed, at least 1.
+    #[inline(always)]
+    pub fn fastest<T: Real, const N: usize>(y: &[T; N]) -> T {
+        let one = y[0].splat(1.0);
+        let slip = y[5].mac(y[5], y[6] * y[6]).sqrt();
+        (2..5).fold(one, |most: T, i| most.max(y[i].abs())).max(slip)
+    }
+
+    /// Whether the margin `i` can end a slip of this body.
+    pub(crate) fn watches(&self, i: usize) -> bool {
+        match SLIP_ENDS[i] {
+            Halt::Face => !self.ball,
+            Halt::Side => self.theta_end < PI,
+            _ => true,
+        }
+    }
+
+    /// The numbers at the time `MOMENT` after the beginning of a slip along `way`, whose speed grows at the
+    /// rate `growth`. Used where no series exists.
+    pub(crate) fn nudged<const N: usize>(&self, start: &[f64; N], way: [f64; 2], growth: f64) -> [f64; N] {
+        let (angle, w) = ((start[0], start[1]), [start[2], start[3], start[4]]);
+        let u = [start[5], start[6]];
+        let rests = u == [0.0; 2] && self.law.dry && !self.creeps(start);
+        let (at, _, heat) = if rests {
+            (self.law.towards(angle, w, [0.0; 2], way), 1.0, 0.0)
+        } else {
+            self.law.answers(angle, w, u)
+        };
+        let ([s, c], mut y) = ([start[0], start[1]], *start);
+        let mut rates = [0.0; N];
+        rates[..8].copy_from_slice(&[
+            -(c * w[1]),
+            s * w[1],
+            at.w[0],
+            at.w[1],
+            at.w[2],
+            at.u[0],
+            at.u[1],
+            1.0,
+        ]);
+        if rests {
+            (rates[5], rates[6]) = (growth * way[0], growth * way[1]);
+        }
+        rates[8] = heat - (at.force[1] * u[1] + at.force[2] * u[0]);
+        let precession = w[0] / s;
+        if poses(N) {
+            let turning = [precession, w[2] - c * precession];
+            rates[9..13].copy_from_slice(&pose_rates(&self.law.shape.rim, start, turning, u));
+        }
+        if loses(N) {
+            rates[N - 1] = self.law.power(angle, w, at.force[0]);
+        }
+        (0..N).for_each(|i| y[i] += MOMENT * rates[i]);
+        if let Some([across, rocks]) = self.begins_to_roll() {
+            // A least speed, so that a rolling whose speed grows from zero has its direction.
+            for (i, way) in [(2, c * across), (3, rocks), (4, -(s * across))] {
+                y[i] += 2.0 * REST * way;
+            }
+        }
+        y
+    }
+}
+
+impl Flow<MARGINS> for Slide {
+    type Halt = Halt;
+    const TIME: usize = TIME;
+    const OVER: Halt = Halt::Time;
+    const PAUSE: Halt = Halt::Pause;
+    const ENDLESS: Halt = Halt::Endless;
+    const MAY_BE_STIFF: bool = true;
+
+    #[inline(always)]
+    fn is_stiff<const N: usize>(&self, place: &FlowPlace<N>) -> bool {
+        self.law.patch().is_some() && !self.died && self.creeps_fast(place)
+    }
+
+    fn stable<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
+        self.follows_within(place) / place.rate[7]
+    }
+
+    #[inline(never)]
+    fn implicit_step<const N: usize>(
+        &self,
+        from: &FlowPlace<N>,
+        h: f64,
+        guess: radau::Guess<N>,
+    ) -> (rk8::Step<f64, N>, radau::Collocated<N>) {
+        self.creeps_on(from, h, guess)
+    }
+
+    fn is_extrapolated(halt: Halt) -> bool {
+        matches!(halt, Halt::Standstill | Halt::Pole)
+    }
+
+    fn theta<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        y[0].atan2(y[1])
+    }
+
+    #[inline(always)]
+    fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {
+        let [s, c, w1, w2, w3, u_h, u_2] = core::array::from_fn(|i| y[i]);
+        let ([precession, spin], power) = if self.settled {
+            self.settled_rates(y, all)
+        } else {
+            let precession = w1 / s;
+            let at = if self.law.patch().is_some() { self.patched(y, all) } else { self.law.rates(y, all) };
+            let power = if loses(N) { self.law.power((s, c), [w1, w2, w3], at.force[0]) } else { 0.0 };
+            ([precession, w3 - c * precession], power)
+        };
+        if loses(N) {
+            all[N - 1] = all[7] * power;
+        }
+        if poses(N) {
+            let pace = all[7];
+            let pose = pose_rates(&self.law.shape.rim, y, [precession, spin], [u_h, u_2]);
+            all[9..13].copy_from_slice(&pose.map(|x| pace * x));
+        }
+    }
+
+    fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; MARGINS] {
+        let dual = |i: usize| Dual { value: place.y[i], slope: place.rate[i] };
+        let [s, c, mut w1, w2, mut w3, u_h, u_2] = core::array::from_fn(dual);
+        if self.settled {
+            (w1, w3) = (s * w1, c * w1);
+        }
+        let (angle, w, u) = ((s, c), [w1, w2, w3], [u_h, u_2]);
+        // Only these three are needed, and for a contact point no others are computed.
+        let needed = |at: SlipResponse<_>| (at.free, at.room, [at.held, at.kept]);
+        let (free, room, [held, kept]) = match self.sloped.patch() {
+            Some(patch) => needed(self.sloped_on(angle, w, u, patch).0),
+            None => needed(self.sloped.at(angle, w, u).0),
+        };
+        let one = s.splat(1.0);
+        let (high, far) = landing_angle(self.theta_end);
+        let side = if self.theta_end < PI { s.splat(high) * c - s.splat(far) * s } else { one };
+        let [contour, drilling] = match self.sloped.losses.as_ref().filter(|_| loses(N)) {
+            Some(losses) => {
+                let seen = losses.seen(&self.sloped.shape.rim, (s, c), w1 / s, [w1, w2, w3]);
+                ways(losses, &seen, held, self.surely(kept))
+            }
+            None => [one; 2],
+        };
+        let face = s - s.splat(self.flat);
+        let [contour, drilling] = if self.settled {
+            let losses = self.bare.losses.map(|losses| losses.map(|value| Dual { value, slope: 0.0 }));
+            let bare = self.sloped.with_losses(losses);
+            let [push, kept] = self.pushed_on(&bare, (s, c), [w1, w2, w3], [u_h, u_2]);
+            [push, if self.holds().drilling { kept } else { drilling }]
+        } else {
+            [contour, drilling]
+        };
+        [if self.ball { one } else { face }, side, free, room, contour, drilling]
+    }
+
+    fn margin<const N: usize>(&self, y: &[f64; N], i: usize) -> f64 {
+        let [s, c, mut w1, w2, mut w3, u_h, u_2, ..] = core::array::from_fn::<_, 9, _>(|i| y[i]);
+        if self.settled {
+            (w1, w3) = (s * w1, c * w1);
+        }
+        match SLIP_ENDS[i] {
+            Halt::Face => s - self.flat,
+            Halt::Contour if self.settled => self.pushed_on(&self.bare, (s, c), [w1, w2, w3], [u_h, u_2])[0],
+            Halt::Drilling if self.settled && self.holds().drilling => {
+                self.pushed_on(&self.bare, (s, c), [w1, w2, w3], [u_h, u_2])[1]
+            }
+            Halt::Side => {
+                let (high, far) = landing_angle(self.theta_end);
+                high * c - far * s
+            }
+            Halt::Contour | Halt::Drilling => {
+                let Some(losses) = self.law.losses else { return 1.0 };
+                let seen = losses.seen(&self.law.shape.rim, (s, c), w1 / s, [w1, w2, w3]);
+                let [held, kept] = if losses.holds() == Holds::default() {
+                    [[1.0; 2]; 2]
+                } else {
+                    let at = self.acts((s, c), [w1, w2, w3], [u_h, u_2]);
+                    [at.held, at.kept]
+                };
+                ways(&losses, &seen, held, self.surely(kept))[usize::from(SLIP_ENDS[i] == Halt::Drilling)]
+            }
+            end => {
+                let at = self.acts((s, c), [w1, w2, w3], [u_h, u_2]);
+                if end == Halt::LiftOff { at.free } else { at.room }
+            }
+        }
+    }
+
+    /// The halt of an almost vanished slip, extrapolated linearly to u = 0, or of a body that
+    /// rests or settles.
+    fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
+        if loses(N)
+            && !self.settled
+            && let Some(rest) = self.comes_to_rest(place)
+        {
+            return Some((Halt::Rests, rest));
+        }
+        if self.ball && !self.settled {
+            let rates = place.rate.map(|rate| rate / place.rate[TIME]);
+            if let Some(there) = pole::passed(&place.y, &rates) {
+                return Some((Halt::Pole, there));
+            }
+        }
+        if loses(N) && self.law.patch().is_none() && self.settles(place) {
+            return Some((Halt::Settles, place.y));
+        }
+        if self.law.patch().is_some() {
+            return self.hardly_rubs(place);
+        }
+        if !self.sticks {
+            return None;
+        }
+        let over = if self.ends_at_once(place) { f64::INFINITY } else { self.over() };
+        vanished(place, over).map(|y| (Halt::Standstill, y))
+    }
+
+    fn slows<const N: usize>(&self, halt: Halt, place: &FlowPlace<N>) -> f64 {
+        let w = [place.y[2], place.y[3], place.y[4]];
+        if halt == Halt::Rests { self.rolling_growth(place, w)[1].abs() } else { f64::INFINITY }
+    }
+
+    fn end(&self, i: usize) -> Halt {
+        let rocks = self.law.losses.and_then(|losses| losses.ways).is_some_and(|ways| ways.rocking != 0.0);
+        if i == 5 && rocks { Halt::Rocking } else { SLIP_ENDS[i] }
+    }
+
+    #[inline(always)]
+    fn error<const N: usize>(&self, y: &[f64; N], made: &rk8::Step<f64, N>) -> f64 {
+        let slip = if self.law.patch().is_some() { self.rubs(y) } else { y[5].mac(y[5], y[6] * y[6]).sqrt() };
+        Self::error_beside(self.tol, y, made, self.law.dry, slip)
+    }
+
+    fn fastest<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        Self::fastest(y)
+    }
+
+    fn effort(&self) -> u64 {
+        if self.settled { EFFORT } else { 1 }
+    }
+
+    fn first<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        first(y)
+    }
+
+    fn calm<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        let y =
+            if self.settled { core::array::from_fn(|i| if i == 2 { y[0] * y[2] } else { y[i] }) } else { *y };
+        longest(&y, &self.law.shape)
+    }
+
+    fn longest<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
+        // `calm` limits the time, and a step in sigma takes less time where the slip is slow.
+        let mut most = self.calm(&place.y);
+        if self.is_stiff(place) {
+            most *= IMPLICIT_TURNS / place.rate[7];
+        } else {
+            if loses(N) && !self.settled {
+                most = most.min(self.damped(&place.y));
+            }
+            most /= place.rate[7].min(1.0);
+        }
+        if self.law.patch().is_some() {
+            most = most.min(self.kinked(place));
+        }
+        let Some(losses) = self.sloped.losses.filter(|_| loses(N) && !self.settled) else { return most };
+        let [s, c, w1, w2, w3] = core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
+        most.min(losses.longest(&losses.seen(&self.sloped.shape.rim, (s, c), w1 / s, [w1, w2, w3]), false))
+    }
+
+    /// The halt where the steps become short because the force grows without bound.
+    fn stuck<const N: usize>(&self, place: &FlowPlace<N>, margins: &[Dual<f64>; MARGINS]) -> Option<Halt> {
+        let [s, c, _, w2] = core::array::from_fn(|i| place.y[i]);
+        // A face that lands within this time lands before any step that is short enough.
+        if !self.ball && s.abs() < 100.0 * FLAT * w2.abs().min(1.0) && c * w2 > 0.0 {
+            return Some(Halt::Face);
+        }
+        // With dry friction this margin is proportional to the speed of the slip.
+        let size = if self.law.dry { self.rubs(&place.y) } else { 1.0 };
+        (margins[3].value < 0.1 * self.law.shape.i1 * size).then_some(Halt::Jam)
+    }
+
+    fn shown<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
+        self.common_numbers(y)
+    }
+}
+
+/// The numbers at the end of a slip that is slower than `over`, extrapolated linearly.
+pub(crate) fn vanished<const N: usize>(place: &FlowPlace<N>, over: f64) -> Option<[f64; N]> {
+    let [u_h, u_2] = [place.y[5], place.y[6]];
+    let speed = u_h.hypot(u_2);
+    // `slowing` is the rate in sigma at which the speed of the slip falls.
+    let slowing = -(u_h * place.rate[5] + u_2 * place.rate[6]) / speed;
+    if speed > over || slowing <= 0.0 && speed > 0.0 {
+        return None;
+    }
+    let left = if speed > 0.0 { speed / slowing } else { 0.0 };
+    let mut y: [f64; N] = core::array::from_fn(|i| place.y[i] + left * place.rate[i]);
+    (y[5], y[6]) = (0.0, 0.0);
+    Some(y)
+}
+
+/// The rates of phi, psi and the place of the contact point.
+#[inline(always)]
+pub(crate) fn pose_rates<const N: usize>(
+    rim: &Rim<f64>,
+    y: &[f64; N],
+    [precession, spin]: [f64; 2],
+    [u_h, u_2]: [f64; 2],
+) -> [f64; 4] {
+    let (sin, cos) = y[9].sin_cos();
+    let (out, on) = (u_h + rim.rho * y[3], u_2 + rim.radius((y[0], y[1])) * spin);
+    [precession, spin, out * cos - on * sin, out * sin + on * cos]
+}
+
+/// A first step that is short enough, also for an almost flat face that turns or falls fast; the next
+/// steps grow fast.
+pub(crate) fn first<const N: usize>(y: &[f64; N]) -> f64 {
+    let fastest = y[2].abs().max(y[3].abs());
+    0.02 / (1.0 + fastest.max(y[4].abs()).max((fastest / y[0].abs()).min(FASTEST)))
+}
+
+/// The longest step that does not amplify rounding: three radians of the rotation or of the free nutation I3 w3/I1.
+#[inline(always)]
+pub(crate) fn longest<T: Real, const N: usize>(y: &[T; N], shape: &Shape<T>) -> T {
+    let one = y[0].splat(1.0);
+    let (nutation, precession) = ((y[4] * shape.i3 / shape.i1).abs(), (y[2] / y[0]).abs());
+    one.splat(3.0) / precession.max(y[2].abs()).max(y[3].abs()).max(nutation).max(one)
+}

@@ -1,0 +1,176 @@
+//! The slipping phases of a body, and the phase that follows each of them.
+
+use super::Slide;
+use crate::error::Error;
+use crate::laws::loss::Holds;
+use crate::laws::loss::Law;
+use crate::methods::flow::{Flow, FlowPlace, Steps};
+use crate::motions::Ending;
+use crate::motions::body::face::turning_share;
+use crate::motions::body::phases::BodyWalk;
+use crate::motions::body::write::state;
+use crate::motions::walk::numbers::{Halt, TIME, loses};
+use crate::motions::walk::{Next, Pause, Phases, after_rest, ending};
+
+/// A face barely lands if more than this share of its energy is in the turning, and it falls, rather than whirrs, if the
+/// square of w2 exceeds sin theta by this factor.
+const LANDS_BARELY: f64 = 1e-4;
+const FALLS_FAST: f64 = 100.0;
+/// Time of a few rockings of a face, in units of w2 (1 + I1).
+const ROCKINGS: f64 = 8.0;
+
+/// Number of steps between two estimates of the end of a whirr that slips.
+const STEPS_PER_LOOK: u64 = 64;
+
+impl<const N: usize> BodyWalk<'_, N> {
+    /// Computes a slip from `place`, within the limits `steps`.
+    pub(crate) fn slides(
+        &mut self,
+        place: FlowPlace<N>,
+        steps: Steps,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Pause<N>, Error> {
+        let (slide, first) = (self.of.slide, self.made.motion.states.len());
+        // The flow of a whirr pauses regularly, so that its end can be extrapolated before its last
+        // turns are computed.
+        let most = if self.of.tail.is_some() { steps.most.min(STEPS_PER_LOOK) } else { steps.most };
+        let steps = Steps { most, ..steps };
+        let (ask, made) = (self.ask, &mut self.made);
+        let mut write = |y: &[f64; N]| made.slid(&ask, &slide, y);
+        let slid = slide.run(place, steps, &self.since[first..], &mut write, go_on);
+        self.has_spent(slid.spent);
+        if slid.halt == Halt::Pause {
+            if let Some(end) = self.whirr_ends(&slid.y) {
+                self.arrives(slid.y);
+                self.made.path.slipping += end[0] - self.began;
+                self.made.path.leaves_turns = true;
+                self.lies_flat(end);
+                return Ok(Pause::No);
+            }
+            return Ok(Pause::Here(slide.enter(&slid.y), Some(slid.step)));
+        }
+        self.claims_time_error(slid.halt, slid.steep, &slid.y);
+        self.slip_ends(slid.y, slid.halt);
+        Ok(Pause::No)
+    }
+
+    /// Ends a slip at the numbers `y`, and chooses the next phase.
+    pub(crate) fn slip_ends(&mut self, y: [f64; N], halt: Halt) {
+        if self.of.slide.settled && loses(N) {
+            // A change of the sum of energy, heat and lost energy while the contact is settled is an error of the
+            // numbers.
+            let sum = |y: &[f64; N]| self.of.slide.energy(y) + y[8] + y[N - 1];
+            self.claims((sum(&y) - sum(&self.at)).abs());
+        }
+        self.arrives(y);
+        if halt == Halt::Face {
+            let [s, c, w1, w2] = core::array::from_fn(|i| self.at[i]);
+            let turns = turning_share(self.of.body.i1(), s, w1, w2) >= 0.25;
+            let end = self.of.tail.and_then(|tail| tail.end()).filter(|[end, _]| turns && *end >= self.at[7]);
+            let fall = (c * w2).max(0.0);
+            let [end, doubt] = end.unwrap_or([self.at[7] + if fall > 0.0 { s / fall } else { 0.0 }, 0.0]);
+            self.claims(doubt + self.rocks_on());
+            (self.at[0], self.at[7]) = (0.0, end);
+        }
+        self.made.path.slipping += self.at[7] - self.began;
+        if !matches!(halt, Halt::Time | Halt::Pause | Halt::Pole) {
+            let Holds { contour, drilling, rolling } = self.of.slide.holds();
+            self.stops_exactly(Holds {
+                contour: contour || halt == Halt::Contour,
+                drilling: drilling || halt == Halt::Drilling,
+                rolling: rolling || halt == Halt::Rests,
+            });
+        }
+        let mut y = state(&self.at);
+        if halt == Halt::Side {
+            y.theta = self.of.body.theta_end();
+        }
+        self.of.state = y;
+        let slip = [self.at[5], self.at[6]];
+        match halt {
+            Halt::Time | Halt::Pause => {}
+            Halt::Pole => {
+                self.claims_passage();
+                self.next = Some(Next::SlipsOn);
+            }
+            Halt::Standstill if !self.of.slide.died && self.of.slide.has_died(&self.at) => {
+                self.drops_slip(slip);
+                self.resumes_phase();
+                self.next = Some(Next::Slips);
+            }
+            Halt::Standstill => {
+                self.of.slide.died = false;
+                self.continues_with(after_rest(Phases::rests(self)));
+            }
+            Halt::Settles => {
+                self.of.slide.settled = true;
+                self.claims(Slide::settled_doubt(&y));
+                self.next = Some(Next::SlipsOn);
+            }
+            Halt::Contour | Halt::Drilling | Halt::Rocking | Halt::Rests => {
+                let known = self.of.slide.known(halt);
+                if halt == Halt::Contour && self.of.slide.settled {
+                    self.claims(self.of.slide.settled_lag(&y, slip));
+                }
+                if halt == Halt::Rocking {
+                    (self.at[3], self.of.state.w2) = (0.0, 0.0);
+                }
+                self.of.slide.sets_ways(&{ self.of.state }, slip, [0.0; 2], known);
+                self.next = Some(Next::SlipsOn);
+            }
+            halt => self.next = Some(Next::Ends(ending(halt))),
+        }
+    }
+
+    /// Includes the length of the passage of a pole that has just ended in the estimated error, if an output lies in it:
+    /// there the numbers were linear in time.
+    pub(crate) fn claims_passage(&mut self) {
+        let lasts = 2.0 * self.at[0] / self.at[2].hypot(self.at[3]);
+        let last = self.made.motion.states.len().checked_sub(1).map(|i| self.since[i]);
+        if last.is_some_and(|t| t > self.at[TIME] - lasts) {
+            self.claims(lasts);
+        }
+    }
+
+    /// Ends the rest of a slip of a uniform ball, which friction turns into rolling.
+    fn drops_slip(&mut self, [u_h, u_2]: [f64; 2]) {
+        let ([s, c], share) = ([self.at[0], self.at[1]], 1.0 / (1.0 + self.of.body.i3()));
+        for (i, turned) in [(2, -(c * u_2)), (3, u_h), (4, s * u_2)] {
+            self.at[i] += share * turned;
+        }
+        self.claims(u_h.hypot(u_2));
+        self.stop_slip();
+        self.of.state = state(&self.at);
+    }
+
+    /// The error of the time at which a falling face has landed, although it hardly cleared the table or hardly did not:
+    /// where rolling resistance has left a turning of the size of rounding errors, these decide whether it lands or goes
+    /// on to rock, a few times at most.
+    pub(crate) fn rocks_on(&self) -> f64 {
+        let ([s, _, w1, w2], i1) = (core::array::from_fn(|i| self.at[i]), self.of.body.i1());
+        let barely = turning_share(i1, s, w1, w2) > LANDS_BARELY && w2 * w2 > FALLS_FAST * s;
+        if barely && self.ask.losses.coefficient(Law::RollingResistance) > 0.0 {
+            ROCKINGS * w2.abs() * (1.0 + i1)
+        } else {
+            0.0
+        }
+    }
+
+    /// The time at which a slipping whirr ends, and its error, if they are known and no output is
+    /// requested before.
+    pub(crate) fn whirr_ends(&mut self, at: &[f64; N]) -> Option<[f64; 2]> {
+        let until = self.until().unwrap_or(f64::INFINITY);
+        let tail = self.of.tail.as_mut()?;
+        tail.adds_point(at[7], at[0], at[2]);
+        tail.known(at[0], until)
+    }
+
+    /// Ends the walk where the face lands, at a time with its error.
+    pub(crate) fn lies_flat(&mut self, [time, doubt]: [f64; 2]) {
+        self.claims(self.rocks_on());
+        (self.at[0], self.at[7]) = (0.0, time);
+        self.of.state = state(&self.at);
+        self.claims(doubt);
+        self.records_event(Ending::Face);
+    }
+}

@@ -1,0 +1,136 @@
+//! The slow slips of a body of revolution, as power series of all of its numbers.
+
+use crate::laws::contact::lying::Lying;
+use crate::laws::contact::slip::Slipping;
+use crate::laws::loss::Ways;
+use crate::motions::walk::numbers::{loses, poses};
+use crate::motions::walk::slow::{SlowRates, SlowSlips, turned};
+use crate::motions::walk::{SlowLaw, SlowSeries};
+use crate::numbers::{Real, Series};
+
+/// The series of a body's slow slips.
+pub(crate) struct BodySlips {
+    slips: SlowSlips<5>,
+    /// Whether the body slips on one rim, and the signs of the motions that its dry losses resist, for which the law was
+    /// recorded.
+    one: bool,
+    ways: Option<Ways>,
+    /// Index of the rate of the lost energy in [`SlowRates::more`].
+    lost: Option<usize>,
+}
+
+/// The law of a slip on one rim, or on two rims of which the other already slips, with the signs of its dry losses.
+pub(crate) enum Slippery {
+    One(Slipping<f64>),
+    Two(Lying<f64>, [f64; 2]),
+}
+
+impl BodySlips {
+    /// The series for a motion with `count` numbers.
+    pub fn of(law: &Slippery, tol: f64, count: usize) -> Self {
+        match law {
+            Slippery::One(law) => Self::on_one(law, tol, count),
+            Slippery::Two(law, ways) => Self::on_two(law, *ways, tol, count),
+        }
+    }
+
+    /// Whether these are the slips of this body on one rim under this law.
+    pub fn are_under(&self, law: &Slipping<f64>) -> bool {
+        self.one && self.ways == law.losses.and_then(|losses| losses.ways)
+    }
+
+    fn on_two(law: &Lying<f64>, ways: [f64; 2], tol: f64, count: usize) -> Self {
+        let mut lost = None;
+        let slips = SlowSlips::of(tol, |tape, [s, c, w1, _, w3], slip, way| {
+            let taped = law.map(|x| tape.number(x));
+            let y = [w1, w3, slip[0], slip[1]];
+            let mu = taped.strength;
+            let [u, v] = taped.other_slip(y);
+            let size = (u * u + v * v).sqrt();
+            let at = taped.slipping_along(y, [way.map(|x| mu * x), [mu * u / size, mu * v / size]], ways);
+            let [[_, low_2, low_h], [_, up_2, up_h]] = at.force;
+            let mut more = vec![-(low_2 * slip[1] + low_h * slip[0] + up_2 * v + up_h * u)];
+            if poses(count) {
+                more.extend([w1, w3, slip[0], slip[1] + w3]);
+            }
+            if loses(count) {
+                lost = Some(more.len());
+                more.push(-(at.couple[0] * w1 + at.couple[1] * w3));
+            }
+            let still = tape.number(0.0);
+            let _ = (s, c);
+            SlowRates { numbers: [still, still, at.w[0], still, at.w[1]], slip: at.u, more }
+        });
+        Self { slips, one: false, ways: None, lost }
+    }
+
+    fn on_one(law: &Slipping<f64>, tol: f64, count: usize) -> Self {
+        let mut lost = None;
+        let slips = SlowSlips::of(tol, |tape, [s, c, w1, w2, w3], slip, way| {
+            let number = |x: f64| tape.number(x);
+            let taped = Slipping::of(&law.shape.map(number), number(law.strength), true)
+                .with_losses(law.losses.map(|losses| losses.map(number)));
+            let (w, rim) = ([w1, w2, w3], &taped.shape.rim);
+            let at = taped.towards((s, c), w, slip, way);
+            let [normal, along, across] = at.force;
+            let mut more = vec![-(along * slip[1] + across * slip[0])];
+            let precession = w1 / s;
+            if poses(count) {
+                let spin = w3 - c * precession;
+                let (out, on) = (slip[0] + rim.rho * w2, slip[1] + rim.radius((s, c)) * spin);
+                more.extend([precession, spin, out, on]);
+            }
+            if let Some(losses) = taped.losses.as_ref().filter(|_| loses(count)) {
+                lost = Some(more.len());
+                more.push(losses.power(&losses.seen(rim, (s, c), precession, w), normal));
+            }
+            let [d1, d2, d3] = at.w;
+            SlowRates { numbers: [-(c * w2), s * w2, d1, d2, d3], slip: at.u, more }
+        });
+        Self { slips, one: true, ways: law.losses.and_then(|losses| losses.ways), lost }
+    }
+}
+
+impl<const N: usize> SlowLaw<N> for BodySlips {
+    #[inline(never)]
+    fn follow(&mut self, y: &[f64; N], angle: Series, growth: f64, speed: f64) -> Option<Box<SlowSeries<N>>> {
+        let start = core::array::from_fn(|i| y[i]);
+        let slow = self.slips.follow(start, (angle, growth), speed)?;
+        let rate = |i: usize| self.slips.more(i);
+        let mut numbers: [Series; N] = core::array::from_fn(|i| Series::of(y[i]));
+        numbers[..5].copy_from_slice(&slow.known);
+        numbers[5..7].copy_from_slice(&slow.slip);
+        (numbers[7].at[1], numbers[8]) = (1.0, rate(0).integral(y[8]));
+        if poses(N) {
+            let [precession, spin, out, on] = [1, 2, 3, 4].map(rate);
+            (numbers[9], numbers[10]) = (precession.integral(y[9]), spin.integral(y[10]));
+            let [sin, cos] = circle(y[9], &precession, slow.terms);
+            let product = |a: &Series, b: &Series, from: f64| a.times(b, slow.terms - 1).integral(from);
+            numbers[11] = product(&out, &cos, y[11]).plus(-1.0, &product(&on, &sin, 0.0));
+            numbers[12] = product(&out, &sin, y[12]).plus(1.0, &product(&on, &cos, 0.0));
+        }
+        if let Some(lost) = self.lost {
+            numbers[N - 1] = rate(lost).integral(y[N - 1]);
+        }
+        let (until, ends) = slow.until(&numbers[..9]);
+        Some(Box::new(SlowSeries {
+            numbers,
+            from: y[7],
+            until,
+            ends,
+            pays: slow.pays(until, ends),
+            angle: slow.angle,
+        }))
+    }
+}
+
+/// The first `terms` coefficients of the sine and the cosine of an angle that grows from
+/// `start` at this rate.
+fn circle(start: f64, rate: &Series, terms: usize) -> [Series; 2] {
+    let (sin, cos) = start.sin_cos();
+    let (mut sine, mut cosine) = (Series::of(sin), Series::of(cos));
+    for n in 1..terms {
+        (sine.at[n], cosine.at[n]) = (turned(&cosine.at, &rate.at, n), -turned(&sine.at, &rate.at, n));
+    }
+    [sine, cosine]
+}

@@ -1,0 +1,176 @@
+//! A uniform ball, l = 0 and I1 = I3 = I, whose phases are known: none of them is integrated.
+//!
+//! ```text
+//! rolls, flies    w stays in space, and the axis n turns about it
+//! slips           u = u0 (1 - t/T),   T = |u0|/(mu (1 + 1/I)),   w = w0 + a t,   a = mu z x u0/(I |u0|)
+//! creeps, u = 0   w = w0 + a t,   a = -sgn(w_z) mu eps g(0) z/I                           on a patch, until w_z = 0
+//! n' = w x n      n = sum n_k t^k,   (k + 1) n_{k+1} = w0 x n_k + a x n_{k-1}        in parts of a radian
+//! ```
+//! The normal force on the table is the weight, rolling needs no friction, and a slip keeps its direction (Coriolis,
+//! Theorie mathematique des effets du jeu de billard (1835)). All vectors are along e_h, e2 and z of the phase's
+//! beginning, where n = (-s, 0, c). With poses the walk computes a uniform ball as any other body.
+//!
+//! Error: a few roundings of each phase, of which every later angle, speed and time has its share; of w1, w2 and the slip
+//! over sin(theta).
+
+use super::fly::Aloft;
+use crate::laws::body::Body;
+use crate::laws::contact::Table;
+use crate::laws::contact::slip::Friction;
+use crate::motions::Ask;
+use core::f64::consts::PI;
+
+/// Roundings of the numbers of one phase.
+pub(crate) const OF_A_PHASE: f64 = 8.0;
+/// Two terms of the series in succession that are smaller than this end a part of it; in a part w h and a h^2 are at most
+/// 1, so that there are thirty terms at most.
+const NO_MORE: f64 = 1e-18;
+
+/// The largest number of parts of a slip, as many as the steps of an integrator would need all its evaluations for.
+const MOST_PARTS: f64 = 4e5;
+const PARTS_PER_TIME: f64 = 2e3;
+
+/// Whether every phase of this motion is known.
+pub(crate) fn knows(body: &Body, ask: &Ask) -> bool {
+    let dry = match ask.table {
+        Table::Rolling { .. } | Table::Smooth => true,
+        Table::Rubs(Friction::Coulomb { patch, .. }) => patch == 0.0,
+        Table::Rubs(Friction::Viscous { .. }) => false,
+    };
+    is_uniform(body) && dry && !ask.pose && ask.losses.is_none()
+}
+
+/// Whether the body is a ball with equal moments and its centre of mass in its centre, on any part of which it rolls.
+pub(crate) fn is_uniform(body: &Body) -> bool {
+    body.is_ball() && body.ell() == 0.0 && body.i1() == body.i3() && body.theta_end() >= PI
+}
+
+/// The errors of a motion whose phases are known: roundings of the speeds so far, the error of the axis, and that of the
+/// time.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Roundings {
+    pub count: f64,
+    pub turned: f64,
+    pub late: f64,
+}
+
+fn cross([a, b, c]: [f64; 3], [x, y, z]: [f64; 3]) -> [f64; 3] {
+    [b * z - c * y, c * x - a * z, a * y - b * x]
+}
+
+fn size([a, b, c]: [f64; 3]) -> f64 {
+    (a * a + b * b + c * c).sqrt()
+}
+
+/// A phase from its start.
+pub(crate) struct Spun {
+    from: Aloft,
+    /// The axis at the time `since` of the phase.
+    axis: [f64; 3],
+    since: f64,
+    w: [f64; 3],
+    /// The change of w in a unit of time, and the share of its slip that the ball loses in it.
+    push: [f64; 3],
+    pub slows: f64,
+    pub fastest: f64,
+}
+
+impl Spun {
+    pub fn new(from: &Aloft, push: [f64; 3], slows: f64) -> Self {
+        let ((s, c), [w1, w2, w3]) = (from.angle, from.w);
+        let w = [c * w1 - s * w3, w2, s * w1 + c * w3];
+        let fastest = w.into_iter().chain(from.slip).fold(1.0, |most: f64, x| most.max(x.abs()));
+        Self { from: *from, axis: [-s, 0.0, c], since: 0.0, w, push, slows, fastest }
+    }
+
+    /// A slip under friction of this strength; without friction it does not slow down.
+    pub fn rubbing(from: &Aloft, inertia: f64, mu: f64) -> Self {
+        let speed = from.slip[0].hypot(from.slip[1]);
+        if mu == 0.0 || speed == 0.0 {
+            return Self::new(from, [0.0; 3], 0.0);
+        }
+        let [along, across] = from.slip.map(|u| mu * u / (inertia * speed));
+        Self::new(from, [-across, along, 0.0], mu * (1.0 + 1.0 / inertia) / speed)
+    }
+
+    /// A ball whose drilling the couple of a patch slows down, in a unit of time by `rate`, while it does not slip.
+    pub fn drilling(from: &Aloft, rate: f64) -> Self {
+        let Self { w: [.., w_z], .. } = Self::new(from, [0.0; 3], 0.0);
+        Self::new(from, [0.0, 0.0, -rate * w_z.signum()], 0.0)
+    }
+
+    /// The velocity of the drilling at the start.
+    pub fn drills(&self) -> f64 {
+        self.w[2]
+    }
+
+    fn speeds(&self, t: f64) -> [f64; 3] {
+        core::array::from_fn(|i| self.w[i] + self.push[i] * t)
+    }
+
+    /// The angle by which the ball turns at most in a time, and the number of parts of a series over this time.
+    fn angle(&self, t: f64) -> [f64; 2] {
+        let angle = size(self.w).max(size(self.speeds(t))) * t;
+        [angle, angle.max(size(self.push).sqrt() * t).ceil()]
+    }
+
+    /// Whether the series over this time have too many parts.
+    pub fn toils(&self, t: f64) -> bool {
+        self.push != [0.0; 3] && self.angle(t)[1] > MOST_PARTS.max(PARTS_PER_TIME * t)
+    }
+
+    /// The axis after a time, and the angle by which the ball has turned at most. The times of a slip ascend.
+    fn turned(&mut self, t: f64) -> ([f64; 3], f64) {
+        let rate = size(self.w);
+        if self.push == [0.0; 3] {
+            if rate == 0.0 {
+                return (self.axis, 0.0);
+            }
+            let (sin, cos) = (0.5 * rate * t).sin_cos();
+            let across = cross(self.w, self.axis);
+            let inward = cross(self.w, across);
+            let (along, towards) = (2.0 * sin * cos / rate, 2.0 * sin * sin / (rate * rate));
+            let turn = |i: usize| self.axis[i] + (along * across[i] + towards * inward[i]);
+            return (core::array::from_fn(turn), rate * t);
+        }
+        let ([angle, parts], more) = (self.angle(t), t - self.since);
+        let parts = (parts * (more / t)).ceil().max(1.0);
+        let h = more / parts;
+        for part in 0..parts as u64 {
+            let w = self.speeds(self.since + part as f64 * h).map(|w| w * h);
+            let push = self.push.map(|a| a * h * h);
+            let (mut before, mut term, axis) = ([0.0; 3], self.axis, &mut self.axis);
+            let mut k = 0.0;
+            while size(term) + size(before) > NO_MORE {
+                k += 1.0;
+                let (turns, pushed) = (cross(w, term), cross(push, before));
+                before = term;
+                term = core::array::from_fn(|i| (turns[i] + pushed[i]) / k);
+                (0..3).for_each(|i| axis[i] += term[i]);
+            }
+        }
+        self.since = t;
+        (self.axis, angle)
+    }
+
+    /// The ball after a time on the table, and the angle by which it has turned.
+    pub fn at(&mut self, t: f64) -> (Aloft, f64) {
+        if t == 0.0 {
+            return (self.from, 0.0);
+        }
+        let ([x, y, z], angle) = self.turned(t);
+        let ([w_x, w_y, w_z], [u, v]) = (self.speeds(t), self.from.slip);
+        let square = x * x + y * y;
+        let (flat, size) = (square.sqrt(), (square + z * z).sqrt());
+        let (s, c) = (flat / size, z / size);
+        // On its pole the axis keeps the direction in which it leans.
+        let (cos, sin) = if flat > 0.0 { (-x / flat, -y / flat) } else { (1.0, 0.0) };
+        let (w_h, w_2) = (w_x * cos + w_y * sin, w_y * cos - w_x * sin);
+        // Exactly zero at the time at which the slip ends.
+        let left = if self.slows > 0.0 { (1.0 / self.slows - t) * self.slows } else { 1.0 };
+        let slip = [u * cos + v * sin, v * cos - u * sin].map(|u| left * u);
+        // The sum turns -0 into 0.
+        let w = [c * w_h + s * w_z, w_2, c * w_z - s * w_h].map(|w| w + 0.0);
+        (Aloft { angle: (s, c), w, slip, ..self.from }, angle)
+    }
+}

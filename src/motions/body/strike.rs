@@ -1,0 +1,429 @@
+//! The impacts of a body, one by one and in sequences, and the phases that follow.
+//!
+//! ```text
+//! bounces             last 2 u_n/(G (1 - q)) in all,  G = a_n N0,  q the ratio of the next bounce to this one
+//! contact             where 2 u_n^2 < TAIL G (1 - q): the last impact is taken with e = 0
+//! both rims           land at once while both come down, else in turn, until none comes down
+//! ```
+//! The impulses of the bounces that are summed agree with the contact force to first order, and to second order where
+//! they slip. Where they stick, the contact point has moved in each flight before: the error of their sum is of second
+//! order, about TAIL, and part of the estimated error. The friction of all bounces is lost in impacts.
+
+use super::fly::{Aloft, Takeoff};
+use super::phases::{BodyWalk, LONGER};
+use crate::laws::body::Shape;
+use crate::laws::contact::impact::{Hit, RimImpact, Struck, lightness, turned};
+use crate::laws::contact::landing::{Landed, Outcome, REVERSES, bounced, land_at, settled};
+use crate::laws::contact::slip::Friction;
+use crate::laws::contact::{FLAT, Force, Table};
+use crate::laws::loss::{Couples, Kinematics};
+use crate::laws::newton;
+use crate::laws::state::State;
+use crate::motions::walk::Next;
+use crate::motions::walk::numbers::TIME;
+use crate::motions::{Ending, Kind, Limit, Method, Moving, Strike};
+use core::f64::consts::FRAC_PI_2;
+
+/// Share of the state that the summed bounces may change: this part of the tolerance of a sweep, within these two
+/// limits.
+const TAIL_SHARE: f64 = 0.1;
+const TAIL: f64 = 1e-13;
+const LONGEST_TAIL: f64 = 1e-10;
+/// Relative error of the numbers by the sum of the bounces, in units of their time and their first velocity.
+const SUM_ERROR: f64 = 1.0;
+/// The same error of bounces that slip, in units of their velocity over that of the slip.
+const TURNS: f64 = 10.0;
+/// The same share for a body with losses, which act at a contact, but not on a body that bounces.
+const LOSSY_TAIL: f64 = 1e-8;
+/// The tolerance of a step along an impact.
+const IMPACT_TOL: f64 = 3e-14;
+/// Both rims rattle until |cos theta| and the normal velocities of both are below this.
+pub(crate) const RATTLED: f64 = 1e-7;
+/// Error of the rest of a rattle, in units of the square of its velocities.
+const SUMMED: f64 = 1e2;
+/// Time of the rest of a rattle, in units of its velocities.
+const LASTS: f64 = 10.0;
+/// A rocking with a larger w2 is computed hop by hop.
+const ROCKED: f64 = 1e-5;
+/// A smaller w2 after a landing is a rounding error.
+const ROCKED_OUT: f64 = 1e-15;
+/// Both rims land together if |cos theta| is below this.
+const BOTH_AT_ONCE: f64 = 1e-14;
+/// Impacts of both rims are over when no rim comes down faster than this share of the first velocity.
+const RATTLE_OVER: f64 = 1e-9;
+/// Share of its terms below which N0 is a rounding error.
+pub(crate) const ROUNDED: f64 = 1e-12;
+/// A jam needs a larger impulse than this share of the slip.
+const JAM_TAKES: f64 = 1e-9;
+/// Largest number of impacts of both rims in turn.
+const MOST_IN_TURN: u32 = 10_000;
+
+/// The coefficient of friction of a table on which a body rolls, in an impact of both rims.
+const PERFECTLY_ROUGH: f64 = 1e100;
+
+/// The momentum that the centre of mass has gained, which is the impulse of both rims together, at theta = pi/2.
+fn gained(shape: &Shape<f64>, [old, new]: [&Aloft; 2]) -> [f64; 3] {
+    let velocity = |at: &Aloft| {
+        let ([w1, w2, w3], [along, across]) = (at.w, at.slip);
+        [along + w2, across - shape.rim.ell * w1 + w3, at.lift + shape.rim.ell * w2]
+    };
+    let [old, new] = [velocity(old), velocity(new)];
+    core::array::from_fn(|i| new[i] - old[i])
+}
+
+impl<const N: usize> BodyWalk<'_, N> {
+    /// The phase after the impact that stops a slip which presses the rim into the table. None where the rim could
+    /// leave the table as well.
+    pub(crate) fn jams(&mut self, e: f64) -> Option<Next> {
+        self.of.takeoff = Takeoff::default();
+        let from = self.aloft();
+        let [free, size] = self.pressed(&from);
+        if from.slip == [0.0; 2] || free < ROUNDED * size {
+            return None;
+        }
+        let speed = from.slip[0].hypot(from.slip[1]);
+        let struck = self.impact(&from, e).filter(|struck| struck.impulse[2] > JAM_TAKES * speed)?;
+        // An output at this time shows the slip, for which there is no force.
+        while self.until().is_some_and(|t| t <= self.at[TIME]) {
+            self.writes_with(&from, Kind::Slipping, f64::NAN);
+        }
+        let after = self.struck(&from, &struck, (self.made.path.upside_down, false));
+        self.sets(&after);
+        Some(self.leaves_impact(&after))
+    }
+
+    /// The phase after an impact.
+    fn leaves_impact(&mut self, after: &Aloft) -> Next {
+        if after.lift > 0.0 {
+            self.of.takeoff.leaves = Some(1);
+            return Next::Own(Kind::Flying);
+        }
+        self.touches_down()
+    }
+
+    /// The next phase after a landing.
+    #[inline(never)]
+    pub(crate) fn strikes(&mut self) -> Next {
+        let (e, shape) = (self.ask.restitution.unwrap_or(0.0), self.of.slide.law.shape);
+        let mut from = self.aloft();
+        if from.angle.0 < FLAT && self.of.body.rim() > 0.0 {
+            return Next::Ends(Ending::Face);
+        }
+        let both = self.has_two_rims() && from.angle.1.abs() < BOTH_AT_ONCE;
+        if both {
+            // Rounding must not decide which rim is lower.
+            self.claims(from.angle.1.abs());
+            from = Aloft { angle: (1.0, 0.0), height: 0.0, ..from };
+            self.sets(&from);
+        }
+        let there = if both { from.on_other_rim(&shape) } else { from };
+        if both && from.lift >= 0.0 && there.lift < 0.0 {
+            self.turns_over();
+            return self.strikes();
+        }
+        if from.lift >= 0.0 {
+            self.claims(from.lift);
+            return self.touches_down();
+        }
+        // After two flights of zero length the rims land in turn at the same time.
+        if both && (there.lift < 0.0 || e > 0.0 && self.still > 2) {
+            return if e == 0.0 { self.lands_on_both() } else { self.rattles(e) };
+        }
+        let Some(mut struck) = self.impact(&from, e) else { return Next::Ends(Ending::Slip) };
+        let [force, _] =
+            self.pressed(&Aloft { w: turned(&shape, from.angle, from.w, struck.impulse), ..from });
+        let left =
+            if struck.lift > 0.0 && force > 0.0 { self.bounces_for(&from, &struck, force, e) } else { None };
+        self.claims(left.map_or(0.0, |left| left * self.couples(&from, force)));
+        let (stays, bounce) = (left.is_some(), struck.lift);
+        if stays && let Some(last) = self.impact(&from, 0.0) {
+            struck = last;
+        }
+        let after = self.struck(&from, &struck, (self.made.path.upside_down, stays));
+        self.sets(&after);
+        if let Some(left) = left {
+            self.sums_bounces(&after, left, bounce);
+        }
+        let level = || from.angle.1.abs().max(after.lift).max(after.on_other_rim(&shape).lift.abs());
+        if self.has_two_rims() && e > 0.0 && level() < RATTLED {
+            return self.ends_rattle();
+        }
+        self.leaves_impact(&after)
+    }
+
+    /// The impact at these numbers; None for a rolling contact without a solution.
+    fn impact(&self, from: &Aloft, e: f64) -> Option<Struck> {
+        if self.of.uniform && from.slip == [0.0; 2] {
+            return Some(self.rebounds(from.lift, e));
+        }
+        let mut light = lightness(&self.of.slide.law.shape, from.angle);
+        if self.of.uniform {
+            // Rounding must not make the slip turn.
+            (light[1], light[2], light[3]) = (light[0], 1.0, 0.0);
+        }
+        self.rim_impact(from.slip, from.lift, light).on(&self.ask.table, e)
+    }
+
+    /// The impact of a rim. A rougher run begins it with a longer step, so that the two runs take different steps.
+    fn rim_impact(&self, slip: [f64; 2], lift: f64, light: [f64; 4]) -> RimImpact {
+        let (longer, rougher) = if self.perturbation > 0.0 {
+            (LONGER, self.perturbation * State::SAFETY / f64::EPSILON)
+        } else {
+            (1.0, 1.0)
+        };
+        RimImpact { slip, lift, light, tol: IMPACT_TOL * rougher, longer }
+    }
+
+    /// A bound of the change by the losses in a unit of time, under a normal force. The couple of the air below a face
+    /// does not depend on that force.
+    fn couples(&self, at: &Aloft, force: f64) -> f64 {
+        let (body, sum) = (&self.of.body, self.ask.losses.coefficients.iter().sum::<f64>());
+        let Some(losses) = Couples::some(&self.ask.losses) else { return 0.0 };
+        let fastest = at.w.into_iter().fold(1.0, |most: f64, w| most.max(w.abs()));
+        let seen = Kinematics::of(&self.of.slide.law.shape.rim, at.angle, at.w[0] / at.angle.0, at.w);
+        let most =
+            losses.at(&seen).free.into_iter().fold(sum * fastest * force, |most: f64, m| most.max(m.abs()));
+        most / body.i1().min(body.i3())
+    }
+
+    /// The time of all bounces after an impact, if they are over so soon that they are summed.
+    fn bounces_for(&self, from: &Aloft, struck: &Struck, force: f64, e: f64) -> Option<f64> {
+        let law = &self.of.slide.law;
+        let light @ [.., a_n, b] = lightness(&law.shape, from.angle);
+        let (fall, w) = (a_n * force, turned(&law.shape, from.angle, from.w, struck.impulse));
+        // Both runs of a sweep have its tolerance, so that they end their bounces together.
+        let tail = match self.ask.method {
+            Method::Tolerance(tol) => (TAIL_SHARE * tol).clamp(TAIL, LONGEST_TAIL),
+            _ => TAIL,
+        };
+        let tail = if self.ask.losses.is_none() { tail } else { LOSSY_TAIL * tail };
+        if 2.0 * struck.lift * struck.lift >= tail * fall {
+            return None;
+        }
+        let mut ratio = e;
+        // A slip as slow as the bounce reverses in each impact, and the flight after it brings it back.
+        let [u_h, u_2] = struck.slip.map(|u| u / struck.lift);
+        if struck.hit == Hit::Sticks || u_h.hypot(u_2) < REVERSES {
+            // Each bounce has the slip that the previous flight has caused.
+            let [along, across] = law.towards(from.angle, w, [0.0; 2], [0.0; 2]).u;
+            let [along, across] = [along - b * force, across].map(|rate| 2.0 * rate / fall);
+            let slip = [u_h + along, u_2 + across];
+            ratio = self.rim_impact(slip, -1.0, light).on(&self.ask.table, e).map_or(1.0, |next| next.lift);
+        }
+        let left = 2.0 * struck.lift / (fall * (1.0 - ratio));
+        (ratio < 1.0 && left * struck.lift < tail).then_some(left)
+    }
+
+    /// Counts the friction of the bounces that are summed as lost in impacts, as that of all other bounces, and not as
+    /// the heat of a slip. Includes the error of the sum in the estimated error. The bounces take the time `left`, and
+    /// begin with the velocity `bounce`.
+    fn sums_bounces(&mut self, after: &Aloft, left: f64, bounce: f64) {
+        let speed = after.slip[0].hypot(after.slip[1]);
+        let mut share = SUM_ERROR * left * bounce;
+        if speed > 0.0 {
+            let Force { along, across, .. } = self.of.slide.law.force(&after.state(), after.slip);
+            let heat = -(left * (across * after.slip[0] + along * after.slip[1]));
+            if let Some(last) = self.made.path.impacts.last_mut() {
+                last.lost += heat;
+                self.at[8] -= heat;
+            }
+            // A slip whose direction hardly turns between the bounces has the same impulses, at the same mean time.
+            share *= (TURNS * bounce / speed).min(1.0);
+        }
+        self.claims(share * after.w.into_iter().fold(1.0, |most: f64, w| most.max(w.abs())));
+        self.doubts(share);
+        self.of.roundings.turned += share;
+    }
+
+    /// The numbers after an impact, which is also recorded.
+    fn struck(&mut self, from: &Aloft, struck: &Struck, (other, stays): (bool, bool)) -> Aloft {
+        let w = turned(&self.of.slide.law.shape, from.angle, from.w, struck.impulse);
+        let after = Aloft { w, slip: struck.slip, lift: struck.lift, ..*from };
+        // No impact gains energy.
+        self.claims(-struck.lost);
+        self.records([from, &after], other, struck.hit, (struck.impulse, struck.lost), stays);
+        after
+    }
+
+    /// Adds an impact to the results, from the numbers before and after it as seen from the rim that lands.
+    fn records(
+        &mut self,
+        both: [&Aloft; 2],
+        other: bool,
+        hit: Hit,
+        (impulse, lost): ([f64; 3], f64),
+        stays: bool,
+    ) {
+        let velocities = both.map(|at| [at.slip[0], at.slip[1], at.lift]);
+        let (time, states) = (self.t0 + self.at[TIME], both.map(|at| self.state_of(at)));
+        self.of.struck += self.made.path.impacts.last().map_or(0.0, |before| before.lost);
+        self.records_impact(Strike { time, other, hit, states, velocities, impulse, lost, stays });
+    }
+
+    /// Computes the impacts of both rims at once while both come down, and of one rim in turn, until no rim comes down.
+    #[inline(never)]
+    pub(crate) fn rattles(&mut self, e: f64) -> Next {
+        (self.at[0], self.at[1]) = (1.0, 0.0);
+        let shape = self.of.slide.law.shape;
+        let mut at = Aloft { angle: (1.0, 0.0), ..self.aloft() };
+        let fast = at.lift.min(at.on_other_rim(&shape).lift).abs();
+        let mut other = false;
+        for turn in 0.. {
+            let there = at.on_other_rim(&shape);
+            if at.lift.min(there.lift) > -RATTLE_OVER * fast.min(1.0) {
+                break;
+            }
+            if turn > MOST_IN_TURN {
+                return self.gives_up(Limit::Impacts);
+            }
+            if at.lift.max(there.lift) < -RATTLE_OVER * fast.min(1.0) {
+                match self.bounces_on_both(at, other, e) {
+                    Ok((after, seen)) => (at, other) = (after, seen),
+                    Err(ending) => return Next::Ends(ending),
+                }
+                continue;
+            }
+            if there.lift < at.lift {
+                (at, other) = (there, !other);
+            }
+            let Some(struck) = self.impact(&at, e) else { return Next::Ends(Ending::Slip) };
+            at = self.struck(&at, &struck, (other != self.made.path.upside_down, false));
+        }
+        let there = at.on_other_rim(&shape);
+        if there.lift < at.lift {
+            (at, other) = (there, !other);
+        }
+        if other {
+            self.turns_over();
+        }
+        self.sets(&Aloft { height: 0.0, pose: self.aloft().pose, ..at });
+        if at.on_other_rim(&shape).lift < RATTLED {
+            return self.ends_rattle();
+        }
+        if at.lift < RATTLE_OVER * fast.min(1.0) {
+            self.claims(at.lift.abs());
+            return self.touches_down();
+        }
+        self.of.takeoff.leaves = Some(1);
+        Next::Own(Kind::Flying)
+    }
+
+    /// The numbers after both rims have struck at once, and whether they are seen from the other rim; `other` says so
+    /// of the numbers before.
+    fn bounces_on_both(&mut self, at: Aloft, other: bool, e: f64) -> Result<(Aloft, bool), Ending> {
+        let shape = self.of.slide.law.shape;
+        // As seen from the rim that comes down more slowly.
+        let (at, other) = if at.w[1] > 0.0 { (at.on_other_rim(&shape), !other) } else { (at, other) };
+        let [w1, w2, w3] = at.w;
+        let before = State { theta: FRAC_PI_2, w1, w2, w3 };
+        let (friction, rolls) = match self.ask.table {
+            Table::Rubs(friction) => (friction, false),
+            Table::Rolling { mu } => (Friction::coulomb(mu.min(PERFECTLY_ROUGH)), true),
+            Table::Smooth => (Friction::coulomb(0.0), false),
+        };
+        let (y, slip, lift, lost) =
+            bounced(&self.of.body, &before, (at.slip, at.lift), &friction, e).map_err(|_| Ending::Landing)?;
+        let mut after = Aloft { w: [y.w1, y.w2, y.w3], slip, lift, ..at };
+        if rolls {
+            let slips = [slip, after.on_other_rim(&shape).slip].into_iter().flatten();
+            // What is left is rounding, or a slip that friction cannot stop.
+            if slips.fold(0.0, |most: f64, u| most.max(u.abs())) > RATTLE_OVER * at.lift.abs() {
+                return Err(Ending::Slip);
+            }
+            after.slip = [0.0; 2];
+        }
+        let impulse = gained(&shape, [&at, &after]);
+        self.claims(-lost);
+        let seen = other != self.made.path.upside_down;
+        self.records([&at, &after], seen, Hit::BothRims, (impulse, lost), false);
+        Ok((after, other))
+    }
+
+    /// The phase on both rims after a rattle, whose last impacts are summed.
+    fn ends_rattle(&mut self) -> Next {
+        let from = self.aloft();
+        let left = from.angle.1.abs().max(from.w[1].abs()).max(from.lift.abs());
+        let Table::Rubs(friction) = self.ask.table else {
+            self.claims(left);
+            if from.w[1] > 0.0 {
+                self.turns_over();
+            }
+            self.of.takeoff.lift = 0.0;
+            return self.lands_on_both();
+        };
+        // The last impacts turn a slip that is slower than they are.
+        let slips = [from.slip, from.on_other_rim(&self.of.slide.law.shape).slip].map(|[u, v]| u.hypot(v));
+        let turns = if left > 0.0 { (left / slips[0].min(slips[1])).min(1.0) } else { 0.0 };
+        let doubt = (left * turns).max(left * left * SUMMED);
+        self.claims(doubt);
+        self.doubts(doubt);
+        let from = self.aloft();
+        self.claims(left * LASTS * self.couples(&from, 1.0));
+        let (law, flat) = (self.of.slide.law, (1.0, 0.0));
+        let state = State { theta: FRAC_PI_2, ..self.of.state };
+        let (v, still) = (law.centre(from.angle, from.w, from.slip), law.centre(flat, from.w, [0.0; 2]));
+        // Where the rims slip, the centre keeps its velocity while the axis comes to lie level.
+        let slip = if from.slip == [0.0; 2] { from.slip } else { [v[0] - still[0], v[1] - still[1]] };
+        let (y, slip) = settled(&self.of.body, &state, (slip, from.lift), &friction);
+        let lift = from.lift + law.shape.rim.lever(from.angle) * from.w[1];
+        let before = newton::energy(&law.shape, from.angle, from.w, [v[0], v[1], lift]) + from.height;
+        self.at[8] += before - law.energy(&y, slip);
+        let after = Aloft { angle: (1.0, 0.0), w: [y.w1, 0.0, y.w3], slip, lift: 0.0, height: 0.0, ..from };
+        self.sets(&after);
+        self.settles_on_side()
+    }
+
+    /// The next phase after a landing on both rims without a bounce.
+    pub(crate) fn lands_on_both(&mut self) -> Next {
+        let friction = match self.ask.table {
+            Table::Rubs(friction) => friction,
+            _ if self.at[2] == 0.0 && self.at[4] == 0.0 => Friction::coulomb(PERFECTLY_ROUGH),
+            _ => return Next::Ends(Ending::Side),
+        };
+        if self.at[3] > 0.0 {
+            self.turns_over();
+        }
+        let before = State { theta: FRAC_PI_2, ..self.of.state };
+        let lift = self.of.takeoff.lift;
+        let Ok(landed) = land_at(&self.of.body, &before, ([self.at[5], self.at[6]], lift), &friction) else {
+            return Next::Ends(Ending::Landing);
+        };
+        let (shape, other) = (self.of.slide.law.shape, !self.made.path.upside_down);
+        let from = Aloft { angle: (1.0, 0.0), ..self.aloft() }.on_other_rim(&shape);
+        self.lands_as(&landed);
+        let here = self.aloft();
+        let there = if other == self.made.path.upside_down { here } else { here.on_other_rim(&shape) };
+        let impulse = gained(&shape, [&from, &there]);
+        self.claims(-landed.lost);
+        self.records([&from, &there], other, Hit::BothRims, (impulse, landed.lost), true);
+        let rises = self.at[3];
+        if rises < ROCKED_OUT {
+            self.claims(rises * LASTS);
+            return self.settles_on_side();
+        }
+        if rises < ROCKED
+            && let Some((end, error)) = self.rocks_out()
+        {
+            self.claims(error);
+            self.at = end;
+            return self.settles_on_side();
+        }
+        if self.at[3] < ROCKED
+            && let Some(next) = self.rocks_to_pivot()
+        {
+            return next;
+        }
+        self.touches_down()
+    }
+
+    /// Moves the walk to the numbers after a landing on both rims.
+    pub(crate) fn lands_as(&mut self, landed: &Landed) {
+        if landed.outcome == Outcome::Changes {
+            self.turns_over();
+        }
+        let State { w1, w2, w3, .. } = landed.state;
+        let after =
+            Aloft { angle: (1.0, 0.0), w: [w1, w2, w3], slip: landed.slip, lift: 0.0, ..self.aloft() };
+        self.sets(&Aloft { height: 0.0, ..after });
+    }
+}

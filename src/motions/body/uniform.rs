@@ -1,0 +1,172 @@
+//! The walk of a uniform ball through phases that are known: rolling, slips, flights and the bounces between them.
+//!
+//! ```text
+//! lands     t = v + sqrt(v^2 + 2 z)          with the velocity -sqrt(v^2 + 2 z)
+//! error     e1 roundings of w in all phases,  e2 = sum e1 (1 + |w| t) of the axis,  e3 = sum e1 t of the time
+//! ```
+//! [`spun`](super::spun) has the equations. No rougher run has to show these errors, which do not grow otherwise.
+
+use super::fly::Aloft;
+use super::phases::BodyWalk;
+use super::spun::{OF_A_PHASE, Spun};
+use crate::laws::contact::impact::{Hit, Struck};
+use crate::laws::contact::{Contact, Table, force, patch};
+use crate::laws::state::State;
+use crate::motions::ask::row::OutputRow;
+use crate::motions::walk::errors::doubted;
+use crate::motions::walk::numbers::{Halt, TIME, lost};
+use crate::motions::walk::two_runs::Followed;
+use crate::motions::{Kind, Limit};
+
+impl<const N: usize> BodyWalk<'_, N> {
+    /// The ball after a time of a phase, with its error among the claims.
+    fn spun(&mut self, spun: &mut Spun, t: f64) -> (Aloft, f64) {
+        let (mut at, angle) = spun.at(t);
+        if self.of.planar {
+            (at.w[0], at.w[2], at.slip[1]) = (0.0, 0.0, 0.0);
+        }
+        let (of, fastest) = (&self.of.roundings, spun.fastest);
+        let share = (of.count + OF_A_PHASE) * f64::EPSILON;
+        let turned = of.turned + share * (1.0 + angle) + 2.0 * fastest * of.late;
+        let sine = if at.angle.0 > 0.0 { at.angle.0 } else { 1.0 };
+        self.claims(fastest * (turned / sine + share));
+        (at, angle)
+    }
+
+    /// Ends a phase of the length `t` in which the ball has turned by `angle`, and whose end is as late as `late`.
+    fn rounds(&mut self, t: f64, angle: f64, late: f64) {
+        let of = &mut self.of.roundings;
+        of.count += OF_A_PHASE;
+        let share = of.count * f64::EPSILON;
+        of.turned += share * (1.0 + angle);
+        of.late += share * (t + late);
+        let late = of.late;
+        self.claims(late);
+    }
+
+    fn numbers(&self, at: &Aloft, time: f64, heat: f64) -> [f64; N] {
+        let ((s, c), [w1, w2, w3], [u, v]) = (at.angle, at.w, at.slip);
+        let mut y = self.at;
+        y[..9].copy_from_slice(&[s, c, w1, w2, w3, u, v, time, heat]);
+        y
+    }
+
+    /// Rolls to the last time: nothing ends it.
+    pub(crate) fn rolls_uniformly(&mut self) {
+        let (now, spent, body) = (self.at[TIME], [self.at[8], lost(&self.at)], self.of.body);
+        let mut spun = Spun::new(&Aloft { slip: [0.0; 2], ..self.aloft() }, [0.0; 3], 0.0);
+        while let Some(t) = self.until() {
+            let y = self.spun(&mut spun, t - now).0.state();
+            let error = self.made.motion.error;
+            let force =
+                self.ask.force.then(|| doubted(&y, [error; 2], |y| force(Contact::Rolling, &body, y)));
+            let row = OutputRow::on_table(y, [0.0; 2], spent, Kind::Rolling);
+            self.made.push(OutputRow { force, ..row });
+        }
+    }
+
+    /// Slips until the slip vanishes, or to the last time.
+    pub(crate) fn slips_uniformly(&mut self) {
+        let (now, heat, mu) = (self.at[TIME], self.at[8], self.of.slide.law.strength);
+        let (from, ask, slide) = (self.aloft(), self.ask, self.of.slide);
+        let mut spun = Spun::rubbing(&from, self.of.body.i3(), mu);
+        let speed = from.slip[0].hypot(from.slip[1]);
+        let slows = spun.slows;
+        let heat = |t: f64| heat + mu * speed * t * (1.0 - 0.5 * slows * t);
+        let (end, left) = (1.0 / slows, self.since.last().map_or(0.0, |t| t - now));
+        if spun.toils(end.min(left)) {
+            self.next = Some(self.gives_up(Limit::Evaluations));
+            return;
+        }
+        while let Some(t) = self.until().filter(|t| t - now <= end) {
+            let at = self.spun(&mut spun, t - now).0;
+            let y = self.numbers(&at, t, heat(t - now));
+            self.made.slid(&ask, &slide, &y);
+        }
+        let over = self.until().is_none();
+        let length = if over { left } else { end };
+        let (mut at, angle) = self.spun(&mut spun, length);
+        self.rounds(length, angle, if over { 0.0 } else { spun.fastest * end / speed });
+        if !over {
+            at.slip = [0.0; 2];
+        }
+        let y = self.numbers(&at, now + length, heat(length));
+        self.slip_ends(y, if over { Halt::Time } else { Halt::Standstill });
+    }
+
+    /// Drills on a patch of contact without a slip, until the drilling ends, or to the last time.
+    pub(crate) fn creeps_uniformly(&mut self, radius: f64) {
+        let (now, heat, from) = (self.at[TIME], self.at[8], self.aloft());
+        let (ask, slide, i3) = (self.ask, self.of.slide, self.of.body.i3());
+        let couple = slide.law.strength * radius * patch::of(0.0)[1];
+        let mut spun = Spun::drilling(&from, couple / i3);
+        let fast = spun.drills().abs();
+        let (end, left) = (i3 * fast / couple, self.since.last().map_or(0.0, |t| t - now));
+        let heat = |t: f64| heat + couple * fast * t * (1.0 - 0.5 * t / end);
+        if spun.toils(end.min(left)) {
+            self.next = Some(self.gives_up(Limit::Evaluations));
+            return;
+        }
+        while let Some(t) = self.until().filter(|t| t - now <= end) {
+            let at = self.spun(&mut spun, t - now).0;
+            let y = self.numbers(&at, t, heat(t - now));
+            self.made.slid(&ask, &slide, &y);
+        }
+        let over = self.until().is_none();
+        let length = if over { left } else { end };
+        let (at, angle) = self.spun(&mut spun, length);
+        self.rounds(length, angle, if over { 0.0 } else { spun.fastest * end / fast });
+        let mut y = self.numbers(&at, now + length, heat(length));
+        if !over {
+            let drilling = y[0] * y[2] + y[1] * y[4];
+            (y[2], y[4]) = (y[2] - y[0] * drilling, y[4] - y[1] * drilling);
+        }
+        self.slip_ends(y, if over { Halt::Time } else { Halt::Standstill });
+    }
+
+    /// The impact of a ball whose contact point does not slip: friction has nothing to stop.
+    pub(crate) fn rebounds(&self, lift: f64, e: f64) -> Struck {
+        let hit = match self.ask.table {
+            Table::Rolling { .. } => Hit::Sticks,
+            Table::Rubs(friction) if friction.strength() > 0.0 || friction.sticks() => Hit::Sticks,
+            _ => Hit::Smooth,
+        };
+        let impulse = [0.0, 0.0, -((1.0 + e) * lift)];
+        let lost = 0.5 * (1.0 - e) * (1.0 + e) * lift * lift;
+        Struck { impulse, slip: [0.0; 2], lift: 0.0 - e * lift, hit, lost }
+    }
+
+    /// Flies to its landing, or to the last time.
+    pub(crate) fn flies_uniformly(&mut self) {
+        let (from, now) = (self.aloft(), self.at[TIME]);
+        let (mut spun, up) = (Spun::new(&from, [0.0; 3], 0.0), from.lift);
+        let fall = (up * up + 2.0 * from.height).sqrt();
+        let end = if up < 0.0 { 2.0 * from.height / (fall - up) } else { up + fall };
+        while let Some(t) = self.until().map(|t| t - now).filter(|t| *t <= end) {
+            let at = self.spun(&mut spun, t).0;
+            // A product that vanishes exactly at the landing.
+            let height = if t == 0.0 { from.height } else { 0.5 * (end - t) * (t + (fall - up)) };
+            self.writes_with(&Aloft { height, lift: up - t, ..at }, Kind::Flying, 0.0);
+        }
+        if self.since.last().is_none_or(|last| end > last - now) {
+            return;
+        }
+        let (at, angle) = self.spun(&mut spun, end);
+        self.rounds(end, angle, 0.0);
+        self.at[TIME] = now + end;
+        self.sets(&Aloft { height: 0.0, lift: -fall, ..at });
+        let next = self.strikes();
+        self.continues_with(next);
+    }
+}
+
+impl Followed {
+    /// Completes the estimated errors of a motion whose phases are all known, which no rougher run has to show.
+    pub(crate) fn knows_itself(&mut self, tol: f64) {
+        let phases = self.path.phases.iter();
+        let fastest = |y: &State| y.w1.abs().max(y.w2.abs()).max(y.w3.abs());
+        let fastest = phases.fold(1.0, |most: f64, phase| most.max(fastest(&phase.state)));
+        self.motion.error += 8.0 * f64::EPSILON * fastest;
+        self.motion.force_error *= (self.motion.error / tol).max(1.0);
+    }
+}

@@ -1,0 +1,90 @@
+//! The outputs of a walk: states, poses and forces from its numbers.
+
+use super::roll::lossy::LossyFlow;
+use super::slide::Slide;
+use crate::laws::body::Body;
+use crate::laws::contact::Table;
+use crate::laws::pose::{Angle, Pose};
+use crate::laws::state::State;
+use crate::motions::Ask;
+use crate::motions::Kind;
+use crate::motions::ask::row::OutputRow;
+use crate::motions::walk::errors::doubted;
+use crate::motions::walk::numbers::{lost, poses};
+use crate::motions::walk::two_runs::Followed;
+use core::f64::consts::{PI, TAU};
+use nalgebra::Point2;
+
+/// The state from the numbers. A ball whose axis has passed the vertical leans to the other side.
+pub(crate) fn state<const N: usize>(y: &[f64; N]) -> State {
+    let side = if y[0] < 0.0 { -1.0 } else { 1.0 };
+    State { theta: (side * y[0]).atan2(y[1]), w1: side * y[2], w2: side * y[3], w3: y[4] }
+}
+
+/// The pose from the numbers of a flow.
+pub(crate) fn pose<const N: usize>(y: &[f64; N]) -> Pose {
+    let turn = if y[0] < 0.0 { PI } else { 0.0 };
+    posed([y[9] + turn, y[10] - turn, y[11], y[12]], 0.0)
+}
+
+/// The pose with these angles, the contact point at this position, and the lowest point at this height.
+pub(crate) fn posed([phi, psi, x, y]: [f64; 4], height: f64) -> Pose {
+    let angle = |angle: f64| {
+        let turns = (angle / TAU).round();
+        Angle { turns, rest: angle - turns * TAU }.settled()
+    };
+    Pose { phi: angle(phi), psi: angle(psi), contact_point: Point2::new(x, y), height }
+}
+
+/// The errors of theta and of w from steps of this tolerance: relative to theta, and relative to the
+/// largest speed.
+pub(crate) fn state_errors(y: &State, tol: f64) -> [f64; 2] {
+    let fastest = y.w1.abs().max(y.w2.abs()).max(y.w3.abs()).max(1.0);
+    [tol * y.theta.min(1.0), tol * fastest]
+}
+
+impl Followed {
+    /// Adds a point of a slip to the outputs.
+    pub(crate) fn slid<const N: usize>(&mut self, ask: &Ask, slide: &Slide, y: &[f64; N]) {
+        let now = state(y);
+        let side = if y[0] < 0.0 { -1.0 } else { 1.0 };
+        let slip = [side * y[5], side * y[6]];
+        let pose = poses(N).then(|| pose(y));
+        // Where a dry slip just begins, with u = 0, friction acts against the direction in which it begins.
+        let towards = if slip == [0.0, 0.0] && slide.law.dry { self.path.way } else { slip };
+        let force = ask.force.then(|| {
+            let (force, doubt) =
+                doubted(&now, state_errors(&now, slide.tol), |y| slide.law.force(y, towards));
+            // No table pulls: such a force is an error.
+            (force, doubt.max(-force.normal))
+        });
+        self.push(OutputRow {
+            pose,
+            force,
+            ..OutputRow::on_table(now, slip, [y[8], lost(y)], Kind::Slipping)
+        });
+    }
+
+    /// Adds a point of a phase that loses energy without a slip to the outputs.
+    pub(crate) fn lossy<const N: usize>(
+        &mut self,
+        ask: &Ask,
+        (body, start, flow): (&Body, &State, &LossyFlow),
+        y: &[f64; N],
+        kind: Kind,
+    ) {
+        let now = state(y);
+        let pose = poses(N).then(|| {
+            let pose = pose(y);
+            match ask.table {
+                Table::Smooth => {
+                    let under = Pose::below_centre(body, start, &now, pose.phi.rest);
+                    Pose { contact_point: under, ..pose }
+                }
+                _ => pose,
+            }
+        });
+        let force = ask.force.then(|| doubted(&now, state_errors(&now, flow.tol), |y| flow.force(y)));
+        self.push(OutputRow { pose, force, ..OutputRow::on_table(now, [0.0; 2], [y[8], lost(y)], kind) });
+    }
+}

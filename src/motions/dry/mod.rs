@@ -1,0 +1,4 @@
+//! What dry friction and the losses hold, for bodies and for stones.
+
+pub(crate) mod creep;
+pub(crate) mod settled;

@@ -1,0 +1,207 @@
+//! Motions that conserve energy, computed by steps within a tolerance. Their error is the difference from the exact
+//! solution, or from a rougher run without an accurate exact solution.
+//!
+//! In a nearly flat passage, steps with errors of 1e-6 may lead to a lift-off that the motion does not have, and steps
+//! a hundred times as accurate may lead to the same lift-off again. Therefore an end is accepted if the exact solution
+//! has it, where that solution is accurate enough; elsewhere an end is accepted if a run within a smaller tolerance has
+//! it too.
+//!
+//! A motion backward in time is computed forward in time from the reversed angular velocity; the angular
+//! velocities of the result are reversed again.
+
+use super::Swing;
+use super::course::Course;
+use super::event::{self, Limits};
+use crate::error::{Error, copied};
+use crate::laws::loss::Losses;
+use crate::laws::state::State;
+use crate::motions::ask::FINE;
+use crate::motions::body::walked;
+use crate::motions::walk::errors::{judge, same};
+use crate::motions::walk::two_runs::{Followed, judged};
+use crate::motions::{Ask, Event, Method, Motion, Start};
+use crate::states::stability::stiffness;
+
+/// Largest error of an exact solution from which the error of another solution is computed.
+const JUDGES: f64 = 1e-3;
+/// Largest error of an exact solution that decides how the motion ends.
+const DECIDES: f64 = 1e-6;
+/// The tolerance of a step as a share of the tolerance of the motion, since errors of many steps add.
+const SHARE: f64 = 0.1;
+/// Smallest tolerance of the runs that test an end which the exact solution cannot judge.
+const TIGHTEST: f64 = 1e-13;
+
+/// The exact solution and its end, if its error is at most `JUDGES`.
+pub(crate) struct Known<'a> {
+    pub swing: Option<&'a Swing>,
+    pub event: Option<Event>,
+    /// The error of the time and the state of that event.
+    pub doubt: f64,
+    /// Number of the times that the motion reaches.
+    pub count: usize,
+}
+
+impl<'a> Known<'a> {
+    pub fn of(course: &Course<'_>, swing: Option<&'a Swing>, limits: &Limits, beyond: bool) -> Self {
+        let found = swing.and_then(|swing| event::first_event(swing, limits, course.way()));
+        let found = found.filter(|e| e.time.abs() <= course.span.abs());
+        // The error of the exact solution counts only up to an end.
+        let last = found.filter(|e| e.ends(beyond)).map_or(course.span, |e| e.time);
+        let swing = swing.filter(|s| s.error(last) <= JUDGES);
+        let found = found.filter(|_| swing.is_some());
+        let last = found.filter(|e| e.ends(beyond)).map(|e| e.time);
+        let lands = || swing.and_then(|swing| swing.landing(course.way())).map(|(time, _)| time);
+        let count = course.count(last.or_else(lands).unwrap_or(f64::INFINITY));
+        let doubt = found.zip(swing).map_or(0.0, |(e, swing)| limits.doubt(&e) + swing.time_error(e.time));
+        Self { swing, event: found.map(|e| Event { time: course.t0 + e.time, ..e }), doubt, count }
+    }
+
+    /// Whether another solution and the exact one have the same end, or both have none.
+    fn agrees(&self, event: Option<Event>) -> bool {
+        match (event, self.event) {
+            (Some(a), Some(b)) => same(&a, &b),
+            (a, b) => a.is_none() && b.is_none(),
+        }
+    }
+
+    /// Whether the error of the exact solution is at most `DECIDES` up to this end, or up to its
+    /// own earlier end.
+    fn is_sure(&self, made: &Event, t0: f64) -> bool {
+        let since = |event: &Event| event.time - t0;
+        let own = self.event.as_ref().map(since).filter(|own| own.abs() < since(made).abs());
+        self.swing.is_some_and(|swing| swing.error(own.unwrap_or(since(made))) <= DECIDES)
+    }
+}
+
+/// The motion by steps within `tol`, and its path; `fine` is the tolerance of the finer of two runs.
+fn flown(
+    course: &Course<'_>,
+    ask: &Ask,
+    (tol, fine): (f64, f64),
+    times: &[f64],
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<Followed, Error> {
+    let (way, t0) = (course.way(), course.t0);
+    let turned = |y: &State| State { w1: way * y.w1, w2: way * y.w2, w3: way * y.w3, ..*y };
+    let start = Start::from(turned(course.start));
+    let mut since = copied(times)?;
+    since.iter_mut().for_each(|t| *t = way * (*t - t0));
+    let (tol, fine) = ((SHARE * tol).max(FINE), (SHARE * fine).max(FINE));
+    let ask = Ask { method: Method::Tolerance(fine), losses: Losses::NONE, force: false, ..*ask };
+    let mut found = walked((course.body, &start), &ask, (tol, true), &since, go_on)?;
+    let motion = &mut found.motion;
+    motion.times = copied(&times[..motion.states.len()])?;
+    motion.states.iter_mut().for_each(|y| *y = turned(y));
+    if let Some(event) = &mut motion.event {
+        *event = Event { time: t0 + way * event.time, state: turned(&event.state), ..*event };
+    }
+    Ok(found)
+}
+
+/// The motion by steps within `tol`, with its errors; `swing` is the exact solution, if there is one.
+pub(crate) fn within(
+    course: &Course<'_>,
+    swing: Option<&Swing>,
+    limits: &Limits,
+    ask: &Ask,
+    tol: f64,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<Motion, Error> {
+    let known = Known::of(course, swing, limits, ask.beyond);
+    let Some(swing) = known.swing else { return judged_alone(course, ask, tol, go_on) };
+    let mut run = |tol: f64, beyond: bool| -> Result<Motion, Error> {
+        Ok(flown(course, &Ask { beyond, ..*ask }, (tol, tol), course.times, go_on)?.motion)
+    };
+    let mut motion = run(tol, ask.beyond)?;
+    if let Some(made) = motion.event.filter(|made| motion.limit.is_none() && !known.agrees(Some(*made))) {
+        motion = decided(course, &known, ask, (motion, made), tol, &mut run)?;
+    }
+    // Steps can miss an end of the exact solution.
+    if motion.event.is_none() {
+        ended(&mut motion, &known, course, ask);
+    }
+    motion.error = 0.0;
+    judge(&mut motion, swing, known.event, course.t0);
+    motion.error = motion.error.max(if motion.event.is_some() { known.doubt } else { 0.0 });
+    motion.method = Method::Tolerance(tol);
+    Ok(motion)
+}
+
+/// Sets the event of a motion to that of the exact solution, and removes the outputs after an end.
+fn ended(motion: &mut Motion, known: &Known<'_>, course: &Course<'_>, ask: &Ask) {
+    motion.event = known.event;
+    if let Some(event) = known.event.filter(|e| e.ends(ask.beyond)) {
+        motion.keep(course.t0, (event.time - course.t0).abs());
+    }
+}
+
+/// Decides whether an end is real that the steps have (`made`) and the exact solution does not have. If that solution
+/// is accurate enough to decide, the steps are continued beyond their end. If this is impossible, since the face has
+/// landed, or if that solution is not accurate enough, the steps are repeated with smaller tolerances until these
+/// confirm an end.
+fn decided(
+    course: &Course<'_>,
+    known: &Known<'_>,
+    ask: &Ask,
+    (mut motion, made): (Motion, Event),
+    mut tol: f64,
+    run: &mut dyn FnMut(f64, bool) -> Result<Motion, Error>,
+) -> Result<Motion, Error> {
+    let sure = known.is_sure(&made, course.t0);
+    if sure {
+        let mut on = run(tol, true)?;
+        let reached = on.times.len();
+        if on.limit.is_none() {
+            ended(&mut on, known, course, ask);
+        }
+        if on.limit.is_some() || reached >= known.count {
+            return Ok(on);
+        }
+    }
+    while tol > TIGHTEST && motion.event.is_some() && motion.limit.is_none() {
+        tol = (0.01 * tol).max(TIGHTEST);
+        let tighter = run(tol, ask.beyond)?;
+        let stands = if sure {
+            known.agrees(tighter.event)
+        } else {
+            motion.event.zip(tighter.event).is_some_and(|(a, b)| same(&a, &b))
+        };
+        if stands && !sure {
+            break;
+        }
+        motion = tighter;
+        if stands {
+            break;
+        }
+    }
+    Ok(motion)
+}
+
+/// The motion by steps within `tol`, with its error from a rougher run. If the two runs end differently, they
+/// are repeated with smaller tolerances.
+fn judged_alone(
+    course: &Course<'_>,
+    ask: &Ask,
+    tol: f64,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<Motion, Error> {
+    let mut fine = tol;
+    let mut motion = loop {
+        let run = |tol: f64, times: &[f64]| flown(course, ask, (tol, fine), times, go_on);
+        let found = judged(fine, course.times, run)?;
+        if found.motion.error.is_finite() || fine <= TIGHTEST || found.motion.limit.is_some() {
+            break found.motion;
+        }
+        fine = (0.01 * fine).max(TIGHTEST);
+    };
+    motion.method = Method::Tolerance(tol);
+    // In an unstable steady state rounding may keep both runs at the initial state, so that they agree, although any
+    // disturbance would grow.
+    let growth =
+        (-stiffness(ask.table.contact(), course.body, course.start)).max(0.0).sqrt() * course.span.abs();
+    motion.error = motion.error.max(4.0 * f64::EPSILON * growth.exp());
+    if ask.pose {
+        motion.pose_error = motion.pose_error.max(motion.error * (1.0 + course.span.abs()));
+    }
+    Ok(motion)
+}

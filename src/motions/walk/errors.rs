@@ -1,0 +1,144 @@
+//! Errors of an integrated motion, from the exact motion where there is one, else from another run.
+
+use crate::error::{Error, room};
+use crate::laws::body::Body;
+use crate::laws::contact::{Contact, Force, force};
+use crate::laws::pose::{Angle, Pose};
+use crate::laws::state::State;
+use crate::motions::exact::Swing;
+use crate::motions::{Event, Motion, Moving};
+use crate::numbers::larger;
+use core::f64::consts::TAU;
+
+pub(crate) fn pose_distance(a: &Pose, b: &Pose) -> f64 {
+    let angle = |a: Angle, b: Angle| ((a.turns - b.turns) * TAU + (a.rest - b.rest)).abs();
+    let moved = (a.contact_point - b.contact_point).norm().max((a.height - b.height).abs());
+    angle(a.phi, b.phi).max(angle(a.psi, b.psi)).max(moved)
+}
+
+/// The largest difference between two poses that are seen from the two equal rims of a body, `a` from the one that was
+/// not down at the start. The points on the table differ along the lean, by a length of the body.
+pub(crate) fn pose_distance_over(a: &Pose, b: &Pose) -> f64 {
+    let by = |a: Angle, turns: f64, rest: f64| ((a.turns - turns) * TAU + (a.rest - rest)).abs();
+    let turned = by(a.phi, b.phi.turns + 0.5, b.phi.rest).max(by(a.psi, -b.psi.turns, -b.psi.rest));
+    let ((sin, cos), moved) = (b.phi.radians().sin_cos(), a.contact_point - b.contact_point);
+    turned.max((moved.y * cos - moved.x * sin).abs())
+}
+
+/// Relative error of a number of a state from a few roundings.
+const ROUNDINGS: f64 = 4.0 * f64::EPSILON;
+
+/// The force `at` a state whose theta and w have the given errors, and the largest error of the numbers of that force,
+/// from the given errors and from a few roundings of every number.
+pub(crate) fn doubted(y: &State, [theta, w]: [f64; 2], at: impl Fn(&State) -> Force) -> (Force, f64) {
+    let numbers = |y: &[f64; 4]| {
+        let force = at(&State::from(*y));
+        [force.normal, force.along, force.across]
+    };
+    let ([normal, along, across], off) = doubted_of(&(*y).into(), [theta, w, w, w], numbers);
+    (Force { normal, along, across }, off)
+}
+
+/// The numbers of a force `at` the numbers of a state with the errors `known`, and the largest error of that force.
+pub(crate) fn doubted_of<const K: usize>(
+    of: &[f64; K],
+    known: [f64; K],
+    at: impl Fn(&[f64; K]) -> [f64; 3],
+) -> ([f64; 3], f64) {
+    let here = at(of);
+    let mut off = here.map(|x| ROUNDINGS * (1.0 + x.abs()));
+    for (i, known) in known.into_iter().enumerate() {
+        let mut other = *of;
+        other[i] += known + ROUNDINGS * of[i].abs();
+        for (off, (a, b)) in off.iter_mut().zip(here.into_iter().zip(at(&other))) {
+            *off += (a - b).abs();
+        }
+    }
+    // An error that cannot be computed counts as infinite.
+    let largest = off.into_iter().fold(0.0, larger);
+    (here, if largest.is_nan() { f64::INFINITY } else { largest })
+}
+
+/// The largest difference between the numbers of two forces.
+pub(crate) fn force_distance(a: &Force, b: &Force) -> f64 {
+    let [normal, along, across] = [a.normal - b.normal, a.along - b.along, a.across - b.across];
+    normal.abs().max(along.abs()).max(across.abs())
+}
+
+/// Sets the error of an integrated motion from the exact motion at some of its times, or at all if they are fewer than
+/// 256.
+pub(crate) fn judge(motion: &mut Motion, swing: &Swing, exact: Option<Event>, t0: f64) {
+    let count = motion.times.len();
+    let every = (count / 128).max(1);
+    for i in (0..count).filter(|i| i % every == 0 || i + 1 == count) {
+        let t = motion.times[i] - t0;
+        if swing.landing(t).is_some_and(|(limit, _)| t.abs() >= limit) {
+            continue;
+        }
+        motion.error = motion.error.max(motion.states[i].distance(&swing.state(t)) + swing.error(t));
+        if let Some(poses) = &motion.poses
+            && let Some(pose) = swing.pose(t)
+        {
+            motion.pose_error = motion.pose_error.max(pose_distance(&poses[i], &pose) + swing.pose_error(t));
+        }
+    }
+    if let Some(event) = motion.event {
+        let t = event.time - t0;
+        let off = match exact.filter(|e| e.ending == event.ending) {
+            Some(exact) => event.state.distance(&exact.state).max((event.time - exact.time).abs()),
+            None => event.state.distance(&swing.state(t)),
+        };
+        motion.error = motion.error.max(off + swing.error(t));
+    }
+    if every > 1 {
+        // Errors at the other times may be larger.
+        motion.error *= 2.0;
+        motion.pose_error *= 2.0;
+    }
+}
+
+/// Sets the error of an integrated motion to its difference from another run with the same end; without the same end to
+/// infinity.
+pub(crate) fn compare(motion: &mut Motion, other: &Motion) {
+    for (i, (a, b)) in motion.states.iter().zip(&other.states).enumerate() {
+        motion.error = motion.error.max(a.distance(b));
+        if let (Some(poses), Some(others)) = (&motion.poses, &other.poses) {
+            motion.pose_error = motion.pose_error.max(pose_distance(&poses[i], &others[i]));
+        }
+    }
+    match (motion.event, other.event) {
+        (None, None) => {}
+        (Some(a), Some(b)) if a.ending == b.ending => {
+            motion.error = motion.error.max(a.state.distance(&b.state)).max((a.time - b.time).abs());
+        }
+        _ => motion.error = f64::INFINITY,
+    }
+}
+
+/// Whether two solutions have the same end.
+pub(crate) fn same(a: &Event, b: &Event) -> bool {
+    a.ending == b.ending && (a.time - b.time).abs() <= 1e-2 * (1.0 + b.time.abs())
+}
+
+/// Adds the contact force at each state to the motion, or ends it after the last force if `go_on` interrupts.
+pub(crate) fn pressed(
+    mut motion: Motion,
+    contact: Contact,
+    body: &Body,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<Motion, Error> {
+    let (mut forces, mut doubt) = (room(motion.states.len())?, 0.0);
+    for some in motion.states.chunks(1024) {
+        if !go_on() {
+            motion = motion.cut(forces.len());
+            break;
+        }
+        for y in some {
+            let (force, off) = doubted(y, [motion.error; 2], |y| force(contact, body, y));
+            forces.push(force);
+            doubt = larger(doubt, off);
+        }
+    }
+    (motion.forces, motion.force_error) = (Some(forces), doubt);
+    Ok(motion)
+}

@@ -1,0 +1,65 @@
+//! The numbers of a motion that slips or loses energy, and the reasons for which its flow halts.
+//!
+//! ```text
+//! y = (s, c, w1, w2, w3, u_h, u_2, t, heat; phi, psi, x, y; lost)
+//! pose and lost energy only if they are computed
+//! ```
+
+/// The reason for which a flow halts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Halt {
+    /// The flow has reached the last time.
+    Time,
+    /// The flow has taken the largest number of steps that its caller allows.
+    Pause,
+    /// The contact point comes to rest on the table.
+    Standstill,
+    Face,
+    Side,
+    LiftOff,
+    /// No unique contact force exists.
+    Jam,
+    /// Rolling needs more friction than mu N.
+    Slips,
+    /// The contact point stops along the rim, or a held contact point begins to move.
+    Contour,
+    /// The drilling stops, or begins.
+    Drilling,
+    /// The rocking of a body that only rocks changes its direction.
+    Rocking,
+    /// A couple that grows with psi' has almost stopped the contact point (see `dry::settled`).
+    Settles,
+    /// The body no longer rolls or rocks; it may drill.
+    Rests,
+    /// A ball has passed its pole, nearer than steps resolve.
+    Pole,
+    /// One rim of a lying body rises: the other rim, or the rim from which the state is seen.
+    Rises,
+    Changes,
+    /// The slip of the other rim of a lying body comes to rest.
+    OtherStandstill,
+    /// A lying body that pivots about one rim has stopped turning.
+    Turned,
+    /// Time hardly advances, or the steps are too many.
+    Endless,
+}
+
+/// Number of margins of a motion.
+pub(crate) const MARGINS: usize = 6;
+/// The index of the time among the numbers of a motion.
+pub(crate) const TIME: usize = 7;
+
+/// Whether the lost energy is the last of the numbers.
+pub(crate) const fn loses(count: usize) -> bool {
+    count == 10 || count == 14
+}
+
+/// The lost energy among the numbers; 0 if it is not computed.
+pub(crate) fn lost<const N: usize>(y: &[f64; N]) -> f64 {
+    if loses(N) { y[N - 1] } else { 0.0 }
+}
+
+/// Whether the pose is among the numbers, from number 9 on.
+pub(crate) const fn poses(count: usize) -> bool {
+    count >= 13
+}
