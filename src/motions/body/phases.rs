@@ -19,7 +19,9 @@ use crate::laws::state::State;
 use crate::methods::flow::{Flow, FlowPlace, Steps};
 use crate::motions::ask::row::OutputRow;
 use crate::motions::walk::errors::doubted;
-use crate::motions::walk::numbers::{Halt, loses, lost, poses};
+use crate::motions::walk::numbers::{
+    BodyNumbers, COS, HEAT, Halt, PHI, PSI, SIN, TIME, U2, UH, W1, W2, W3, loses, lost, poses,
+};
 use crate::motions::walk::slow::clear_until;
 use crate::motions::walk::two_runs::CHANCE;
 use crate::motions::walk::{Next, Pause, Phases, STILL, SlowSeries, Walk, WalkStep};
@@ -157,7 +159,7 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
                 let energy = |y: &[f64; N]| self.contact().energy(&self.of.body, &state(&flow.shown(y)));
                 all[N - 1] += energy(from) - energy(&y);
             }
-            None => all[8] += self.of.slide.energy(from) - self.of.slide.energy(&y),
+            None => all[HEAT] += self.of.slide.energy(from) - self.of.slide.energy(&y),
         }
         all
     }
@@ -166,10 +168,10 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
     /// s is negative: then the ball leans to the other side, so that s, w1, w2 and the slip change their signs.
     pub(crate) fn arrives(&mut self, at: [f64; N]) {
         self.at = at;
-        if self.at[0] < 0.0 {
+        if self.at[SIN] < 0.0 {
             [0, 2, 3, 5, 6].into_iter().for_each(|i| self.at[i] = -self.at[i]);
             if poses(N) {
-                (self.at[9], self.at[10]) = (self.at[9] + PI, self.at[10] - PI);
+                (self.at[PHI], self.at[PSI]) = (self.at[PHI] + PI, self.at[PSI] - PI);
             }
             self.of.slide.leans_over();
         }
@@ -178,7 +180,7 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
 
     /// Whether the contact point slips.
     fn slips_here(&self) -> bool {
-        let (slip, slide) = ([self.at[5], self.at[6]], &self.of.slide);
+        let (slip, slide) = (self.at.slip(), &self.of.slide);
         self.ask.table.rubs() && (slip != [0.0; 2] || !slide.law.dry || slide.creeps(&self.at))
     }
 
@@ -186,7 +188,7 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
     pub(crate) fn force_here(&self, y: &State) -> Force {
         let (body, losses) = (&self.of.body, &self.ask.losses);
         match self.slips_here() {
-            true => self.of.slide.law.force(y, [self.at[5], self.at[6]]),
+            true => self.of.slide.law.force(y, self.at.slip()),
             false if losses.is_none() => force(self.contact(), body, y),
             false => lossy::force(self.contact(), body, y, losses),
         }
@@ -199,22 +201,22 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
             return;
         }
         let (s, c) = state(&self.at).theta.sin_cos();
-        let [w1, w2, w3] = [self.at[2], self.at[3], self.at[4]];
+        let [w1, w2, w3] = self.at.w();
         let (drilling, rolling) = (s * w1 + c * w3, c * w1 - s * w3);
         let mut left = 0f64;
         if stops.drilling {
-            (self.at[2], self.at[4]) = (w1 - s * drilling, w3 - c * drilling);
+            (self.at[W1], self.at[W3]) = (w1 - s * drilling, w3 - c * drilling);
             left = drilling.abs();
         }
         if stops.contour || stops.rolling {
-            (self.at[2], self.at[4]) = (self.at[2] - c * rolling, self.at[4] + s * rolling);
+            (self.at[W1], self.at[W3]) = (self.at[W1] - c * rolling, self.at[W3] + s * rolling);
             left = left.max(rolling.abs());
         }
         if stops.rolling {
-            (self.at[3], left) = (0.0, left.max(w2.abs()));
+            (self.at[W2], left) = (0.0, left.max(w2.abs()));
         }
         if stops.drilling && (stops.contour || stops.rolling) {
-            (self.at[2], self.at[4]) = (0.0, 0.0);
+            (self.at[W1], self.at[W3]) = (0.0, 0.0);
         }
         self.claims(left);
         self.of.state = state(&self.at);
@@ -248,9 +250,9 @@ impl BodyPhases {
         let (s, c) = theta.sin_cos();
         let (drilling, rolling) = ((s * w1 + c * w3) * up, (c * w1 - s * w3) * up);
         // Near its other rim the height of the body is known from cos theta, not from theta.
-        let near = walk.ask.restitution.is_some() && walk.at[1].abs() < LEVEL;
+        let near = walk.ask.restitution.is_some() && walk.at[COS].abs() < LEVEL;
         let theta = if near { theta } else { theta * down };
-        let (s, c) = if near { (walk.at[0], walk.at[1] * down) } else { theta.sin_cos() };
+        let (s, c) = if near { (walk.at[SIN], walk.at[COS] * down) } else { theta.sin_cos() };
         let (w1, w3) = (s * drilling + c * rolling, c * drilling - s * rolling);
         walk.of.state = State { theta, w1, w2: w2 * down, w3 };
         walk.at[..5].copy_from_slice(&[s, c, w1, w2 * down, w3]);
@@ -296,11 +298,11 @@ impl<const N: usize> Phases<N> for BodyPhases {
     }
 
     fn write_here(walk: &mut BodyWalk<'_, N>) {
-        let (y, slip, at) = (&walk.of.state, [walk.at[5], walk.at[6]], &walk.at);
+        let (y, slip, at) = (&walk.of.state, walk.at.slip(), &walk.at);
         let kind = if walk.slips_here() { Kind::Slipping } else { walk.kind() };
         let force = walk.ask.force.then(|| doubted(y, [0.0; 2], |y| walk.force_here(y)));
         let pose = poses(N).then(|| write::pose(at));
-        let row = OutputRow::on_table(*y, slip, [at[8], lost(at)], kind);
+        let row = OutputRow::on_table(*y, slip, [at[HEAT], lost(at)], kind);
         walk.made.push(OutputRow { pose, force, ..row });
     }
 
@@ -308,7 +310,7 @@ impl<const N: usize> Phases<N> for BodyPhases {
         if walk.is_level() {
             return Some(Halt::Side);
         }
-        walk.of.slide.at_start(&walk.of.state, [walk.at[5], walk.at[6]])
+        walk.of.slide.at_start(&walk.of.state, walk.at.slip())
     }
 
     fn lies(walk: &mut BodyWalk<'_, N>, found: Standstill) -> Option<Ending> {
@@ -339,11 +341,11 @@ impl<const N: usize> Phases<N> for BodyPhases {
         walk.compares_energy();
     }
     fn is_over(walk: &mut BodyWalk<'_, N>, next: &Next) -> bool {
-        let fall = walk.at[1] * walk.at[3];
-        if loses(N) && walk.still > STILL && walk.at[0] < ALL_BUT_FLAT && fall > 0.0 {
+        let fall = walk.at[COS] * walk.at[W2];
+        if loses(N) && walk.still > STILL && walk.at[SIN] < ALL_BUT_FLAT && fall > 0.0 {
             // Whether the face slips or sticks no longer matters, since it is almost on the table.
-            let left = walk.at[0] / fall;
-            walk.lies_flat([walk.at[7] + left, left]);
+            let left = walk.at[SIN] / fall;
+            walk.lies_flat([walk.at[TIME] + left, left]);
             return true;
         }
         if matches!(next, Next::Slips | Next::SlipsOff { .. })
@@ -385,7 +387,7 @@ impl<const N: usize> Phases<N> for BodyPhases {
         true
     }
     fn slips(walk: &mut BodyWalk<'_, N>) -> [f64; N] {
-        walk.of.slide.sets_ways(&walk.of.state, [walk.at[5], walk.at[6]], [0.0; 2], None);
+        walk.of.slide.sets_ways(&walk.of.state, walk.at.slip(), [0.0; 2], None);
         Self::slips_on(walk)
     }
     fn slips_on(walk: &mut BodyWalk<'_, N>) -> [f64; N] {
@@ -441,7 +443,7 @@ impl<const N: usize> Phases<N> for BodyPhases {
             let y = series.at(t);
             (0..2).filter(|i| slide.watches(*i)).for_each(|i| all[i] = slide.margin(&y, i));
             // The margin of a jam is proportional to the speed of a dry slip, and that speed may dip.
-            all[3] /= if slide.law.dry { moved[5].hypot(moved[6]) } else { 1.0 };
+            all[W2] /= if slide.law.dry { moved[UH].hypot(moved[U2]) } else { 1.0 };
             all
         })
     }

@@ -9,7 +9,7 @@
 //!
 //! Error: the square of the time of the passage. A couple along the rim turns with e_h; it counts as constant.
 
-use crate::motions::walk::numbers::{TIME, poses};
+use crate::motions::walk::numbers::{PHI, PSI, TIME, poses};
 
 /// A ball whose axis approaches its pole passes it in one step from this sine of theta on.
 const BESIDE: f64 = 1e-9;
@@ -55,7 +55,7 @@ pub(crate) fn passed<const N: usize>(y: &[f64; N], rates: &[f64; N]) -> Option<[
     there[..TIME].copy_from_slice(&[s, c, w[0], w[1], w[2], u_h, u_2]);
     if poses(N) {
         let turn = way[1].atan2(way[0]);
-        (there[9], there[10]) = (y[9] + turn, y[10] + lasts * w3 - c * turn);
+        (there[9], there[10]) = (y[PHI] + turn, y[PSI] + lasts * w3 - c * turn);
     }
     Some(there)
 }

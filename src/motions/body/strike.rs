@@ -20,7 +20,7 @@ use crate::laws::loss::{Couples, Kinematics};
 use crate::laws::newton;
 use crate::laws::state::State;
 use crate::motions::walk::Next;
-use crate::motions::walk::numbers::TIME;
+use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, SIN, TIME, W1, W2, W3};
 use crate::motions::{Ending, Kind, Limit, Method, Moving, Strike};
 use core::f64::consts::FRAC_PI_2;
 
@@ -225,7 +225,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             let heat = -(left * (across * after.slip[0] + along * after.slip[1]));
             if let Some(last) = self.made.path.impacts.last_mut() {
                 last.lost += heat;
-                self.at[8] -= heat;
+                self.at[HEAT] -= heat;
             }
             // A slip whose direction hardly turns between the bounces has the same impulses, at the same mean time.
             share *= (TURNS * bounce / speed).min(1.0);
@@ -263,7 +263,7 @@ impl<const N: usize> BodyWalk<'_, N> {
     /// Computes the impacts of both rims at once while both come down, and of one rim in turn, until no rim comes down.
     #[inline(never)]
     pub(crate) fn rattles(&mut self, e: f64) -> Next {
-        (self.at[0], self.at[1]) = (1.0, 0.0);
+        (self.at[SIN], self.at[COS]) = (1.0, 0.0);
         let shape = self.of.slide.law.shape;
         let mut at = Aloft { angle: (1.0, 0.0), ..self.aloft() };
         let fast = at.lift.min(at.on_other_rim(&shape).lift).abs();
@@ -367,7 +367,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         let (y, slip) = settled(&self.of.body, &state, (slip, from.lift), &friction);
         let lift = from.lift + law.shape.rim.lever(from.angle) * from.w[1];
         let before = newton::energy(&law.shape, from.angle, from.w, [v[0], v[1], lift]) + from.height;
-        self.at[8] += before - law.energy(&y, slip);
+        self.at[HEAT] += before - law.energy(&y, slip);
         let after = Aloft { angle: (1.0, 0.0), w: [y.w1, 0.0, y.w3], slip, lift: 0.0, height: 0.0, ..from };
         self.sets(&after);
         self.settles_on_side()
@@ -377,15 +377,15 @@ impl<const N: usize> BodyWalk<'_, N> {
     pub(crate) fn lands_on_both(&mut self) -> Next {
         let friction = match self.ask.table {
             Table::Rubs(friction) => friction,
-            _ if self.at[2] == 0.0 && self.at[4] == 0.0 => Friction::coulomb(PERFECTLY_ROUGH),
+            _ if self.at[W1] == 0.0 && self.at[W3] == 0.0 => Friction::coulomb(PERFECTLY_ROUGH),
             _ => return Next::Ends(Ending::Side),
         };
-        if self.at[3] > 0.0 {
+        if self.at[W2] > 0.0 {
             self.turns_over();
         }
         let before = State { theta: FRAC_PI_2, ..self.of.state };
         let lift = self.of.takeoff.lift;
-        let Ok(landed) = land_at(&self.of.body, &before, ([self.at[5], self.at[6]], lift), &friction) else {
+        let Ok(landed) = land_at(&self.of.body, &before, (self.at.slip(), lift), &friction) else {
             return Next::Ends(Ending::Landing);
         };
         let (shape, other) = (self.of.slide.law.shape, !self.made.path.upside_down);
@@ -396,7 +396,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         let impulse = gained(&shape, [&from, &there]);
         self.claims(-landed.lost);
         self.records([&from, &there], other, Hit::BothRims, (impulse, landed.lost), true);
-        let rises = self.at[3];
+        let rises = self.at[W2];
         if rises < ROCKED_OUT {
             self.claims(rises * LASTS);
             return self.settles_on_side();
@@ -408,7 +408,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             self.at = end;
             return self.settles_on_side();
         }
-        if self.at[3] < ROCKED
+        if self.at[W2] < ROCKED
             && let Some(next) = self.rocks_to_pivot()
         {
             return next;

@@ -14,7 +14,7 @@ use crate::laws::contact::{Contact, Table, force, patch};
 use crate::laws::state::State;
 use crate::motions::ask::row::OutputRow;
 use crate::motions::walk::errors::doubted;
-use crate::motions::walk::numbers::{Halt, TIME, lost};
+use crate::motions::walk::numbers::{HEAT, Halt, TIME, lost};
 use crate::motions::walk::two_runs::Followed;
 use crate::motions::{Kind, Limit};
 
@@ -53,7 +53,7 @@ impl<const N: usize> BodyWalk<'_, N> {
 
     /// Rolls to the last time: nothing ends it.
     pub(crate) fn rolls_uniformly(&mut self) {
-        let (now, spent, body) = (self.at[TIME], [self.at[8], lost(&self.at)], self.of.body);
+        let (now, spent, body) = (self.at[TIME], [self.at[HEAT], lost(&self.at)], self.of.body);
         let mut spun = Spun::new(&Aloft { slip: [0.0; 2], ..self.aloft() }, [0.0; 3], 0.0);
         while let Some(t) = self.until() {
             let y = self.spun(&mut spun, t - now).0.state();
@@ -67,7 +67,7 @@ impl<const N: usize> BodyWalk<'_, N> {
 
     /// Slips until the slip vanishes, or to the last time.
     pub(crate) fn slips_uniformly(&mut self) {
-        let (now, heat, mu) = (self.at[TIME], self.at[8], self.of.slide.law.strength);
+        let (now, heat, mu) = (self.at[TIME], self.at[HEAT], self.of.slide.law.strength);
         let (from, ask, slide) = (self.aloft(), self.ask, self.of.slide);
         let mut spun = Spun::rubbing(&from, self.of.body.i3(), mu);
         let speed = from.slip[0].hypot(from.slip[1]);
@@ -96,7 +96,7 @@ impl<const N: usize> BodyWalk<'_, N> {
 
     /// Drills on a patch of contact without a slip, until the drilling ends, or to the last time.
     pub(crate) fn creeps_uniformly(&mut self, radius: f64) {
-        let (now, heat, from) = (self.at[TIME], self.at[8], self.aloft());
+        let (now, heat, from) = (self.at[TIME], self.at[HEAT], self.aloft());
         let (ask, slide, i3) = (self.ask, self.of.slide, self.of.body.i3());
         let couple = slide.law.strength * radius * patch::of(0.0)[1];
         let mut spun = Spun::drilling(&from, couple / i3);

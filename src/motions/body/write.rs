@@ -10,21 +10,21 @@ use crate::motions::Ask;
 use crate::motions::Kind;
 use crate::motions::ask::row::OutputRow;
 use crate::motions::walk::errors::doubted;
-use crate::motions::walk::numbers::{lost, poses};
+use crate::motions::walk::numbers::{COS, HEAT, PHI, PSI, SIN, U2, UH, W1, W2, W3, X, Y, lost, poses};
 use crate::motions::walk::two_runs::Followed;
 use core::f64::consts::{PI, TAU};
 use nalgebra::Point2;
 
 /// The state from the numbers. A ball whose axis has passed the vertical leans to the other side.
 pub(crate) fn state<const N: usize>(y: &[f64; N]) -> State {
-    let side = if y[0] < 0.0 { -1.0 } else { 1.0 };
-    State { theta: (side * y[0]).atan2(y[1]), w1: side * y[2], w2: side * y[3], w3: y[4] }
+    let side = if y[SIN] < 0.0 { -1.0 } else { 1.0 };
+    State { theta: (side * y[SIN]).atan2(y[COS]), w1: side * y[W1], w2: side * y[W2], w3: y[W3] }
 }
 
 /// The pose from the numbers of a flow.
 pub(crate) fn pose<const N: usize>(y: &[f64; N]) -> Pose {
-    let turn = if y[0] < 0.0 { PI } else { 0.0 };
-    posed([y[9] + turn, y[10] - turn, y[11], y[12]], 0.0)
+    let turn = if y[SIN] < 0.0 { PI } else { 0.0 };
+    posed([y[PHI] + turn, y[PSI] - turn, y[X], y[Y]], 0.0)
 }
 
 /// The pose with these angles, the contact point at this position, and the lowest point at this height.
@@ -47,8 +47,8 @@ impl Followed {
     /// Adds a point of a slip to the outputs.
     pub(crate) fn slid<const N: usize>(&mut self, ask: &Ask, slide: &Slide, y: &[f64; N]) {
         let now = state(y);
-        let side = if y[0] < 0.0 { -1.0 } else { 1.0 };
-        let slip = [side * y[5], side * y[6]];
+        let side = if y[SIN] < 0.0 { -1.0 } else { 1.0 };
+        let slip = [side * y[UH], side * y[U2]];
         let pose = poses(N).then(|| pose(y));
         // Where a dry slip just begins, with u = 0, friction acts against the direction in which it begins.
         let towards = if slip == [0.0, 0.0] && slide.law.dry { self.path.way } else { slip };
@@ -61,7 +61,7 @@ impl Followed {
         self.push(OutputRow {
             pose,
             force,
-            ..OutputRow::on_table(now, slip, [y[8], lost(y)], Kind::Slipping)
+            ..OutputRow::on_table(now, slip, [y[HEAT], lost(y)], Kind::Slipping)
         });
     }
 
@@ -85,6 +85,6 @@ impl Followed {
             }
         });
         let force = ask.force.then(|| doubted(&now, state_errors(&now, flow.tol), |y| flow.force(y)));
-        self.push(OutputRow { pose, force, ..OutputRow::on_table(now, [0.0; 2], [y[8], lost(y)], kind) });
+        self.push(OutputRow { pose, force, ..OutputRow::on_table(now, [0.0; 2], [y[HEAT], lost(y)], kind) });
     }
 }

@@ -21,7 +21,7 @@ use crate::motions::body::face::FLAT;
 use crate::motions::body::slide::{Slide, first, longest, pose_rates, vanished};
 use crate::motions::body::write::state;
 use crate::motions::dry::creep::is_fast;
-use crate::motions::walk::numbers::{Halt, TIME};
+use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, Halt, SIN, TIME, U2, UH, W1, W2, W3};
 use crate::motions::walk::slip_over;
 use crate::motions::{Ask, Ending, Kind};
 use crate::numbers::Dual;
@@ -141,15 +141,15 @@ impl<'a> CustomFlow<'a> {
 
     /// The error of a law that supplies energy in the state with these numbers, whose rates are `rate`.
     pub(super) fn supplies<const N: usize>(&self, y: &[f64; N], rate: &[f64; N]) -> Option<Error> {
-        let (angle, w) = ((y[0], y[1]), [y[2], y[3], y[4]]);
+        let (angle, w) = (y.angle(), y.w());
         let couple = self.custom.couple.filter(|_| rate[N - 1] < 0.0 || !self.ask.losses.is_none());
         let of_couple = couple.and_then(|law| {
             let ((_, y), normal) = (upright(angle, w), self.answer(y).force[0].max(0.0));
             fault_of_couple(law.couple(self.body, &y, normal), &y, normal)
         });
-        let friction = self.custom.friction.filter(|_| self.slips && rate[8] < 0.0);
+        let friction = self.custom.friction.filter(|_| self.slips && rate[HEAT] < 0.0);
         of_couple.or_else(|| {
-            let speed = y[5].hypot(y[6]);
+            let speed = y[UH].hypot(y[U2]);
             friction.and_then(|law| fault_of_friction(law.coefficient(speed), speed))
         })
     }
@@ -165,7 +165,7 @@ impl<'a> CustomFlow<'a> {
             let above = self.rates(&more);
             slope += (2..5).map(|i| ((above[i] - rate[i]) / (more[j] - y[j])).powi(2)).sum::<f64>();
         }
-        let (slope, change) = (slope.sqrt(), rate[2].hypot(rate[3]).hypot(rate[4]));
+        let (slope, change) = (slope.sqrt(), rate[W1].hypot(rate[W2]).hypot(rate[W3]));
         let fast = FAR_FASTER * change.max(fast / self.calm(y)) / fast;
         h * slope > STABLE && slope > fast
     }
@@ -220,8 +220,8 @@ impl<'a> CustomFlow<'a> {
     }
 
     pub(super) fn answer<const N: usize>(&self, y: &[f64; N]) -> CustomResponse {
-        let (angle, w) = ((y[0], y[1]), [y[2], y[3], y[4]]);
-        if self.slips { self.slides(angle, w, [y[5], y[6]], None) } else { self.rolls(angle, w) }
+        let (angle, w) = (y.angle(), y.w());
+        if self.slips { self.slides(angle, w, y.slip(), None) } else { self.rolls(angle, w) }
     }
 
     /// The force in a state near the numbers `y`; `way` is the direction in which a slip begins.
@@ -235,12 +235,12 @@ impl<'a> CustomFlow<'a> {
 
     /// Writes the rates of all numbers from the response.
     fn writes<const N: usize>(&self, y: &[f64; N], at: &CustomResponse, all: &mut [f64; N]) {
-        let (precession, w2) = (y[2] / y[0], y[3]);
+        let (precession, w2) = (y[W1] / y[SIN], y[W2]);
         let [_, along, across] = at.force;
-        let heat = -(along * y[6] + across * y[5]);
-        let turns = [precession, y[4] - y[1] * precession];
-        let pose = pose_rates(&self.body.shape().rim, y, turns, [y[5], y[6]]);
-        let rates = [-(y[1] * w2), y[0] * w2, at.w[0], at.w[1], at.w[2], at.u[0], at.u[1], 1.0, heat];
+        let heat = -(along * y[U2] + across * y[UH]);
+        let turns = [precession, y[W3] - y[COS] * precession];
+        let pose = pose_rates(&self.body.shape().rim, y, turns, y.slip());
+        let rates = [-(y[COS] * w2), y[SIN] * w2, at.w[0], at.w[1], at.w[2], at.u[0], at.u[1], 1.0, heat];
         for (to, rate) in all.iter_mut().zip(rates.into_iter().chain(pose).chain([at.power])) {
             *to = at.pace * rate;
         }
@@ -248,7 +248,7 @@ impl<'a> CustomFlow<'a> {
 
     /// The derivatives of all numbers with respect to time, for a slip that begins along `way`.
     pub(super) fn rates_along<const N: usize>(&self, y: &[f64; N], way: [f64; 2]) -> [f64; N] {
-        let (at, mut all) = (self.slides((y[0], y[1]), [y[2], y[3], y[4]], [0.0; 2], Some(way)), *y);
+        let (at, mut all) = (self.slides(y.angle(), y.w(), [0.0; 2], Some(way)), *y);
         self.writes(y, &at, &mut all);
         all
     }
@@ -256,8 +256,8 @@ impl<'a> CustomFlow<'a> {
     fn all_margins<const N: usize>(&self, y: &[f64; N]) -> [f64; CUSTOM_MARGINS] {
         let at = self.answer(y);
         let (high, far) = landing_angle(self.body.theta_end());
-        let side = if self.body.theta_end() < PI { high * y[1] - far * y[0] } else { 1.0 };
-        [if self.body.is_ball() { 1.0 } else { y[0] - FLAT }, side, at.free, at.room]
+        let side = if self.body.theta_end() < PI { high * y[COS] - far * y[SIN] } else { 1.0 };
+        [if self.body.is_ball() { 1.0 } else { y[SIN] - FLAT }, side, at.free, at.room]
     }
 
     /// The behaviour of a contact point at rest.
@@ -269,7 +269,7 @@ impl<'a> CustomFlow<'a> {
     /// The end of a phase, if the phase is over at once.
     pub(super) fn at_start<const N: usize>(&self, y: &[f64; N], at: &CustomResponse) -> Option<Ending> {
         let (end, theta) = (self.body.theta_end(), state(y).theta);
-        let rises = y[3] > 0.0 || y[3] == 0.0 && at.w[1] > 0.0;
+        let rises = y[W2] > 0.0 || y[W2] == 0.0 && at.w[1] > 0.0;
         match () {
             () if end < PI && (theta > end || theta == end && !rises) => Some(Ending::Side),
             () if at.free <= 0.0 => Some(Ending::LiftOff),
@@ -296,7 +296,7 @@ impl Flow<CUSTOM_MARGINS> for CustomFlow<'_> {
 
     /// The smaller a slip that begins, the faster it approaches its slow direction.
     fn is_stiff<const N: usize>(&self, place: &FlowPlace<N>) -> bool {
-        let grows = place.y[5] * place.rate[5] + place.y[6] * place.rate[6] > 0.0;
+        let grows = place.y[UH] * place.rate[UH] + place.y[U2] * place.rate[U2] > 0.0;
         grows && is_fast(self.stable(place) * place.rate[TIME], self.calm(&place.y))
     }
 
@@ -306,8 +306,8 @@ impl Flow<CUSTOM_MARGINS> for CustomFlow<'_> {
         h: f64,
         guess: radau::Guess<N>,
     ) -> (rk8::Step<f64, N>, radau::Collocated<N>) {
-        let (y, fast, slip) = (&from.y, Slide::fastest(&from.y), from.y[5].hypot(from.y[6]));
-        let sizes = [y[0], 1.0, fast, fast, fast, slip, slip];
+        let (y, fast, slip) = (&from.y, Slide::fastest(&from.y), from.y[UH].hypot(from.y[U2]));
+        let sizes = [y[SIN], 1.0, fast, fast, fast, slip, slip];
         let mut slopes = SMatrix::<f64, COUPLED, COUPLED>::zeros();
         for j in 0..COUPLED {
             let (mut more, mut less) = (*y, *y);
@@ -380,6 +380,6 @@ impl Flow<CUSTOM_MARGINS> for CustomFlow<'_> {
     }
 
     fn theta<const N: usize>(&self, y: &[f64; N]) -> f64 {
-        y[0].atan2(y[1])
+        y[SIN].atan2(y[COS])
     }
 }

@@ -27,7 +27,7 @@ use crate::motions::body::slide::Slide;
 use crate::motions::body::without_slip;
 use crate::motions::body::write::{pose, state, state_errors};
 use crate::motions::walk::errors::doubted;
-use crate::motions::walk::numbers::{Halt, TIME, lost};
+use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, Halt, SIN, TIME, U2, UH, W2, lost};
 use crate::motions::walk::two_runs::{Followed, judged};
 use core::cell::Cell;
 use flow::CustomFlow;
@@ -189,7 +189,7 @@ impl<'a> CustomRun<'a> {
     fn first(&mut self) -> Beginning {
         let Table::Rubs(friction) = self.flow.ask.table else { return Beginning::Rolls };
         let over = slip_over(true, self.flow.friction(0.0).strength());
-        let rests = self.at[5].hypot(self.at[6]) <= over;
+        let rests = self.at[UH].hypot(self.at[U2]) <= over;
         if rests && matches!(friction, Friction::Coulomb { .. }) {
             self.rests(false)
         } else {
@@ -199,7 +199,7 @@ impl<'a> CustomRun<'a> {
 
     /// The next phase where the contact point is at rest; `let_go` means that friction has just ceased to hold it.
     fn rests(&mut self, let_go: bool) -> Beginning {
-        (self.at[5], self.at[6]) = (0.0, 0.0);
+        (self.at[UH], self.at[U2]) = (0.0, 0.0);
         // At the limit itself a slip does not grow; later it does.
         let (lasts, mut from) = (if let_go { KEEPS_ITS_WAY } else { MOMENT }, self.at);
         if let_go {
@@ -216,7 +216,7 @@ impl<'a> CustomRun<'a> {
 
     /// Begins a phase; returns the ending of the motion if the motion is over at once.
     fn begins(&mut self, next: Beginning) -> Result<Option<Ending>, Error> {
-        let (angle, w) = ((self.at[0], self.at[1]), [self.at[2], self.at[3], self.at[4]]);
+        let (angle, w) = (self.at.angle(), self.at.w());
         self.flow.slips = !matches!(next, Beginning::Rolls);
         let at = match next {
             Beginning::Ends(ending) => return Ok(Some(ending)),
@@ -227,7 +227,7 @@ impl<'a> CustomRun<'a> {
             return Ok(Some(ending));
         }
         let phases = &mut self.made.path.phases;
-        let (time, slip) = (self.start.time + self.at[TIME], [self.at[5], self.at[6]]);
+        let (time, slip) = (self.start.time + self.at[TIME], self.at.slip());
         let (kind, state) = (self.flow.kind(), state(&self.at));
         grow(phases, Phase { time, kind, state, slip, aloft: [0.0; 2], rim: 0 })?;
         let still = phases.iter().rev().take_while(|phase| phase.time >= time).count();
@@ -256,8 +256,8 @@ impl<'a> CustomRun<'a> {
     fn slipped(&self, from: &[f64; CUSTOM_NUMBERS], lasts: f64) -> [f64; CUSTOM_NUMBERS] {
         let half = moved(from, &self.flow.rates_along(from, self.way), 0.5 * lasts);
         let mut all = moved(from, &self.flow.rates_along(&half, self.way), lasts);
-        let speed = (all[5] * self.way[0] + all[6] * self.way[1]).max(LEAST_GROWTH * lasts);
-        (all[5], all[6]) = (speed * self.way[0], speed * self.way[1]);
+        let speed = (all[UH] * self.way[0] + all[U2] * self.way[1]).max(LEAST_GROWTH * lasts);
+        (all[UH], all[U2]) = (speed * self.way[0], speed * self.way[1]);
         all
     }
 
@@ -288,7 +288,7 @@ impl<'a> CustomRun<'a> {
                     self.writes();
                 }
                 self.made.motion.event = Some(Event { ending, time: self.start.time + now, state, rim: 0 });
-                self.made.path.last_slip = [self.at[5], self.at[6]];
+                self.made.path.last_slip = self.at.slip();
                 break;
             }
             next = match self.flows(go_on)? {
@@ -296,16 +296,16 @@ impl<'a> CustomRun<'a> {
                 Halt::Standstill => self.rests(false),
                 Halt::Slips if self.flow.ask.table.rubs() => self.rests(true),
                 Halt::Face => {
-                    let falls = self.at[1] * self.at[3];
-                    self.at[TIME] += if falls > 0.0 { self.at[0] / falls } else { 0.0 };
-                    self.at[0] = 0.0;
+                    let falls = self.at[COS] * self.at[W2];
+                    self.at[TIME] += if falls > 0.0 { self.at[SIN] / falls } else { 0.0 };
+                    self.at[SIN] = 0.0;
                     Beginning::Ends(Ending::Face)
                 }
                 halt => Beginning::Ends(ending(halt)),
             };
         }
         self.made.motion.times = copied(&self.times[..self.made.motion.states.len()])?;
-        (self.made.path.heat, self.made.path.lost) = (self.at[8], self.at[CUSTOM_NUMBERS - 1]);
+        (self.made.path.heat, self.made.path.lost) = (self.at[HEAT], self.at[CUSTOM_NUMBERS - 1]);
         Ok(self.made)
     }
 
@@ -354,8 +354,8 @@ impl Followed {
         way: [f64; 2],
     ) {
         let (now, ask) = (state(y), flow.ask);
-        let side = if y[0] < 0.0 { -1.0 } else { 1.0 };
-        let slip = [side * y[5], side * y[6]];
+        let side = if y[SIN] < 0.0 { -1.0 } else { 1.0 };
+        let slip = [side * y[UH], side * y[U2]];
         let pose = ask.pose.then(|| {
             let pose = pose(y);
             if ask.table != Table::Smooth {
@@ -370,6 +370,10 @@ impl Followed {
             let turns = if flow.slips && speed > 0.0 { flow.tol * Slide::fastest(y) / speed } else { 0.0 };
             (force, doubt + turns.min(1.0) * force.along.hypot(force.across))
         });
-        self.push(OutputRow { pose, force, ..OutputRow::on_table(now, slip, [y[8], lost(y)], flow.kind()) });
+        self.push(OutputRow {
+            pose,
+            force,
+            ..OutputRow::on_table(now, slip, [y[HEAT], lost(y)], flow.kind())
+        });
     }
 }

@@ -46,8 +46,47 @@ pub(crate) enum Halt {
 
 /// Number of margins of a motion.
 pub(crate) const MARGINS: usize = 6;
-/// The index of the time among the numbers of a motion.
+/// The indices of the numbers of a body's motion. Those of the time, of a stone, too.
+pub(crate) const SIN: usize = 0;
+pub(crate) const COS: usize = 1;
+pub(crate) const W1: usize = 2;
+pub(crate) const W2: usize = 3;
+pub(crate) const W3: usize = 4;
+pub(crate) const UH: usize = 5;
+pub(crate) const U2: usize = 6;
 pub(crate) const TIME: usize = 7;
+pub(crate) const HEAT: usize = 8;
+pub(crate) const PHI: usize = 9;
+pub(crate) const PSI: usize = 10;
+pub(crate) const X: usize = 11;
+pub(crate) const Y: usize = 12;
+/// The number in place of w1 where a flow uses another variable: p = w1 s, or w_z of a contact that is held.
+pub(crate) const P: usize = 2;
+
+/// The numbers of a body's motion that belong together.
+pub(crate) trait BodyNumbers<T> {
+    /// Sine and cosine of theta.
+    fn angle(&self) -> (T, T);
+    /// The angular velocity along e1, e2, e3.
+    fn w(&self) -> [T; 3];
+    /// The slip along e_h and e2.
+    fn slip(&self) -> [T; 2];
+}
+
+impl<T: Copy, const N: usize> BodyNumbers<T> for [T; N] {
+    #[inline(always)]
+    fn angle(&self) -> (T, T) {
+        (self[SIN], self[COS])
+    }
+    #[inline(always)]
+    fn w(&self) -> [T; 3] {
+        [self[W1], self[W2], self[W3]]
+    }
+    #[inline(always)]
+    fn slip(&self) -> [T; 2] {
+        [self[UH], self[U2]]
+    }
+}
 
 /// Whether the lost energy is the last of the numbers.
 pub(crate) const fn loses(count: usize) -> bool {

@@ -17,7 +17,7 @@ use crate::motions::ask::row::OutputRow;
 use crate::motions::body::fly::{Aloft, Flies, Flight, Takeoff};
 use crate::motions::body::phases::{BodyPhases, BodyWalk, LONGER};
 use crate::motions::body::strike::{RATTLED, ROUNDED};
-use crate::motions::walk::numbers::{TIME, loses, lost, poses};
+use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, PHI, SIN, TIME, W2, loses, lost, poses};
 use crate::motions::walk::{Next, Phases};
 use crate::motions::{Ending, Kind, Limit};
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -56,7 +56,7 @@ impl<const N: usize> BodyWalk<'_, N> {
     /// The state with these numbers. Its inclination is computed once in an impact of a uniform ball, whose bounces cost
     /// little else.
     pub(crate) fn state_of(&self, at: &Aloft) -> State {
-        let ([w1, w2, w3], here) = (at.w, (self.at[0], self.at[1]));
+        let ([w1, w2, w3], here) = (at.w, self.at.angle());
         if self.of.uniform && at.angle == here { State { w1, w2, w3, ..self.of.state } } else { at.state() }
     }
 
@@ -69,7 +69,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         let theta = self.state_of(to).theta;
         self.at[..7].copy_from_slice(&[s, c, w1, w2, w3, u, v]);
         if poses(N) {
-            self.at[9..13].copy_from_slice(&to.pose);
+            self.at[PHI..PHI + 4].copy_from_slice(&to.pose);
         }
         self.of.state = State { theta: if c == 0.0 { FRAC_PI_2 } else { theta }, w1, w2, w3 };
         (self.of.takeoff.height, self.of.takeoff.lift) = (to.height, to.lift);
@@ -86,9 +86,9 @@ impl<const N: usize> BodyWalk<'_, N> {
     /// The flight of a body that starts in the air, or its landing if it starts on the table and comes down.
     pub(crate) fn starts_in_air(&mut self, [height, lift]: [f64; 2]) -> Next {
         if self.of.state.theta == FRAC_PI_2 {
-            (self.at[0], self.at[1]) = (1.0, 0.0);
+            (self.at[SIN], self.at[COS]) = (1.0, 0.0);
         } else if self.of.state.theta == PI {
-            (self.at[0], self.at[1]) = (0.0, -1.0);
+            (self.at[SIN], self.at[COS]) = (0.0, -1.0);
         }
         self.of.takeoff = Takeoff { height, lift, leaves: (height == 0.0).then_some(1) };
         Next::Own(Kind::Flying)
@@ -127,9 +127,9 @@ impl<const N: usize> BodyWalk<'_, N> {
                 Next::Own(Kind::Flying)
             }
             Ending::Side if self.has_two_rims() && self.of.state.theta == FRAC_PI_2 => {
-                (self.at[0], self.at[1]) = (1.0, 0.0);
+                (self.at[SIN], self.at[COS]) = (1.0, 0.0);
                 self.of.takeoff = Takeoff::default();
-                let down = -self.at[3];
+                let down = -self.at[W2];
                 if down == 0.0 {
                     return self.settles_on_side();
                 }
@@ -245,7 +245,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         let v_z = from.lift + law.shape.rim.lever(from.angle) * from.w[1];
         let has = newton::energy(&law.shape, from.angle, from.w, [v_h, v_2, v_z]) + from.height;
         let last = self.made.path.impacts.last().map_or(0.0, |hit| hit.lost);
-        let whole = has + self.at[8] + self.of.struck + last + if loses(N) { self.at[N - 1] } else { 0.0 };
+        let whole = has + self.at[HEAT] + self.of.struck + last + if loses(N) { self.at[N - 1] } else { 0.0 };
         let fastest = [v_h, v_2, v_z].into_iter().chain(from.w).fold(1.0, |most: f64, x| most.max(x.abs()));
         let first = *self.of.energy.get_or_insert(whole);
         self.claims((whole - first).abs() / fastest);
@@ -275,7 +275,7 @@ impl<const N: usize> BodyWalk<'_, N> {
     pub(crate) fn writes_with(&mut self, at: &Aloft, kind: Kind, force: f64) {
         let force = self.ask.force.then_some((Force { normal: force, along: force, across: force }, 0.0));
         let pose = poses(N).then(|| at.pose());
-        let row = OutputRow::on_table(at.state(), at.slip, [self.at[8], lost(&self.at)], kind);
+        let row = OutputRow::on_table(at.state(), at.slip, [self.at[HEAT], lost(&self.at)], kind);
         self.made.push(OutputRow { pose, force, aloft: [at.height, at.lift], ..row });
     }
 }

@@ -16,7 +16,7 @@ use crate::methods::rk8;
 use crate::motions::Kind;
 use crate::motions::body::slide::longest;
 use crate::motions::walk::MOMENT;
-use crate::motions::walk::numbers::{Halt, MARGINS, TIME, loses, poses};
+use crate::motions::walk::numbers::{BodyNumbers, Halt, MARGINS, PHI, TIME, U2, UH, W1, W3, loses, poses};
 use crate::numbers::{Dual, Real};
 use core::f64::consts::FRAC_PI_2;
 
@@ -75,7 +75,7 @@ pub(crate) struct LyingFlow {
 
 /// w1, w3, u_h and u_2 among the numbers.
 fn flat<T: Copy>(y: &[T]) -> Flat<T> {
-    [y[2], y[4], y[5], y[6]]
+    [y[W1], y[W3], y[UH], y[U2]]
 }
 
 impl LyingFlow {
@@ -120,7 +120,7 @@ impl LyingFlow {
     /// Forces and accelerations at these numbers; a rim at rest from which the state is seen, but which slips, slips off
     /// along `way`.
     pub fn lain_along<const N: usize>(&self, y: &[f64; N], way: [f64; 2]) -> Lain<f64> {
-        if self.stance != Stance::Slips || !self.law.dry || [y[5], y[6]] != [0.0; 2] {
+        if self.stance != Stance::Slips || !self.law.dry || y.slip() != [0.0; 2] {
             return self.lain(y);
         }
         let (law, y) = (&self.law, flat(y));
@@ -130,7 +130,7 @@ impl LyingFlow {
     /// The speeds of the slips of both rims.
     fn speeds<const N: usize>(&self, y: &[f64; N]) -> [f64; 2] {
         let [u, v] = self.law.other_slip(flat(y));
-        [y[5].hypot(y[6]), u.hypot(v)]
+        [y[UH].hypot(y[U2]), u.hypot(v)]
     }
 
     fn margins_of<T: Real>(&self, law: &Lying<T>, y: Flat<T>) -> [T; MARGINS] {
@@ -164,7 +164,7 @@ impl LyingFlow {
     /// The largest speed, at least 1.
     fn swiftest<const N: usize>(&self, y: &[f64; N]) -> f64 {
         let [here, there] = self.speeds(y);
-        here.max(there).max(y[2].abs()).max(y[4].abs()).max(1.0)
+        here.max(there).max(y[W1].abs()).max(y[W3].abs()).max(1.0)
     }
 
     /// The rate at which dry friction turns the slips of both rims to their common direction: the larger rate of the two
@@ -185,9 +185,9 @@ impl LyingFlow {
     /// seen.
     pub fn nudged<const N: usize>(&self, start: &[f64; N], way: [f64; 2], growth: f64) -> [f64; N] {
         let mut y = *start;
-        (y[5], y[6]) = (MOMENT * growth * way[0], MOMENT * growth * way[1]);
+        (y[UH], y[U2]) = (MOMENT * growth * way[0], MOMENT * growth * way[1]);
         let at = self.law.slipping(flat(&y), self.ways);
-        (y[2], y[4]) = (y[2] + MOMENT * at.w[0], y[4] + MOMENT * at.w[1]);
+        (y[W1], y[W3]) = (y[W1] + MOMENT * at.w[0], y[W3] + MOMENT * at.w[1]);
         y[TIME] += MOMENT;
         y
     }
@@ -222,9 +222,9 @@ impl Flow<MARGINS> for LyingFlow {
         let heat = -(low_2 * u_2 + low_h * u_h + up_2 * other_2 + up_h * other_h);
         all[..9].copy_from_slice(&[0.0, 0.0, at.w[0], 0.0, at.w[1], at.u[0], at.u[1], 1.0, heat]);
         if poses(N) {
-            let (sin, cos) = y[9].sin_cos();
+            let (sin, cos) = y[PHI].sin_cos();
             let (out, on) = (u_h, u_2 + w3);
-            all[9..13].copy_from_slice(&[w1, w3, out * cos - on * sin, out * sin + on * cos]);
+            all[PHI..PHI + 4].copy_from_slice(&[w1, w3, out * cos - on * sin, out * sin + on * cos]);
         }
         if loses(N) {
             all[N - 1] = -(at.couple[0] * w1 + at.couple[1] * w3);
@@ -289,8 +289,8 @@ impl Flow<MARGINS> for LyingFlow {
             return None;
         }
         let ell = self.law.shape.rim.ell;
-        let slips = [[place.y[5], place.y[6]], self.law.other_slip(flat(&place.y))];
-        let rates = [[place.rate[5], place.rate[6]], self.law.other_slip(flat(&place.rate))];
+        let slips = [place.y.slip(), self.law.other_slip(flat(&place.y))];
+        let rates = [place.rate.slip(), self.law.other_slip(flat(&place.rate))];
         let (mut halt, mut y) = (None, place.y);
         for (i, ([u, v], [du, dv])) in slips.into_iter().zip(rates).enumerate() {
             let speed = u.hypot(v);
@@ -300,7 +300,7 @@ impl Flow<MARGINS> for LyingFlow {
             }
             let left = if speed > 0.0 { speed / slowing } else { 0.0 };
             y = core::array::from_fn(|i| place.y[i] + left * place.rate[i]);
-            (y[5], y[6]) = if i == 0 { (0.0, 0.0) } else { (0.0, 2.0 * ell * y[2]) };
+            (y[UH], y[U2]) = if i == 0 { (0.0, 0.0) } else { (0.0, 2.0 * ell * y[W1]) };
             halt = Some(if i == 0 { Halt::Standstill } else { Halt::OtherStandstill });
         }
         halt.map(|halt| (halt, y))

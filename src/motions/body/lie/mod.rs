@@ -28,7 +28,9 @@ use crate::laws::state::State;
 use crate::methods::flow::{Flow, Steps};
 use crate::methods::search::crossing;
 use crate::motions::ask::row::OutputRow;
-use crate::motions::walk::numbers::{Halt, TIME, lost, poses};
+use crate::motions::walk::numbers::{
+    BodyNumbers, COS, HEAT, Halt, PHI, PSI, SIN, TIME, U2, UH, W1, W2, W3, X, Y, lost, poses,
+};
 use crate::motions::walk::{Next, Pause, Phases, WalkStep, after_rest, ending};
 use crate::motions::{Ask, Ending, Kind, Phase};
 use core::f64::consts::{FRAC_PI_2, PI};
@@ -55,7 +57,7 @@ impl<const N: usize> BodyWalk<'_, N> {
     fn flat(&self) -> Option<LyingFlow> {
         let friction = match self.ask.table {
             Table::Rubs(friction) => friction,
-            Table::Rolling { mu } if self.at[2] == 0.0 && self.at[5] == 0.0 && self.at[6] == 0.0 => {
+            Table::Rolling { mu } if self.at[W1] == 0.0 && self.at[UH] == 0.0 && self.at[U2] == 0.0 => {
                 Friction::coulomb(mu.min(1e100))
             }
             _ => return None,
@@ -76,11 +78,11 @@ impl<const N: usize> BodyWalk<'_, N> {
         if self.made.path.upside_down {
             self.turns_over();
         }
-        (self.at[0], self.at[1], self.at[3]) = (1.0, 0.0, 0.0);
+        (self.at[SIN], self.at[COS], self.at[W2]) = (1.0, 0.0, 0.0);
         self.of.state = State { theta: FRAC_PI_2, w2: 0.0, ..self.of.state };
         let Some(mut flow) = self.flat() else { return Next::Ends(Ending::Side) };
         let ell = self.of.body.ell();
-        let [w1, w3, u_h, u_2] = [self.at[2], self.at[4], self.at[5], self.at[6]];
+        let [w1, w3, u_h, u_2] = [self.at[W1], self.at[W3], self.at[UH], self.at[U2]];
         let other = u_2 - 2.0 * ell * w1;
         let size =
             STILL_SLIP * [w1 * ell, w3, u_h, u_2].into_iter().fold(1.0, |most: f64, x| most.max(x.abs()));
@@ -92,7 +94,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         }
         match still {
             [true, true] => {
-                (self.at[2], self.at[5], self.at[6]) = (0.0, 0.0, 0.0);
+                (self.at[W1], self.at[UH], self.at[U2]) = (0.0, 0.0, 0.0);
                 self.sets_state();
                 self.begins_stance(flow, Stance::Rolls)
             }
@@ -111,7 +113,7 @@ impl<const N: usize> BodyWalk<'_, N> {
                 }
             }
             [here, _] => {
-                (self.at[5], self.at[6]) = (0.0, if here { 0.0 } else { 2.0 * ell * w1 });
+                (self.at[UH], self.at[U2]) = (0.0, if here { 0.0 } else { 2.0 * ell * w1 });
                 self.sets_state();
                 self.rests_on_one(flow, !here)
             }
@@ -119,7 +121,7 @@ impl<const N: usize> BodyWalk<'_, N> {
     }
 
     fn sets_state(&mut self) {
-        self.of.state = State { w1: self.at[2], w3: self.at[4], ..self.of.state };
+        self.of.state = State { w1: self.at[W1], w3: self.at[W3], ..self.of.state };
     }
 
     /// The normal forces of both rims while both slip, with the signs of the dry losses set.
@@ -131,7 +133,7 @@ impl<const N: usize> BodyWalk<'_, N> {
 
     /// Sets the signs of the motions that dry losses resist, and which of them they hold.
     fn sets_ways(&self, flow: &mut LyingFlow) {
-        let moving = [self.at[2], self.at[4]];
+        let moving = [self.at[W1], self.at[W3]];
         let way = |x: f64| if x == 0.0 { 0.0 } else { x.signum() };
         flow.ways = moving.map(way);
         let rolls = flow.stance == Stance::Rolls;
@@ -148,18 +150,18 @@ impl<const N: usize> BodyWalk<'_, N> {
 
     /// Begins a phase on both rims.
     fn begins_stance(&mut self, mut flow: LyingFlow, stance: Stance) -> Next {
-        (flow.stance, flow.turn) = (stance, self.at[2].signum());
+        (flow.stance, flow.turn) = (stance, self.at[W1].signum());
         self.sets_ways(&mut flow);
         let law = &flow.law;
         if stance == Stance::Rolls {
             let slows = flow.lain(&self.at).w[1];
             if slows.abs() > flow.fixed * (1.0 + GRACE) {
                 // Both rims slip across, since friction cannot slow the body as much as the losses do.
-                self.at[6] = -slows.signum() * NUDGED;
+                self.at[U2] = -slows.signum() * NUDGED;
                 return self.begins_stance(flow, Stance::Slips);
             }
         }
-        if stance == Stance::Rolls && self.at[4] == 0.0 && law.held[1] {
+        if stance == Stance::Rolls && self.at[W3] == 0.0 && law.held[1] {
             while self.until().is_some_and(|t| t <= self.at[TIME]) {
                 self.writes_lying(&flow, &{ self.at });
             }
@@ -174,9 +176,9 @@ impl<const N: usize> BodyWalk<'_, N> {
         if !here {
             self.turns_over();
         }
-        (self.at[0], self.at[1], self.at[3]) = (1.0, 0.0, 0.0);
+        (self.at[SIN], self.at[COS], self.at[W2]) = (1.0, 0.0, 0.0);
         self.of.state.w2 = 0.0;
-        let slip = [self.at[5], self.at[6]];
+        let slip = self.at.slip();
         if slip == [0.0; 2] && self.of.slide.law.dry {
             return after_rest(Phases::rests(self));
         }
@@ -204,7 +206,8 @@ impl<const N: usize> BodyWalk<'_, N> {
         let (begin, state) = (self.at, self.of.state);
         let after = pivoted(&self.of.body, &State { w2, ..state }, [u_h, u_2], mu, other);
         let slips = if other { 2.0 * ell * after.w1 } else { 0.0 };
-        (self.at[2], self.at[3], self.at[4], self.at[5], self.at[6]) = (after.w1, 0.0, after.w3, 0.0, slips);
+        (self.at[W1], self.at[W2], self.at[W3], self.at[UH], self.at[U2]) =
+            (after.w1, 0.0, after.w3, 0.0, slips);
         flow.stance = Stance::Pivots { other };
         flow.turn = after.w1.signum();
         self.sets_ways(&mut flow);
@@ -224,7 +227,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         let energy = |y: &[f64; N]| self.of.slide.energy(y);
         let lost = energy(&begin) - energy(&self.at);
         self.claims(-lost);
-        self.at[8] += lost;
+        self.at[HEAT] += lost;
         Some(self.settles_on_side())
     }
 
@@ -233,7 +236,7 @@ impl<const N: usize> BodyWalk<'_, N> {
     fn rests_on_one(&mut self, mut flow: LyingFlow, other: bool) -> Next {
         let ways = flow.ways;
         flow.stance = Stance::Pivots { other };
-        flow.turn = self.at[2].signum();
+        flow.turn = self.at[W1].signum();
         self.sets_ways(&mut flow);
         let at = flow.lain(&self.at);
         let [n, across, along] = at.force[usize::from(other)];
@@ -244,7 +247,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         flow.ways = ways;
         // The rim at rest, or the other one, carries the body alone.
         let seen = |view: bool| {
-            let slip = [self.at[5], self.at[6]];
+            let slip = self.at.slip();
             if view { mirrored(&self.of.body, &self.of.state, slip) } else { (self.of.state, slip) }
         };
         let (state, _) = seen(other);
@@ -255,7 +258,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             if other {
                 self.turns_over();
             }
-            self.at[3] = 0.0;
+            self.at[W2] = 0.0;
             return after_rest(found);
         }
         let (state, slip) = seen(!other);
@@ -290,9 +293,9 @@ impl<const N: usize> BodyWalk<'_, N> {
         if other {
             self.turns_over();
         }
-        (self.at[5], self.at[6]) = (0.0, 0.0);
+        (self.at[UH], self.at[U2]) = (0.0, 0.0);
         flow.stance = Stance::Slips;
-        let y = [self.at[2], self.at[4], 0.0, 0.0];
+        let y = [self.at[W1], self.at[W3], 0.0, 0.0];
         let mu = flow.law.strength;
         let up = flow.law.drag(flow.law.other_slip(y));
         let way = |x: f64| if x == 0.0 { 0.0 } else { x.signum() };
@@ -334,9 +337,9 @@ impl<const N: usize> BodyWalk<'_, N> {
                 let mut y = begin;
                 y[TIME] = t;
                 if poses(N) {
-                    let (sin, cos) = begin[9].sin_cos();
-                    let way = begin[4] * (t - began);
-                    (y[10], y[11], y[12]) = (begin[10] + way, begin[11] - way * sin, begin[12] + way * cos);
+                    let (sin, cos) = begin[PHI].sin_cos();
+                    let way = begin[W3] * (t - began);
+                    (y[PSI], y[X], y[Y]) = (begin[PSI] + way, begin[X] - way * sin, begin[Y] + way * cos);
                 }
                 self.writes_lying(&flow, &y);
             }
@@ -377,7 +380,7 @@ impl<const N: usize> BodyWalk<'_, N> {
     pub(crate) fn stops_lying(&mut self, y: [f64; N], halt: Halt) -> Option<[f64; N]> {
         let mut phase = self.of.lying.take()?;
         self.at = y;
-        (self.at[0], self.at[1], self.at[3]) = (1.0, 0.0, 0.0);
+        (self.at[SIN], self.at[COS], self.at[W2]) = (1.0, 0.0, 0.0);
         self.sets_state();
         self.made.path.slipping +=
             if phase.flow.stance == Stance::Slips { y[TIME] - self.began } else { 0.0 };
@@ -424,7 +427,7 @@ impl<const N: usize> BodyWalk<'_, N> {
                 Next::Ends(Ending::Stops)
             }
             Halt::Turned => {
-                (self.at[2], self.at[5], self.at[6]) = (0.0, 0.0, 0.0);
+                (self.at[W1], self.at[UH], self.at[U2]) = (0.0, 0.0, 0.0);
                 self.settles_on_side()
             }
             Halt::Standstill | Halt::OtherStandstill => self.settles_on_side(),
@@ -436,7 +439,7 @@ impl<const N: usize> BodyWalk<'_, N> {
 
     /// A phase of this kind that begins at the current numbers; a body on both rims is seen from the first rim.
     pub(crate) fn told(&self, kind: Kind) -> Phase {
-        let (y, slip, over) = (self.of.state, [self.at[5], self.at[6]], self.made.path.upside_down);
+        let (y, slip, over) = (self.of.state, self.at.slip(), self.made.path.upside_down);
         let lies = self.of.lying.is_some();
         let (state, slip) = if over && lies { mirrored(&self.of.body, &y, slip) } else { (y, slip) };
         let flies = kind == Kind::Flying;
@@ -470,8 +473,8 @@ fn row_of<const N: usize>(
     (over, way): (Option<&Aloft>, [f64; 2]),
     y: &[f64; N],
 ) -> OutputRow<State> {
-    let mut slips = [[y[5], y[6]], flow.law.other_slip([y[2], y[4], y[5], y[6]])];
-    let (mut forces, mut w3, mut seen) = (flow.lain_along(y, way).force, y[4], *y);
+    let mut slips = [y.slip(), flow.law.other_slip([y[W1], y[W3], y[UH], y[U2]])];
+    let (mut forces, mut w3, mut seen) = (flow.lain_along(y, way).force, y[W3], *y);
     if let Some(over) = over {
         let back = |x: f64| 0.0 - x;
         slips = [slips[1].map(back), slips[0].map(back)];
@@ -479,17 +482,17 @@ fn row_of<const N: usize>(
         (forces, w3) = ([turned(forces[1]), turned(forces[0])], back(w3));
         if poses(N) {
             let pose = core::array::from_fn(|i| y[9 + i]);
-            seen[9..13].copy_from_slice(&pose_from(over, &flow.law.shape, true, pose));
+            seen[PHI..PHI + 4].copy_from_slice(&pose_from(over, &flow.law.shape, true, pose));
         }
     }
     let force = |[normal, along, across]: [f64; 3]| Force { normal, along, across };
-    let doubt = flow.tol * (1.0 + y[2].abs().max(y[4].abs()));
+    let doubt = flow.tol * (1.0 + y[W1].abs().max(y[W3].abs()));
     let ([u, v], [normal, across, along]) = (slips[1], forces[1]);
-    let state = State { theta: FRAC_PI_2, w1: y[2], w2: 0.0, w3 };
+    let state = State { theta: FRAC_PI_2, w1: y[W1], w2: 0.0, w3 };
     OutputRow {
         pose: poses(N).then(|| write::pose(&seen)),
         force: ask.force.then(|| (force(forces[0]), doubt)),
         other_rim: Some([u, v, normal, across, along]),
-        ..OutputRow::on_table(state, slips[0], [y[8], lost(y)], flow.stance.kind())
+        ..OutputRow::on_table(state, slips[0], [y[HEAT], lost(y)], flow.stance.kind())
     }
 }

@@ -11,7 +11,7 @@ use crate::laws::contact::landing::{Outcome, land_at};
 use crate::laws::contact::{Contact, lossy};
 use crate::laws::state::State;
 use crate::motions::body::phases::BodyWalk;
-use crate::motions::walk::numbers::{TIME, loses, poses};
+use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, PHI, SIN, TIME, W1, W2, W3, loses, poses};
 use core::f64::consts::FRAC_PI_2;
 
 /// The longest time that is summed, over the time in which the body turns by a radian.
@@ -38,7 +38,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         let mut slowest = f64::INFINITY;
         for _ in 0..2 {
             let y = State { theta: FRAC_PI_2, w2: 0.0, ..self.of.state };
-            let (slip, rises) = ([self.at[5], self.at[6]], self.at[3]);
+            let (slip, rises) = (self.at.slip(), self.at[W2]);
             let law = &self.of.slide.law;
             let sticks = law.dry && slip[0].hypot(slip[1]) <= self.of.slide.over();
             let w = [y.w1, 0.0, y.w3];
@@ -70,7 +70,7 @@ impl<const N: usize> BodyWalk<'_, N> {
                 self.at[N - 1] += lasts * taken;
             }
             if poses(N) {
-                let (sin, cos) = self.at[9].sin_cos();
+                let (sin, cos) = self.at[PHI].sin_cos();
                 let (out, on) = (slip[0], slip[1] + y.w3);
                 for (i, rate) in
                     [(9, y.w1), (10, y.w3), (11, out * cos - on * sin), (12, out * sin + on * cos)]
@@ -78,19 +78,19 @@ impl<const N: usize> BodyWalk<'_, N> {
                     self.at[i] += lasts * rate;
                 }
             }
-            self.at[3] = -rises;
-            let before = State { theta: FRAC_PI_2, w1: self.at[2], w2: -rises, w3: self.at[4] };
-            let slip = [self.at[5], self.at[6]];
+            self.at[W2] = -rises;
+            let before = State { theta: FRAC_PI_2, w1: self.at[W1], w2: -rises, w3: self.at[W3] };
+            let slip = self.at.slip();
             let landed = land_at(&self.of.body, &before, (slip, 0.0), &self.friction()).ok()?;
             if landed.outcome != Outcome::Changes {
                 return None;
             }
             self.lands_as(&landed);
-            self.at[8] += landed.lost;
+            self.at[HEAT] += landed.lost;
         }
-        let share = 1.0 - self.at[3] / begin[3];
+        let share = 1.0 - self.at[W2] / begin[W2];
         let mut end: [f64; N] = core::array::from_fn(|i| begin[i] + (self.at[i] - begin[i]) / share);
-        (end[0], end[1], end[3]) = (1.0, 0.0, 0.0);
+        (end[SIN], end[COS], end[W2]) = (1.0, 0.0, 0.0);
         let fastest = [2, 4, 5, 6].into_iter().fold(1.0, |most: f64, i| most.max(begin[i].abs()));
         let left = end[TIME] - begin[TIME];
         let turns = left * (fastest + self.of.slide.law.strength * TURNS_SLIP / slowest);

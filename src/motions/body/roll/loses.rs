@@ -11,7 +11,7 @@ use crate::motions::Ending;
 use crate::motions::body::phases::{BodyWalk, LossyPhase};
 use crate::motions::body::write::state;
 use crate::motions::dry::creep::LOST_DRILLING;
-use crate::motions::walk::numbers::Halt;
+use crate::motions::walk::numbers::{Halt, SIN, TIME, U2, UH};
 use crate::motions::walk::{Next, Pause, Phases, after_rest, ending};
 
 /// Tolerance of steps that take the place of an exact solution, as a share of that of the motion.
@@ -123,8 +123,8 @@ impl<const N: usize> BodyWalk<'_, N> {
             Halt::Face => {
                 let (left, doubt) = flow.rest_of(&self.at);
                 self.claims(doubt + self.rocks_on());
-                self.at[7] += left;
-                self.at[0] = 0.0;
+                self.at[TIME] += left;
+                self.at[SIN] = 0.0;
                 self.of.state = state(&self.at);
                 Next::Ends(Ending::Face)
             }
@@ -140,9 +140,9 @@ impl<const N: usize> BodyWalk<'_, N> {
                 Next::Ends(Ending::Side)
             }
             Halt::Slips if let Some(slip) = flow.creeps(&self.of.state) => {
-                (self.at[5], self.at[6]) = (slip[0], slip[1]);
+                (self.at[UH], self.at[U2]) = (slip[0], slip[1]);
                 self.claims(LOST_DRILLING * drilling(&self.of.state).abs());
-                self.forgets_a_moment(self.at[7]);
+                self.forgets_a_moment(self.at[TIME]);
                 Next::Slips
             }
             Halt::Slips if matches!(ask.table, Table::Rubs(_)) && flow.jumps(&self.of.state) => {

@@ -15,7 +15,7 @@ use crate::motions::Kind;
 use crate::motions::ask::row::OutputRow;
 use crate::motions::exact::method::by_first_integrals;
 use crate::motions::walk::errors::doubted;
-use crate::motions::walk::numbers::{lost, poses};
+use crate::motions::walk::numbers::{COS, HEAT, PHI, TIME, W2, lost, poses};
 use crate::motions::walk::{Next, Phases, WalkStep, after_rest};
 use crate::motions::{Ask, Ending, Motion, Start};
 use core::f64::consts::{PI, TAU};
@@ -98,7 +98,7 @@ impl<const N: usize> BodyWalk<'_, N> {
     fn rolling(&self, mu: f64) -> (Start, Ask) {
         let beyond = self.ask.beyond && !self.ask.table.rubs();
         let ask = Ask { pose: self.ask.pose, beyond, ..Ask::on(Table::Rolling { mu }) };
-        (Start { time: self.at[7], ..self.of.state.into() }, ask)
+        (Start { time: self.at[TIME], ..self.of.state.into() }, ask)
     }
 
     /// Continues after a phase of rolling, which is known at the next times and up to its event.
@@ -111,7 +111,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         let (body, rubs) = (self.of.body, self.ask.table.rubs());
         self.claims(rolled.error);
         self.made.motion.pose_error = self.made.motion.pose_error.max(rolled.pose_error);
-        let spent = [self.at[8], lost(&self.at)];
+        let spent = [self.at[HEAT], lost(&self.at)];
         if self.of.planar {
             rolled.states.iter_mut().chain(rolled.event.iter_mut().map(|e| &mut e.state)).for_each(|y| {
                 (y.w1, y.w3) = (0.0, 0.0);
@@ -135,7 +135,7 @@ impl<const N: usize> BodyWalk<'_, N> {
                 let pose = self.moved(&pose);
                 let numbers =
                     [pose.phi.radians(), pose.psi.radians(), pose.contact_point.x, pose.contact_point.y];
-                self.at[9..13].copy_from_slice(&numbers);
+                self.at[PHI..PHI + 4].copy_from_slice(&numbers);
             }
         }
         let began = self.made.path.phases.last().map_or(f64::NEG_INFINITY, |phase| phase.time - self.t0);
@@ -155,7 +155,7 @@ impl<const N: usize> BodyWalk<'_, N> {
     /// Whether the body returns to its other rim so soon that the first integrals would lose the digits of the height:
     /// theta is known to 1e-16, and the hop is low.
     fn hops_low(&self) -> bool {
-        let [c, rises] = [self.at[1], self.at[3]];
+        let [c, rises] = [self.at[COS], self.at[W2]];
         if self.ask.restitution.is_none() || c > LOW_HOP || rises > LOW_HOP || !self.has_two_rims() {
             return false;
         }

@@ -13,7 +13,7 @@ use crate::laws::contact::slip::SlipResponse;
 use crate::methods::flow::{Flow, FlowPlace};
 use crate::methods::{radau, rk8};
 use crate::motions::dry::creep::{Rubbing, is_fast, known_slip, stable_time};
-use crate::motions::walk::numbers::{Halt, TIME, loses};
+use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, Halt, SIN, TIME, U2, UH, W1, W3, loses};
 use crate::numbers::Dual;
 use nalgebra::SMatrix;
 
@@ -26,11 +26,11 @@ impl Slide {
     /// Writes the rates of the numbers on a patch of contact, whose couple also produces heat.
     #[inline(never)]
     pub(crate) fn patched<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) -> SlipResponse<f64> {
-        let (at, pace, heat) = self.law.answers((y[0], y[1]), [y[2], y[3], y[4]], [y[5], y[6]]);
+        let (at, pace, heat) = self.law.answers(y.angle(), y.w(), y.slip());
         self.law.writes(y, all, (&at, pace));
-        all[8] += pace * heat;
+        all[HEAT] += pace * heat;
         if self.died {
-            (all[5], all[6]) = (0.0, 0.0);
+            (all[UH], all[U2]) = (0.0, 0.0);
         }
         at
     }
@@ -38,9 +38,9 @@ impl Slide {
     /// The speed of the slip, and under a patch also that of its rim by the drilling.
     #[inline(never)]
     pub(in crate::motions::body) fn rubs<const N: usize>(&self, y: &[f64; N]) -> f64 {
-        let drilling = y[0] * y[2] + y[1] * y[4];
-        let patched = |patch| Rubbing::of([y[5], y[6]], drilling, patch).speed();
-        self.law.patch().map_or(y[5].hypot(y[6]), patched)
+        let drilling = y[SIN] * y[W1] + y[COS] * y[W3];
+        let patched = |patch| Rubbing::of(y.slip(), drilling, patch).speed();
+        self.law.patch().map_or(y[UH].hypot(y[U2]), patched)
     }
 
     /// Whether a patch of contact drills, so that its contact point creeps.
@@ -58,12 +58,12 @@ impl Slide {
     /// Whether the slip of a uniform ball has died, which nothing feeds while the ball drills.
     #[inline(never)]
     pub(in crate::motions::body) fn has_died<const N: usize>(&self, y: &[f64; N]) -> bool {
-        self.dies && y[5].hypot(y[6]) <= DEAD * self.tol * Self::fastest(y) && self.creeps(y)
+        self.dies && y[UH].hypot(y[U2]) <= DEAD * self.tol * Self::fastest(y) && self.creeps(y)
     }
 
     /// Whether a uniform ball on a patch does not drill but for rounding, so that it rolls on for ever.
     pub(in crate::motions::body) fn no_longer_drills<const N: usize>(&self, y: &[f64; N]) -> bool {
-        self.dies && (y[0] * y[2] + y[1] * y[4]).abs() <= f64::EPSILON * Self::fastest(y)
+        self.dies && (y[SIN] * y[W1] + y[COS] * y[W3]).abs() <= f64::EPSILON * Self::fastest(y)
     }
 
     /// The halt of a patch that no longer slips or drills, or of a slip that has died.
@@ -75,7 +75,7 @@ impl Slide {
         }
         let left = rubbing.left(place.rate[TIME]);
         let mut rests: [f64; N] = core::array::from_fn(|i| place.y[i] + left * place.rate[i]);
-        (rests[5], rests[6]) = (0.0, 0.0);
+        (rests[UH], rests[U2]) = (0.0, 0.0);
         rubbing.comes_to_rest(radius).then(|| (Halt::Standstill, self.kept(rests)))
     }
 
@@ -107,13 +107,13 @@ impl Slide {
     /// steps. The heat of the friction tells the normal force, and the rims how much a force changes the slip.
     pub(crate) fn follows_within<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
         let (y, rate, Shape { rim, i1, i3 }) = (&place.y, &place.rate, &self.law.shape);
-        let angle = (y[0], y[1]);
+        let angle = y.angle();
         let (lever, height, depth, radius) =
             (rim.lever(angle), rim.height(angle), rim.depth(angle), rim.radius(angle));
         let eased = (height * height / (i1 + lever * lever)).max(depth * depth / i1 + radius * radius / i3);
-        let turn = self.law.patch().unwrap_or(0.0) * (y[0] * y[2] + y[1] * y[4]);
+        let turn = self.law.patch().unwrap_or(0.0) * (y[SIN] * y[W1] + y[COS] * y[W3]);
         let damped = if loses(N) { self.damped(y) } else { f64::INFINITY };
-        damped.min(stable_time([y[5], y[6], turn], rate[8] / rate[TIME], 1.0 + eased))
+        damped.min(stable_time([y[UH], y[U2], turn], rate[8] / rate[TIME], 1.0 + eased))
     }
 
     /// An implicit step and its stages.
@@ -126,7 +126,7 @@ impl Slide {
         let y = &from.y;
         let (fast, converged) = (Self::fastest(y), 0.01 * self.tol);
         let slip = known_slip(self.rubs(y), self.law.patch().unwrap_or(0.0), fast, converged);
-        let sizes = [y[0], 1.0, fast, fast, fast, slip, slip];
+        let sizes = [y[SIN], 1.0, fast, fast, fast, slip, slip];
         let slopes = self.slopes(&radau::middle(y, &guess));
         radau::step(|y, all| self.write_rates(y, all), y, &slopes, &sizes, (h, converged), guess)
     }
@@ -138,7 +138,7 @@ impl Slide {
         for j in 0..REACTING {
             let y: [Dual<f64>; REACTING + 1] =
                 core::array::from_fn(|i| Dual { value: y[i], slope: f64::from(u8::from(i == j)) });
-            let ([s, c], w, u) = ([y[0], y[1]], [y[2], y[3], y[4]], [y[5], y[6]]);
+            let ([s, c], w, u) = ([y[SIN], y[COS]], y.w(), y.slip());
             let (at, pace, _) = self.sloped_on((s, c), w, u, patch);
             let mut rates = y;
             self.sloped.writes(&y, &mut rates, (&at, pace));

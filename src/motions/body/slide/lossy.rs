@@ -16,7 +16,7 @@ use crate::methods::flow::FlowPlace;
 use crate::motions::body::face::FLAT;
 use crate::motions::body::roll::lossy::at_rest;
 use crate::motions::dry::settled::{Balance, CLOSE, SLOWER, Turned, balance, lag, settles_within};
-use crate::motions::walk::numbers::{Halt, TIME};
+use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, Halt, P, SIN, TIME, W1, W2, W3};
 use crate::numbers::{Dual, Real};
 
 /// The share by which a couple may exceed the limit of friction that holds a contact which had settled.
@@ -157,10 +157,10 @@ impl Slide {
         };
         let (fastest, q) = (Self::fastest(&place.y), s * w1 + c * w3);
         // Where dry friction exceeds the push, the contact point stops at a finite time and does not settle.
-        if self.pushed_on(&self.bare, (s, c), [s * q, w2, c * q], [place.y[5], place.y[6]])[0] <= 0.0 {
+        if self.pushed_on(&self.bare, (s, c), [s * q, w2, c * q], place.y.slip())[0] <= 0.0 {
             return false;
         }
-        let balanced = self.balance((s, c), q, w2, [place.y[5], place.y[6]]).spin;
+        let balanced = self.balance((s, c), q, w2, place.y.slip()).spin;
         s * (spin - balanced).abs() <= within * self.tol * fastest + 1e-8 * s * balanced.abs()
     }
 
@@ -227,7 +227,7 @@ impl Slide {
     pub fn enter<const N: usize>(&self, shown: &[f64; N]) -> [f64; N] {
         let mut y = *shown;
         if self.settled {
-            (y[2], y[4]) = (y[0] * y[2] + y[1] * y[4], 0.0);
+            (y[P], y[W3]) = (y[SIN] * y[P] + y[COS] * y[W3], 0.0);
         }
         y
     }
@@ -236,9 +236,10 @@ impl Slide {
     pub(crate) fn common_numbers<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
         let mut shown = *y;
         if self.settled {
-            let [_, w2, _] = [y[2], y[3], y[4]];
-            let Balance { spin, .. } = self.balance((y[0], y[1]), y[2], w2, [y[5], y[6]]);
-            (shown[2], shown[4]) = (y[0] * (y[2] - y[1] * spin), y[1] * y[2] + y[0] * y[0] * spin);
+            let [_, w2, _] = [y[P], y[W2], y[W3]];
+            let Balance { spin, .. } = self.balance(y.angle(), y[P], w2, y.slip());
+            (shown[W1], shown[W3]) =
+                (y[SIN] * (y[P] - y[COS] * spin), y[COS] * y[P] + y[SIN] * y[SIN] * spin);
         }
         shown
     }
@@ -246,7 +247,7 @@ impl Slide {
     /// Writes the rates of the numbers of a settled contact. Returns precession, psi', and the power
     /// of the losses.
     pub(crate) fn settled_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) -> ([f64; 2], f64) {
-        let ([s, c, q, w2], u) = (core::array::from_fn(|i| y[i]), [y[5], y[6]]);
+        let ([s, c, q, w2], u) = (core::array::from_fn(|i| y[i]), y.slip());
         let Balance { precession, w: [w1, _, w3], turned, spin } = self.balance((s, c), q, w2, u);
         let Turned { acted: (at, pace), push, normal } = turned;
         let ([d1, d2, d3], [_, along, across]) = (at.w, at.force);
@@ -255,7 +256,7 @@ impl Slide {
         for (to, rate) in all.iter_mut().zip(rates) {
             *to = pace * rate;
         }
-        all[8] = -(pace * (along * u[1] + across * u[0]));
+        all[HEAT] = -(pace * (along * u[1] + across * u[0]));
         let power = self.bare.power((s, c), [w1, w2, w3], normal) + push * spin;
         ([precession, spin], power)
     }
@@ -295,7 +296,7 @@ impl Slide {
             let planar = losses.ways.is_some_and(|ways| ways.rocking != 0.0);
             losses.has(Law::RollingResistance) && !planar && !losses.holds().rolling
         };
-        if !self.law.losses.as_ref().is_some_and(there) || place.y[0].abs() < FLAT {
+        if !self.law.losses.as_ref().is_some_and(there) || place.y[SIN].abs() < FLAT {
             return None;
         }
         let [s, c, w1, w2, w3] = core::array::from_fn(|i| place.y[i]);

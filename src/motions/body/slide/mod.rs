@@ -28,7 +28,9 @@ use crate::methods::flow::{FASTEST, Flow, FlowPlace};
 use crate::methods::{radau, rk8};
 use crate::motions::dry::creep::{IMPLICIT_TURNS, rests_below};
 use crate::motions::dry::settled::EFFORT;
-use crate::motions::walk::numbers::{Halt, MARGINS, TIME, loses, poses};
+use crate::motions::walk::numbers::{
+    BodyNumbers, COS, HEAT, Halt, MARGINS, PHI, SIN, TIME, U2, UH, W1, W2, W3, loses, poses,
+};
 use crate::motions::walk::{MOMENT, slip_over};
 use crate::numbers::{Dual, Real};
 use core::f64::consts::PI;
@@ -119,7 +121,7 @@ impl Slide {
         if !(left > 0.0 && left * pace * (left * pace) < allowed) {
             return false;
         }
-        let falls = (place.y[3] / place.y[0]).abs();
+        let falls = (place.y[W2] / place.y[SIN]).abs();
         let turns = (3.0 / self.calm(&place.y)).max(falls) * pace;
         let bends = (u * dv - v * du).abs() / square;
         let small = left * turns * (left * turns.max(bends)) < allowed;
@@ -140,8 +142,8 @@ impl Slide {
 
     /// The energy of the body with these numbers.
     pub fn energy<const N: usize>(&self, y: &[f64; N]) -> f64 {
-        let state = State { theta: y[0].atan2(y[1]), w1: y[2], w2: y[3], w3: y[4] };
-        self.law.energy(&state, [y[5], y[6]])
+        let state = State { theta: y[SIN].atan2(y[COS]), w1: y[W1], w2: y[W2], w3: y[W3] };
+        self.law.energy(&state, y.slip())
     }
 
     /// The response of the body, as one compiled copy of the law for callers that need it only
@@ -171,7 +173,7 @@ impl Slide {
     /// The error of a step in units of `tol`, where 1 is allowed; speeds count relative to the largest speed.
     #[inline(always)]
     pub fn error<T: Real, const N: usize>(tol: T, y: &[T; N], made: &rk8::Step<T, N>, dry: bool) -> T {
-        Self::error_beside(tol, y, made, dry, y[5].mac(y[5], y[6] * y[6]).sqrt())
+        Self::error_beside(tol, y, made, dry, y[UH].mac(y[UH], y[U2] * y[U2]).sqrt())
     }
 
     /// The error of a step, where that of a dry slip is relative to the speed `slip`.
@@ -189,7 +191,7 @@ impl Slide {
         // The error of a dry slip is relative to its speed, so that a vanishing slip keeps its direction.
         let per_slip = if dry { per_speed.max(one.splat(1e3) / slip) } else { per_speed };
         // The error of the sine is relative where the face is almost flat.
-        let per_sine = per_tol / y[0].abs().max(one.splat(1e-6)).min(one);
+        let per_sine = per_tol / y[SIN].abs().max(one.splat(1e-6)).min(one);
         let per = |i: usize| match i {
             0 => per_sine,
             1 | 7 => per_tol,
@@ -202,8 +204,8 @@ impl Slide {
     /// The largest speed, at least 1.
     #[inline(always)]
     pub fn fastest<T: Real, const N: usize>(y: &[T; N]) -> T {
-        let one = y[0].splat(1.0);
-        let slip = y[5].mac(y[5], y[6] * y[6]).sqrt();
+        let one = y[SIN].splat(1.0);
+        let slip = y[UH].mac(y[UH], y[U2] * y[U2]).sqrt();
         (2..5).fold(one, |most: T, i| most.max(y[i].abs())).max(slip)
     }
 
@@ -219,15 +221,15 @@ impl Slide {
     /// The numbers at the time `MOMENT` after the beginning of a slip along `way`, whose speed grows at the
     /// rate `growth`. Used where no series exists.
     pub(crate) fn nudged<const N: usize>(&self, start: &[f64; N], way: [f64; 2], growth: f64) -> [f64; N] {
-        let (angle, w) = ((start[0], start[1]), [start[2], start[3], start[4]]);
-        let u = [start[5], start[6]];
+        let (angle, w) = (start.angle(), start.w());
+        let u = start.slip();
         let rests = u == [0.0; 2] && self.law.dry && !self.creeps(start);
         let (at, _, heat) = if rests {
             (self.law.towards(angle, w, [0.0; 2], way), 1.0, 0.0)
         } else {
             self.law.answers(angle, w, u)
         };
-        let ([s, c], mut y) = ([start[0], start[1]], *start);
+        let ([s, c], mut y) = ([start[SIN], start[COS]], *start);
         let mut rates = [0.0; N];
         rates[..8].copy_from_slice(&[
             -(c * w[1]),
@@ -240,13 +242,13 @@ impl Slide {
             1.0,
         ]);
         if rests {
-            (rates[5], rates[6]) = (growth * way[0], growth * way[1]);
+            (rates[UH], rates[U2]) = (growth * way[0], growth * way[1]);
         }
-        rates[8] = heat - (at.force[1] * u[1] + at.force[2] * u[0]);
+        rates[HEAT] = heat - (at.force[1] * u[1] + at.force[2] * u[0]);
         let precession = w[0] / s;
         if poses(N) {
             let turning = [precession, w[2] - c * precession];
-            rates[9..13].copy_from_slice(&pose_rates(&self.law.shape.rim, start, turning, u));
+            rates[PHI..PHI + 4].copy_from_slice(&pose_rates(&self.law.shape.rim, start, turning, u));
         }
         if loses(N) {
             rates[N - 1] = self.law.power(angle, w, at.force[0]);
@@ -276,7 +278,7 @@ impl Flow<MARGINS> for Slide {
     }
 
     fn stable<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
-        self.follows_within(place) / place.rate[7]
+        self.follows_within(place) / place.rate[TIME]
     }
 
     #[inline(never)]
@@ -294,7 +296,7 @@ impl Flow<MARGINS> for Slide {
     }
 
     fn theta<const N: usize>(&self, y: &[f64; N]) -> f64 {
-        y[0].atan2(y[1])
+        y[SIN].atan2(y[COS])
     }
 
     #[inline(always)]
@@ -309,12 +311,12 @@ impl Flow<MARGINS> for Slide {
             ([precession, w3 - c * precession], power)
         };
         if loses(N) {
-            all[N - 1] = all[7] * power;
+            all[N - 1] = all[TIME] * power;
         }
         if poses(N) {
-            let pace = all[7];
+            let pace = all[TIME];
             let pose = pose_rates(&self.law.shape.rim, y, [precession, spin], [u_h, u_2]);
-            all[9..13].copy_from_slice(&pose.map(|x| pace * x));
+            all[PHI..PHI + 4].copy_from_slice(&pose.map(|x| pace * x));
         }
     }
 
@@ -415,7 +417,7 @@ impl Flow<MARGINS> for Slide {
     }
 
     fn slows<const N: usize>(&self, halt: Halt, place: &FlowPlace<N>) -> f64 {
-        let w = [place.y[2], place.y[3], place.y[4]];
+        let w = place.y.w();
         if halt == Halt::Rests { self.rolling_growth(place, w)[1].abs() } else { f64::INFINITY }
     }
 
@@ -426,7 +428,8 @@ impl Flow<MARGINS> for Slide {
 
     #[inline(always)]
     fn error<const N: usize>(&self, y: &[f64; N], made: &rk8::Step<f64, N>) -> f64 {
-        let slip = if self.law.patch().is_some() { self.rubs(y) } else { y[5].mac(y[5], y[6] * y[6]).sqrt() };
+        let slip =
+            if self.law.patch().is_some() { self.rubs(y) } else { y[UH].mac(y[UH], y[U2] * y[U2]).sqrt() };
         Self::error_beside(self.tol, y, made, self.law.dry, slip)
     }
 
@@ -443,8 +446,11 @@ impl Flow<MARGINS> for Slide {
     }
 
     fn calm<const N: usize>(&self, y: &[f64; N]) -> f64 {
-        let y =
-            if self.settled { core::array::from_fn(|i| if i == 2 { y[0] * y[2] } else { y[i] }) } else { *y };
+        let y = if self.settled {
+            core::array::from_fn(|i| if i == 2 { y[SIN] * y[W1] } else { y[i] })
+        } else {
+            *y
+        };
         longest(&y, &self.law.shape)
     }
 
@@ -452,12 +458,12 @@ impl Flow<MARGINS> for Slide {
         // `calm` limits the time, and a step in sigma takes less time where the slip is slow.
         let mut most = self.calm(&place.y);
         if self.is_stiff(place) {
-            most *= IMPLICIT_TURNS / place.rate[7];
+            most *= IMPLICIT_TURNS / place.rate[TIME];
         } else {
             if loses(N) && !self.settled {
                 most = most.min(self.damped(&place.y));
             }
-            most /= place.rate[7].min(1.0);
+            most /= place.rate[TIME].min(1.0);
         }
         if self.law.patch().is_some() {
             most = most.min(self.kinked(place));
@@ -486,16 +492,16 @@ impl Flow<MARGINS> for Slide {
 
 /// The numbers at the end of a slip that is slower than `over`, extrapolated linearly.
 pub(crate) fn vanished<const N: usize>(place: &FlowPlace<N>, over: f64) -> Option<[f64; N]> {
-    let [u_h, u_2] = [place.y[5], place.y[6]];
+    let [u_h, u_2] = place.y.slip();
     let speed = u_h.hypot(u_2);
     // `slowing` is the rate in sigma at which the speed of the slip falls.
-    let slowing = -(u_h * place.rate[5] + u_2 * place.rate[6]) / speed;
+    let slowing = -(u_h * place.rate[UH] + u_2 * place.rate[U2]) / speed;
     if speed > over || slowing <= 0.0 && speed > 0.0 {
         return None;
     }
     let left = if speed > 0.0 { speed / slowing } else { 0.0 };
     let mut y: [f64; N] = core::array::from_fn(|i| place.y[i] + left * place.rate[i]);
-    (y[5], y[6]) = (0.0, 0.0);
+    (y[UH], y[U2]) = (0.0, 0.0);
     Some(y)
 }
 
@@ -507,22 +513,22 @@ pub(crate) fn pose_rates<const N: usize>(
     [precession, spin]: [f64; 2],
     [u_h, u_2]: [f64; 2],
 ) -> [f64; 4] {
-    let (sin, cos) = y[9].sin_cos();
-    let (out, on) = (u_h + rim.rho * y[3], u_2 + rim.radius((y[0], y[1])) * spin);
+    let (sin, cos) = y[PHI].sin_cos();
+    let (out, on) = (u_h + rim.rho * y[W2], u_2 + rim.radius(y.angle()) * spin);
     [precession, spin, out * cos - on * sin, out * sin + on * cos]
 }
 
 /// A first step that is short enough, also for an almost flat face that turns or falls fast; the next
 /// steps grow fast.
 pub(crate) fn first<const N: usize>(y: &[f64; N]) -> f64 {
-    let fastest = y[2].abs().max(y[3].abs());
-    0.02 / (1.0 + fastest.max(y[4].abs()).max((fastest / y[0].abs()).min(FASTEST)))
+    let fastest = y[W1].abs().max(y[W2].abs());
+    0.02 / (1.0 + fastest.max(y[W3].abs()).max((fastest / y[SIN].abs()).min(FASTEST)))
 }
 
 /// The longest step that does not amplify rounding: three radians of the rotation or of the free nutation I3 w3/I1.
 #[inline(always)]
 pub(crate) fn longest<T: Real, const N: usize>(y: &[T; N], shape: &Shape<T>) -> T {
-    let one = y[0].splat(1.0);
-    let (nutation, precession) = ((y[4] * shape.i3 / shape.i1).abs(), (y[2] / y[0]).abs());
-    one.splat(3.0) / precession.max(y[2].abs()).max(y[3].abs()).max(nutation).max(one)
+    let one = y[SIN].splat(1.0);
+    let (nutation, precession) = ((y[W3] * shape.i3 / shape.i1).abs(), (y[W1] / y[SIN]).abs());
+    one.splat(3.0) / precession.max(y[W1].abs()).max(y[W2].abs()).max(nutation).max(one)
 }

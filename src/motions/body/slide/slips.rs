@@ -9,7 +9,7 @@ use crate::motions::Ending;
 use crate::motions::body::face::turning_share;
 use crate::motions::body::phases::BodyWalk;
 use crate::motions::body::write::state;
-use crate::motions::walk::numbers::{Halt, TIME, loses};
+use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, Halt, SIN, TIME, W1, W2, loses};
 use crate::motions::walk::{Next, Pause, Phases, after_rest, ending};
 
 /// A face barely lands if more than this share of its energy is in the turning, and it falls, rather than whirrs, if the
@@ -59,20 +59,21 @@ impl<const N: usize> BodyWalk<'_, N> {
         if self.of.slide.settled && loses(N) {
             // A change of the sum of energy, heat and lost energy while the contact is settled is an error of the
             // numbers.
-            let sum = |y: &[f64; N]| self.of.slide.energy(y) + y[8] + y[N - 1];
+            let sum = |y: &[f64; N]| self.of.slide.energy(y) + y[HEAT] + y[N - 1];
             self.claims((sum(&y) - sum(&self.at)).abs());
         }
         self.arrives(y);
         if halt == Halt::Face {
             let [s, c, w1, w2] = core::array::from_fn(|i| self.at[i]);
             let turns = turning_share(self.of.body.i1(), s, w1, w2) >= 0.25;
-            let end = self.of.tail.and_then(|tail| tail.end()).filter(|[end, _]| turns && *end >= self.at[7]);
+            let end =
+                self.of.tail.and_then(|tail| tail.end()).filter(|[end, _]| turns && *end >= self.at[TIME]);
             let fall = (c * w2).max(0.0);
-            let [end, doubt] = end.unwrap_or([self.at[7] + if fall > 0.0 { s / fall } else { 0.0 }, 0.0]);
+            let [end, doubt] = end.unwrap_or([self.at[TIME] + if fall > 0.0 { s / fall } else { 0.0 }, 0.0]);
             self.claims(doubt + self.rocks_on());
-            (self.at[0], self.at[7]) = (0.0, end);
+            (self.at[SIN], self.at[TIME]) = (0.0, end);
         }
-        self.made.path.slipping += self.at[7] - self.began;
+        self.made.path.slipping += self.at[TIME] - self.began;
         if !matches!(halt, Halt::Time | Halt::Pause | Halt::Pole) {
             let Holds { contour, drilling, rolling } = self.of.slide.holds();
             self.stops_exactly(Holds {
@@ -86,7 +87,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             y.theta = self.of.body.theta_end();
         }
         self.of.state = y;
-        let slip = [self.at[5], self.at[6]];
+        let slip = self.at.slip();
         match halt {
             Halt::Time | Halt::Pause => {}
             Halt::Pole => {
@@ -113,7 +114,7 @@ impl<const N: usize> BodyWalk<'_, N> {
                     self.claims(self.of.slide.settled_lag(&y, slip));
                 }
                 if halt == Halt::Rocking {
-                    (self.at[3], self.of.state.w2) = (0.0, 0.0);
+                    (self.at[W2], self.of.state.w2) = (0.0, 0.0);
                 }
                 self.of.slide.sets_ways(&{ self.of.state }, slip, [0.0; 2], known);
                 self.next = Some(Next::SlipsOn);
@@ -125,7 +126,7 @@ impl<const N: usize> BodyWalk<'_, N> {
     /// Includes the length of the passage of a pole that has just ended in the estimated error, if an output lies in it:
     /// there the numbers were linear in time.
     pub(crate) fn claims_passage(&mut self) {
-        let lasts = 2.0 * self.at[0] / self.at[2].hypot(self.at[3]);
+        let lasts = 2.0 * self.at[SIN] / self.at[W1].hypot(self.at[W2]);
         let last = self.made.motion.states.len().checked_sub(1).map(|i| self.since[i]);
         if last.is_some_and(|t| t > self.at[TIME] - lasts) {
             self.claims(lasts);
@@ -134,7 +135,7 @@ impl<const N: usize> BodyWalk<'_, N> {
 
     /// Ends the rest of a slip of a uniform ball, which friction turns into rolling.
     fn drops_slip(&mut self, [u_h, u_2]: [f64; 2]) {
-        let ([s, c], share) = ([self.at[0], self.at[1]], 1.0 / (1.0 + self.of.body.i3()));
+        let ([s, c], share) = ([self.at[SIN], self.at[COS]], 1.0 / (1.0 + self.of.body.i3()));
         for (i, turned) in [(2, -(c * u_2)), (3, u_h), (4, s * u_2)] {
             self.at[i] += share * turned;
         }
@@ -161,14 +162,14 @@ impl<const N: usize> BodyWalk<'_, N> {
     pub(crate) fn whirr_ends(&mut self, at: &[f64; N]) -> Option<[f64; 2]> {
         let until = self.until().unwrap_or(f64::INFINITY);
         let tail = self.of.tail.as_mut()?;
-        tail.adds_point(at[7], at[0], at[2]);
-        tail.known(at[0], until)
+        tail.adds_point(at[TIME], at[SIN], at[W1]);
+        tail.known(at[SIN], until)
     }
 
     /// Ends the walk where the face lands, at a time with its error.
     pub(crate) fn lies_flat(&mut self, [time, doubt]: [f64; 2]) {
         self.claims(self.rocks_on());
-        (self.at[0], self.at[7]) = (0.0, time);
+        (self.at[SIN], self.at[TIME]) = (0.0, time);
         self.of.state = state(&self.at);
         self.claims(doubt);
         self.records_event(Ending::Face);

@@ -3,7 +3,7 @@
 use crate::laws::contact::lying::Lying;
 use crate::laws::contact::slip::Slipping;
 use crate::laws::loss::Ways;
-use crate::motions::walk::numbers::{loses, poses};
+use crate::motions::walk::numbers::{HEAT, PHI, PSI, TIME, X, Y, loses, poses};
 use crate::motions::walk::slow::{SlowRates, SlowSlips, turned};
 use crate::motions::walk::{SlowLaw, SlowSeries};
 use crate::numbers::{Real, Series};
@@ -100,14 +100,14 @@ impl<const N: usize> SlowLaw<N> for BodySlips {
         let mut numbers: [Series; N] = core::array::from_fn(|i| Series::of(y[i]));
         numbers[..5].copy_from_slice(&slow.known);
         numbers[5..7].copy_from_slice(&slow.slip);
-        (numbers[7].at[1], numbers[8]) = (1.0, rate(0).integral(y[8]));
+        (numbers[TIME].at[1], numbers[HEAT]) = (1.0, rate(0).integral(y[HEAT]));
         if poses(N) {
             let [precession, spin, out, on] = [1, 2, 3, 4].map(rate);
-            (numbers[9], numbers[10]) = (precession.integral(y[9]), spin.integral(y[10]));
-            let [sin, cos] = circle(y[9], &precession, slow.terms);
+            (numbers[PHI], numbers[PSI]) = (precession.integral(y[PHI]), spin.integral(y[PSI]));
+            let [sin, cos] = circle(y[PHI], &precession, slow.terms);
             let product = |a: &Series, b: &Series, from: f64| a.times(b, slow.terms - 1).integral(from);
-            numbers[11] = product(&out, &cos, y[11]).plus(-1.0, &product(&on, &sin, 0.0));
-            numbers[12] = product(&out, &sin, y[12]).plus(1.0, &product(&on, &cos, 0.0));
+            numbers[X] = product(&out, &cos, y[X]).plus(-1.0, &product(&on, &sin, 0.0));
+            numbers[Y] = product(&out, &sin, y[Y]).plus(1.0, &product(&on, &cos, 0.0));
         }
         if let Some(lost) = self.lost {
             numbers[N - 1] = rate(lost).integral(y[N - 1]);
@@ -115,7 +115,7 @@ impl<const N: usize> SlowLaw<N> for BodySlips {
         let (until, ends) = slow.until(&numbers[..9]);
         Some(Box::new(SlowSeries {
             numbers,
-            from: y[7],
+            from: y[TIME],
             until,
             ends,
             pays: slow.pays(until, ends),

@@ -25,7 +25,7 @@ use crate::laws::contact::{Contact, Force};
 use crate::laws::loss::{COUNT, GRACE, Holds, Law, Losses, SLACK, Ways, holds, rounded};
 use crate::laws::state::State;
 use crate::motions::body::face::{FLAT, turning_share};
-use crate::motions::walk::numbers::Halt;
+use crate::motions::walk::numbers::{COS, Halt, P, SIN, U2, UH, W2, W3};
 use crate::numbers::{Dual, Real};
 use core::f64::consts::PI;
 use free::pace_of;
@@ -295,7 +295,7 @@ impl LossyFlow {
     fn pushed(&self, y: &State) -> [f64; 3] {
         let mut numbers = [y.theta.sin(), y.theta.cos(), y.w1, y.w2, y.w3];
         self.pushed_off(&mut numbers);
-        [numbers[2], numbers[3], numbers[4]]
+        [numbers[P], numbers[W2], numbers[W3]]
     }
 
     /// Applies the changes of a halt. Returns whether the body is at rest.
@@ -373,14 +373,14 @@ impl LossyFlow {
         }
         let drilling = s * w1 + c * w3;
         let [rolling, rocking] = self.push.map(|n| 2.0 * REST * n);
-        (y[2], y[3], y[4]) = (s * drilling + c * rolling, rocking, c * drilling - s * rolling);
+        (y[P], y[W2], y[W3]) = (s * drilling + c * rolling, rocking, c * drilling - s * rolling);
     }
 
     /// The numbers of this flow, from the numbers `shown` that are common to all flows.
     pub fn enter<const N: usize>(&self, shown: &[f64; N]) -> [f64; N] {
         let mut y = *shown;
         self.pushed_off(&mut y);
-        let [s, c, mut w1, mut w3] = [y[0], y[1], y[2], y[4]];
+        let [s, c, mut w1, mut w3] = [y[SIN], y[COS], y[P], y[W3]];
         if self.starts_still && self.hold == Hold::No {
             // Here w_z vanishes exactly, and its rounding error is removed.
             let off = s * w1 + c * w3;
@@ -389,14 +389,14 @@ impl LossyFlow {
             } else {
                 w1 -= off / s
             }
-            y[4] = w3;
+            y[W3] = w3;
         }
-        y[2] = match self.hold {
+        y[P] = match self.hold {
             Hold::No => w1 * s,
             Hold::Planar => 0.0,
             Hold::Dry | Hold::Settled | Hold::Still => s * w1 + c * w3,
         };
-        (y[5], y[6]) = (0.0, 0.0);
+        (y[UH], y[U2]) = (0.0, 0.0);
         y
     }
 

@@ -17,7 +17,7 @@ use crate::laws::contact::{Force, patch};
 use crate::laws::loss::{Law, Losses};
 use crate::laws::state::State;
 use crate::motions::dry::creep::{DRILLS, slip_under};
-use crate::motions::walk::numbers::{MARGINS, TIME};
+use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, MARGINS, SIN, TIME};
 use crate::numbers::{Dual, Real};
 
 /// Largest number of evaluations for the length of drilling friction.
@@ -80,7 +80,7 @@ impl LossyFlow {
     /// The law with the length that belongs to the force at these numbers.
     fn fitted(&self, y: [f64; 5]) -> Lossy<f64> {
         let (precession, w) = self.turning(y);
-        self.acts_on_patch(&self.law, (y[0], y[1]), precession, (w, self.held(0.0))).1
+        self.acts_on_patch(&self.law, y.angle(), precession, (w, self.held(0.0))).1
     }
 
     #[inline(never)]
@@ -102,9 +102,9 @@ impl LossyFlow {
     pub(crate) fn rates_on_patch<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {
         let ([w1, _, w3], force) = self.rates(y, all);
         let (mu, eps) = (self.slides, self.radius());
-        let drilling = (y[0] * w1 + y[1] * w3).abs();
+        let drilling = (y[SIN] * w1 + y[COS] * w3).abs();
         let heat = all[TIME] * mu * force[0] * eps * patch::of(creep(mu, force))[1] * drilling;
-        (all[8], all[N - 1]) = (heat, all[N - 1] - heat);
+        (all[HEAT], all[N - 1]) = (heat, all[N - 1] - heat);
     }
 
     /// The slip of a contact point on a patch that creeps under the contact force of this state.
@@ -123,7 +123,7 @@ impl LossyFlow {
 /// The margins; that of a slip also fails where the patch drills.
 fn ends_where_it_drills<T: Real>(flow: &LossyFlow, mut margins: [T; MARGINS], y: [T; 5]) -> [T; MARGINS] {
     let (_, w) = flow.turning(y);
-    let drilling = (y[0] * w[0] + y[1] * w[2]).abs();
+    let drilling = (y[SIN] * w[0] + y[COS] * w[2]).abs();
     margins[3] = margins[3].min(drilling.splat(2.0 * DRILLS) - drilling);
     margins
 }

@@ -11,7 +11,9 @@ use crate::methods::rk8;
 use crate::motions::body::face::{FLAT, lands_at};
 use crate::motions::body::pole;
 use crate::motions::dry::settled::{Balance, CLOSE, EFFORT, SLOWER, Turned, balance, settles_within};
-use crate::motions::walk::numbers::{Halt, MARGINS, TIME, loses, poses};
+use crate::motions::walk::numbers::{
+    BodyNumbers, COS, Halt, MARGINS, P, PHI, SIN, TIME, W1, W2, W3, loses, poses,
+};
 use crate::numbers::{Dual, Real};
 use core::f64::consts::PI;
 
@@ -58,8 +60,8 @@ impl LossyFlow {
     /// The speed of rolling and rocking together, and its time derivative.
     fn rolling_growth<const N: usize>(&self, place: &FlowPlace<N>) -> [f64; 2] {
         let y = &place.y;
-        let angle = (y[0], y[1]);
-        let (_, w) = self.turning([y[0], y[1], y[2], y[3], y[4]]);
+        let angle = y.angle();
+        let (_, w) = self.turning([y[SIN], y[COS], y[P], y[W2], y[W3]]);
         let acted = self.response(angle, w[0] / angle.0, w, self.held(0.0));
         rolling_growth(angle, w, acted.w)
     }
@@ -67,7 +69,7 @@ impl LossyFlow {
     /// The end, by linear extrapolation, of rolling and rocking that rolling resistance has almost stopped.
     fn comes_to_rest<const N: usize>(&self, place: &FlowPlace<N>) -> Option<[f64; N]> {
         // A whirr rolls as slowly before its face lands, but is not at rest.
-        if !self.is_paced() || place.y[0].abs() < FLAT {
+        if !self.is_paced() || place.y[SIN].abs() < FLAT {
             return None;
         }
         let [speed, growth] = self.rolling_growth(place);
@@ -84,8 +86,8 @@ impl LossyFlow {
 
     /// The numbers after a passage of the pole, nearer than steps resolve.
     fn passes_pole<const N: usize>(&self, place: &FlowPlace<N>) -> Option<[f64; N]> {
-        let (angle, y) = ((place.y[0], place.y[1]), &place.y);
-        let (precession, w) = self.turning([y[0], y[1], y[2], y[3], y[4]]);
+        let (angle, y) = (place.y.angle(), &place.y);
+        let (precession, w) = self.turning([y[SIN], y[COS], y[P], y[W2], y[W3]]);
         pole::passage(angle.0, angle.1, [w[0], w[1]])?;
         let (mut seen, mut rates) = (*y, place.rate.map(|rate| rate / place.rate[TIME]));
         (seen[2], seen[4]) = (w[0], w[2]);
@@ -143,12 +145,12 @@ impl LossyFlow {
     /// Writes the rates of the numbers. Returns w and the contact force.
     #[inline(always)]
     pub(crate) fn rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) -> ([f64; 3], [f64; 3]) {
-        let [s, c, w2] = [y[0], y[1], y[3]];
+        let [s, c, w2] = [y[SIN], y[COS], y[W2]];
         let (precession, w, acted) = if self.hold == Hold::Settled {
-            let (precession, w, acted, _) = self.settled((s, c), y[2], w2);
+            let (precession, w, acted, _) = self.settled((s, c), y[P], w2);
             (precession, w, acted)
         } else {
-            let (precession, w) = self.turning([s, c, y[2], w2, y[4]]);
+            let (precession, w) = self.turning([s, c, y[P], w2, y[W3]]);
             (precession, w, self.response((s, c), precession, w, self.held(0.0)))
         };
         let [d1, d2, d3] = acted.w;
@@ -165,12 +167,17 @@ impl LossyFlow {
             let moves = matches!(self.hold, Hold::No | Hold::Settled);
             let spin = if moves { w[2] - c * precession } else { 0.0 };
             let reduced = self.law.rates.reduced();
-            let (sin, cos) = y[9].sin_cos();
+            let (sin, cos) = y[PHI].sin_cos();
             let (out, on) = match reduced.contact {
                 Contact::Rolling => (reduced.shape.rim.rho * w2, reduced.shape.rim.radius((s, c)) * spin),
                 Contact::Smooth => (0.0, 0.0),
             };
-            all[9..13].copy_from_slice(&[precession, spin, out * cos - on * sin, out * sin + on * cos]);
+            all[PHI..PHI + 4].copy_from_slice(&[
+                precession,
+                spin,
+                out * cos - on * sin,
+                out * sin + on * cos,
+            ]);
         }
         if self.is_paced() {
             let pace = self.law.pace((s, c), pace_of((s, c), precession, w));
@@ -192,7 +199,7 @@ impl Flow<MARGINS> for LossyFlow {
     }
 
     fn theta<const N: usize>(&self, y: &[f64; N]) -> f64 {
-        y[0].atan2(y[1])
+        y[SIN].atan2(y[COS])
     }
 
     #[inline(always)]
@@ -226,14 +233,14 @@ impl Flow<MARGINS> for LossyFlow {
     #[inline(always)]
     fn error<const N: usize>(&self, y: &[f64; N], made: &rk8::Step<f64, N>) -> f64 {
         // A ball that only rocks passes through its pole, where an error relative to s has no meaning.
-        let s = if self.ball && self.hold != Hold::No { 1.0 } else { y[0].abs() };
-        let (precession, w) = self.turning([y[0], y[1], y[2], y[3], y[4]]);
-        let paced = self.is_paced().then(|| pace_of((y[0], y[1]), precession, w));
+        let s = if self.ball && self.hold != Hold::No { 1.0 } else { y[SIN].abs() };
+        let (precession, w) = self.turning([y[SIN], y[COS], y[P], y[W2], y[W3]]);
+        let paced = self.is_paced().then(|| pace_of(y.angle(), precession, w));
         error(self.tol, (s, w), (self.hold == Hold::No, paced), made, if poses(N) { 9..13 } else { 0..0 })
     }
 
     fn fastest<const N: usize>(&self, y: &[f64; N]) -> f64 {
-        fastest_of(self.turning([y[0], y[1], y[2], y[3], y[4]]).1)
+        fastest_of(self.turning([y[SIN], y[COS], y[P], y[W2], y[W3]]).1)
     }
 
     fn effort(&self) -> u64 {
@@ -241,13 +248,13 @@ impl Flow<MARGINS> for LossyFlow {
     }
 
     fn first<const N: usize>(&self, y: &[f64; N]) -> f64 {
-        let (precession, w) = self.turning([y[0], y[1], y[2], y[3], y[4]]);
-        let falls = (w[1] / y[0]).abs().min(FASTEST);
+        let (precession, w) = self.turning([y[SIN], y[COS], y[P], y[W2], y[W3]]);
+        let falls = (w[1] / y[SIN]).abs().min(FASTEST);
         0.02 / (1.0 + w.iter().fold(precession.abs().max(falls), |most, x| most.max(x.abs())))
     }
 
     fn calm<const N: usize>(&self, y: &[f64; N]) -> f64 {
-        let (precession, w) = self.turning([y[0], y[1], y[2], y[3], y[4]]);
+        let (precession, w) = self.turning([y[SIN], y[COS], y[P], y[W2], y[W3]]);
         three_radians(&self.law.rates.reduced().shape, precession, w)
     }
 
@@ -255,14 +262,14 @@ impl Flow<MARGINS> for LossyFlow {
         let y: [Dual<f64>; 5] = core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
         let (precession, w) = self.turning(y);
         let losses = &self.sloped.losses;
-        let seen = losses.seen(&self.sloped.rates.reduced().shape.rim, (y[0], y[1]), precession, w);
+        let seen = losses.seen(&self.sloped.rates.reduced().shape.rim, y.angle(), precession, w);
         // `calm` limits the time, and a step in sigma takes less time where the body hardly rolls.
         let mut most = self.calm(&place.y);
         if self.hold == Hold::No && losses.is_soft() {
-            let spin = w[2] - y[1] * precession;
-            most = most.min(self.law.damped((place.y[0], place.y[1]), spin.value));
+            let spin = w[2] - y[COS] * precession;
+            most = most.min(self.law.damped(place.y.angle(), spin.value));
         }
-        (most / place.rate[7].min(1.0)).min(losses.longest(&seen, self.is_paced()))
+        (most / place.rate[TIME].min(1.0)).min(losses.longest(&seen, self.is_paced()))
     }
 
     fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
@@ -273,14 +280,14 @@ impl Flow<MARGINS> for LossyFlow {
         if self.ball && self.hold == Hold::No {
             return self.passes_pole(place).map(|there| (Halt::Pole, there));
         }
-        let [s, c, w2] = [y[0], y[1], y[3]];
+        let [s, c, w2] = [y[SIN], y[COS], y[W2]];
         // `fall` is the speed at which either face falls, and `faster` is the rate of that speed.
-        let (fall, faster) = (c * w2, c * place.rate[3] / place.rate[7]);
+        let (fall, faster) = (c * w2, c * place.rate[W2] / place.rate[TIME]);
         if self.hold != Hold::No || self.ball || fall <= 0.0 || faster <= 0.0 || s > CLOSE {
             return None;
         }
         let angle = (s, c);
-        let (precession, w) = self.turning([s, c, y[2], w2, y[4]]);
+        let (precession, w) = self.turning([s, c, y[P], w2, y[W3]]);
         let spin = w[2] - c * precession;
         let noise = self.noise(w);
         if s * spin.abs() > SLOWER * fall + noise {
@@ -316,12 +323,12 @@ impl Flow<MARGINS> for LossyFlow {
 
     fn shown<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
         let mut shown = *y;
-        let [s, c, q] = [y[0], y[1], y[2]];
-        let (_, [w1, _, w3]) = self.turning([s, c, q, y[3], y[4]]);
-        (shown[2], shown[4]) = (w1, w3);
+        let [s, c, q] = [y[SIN], y[COS], y[P]];
+        let (_, [w1, _, w3]) = self.turning([s, c, q, y[W2], y[W3]]);
+        (shown[W1], shown[W3]) = (w1, w3);
         if self.hold == Hold::Settled {
-            let (.., spin) = self.settled((s, c), q, y[3]);
-            (shown[2], shown[4]) = (s * (q - c * spin), c * q + s * s * spin);
+            let (.., spin) = self.settled((s, c), q, y[W2]);
+            (shown[W1], shown[W3]) = (s * (q - c * spin), c * q + s * s * spin);
         }
         shown
     }
