@@ -11,7 +11,26 @@
 //! Every number here is computed with a few roundings: the relative error is below 8 ulp of the largest term.
 
 use super::body::Body;
+use crate::numbers::Real;
 use nalgebra::Vector3;
+
+/// w_z, the drilling: the angular velocity about the vertical, with sine and cosine of theta.
+#[inline(always)]
+pub(crate) fn drilling_of<T: Real>((s, c): (T, T), w1: T, w3: T) -> T {
+    s * w1 + c * w3
+}
+
+/// w_h, the rolling: the angular velocity along the horizontal direction of the lean.
+#[inline(always)]
+pub(crate) fn rolling_of<T: Real>((s, c): (T, T), w1: T, w3: T) -> T {
+    c * w1 - s * w3
+}
+
+/// psi', the spin.
+#[inline(always)]
+pub(crate) fn spin_of<T: Real>((s, c): (T, T), w1: T, w3: T) -> T {
+    w3 - c / s * w1
+}
 
 /// Inclination (radians) and angular velocity (in sqrt(g/R)) along axes that follow the inclination and the precession.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -63,6 +63,11 @@ pub(crate) fn registers() -> Option<()> {
 pub(crate) const IN_REGISTERS: bool =
     cfg!(all(any(target_arch = "x86", target_arch = "x86_64"), lanes_of_eight));
 
+/// The sign of a number: 1, -1, or 0 for zero.
+pub(crate) fn sign_or_zero(x: f64) -> f64 {
+    if x == 0.0 { 0.0 } else { x.signum() }
+}
+
 /// Evaluates `$lanes`, compiled for AVX-512, AVX2 or NEON, on a processor that has it, with the token `$simd`, which
 /// makes lanes; evaluates `$alone` on any other processor. There are no more levels, since each level compiles all of
 /// this code once more.

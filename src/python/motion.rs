@@ -7,6 +7,7 @@ use super::stone::{STONE, stone_of};
 use super::watch::Watch;
 use crate::error::{copied, room};
 use crate::laws::contact::patch;
+use crate::laws::state::drilling_of;
 use crate::laws::stone::{Ellipsoid, StoneState};
 use crate::motions::custom;
 use crate::motions::exact::Swing;
@@ -116,7 +117,7 @@ impl Told for State {
 
     fn drilling(&self) -> f64 {
         let (s, c) = self.theta.sin_cos();
-        s * self.w1 + c * self.w3
+        drilling_of((s, c), self.w1, self.w3)
     }
 
     fn normal(force: &Self::Force) -> f64 {

@@ -19,7 +19,7 @@ use super::{Contact, rolling};
 use crate::laws::body::Body;
 use crate::laws::loss::{Couple, Couples, Law, Losses, OwnCouple, still_needs};
 use crate::laws::newton;
-use crate::laws::state::State;
+use crate::laws::state::{State, drilling_of, rolling_of};
 use crate::numbers::Real;
 
 /// Longest step, in units of the time in which the couples along the contour stop psi'. A step of eighth
@@ -142,7 +142,7 @@ impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
                 stays = [push, self.losses.coefficient(Law::DryContour) * pressing * radius];
             }
             Held::Drilling => {
-                let off = s * r1 + c * r3 - w2 * (c * w1 - s * w3);
+                let off = drilling_of((s, c), r1, r3) - w2 * rolling_of((s, c), w1, w3);
                 let give = of.b * s * s + (of.k + of.k) * s * c + of.al * c * c;
                 let push = -(off / (give * of.per_d));
                 (m1, m3) = (m1 + s * push, m3 + c * push);
@@ -177,7 +177,7 @@ impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
             Contact::Smooth => zero,
             Contact::Rolling => rim.lever(angle),
         };
-        let (inertia, drilling) = (i1 * s * s + i3 * c * c, s * w1 + c * w3);
+        let (inertia, drilling) = (i1 * s * s + i3 * c * c, drilling_of((s, c), w1, w3));
         let turn = (s * m1 + c * m3) / (inertia + far * far);
         let (along, across) = (-(far * turn), far * drilling * drilling);
         let gyration = drilling * drilling * s * c * (i3 - i1);

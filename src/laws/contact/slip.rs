@@ -27,7 +27,7 @@ use crate::error::{Error, within};
 use crate::laws::body::{Body, Shape};
 use crate::laws::loss::{Couples, Holds, Law, Losses, OwnCouple, still_needs};
 use crate::laws::newton::{self, Force};
-use crate::laws::state::State;
+use crate::laws::state::{State, drilling_of, rolling_of};
 use crate::numbers::Real;
 
 /// A patch of this radius or less is a point, since a motion on a patch differs from rolling by its radius at least.
@@ -267,7 +267,8 @@ impl<T: Real, G: OwnCouple<T>> Slipping<T, G> {
         let [v_h, v_2] = self.centre(angle, w, u);
         let du = [
             across + precession * v_2 - lever * square - height * dw[1],
-            along - precession * v_h + depth * dw[0] - radius * dw[2] + rim.rho * w2 * (s * w1 + c * w3),
+            along - precession * v_h + depth * dw[0] - radius * dw[2]
+                + rim.rho * w2 * drilling_of((s, c), w1, w3),
         ];
         (SlipResponse { w: dw, u: du, free, room, force, held, kept }, size * (per * s * left))
     }
@@ -284,7 +285,7 @@ impl<T: Real, G: OwnCouple<T>> Slipping<T, G> {
         holds: Holds,
     ) -> ([T; 3], T, T) {
         let (give1, give3) = (s * self.per_i1, c * self.per_i3);
-        let turn = s * d1 + c * d3 - w2 * (c * w1 - s * w3);
+        let turn = drilling_of((s, c), d1, d3) - w2 * rolling_of((s, c), w1, w3);
         let off = s * d3 - c * d1 - precession * w2;
         let (mut d1, mut d3) = (d1, d3);
         if holds.contour {
@@ -356,7 +357,7 @@ impl<T: Real, G: OwnCouple<T>> Slipping<T, G> {
         // slip, which a small patch would answer with all its friction.
         let per = s.splat(1.0) / s.mac(s, c * c).sqrt();
         let (s, c) = (s * per, c * per);
-        let drilling = s * w[0] + c * w[2];
+        let drilling = drilling_of((s, c), w[0], w[2]);
         let [share, twist, size] = rubs(u[0].mac(u[0], u[1] * u[1]).sqrt(), drilling, patch);
         let pull = u.map(|u| u * share * size);
         let twist = self.strength * twist;

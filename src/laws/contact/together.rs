@@ -15,6 +15,7 @@
 use super::slip::Slipping;
 use crate::laws::body::Shape;
 use crate::laws::loss::{Couples, Law, OwnCouple, Ways, rounded};
+use crate::laws::state::{drilling_of, rolling_of, spin_of};
 use nalgebra::{SMatrix, SVector};
 
 /// Number of components of the reactions.
@@ -388,7 +389,7 @@ impl Together {
         rubs: Rubs,
     ) -> Option<Self> {
         let ((s, c), [w1, w2, w3]) = (angle, w);
-        let (spin, drilling) = (w3 - c / s * w1, s * w1 + c * w3);
+        let (spin, drilling) = (spin_of((s, c), w1, w3), drilling_of((s, c), w1, w3));
         let still = rounded(s, w);
         let limit =
             |law: Law, rests: bool, by: f64| (losses.has(law) && rests).then(|| losses.coefficient(law) * by);
@@ -423,8 +424,8 @@ impl Together {
             let law = slipping.with_losses(Some(base.with_more(couple)));
             let at = law.towards(angle, w, u, [pulled[0] - a, pulled[1] - b]);
             let [d1, d2, d3] = at.w;
-            let rolls = c * d1 - s * d3 + w2 * drilling;
-            let drills = s * d1 + c * d3 - w2 * (c * w1 - s * w3);
+            let rolls = rolling_of((s, c), d1, d3) + w2 * drilling;
+            let drills = drilling_of((s, c), d1, d3) - w2 * rolling_of((s, c), w1, w3);
             (at.force[0], [at.u[0], at.u[1], rolls, d2, rolls, drills])
         };
         Self::of([slips, limits[1], limits[2], limits[3]], respond)

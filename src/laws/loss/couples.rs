@@ -8,7 +8,7 @@
 
 use super::{COUNT, Law, Losses, Speed};
 use crate::laws::body::{Body, Rim};
-use crate::laws::state::State;
+use crate::laws::state::{State, drilling_of, rolling_of, spin_of};
 use crate::numbers::{Dual, Real, here};
 
 /// The kinematics of a body on which the laws depend.
@@ -230,14 +230,15 @@ pub(crate) fn going<T: Real>(way: T, x: T, slack: T) -> T {
 
 /// The angular velocity with psi' and w2 reversed, at the same w_z = phi' + c psi'.
 pub(crate) fn mirrored((s, c): (f64, f64), [w1, w2, w3]: [f64; 3]) -> [f64; 3] {
-    let spin = w3 - c / s * w1;
+    let spin = spin_of((s, c), w1, w3);
     [w1 + 2.0 * s * c * spin, -w2, w3 - 2.0 * s * s * spin]
 }
 
 /// The speed of rolling and rocking together, sqrt(w_h^2 + w2^2), and its time derivative for the given w'.
 pub(crate) fn rolling_growth((s, c): (f64, f64), [w1, w2, w3]: [f64; 3], [d1, d2, d3]: [f64; 3]) -> [f64; 2] {
     // The rolling is w_h = c w1 - s w3.
-    let (rolling, rate) = (c * w1 - s * w3, c * d1 - s * d3 + w2 * (s * w1 + c * w3));
+    let (rolling, rate) =
+        (rolling_of((s, c), w1, w3), rolling_of((s, c), d1, d3) + w2 * drilling_of((s, c), w1, w3));
     let speed = rolling.hypot(w2);
     [speed, (rolling * rate + w2 * d2) / speed]
 }

@@ -15,7 +15,7 @@ use crate::laws::contact::slip::{Friction, centre_velocity, painleve};
 use crate::laws::contact::standstill::{Standstill, let_go, standstill, towards};
 use crate::laws::contact::{Contact, Force, Table, force, lossy};
 use crate::laws::loss::{Holds, Losses};
-use crate::laws::state::State;
+use crate::laws::state::{State, drilling_of, rolling_of};
 use crate::methods::flow::{Flow, FlowPlace, Steps};
 use crate::motions::ask::row::OutputRow;
 use crate::motions::walk::errors::doubted;
@@ -202,7 +202,7 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
         }
         let (s, c) = state(&self.at).theta.sin_cos();
         let [w1, w2, w3] = self.at.w();
-        let (drilling, rolling) = (s * w1 + c * w3, c * w1 - s * w3);
+        let (drilling, rolling) = (drilling_of((s, c), w1, w3), rolling_of((s, c), w1, w3));
         let mut left = 0f64;
         if stops.drilling {
             (self.at[W1], self.at[W3]) = (w1 - s * drilling, w3 - c * drilling);
@@ -248,7 +248,7 @@ impl BodyPhases {
         // Drilling w_z, rolling w_h and rocking w2 are each changed by a share of themselves: a motion that is zero
         // stays zero.
         let (s, c) = theta.sin_cos();
-        let (drilling, rolling) = ((s * w1 + c * w3) * up, (c * w1 - s * w3) * up);
+        let (drilling, rolling) = (drilling_of((s, c), w1, w3) * up, rolling_of((s, c), w1, w3) * up);
         // Near its other rim the height of the body is known from cos theta, not from theta.
         let near = walk.ask.restitution.is_some() && walk.at[COS].abs() < LEVEL;
         let theta = if near { theta } else { theta * down };

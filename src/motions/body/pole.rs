@@ -9,6 +9,7 @@
 //!
 //! Error: the square of the time of the passage. A couple along the rim turns with e_h; it counts as constant.
 
+use crate::laws::state::{drilling_of, rolling_of};
 use crate::motions::walk::numbers::{PHI, PSI, TIME, poses};
 
 /// A ball whose axis approaches its pole passes it in one step from this sine of theta on.
@@ -37,7 +38,7 @@ pub(crate) fn passed<const N: usize>(y: &[f64; N], rates: &[f64; N]) -> Option<[
         [x[0] + lasts * rate[0], x[1] + lasts * rate[1]]
     };
     let rolling = dc * w1 + c * d1 - ds * w3 - s * d3;
-    let (level, upright) = ([c * w1 - s * w3, w2], s * w1 + c * w3);
+    let (level, upright) = ([rolling_of((s, c), w1, w3), w2], drilling_of((s, c), w1, w3));
     let (level_then, slip) = (later(level, [rolling, d2]), later([u_h, u_2], [du_h, du_2]));
     let upright_then = upright + lasts * (ds * w1 + s * d1 + dc * w3 + c * d3);
     let moves =

@@ -17,6 +17,7 @@ use super::fly::Aloft;
 use crate::laws::body::Body;
 use crate::laws::contact::Table;
 use crate::laws::contact::slip::Friction;
+use crate::laws::state::{drilling_of, rolling_of};
 use crate::motions::Ask;
 use core::f64::consts::PI;
 
@@ -78,7 +79,7 @@ pub(crate) struct Spun {
 impl Spun {
     pub fn new(from: &Aloft, push: [f64; 3], slows: f64) -> Self {
         let ((s, c), [w1, w2, w3]) = (from.angle, from.w);
-        let w = [c * w1 - s * w3, w2, s * w1 + c * w3];
+        let w = [rolling_of((s, c), w1, w3), w2, drilling_of((s, c), w1, w3)];
         let fastest = w.into_iter().chain(from.slip).fold(1.0, |most: f64, x| most.max(x.abs()));
         Self { from: *from, axis: [-s, 0.0, c], since: 0.0, w, push, slows, fastest }
     }

@@ -11,7 +11,7 @@ use super::phases::BodyWalk;
 use super::spun::{OF_A_PHASE, Spun};
 use crate::laws::contact::impact::{Hit, Struck};
 use crate::laws::contact::{Contact, Table, force, patch};
-use crate::laws::state::State;
+use crate::laws::state::{State, drilling_of};
 use crate::motions::ask::row::OutputRow;
 use crate::motions::walk::errors::doubted;
 use crate::motions::walk::numbers::{HEAT, Halt, TIME, lost};
@@ -118,7 +118,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         self.rounds(length, angle, if over { 0.0 } else { spun.fastest * end / fast });
         let mut y = self.numbers(&at, now + length, heat(length));
         if !over {
-            let drilling = y[0] * y[2] + y[1] * y[4];
+            let drilling = drilling_of((y[0], y[1]), y[2], y[4]);
             (y[2], y[4]) = (y[2] - y[0] * drilling, y[4] - y[1] * drilling);
         }
         self.slip_ends(y, if over { Halt::Time } else { Halt::Standstill });

@@ -33,6 +33,7 @@ use crate::motions::walk::numbers::{
 };
 use crate::motions::walk::{Next, Pause, Phases, WalkStep, after_rest, ending};
 use crate::motions::{Ask, Ending, Kind, Phase};
+use crate::numbers::sign_or_zero;
 use core::f64::consts::{FRAC_PI_2, PI};
 use flow::{LyingFlow, LyingPhase, Stance};
 
@@ -134,8 +135,7 @@ impl<const N: usize> BodyWalk<'_, N> {
     /// Sets the signs of the motions that dry losses resist, and which of them they hold.
     fn sets_ways(&self, flow: &mut LyingFlow) {
         let moving = [self.at[W1], self.at[W3]];
-        let way = |x: f64| if x == 0.0 { 0.0 } else { x.signum() };
-        flow.ways = moving.map(way);
+        flow.ways = moving.map(sign_or_zero);
         let rolls = flow.stance == Stance::Rolls;
         flow.holds([0, 1].map(|i| moving[i] == 0.0 && flow.limits[i] > 0.0 && !(i == 0 && rolls)));
         let needs = flow.lain(&self.at).couple;
@@ -298,8 +298,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         let y = [self.at[W1], self.at[W3], 0.0, 0.0];
         let mu = flow.law.strength;
         let up = flow.law.drag(flow.law.other_slip(y));
-        let way = |x: f64| if x == 0.0 { 0.0 } else { x.signum() };
-        flow.ways = [way(y[0]), way(y[1])];
+        flow.ways = [sign_or_zero(y[0]), sign_or_zero(y[1])];
         flow.holds([false; 2]);
         let ways = flow.ways;
         // f and lambda; f is multiplied by the factor of the normal forces, so that it has no poles.

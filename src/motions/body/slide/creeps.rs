@@ -10,6 +10,7 @@
 use super::Slide;
 use crate::laws::body::Shape;
 use crate::laws::contact::slip::SlipResponse;
+use crate::laws::state::drilling_of;
 use crate::methods::flow::{Flow, FlowPlace};
 use crate::methods::{radau, rk8};
 use crate::motions::dry::creep::{Rubbing, is_fast, known_slip, stable_time};
@@ -38,7 +39,7 @@ impl Slide {
     /// The speed of the slip, and under a patch also that of its rim by the drilling.
     #[inline(never)]
     pub(in crate::motions::body) fn rubs<const N: usize>(&self, y: &[f64; N]) -> f64 {
-        let drilling = y[SIN] * y[W1] + y[COS] * y[W3];
+        let drilling = drilling_of(y.angle(), y[W1], y[W3]);
         let patched = |patch| Rubbing::of(y.slip(), drilling, patch).speed();
         self.law.patch().map_or(y[UH].hypot(y[U2]), patched)
     }
@@ -52,7 +53,7 @@ impl Slide {
     fn rubbing<const N: usize>(&self, place: &FlowPlace<N>) -> Option<Rubbing<Dual<f64>>> {
         let [s, c, w1, _, w3, u_h, u_2] =
             core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
-        self.sloped.patch().map(|patch| Rubbing::of([u_h, u_2], s * w1 + c * w3, patch))
+        self.sloped.patch().map(|patch| Rubbing::of([u_h, u_2], drilling_of((s, c), w1, w3), patch))
     }
 
     /// Whether the slip of a uniform ball has died, which nothing feeds while the ball drills.
@@ -63,7 +64,7 @@ impl Slide {
 
     /// Whether a uniform ball on a patch does not drill but for rounding, so that it rolls on for ever.
     pub(in crate::motions::body) fn no_longer_drills<const N: usize>(&self, y: &[f64; N]) -> bool {
-        self.dies && (y[SIN] * y[W1] + y[COS] * y[W3]).abs() <= f64::EPSILON * Self::fastest(y)
+        self.dies && drilling_of(y.angle(), y[W1], y[W3]).abs() <= f64::EPSILON * Self::fastest(y)
     }
 
     /// The halt of a patch that no longer slips or drills, or of a slip that has died.
@@ -111,7 +112,7 @@ impl Slide {
         let (lever, height, depth, radius) =
             (rim.lever(angle), rim.height(angle), rim.depth(angle), rim.radius(angle));
         let eased = (height * height / (i1 + lever * lever)).max(depth * depth / i1 + radius * radius / i3);
-        let turn = self.law.patch().unwrap_or(0.0) * (y[SIN] * y[W1] + y[COS] * y[W3]);
+        let turn = self.law.patch().unwrap_or(0.0) * drilling_of(y.angle(), y[W1], y[W3]);
         let damped = if loses(N) { self.damped(y) } else { f64::INFINITY };
         damped.min(stable_time([y[UH], y[U2], turn], rate[8] / rate[TIME], 1.0 + eased))
     }

@@ -11,13 +11,13 @@ use crate::laws::contact::together::{Resting, Rubs, Together};
 use crate::laws::loss::{
     Couples, GRACE, Holds, Kinematics, Law, Losses, NEAR, SLACK, Ways, going, mirrored, rolling_growth,
 };
-use crate::laws::state::State;
+use crate::laws::state::{State, drilling_of, rolling_of, spin_of};
 use crate::methods::flow::FlowPlace;
 use crate::motions::body::face::FLAT;
 use crate::motions::body::roll::lossy::at_rest;
 use crate::motions::dry::settled::{Balance, CLOSE, SLOWER, Turned, balance, lag, settles_within};
 use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, Halt, P, SIN, TIME, W1, W2, W3};
-use crate::numbers::{Dual, Real};
+use crate::numbers::{Dual, Real, sign_or_zero};
 
 /// The share by which a couple may exceed the limit of friction that holds a contact which had settled.
 const HELD_SURELY: f64 = 1e-6;
@@ -32,10 +32,9 @@ impl Slide {
         self.sure = if known == Some((Resting::Contour, false)) { HELD_SURELY } else { 0.0 };
         let Some(losses) = self.law.losses else { return };
         let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
-        let way = |speed: f64| if speed == 0.0 { 0.0 } else { speed.signum() };
         let moving = Ways {
-            contour: way(w[2] - angle.1 / angle.0 * w[0]),
-            drilling: way(angle.0 * w[0] + angle.1 * w[2]),
+            contour: sign_or_zero(spin_of(angle, w[0], w[2])),
+            drilling: sign_or_zero(drilling_of(angle, w[0], w[2])),
             ..Ways::default()
         };
         let (pull, twist) = self.pulls(angle, w, slip, toward);
@@ -45,15 +44,15 @@ impl Slide {
         let mut ways = moving;
         if w[0] == 0.0 && w[2] == 0.0 && pull[1] == 0.0 && twist == 0.0 {
             // The body only rocks, since no couple turns it.
-            ways = Ways { rocking: way(w[1]), ..Ways::default() };
+            ways = Ways { rocking: sign_or_zero(w[1]), ..Ways::default() };
         }
         if let Some((rests, [_, rolling, contour, drilling])) = fates {
             if rests.has(Resting::Contour) {
-                ways.contour = -way(contour.way[0]);
+                ways.contour = -sign_or_zero(contour.way[0]);
                 ways.holds.contour = !contour.begins();
             }
             if rests.has(Resting::Drilling) {
-                ways.drilling = way(drilling.way[0]);
+                ways.drilling = sign_or_zero(drilling.way[0]);
                 ways.holds.drilling = !drilling.begins();
             }
             if rests.has(Resting::Rolling) {
@@ -77,7 +76,7 @@ impl Slide {
         if !self.law.dry {
             return (slip.map(|u| mu * u), 0.0);
         }
-        let (drilling, size) = (s * w[0] + c * w[2], slip[0].hypot(slip[1]));
+        let (drilling, size) = (drilling_of((s, c), w[0], w[2]), slip[0].hypot(slip[1]));
         match self.law.patch() {
             Some(patch) if size > 0.0 || drilling != 0.0 => {
                 let [share, twist, _] = rubs(size, drilling, patch);
@@ -146,7 +145,7 @@ impl Slide {
         else {
             return false;
         };
-        let spin = w3 - c / s * w1;
+        let spin = spin_of((s, c), w1, w3);
         if s * spin.abs() > SLOWER * fall {
             return false;
         }
@@ -155,7 +154,7 @@ impl Slide {
         let Some(within) = settles_within(&losses, (s, fall), rate, s * spin / self.tol) else {
             return false;
         };
-        let (fastest, q) = (Self::fastest(&place.y), s * w1 + c * w3);
+        let (fastest, q) = (Self::fastest(&place.y), drilling_of((s, c), w1, w3));
         // Where dry friction exceeds the push, the contact point stops at a finite time and does not settle.
         if self.pushed_on(&self.bare, (s, c), [s * q, w2, c * q], place.y.slip())[0] <= 0.0 {
             return false;
@@ -176,7 +175,7 @@ impl Slide {
         else {
             return f64::INFINITY;
         };
-        let slope = losses.slope(s.abs(), rim.radius((s, c)), w3 - c / s * w1);
+        let slope = losses.slope(s.abs(), rim.radius((s, c)), spin_of((s, c), w1, w3));
         DAMPED / (slope * self.lightness((s, c)))
     }
 
@@ -227,7 +226,7 @@ impl Slide {
     pub fn enter<const N: usize>(&self, shown: &[f64; N]) -> [f64; N] {
         let mut y = *shown;
         if self.settled {
-            (y[P], y[W3]) = (y[SIN] * y[P] + y[COS] * y[W3], 0.0);
+            (y[P], y[W3]) = (drilling_of(y.angle(), y[P], y[W3]), 0.0);
         }
         y
     }
@@ -251,7 +250,7 @@ impl Slide {
         let Balance { precession, w: [w1, _, w3], turned, spin } = self.balance((s, c), q, w2, u);
         let Turned { acted: (at, pace), push, normal } = turned;
         let ([d1, d2, d3], [_, along, across]) = (at.w, at.force);
-        let turn = s * d1 + c * d3 - w2 * (c * w1 - s * w3);
+        let turn = drilling_of((s, c), d1, d3) - w2 * rolling_of((s, c), w1, w3);
         let rates = [-(c * w2), s * w2, turn, d2, 0.0, at.u[0], at.u[1], 1.0];
         for (to, rate) in all.iter_mut().zip(rates) {
             *to = pace * rate;
@@ -270,7 +269,7 @@ impl Slide {
     /// Upper bound of the delay of a settled contact, which stops after dry friction has balanced the push.
     pub fn settled_lag(&self, y: &State, slip: [f64; 2]) -> f64 {
         let ((s, c), shape) = (y.theta.sin_cos(), &self.law.shape);
-        let turned = self.balance((s, c), s * y.w1 + c * y.w3, y.w2, slip).turned;
+        let turned = self.balance((s, c), drilling_of((s, c), y.w1, y.w3), y.w2, slip).turned;
         let (lightness, radius) = (self.lightness((s, c)), shape.rim.radius((s, c)));
         self.law.losses.map_or(0.0, |losses| lag(&losses, (s, c * y.w2), radius, turned.push, lightness))
     }
@@ -306,7 +305,7 @@ impl Slide {
             return None;
         }
         let drills = |[s, c, w1, _, w3]: [f64; 5]| {
-            let drilling = s * w1 + c * w3;
+            let drilling = drilling_of((s, c), w1, w3);
             [s * drilling, 0.0, c * drilling]
         };
         Some(at_rest(place, -speed / (rate * place.rate[TIME]), drills))

@@ -3,7 +3,7 @@
 use super::{Hold, LossyFlow};
 use crate::laws::contact::lossy::Held;
 use crate::laws::loss::SLACK;
-use crate::laws::state::State;
+use crate::laws::state::{State, spin_of};
 use crate::motions::dry::settled::lag;
 
 impl LossyFlow {
@@ -13,7 +13,7 @@ impl LossyFlow {
         let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
         let (s, c) = angle;
         let [d1, _, d3] = self.response(angle, w[0] / s, w, Held::Nothing).w;
-        let rate = d3 - c / s * d1 - w[0] * w[1] / (s * s);
+        let rate = spin_of((s, c), d1, d3) - w[0] * w[1] / (s * s);
         // Since psi' = w3 - w1 c/s, an error of w1 counts for more where s is small.
         let rounded = (4.0 * SLACK + erred.max(100.0 * self.tol)) * (1.0 + y.precession().abs());
         let late = if self.hold == Hold::Settled {

@@ -23,10 +23,10 @@ use crate::laws::contact::lossy::{Acted, Held, Lossy};
 use crate::laws::contact::together::{Resting, Rubs, Together};
 use crate::laws::contact::{Contact, Force};
 use crate::laws::loss::{COUNT, GRACE, Holds, Law, Losses, SLACK, Ways, holds, rounded};
-use crate::laws::state::State;
+use crate::laws::state::{State, drilling_of, spin_of};
 use crate::motions::body::face::{FLAT, turning_share};
 use crate::motions::walk::numbers::{COS, Halt, P, SIN, U2, UH, W2, W3};
-use crate::numbers::{Dual, Real};
+use crate::numbers::{Dual, Real, sign_or_zero};
 use core::f64::consts::PI;
 use free::pace_of;
 pub(crate) use free::{LossyUnheld, from_side};
@@ -136,9 +136,8 @@ impl LossyFlow {
     fn sets_holds(&mut self, y: &State) {
         let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
         let (s, c) = angle;
-        let (spin, drilling) = (y.w3 - c / s * y.w1, s * y.w1 + c * y.w3);
-        let way = |x: f64| if x == 0.0 { 0.0 } else { x.signum() };
-        self.ways = Ways { contour: way(spin), drilling: way(drilling), ..Ways::default() };
+        let (spin, drilling) = (spin_of((s, c), y.w1, y.w3), drilling_of((s, c), y.w1, y.w3));
+        self.ways = Ways { contour: sign_or_zero(spin), drilling: sign_or_zero(drilling), ..Ways::default() };
         self.hold = Hold::No;
         // What a slip has held is at rest up to rounding.
         let still = rounded(s, w);
@@ -166,7 +165,7 @@ impl LossyFlow {
         let size = SLACK * (1.0 + y.precession().abs());
         let (s, c) = y.theta.sin_cos();
         let slow = |x: f64| if x.abs() < 16.0 * size { SLACK } else { 0.0 };
-        let other = if self.hold == Hold::Planar { y.w2 } else { s * y.w1 + c * y.w3 };
+        let other = if self.hold == Hold::Planar { y.w2 } else { drilling_of((s, c), y.w1, y.w3) };
         self.slack = [slow(y.spin()), slow(other)];
     }
 
@@ -224,7 +223,7 @@ impl LossyFlow {
         let slow = |x: f64| x.abs() < little;
         Holds {
             contour: slow(y.spin()) && self.has(Law::DryContour),
-            drilling: slow(angle.0 * y.w1 + angle.1 * y.w3) && self.has(Law::Drilling),
+            drilling: slow(drilling_of(angle, y.w1, y.w3)) && self.has(Law::Drilling),
             rolling: slow(pace_of(angle, y.precession(), [y.w1, y.w2, y.w3]))
                 && self.has(Law::RollingResistance),
         }
@@ -281,7 +280,7 @@ impl LossyFlow {
     pub fn has_stopped(&self, y: &State) -> bool {
         let (s, c) = y.theta.sin_cos();
         let w = [y.w1, y.w2, y.w3];
-        let turns = (s * y.w1 + c * y.w3).abs() > rounded(s, w);
+        let turns = drilling_of((s, c), y.w1, y.w3).abs() > rounded(s, w);
         match self.hold {
             Hold::Still => !turns,
             Hold::Planar => {
@@ -308,7 +307,7 @@ impl LossyFlow {
     fn turned_by(&mut self, halt: Halt, y: &State) -> bool {
         let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
         self.starts_still = halt == Halt::Drilling;
-        let drilling = angle.0 * y.w1 + angle.1 * y.w3;
+        let drilling = drilling_of(angle, y.w1, y.w3);
         match halt {
             Halt::Contour if self.hold == Hold::Still => self.leave(angle, drilling),
             Halt::Contour if self.hold == Hold::Dry => {
@@ -371,7 +370,7 @@ impl LossyFlow {
         if !self.is_paced() || pace_of((s, c), w1 / s, [w1, w2, w3]) >= REST {
             return;
         }
-        let drilling = s * w1 + c * w3;
+        let drilling = drilling_of((s, c), w1, w3);
         let [rolling, rocking] = self.push.map(|n| 2.0 * REST * n);
         (y[P], y[W2], y[W3]) = (s * drilling + c * rolling, rocking, c * drilling - s * rolling);
     }
@@ -383,7 +382,7 @@ impl LossyFlow {
         let [s, c, mut w1, mut w3] = [y[SIN], y[COS], y[P], y[W3]];
         if self.starts_still && self.hold == Hold::No {
             // Here w_z vanishes exactly, and its rounding error is removed.
-            let off = s * w1 + c * w3;
+            let off = drilling_of((s, c), w1, w3);
             if c.abs() > 0.5 {
                 w3 -= off / c
             } else {
@@ -394,7 +393,7 @@ impl LossyFlow {
         y[P] = match self.hold {
             Hold::No => w1 * s,
             Hold::Planar => 0.0,
-            Hold::Dry | Hold::Settled | Hold::Still => s * w1 + c * w3,
+            Hold::Dry | Hold::Settled | Hold::Still => drilling_of((s, c), w1, w3),
         };
         (y[UH], y[U2]) = (0.0, 0.0);
         y

@@ -15,7 +15,7 @@ use crate::laws::contact::lossy::{Acted, Held, Lossy};
 use crate::laws::contact::slip::Friction;
 use crate::laws::contact::{Force, patch};
 use crate::laws::loss::{Law, Losses};
-use crate::laws::state::State;
+use crate::laws::state::{State, drilling_of};
 use crate::motions::dry::creep::{DRILLS, slip_under};
 use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, MARGINS, SIN, TIME};
 use crate::numbers::{Dual, Real};
@@ -102,7 +102,7 @@ impl LossyFlow {
     pub(crate) fn rates_on_patch<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {
         let ([w1, _, w3], force) = self.rates(y, all);
         let (mu, eps) = (self.slides, self.radius());
-        let drilling = (y[SIN] * w1 + y[COS] * w3).abs();
+        let drilling = drilling_of(y.angle(), w1, w3).abs();
         let heat = all[TIME] * mu * force[0] * eps * patch::of(creep(mu, force))[1] * drilling;
         (all[HEAT], all[N - 1]) = (heat, all[N - 1] - heat);
     }
@@ -115,7 +115,7 @@ impl LossyFlow {
         let (mu, eps) = (self.slides, self.radius());
         let Force { normal, along, across } = self.force(y);
         let (s, c) = y.theta.sin_cos();
-        let turn = eps * (s * y.w1 + c * y.w3).abs();
+        let turn = eps * drilling_of((s, c), y.w1, y.w3).abs();
         slip_under([across, along], mu * normal, turn, eps)
     }
 }
@@ -123,7 +123,7 @@ impl LossyFlow {
 /// The margins; that of a slip also fails where the patch drills.
 fn ends_where_it_drills<T: Real>(flow: &LossyFlow, mut margins: [T; MARGINS], y: [T; 5]) -> [T; MARGINS] {
     let (_, w) = flow.turning(y);
-    let drilling = (y[SIN] * w[0] + y[COS] * w[2]).abs();
+    let drilling = drilling_of(y.angle(), w[0], w[2]).abs();
     margins[3] = margins[3].min(drilling.splat(2.0 * DRILLS) - drilling);
     margins
 }

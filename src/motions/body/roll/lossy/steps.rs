@@ -6,6 +6,7 @@ use crate::laws::body::landing_angle;
 use crate::laws::contact::lossy::{Acted, Held, Lossy};
 use crate::laws::contact::{Contact, grip};
 use crate::laws::loss::{GRACE, Law, rolling_growth};
+use crate::laws::state::{drilling_of, rolling_of};
 use crate::methods::flow::{FASTEST, Flow, FlowPlace};
 use crate::methods::rk8;
 use crate::motions::body::face::{FLAT, lands_at};
@@ -78,7 +79,7 @@ impl LossyFlow {
         }
         let drills = |y: [f64; 5]| {
             let ([s, c, ..], (_, w)) = (y, self.turning(y));
-            let drilling = s * w[0] + c * w[2];
+            let drilling = drilling_of((s, c), w[0], w[2]);
             [if self.hold == Hold::No { s * s * drilling } else { drilling }, 0.0, c * drilling]
         };
         Some(at_rest(place, -speed / (growth * place.rate[TIME]), drills))
@@ -131,7 +132,7 @@ impl LossyFlow {
         } else if self.ways.holds.drilling {
             within
         } else if self.has(Law::Drilling) && self.ways.drilling != 0.0 {
-            number(self.ways.drilling) * (s * w[0] + c * w[2]) + slack[1]
+            number(self.ways.drilling) * drilling_of((s, c), w[0], w[2]) + slack[1]
         } else {
             one
         };
@@ -157,7 +158,7 @@ impl LossyFlow {
         let (turn, free) = if self.hold == Hold::No {
             (s * d1 - c * w2 * w[0], d3)
         } else {
-            (s * d1 + c * d3 - w2 * (c * w[0] - s * w[2]), 0.0)
+            (drilling_of((s, c), d1, d3) - w2 * rolling_of((s, c), w[0], w[2]), 0.0)
         };
         all[..9].copy_from_slice(&[-(c * w2), s * w2, turn, d2, free, 0.0, 0.0, 1.0, 0.0]);
         if loses(N) {
@@ -296,7 +297,7 @@ impl Flow<MARGINS> for LossyFlow {
         let slope = self.law.losses.slope(s, self.law.rates.reduced().shape.rim.radius(angle), spin);
         let rate = self.law.stiffness(angle, slope);
         let within = settles_within(&self.law.losses, (s, fall), rate, s * spin / self.tol)? * 0.01 * noise;
-        let settled = self.settled(angle, s * w[0] + c * w[2], w2).3;
+        let settled = self.settled(angle, drilling_of((s, c), w[0], w[2]), w2).3;
         let close = s * settled.abs() <= SLOWER * fall
             && s * (spin - settled).abs() <= within + 1e-8 * s * settled.abs();
         close.then_some((Halt::Settles, *y))
