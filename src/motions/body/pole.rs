@@ -13,7 +13,7 @@ use crate::laws::state::{drilling_of, rolling_of};
 use crate::motions::walk::numbers::{PHI, PSI, TIME, poses};
 
 /// A ball whose axis approaches its pole passes it in one step from this sine of theta on.
-const BESIDE: f64 = 1e-9;
+const BESIDE_POLE: f64 = 1e-9;
 
 /// A vector of the table, in the basis that is turned by the angle with this cosine and sine.
 fn turned([cos, sin]: [f64; 2], [h, two]: [f64; 2]) -> [f64; 2] {
@@ -23,7 +23,7 @@ fn turned([cos, sin]: [f64; 2], [h, two]: [f64; 2]) -> [f64; 2] {
 /// The time that a ball beside its pole takes to pass it; None if it is not near its pole, or moves away from it.
 pub(crate) fn passage(s: f64, c: f64, [w1, w2]: [f64; 2]) -> Option<f64> {
     let nears = s * c * w2;
-    (s.abs() < BESIDE && nears > 0.0).then(|| 2.0 * nears / (w1 * w1 + c * c * w2 * w2))
+    (s.abs() < BESIDE_POLE && nears > 0.0).then(|| 2.0 * nears / (w1 * w1 + c * c * w2 * w2))
 }
 
 /// The numbers at the same inclination on the other side of the pole, from the numbers y of [`halt`](crate::motions::walk::numbers)
@@ -56,7 +56,7 @@ pub(crate) fn passed<const N: usize>(y: &[f64; N], rates: &[f64; N]) -> Option<[
     there[..TIME].copy_from_slice(&[s, c, w[0], w[1], w[2], u_h, u_2]);
     if poses(N) {
         let turn = way[1].atan2(way[0]);
-        (there[9], there[10]) = (y[PHI] + turn, y[PSI] + lasts * w3 - c * turn);
+        (there[PHI], there[PSI]) = (y[PHI] + turn, y[PSI] + lasts * w3 - c * turn);
     }
     Some(there)
 }

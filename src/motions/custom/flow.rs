@@ -18,10 +18,12 @@ use crate::laws::state::State;
 use crate::methods::flow::{Flow, FlowPlace};
 use crate::methods::{radau, rk8};
 use crate::motions::body::face::FLAT;
-use crate::motions::body::slide::{Slide, first, longest, pose_rates, vanished};
+use crate::motions::body::slide::{Slide, contact_velocity, first, longest, vanished};
 use crate::motions::body::write::state;
 use crate::motions::dry::creep::is_fast;
-use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, Halt, SIN, TIME, U2, UH, W1, W2, W3};
+use crate::motions::walk::numbers::{
+    BodyNumbers, COS, HEAT, Halt, PHI, SIN, TIME, U2, UH, W1, W2, W3, pose_rates,
+};
 use crate::motions::walk::slip_over;
 use crate::motions::{Ask, Ending, Kind};
 use crate::numbers::Dual;
@@ -239,7 +241,8 @@ impl<'a> CustomFlow<'a> {
         let [_, along, across] = at.force;
         let heat = -(along * y[U2] + across * y[UH]);
         let turns = [precession, y[W3] - y[COS] * precession];
-        let pose = pose_rates(&self.body.shape().rim, y, turns, y.slip());
+        let over = contact_velocity(&self.body.shape().rim, y.angle(), w2, turns[1], y.slip());
+        let pose = pose_rates(y[PHI], turns, over);
         let rates = [-(y[COS] * w2), y[SIN] * w2, at.w[0], at.w[1], at.w[2], at.u[0], at.u[1], 1.0, heat];
         for (to, rate) in all.iter_mut().zip(rates.into_iter().chain(pose).chain([at.power])) {
             *to = at.pace * rate;

@@ -63,6 +63,13 @@ pub(crate) const Y: usize = 12;
 /// The number in place of w1 where a flow uses another variable: p = w1 s, or w_z of a contact that is held.
 pub(crate) const P: usize = 2;
 
+/// The rates of phi, psi and the place (x, y) of a contact point that moves over the table along e_h and e2.
+#[inline(always)]
+pub(crate) fn pose_rates(phi: f64, [precession, spin]: [f64; 2], [out, on]: [f64; 2]) -> [f64; 4] {
+    let (sin, cos) = phi.sin_cos();
+    [precession, spin, out * cos - on * sin, out * sin + on * cos]
+}
+
 /// The numbers of a body's motion that belong together.
 pub(crate) trait BodyNumbers<T> {
     /// Sine and cosine of theta.

@@ -16,7 +16,9 @@ use crate::methods::rk8;
 use crate::motions::Kind;
 use crate::motions::body::slide::longest;
 use crate::motions::walk::MOMENT;
-use crate::motions::walk::numbers::{BodyNumbers, Halt, MARGINS, PHI, TIME, U2, UH, W1, W3, loses, poses};
+use crate::motions::walk::numbers::{
+    BodyNumbers, Halt, MARGINS, PHI, TIME, U2, UH, W1, W3, loses, pose_rates, poses,
+};
 use crate::numbers::{Dual, Real};
 use core::f64::consts::FRAC_PI_2;
 
@@ -222,9 +224,7 @@ impl Flow<MARGINS> for LyingFlow {
         let heat = -(low_2 * u_2 + low_h * u_h + up_2 * other_2 + up_h * other_h);
         all[..9].copy_from_slice(&[0.0, 0.0, at.w[0], 0.0, at.w[1], at.u[0], at.u[1], 1.0, heat]);
         if poses(N) {
-            let (sin, cos) = y[PHI].sin_cos();
-            let (out, on) = (u_h, u_2 + w3);
-            all[PHI..PHI + 4].copy_from_slice(&[w1, w3, out * cos - on * sin, out * sin + on * cos]);
+            all[PHI..PHI + 4].copy_from_slice(&pose_rates(y[PHI], [w1, w3], [u_h, u_2 + w3]));
         }
         if loses(N) {
             all[N - 1] = -(at.couple[0] * w1 + at.couple[1] * w3);

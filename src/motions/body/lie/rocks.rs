@@ -11,7 +11,9 @@ use crate::laws::contact::landing::{Outcome, land_at};
 use crate::laws::contact::{Contact, lossy};
 use crate::laws::state::State;
 use crate::motions::body::phases::BodyWalk;
-use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, PHI, SIN, TIME, W1, W2, W3, loses, poses};
+use crate::motions::walk::numbers::{
+    BodyNumbers, COS, HEAT, PHI, SIN, TIME, U2, UH, W1, W2, W3, loses, pose_rates, poses,
+};
 use core::f64::consts::FRAC_PI_2;
 
 /// The longest time that is summed, over the time in which the body turns by a radian.
@@ -62,7 +64,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             }
             let lasts = 2.0 * rises / -rate[1];
             for (i, rate) in
-                [(2, rate[0]), (4, rate[2]), (5, drift[0]), (6, drift[1]), (TIME, 1.0), (8, warms)]
+                [(W1, rate[0]), (W3, rate[2]), (UH, drift[0]), (U2, drift[1]), (TIME, 1.0), (HEAT, warms)]
             {
                 self.at[i] += lasts * rate;
             }
@@ -70,12 +72,9 @@ impl<const N: usize> BodyWalk<'_, N> {
                 self.at[N - 1] += lasts * taken;
             }
             if poses(N) {
-                let (sin, cos) = self.at[PHI].sin_cos();
-                let (out, on) = (slip[0], slip[1] + y.w3);
-                for (i, rate) in
-                    [(9, y.w1), (10, y.w3), (11, out * cos - on * sin), (12, out * sin + on * cos)]
-                {
-                    self.at[i] += lasts * rate;
+                let rates = pose_rates(self.at[PHI], [y.w1, y.w3], [slip[0], slip[1] + y.w3]);
+                for (number, rate) in self.at[PHI..].iter_mut().zip(rates) {
+                    *number += lasts * rate;
                 }
             }
             self.at[W2] = -rises;

@@ -114,7 +114,7 @@ impl Slide {
         let eased = (height * height / (i1 + lever * lever)).max(depth * depth / i1 + radius * radius / i3);
         let turn = self.law.patch().unwrap_or(0.0) * drilling_of(y.angle(), y[W1], y[W3]);
         let damped = if loses(N) { self.damped(y) } else { f64::INFINITY };
-        damped.min(stable_time([y[UH], y[U2], turn], rate[8] / rate[TIME], 1.0 + eased))
+        damped.min(stable_time([y[UH], y[U2], turn], rate[HEAT] / rate[TIME], 1.0 + eased))
     }
 
     /// An implicit step and its stages.

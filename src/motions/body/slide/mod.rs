@@ -29,7 +29,7 @@ use crate::methods::{radau, rk8};
 use crate::motions::dry::creep::{IMPLICIT_TURNS, rests_below};
 use crate::motions::dry::settled::EFFORT;
 use crate::motions::walk::numbers::{
-    BodyNumbers, COS, HEAT, Halt, MARGINS, PHI, SIN, TIME, U2, UH, W1, W2, W3, loses, poses,
+    BodyNumbers, COS, HEAT, Halt, MARGINS, PHI, SIN, TIME, U2, UH, W1, W2, W3, loses, pose_rates, poses,
 };
 use crate::motions::walk::{MOMENT, slip_over};
 use crate::numbers::{Dual, Real};
@@ -248,7 +248,8 @@ impl Slide {
         let precession = w[0] / s;
         if poses(N) {
             let turning = [precession, w[2] - c * precession];
-            rates[PHI..PHI + 4].copy_from_slice(&pose_rates(&self.law.shape.rim, start, turning, u));
+            let over = contact_velocity(&self.law.shape.rim, (s, c), w[1], turning[1], u);
+            rates[PHI..PHI + 4].copy_from_slice(&pose_rates(start[PHI], turning, over));
         }
         if loses(N) {
             rates[N - 1] = self.law.power(angle, w, at.force[0]);
@@ -315,7 +316,8 @@ impl Flow<MARGINS> for Slide {
         }
         if poses(N) {
             let pace = all[TIME];
-            let pose = pose_rates(&self.law.shape.rim, y, [precession, spin], [u_h, u_2]);
+            let over = contact_velocity(&self.law.shape.rim, (s, c), w2, spin, [u_h, u_2]);
+            let pose = pose_rates(y[PHI], [precession, spin], over);
             all[PHI..PHI + 4].copy_from_slice(&pose.map(|x| pace * x));
         }
     }
@@ -505,17 +507,16 @@ pub(crate) fn vanished<const N: usize>(place: &FlowPlace<N>, over: f64) -> Optio
     Some(y)
 }
 
-/// The rates of phi, psi and the place of the contact point.
+/// The velocity of the contact point over the table, along e_h and e2.
 #[inline(always)]
-pub(crate) fn pose_rates<const N: usize>(
+pub(crate) fn contact_velocity(
     rim: &Rim<f64>,
-    y: &[f64; N],
-    [precession, spin]: [f64; 2],
+    angle: (f64, f64),
+    w2: f64,
+    spin: f64,
     [u_h, u_2]: [f64; 2],
-) -> [f64; 4] {
-    let (sin, cos) = y[PHI].sin_cos();
-    let (out, on) = (u_h + rim.rho * y[W2], u_2 + rim.radius(y.angle()) * spin);
-    [precession, spin, out * cos - on * sin, out * sin + on * cos]
+) -> [f64; 2] {
+    [u_h + rim.rho * w2, u_2 + rim.radius(angle) * spin]
 }
 
 /// A first step that is short enough, also for an almost flat face that turns or falls fast; the next

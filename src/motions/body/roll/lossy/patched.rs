@@ -17,7 +17,7 @@ use crate::laws::contact::{Force, patch};
 use crate::laws::loss::{Law, Losses};
 use crate::laws::state::{State, drilling_of};
 use crate::motions::dry::creep::{DRILLS, slip_under};
-use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, MARGINS, SIN, TIME};
+use crate::motions::walk::numbers::{BodyNumbers, HEAT, MARGINS, TIME};
 use crate::numbers::{Dual, Real};
 
 /// Largest number of evaluations for the length of drilling friction.

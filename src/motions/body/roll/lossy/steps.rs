@@ -13,7 +13,7 @@ use crate::motions::body::face::{FLAT, lands_at};
 use crate::motions::body::pole;
 use crate::motions::dry::settled::{Balance, CLOSE, EFFORT, SLOWER, Turned, balance, settles_within};
 use crate::motions::walk::numbers::{
-    BodyNumbers, COS, Halt, MARGINS, P, PHI, SIN, TIME, W1, W2, W3, loses, poses,
+    BodyNumbers, COS, Halt, MARGINS, P, PHI, SIN, TIME, W1, W2, W3, loses, pose_rates, poses,
 };
 use crate::numbers::{Dual, Real};
 use core::f64::consts::PI;
@@ -168,17 +168,11 @@ impl LossyFlow {
             let moves = matches!(self.hold, Hold::No | Hold::Settled);
             let spin = if moves { w[2] - c * precession } else { 0.0 };
             let reduced = self.law.rates.reduced();
-            let (sin, cos) = y[PHI].sin_cos();
-            let (out, on) = match reduced.contact {
-                Contact::Rolling => (reduced.shape.rim.rho * w2, reduced.shape.rim.radius((s, c)) * spin),
-                Contact::Smooth => (0.0, 0.0),
+            let over = match reduced.contact {
+                Contact::Rolling => [reduced.shape.rim.rho * w2, reduced.shape.rim.radius((s, c)) * spin],
+                Contact::Smooth => [0.0; 2],
             };
-            all[PHI..PHI + 4].copy_from_slice(&[
-                precession,
-                spin,
-                out * cos - on * sin,
-                out * sin + on * cos,
-            ]);
+            all[PHI..PHI + 4].copy_from_slice(&pose_rates(y[PHI], [precession, spin], over));
         }
         if self.is_paced() {
             let pace = self.law.pace((s, c), pace_of((s, c), precession, w));
