@@ -183,7 +183,7 @@ impl<'a> CustomFlow<'a> {
     }
 
     /// The response of a body that rolls, or slides freely.
-    fn rolls(&self, angle: (f64, f64), w: [f64; 3]) -> CustomResponse {
+    pub(super) fn rolls(&self, angle: (f64, f64), w: [f64; 3]) -> CustomResponse {
         let (at, _) = self.held(self.ask.table.contact(), angle, w);
         let [normal, along, across] = at.force;
         let held = grip(self.ask.table.mu(), normal, along * along + across * across);

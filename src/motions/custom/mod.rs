@@ -11,17 +11,19 @@
 mod flow;
 
 use super::ask::{check_flow, check_times_after};
-use super::walk::{MOMENT, STILL, ending, most_phases, slip_over};
-use super::{Ask, Ending, Event, Limit, Method, Motion, Phase, Start, exact};
-use crate::error::{Error, copied, grow, room};
+use super::walk::{
+    MOMENT, Next, Pause, Phases, SlowLaw, SlowSeries, Walk, WalkStep, after_rest, ending, slip_over,
+};
+use super::{Ask, Ending, Kind, Limit, Method, Motion, Phase, Start, exact};
+use crate::error::Error;
 use crate::laws::body::Body;
 use crate::laws::contact::Table;
-use crate::laws::contact::slip::Friction;
+use crate::laws::contact::slip::{Friction, painleve};
 use crate::laws::contact::standstill::{Standstill, towards};
 use crate::laws::custom::Custom;
 use crate::laws::pose::Pose;
 use crate::laws::state::State;
-use crate::methods::flow::{Exhausted, Flow, PATIENCE, Steps, toil_of};
+use crate::methods::flow::{Exhausted, Flow, Steps};
 use crate::motions::ask::row::OutputRow;
 use crate::motions::body::slide::Slide;
 use crate::motions::body::without_slip;
@@ -29,6 +31,7 @@ use crate::motions::body::write::{pose, state, state_errors};
 use crate::motions::walk::errors::doubted;
 use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, Halt, SIN, TIME, U2, UH, W2, lost};
 use crate::motions::walk::two_runs::{Followed, judged};
+use crate::numbers::Series;
 use core::cell::Cell;
 use flow::CustomFlow;
 
@@ -90,9 +93,13 @@ pub(crate) fn followed(
     check_times_after(start.time, times)?;
     let fault = Cell::new(None);
     let mut go_on = || !custom.has_failed() && go_on();
-    let mut run = |tol: f64, times: &[f64]| {
-        let flow = CustomFlow { body, ask, custom, fault: &fault, slips: false, tol };
-        CustomRun::new(flow, start, times)?.run(&mut go_on)
+    let mut run = |run_tol: f64, times: &[f64]| {
+        let flow = CustomFlow { body, ask, custom, fault: &fault, slips: false, tol: run_tol };
+        let made = CustomWalk::of_custom(flow, start, tol, times)?.run(&mut go_on)?;
+        match fault.take().filter(|_| !custom.has_failed()) {
+            Some(fault) => Err(fault),
+            None => Ok(made),
+        }
     };
     if is_judged {
         return judged(tol, times, run);
@@ -149,199 +156,240 @@ fn moved(y: &[f64; CUSTOM_NUMBERS], rate: &[f64; CUSTOM_NUMBERS], by: f64) -> [f
     core::array::from_fn(|i| by.mul_add(rate[i], y[i]))
 }
 
-/// The beginning of a phase, or the end of the motion.
-enum Beginning {
-    Rolls,
-    Slips,
-    /// A slip from rest along a direction, which it keeps for this time.
-    SlipsOff([f64; 2], f64),
-    Ends(Ending),
-}
+/// The walk of a body under user-defined laws.
+type CustomWalk<'a, 'l> = Walk<'a, CustomPhases<'l>, CUSTOM_NUMBERS>;
 
-/// One run of a motion: its current phase, its numbers, and its results so far.
-struct CustomRun<'a> {
+/// The data of that walk.
+struct CustomPhases<'a> {
     flow: CustomFlow<'a>,
-    start: &'a Start,
-    times: &'a [f64],
-    since: Vec<f64>,
-    at: [f64; CUSTOM_NUMBERS],
-    /// The direction in which the current slip began from rest.
+    start: State,
+    /// The direction in which the current slip began from rest, and the time for which it keeps that direction.
     way: [f64; 2],
-    made: Followed,
-    patience: u64,
+    keeps: f64,
 }
 
-impl<'a> CustomRun<'a> {
-    fn new(flow: CustomFlow<'a>, start: &'a Start, times: &'a [f64]) -> Result<Self, Error> {
-        let (count, ask) = (times.len(), flow.ask);
-        let mut made = Followed::empty(count, ask, true)?;
-        made.motion.method = Method::Tolerance(flow.tol);
+impl<'a, 'l> CustomWalk<'a, 'l> {
+    /// A walk from its initial state, with steps of the tolerance of `flow`, which exceeds the requested tolerance `fine`
+    /// in a rougher run.
+    fn of_custom(
+        flow: CustomFlow<'l>,
+        start: &Start,
+        fine: f64,
+        times: &'a [f64],
+    ) -> Result<Box<Self>, Error> {
         let (State { theta, w1, w2, w3 }, [along, across]) = (start.state, start.slip);
         let ((s, c), mut at) = (theta.sin_cos(), [0.0; CUSTOM_NUMBERS]);
-        let patience = ask.max_evaluations.map_or(PATIENCE, |most| PATIENCE.max(most));
-        at[..7].copy_from_slice(&[s, c, w1, w2, w3, along, across]);
-        let mut since = room(count)?;
-        since.extend(times.iter().map(|t| t - start.time + 0.0));
-        Ok(Self { flow, start, times, since, at, way: [0.0; 2], made, patience })
-    }
-
-    /// The first phase.
-    fn first(&mut self) -> Beginning {
-        let Table::Rubs(friction) = self.flow.ask.table else { return Beginning::Rolls };
-        let over = slip_over(true, self.flow.friction(0.0).strength());
-        let rests = self.at[UH].hypot(self.at[U2]) <= over;
-        if rests && matches!(friction, Friction::Coulomb { .. }) {
-            self.rests(false)
-        } else {
-            Beginning::Slips
-        }
-    }
-
-    /// The next phase where the contact point is at rest; `let_go` means that friction has just ceased to hold it.
-    fn rests(&mut self, let_go: bool) -> Beginning {
-        (self.at[UH], self.at[U2]) = (0.0, 0.0);
-        // At the limit itself a slip does not grow; later it does.
-        let (lasts, mut from) = (if let_go { KEEPS_ITS_WAY } else { MOMENT }, self.at);
-        if let_go {
-            self.flow.slips = false;
-            from = moved(&self.at, &self.flow.rates(&self.at), 0.5 * lasts);
-        }
-        match self.flow.standstill(&state(&from)) {
-            Standstill::Sticks => Beginning::Rolls,
-            Standstill::LiftsOff => Beginning::Ends(Ending::LiftOff),
-            Standstill::Undefined => Beginning::Ends(Ending::Painleve),
-            Standstill::Slips { alpha, .. } => Beginning::SlipsOff(towards(alpha), lasts),
-        }
-    }
-
-    /// Begins a phase; returns the ending of the motion if the motion is over at once.
-    fn begins(&mut self, next: Beginning) -> Result<Option<Ending>, Error> {
-        let (angle, w) = (self.at.angle(), self.at.w());
-        self.flow.slips = !matches!(next, Beginning::Rolls);
-        let at = match next {
-            Beginning::Ends(ending) => return Ok(Some(ending)),
-            Beginning::SlipsOff(way, _) => self.flow.slides(angle, w, [0.0; 2], Some(way)),
-            _ => self.flow.answer(&self.at),
-        };
-        if let Some(ending) = self.flow.at_start(&self.at, &at) {
-            return Ok(Some(ending));
-        }
-        let phases = &mut self.made.path.phases;
-        let (time, slip) = (self.start.time + self.at[TIME], self.at.slip());
-        let (kind, state) = (self.flow.kind(), state(&self.at));
-        grow(phases, Phase { time, kind, state, slip, aloft: [0.0; 2], rim: 0 })?;
-        let still = phases.iter().rev().take_while(|phase| phase.time >= time).count();
-        let limit = match () {
-            () if still > STILL as usize => Some(Limit::Chatter),
-            () if phases.len() > most_phases(&self.since) => Some(Limit::Changes),
-            () => None,
-        };
-        if limit.is_some() {
-            self.made.motion.limit = limit;
-            return Ok(Some(Ending::Bounded));
-        }
-        if let Beginning::SlipsOff(way, lasts) = next {
-            self.way = way;
-            let from = self.at;
-            while let Some(since) = self.due(from[TIME] + lasts) {
-                self.at = self.slipped(&from, since - from[TIME]);
-                self.writes();
-            }
-            self.at = self.slipped(&from, lasts);
-        }
-        Ok(None)
+        at[..TIME].copy_from_slice(&[s, c, w1, w2, w3, along, across]);
+        let of = CustomPhases { flow, start: start.state, way: [0.0; 2], keeps: MOMENT };
+        let mut walk = Box::new(Self::new(of, at, flow.ask, fine, (start.time, times))?);
+        walk.next = Some(walk.first_phase()?);
+        Ok(walk)
     }
 
     /// The numbers at the time `lasts` after a slip has begun, by the rates at the middle of that time.
-    fn slipped(&self, from: &[f64; CUSTOM_NUMBERS], lasts: f64) -> [f64; CUSTOM_NUMBERS] {
-        let half = moved(from, &self.flow.rates_along(from, self.way), 0.5 * lasts);
-        let mut all = moved(from, &self.flow.rates_along(&half, self.way), lasts);
-        let speed = (all[UH] * self.way[0] + all[U2] * self.way[1]).max(LEAST_GROWTH * lasts);
-        (all[UH], all[U2]) = (speed * self.way[0], speed * self.way[1]);
+    fn slipped(&self, lasts: f64) -> [f64; CUSTOM_NUMBERS] {
+        let (flow, from, way) = (&self.of.flow, &self.at, self.of.way);
+        let half = moved(from, &flow.rates_along(from, way), 0.5 * lasts);
+        let mut all = moved(from, &flow.rates_along(&half, way), lasts);
+        let speed = (all[UH] * way[0] + all[U2] * way[1]).max(LEAST_GROWTH * lasts);
+        (all[UH], all[U2]) = (speed * way[0], speed * way[1]);
         all
     }
 
-    /// The next of the times, if it is not after `until`.
-    fn due(&self, until: f64) -> Option<f64> {
-        self.since.get(self.made.motion.states.len()).copied().filter(|t| *t <= until)
+    /// Ends the motion if the current phase is over at once. Returns whether it is.
+    fn ends_at_once(&mut self) -> bool {
+        let ending = self.of.flow.at_start(&self.at, &self.of.flow.answer(&self.at));
+        self.next = ending.map(Next::Ends);
+        ending.is_some()
+    }
+}
+
+/// The slow slips of user-defined laws, which have no series.
+struct NoSeries;
+
+impl SlowLaw<CUSTOM_NUMBERS> for NoSeries {
+    fn follow(
+        &mut self,
+        _: &[f64; CUSTOM_NUMBERS],
+        _: Series,
+        _: f64,
+        _: f64,
+    ) -> Option<Box<SlowSeries<CUSTOM_NUMBERS>>> {
+        None
+    }
+}
+
+impl<'l> Phases<CUSTOM_NUMBERS> for CustomPhases<'l> {
+    type State = State;
+    type Slow = NoSeries;
+    const SLIP: usize = UH;
+    const HEAT: usize = HEAT;
+
+    fn tol(&self) -> f64 {
+        self.flow.tol
+    }
+    fn is_dry(&self) -> bool {
+        self.flow.friction(0.0).sticks()
+    }
+    fn over(&self) -> f64 {
+        slip_over(true, self.flow.friction(0.0).strength())
     }
 
-    /// Writes the current numbers.
-    fn writes(&mut self) {
-        self.made.written(&self.flow, (&self.start.state, &self.at), self.way);
+    fn seen(walk: &CustomWalk<'_, 'l>, kind: Kind) -> Phase {
+        let (time, state, slip) = (walk.t0 + walk.at[TIME], state(&walk.at), walk.at.slip());
+        Phase { time, kind, state, slip, aloft: [0.0; 2], rim: 0 }
+    }
+    fn perturbs(_: &mut CustomWalk<'_, 'l>) {}
+    fn write(walk: &mut CustomWalk<'_, 'l>, y: &[f64; CUSTOM_NUMBERS]) {
+        walk.made.written(&walk.of.flow, (&walk.of.start, y), walk.of.way);
+    }
+    fn write_here(walk: &mut CustomWalk<'_, 'l>) {
+        Self::write(walk, &{ walk.at });
     }
 
-    /// Computes the run to its end, or up to the limit at which the computation stops.
-    fn run(mut self, go_on: &mut dyn FnMut() -> bool) -> Result<Followed, Error> {
-        let mut next = self.first();
-        loop {
-            let over = self.begins(next)?;
-            let goes_on = over.is_none().then_some(());
-            let supplies = |()| self.flow.supplies(&self.at, &self.flow.rates(&self.at));
-            let fault = self.flow.fault.take().or_else(|| goes_on.and_then(supplies));
-            if let Some(fault) = fault.filter(|_| !self.flow.custom.has_failed()) {
-                return Err(fault);
-            }
-            if let Some(ending) = over {
-                let (now, state) = (self.at[TIME], state(&self.at));
-                while self.due(now).is_some() {
-                    self.writes();
-                }
-                self.made.motion.event = Some(Event { ending, time: self.start.time + now, state, rim: 0 });
-                self.made.path.last_slip = self.at.slip();
-                break;
-            }
-            next = match self.flows(go_on)? {
-                Halt::Time => break,
-                Halt::Standstill => self.rests(false),
-                Halt::Slips if self.flow.ask.table.rubs() => self.rests(true),
-                Halt::Face => {
-                    let falls = self.at[COS] * self.at[W2];
-                    self.at[TIME] += if falls > 0.0 { self.at[SIN] / falls } else { 0.0 };
-                    self.at[SIN] = 0.0;
-                    Beginning::Ends(Ending::Face)
-                }
-                halt => Beginning::Ends(ending(halt)),
-            };
-        }
-        self.made.motion.times = copied(&self.times[..self.made.motion.states.len()])?;
-        (self.made.path.heat, self.made.path.lost) = (self.at[HEAT], self.at[CUSTOM_NUMBERS - 1]);
-        Ok(self.made)
+    fn ends_slip(walk: &mut CustomWalk<'_, 'l>) -> Option<Halt> {
+        walk.of.flow.slips = true;
+        let ending = walk.of.flow.at_start(&walk.at, &walk.of.flow.answer(&walk.at))?;
+        Some(match ending {
+            Ending::Side => Halt::Side,
+            Ending::LiftOff => Halt::LiftOff,
+            _ => Halt::Jam,
+        })
     }
-
-    /// Computes the current phase up to its end.
-    fn flows(&mut self, go_on: &mut dyn FnMut() -> bool) -> Result<Halt, Error> {
-        let (flow, start, began) = (self.flow, &self.start.state, self.at[TIME]);
-        let most = flow.ask.max_evaluations;
-        let most = most.unwrap_or_else(|| toil_of(self.since.last().copied().unwrap_or(0.0)));
-        let toil = most.saturating_sub(self.made.motion.evaluations);
-        let steps = Steps { first: None, most: u64::MAX, patience: self.patience, toil, tired: false };
-        let first = self.made.motion.states.len();
-        let (made, way) = (&mut self.made, self.way);
-        let mut write = |y: &[f64; CUSTOM_NUMBERS]| made.written(&flow, (start, y), way);
-        let flown = flow.run(flow.place(self.at), steps, &self.since[first..], &mut write, go_on);
-        self.made.motion.evaluations += flown.spent.evaluations;
-        self.made.path.erred += flown.spent.erred * flow.tol;
-        (self.at, self.patience) = (flown.y, flown.spent.patience);
-        if flow.slips {
-            self.made.path.slipping += self.at[TIME] - began;
-        }
-        let fault = flow.fault.take().filter(|_| flown.halt == Halt::Endless);
-        let limit = match flown.spent.exhausted {
-            Some(Exhausted::Interrupted) => Some(Limit::Interrupted),
-            _ if let Some(fault) = fault => return Err(fault),
-            Some(Exhausted::Rounding) if self.at[TIME] == 0.0 => {
-                return Err(Error::Lost { theta: flow.theta(&self.at) });
+    fn lies(walk: &mut CustomWalk<'_, 'l>, found: Standstill) -> Option<Ending> {
+        let flow = &walk.of.flow;
+        let at = match found {
+            Standstill::Slips { alpha, .. } => {
+                flow.slides(walk.at.angle(), walk.at.w(), [0.0; 2], Some(towards(alpha)))
             }
-            Some(Exhausted::Crawling | Exhausted::Evaluations)
-                if flow.is_kept_short(&self.at, flown.step) =>
-            {
-                Some(Limit::Stiff)
-            }
-            why => why.map(Limit::from),
+            _ => flow.rolls(walk.at.angle(), walk.at.w()),
         };
-        self.made.motion.limit = limit;
-        Ok(flown.halt)
+        flow.at_start(&walk.at, &at).filter(|ending| *ending == Ending::Side)
+    }
+    fn begins_without_slip(_: &mut CustomWalk<'_, 'l>) -> Next {
+        Next::Rolls { at_limit: false }
+    }
+    fn rests(walk: &CustomWalk<'_, 'l>) -> Standstill {
+        walk.of.flow.standstill(&state(&walk.at))
+    }
+    /// At the limit itself a slip does not grow; later it does.
+    fn lets_go(walk: &CustomWalk<'_, 'l>) -> Standstill {
+        let flow = CustomFlow { slips: false, ..walk.of.flow };
+        flow.standstill(&state(&moved(&walk.at, &flow.rates(&walk.at), 0.5 * KEEPS_ITS_WAY)))
+    }
+    fn no_unique_force(walk: &CustomWalk<'_, 'l>) -> Error {
+        let flow = &walk.of.flow;
+        flow.fault.take().unwrap_or_else(|| {
+            let theta = state(&walk.at).theta;
+            let (mu, limit) = (flow.friction(0.0).strength(), painleve(flow.body, theta));
+            Error::Painleve { mu, theta, limit }
+        })
+    }
+
+    fn slips(walk: &mut CustomWalk<'_, 'l>) -> [f64; CUSTOM_NUMBERS] {
+        walk.of.flow.slips = true;
+        walk.at
+    }
+    fn slips_on(walk: &mut CustomWalk<'_, 'l>) -> [f64; CUSTOM_NUMBERS] {
+        walk.at
+    }
+    fn begins_slowly(_: &CustomWalk<'_, 'l>) -> bool {
+        false
+    }
+    fn has_series(_: &CustomWalk<'_, 'l>) -> bool {
+        false
+    }
+    fn lets_slip(walk: &mut CustomWalk<'_, 'l>, way: [f64; 2]) {
+        (walk.of.flow.slips, walk.of.way) = (true, way);
+    }
+    fn slow(_: &CustomWalk<'_, 'l>) -> NoSeries {
+        NoSeries
+    }
+    fn clear_until(_: &CustomWalk<'_, 'l>, series: &SlowSeries<CUSTOM_NUMBERS>) -> f64 {
+        series.until
+    }
+    fn nudged(walk: &mut CustomWalk<'_, 'l>, _: [f64; 2], _: f64) -> [f64; CUSTOM_NUMBERS] {
+        let (from, keeps) = (walk.at[TIME], walk.of.keeps);
+        while let Some(t) = walk.until().filter(|t| *t <= from + keeps) {
+            let y = walk.slipped(t - from);
+            Self::write(walk, &y);
+        }
+        walk.slipped(keeps)
+    }
+    fn rolls(
+        walk: &mut CustomWalk<'_, 'l>,
+        _: bool,
+        _: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<WalkStep<CUSTOM_NUMBERS>>, Error> {
+        walk.of.flow.slips = false;
+        Ok((!walk.ends_at_once()).then_some(WalkStep::Flows(walk.at)))
+    }
+    fn first(walk: &CustomWalk<'_, 'l>, y: &[f64; CUSTOM_NUMBERS]) -> f64 {
+        walk.of.flow.first(y)
+    }
+
+    fn flows(
+        walk: &mut CustomWalk<'_, 'l>,
+        y: [f64; CUSTOM_NUMBERS],
+        steps: Steps,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Pause<CUSTOM_NUMBERS>, Error> {
+        let (flow, start, way) = (walk.of.flow, walk.of.start, walk.of.way);
+        let fault = flow.fault.take().or_else(|| flow.supplies(&y, &flow.rates(&y)));
+        if let Some(fault) = fault.filter(|_| !flow.custom.has_failed()) {
+            return Err(fault);
+        }
+        let (first, made) = (walk.made.motion.states.len(), &mut walk.made);
+        let mut write = |y: &[f64; CUSTOM_NUMBERS]| made.written(&flow, (&start, y), way);
+        let flown = flow.run(flow.place(y), steps, &walk.since[first..], &mut write, go_on);
+        let exhausted = flown.spent.exhausted;
+        walk.has_spent(flown.spent);
+        if let Some(fault) = flow.fault.take().filter(|_| flown.halt == Halt::Endless)
+            && exhausted != Some(Exhausted::Interrupted)
+        {
+            return Err(fault);
+        }
+        let short = matches!(exhausted, Some(Exhausted::Crawling | Exhausted::Evaluations));
+        if short && flow.is_kept_short(&flown.y, flown.step) {
+            walk.made.motion.limit = Some(Limit::Stiff);
+        }
+        walk.claims_time_error(flown.halt, flown.steep, &flown.y);
+        Self::slip_halts(walk, flown.y, flown.halt);
+        Ok(Pause::No)
+    }
+
+    /// Ends a phase, with or without a slip.
+    fn slip_halts(walk: &mut CustomWalk<'_, 'l>, y: [f64; CUSTOM_NUMBERS], halt: Halt) {
+        walk.at = y;
+        if walk.of.flow.slips {
+            walk.made.path.slipping += y[TIME] - walk.began;
+        }
+        walk.of.keeps = if halt == Halt::Slips { KEEPS_ITS_WAY } else { MOMENT };
+        match halt {
+            Halt::Time | Halt::Pause => {}
+            Halt::Standstill => {
+                walk.stop_slip();
+                walk.continues_with(after_rest(Self::rests(walk)));
+            }
+            Halt::Slips if walk.ask.table.rubs() => {
+                walk.continues_with(after_rest(Self::lets_go(walk)));
+            }
+            Halt::Face => {
+                let falls = y[COS] * y[W2];
+                walk.at[TIME] += if falls > 0.0 { y[SIN] / falls } else { 0.0 };
+                walk.at[SIN] = 0.0;
+                walk.next = Some(Next::Ends(Ending::Face));
+            }
+            halt => walk.next = Some(Next::Ends(ending(halt))),
+        }
+    }
+
+    fn grows(&self, halt: Halt, y: &[f64; CUSTOM_NUMBERS]) -> Option<f64> {
+        match halt {
+            Halt::Side => Some(1.0),
+            Halt::LiftOff | Halt::Slips | Halt::Jam => Some(Slide::fastest(y)),
+            _ => None,
+        }
     }
 }
 
