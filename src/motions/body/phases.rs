@@ -20,7 +20,7 @@ use crate::methods::flow::{Flow, FlowPlace, Steps};
 use crate::motions::ask::row::OutputRow;
 use crate::motions::walk::errors::doubted;
 use crate::motions::walk::numbers::{
-    BodyNumbers, COS, HEAT, Halt, PHI, PSI, SIN, TIME, U2, UH, W1, W2, W3, loses, lost, poses,
+    BodyNumbers, COS, HEAT, Halt, SIN, TIME, U2, UH, W1, W2, W3, leans_over, loses, lost, poses,
 };
 use crate::motions::walk::slow::clear_until;
 use crate::motions::walk::two_runs::CHANCE;
@@ -164,15 +164,10 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
         all
     }
 
-    /// Moves the walk to the numbers at which a flow has halted. The axis of a ball may have passed the vertical, where
-    /// s is negative: then the ball leans to the other side, so that s, w1, w2 and the slip change their signs.
+    /// Moves the walk to the numbers at which a flow has halted.
     pub(crate) fn arrives(&mut self, at: [f64; N]) {
         self.at = at;
-        if self.at[SIN] < 0.0 {
-            [0, 2, 3, 5, 6].into_iter().for_each(|i| self.at[i] = -self.at[i]);
-            if poses(N) {
-                (self.at[PHI], self.at[PSI]) = (self.at[PHI] + PI, self.at[PSI] - PI);
-            }
+        if leans_over(&mut self.at) {
             self.of.slide.leans_over();
         }
         self.of.state = state(&self.at);

@@ -29,7 +29,7 @@ use crate::motions::body::slide::Slide;
 use crate::motions::body::without_slip;
 use crate::motions::body::write::{pose, state, state_errors};
 use crate::motions::walk::errors::doubted;
-use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, Halt, SIN, TIME, U2, UH, W2, lost};
+use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, Halt, SIN, TIME, U2, UH, W2, leans_over, lost};
 use crate::motions::walk::two_runs::{Followed, judged};
 use crate::numbers::Series;
 use core::cell::Cell;
@@ -133,8 +133,8 @@ pub(crate) fn check_options(ask: &Ask, start: &Start, custom: &Custom<'_>) -> Re
     if ask.table.friction().patch() > 0.0 {
         return refuse("patch", ask.table.friction().patch());
     }
-    if ask.beyond || ask.stop_at_rolling {
-        return refuse(if ask.beyond { "beyond" } else { "stop_at_rolling" }, 1.0);
+    if ask.beyond {
+        return refuse("beyond", 1.0);
     }
     if let Some((law, value)) = ask.losses.iter().find(|(law, value)| law.presses() && *value > 0.0) {
         let expected =
@@ -233,6 +233,10 @@ impl<'l> Phases<CUSTOM_NUMBERS> for CustomPhases<'l> {
     }
     fn over(&self) -> f64 {
         slip_over(true, self.flow.friction(0.0).strength())
+    }
+
+    fn loses(_: &Ask) -> bool {
+        true
     }
 
     fn seen(walk: &CustomWalk<'_, 'l>, kind: Kind) -> Phase {
@@ -361,6 +365,9 @@ impl<'l> Phases<CUSTOM_NUMBERS> for CustomPhases<'l> {
     /// Ends a phase, with or without a slip.
     fn slip_halts(walk: &mut CustomWalk<'_, 'l>, y: [f64; CUSTOM_NUMBERS], halt: Halt) {
         walk.at = y;
+        if leans_over(&mut walk.at) {
+            walk.of.way = walk.of.way.map(|u| -u);
+        }
         if walk.of.flow.slips {
             walk.made.path.slipping += y[TIME] - walk.began;
         }

@@ -167,7 +167,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         // The sum turns -0 into 0.
         since.iter_mut().for_each(|t| *t = *t - t0 + 0.0);
         let tol = of.tol();
-        let mut made = Followed::empty(times.len(), ask, !ask.losses.is_none())?;
+        let mut made = Followed::empty(times.len(), ask, P::loses(ask))?;
         made.motion.method = Method::Tolerance(tol);
         let crawling = ask.max_evaluations.map_or(PATIENCE, |most| PATIENCE.max(most));
         Ok(Self {
@@ -462,7 +462,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         self.made.motion.evaluations = self.spent.evaluations;
         self.made.path.erred += self.spent.erred * self.of.tol();
         self.made.path.heat = self.at[P::HEAT];
-        self.made.path.lost = if self.ask.losses.is_none() { 0.0 } else { self.at[N - 1] };
+        self.made.path.lost = if P::loses(&self.ask) { self.at[N - 1] } else { 0.0 };
         Ok(self.made)
     }
 

@@ -5,6 +5,8 @@
 //! pose and lost energy only if they are computed
 //! ```
 
+use core::f64::consts::PI;
+
 /// The reason for which a flow halts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Halt {
@@ -68,6 +70,19 @@ pub(crate) const P: usize = 2;
 pub(crate) fn pose_rates(phi: f64, [precession, spin]: [f64; 2], [out, on]: [f64; 2]) -> [f64; 4] {
     let (sin, cos) = phi.sin_cos();
     [precession, spin, out * cos - on * sin, out * sin + on * cos]
+}
+
+/// The axis of a ball may have passed the vertical, where s is negative: then the ball leans to the other side, so that s,
+/// w1, w2 and the slip change their signs. Returns whether it does.
+pub(crate) fn leans_over<const N: usize>(y: &mut [f64; N]) -> bool {
+    let over = y[SIN] < 0.0;
+    if over {
+        [SIN, W1, W2, UH, U2].into_iter().for_each(|i| y[i] = -y[i]);
+        if poses(N) {
+            (y[PHI], y[PSI]) = (y[PHI] + PI, y[PSI] - PI);
+        }
+    }
+    over
 }
 
 /// The numbers of a body's motion that belong together.

@@ -5,7 +5,7 @@ use super::{Next, Pause, SlowLaw, SlowSeries, Walk, WalkStep};
 use crate::error::Error;
 use crate::laws::contact::standstill::Standstill;
 use crate::methods::flow::Steps;
-use crate::motions::{Ending, Kind, Moving, Phase};
+use crate::motions::{Ask, Ending, Kind, Moving, Phase};
 
 /// The phases of a body of revolution or of a stone, whose motion has N numbers.
 pub(crate) trait Phases<const N: usize>: Sized {
@@ -21,6 +21,10 @@ pub(crate) trait Phases<const N: usize>: Sized {
     fn is_dry(&self) -> bool;
     /// The speed below which a slip counts as zero.
     fn over(&self) -> f64;
+    /// Whether the energy lost to the losses is among the outputs.
+    fn loses(ask: &Ask) -> bool {
+        !ask.losses.is_none()
+    }
 
     /// A phase of this kind that begins at the current numbers, in the components of the outputs.
     fn seen(walk: &Walk<'_, Self, N>, kind: Kind) -> Phase<Self::State>;
