@@ -4,7 +4,8 @@ use crate::common::{numbers, path_of, wander};
 use core::f64::consts::FRAC_PI_2;
 use spincyl::contact::{Friction, TableKind};
 use spincyl::ensemble::{Answer, Job, MotionOutput, MotionStarts, SUMMARIES, Summary, roll};
-use spincyl::motion::{Ask, Ending, Kind, Method, Motion, Start, roll_with};
+use spincyl::motion::path::Kind;
+use spincyl::motion::{Ask, Ending, Method, Motion, Start, roll_with};
 use spincyl::{Body, Error, State, steady};
 
 /// Motions with the coefficients of sliding and of static friction.
