@@ -342,9 +342,17 @@ def test_a_result_does_not_contain_a_law_of_your_own():
         sc.sweep.roll(COIN, lazy, 1.0, losses=CUBIC)
 
 
-def test_a_sweep_under_a_law_of_your_own_does_not_stop_at_rolling():
-    with pytest.raises(ValueError, match="^stop_at = 'rolling': not available with a law of your own"):
-        sc.sweep.roll(COIN, START, 1.0, contact=FALLING, stop_at="rolling")
+def test_a_sweep_under_a_law_of_your_own_stops_where_rolling_begins():
+    slides = sc.State([0.5, 0.6], 0.0, 0.0, 3.0, slip=(0.1, 0.0))
+    want = ("rolling_time", "rolling_w3", "phases")
+    own = sc.custom.Friction(lambda u: 0.3)
+    found, known = (
+        sc.sweep.roll(COIN, slides, 9.0, contact=law, stop_at="rolling", want=want)
+        for law in (own, sc.Coulomb(0.3))
+    )
+    assert (found["phases"] == 2).all() and (found["rolling_time"] > 0.1).all()
+    for name in want:
+        assert abs(found[name] - known[name]).max() < 1e-8
 
 
 def test_flicks_slip_under_a_law_of_your_own():

@@ -325,9 +325,6 @@ def _checked(asked: Asked, losses: Loss | None) -> Asked:
         within("restitution", number("restitution", asked.restitution), 0.0, 1.0, "or None")
     struck(asked.restitution, contact)
     one_of("stop_at", asked.stop_at, (None, "rolling"))
-    own = [law for law in (contact, losses) if getattr(law, "_function", None) is not None]
-    if own and asked.stop_at is not None:
-        raise ValueError(f"stop_at = {asked.stop_at!r}: not available with a law of your own, {own[0]!r}")
     if rubs(contact) or losses is not None or asked.restitution is not None:
         if asked.times[-1] < 0:
             raise ValueError(
