@@ -12,7 +12,7 @@ import numpy as np
 
 import spincyl as sc
 from spincyl import report
-from spincyl.plot._style import BLUE, ORANGE
+from spincyl.studio.plot._style import BLUE, ORANGE
 
 matplotlib.use("agg")
 import matplotlib.pyplot as plt

@@ -331,7 +331,7 @@ def test_the_plot_has_error_bars_and_both_curves():
 
 
 def test_a_number_has_the_decimals_that_its_error_leaves():
-    from spincyl.data._report import with_error
+    from spincyl.lab._report import with_error
 
     for value, error, said in (
         (4.71434, 0.0172, "4.714 +- 0.017"),

@@ -88,7 +88,7 @@ def test_one_chinese_character_that_looks_like_utf_8_is_not_taken_for_it(tmp_pat
 
 
 def test_few_of_many_random_names_are_read_as_something_else():
-    from spincyl.data._encoding import decoded
+    from spincyl.lab._encoding import decoded
 
     rng, wrong = np.random.default_rng(5), 0
     common = [bytes([a, b]).decode("gb2312") for a in range(0xB0, 0xD7) for b in range(0xA1, 0xFF)]

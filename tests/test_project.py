@@ -168,7 +168,7 @@ def test_a_packed_project_has_its_film_beside_it(tmp_path):
 
 
 def test_a_packed_project_is_not_unpacked_beyond_the_limit(tmp_path, monkeypatch):
-    monkeypatch.setattr("spincyl.data._contents.MOST_BYTES", 1_000_000)
+    monkeypatch.setattr("spincyl.lab._contents.MOST_BYTES", 1_000_000)
     raw = packed({"a.trk": b" " * 1_000_001}, compression=zipfile.ZIP_DEFLATED)
     assert len(raw) < 10_000
     with pytest.raises(ValueError, match="more than 1"):
@@ -254,7 +254,7 @@ def test_elements_in_elements_do_no_harm_however_deep(tmp_path):
 
 
 def test_a_project_with_very_many_elements_is_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr("spincyl.data._project._MOST", 200)
+    monkeypatch.setattr("spincyl.lab._project._MOST", 200)
     with pytest.raises(ValueError, match="more than 200 elements"):
         read(tmp_path, TEXT)
 

@@ -296,9 +296,9 @@ ALLOWED = {
     ("cli/_files.py", "np.savetxt(file, table, **how)"),
     ("_input/files.py", "path.open('ab')"),
     ("_input/files.py", "path.open('wb')"),
-    ("_studio/frames.py", "stage.figure.savefig(file, format=kind)"),
+    ("studio/frames.py", "stage.figure.savefig(file, format=kind)"),
     ("cli/_output.py", "path.open('ab')"),
-    ("plot/_style.py", "figure.savefig(made, format=path.suffix[1:].lower(), dpi=dpi)"),
+    ("studio/plot/_style.py", "figure.savefig(made, format=path.suffix[1:].lower(), dpi=dpi)"),
     ("sweep/_save.py", "(store.marks / 'lock').open('ab')"),
 }
 

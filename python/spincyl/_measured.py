@@ -13,9 +13,9 @@ import numpy as np
 
 from spincyl._body import Body
 from spincyl._input.hints import helpful
-from spincyl._input.numbers import Floats, Reals, metres, reals, refuse, si, within
+from spincyl._input.numbers import Floats, Reals, is_scalar, metres, reals, refuse, si, within
 from spincyl._phases import IMPULSE, LOST
-from spincyl._scale import Scale, unit
+from spincyl._scale import Scale, scale_of, unit
 
 if TYPE_CHECKING:
     from spincyl._motion import Motion
@@ -99,6 +99,21 @@ def measured(
     body = Body.from_metres(**given)
     within("outer_diameter", given["outer_diameter"], 2e-100, 2e100, "metres")
     return body.in_metres(mass, gravity=gravity)
+
+
+def with_size(name: str, body: Any, scale: Scale | None) -> tuple[Body, Scale]:
+    """A single body and its scale: the given one, its own, or that of the measures it was made from."""
+    if not isinstance(body, Body):
+        raise TypeError(f"{name}: expected a Body, not {type(body).__name__}")
+    if not is_scalar(*body._numbers):
+        raise ValueError(f"{name}: expected a single body, not a family")
+    found = scale_of(scale, body)
+    if found is None and body._measured:
+        found = Scale(radius=float(body._measured["outer_diameter"]) / 2)
+    if found is None:
+        more = ", or give scale=" if name == "tube" else ""
+        raise ValueError(f"{name}: the size of the body is unknown; make the body with sc.measured{more}")
+    return body, found
 
 
 def natural_time(name: str, time: Reals, scale: Scale) -> Reals:

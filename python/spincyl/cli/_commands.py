@@ -220,7 +220,7 @@ def portrait(args: Namespace) -> None:
 
 def _draw(data: Any, args: Namespace) -> None:
     from spincyl import plot
-    from spincyl.plot._style import saved
+    from spincyl.studio.plot._style import saved
 
     extra("matplotlib", "plot").use("agg")
     plt: Any = extra("matplotlib.pyplot", "plot")

@@ -165,7 +165,7 @@ def _print(columns: dict[str, Floats]) -> None:
 def _draw(found: Any, args: Namespace) -> None:
     """Draw inclination and precession rate against time."""
     extra("matplotlib", "plot").use("agg")
-    from spincyl.plot._style import saved
+    from spincyl.studio.plot._style import saved
 
     figure: Any = found.plot().figure
     saved(figure, Path(args.output))

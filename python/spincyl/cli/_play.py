@@ -10,11 +10,11 @@ from pathlib import Path
 from spincyl import play
 from spincyl._contact import AnyContact
 from spincyl._input.units import angle, part
-from spincyl._pages.words import paper_tube
 from spincyl._scale import Scale
 from spincyl.cli._commands import body_of, contact_of
 from spincyl.cli._losses import losses_of, option
 from spincyl.cli._output import writable
+from spincyl.studio.pages.words import paper_tube
 
 TEXT = """\
 Write an interactive page: a single file that computes motions itself, also offline. Drag a point on

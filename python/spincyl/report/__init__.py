@@ -329,7 +329,7 @@ def figure(rows: list[Row], path: Path) -> bool:
     matplotlib.use("agg")
     import matplotlib.pyplot as plt
 
-    from spincyl.plot._style import BLACK, BLUE, GREEN, ORANGE, saved
+    from spincyl.studio.plot._style import BLACK, BLUE, GREEN, ORANGE, saved
 
     style = {
         "RK4, fixed step": (BLUE, "o-"),
