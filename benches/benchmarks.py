@@ -9,9 +9,9 @@ import re
 
 import matplotlib
 import numpy as np
+import report
 
 import spincyl as sc
-from spincyl import report
 from spincyl.studio.plot._style import BLUE, ORANGE
 
 matplotlib.use("agg")

@@ -135,7 +135,6 @@ def test_an_import_is_known_wherever_it_stands(line):
         ("studio.cards", "def f():\n    from spincyl.lab._report import section"),
         ("studio.pages.view", "from spincyl.data import Filmed"),
         ("studio.pages.play", "import spincyl"),
-        ("report", "from spincyl.cli import main"),
     ],
 )
 def test_an_import_against_the_layers_is_seen(module, line):
@@ -185,12 +184,7 @@ def test_the_wrapper_does_not_know_the_applications_nor_the_studio_the_lab():
     folders = {name: layer(name).split(".")[0] for name in {*modules_of_python(), CORE}}
     pairs = {(folders[name], folders[other]) for name, others in python_asks().items() for other in others}
     assert ("lab", "studio") in pairs and ("studio", "lab") not in pairs
-    assert not {one for one, other in pairs if other in APPLICATIONS} - {
-        *APPLICATIONS,
-        "__init__",
-        "report",
-        "cli",
-    }
+    assert not {one for one, other in pairs if other in APPLICATIONS} - {*APPLICATIONS, "__init__", "cli"}
 
 
 def test_the_head_of_an_application_is_all_that_its_folder_loads_and_says_where_its_names_are():
@@ -224,7 +218,7 @@ def test_the_wrapper_is_thin_and_no_file_is_long():
     assert not {name: n for name, text in texts.items() if (n := len(text.splitlines())) > 450}
     top = [path.read_text("utf-8") for path in PACKAGE.glob("*.py") if path.stem not in DOORS]
     assert len(top) > 20
-    assert sum(map(code_lines, top)) <= 3660
+    assert sum(map(code_lines, top)) <= 3670
 
 
 @pytest.mark.parametrize(

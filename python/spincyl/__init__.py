@@ -16,7 +16,6 @@ to metres and seconds, and the motions of `measured` bodies are in SI. Angles ar
 # studio.pages   its pages for a browser: recorded motions, and live ones that the core computes in the page
 # lab            an application: measurements, what is fitted to them, and figures of both
 # __init__       this front door, and the doors `plot` and `data`: public names, and `_upward` for methods
-# report         speed against error
 # cli            the command line, and `__main__`
 
 from importlib import import_module
@@ -147,4 +146,4 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *_LATER})
+    return sorted({*__all__, *(name for name in globals() if name.startswith("__"))})

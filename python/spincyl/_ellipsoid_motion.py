@@ -15,7 +15,7 @@ from spincyl._input.numbers import Floats, Reals, components, made, si
 from spincyl._loss import Loss
 from spincyl._lossy import check, narrow, of_stone
 from spincyl._measured import in_si, natural_time, speaking
-from spincyl._motion import ENDINGS, Motion
+from spincyl._motion import ENDINGS, Motion, fixed_step
 from spincyl._outputs import FRICTION, Number
 from spincyl._phases import rubs
 
@@ -207,6 +207,7 @@ def rolled(body: Ellipsoid, state: EllipsoidState, asked: Asked) -> EllipsoidMot
         "contact": asked.contact,
         "status": status,
         "event": event,
+        "rk4": fixed_step(found),
         "_asked": asked,
         "_impacts": None,
     }

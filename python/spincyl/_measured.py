@@ -179,7 +179,7 @@ def in_si(m: "Motion", body: Body, seconds: Floats, step: float | None) -> "Moti
         "error": m.error * scale._worst,
         "pose_error": m.pose_error * max(1.0, scale.radius),
         "force_error": m.force_error * (unit("normal", scale)[0] or 1.0),
-        "advice": m.advice * second,
+        "rk4": m.rk4 and m.rk4._replace(advice=m.rk4.advice * second),
         "event": event,
         "_asked": asked._replace(times=seconds, t0=asked.t0 * second, step=step),
         "_phases": _rows_in_si(m._phases, scale),

@@ -87,15 +87,6 @@ With --radius, or for a measured tube, the table and the file also have seconds 
 
 _PLAY = f"{_play.TEXT}{_BODY}"
 
-_REPORT = """\
-Measure the error of the final state and the computing time of a trajectory on this machine: RK4 with
-several steps, an eighth-order method with several tolerances, the exact solution and, if SciPy is
-installed, its DOP853. Given a folder, write report.md and, if matplotlib is installed, report.png."""
-
-_REPORT_EXAMPLES = """\
-spincyl report
-spincyl report DIR --seconds 5min"""
-
 _FIGURES = """\
 Draw the figures of a lecture: the predictions in the paper of Jackson et al. (fig4 to fig8: solid if
 stable, dashed if not, points A to G marked; for the paper's criterion and for rolling), and figures
@@ -202,17 +193,6 @@ def parser() -> ArgumentParser:
     _shape_options(play)
     _play.options(play)
     _scale_options(play)
-
-    report = command("report", _commands.report, "speed and error on this machine", _REPORT, _REPORT_EXAMPLES)
-    report.add_argument(
-        "folder", nargs="?", metavar="DIR", help="folder for the table and the figure (default: print)"
-    )
-    report.add_argument(
-        "--seconds", type=_duration, default=60.0, help="approximate running time (default 60)"
-    )
-    report.add_argument(
-        "--reference", metavar="CSV", help="file of high-precision motions, to measure the exact solution"
-    )
 
     figures = command(
         "figures", _commands.figures, "figures of a lecture, as files", _FIGURES, _FIGURES_EXAMPLES

@@ -1,4 +1,4 @@
-"""Tables of numbers as exported by Tracker and others; delimiter, decimal sign and encoding are detected."""
+"""Tables of numbers as exported by Tracker and others; delimiter and decimal sign are detected."""
 
 import math
 import re
@@ -29,8 +29,8 @@ def read_table(path: str | PathLike[str], *, encoding: str | None = None) -> Col
         Text file. The separators (tabs, semicolons, commas or spaces) and the decimal signs (points or
         commas) are detected. Up to 10,000 lines above the names are skipped.
     encoding : str, optional
-        Encoding of the text, such as "gbk" or "cp1250". Default: UTF-8, UTF-16 with a byte order mark, or
-        Windows-1252 if only this gives sensible text, such as "Länge (m)", "T (°C)" or "fréquence".
+        Encoding of the text, such as "cp1252" (Windows in Western Europe) or "gbk". Default: UTF-8, or UTF-16
+        with a byte order mark.
 
     Returns
     -------
@@ -44,8 +44,8 @@ def read_table(path: str | PathLike[str], *, encoding: str | None = None) -> Col
     ValueError
         If the file is not such a table, or has more than `MOST_BYTES` bytes; the message names the file and
         the line. If numbers are ambiguous: a quote is not closed, some numbers have decimal points and others
-        decimal commas, or all quoted numbers are like "1,234", where the comma may separate thousands. If the
-        encoding of a name cannot be determined; the message lists possible readings.
+        decimal commas, or all quoted numbers are like "1,234", where the comma may separate thousands. If a
+        name is not UTF-8; the message asks for `encoding`.
     OSError
         If the file cannot be read.
     TypeError

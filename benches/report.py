@@ -2,9 +2,12 @@
 
 The error of a final state is its distance from the exact solution (the largest difference of its four
 numbers) plus the estimated error of the exact solution. With a file of high-precision motions
-(tests/reference/motion.csv in the repository), the exact solution is compared with those.
+(tests/reference/motion.csv), the exact solution is compared with those. `benchmarks.py` writes the result into the docs.
+
+python benches/report.py [--seconds 60] [--figure PATH]
 """
 
+import argparse
 import csv
 import math
 import time
@@ -18,7 +21,6 @@ import numpy as np
 
 from spincyl._body import Body
 from spincyl._input.numbers import Floats
-from spincyl._input.progress import Progress, telling
 from spincyl._roll import roll
 from spincyl._state import State
 from spincyl._swing import swing
@@ -80,7 +82,6 @@ def measure(
     seconds: float = 60.0,
     *,
     reference: str | None = None,
-    progress: Progress | bool | None = None,
 ) -> list[Row]:
     """Measure the computing time and the error of all methods for all scenes.
 
@@ -91,10 +92,6 @@ def measure(
     reference : str, optional
         Path of a CSV file with high-precision motions. Default: the true error of the exact solution is not
         measured.
-    progress : callable or bool, optional
-        Function that is called with the finished share of the work, 0 to 1. Default: if tqdm is installed, a
-        bar on a terminal or in a notebook when the work takes more than two seconds. True: a bar at once;
-        False: none.
 
     Returns
     -------
@@ -104,13 +101,7 @@ def measure(
     known = _references(reference) if reference else {}
     found = [known.get((scene.name, scene.t), (scene, None)) for scene in scenes()]
     budget = seconds / (4 * len(found))
-    rows = []
-    with telling(progress, "report") as told:
-        for scene, end in found:
-            rows.append(_row(scene, budget, end))
-            if told:
-                told(len(rows) / len(found))
-    return rows
+    return [_row(scene, budget, end) for scene, end in found]
 
 
 def _row(scene: Scene, budget: float, known: Floats | None) -> Row:
@@ -362,3 +353,19 @@ def figure(rows: list[Row], path: Path) -> bool:
     saved(figure, path, dpi=110)
     plt.close(figure)
     return True
+
+
+def main() -> None:
+    """Print the report, and draw it if a path is given."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--seconds", type=float, default=60.0)
+    parser.add_argument("--figure", type=Path)
+    args = parser.parse_args()
+    rows = measure(args.seconds, reference=str(Path(__file__).parents[1] / "tests/reference/motion.csv"))
+    print(table(rows))
+    if args.figure:
+        figure(rows, args.figure)
+
+
+if __name__ == "__main__":
+    main()
