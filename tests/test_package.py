@@ -84,6 +84,14 @@ def code_lines(text):
     return sum(bool(re.match(r"\s*[^\s#]", line)) and number not in docs for number, line in lines)
 
 
+def functions_and_classes(text):
+    """The names of functions and classes at the top of a module."""
+    return {x.name for x in ast.parse(text).body if isinstance(x, ast.FunctionDef | ast.ClassDef)} - {
+        "__getattr__",
+        "__dir__",
+    }
+
+
 def trigonometry(text):
     """The names of functions that call a trigonometric function."""
     tree = ast.parse(text)
@@ -219,6 +227,16 @@ def test_the_wrapper_is_thin_and_no_file_is_long():
     top = [path.read_text("utf-8") for path in PACKAGE.glob("*.py") if path.stem not in DOORS]
     assert len(top) > 20
     assert sum(map(code_lines, top)) <= 3670
+
+
+def test_the_name_of_a_function_or_class_occurs_once_in_a_layer():
+    assert functions_and_classes("def f():\n    def g(): ...\nclass A: ...\nx = 1") == {"f", "A"}
+    homes = {}
+    for module, path in modules_of_python().items():
+        for name in functions_and_classes(path.read_text("utf-8")):
+            homes.setdefault((layer(module), name), []).append(module)
+    assert len(homes) > 700
+    assert not {name: modules for name, modules in homes.items() if len(modules) > 1}
 
 
 @pytest.mark.parametrize(

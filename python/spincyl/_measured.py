@@ -175,7 +175,7 @@ def in_si(m: "Motion", body: Body, seconds: Floats, step: float | None) -> "Moti
     found: dict[str, Any] = {name: x for name, x in m.__dict__.items() if name not in made} | {
         "body": body,
         "t": seconds[: m.t.size].copy(),
-        "w": told("w", m.w, scale),
+        "w": output_in_si("w", m.w, scale),
         "error": m.error * scale._worst,
         "pose_error": m.pose_error * max(1.0, scale.radius),
         "force_error": m.force_error * (unit("normal", scale)[0] or 1.0),
@@ -204,7 +204,7 @@ def _rows_in_si(rows: Floats | None, scale: Scale, *, impacts: bool = False) -> 
     return found
 
 
-def told(name: str, values: Any, scale: Scale | None) -> Any:
+def output_in_si(name: str, values: Any, scale: Scale | None) -> Any:
     """Convert an output of a motion to the motion's units; AttributeError if it needs an unknown mass."""
     factor, said = unit(name, scale)
     if factor is None and scale is not None and said in ("M g", "M g R"):

@@ -18,7 +18,7 @@ from spincyl._ending import Ending, Event, FixedStep, RestsOn
 from spincyl._input.equality import compared
 from spincyl._input.numbers import Floats, Reals, si
 from spincyl._labelled import AXES, Components, frame, labelled
-from spincyl._measured import in_si, natural_time, speaking, told
+from spincyl._measured import in_si, natural_time, output_in_si, speaking
 from spincyl._outputs import ALOFT, FRICTION, POSE, Outputs, lacks, output
 from spincyl._phases import LOST, RIMS, Impact, Phase, impacts, lowest, phases, slipping
 from spincyl._scale import Scale
@@ -345,7 +345,7 @@ class Motion(Outputs):
 
     def _told(self, name: str, values: Floats) -> Floats:
         """Convert an output from natural units to those of the motion."""
-        found: Floats = values if self._natural is None else told(name, values, self.scale)
+        found: Floats = values if self._natural is None else output_in_si(name, values, self.scale)
         return found
 
     def _angle(self, name: str) -> Floats:

@@ -223,7 +223,7 @@ def roll(
         }
         given |= {"want": want, "beyond": beyond, "restitution": restitution, "losses": losses}
         given["max_nfev"] = max_nfev
-        found = stones.roll(body, state, t, **given)  # type: ignore[arg-type]  # it refuses another state
+        found = stones.roll_stone(body, state, t, **given)  # type: ignore[arg-type]  # it refuses another state
         if found._doubt:
             why = f"after that its estimated error reaches {found.error:.2g}"
             warn(f"the motion is {found._doubt} (known_until); {why}", ErrorWarning)

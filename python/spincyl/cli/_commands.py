@@ -206,7 +206,7 @@ def portrait(args: Namespace) -> None:
             with replaced(args.output) as part:
                 data.to_netcdf(part)
         elif suffix != "-":
-            _draw(data, args)
+            _draw_map(data, args)
     if suffix != "-":
         print(f"{args.points**2:,} points in {args.output}")
     elif args.json:
@@ -218,7 +218,7 @@ def portrait(args: Namespace) -> None:
         write_csv(told | {name: data[name].values for name in want}, sys.stdout)
 
 
-def _draw(data: Any, args: Namespace) -> None:
+def _draw_map(data: Any, args: Namespace) -> None:
     from spincyl import plot
     from spincyl.studio.plot._style import saved
 

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from typing import Any
 
 from spincyl import __version__
-from spincyl._input.units import angle, part, quantity, time, whole
+from spincyl._input.units import angle, part, quantity, time, whole_text
 from spincyl.cli import _commands, _drift, _flick, _losses, _play
 
 _BODY = """\
@@ -160,7 +160,9 @@ def parser() -> ArgumentParser:
         help="radius of the rounded rim, in outer radii (default 0: sharp)",
     )
     portrait.add_argument("--ell-max", type=float, default=2.0, help="largest aspect ratio (default 2)")
-    portrait.add_argument("--points", type=whole, default=1000, help="points along each axis (default 1000)")
+    portrait.add_argument(
+        "--points", type=whole_text, default=1000, help="points along each axis (default 1000)"
+    )
     portrait.add_argument("--contact", choices=("smooth", "rolling"), help="criterion (default: both)")
     slides: dict[str, Any] = {"action": "store_true", "help": "draw in 16:9; PNG has 1920 x 1080 pixels"}
     portrait.add_argument("--slides", **slides)
@@ -176,7 +178,7 @@ def parser() -> ArgumentParser:
         "flick", _flick.flick, "motion of a flicked tube: slipping, then rolling", _FLICK, _flick.EXAMPLES
     )
     _shape_options(flick)
-    _flick.options(flick)
+    _flick.flick_options(flick)
     _output_option(flick)
     _scale_options(flick)
     _json_option(flick, "print JSON instead of a table; with -o -, instead of CSV")
@@ -185,13 +187,13 @@ def parser() -> ArgumentParser:
         "drift", _drift.drift, "slow spin-down of a body: inclination over time", _DRIFT, _drift.EXAMPLES
     )
     _shape_options(drift)
-    _drift.options(drift)
+    _drift.drift_options(drift)
     _scale_options(drift)
     _json_option(drift, "print JSON instead of a table")
 
     play = command("play", _play.run, "interactive page in one file", _PLAY, _play.EXAMPLES)
     _shape_options(play)
-    _play.options(play)
+    _play.play_options(play)
     _scale_options(play)
 
     figures = command(
@@ -283,7 +285,9 @@ def _roll_options(sub: ArgumentParser) -> None:
     how.add_argument(
         "--t", type=time, required=True, metavar="TIME", help="last time, in sqrt(R/g), or as in 2s"
     )
-    how.add_argument("--points", type=whole, default=2001, help="number of times, from 0 on (default 2001)")
+    how.add_argument(
+        "--points", type=whole_text, default=2001, help="number of times, from 0 on (default 2001)"
+    )
     how.add_argument("--step", type=time, metavar="TIME", help="use RK4 with this step")
     how.add_argument("--tol", type=float, help="use an eighth-order method with this tolerance per step")
     laws = ("rolling", "smooth", "coulomb", "viscous")

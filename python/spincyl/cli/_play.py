@@ -34,7 +34,7 @@ spincyl play --theta 80deg --contact coulomb --mu 0.3 --patch 0.01 -o dry.html
 spincyl play --balls --theta 78deg --open -o balls.html"""
 
 
-def options(sub: ArgumentParser) -> None:
+def play_options(sub: ArgumentParser) -> None:
     """Add the options for the initial state and the output of the page."""
     how = sub.add_argument_group("the motion with which the page begins")
     how.add_argument(

@@ -205,7 +205,7 @@ def from_above(
         tracks = read_tracker(tracks, encoding=encoding)
     if not isinstance(tracks, Mapping):
         raise TypeError(f"tracks: expected a dict of tracks, or a path, not {type(tracks).__name__}")
-    first, second = (_track(tracks, name) for name in _ends(tracks, ends))
+    first, second = (_positions(tracks, name) for name in _ends(tracks, ends))
     t, between, unseen = _between(first, second)
     tall = float(scale.metres(2.0 * (body.ell + body.fillet)))
     line = np.abs(between)
@@ -305,7 +305,7 @@ def _ends(tracks: Mapping[str, Any], ends: Sequence[str] | None) -> tuple[str, s
     return found[0], found[1]
 
 
-def _track(tracks: Mapping[str, Any], name: str) -> tuple[Floats, Floats]:
+def _positions(tracks: Mapping[str, Any], name: str) -> tuple[Floats, Floats]:
     """Times in seconds and positions x + iy in metres of a track."""
     columns = tracks[name]
     if not hasattr(columns, "keys"):

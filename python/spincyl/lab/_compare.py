@@ -123,11 +123,11 @@ class Comparison(NamedTuple):
         )
 
     def _repr_html_(self) -> str:
-        from spincyl.studio.cards import drawing, framed, span
+        from spincyl.studio.cards import drawing, framed, span_in_words
 
         rows = [
             ("body", repr(self.body)),
-            ("points", f"{len(self.theta)}, θ from {span(self.theta)}{self._rates()}"),
+            ("points", f"{len(self.theta)}, θ from {span_in_words(self.theta)}{self._rates()}"),
             ("I₁/I₃ that fits", with_error(self.ratio, self.ratio_err, "±")),
             ("I₁/I₃ as built", f"{self.expected:.6g}"),
             ("χ² per degree of freedom", f"{self.chi2:.3g}"),
@@ -336,7 +336,7 @@ def compare(
         raise ValueError(
             f"theta and rate: no real body has I1/I3 = {ratio:.3g}; give turns a second as hertz="
         )
-    said = _doubts(found, alone, both, own, known, fitted=common > 0)
+    said = _doubts_of_ratio(found, alone, both, own, known, fitted=common > 0)
     if said:
         warnings.warn(said, UserWarning, stacklevel=2)
     _, _, one, one_err = alone.told(known)
@@ -384,7 +384,9 @@ def _reduced(
     return turns, errors, unit
 
 
-def _doubts(found: Fit, alone: Fit, both: Fit | None, own: float, known: bool, *, fitted: bool) -> str:
+def _doubts_of_ratio(
+    found: Fit, alone: Fit, both: Fit | None, own: float, known: bool, *, fitted: bool
+) -> str:
     """A warning about a fit: no ratio explains the points, or a common factor explains them as well."""
     one, one_err = alone.told(known)[2:]
     off = f"{abs(one - 1):.1%} too {'large' if one > 1 else 'small'}"

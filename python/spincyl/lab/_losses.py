@@ -148,7 +148,7 @@ def fit_losses(
     fits = [_told(f, _aic(f), (_aic(f) - _aic(best)) / spread) for f in whole]
     # only the best drift may issue warnings
     fits[0] = fits[0]._replace(drift=best.curve.drift(best.beta[:-1], float(best.beta[-1])))
-    said = _doubts(body, best, fits)
+    said = _doubts_of_laws(body, best, fits)
     for doubt in said:
         warnings.warn(doubt, UserWarning, stacklevel=2)
     first = data.values[0]
@@ -218,7 +218,7 @@ def _every(
         for law in sums:
             curve = Curve(body.natural, law, one, data.ends, data.down)
             try:
-                found.append(_fitted(odrpack, data, curve, None))
+                found.append(_fitted_curve(odrpack, data, curve, None))
             except ValueError as e:
                 refused.append((called(law), one, e))
             if told:
@@ -229,13 +229,13 @@ def _every(
         shown = best.curve(best.data.names, best.data.clock, best.beta[:-1], best.beta[-1])
         errors = best.data.weighed(shown, len(best.beta)).errors
         for k, f in enumerate(found, 1):
-            found[k - 1] = _fitted(odrpack, f.data._replace(errors=errors), f.curve, f.beta)
+            found[k - 1] = _fitted_curve(odrpack, f.data._replace(errors=errors), f.curve, f.beta)
             if told:
                 told((1 + k / len(found)) / 2)
     return found, refused
 
 
-def _doubts(body: Body, best: _Raw, fits: list[FittedLoss]) -> list[str]:
+def _doubts_of_laws(body: Body, best: _Raw, fits: list[FittedLoss]) -> list[str]:
     """Warnings about the best fit: inconsistent units, or points that no law explains."""
     said, data, fit = [], best.data, fits[0]
     units = "natural units" if body.scale is None else "seconds and rad/s"
@@ -260,7 +260,7 @@ def _doubts(body: Body, best: _Raw, fits: list[FittedLoss]) -> list[str]:
     return said + (known[:1] if all(known) else [])
 
 
-def _fitted(odrpack: Any, data: SpinDown, curve: Curve, begin: Floats | None) -> _Raw:
+def _fitted_curve(odrpack: Any, data: SpinDown, curve: Curve, begin: Floats | None) -> _Raw:
     """Fit one law, or a sum, from given parameters or from a guess."""
     at: Floats = _guess(odrpack, data, curve) if begin is None else begin.copy()
     many = len(curve.laws)
@@ -305,7 +305,7 @@ def _guess(odrpack: Any, data: SpinDown, curve: Curve) -> Floats:
     """A guess of coefficients and first inclination. Times are proportional to those of a tabulated drift."""
     if len(curve.laws) > 1:
         alone = [
-            _fitted(odrpack, data, Curve(curve.body, [law], curve.centre, data.ends, data.down), None)
+            _fitted_curve(odrpack, data, Curve(curve.body, [law], curve.centre, data.ends, data.down), None)
             for law in curve.laws
         ]
         theta = float(np.mean([one.beta[-1] for one in alone]))

@@ -53,7 +53,7 @@ def project(raw: bytes, name: str, encoding: str | None) -> dict[str, Columns] |
     if not head.startswith("<") or _HOME not in head:
         return None
     try:
-        found = _tracks(_tree(text))
+        found = _tracks_of_points(_tree(text))
     except ValueError as e:
         raise ValueError(f"{name}: a Tracker project, but {e}") from None
     legible(name, [word for track in found.values() for pair in track.units.items() for word in pair])
@@ -101,7 +101,7 @@ def _text(of: Any, default: str = "") -> str:
     return default if of is None or not of.text else str(of.text).strip().translate(_BACK)
 
 
-def _number(own: dict[str, Any], name: str, default: float = math.nan) -> float:
+def _finite(own: dict[str, Any], name: str, default: float = math.nan) -> float:
     """A number of an object, which has to be finite."""
     said = _text(own.get(name), str(default))
     try:
@@ -123,7 +123,7 @@ def _frames(own: dict[str, Any]) -> Iterator[tuple[int, dict[str, Any]]]:
             yield int(name[1:-1]), _own(data)
 
 
-def _tracks(root: Any) -> dict[str, Columns]:
+def _tracks_of_points(root: Any) -> dict[str, Columns]:
     """The tracks of the points of a project, in the units of its calibration and in seconds."""
     kind = root.get("class", root.tag)
     if kind != _PANEL:
@@ -134,9 +134,9 @@ def _tracks(root: Any) -> dict[str, Columns]:
         raise ValueError(f"its axes move with {moving!r}: choose the default reference frame and save it")
     marks, others = _marks(own)
     clip = _own(_inside(own.get("videoclip")))
-    first, step = (int(_number(clip, key, default)) for key, default in (("startframe", 0), ("stepsize", 1)))
+    first, step = (int(_finite(clip, key, default)) for key, default in (("startframe", 0), ("stepsize", 1)))
     step = max(step, 1)
-    last = first + step * (int(_number(clip, "stepcount", 1e9)) - 1)
+    last = first + step * (int(_finite(clip, "stepcount", 1e9)) - 1)
     shown = {
         name: {n: place for n, place in at.items() if first <= n <= last and (n - first) % step == 0}
         for name, at in marks.items()
@@ -152,10 +152,10 @@ def _tracks(root: Any) -> dict[str, Columns]:
         raise ValueError(f"{len(shown)} tracks over {many} frames are too many")
     n = begin + step * np.arange(many, dtype=np.float64)
     timing = _own(_inside(clip.get("video"))) | _own(_inside(own.get("clipcontrol")))
-    milliseconds = _number(timing, "delta_t")
+    milliseconds = _finite(timing, "delta_t")
     if not milliseconds > 0:
         raise ValueError(f"delta_t = {milliseconds!r}: expected a positive duration of a frame")
-    t = (_number(clip, "starttime", 0.0) + (n - first) * milliseconds) / 1e3
+    t = (_finite(clip, "starttime", 0.0) + (n - first) * milliseconds) / 1e3
     world, unit = _world(own, n)
     found: dict[str, Columns] = {}
     for name, at in shown.items():
@@ -182,7 +182,7 @@ def _marks(own: dict[str, Any]) -> tuple[dict[str, dict[int, complex]], list[str
         elif name in marks:
             raise ValueError(f"two tracks are called {name!r}")
         else:
-            marks[name] = {n: complex(_number(at, "x"), _number(at, "y")) for n, at in _frames(mine)}
+            marks[name] = {n: complex(_finite(at, "x"), _finite(at, "y")) for n, at in _frames(mine)}
     return marks, others
 
 
@@ -190,7 +190,7 @@ def _world(own: dict[str, Any], frames: Floats) -> tuple[Callable[[Any], tuple[F
     """The map from positions in the picture, x + iy downward, to coordinates, and the unit of length."""
     keys = ("xorigin", "yorigin", "angle", "xscale", "yscale")
     system = _own(_inside(own.get("coords")))
-    rows = sorted((n, *(_number(at, key) for key in keys)) for n, at in _frames(system))
+    rows = sorted((n, *(_finite(at, key) for key in keys)) for n, at in _frames(system))
     if not rows:
         raise ValueError("it has no axes and no scale of length (coords)")
     n, x, y, angle, across, up = np.array(rows).T

@@ -253,7 +253,7 @@ def fit_stop(
     with warnings.catch_warnings(record=True, action="always") as said:
         for one in centres(centre):
             try:
-                fits.append(_fitted(body, kind, one, (theta, theta_err), (mean, mean_err)))
+                fits.append(_fitted_drift(body, kind, one, (theta, theta_err), (mean, mean_err)))
             except ValueError as e:
                 refused.append((one, e))
     if not fits:
@@ -330,7 +330,7 @@ def _outliers(given: Floats, times: Floats) -> str:
     )
 
 
-def _fitted(
+def _fitted_drift(
     body: Body, kind: Any, centre: str, angle: tuple[float, float], time: tuple[float, float]
 ) -> FittedStop:
     """The coefficient by one drift, from the inclination and the mean time with their errors."""

@@ -128,14 +128,14 @@ def _named(raw: bytes, name: str, encoding: str | None, kind: str, least: int) -
     """The tracks of a file; an error names the file and the reason."""
     text = decoded(raw, name, encoding)
     try:
-        found = _read(text, least)
+        found = _read_tracks(text, least)
     except ValueError as e:
         raise ValueError(f"{name}: not {kind}: {e}") from None
     legible(name, (text for track in found.values() for pair in track.units.items() for text in pair))
     return found
 
 
-def _read(text: str, least: int) -> dict[str, Columns]:
+def _read_tracks(text: str, least: int) -> dict[str, Columns]:
     """The tracks of a text, each with at least `least` columns."""
     lines = [(i, line) for i, line in enumerate(text.splitlines(), 1) if line.strip()]
     several = len(lines)
@@ -230,7 +230,7 @@ def _found(
     rows = [(i, line) for i, line in lines[first + bool(units) :] if line.lstrip()[0] not in "#%"]
     numbers_ = _table(rows, delimiter, comma, len(columns))
     try:
-        return _tracks(above, columns, numbers_)
+        return _tracks_of_columns(above, columns, numbers_)
     except ValueError as e:
         raise ValueError(f"line {at}: {e}") from None
 
@@ -362,7 +362,7 @@ def _plain(lines: list[str], delimiter: str | None, comma: bool, width: int) -> 
     return table if table.shape == (len(lines), width) and not np.isinf(table).any() else None
 
 
-def _tracks(above: list[str], columns: list[str], table: Floats) -> dict[str, Columns]:
+def _tracks_of_columns(above: list[str], columns: list[str], table: Floats) -> dict[str, Columns]:
     names = [name.lstrip("#\ufeff \t").strip() for name in above]
     # a single name above the columns is that of the only track
     starts = [(k if len(names) > 1 else 0, name) for k, name in enumerate(names) if name] or [(0, "track")]

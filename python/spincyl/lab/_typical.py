@@ -42,7 +42,7 @@ class Table(tuple[Typical, ...]):
         return found
 
     def __repr__(self) -> str:
-        cells = [(row.of, _number(row), row.pair, row.source.split(": ")[0]) for row in self]
+        cells = [(row.of, _ends_in_words(row), row.pair, row.source.split(": ")[0]) for row in self]
         wide = [max(map(len, column)) for column in zip(*cells, strict=True)]
         lines = ["  ".join(x.ljust(w) for x, w in zip(row, wide, strict=True)).rstrip() for row in cells]
         told = {row.source for row in self}
@@ -53,12 +53,12 @@ class Table(tuple[Typical, ...]):
         return "\n".join(lines)
 
 
-def _number(row: Typical) -> str:
+def _ends_in_words(row: Typical) -> str:
     ends = dict.fromkeys(f"{x:.4g}" for x in (row.low, row.high))
     return f"{'~' * (row.sure == 'order')}{' to '.join(ends)} {row.unit}".rstrip()
 
 
-def _read(name: str) -> Iterator[list[str]]:
+def _rows(name: str) -> Iterator[list[str]]:
     """The rows of a file of this package, without its head."""
     text = files(__package__).joinpath(name).read_text("utf-8")
     return islice(csv.reader(text.splitlines(), delimiter=";"), 1, None)
@@ -67,10 +67,10 @@ def _read(name: str) -> Iterator[list[str]]:
 @cache
 def typical() -> Table:
     """The table, from its files."""
-    sources = {key: f"{key}: {source}" for key, source in _read("sources.csv")}
+    sources = {key: f"{key}: {source}" for key, source in _rows("sources.csv")}
     return Table(
         Typical(of, pair, float(low), float(high), unit, sure, sources[key])
-        for of, pair, low, high, unit, sure, key in _read("typical.csv")
+        for of, pair, low, high, unit, sure, key in _rows("typical.csv")
     )
 
 

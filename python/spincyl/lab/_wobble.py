@@ -91,7 +91,7 @@ def wobble(t: Reals, sound: Reals, *, between: tuple[float, float] = (2.0, 200.0
     level, pace = _envelope(x, hertz, high)
     begin += 0.5 / pace - 0.5 / hertz  # the middle of the first block
     rest = _levelled(level, pace, low)
-    track = _track(rest, pace, low, high)
+    track = _loudest_path(rest, pace, low, high)
     clock = np.arange(rest.size) / pace
     for _ in range(3):
         time, turns, errors, heard = _windows(rest, pace, track)
@@ -208,7 +208,7 @@ def _levelled(level: Floats, pace: float, low: float) -> Floats:
     return levelled
 
 
-def _track(rest: Floats, pace: float, low: float, high: float) -> Floats:
+def _loudest_path(rest: Floats, pace: float, low: float, high: float) -> Floats:
     """A first estimate of the fundamental of the envelope: the loudest path through the filters."""
     count = int(_PER_OCTAVE * np.log2(high / low)) + 1
     # up to the third harmonic of the highest fundamental

@@ -110,7 +110,7 @@ def _groups(t: Floats, near: float) -> list[tuple[float, float]]:
 def _poles(m: "Motion", first: float, last: float) -> Floats:
     """The times at which a body that tumbles in a vertical plane passes a pole, where phi and psi jump."""
     found: list[float] = []
-    for begin, end, often, phase in parts(m, first, last):
+    for begin, end, often, phase in parts_of_flight(m, first, last):
         w1, w2, w3 = phase.state.w1, phase.state.w2, phase.state.w3
         if phase.kind != "flying" or not abs(w1) + abs(w3) < _PLANAR * abs(w2) or not often:
             continue
@@ -156,7 +156,7 @@ def _changes(m: "Motion", t: Floats, poles: Floats, first: float, last: float) -
     return sides.mean(axis=1), np.array(told)
 
 
-def parts(m: "Motion", first: float, last: float) -> list[tuple[float, float, float, Phase]]:
+def parts_of_flight(m: "Motion", first: float, last: float) -> list[tuple[float, float, float, Phase]]:
     """Begin, end and nutations per unit of time of each phase in these times, and the phase."""
     times = [*(phase.time for phase in m.phases), last]
     found = []

@@ -24,19 +24,19 @@ _LETTERS = {"omega": "ω", "momentum": "L", "velocity": "v", "normal": "N", "fri
 _POINTS = ("P", "C", "O")
 
 
-def _turned(*corners: tuple[float, float]) -> Piece:
+def _solid(*corners: tuple[float, float]) -> Piece:
     return whole(lathe(Profile("", (0.0, 0.0, 0.0), list(corners)), 24))
 
 
 def _arrow(d: float) -> Piece:
     """An arrow of length 1 along the third axis, or its halo, which is larger by d."""
     shaft, head = 0.016 + d, 0.045 + 1.7 * d
-    return _turned((0, -d), (shaft, -d), (shaft, 0.86 - d), (head, 0.86 - d), (0, 1 + 3 * d))
+    return _solid((0, -d), (shaft, -d), (shaft, 0.86 - d), (head, 0.86 - d), (0, 1 + 3 * d))
 
 
 _ARROW, _HALO = _arrow(0.0), _arrow(0.011)
-_ROD = _turned((0, 0), (1, 0), (1, 1), (0, 1))
-_BEAD = _turned((0, -1), (0.7, -0.7), (1, 0), (0.7, 0.7), (0, 1))
+_ROD = _solid((0, 0), (1, 0), (1, 1), (0, 1))
+_BEAD = _solid((0, -1), (0.7, -0.7), (1, 0), (0.7, 0.7), (0, 1))
 
 
 class Vectors(NamedTuple):

@@ -122,7 +122,7 @@ def _motion(found: Motion) -> tuple[list[tuple[str, str]], tuple[float, ...]]:
         time = "√(a/g)" if isinstance(found, EllipsoidMotion) and found.scale is None else _time(found.scale)
         rows += [
             ("times", f"{found.t.size}, from {found.t[0]:.6g} to {found.t[-1]:.6g} {time}"),
-            ("θ at this time" if found.t.size == 1 else "θ at these times", span(found.theta)),
+            ("θ at this time" if found.t.size == 1 else "θ at these times", span_in_words(found.theta)),
         ]
         reached = float(found.theta.min()), float(found.theta.max())
     plain = found.losses is None and found.event is None and not isinstance(found, EllipsoidMotion)
@@ -131,7 +131,7 @@ def _motion(found: Motion) -> tuple[list[tuple[str, str]], tuple[float, ...]]:
             turns = nutation(found.body, found.start, found.contact)
             reached = turns.theta_min, turns.theta_max
             if turns.theta_max - turns.theta_min > 1e-6:
-                rows.append(("nods between", span(np.array(reached))))
+                rows.append(("nods between", span_in_words(np.array(reached))))
     rows += zip(("ended", "how"), found.message.split("; ", 1), strict=False)
     return rows, reached
 
@@ -286,7 +286,7 @@ def _angle(x: Reals) -> str:
     return _told(x, lambda value: f"{math.degrees(value):.4g}° {radians.format(value)}".rstrip())
 
 
-def span(theta: Floats) -> str:
+def span_in_words(theta: Floats) -> str:
     """The least and the greatest angle in degrees, or a single angle."""
     if theta.size == 1:
         return f"{math.degrees(theta.item()):.4g}°"

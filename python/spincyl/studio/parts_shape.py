@@ -18,7 +18,7 @@ _CUT = 1e-6  # a ball whose cut is narrower than this share of its radius is who
 _STRIPE, _LIFT = 0.08, 0.004
 
 
-def profiles(body: Body) -> list[Profile]:
+def profiles_of_parts(body: Body) -> list[Profile]:
     """The surfaces of the parts, without a point, which has none."""
     drawn = [(name, _surfaces(form, numbers)) for name, form, numbers in body._parts]
     seen = [(name, surfaces) for name, surfaces in drawn if surfaces]
@@ -43,8 +43,13 @@ def _surfaces(form: int, numbers: tuple[float, ...]) -> list[tuple[_Corners, _Co
             )
             outside = (below[0] + above[0], below[1] + above[1])
             faces: _Corners = [(b, low), (r - f, low)]
-            return [outside, (faces, None), ([(s - f, high), (c, high)], None), *_bore(b, c, low, high)]
-        return [([(b, low), (r, low), (s, high), (c, high)], None), *_bore(b, c, low, high)]
+            return [
+                outside,
+                (faces, None),
+                ([(s - f, high), (c, high)], None),
+                *_wall_of_bore(b, c, low, high),
+            ]
+        return [([(b, low), (r, low), (s, high), (c, high)], None), *_wall_of_bore(b, c, low, high)]
     if form in (1, 3):
         radius, centre, low, high = numbers if form == 3 else (numbers[0], *numbers[2:])
         start, stop = (math.asin(max(-1.0, min(1.0, (z - centre) / radius))) for z in (low, high))
@@ -66,7 +71,7 @@ def _surfaces(form: int, numbers: tuple[float, ...]) -> list[tuple[_Corners, _Co
     return [([(r - _WIRE + _WIRE * x, z + _WIRE * up) for x, up in around], around)]
 
 
-def _bore(b: float, c: float, low: float, high: float) -> list[tuple[_Corners, None]]:
+def _wall_of_bore(b: float, c: float, low: float, high: float) -> list[tuple[_Corners, None]]:
     return [([(c, high), (b, low)], None)] if max(b, c) > 0 else []
 
 
@@ -77,9 +82,9 @@ def striped(surfaces: list[Profile]) -> list[Profile]:
     return [surface for surface in surfaces if surface.name == name]
 
 
-def marks(body: Body, upper: str) -> list[Part]:
+def marks_of_parts(body: Body, upper: str) -> list[Part]:
     """Two stripes on opposite sides of the widest part; the first in the colour of `upper`."""
-    surfaces = profiles(body)
+    surfaces = profiles_of_parts(body)
     most = max(r for surface in surfaces for r, _ in surface.corners)
     colours = (BLUE, ORANGE) if upper == "O" else (ORANGE, BLUE)
     return [
@@ -89,14 +94,14 @@ def marks(body: Body, upper: str) -> list[Part]:
             [
                 piece
                 for surface in striped(surfaces)
-                for piece in _stripe(np.array(surface.corners), azimuth, most)
+                for piece in _stripe_of_polygon(np.array(surface.corners), azimuth, most)
             ],
         )
         for letter, colour, azimuth in zip(("O", "X"), colours, (0.0, np.pi), strict=True)
     ]
 
 
-def _stripe(
+def _stripe_of_polygon(
     corners: Floats, azimuth: float, most: float
 ) -> Iterator[tuple[Floats, Floats, NDArray[np.intp]]]:
     """A stripe along a polygon: the vertices, normals and triangles of each of its pieces."""

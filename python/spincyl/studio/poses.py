@@ -26,7 +26,7 @@ from spincyl._phases import rubs
 from spincyl._slip import lever
 from spincyl._state import State
 from spincyl._swing import swing
-from spincyl.studio.aloft import Aloft, aloft, goes_up, parts
+from spincyl.studio.aloft import Aloft, aloft, goes_up, parts_of_flight
 from spincyl.studio.surface import rotations
 
 if TYPE_CHECKING:
@@ -91,7 +91,7 @@ def pace(m: "Motion") -> float:
         return float(abs(_end(m) - m._asked.t0) / max(many, 1e-3))
     if goes_up(m):
         first, last = span(m)
-        many = sum((end - begin) * often for begin, end, often, _ in parts(m, first, last))
+        many = sum((end - begin) * often for begin, end, often, _ in parts_of_flight(m, first, last))
         return (last - first) / many if many > 0 else np.inf
     if m.losses is not None:
         return _mean_pace(m)
@@ -239,7 +239,7 @@ def _graded(m: "Motion", found: Floats, up: Aloft) -> Floats:
 def _between(m: "Motion", up: Aloft, first: float, last: float) -> Floats:
     """First times for knots of a motion with kinks: both sides of kinks, begins of phases, times between."""
     times = [np.array([first, last]), up.edges.ravel(), up.begins]
-    for begin, end, often, _ in parts(m, first, last):
+    for begin, end, often, _ in parts_of_flight(m, first, last):
         count = 4 + int(3 * (end - begin) * often)
         times.append(begin + (end - begin) * np.arange(1, count) / count)
     t: Floats = np.unique(np.concatenate(times))

@@ -77,7 +77,7 @@ def steepest(body: Body) -> float:
 def reach(body: Body | Ellipsoid) -> float:
     """Largest distance of the body's surface from its centre of mass."""
     if isinstance(body, Ellipsoid):
-        return stone_shape.reach(body)
+        return stone_shape.reach_of_stone(body)
     return max(math.hypot(r, z) for profile in profiles(body) for r, z in profile.corners)
 
 
@@ -111,7 +111,7 @@ def skin(body: Body) -> Skin:
     """
     ell, fillet = float(body.ell), float(body.fillet)
     lower = kind(body) == "ball" or (fillet > 0 and np.isnan(body.bore) and landing(body) > np.pi / 2 + 1e-9)
-    return Skin(-ell if lower else 0.0, 0.0 if lower else ell, fillet, 1.0 - fillet, _bore(body))
+    return Skin(-ell if lower else 0.0, 0.0 if lower else ell, fillet, 1.0 - fillet, _drawn_bore(body))
 
 
 def profiles(body: Body | Ellipsoid) -> list[Profile]:
@@ -120,10 +120,10 @@ def profiles(body: Body | Ellipsoid) -> list[Profile]:
     A body of unknown bore is drawn solid, a tube with a wall of at least 0.02 R.
     """
     if isinstance(body, Ellipsoid):
-        return stone_shape.profiles(body)
+        return stone_shape.profiles_of_stone(body)
     if body._parts:
-        return parts_shape.profiles(body)
-    ell, bore = float(body.ell), _bore(body)
+        return parts_shape.profiles_of_parts(body)
+    ell, bore = float(body.ell), _drawn_bore(body)
     if body.fillet > 0:
         return _rounded(body)
     surface = [Profile("wall", IVORY, [(1.0, -ell), (1.0, ell)])] if ell else []
@@ -192,9 +192,9 @@ def marks(body: Body | Ellipsoid, upper: Letter = "O") -> list[Part]:
     """The two marks; `upper` is the symbol on the upper end, or the colour of the first mark of a stone."""
     one_of("upper", upper, ("O", "X"))
     if isinstance(body, Ellipsoid):
-        return stone_shape.marks(body, upper)
+        return stone_shape.marks_of_stone(body, upper)
     if body._parts:
-        return parts_shape.marks(body, upper)
+        return parts_shape.marks_of_parts(body, upper)
     lower: Letter = "X" if upper == "O" else "O"
     return [_mark(body, upper, 1), _mark(body, lower, -1)]
 
@@ -204,7 +204,7 @@ def parts(body: Body | Ellipsoid, upper: Letter = "O") -> list[Part]:
     return [*map(lathe, profiles(body)), *marks(body, upper)]
 
 
-def _bore(body: Body) -> float:
+def _drawn_bore(body: Body) -> float:
     bore = min(float(body.bore), 0.98)
     return bore if bore > 0 else 0.0
 

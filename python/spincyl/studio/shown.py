@@ -50,7 +50,7 @@ def shown(m: Motion, times: Floats, upper: Letter, drawn: tuple[str, ...] = ()) 
         (spin,) = seen(m, np.clip(times, first, last), "spin")
     along = np.linspace(first, last, _PATH)
     contact, way = seen(m, along, "contact_point", "centre")
-    turned = _turned(m, along)
+    turned = _turns(m, along)
     slips = seen(m, along, "phase")[0] == 1 if rubs(m.contact) else np.zeros(along.size, bool)
     gaps, up = np.zeros(along.size, bool), goes_up(m)
     if up:
@@ -82,7 +82,7 @@ def shown(m: Motion, times: Floats, upper: Letter, drawn: tuple[str, ...] = ()) 
     )
 
 
-def _turned(m: Motion, along: Floats) -> Floats:
+def _turns(m: Motion, along: Floats) -> Floats:
     """Turns about the vertical at ascending times; for a stone the integral of its spin."""
     if not isinstance(m.body, Ellipsoid):
         found: Floats = seen(m, along, "phi")[0] / (2 * np.pi)

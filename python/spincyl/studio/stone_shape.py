@@ -51,7 +51,7 @@ def height(stone: Ellipsoid) -> float:
     return float(-a3 * cos / math.hypot(across * sin, a3 * cos))
 
 
-def profiles(stone: Ellipsoid) -> list[Profile]:
+def profiles_of_stone(stone: Ellipsoid) -> list[Profile]:
     """The surface of a stone without its marks."""
     cut, whole = height(stone), _stretch(stone)
     if cut == 1:
@@ -79,7 +79,7 @@ def turned_marks(stone: Ellipsoid, upper: str) -> list[Profile]:
     ]
 
 
-def marks(stone: Ellipsoid, upper: str) -> list[Part]:
+def marks_of_stone(stone: Ellipsoid, upper: str) -> list[Part]:
     """The two marks, in the colours of the letters O and X."""
     cut = height(stone)
     if cut == 1:
@@ -90,7 +90,7 @@ def marks(stone: Ellipsoid, upper: str) -> list[Part]:
     for (name, colour), end in zip(_inks(upper), (1, -1), strict=True):
         pieces = [
             (places @ turn, normals @ turn, i)
-            for places, normals, i in (_needle(cut, end), _stripe(cut, end))
+            for places, normals, i in (_needle(cut, end), _stripe_of_hull(cut, end))
         ]
         found.append(_stretch(stone)(joined(name, colour, pieces)))
     return found
@@ -103,7 +103,7 @@ def _needle(cut: float, end: int) -> tuple[Floats, Floats, np.ndarray]:
     return corners, np.tile([0.0, 0.0, 1.0], (3, 1)), np.array([[0, 1, 2]])
 
 
-def _stripe(cut: float, end: int) -> tuple[Floats, Floats, np.ndarray]:
+def _stripe_of_hull(cut: float, end: int) -> tuple[Floats, Floats, np.ndarray]:
     """One half of the stripe round the hull, below the edge."""
     up = -np.pi / 2 + np.linspace(*_STRIPE, 3)[:, np.newaxis] * math.acos(-cut)
     angle = np.linspace(-np.pi / 2, np.pi / 2, _QUARTER + 9)
@@ -112,9 +112,9 @@ def _stripe(cut: float, end: int) -> tuple[Floats, Floats, np.ndarray]:
     return strip((1 + _LIFT) * normals, normals)
 
 
-def reach(stone: Ellipsoid) -> float:
+def reach_of_stone(stone: Ellipsoid) -> float:
     """Largest distance of the stone's surface from its centre of mass."""
-    return max(float(np.linalg.norm(lathe(p).vertices, axis=1).max()) for p in profiles(stone))
+    return max(float(np.linalg.norm(lathe(p).vertices, axis=1).max()) for p in profiles_of_stone(stone))
 
 
 def _inks(

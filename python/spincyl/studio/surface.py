@@ -53,11 +53,11 @@ class Part(NamedTuple):
 
 def lathe(profile: Profile, around: int | None = None) -> Part:
     """The surface that a profile makes when it is turned and, for a stone, stretched."""
-    turned = _turned(profile, around or _AROUND)
+    turned = _revolved(profile, around or _AROUND)
     return turned if profile.stretch is None else profile.stretch(turned)
 
 
-def _turned(profile: Profile, around: int) -> Part:
+def _revolved(profile: Profile, around: int) -> Part:
     """The surface of revolution of a profile."""
     angle = np.linspace(0, 2 * np.pi, around + 1)
     circle = np.stack([np.cos(angle), np.sin(angle)], -1)

@@ -278,7 +278,9 @@ def roll(
         gripping(states, f"contact={contact!r} has no law of friction; give contact=sc.Coulomb(mu)")
     of = TABLES[contact] if isinstance(contact, str) else law(contact)
     summaries = _core.summaries(of, losses is not None, restitution is not None)
-    wanted = _wanted(want, several, tuple(summaries), (of, losses is not None, restitution is not None))
+    wanted = _wanted_of_motions(
+        want, several, tuple(summaries), (of, losses is not None, restitution is not None)
+    )
     asked = asked._replace(spread="states" in wanted)
     fields = _fields(bodies, states, contact, losses)
     slips = rubs(contact) or restitution is not None
@@ -359,7 +361,7 @@ def _times(t: Reals) -> tuple[Floats, bool]:
     return at, True
 
 
-def _wanted(
+def _wanted_of_motions(
     want: str | Iterable[str] | None,
     several: bool,
     summaries: tuple[str, ...],

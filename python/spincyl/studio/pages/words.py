@@ -41,7 +41,7 @@ def _words_of_parts(body: Body) -> dict[str, Any]:
     """Words for the surfaces of a body made from parts: shade, stripes, and corners with normals."""
     if not body._parts:
         return {}
-    surfaces = parts_shape.profiles(body)
+    surfaces = parts_shape.profiles_of_parts(body)
     wide = list(map(id, parts_shape.striped(surfaces)))
     told = []
     for part in surfaces:

@@ -24,7 +24,7 @@ _SHADES = {
 }
 
 
-def _shade(phase: Phase) -> str:
+def _shade_of(phase: Phase) -> str:
     """The key of `_SHADES` for a phase; empty if the phase is not shaded."""
     return {"rolling": "", "slipping": "slipping", "flying": "flying"}.get(phase.kind, "lying")
 
@@ -47,7 +47,7 @@ def shades(axes: "Sequence[Axes]", m: "Motion", second: float) -> None:
     ends = [phase.time for phase in m.phases[1:]] + [float(m.t[-1])]
     spans: list[tuple[str, float, float]] = []
     for phase, end in zip(m.phases, ends, strict=True):
-        name, begin = _shade(phase), max(phase.time, float(m.t[0]))
+        name, begin = _shade_of(phase), max(phase.time, float(m.t[0]))
         if spans and spans[-1][0] == name:
             spans[-1] = (name, spans[-1][1], end)
         elif begin < end:
@@ -76,7 +76,7 @@ def height(
         right.set_axis_off()  # the body only rolls on its side
     right.set_ylabel(f"height of its lowest point ({said})", color=ORANGE)
     patch: Any = extra("matplotlib.patches", "plot").Patch
-    there = dict.fromkeys(filter(None, map(_shade, m.phases)))
+    there = dict.fromkeys(filter(None, map(_shade_of, m.phases)))
     shown = [patch(facecolor=_SHADES[x][0], alpha=_SHADES[x][1], label=_SHADES[x][2]) for x in there]
     shown += [marks] if times.size else []
     ax.legend(handles=shown, loc="upper center", bbox_to_anchor=(0.5, -0.17), ncols=2)
