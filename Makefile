@@ -24,7 +24,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 CORE := Cargo.toml build.rs pyproject.toml $(shell find src -name '*.rs')
 
-PACKAGE := $(shell find python -name '*.py' -o -name '*.pyi' -o -path '*/_pages/js/*' -type f -o -path '*/_pages/cores/*' -type f -o -path '*/examples/*' -type f)
+PACKAGE := $(shell find python -name '*.py' -o -name '*.pyi' -o -path '*/pages/js/*' -type f -o -path '*/pages/cores/*' -type f -o -path '*/examples/*' -type f)
 
 # What Python has compiled is kept, whatever the shell says: every process that tests would take five seconds for it.
 export PYTHONDONTWRITEBYTECODE =

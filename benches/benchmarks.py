@@ -9,10 +9,10 @@ import re
 
 import matplotlib
 import numpy as np
+import report
 
 import spincyl as sc
-from spincyl import report
-from spincyl.plot._style import BLUE, ORANGE
+from spincyl.studio.plot._style import BLUE, ORANGE
 
 matplotlib.use("agg")
 import matplotlib.pyplot as plt

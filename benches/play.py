@@ -22,8 +22,8 @@ from sys import path as search
 from playwright.sync_api import sync_playwright
 
 import spincyl as sc
-from spincyl._pages.play import CORES
-from spincyl._pages.words import scenes
+from spincyl.studio.pages.play import CORES
+from spincyl.studio.pages.words import scenes
 
 search.append(str(Path(__file__).parents[1] / "tests"))
 import browser
@@ -143,7 +143,7 @@ def main():
         paths = {"one triangle": Path(temporary) / "triangle.html"}
         paths["one triangle"].write_text(TRIANGLE)
         for friction, name in enumerate(CORES):
-            core = files("spincyl._pages").joinpath("cores", name).read_bytes()
+            core = files("spincyl.studio.pages").joinpath("cores", name).read_bytes()
             path = sc.play(friction=bool(friction)).save(Path(temporary) / f"play{friction}.html")
             paths["whole page" if friction else "lean page"] = path
             print(f"{name:22} {len(gzip.decompress(core))} bytes, gzip {len(core)};", end=" ")

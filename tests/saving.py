@@ -14,7 +14,6 @@ import sys
 from pathlib import Path
 
 import spincyl as sc
-from spincyl import report
 from spincyl.cli import main
 from spincyl.cli._files import writer_of
 
@@ -64,16 +63,6 @@ def drifted(path):
     typed("drift", *words)
 
 
-def reported(path):
-    measure, table, figure = report.measure, report.table, report.figure
-    report.measure, report.figure = lambda *_, **__: [], lambda *_: False
-    report.table = lambda rows: 1000 * "-"
-    try:
-        typed("report", Path(path).parent)
-    finally:
-        report.measure, report.table, report.figure = measure, table, figure
-
-
 JOBS = {
     "page.html": shown,
     "play.html": lambda path: sc.play().save(path),
@@ -92,7 +81,6 @@ JOBS = {
     "map.png": mapped,
     "drift.csv": drifted,
     "drift.pdf": drifted,
-    "report.md": reported,
 }
 
 

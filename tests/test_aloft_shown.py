@@ -11,14 +11,14 @@ import pytest
 from pages import between, clock, go, picture
 
 import spincyl as sc
-from spincyl._pages.recorded import edges
-from spincyl._studio.aloft import aloft, goes_up
-from spincyl._studio.film import reel
-from spincyl._studio.frames import _Stage
-from spincyl._studio.poses import knots, packed, seen, span
-from spincyl._studio.shadow import MANY, caster, lamps, shadows
-from spincyl._studio.shape import lathe, profiles, rotations
-from spincyl._studio.shown import shown as prepared
+from spincyl.studio.aloft import aloft, goes_up
+from spincyl.studio.film import reel
+from spincyl.studio.frames import _Stage
+from spincyl.studio.pages.recorded import edges
+from spincyl.studio.poses import knots, packed, seen, span
+from spincyl.studio.shadow import MANY, caster, lamps, shadows
+from spincyl.studio.shape import lathe, profiles, rotations
+from spincyl.studio.shown import shown as prepared
 
 mpl.use("agg")
 import matplotlib.pyplot as plt

@@ -1,6 +1,5 @@
 """The command line at work: refusals before the work begins, help texts, progress."""
 
-import math
 import os
 import pty
 import re
@@ -13,12 +12,11 @@ import pytest
 from test_cli import ROLL, said, shell
 
 import spincyl as sc
-from spincyl import report
 from spincyl._input.units import joined
 from spincyl.cli import _commands, _output
 from spincyl.cli._options import parser
 
-COMMANDS = ["steady", "portrait", "roll", "report", "figures"]
+COMMANDS = ["steady", "portrait", "roll", "figures"]
 
 
 @pytest.fixture
@@ -27,8 +25,8 @@ def no_work(monkeypatch):
         raise AssertionError("it began to work")
 
     monkeypatch.setattr(_commands, "roll", never)
-    for place in (sc.sweep, sc.plot, report):
-        for name in ("portrait", "figures", "measure"):
+    for place in (sc.sweep, sc.plot):
+        for name in ("portrait", "figures"):
             if hasattr(place, name):
                 monkeypatch.setattr(place, name, never)
 
@@ -45,8 +43,7 @@ def no_work(monkeypatch):
         (["portrait", "-o", "{}/a.csv"], 2, "expected a name that ends in .png, .pdf, .svg, .nc, or -"),
         (["figures", "{}/file"], 1, "file: File exists"),
         (["figures", "/proc"], 1, "/proc: "),
-        (["report", "/proc/report"], 1, "/proc/report: "),
-        (["report", "{}/file/folder"], 1, "folder: Not a directory"),
+        (["figures", "{}/file/folder"], 1, "folder: Not a directory"),
     ],
 )  # fmt: skip
 def test_what_cannot_be_written_is_refused_before_the_work(capsys, tmp_path, no_work, words, status, reason):
@@ -117,7 +114,7 @@ def test_every_help_has_examples_and_they_run(capsys, tmp_path, monkeypatch, com
     assert examples and all(line.startswith("spincyl ") for line in examples)
     for line in examples:
         words = shlex.split(line)[1:]
-        if command in ("report", "figures"):
+        if command == "figures":
             parser().parse_args(joined(words))
         elif not {"|", ">", "--help"} & set(words):  # like a separate process, but without its imports
             said(capsys, *words)
@@ -178,11 +175,3 @@ def test_short_work_and_pipes_see_no_progress(capsys, monkeypatch):
     with _output.Working("roll"):
         threading.Event().wait(1.2)
     assert capsys.readouterr().err == ""
-
-
-def test_pictures_and_reports_tell_their_share(tmp_path, monkeypatch):
-    told = []
-    monkeypatch.setattr(report, "_row", lambda *_: None)
-    report.measure(1.0, progress=told.append)
-    assert len(told) == 7 and told[-1] == 1.0 and told == sorted(told)
-    assert math.isclose(told[0], 1 / 7)

@@ -1,18 +1,16 @@
 """The encoding of a table: names and units are read as written, or refused as undecodable."""
 
-import re
 import zipfile
 
-import numpy as np
 import pytest
 
 import spincyl as sc
 
 TABLE = "t\tx\ty\n0.0\t1.0\t2.0\n0.1\t1.1\t2.1\n"
 NAMES = {
-    "gbk": ("质量_A", "质点 A", "一", "A路", "角度"),
+    "gbk": ("质量_A", "质点 A", "角度"),
     "big5": ("質點 A", "克", "A克"),
-    "shift_jis": ("質点 A", "角度", "ﾏｽ", "ｱ"),
+    "shift_jis": ("質点 A", "角度", "ｱ"),
     "euc_kr": ("질점 A", "가", "시간"),
     "euc_jp": ("質点 A", "角度"),
     "cp1251": ("масса A", "т", "vу", "и", "xЯ"),
@@ -34,16 +32,11 @@ def written(tmp_path, text, encoding):
 
 
 @pytest.mark.parametrize("encoding", NAMES)
-def test_a_name_that_may_be_another_one_is_refused_with_its_readings_and_read_when_its_encoding_is_given(
-    tmp_path, encoding
-):
+def test_a_name_that_is_not_utf_8_is_refused_and_read_when_its_encoding_is_given(tmp_path, encoding):
     for name in NAMES[encoding]:
         path = written(tmp_path, f"{name}\n{TABLE}", encoding)
-        with pytest.raises(ValueError, match=r"export.txt: unknown encoding; .*encoding=") as caught:
+        with pytest.raises(ValueError, match=r"export.txt: unknown encoding: .*not UTF-8; give encoding="):
             sc.data.read_tracker(path)
-        if encoding in ("gbk", "big5", "cp1250", "cp1251", "cp1252", "cp1253"):
-            readings = dict(re.findall(r"('[^']*') \(([^()]*)\)", str(caught.value)))
-            assert encoding in readings[repr(name)].split(", ")
         assert list(sc.data.read_tracker(path, encoding=encoding)) == [name]
         # as a column and as a unit
         for column in (f"{name} (m)", f"x ({name})"):
@@ -57,46 +50,21 @@ def test_a_name_that_may_be_another_one_is_refused_with_its_readings_and_read_wh
 @pytest.mark.parametrize(
     "name",
     [
-        "masse é", "masse_é", "Fréquence (Hz)", "créée", "Länge (m)", "Größe", "Höhe", "Maß", "Straße", "LÄNGE", "Posición",
-        "Winkel (°)", "T (°C)", "45°", "t (µs)", "a (m/s²)", "V (cm³)", "M (N·m)", "x – y", "± 3", "12\xa0°C",
+        "masse é", "Fréquence (Hz)", "Länge (m)", "Größe", "Winkel (°)", "t (µs)", "a (m/s²)", "M (N·m)", "x – y",
+        "质量_A", "質点", "θ", "Δt", "масса", "t (сек)", "Öl", "où", "x̄", "½ t", "kąt", "čas", "Ø", "R²",
     ],
 )  # fmt: skip
-def test_a_name_of_western_windows_that_can_be_no_other_is_read(tmp_path, name):
-    for encoding in ("cp1252", "utf-8", "utf-8-sig", "utf-16"):
+def test_utf_8_and_utf_16_are_read_with_a_mark_and_utf_8_also_without(tmp_path, name):
+    for encoding in ("utf-8", "utf-8-sig", "utf-16"):
         path = written(tmp_path, f"{name}\n{TABLE}", encoding)
         assert list(sc.data.read_tracker(path)) == [name]
 
 
-@pytest.mark.parametrize(
-    "name",
-    ["质量_A", "質点", "θ", "Δt", "масса", "t (сек)", "é", "Öl", "où", "x̄", "½ t", "kąt", "čas", "Ø", "R²"],
-)
-def test_utf_8_is_read_also_without_its_mark(tmp_path, name):
-    if name == "½ t":  # only with a mark: the character may be half of a Chinese one
-        assert list(sc.data.read_tracker(written(tmp_path, f"{name}\n{TABLE}", "utf-8-sig"))) == [name]
-        return
-    assert list(sc.data.read_tracker(written(tmp_path, f"{name}\n{TABLE}", "utf-8"))) == [name]
-
-
-def test_one_chinese_character_that_looks_like_utf_8_is_not_taken_for_it(tmp_path):
-    for name in "一目路":
-        raw = name.encode("gbk")
-        assert raw.decode("utf-8") != name, "it is UTF-8, too"
-        path = written(tmp_path, f"{name}\n{TABLE}", "gbk")
-        with pytest.raises(ValueError, match=rf"'{name}' \(gbk"):
-            sc.data.read_tracker(path)
-
-
-def test_few_of_many_random_names_are_read_as_something_else():
-    from spincyl.data._encoding import decoded
-
-    rng, wrong = np.random.default_rng(5), 0
-    common = [bytes([a, b]).decode("gb2312") for a in range(0xB0, 0xD7) for b in range(0xA1, 0xFF)]
-    for _ in range(2000):
-        name = "".join(rng.choice(common, rng.integers(2, 5)))
-        text = decoded(f"{name}\n{TABLE}".encode("gbk"), "")
-        wrong += not any("\udc80" <= c <= "\udcff" for c in text)
-    assert wrong <= 4, "two characters of Chinese are almost never UTF-8"
+def test_western_windows_is_not_guessed_but_read_when_it_is_named(tmp_path):
+    path = written(tmp_path, f"Länge\n{TABLE}", "cp1252")
+    with pytest.raises(ValueError, match="'L\ufffdnge' is not UTF-8; .*encoding='cp1252'"):
+        sc.data.read_tracker(path)
+    assert list(sc.data.read_tracker(path, encoding="cp1252")) == ["Länge"]
 
 
 def test_a_comment_of_an_unknown_encoding_does_no_harm(tmp_path):

@@ -6,8 +6,8 @@ from letters import letters
 from scipy.spatial.transform import Rotation
 
 import spincyl as sc
-from spincyl._studio import exposure
-from spincyl._studio.shape import marks, parts, rotations
+from spincyl.studio import exposure
+from spincyl.studio.shape import marks, parts, rotations
 
 PIPE = sc.Body.tube(6.0, bore=0.8)  # the paper's PVC tube
 

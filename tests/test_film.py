@@ -12,12 +12,12 @@ from few import few
 from page_scenes import CYLINDER, PIPE, motion_of, page_of
 
 import spincyl as sc
-from spincyl._pages.recorded import edges
-from spincyl._studio.film import reel
-from spincyl._studio.frames import _Stage, frames
-from spincyl._studio.painted import turned
-from spincyl._studio.shadow import LAMPS, caster, lamps, shadows
-from spincyl._studio.shape import lathe, marks, parts, profiles, rotations
+from spincyl.studio.film import reel
+from spincyl.studio.frames import _Stage, frames
+from spincyl.studio.pages.recorded import edges
+from spincyl.studio.painted import turned
+from spincyl.studio.shadow import LAMPS, caster, lamps, shadows
+from spincyl.studio.shape import lathe, marks, parts, profiles, rotations
 
 SCALE = sc.Scale(radius=7.9375e-3)
 FALLING = sc.State(1.3, 0.0, 0.0, 0.0)
@@ -436,6 +436,6 @@ def test_a_long_film_is_cut_and_says_so_and_how_much_of_it_is_done(tmp_path):
 
 
 def test_a_large_film_is_warned_of(tmp_path, monkeypatch):
-    monkeypatch.setattr("spincyl._studio.film._LARGE", 1e3)
+    monkeypatch.setattr("spincyl.studio.film._LARGE", 1e3)
     with pytest.warns(UserWarning, match=r"film.gif: 0 MB; reduce size=, fps= or seconds=; an .mp4"):
         page_of("nutating").save(tmp_path / "film.gif", fps=5, size=(64, 64), seconds=1)

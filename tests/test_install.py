@@ -199,7 +199,7 @@ def test_the_crate_has_its_sources_and_tests_and_nothing_else():
 def test_importing_loads_nothing_that_a_scene_may_not_need():
     code = "import sys, spincyl; print(*sys.modules)"
     loaded = set(run([sys.executable, "-c", code]).split())
-    later = {f"spincyl.{x}" for x in ("_studio", "_pages", "data", "plot", "sweep", "cli", "report")}
+    later = {f"spincyl.{x}" for x in ("studio", "lab", "data", "plot", "sweep", "cli")}
     assert not loaded & (later | {"json", "html", "matplotlib", "xarray", "scipy", "odrpack", "mujoco"})
 
 

@@ -12,11 +12,11 @@ from playing import settled
 from test_film import stage, taken
 
 import spincyl as sc
-from spincyl._studio.arrows import _rods, drawings, vectors
-from spincyl._studio.frames import frames
-from spincyl._studio.look import opened
-from spincyl._studio.poses import seen, span
-from spincyl._studio.shape import rotations
+from spincyl.studio.arrows import _rods, drawings, vectors
+from spincyl.studio.frames import frames
+from spincyl.studio.look import opened
+from spincyl.studio.poses import seen, span
+from spincyl.studio.shape import rotations
 
 ALL = ("omega", "momentum", "velocity", "force")
 
@@ -320,7 +320,7 @@ def test_a_vector_drawing_that_fails_leaves_what_was_there(monkeypatch, tmp_path
     view = sc.view(motion_of("steady"))
     old = tmp_path / "old.svg"
     old.write_text("old")
-    monkeypatch.setattr("spincyl._studio.frames._Stage.draw", lambda *_: 1 / 0)
+    monkeypatch.setattr("spincyl.studio.frames._Stage.draw", lambda *_: 1 / 0)
     with pytest.raises(ZeroDivisionError):
         view.save(old)
     assert old.read_text() == "old" and len([*tmp_path.iterdir()]) == 1

@@ -166,10 +166,10 @@ def test_steps_are_seconds_and_so_is_the_advice():
     second = TUBE.scale.seconds(1.0)
     m = sc.roll(TUBE, START, 0.5, step=1e-4)
     plain = sc.roll(TUBE.natural, START, 0.5 / second, step=1e-4 / second)
-    assert np.array_equal(m.theta, plain.theta) and m.advice == pytest.approx(plain.advice * second)
+    assert np.array_equal(m.theta, plain.theta) and m.rk4.advice == pytest.approx(plain.rk4.advice * second)
     assert "step 0.0001 s" in m.message
-    coarse = 2.0 * plain.advice * second
-    with pytest.warns(sc.StepWarning, match=f"^step = {coarse!r}: .*; give step={m.advice:.2e}"):
+    coarse = 2.0 * plain.rk4.advice * second
+    with pytest.warns(sc.StepWarning, match=f"^step = {coarse!r}: .*; give step={m.rk4.advice:.2e}"):
         sc.roll(TUBE, START, 0.5, step=coarse)
     with pytest.raises(
         ValueError, match=r"^step = 0\.1 s is too large at t = 0 s, .*: use a step of 0\.00566 s"

@@ -23,7 +23,10 @@ from nutating_cylinder import body as CYLINDER
 from nutating_cylinder import start as START
 
 import spincyl as sc
-from spincyl import cli, report
+from spincyl import cli
+
+sys.path.append(str(pathlib.Path(__file__).parents[1] / "benches"))
+import report
 
 T = np.linspace(0, 20, 101)
 REFERENCE = pathlib.Path(__file__).parent / "reference"

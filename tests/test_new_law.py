@@ -35,7 +35,7 @@ PLACES = {
     ),
     _losses.__file__: (r"^    loss\.{name}: ", r"^  {typed}=\S+ +or "),
     _inputs.__file__: (r"^    loss\.{name}: ",),
-    PACKAGE / "_studio/scene_data.py": (r'^    "{parameter}": \("',),
+    PACKAGE / "studio/scene_data.py": (r'^    "{parameter}": \("',),
     PAGE: (r'^const LAWS = .*\W{typed}"?: "',),
     # a row in each of two tables
     ROOT / "docs/stops.md": (r"(?s)^\| `{name}\({parameter}\)` \| .*^\| `{name}\({parameter}\)` \| ",),

@@ -180,12 +180,12 @@ def test_a_text_with_an_exponent_beyond_all_numbers_is_zero_or_refused(exponent,
 )
 def test_what_is_no_whole_number_is_refused(text):
     with pytest.raises(units.ArgumentTypeError, match=f"^'{re.escape(text)}'"):
-        units.whole(text)
+        units.whole_text(text)
 
 
 def test_whole_numbers_are_read_as_decimals_have_them():
     for text in ("1e6", "2.5e1", "1000000000000000.0", "-3e0", "0e99", "10.00"):
-        assert units.whole(text) == Decimal(text)
+        assert units.whole_text(text) == Decimal(text)
 
 
 @pytest.mark.parametrize(

@@ -12,6 +12,11 @@ CORE = "spincyl._core"
 TRIGONOMETRY = re.compile(r"a?(?:rc)?(?:sin|cos|tan)h?2?|hypot|sincos")
 
 
+#: Modules with public names of the applications, beside the front door.
+DOORS = {"data", "plot"}
+APPLICATIONS = {"studio", "lab"}
+
+
 def layers():
     """The layers in `spincyl/__init__.py`, lowest first; "." is the wrapper, "__init__" the front door."""
     return re.findall(r"^# (\S+) {2,}\S", (PACKAGE / "__init__.py").read_text("utf-8"), re.M)
@@ -24,9 +29,12 @@ def modules_of_python():
 
 
 def layer(module):
-    """The layer of a module, by name."""
-    first = module.split(".")[1] if "." in module else "__init__"
-    return "cli" if first == "__main__" else first if first in layers() else "."
+    """The layer of a module, by name: the innermost folder that is one."""
+    words = module.split(".")[1:] or ["__init__"]
+    if words[0] in ("__main__", *DOORS):
+        return "cli" if words[0] == "__main__" else "__init__"
+    folders = [".".join(words[:n]) for n in range(len(words), 0, -1)]
+    return next((folder for folder in folders if folder in layers()), ".")
 
 
 def asked(text, known):
@@ -76,6 +84,14 @@ def code_lines(text):
     return sum(bool(re.match(r"\s*[^\s#]", line)) and number not in docs for number, line in lines)
 
 
+def functions_and_classes(text):
+    """The names of functions and classes at the top of a module."""
+    return {x.name for x in ast.parse(text).body if isinstance(x, ast.FunctionDef | ast.ClassDef)} - {
+        "__getattr__",
+        "__dir__",
+    }
+
+
 def trigonometry(text):
     """The names of functions that call a trigonometric function."""
     tree = ast.parse(text)
@@ -87,7 +103,9 @@ def trigonometry(text):
 
 
 def test_every_folder_of_the_package_is_a_layer():
-    folders = {path.parent.relative_to(PACKAGE).as_posix() for path in PACKAGE.rglob("*.py")}
+    folders = {
+        path.parent.relative_to(PACKAGE).as_posix().replace("/", ".") for path in PACKAGE.rglob("*.py")
+    }
     assert sorted(folders | {"__init__"}) == sorted(layers())
 
 
@@ -117,12 +135,14 @@ def test_an_import_is_known_wherever_it_stands(line):
         ("_drift", "from spincyl import view"),
         ("_drift", "def f():\n    from spincyl import plot"),
         ("_drift", "from spincyl.sweep._common import in_si"),
-        ("sweep._roll", "from spincyl._studio.poses import span"),
-        ("_studio.frames", "files('spincyl._pages')"),
-        ("data._compare", "def f():\n    from spincyl.plot import comparison"),
-        ("plot._motions", "from spincyl._pages.view import view"),
-        ("_pages.play", "import spincyl"),
-        ("report", "from spincyl.cli import main"),
+        ("sweep._roll", "from spincyl.studio.poses import span"),
+        ("studio.frames", "files('spincyl.studio.pages')"),
+        ("_body", "def f():\n    from spincyl.lab._compare import compare"),
+        ("lab._compare", "def f():\n    from spincyl.plot import comparison"),
+        ("studio.plot._motions", "from spincyl.studio.pages.view import view"),
+        ("studio.cards", "def f():\n    from spincyl.lab._report import section"),
+        ("studio.pages.view", "from spincyl.data import Filmed"),
+        ("studio.pages.play", "import spincyl"),
     ],
 )
 def test_an_import_against_the_layers_is_seen(module, line):
@@ -137,7 +157,8 @@ def test_an_import_against_the_layers_is_seen(module, line):
         ("_body", "from spincyl import _core"),
         ("_body", "from spincyl._input import numbers"),
         ("_roll", "def f():\n    from spincyl._ellipsoid import Ellipsoid"),
-        ("plot._losses", "def f():\n    from spincyl.data import LossFit"),
+        ("lab._figures", "from spincyl.studio.plot._style import BLUE"),
+        ("plot", "from spincyl.lab._figures import losses"),
         ("cli._play", "from spincyl import play"),
         ("__main__", "from spincyl.cli import main"),
     ],
@@ -167,6 +188,20 @@ def test_no_module_imports_from_a_layer_above_its_own():
     assert not against(asks)
 
 
+def test_the_wrapper_does_not_know_the_applications_nor_the_studio_the_lab():
+    folders = {name: layer(name).split(".")[0] for name in {*modules_of_python(), CORE}}
+    pairs = {(folders[name], folders[other]) for name, others in python_asks().items() for other in others}
+    assert ("lab", "studio") in pairs and ("studio", "lab") not in pairs
+    assert not {one for one, other in pairs if other in APPLICATIONS} - {*APPLICATIONS, "__init__", "cli"}
+
+
+def test_the_head_of_an_application_is_all_that_its_folder_loads_and_says_where_its_names_are():
+    for folder in APPLICATIONS:
+        text = (PACKAGE / folder / "__init__.py").read_text("utf-8")
+        assert "application" in ast.get_docstring(ast.parse(text)) and not code_lines(text)
+        assert re.search(rf"\b{folder}\b", (PACKAGE.parents[1] / "README.md").read_text("utf-8"))
+
+
 def test_no_modules_of_the_package_import_each_other_in_a_circle():
     assert not circle(python_asks())
 
@@ -189,9 +224,19 @@ def test_lines_of_code_are_neither_empty_nor_comments_nor_docstrings():
 def test_the_wrapper_is_thin_and_no_file_is_long():
     texts = {name: path.read_text("utf-8") for name, path in modules_of_python().items()}
     assert not {name: n for name, text in texts.items() if (n := len(text.splitlines())) > 450}
-    top = [path.read_text("utf-8") for path in PACKAGE.glob("*.py")]
+    top = [path.read_text("utf-8") for path in PACKAGE.glob("*.py") if path.stem not in DOORS]
     assert len(top) > 20
-    assert sum(map(code_lines, top)) <= 3650
+    assert sum(map(code_lines, top)) <= 3670
+
+
+def test_the_name_of_a_function_or_class_occurs_once_in_a_layer():
+    assert functions_and_classes("def f():\n    def g(): ...\nclass A: ...\nx = 1") == {"f", "A"}
+    homes = {}
+    for module, path in modules_of_python().items():
+        for name in functions_and_classes(path.read_text("utf-8")):
+            homes.setdefault((layer(module), name), []).append(module)
+    assert len(homes) > 700
+    assert not {name: modules for name, modules in homes.items() if len(modules) > 1}
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from playing import DRIVEN, settled
 from scipy import ndimage
 
 import spincyl as sc
-from spincyl._studio.shape import BLUE, ORANGE
+from spincyl.studio.shape import BLUE, ORANGE
 
 
 def test_the_clock_of_a_busy_machine_starts_at_the_start_and_never_runs_back(shown):

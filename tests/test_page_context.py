@@ -7,8 +7,8 @@ from pages import near, picture
 from playing import LAPTOP, PHONE, ask, settled, state
 
 import spincyl as sc
-from spincyl._pages.joined import _tight
-from spincyl._studio.shape import BLUE, ORANGE
+from spincyl.studio.pages.joined import _tight
+from spincyl.studio.shape import BLUE, ORANGE
 
 NO_WEBGL = """{ const plain = HTMLCanvasElement.prototype.getContext;
 HTMLCanvasElement.prototype.getContext = function (kind, ...how) { return kind === "webgl2" ? null : plain.call(this, kind, ...how); }; }"""

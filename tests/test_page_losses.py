@@ -9,7 +9,7 @@ from page_scenes import PIPE, motion_of, page_of
 from pages import clock, go, near, picture
 
 import spincyl as sc
-from spincyl._studio.poses import knots, pace, span
+from spincyl.studio.poses import knots, pace, span
 
 SIZE = sc.Scale(radius=0.0375, mass=0.44)
 BLUE = (0.0, 0.33, 0.63)
@@ -178,7 +178,7 @@ def test_a_motion_is_heard_whatever_its_end(motion, tmp_path):
 
 
 def test_what_comes_round_faster_than_samples_show_is_heard_as_its_mean():
-    from spincyl._studio.sound import _beat
+    from spincyl.studio.sound import _beat
 
     slow, fast = (_beat(step * np.arange(1000.0)) for step in (0.01, 50.0))
     assert slow.max() == pytest.approx(1.0) and slow.min() == pytest.approx(np.exp(-4.0), rel=1e-3)

@@ -9,7 +9,7 @@ from pages import clock, go, near, picture
 from playing import settled
 
 import spincyl as sc
-from spincyl._pages.slip import forces
+from spincyl.studio.pages.slip import forces
 
 RED, GREY = (0.75, 0.12, 0.18), (0.43, 0.45, 0.50)
 STICKS = 29.922072959

@@ -8,7 +8,7 @@ import pytest
 
 import spincyl as sc
 from spincyl import parts
-from spincyl._studio import shape
+from spincyl.studio import shape
 
 STEEL = 7800.0
 TOP = (

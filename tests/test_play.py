@@ -13,11 +13,11 @@ from pages import near, picture
 from playing import ask, settled, state
 
 import spincyl as sc
-from spincyl._pages.joined import script, style
-from spincyl._pages.play import _LEAN, _SCRIPTS, CORES
-from spincyl._pages.words import body_of, losses_of, restitution_of, scenes, state_of, table_of
-from spincyl._studio.shape import IVORY
 from spincyl.cli import main
+from spincyl.studio.pages.joined import script, style
+from spincyl.studio.pages.play import _LEAN, _SCRIPTS, CORES
+from spincyl.studio.pages.words import body_of, losses_of, restitution_of, scenes, state_of, table_of
+from spincyl.studio.shape import IVORY
 
 
 def unpacked(page):
@@ -41,7 +41,9 @@ def test_the_page_holds_its_script_and_the_core_that_is_asked_for_in_little_more
         style(["play.css"]),
         script(_SCRIPTS if friction else _LEAN),
     ) and '<canvas id="map"' in shown
-    assert core == gzip.decompress(files("spincyl._pages").joinpath("cores", CORES[friction]).read_bytes())
+    assert core == gzip.decompress(
+        files("spincyl.studio.pages").joinpath("cores", CORES[friction]).read_bytes()
+    )
     assert core.startswith(b"\0asm")
     # seven bits per byte, and a loader
     small = [zlib.compress(what, 9) for what in (core, (look + shown + text).encode())]

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from page_scenes import live_page
 
-from spincyl._pages.deflated import packed
-from spincyl._pages.joined import text
-from spincyl._pages.play import CORES
+from spincyl.studio.pages.deflated import packed
+from spincyl.studio.pages.joined import text
+from spincyl.studio.pages.play import CORES
 
 CHANCE = np.random.default_rng(7)
-COMMITTED = files("spincyl._pages").joinpath("cores")
+COMMITTED = files("spincyl.studio.pages").joinpath("cores")
 #: Bytes for all kinds of blocks of deflate.
 KINDS = {
     "nothing": b"",

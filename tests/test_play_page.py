@@ -8,8 +8,8 @@ from pages import near, picture
 from playing import DRIVEN, PHONE, address, ask, settled, state
 
 import spincyl as sc
-from spincyl._pages.words import scenes
-from spincyl._studio.shape import BLUE, IVORY, ORANGE, marks, profiles
+from spincyl.studio.pages.words import scenes
+from spincyl.studio.shape import BLUE, IVORY, ORANGE, marks, profiles
 
 #: Keeps what moves by itself from where it was drawn.
 SHIFTS = """window.shifts = [];

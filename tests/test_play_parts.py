@@ -9,7 +9,7 @@ from playing import address, ask, settled, state
 
 import spincyl as sc
 from spincyl import parts as p
-from spincyl._studio.shape import BLUE, marks, profiles
+from spincyl.studio.shape import BLUE, marks, profiles
 
 TOP = sc.assembled(
     [

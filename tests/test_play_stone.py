@@ -9,8 +9,8 @@ from playing import DRIVEN, LAPTOP, PHONE, ask, details, settled, state
 from scipy.spatial.transform import Rotation
 
 import spincyl as sc
-from spincyl._pages.words import scenes
-from spincyl._studio.shape import BLUE, ORANGE, marks, profiles
+from spincyl.studio.pages.words import scenes
+from spincyl.studio.shape import BLUE, ORANGE, marks, profiles
 
 NAME = "a rattleback turns back"
 AT = "#stone=0.07,0.014,0.012&twist=0.0349066&spin=-5&slow=1"

@@ -9,7 +9,7 @@ from page_scenes import PIPE
 from playing import LAPTOP, PHONE, address, ask, details, settled, state
 
 import spincyl as sc
-from spincyl._pages.words import body_of, scenes, state_of
+from spincyl.studio.pages.words import body_of, scenes, state_of
 
 #: What a name of an address may be that is no number of the page's, and no key of a keyboard.
 OF_EVERY_OBJECT = ("__proto__", "constructor", "toString", "hasOwnProperty", "__defineGetter__", "valueOf")

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import spincyl as sc
-from spincyl._studio import shape
-from spincyl._studio import surface as surfaces
-from spincyl._studio.shape import kind, landing, marks, parts, profiles, reach
+from spincyl.studio import shape
+from spincyl.studio import surface as surfaces
+from spincyl.studio.shape import kind, landing, marks, parts, profiles, reach
 
 COIN, CAN, TUBE = (
     sc.Body.solid(0.2, fillet=0.05),

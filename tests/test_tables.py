@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import spincyl as sc
-from spincyl.data._columns import cleaned
+from spincyl.lab._columns import cleaned
 
 
 def written(tmp_path, text, encoding="utf-8"):

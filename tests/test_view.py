@@ -12,8 +12,8 @@ from page_scenes import BODIES, CAN, COIN, CYLINDER, DISK, PIPE, ROUNDED, live_p
 from pages import SMALL, arrow, between, near, picture
 
 import spincyl as sc
-from spincyl._studio.poses import knots, seen
-from spincyl._studio.shape import BLUE, IVORY, ORANGE, lathe, profiles
+from spincyl.studio.poses import knots, seen
+from spincyl.studio.shape import BLUE, IVORY, ORANGE, lathe, profiles
 
 FALLING = sc.State(1.3, 0.0, 0.0, 0.0)
 UNFIT = ["\0", "\x01", "\x0b", "\x1b", "\x7f", "\x85", "\ud800", "\udc00", "\ufdd0", "\uffff", "\U0010fffe"]

@@ -15,11 +15,11 @@ from pages import SENT, arrow, between, clock, go, near, picture, sent
 from scipy.spatial.transform import Rotation
 
 import spincyl as sc
-from spincyl._pages.slip import forces
-from spincyl._pages.stone import turns_back
-from spincyl._studio.poses import knots, seen
-from spincyl._studio.shape import BLUE, IVORY, ORANGE, lathe, marks, parts, profiles
-from spincyl._studio.stone_shape import height
+from spincyl.studio.pages.slip import forces
+from spincyl.studio.pages.stone import turns_back
+from spincyl.studio.poses import knots, seen
+from spincyl.studio.shape import BLUE, IVORY, ORANGE, lathe, marks, parts, profiles
+from spincyl.studio.stone_shape import height
 
 RED = (0.75, 0.12, 0.18)
 

@@ -16,7 +16,7 @@ import pytest
 import spincyl as sc
 
 HOME = Path(__file__).parents[1]
-COMMITTED = HOME / "python/spincyl/_pages/cores"
+COMMITTED = HOME / "python/spincyl/studio/pages/cores"
 ANEW = HOME / "target/cores"
 ENDLESS, NONE = np.inf, np.nan
 HALF = np.pi / 2

@@ -9,7 +9,7 @@ import pytest
 pytest.importorskip("anywidget")
 
 import spincyl as sc
-from spincyl._pages.widget import _SCRIPT
+from spincyl.studio.pages.widget import _SCRIPT
 
 #: The model that anywidget gives a script: values, and callbacks for their changes.
 MODEL = """
@@ -199,7 +199,7 @@ def test_slow_motion_is_told_and_what_cannot_be_shown_is_told_as_it_is(notebook)
 
 
 def test_a_page_of_a_rattleback_is_followed(notebook):
-    from spincyl._pages.words import scenes
+    from spincyl.studio.pages.words import scenes
 
     play = sc.play(sc.Body.solid(2.5), 1.3)
     page = notebook(shown(play), play._repr_html_(), play._repr_html_())

@@ -130,7 +130,7 @@ def test_a_film_is_sent_nowhere(tmp_path, monkeypatch):
             server.accept()
 
 
-@pytest.mark.parametrize("kind", [name for name in JOBS if name != "report.md"])
+@pytest.mark.parametrize("kind", JOBS)
 def test_every_kind_of_file_has_the_name_that_it_was_given(tmp_path, monkeypatch, kind):
     (tmp_path / "home").mkdir()
     (tmp_path / "here" / "~").mkdir(parents=True)
@@ -296,9 +296,9 @@ ALLOWED = {
     ("cli/_files.py", "np.savetxt(file, table, **how)"),
     ("_input/files.py", "path.open('ab')"),
     ("_input/files.py", "path.open('wb')"),
-    ("_studio/frames.py", "stage.figure.savefig(file, format=kind)"),
+    ("studio/frames.py", "stage.figure.savefig(file, format=kind)"),
     ("cli/_output.py", "path.open('ab')"),
-    ("plot/_style.py", "figure.savefig(made, format=path.suffix[1:].lower(), dpi=dpi)"),
+    ("studio/plot/_style.py", "figure.savefig(made, format=path.suffix[1:].lower(), dpi=dpi)"),
     ("sweep/_save.py", "(store.marks / 'lock').open('ab')"),
 }
 

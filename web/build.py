@@ -16,7 +16,7 @@ import tomllib
 from pathlib import Path
 
 HOME = Path(__file__).parents[1]
-COMMITTED = HOME / "python/spincyl/_pages/cores"
+COMMITTED = HOME / "python/spincyl/studio/pages/cores"
 CORES = {"core.wasm.gz": "--no-default-features", "core.friction.wasm.gz": "--all-features"}
 RECORD = COMMITTED / "core.json"
 TARGET = "wasm32-unknown-unknown"

@@ -9,7 +9,7 @@ import numpy as np
 
 import spincyl as sc
 
-ROOM = Path(__file__).parents[2] / "python/spincyl/data/examples"
+ROOM = Path(__file__).parents[2] / "python/spincyl/lab/examples"
 
 tube = sc.Body.from_metres(outer_diameter=15.875e-3, inner_diameter=12.7e-3, length=95.25e-3)
 scale = sc.Scale(radius=15.875e-3 / 2)

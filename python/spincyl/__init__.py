@@ -8,16 +8,15 @@ to metres and seconds, and the motions of `measured` bodies are in SI. Angles ar
 # The layers from below, one a line. A module imports from its own layer and from those before it, wherever an
 # import stands; only for types may it know any other. `tests/test_package.py` reads this table.
 #
-# _input     numbers, units, words, threads, whole files: no physics, and nothing else of spincyl
-# .          the thin wrapper of `_core`: bodies, states, motions, laws of friction and loss
-# sweep      maps of steady states, and many motions at once
-# _studio    shapes, drawings, films and sound of bodies and motions
-# data       measurements, and what is fitted to them
-# plot       figures, also of measurements
-# _pages     pages for a browser: recorded motions, and live ones that the core computes in the page
-# __init__   this front door; lists each public name, and in `_upward` the function behind each method
-# report     speed against error
-# cli        the command line, and `__main__`
+# _input         numbers, units, words, threads, whole files: no physics, and nothing else of spincyl
+# .              the thin wrapper of `_core`: bodies, states, motions, laws of friction and loss
+# sweep          maps of steady states, and many motions at once
+# studio         an application: shapes, drawings, films, scenes and sound of bodies and motions
+# studio.plot    its figures
+# studio.pages   its pages for a browser: recorded motions, and live ones that the core computes in the page
+# lab            an application: measurements, what is fitted to them, and figures of both
+# __init__       this front door, and the doors `plot` and `data`: public names, and `_upward` for methods
+# cli            the command line, and `__main__`
 
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
@@ -44,12 +43,12 @@ if TYPE_CHECKING:
     from spincyl._ellipsoid import Ellipsoid
     from spincyl._ellipsoid_motion import EllipsoidMotion
     from spincyl._ellipsoid_state import EllipsoidState, Rocking
-    from spincyl._pages.play import Play, play
-    from spincyl._pages.view import View, view
     from spincyl._rising import rising_spin
-    from spincyl._studio.exposure import exposure
-    from spincyl._studio.scene import Deviation, Scene, scene
     from spincyl.parts import assembled
+    from spincyl.studio.exposure import exposure
+    from spincyl.studio.pages.play import Play, play
+    from spincyl.studio.pages.view import View, view
+    from spincyl.studio.scene import Deviation, Scene, scene
 
 __version__ = "0.1.0"
 __all__ = [
@@ -111,11 +110,11 @@ _LATER: dict[str, str | None] = {
     "EllipsoidMotion": "_ellipsoid_motion",
     **dict.fromkeys(("EllipsoidState", "Rocking"), "_ellipsoid_state"),
     "assembled": "parts",
-    "exposure": "_studio.exposure",
-    **dict.fromkeys(("play", "Play"), "_pages.play"),
+    "exposure": "studio.exposure",
+    **dict.fromkeys(("play", "Play"), "studio.pages.play"),
     "rising_spin": "_rising",
-    **dict.fromkeys(("Deviation", "scene", "Scene"), "_studio.scene"),
-    **dict.fromkeys(("view", "View"), "_pages.view"),
+    **dict.fromkeys(("Deviation", "scene", "Scene"), "studio.scene"),
+    **dict.fromkeys(("view", "View"), "studio.pages.view"),
 }
 
 
@@ -123,13 +122,13 @@ _LATER: dict[str, str | None] = {
 HOMES.update(
     {
         "Body.roll": ("spincyl._roll", "roll"),
-        "Comparison.plot": ("spincyl.plot", "comparison"),
-        "Drift.plot": ("spincyl.plot", "drift"),
-        "LossFit.plot": ("spincyl.plot", "losses"),
-        "Motion.plot": ("spincyl.plot", "motion"),
-        "Motion.sound": ("spincyl._studio.sound", "sound"),
-        "loss.typical": ("spincyl.data._typical", "typical"),
-        "card": ("spincyl._studio.cards", "card"),
+        "Comparison.plot": ("spincyl.lab._figures", "comparison"),
+        "Drift.plot": ("spincyl.studio.plot._drift", "drift"),
+        "LossFit.plot": ("spincyl.lab._figures", "losses"),
+        "Motion.plot": ("spincyl.studio.plot._motions", "motion"),
+        "Motion.sound": ("spincyl.studio.sound", "sound"),
+        "loss.typical": ("spincyl.lab._typical", "typical"),
+        "card": ("spincyl.studio.cards", "card"),
     }
 )
 
@@ -147,4 +146,4 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *_LATER})
+    return sorted({*__all__, *(name for name in globals() if name.startswith("__"))})

@@ -8,7 +8,7 @@ import numpy as np
 
 from spincyl._contact import AnyContact, code, table
 from spincyl._input.numbers import Floats, Reals, flag, floats, is_scalar, number, one_of, reals, whole
-from spincyl._phases import check, rubs
+from spincyl._phases import check_contact, rubs
 from spincyl._state import State
 
 if TYPE_CHECKING:
@@ -175,9 +175,9 @@ def ask(
         if losses is not None:
             from spincyl import _lossy
 
-            _lossy.check(losses, times, t0, given)
+            _lossy.check_losses(losses, times, t0, given)
             _lossy.narrow(losses, contact)
-        check(state, contact, restitution, given)
+        check_contact(state, contact, restitution, given)
     # the default `want` is an empty tuple: `choices` would take longer than this test
     want = NOTHING if type(want) is tuple and not want else choices(want)
     asked = Asked(times, t0, step, tol, method, contact, mu, beyond, want, restitution, losses)

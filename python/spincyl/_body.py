@@ -8,7 +8,7 @@ import numpy as np
 from spincyl import _core
 from spincyl._circular import circular as _circular
 from spincyl._input.equality import compared
-from spincyl._input.hints import Hinting, Named
+from spincyl._input.hints import Hinting
 from spincyl._input.numbers import (
     Reals,
     Result,
@@ -43,7 +43,7 @@ _rate_of_one, _float64 = _core.rate_of_one, np.float64
 
 @compared
 @dataclass(frozen=True, eq=False, repr=False)
-class Body(Laws, Sized, Hinting, metaclass=Named):
+class Body(Laws, Sized, Hinting):
     """A rigid body of revolution that touches the table with its lower rim.
 
     If fields are arrays, the object is a family of bodies; the arrays broadcast, and every method broadcasts

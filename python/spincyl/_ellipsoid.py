@@ -10,7 +10,7 @@ import numpy as np
 
 from spincyl import _core
 from spincyl._contact import AnyContact, Coulomb, Viscous, code
-from spincyl._ellipsoid_rows import SIX, blockwise, checked, made_by, parts, six
+from spincyl._ellipsoid_rows import SIX, blockwise, checked, made_by, parts, six_of_tensor
 from spincyl._ellipsoid_state import EllipsoidState, Rocking, doubles, vectors
 from spincyl._input.equality import compared
 from spincyl._input.numbers import (
@@ -416,7 +416,7 @@ class Ellipsoid(Sized):
         inertia = np.asarray(self.inertia)
         return [
             *np.asarray(self.axes).tolist(),
-            *six(inertia),
+            *six_of_tensor(inertia),
             *np.asarray(self.offset).tolist(),
             float(self.theta_end),
         ]

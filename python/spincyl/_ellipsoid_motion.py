@@ -13,9 +13,9 @@ from spincyl._ellipsoid_state import EllipsoidState
 from spincyl._ending import Event
 from spincyl._input.numbers import Floats, Reals, components, made, si
 from spincyl._loss import Loss
-from spincyl._lossy import check, narrow, of_stone
+from spincyl._lossy import check_losses, narrow, of_stone
 from spincyl._measured import in_si, natural_time, speaking
-from spincyl._motion import ENDINGS, Motion
+from spincyl._motion import ENDINGS, Motion, fixed_step
 from spincyl._outputs import FRICTION, Number
 from spincyl._phases import rubs
 
@@ -118,7 +118,7 @@ class EllipsoidMotion(Motion):
         already has are kept.
         """
         a = self._asked
-        return roll(
+        return roll_stone(
             self.body,
             self.start,
             a.times if t is None else t,
@@ -145,7 +145,7 @@ def unstruck(restitution: object) -> None:
         raise ValueError("restitution: only for bodies of revolution; a stone ends where it leaves the table")
 
 
-def roll(
+def roll_stone(
     body: Ellipsoid,
     state: EllipsoidState,
     t: Reals,
@@ -186,15 +186,15 @@ def roll(
         given: Any = plain
         asked = ask(given, t, t0, None, tol, None, contact, mu, beyond, want, None, None, max_nfev)
         if losses is not None:
-            check(losses, asked.times, asked.t0, {})
+            check_losses(losses, asked.times, asked.t0, {})
             asked = asked._replace(losses=losses)
-        m = rolled(body.natural, state, asked)
+        m = rolled_stone(body.natural, state, asked)
     if scale is not None:
         m = in_si(m, body, times_of(seconds), None)  # type: ignore[arg-type, assignment]
     return m
 
 
-def rolled(body: Ellipsoid, state: EllipsoidState, asked: Asked) -> EllipsoidMotion:
+def rolled_stone(body: Ellipsoid, state: EllipsoidState, asked: Asked) -> EllipsoidMotion:
     """Compute the motion of a stone in natural units from checked arguments."""
     n, w, slip = (np.asarray(x) for x in (state.vertical, state.w, state._pair))
     if not n.ndim == w.ndim == slip.ndim == 1:
@@ -212,6 +212,7 @@ def rolled(body: Ellipsoid, state: EllipsoidState, asked: Asked) -> EllipsoidMot
         "contact": asked.contact,
         "status": status,
         "event": event,
+        "rk4": fixed_step(found),
         "_asked": asked,
         "_impacts": None,
     }

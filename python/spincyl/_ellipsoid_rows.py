@@ -13,7 +13,7 @@ from spincyl._input.reprs import is_lazy
 SIX = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))
 
 
-def six(inertia: Floats) -> list[float]:
+def six_of_tensor(inertia: Floats) -> list[float]:
     """The six independent numbers of a symmetric tensor, in the order of `SIX`."""
     return [float(inertia[i, j]) for i, j in SIX]
 

@@ -95,6 +95,25 @@ class ErrorWarning(UserWarning):
     """
 
 
+class FixedStep(NamedTuple):
+    """What a fixed step of RK4 does to a motion.
+
+    Attributes
+    ----------
+    loss : float
+        Predicted fraction of the nutation's amplitude that the step damps.
+    advice : float
+        Recommended step in sqrt(R/g), for a measured body in seconds. It damps less than a thousandth of the
+        amplitude and gives no `StepWarning`.
+    coarse : bool
+        Whether the step is so large that `StepWarning` was issued.
+    """
+
+    loss: float
+    advice: float
+    coarse: bool
+
+
 class Event(NamedTuple):
     """The event that ended a motion: its kind, its time, and the state at that time.
 

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from spincyl._contact import named
 from spincyl._input.numbers import extra
-from spincyl._phases import KINDS, told
+from spincyl._phases import KINDS, phases_in_words
 from spincyl._scale import unit
 
 if TYPE_CHECKING:
@@ -82,7 +82,7 @@ def labelled(m: "Motion") -> "xarray.Dataset":
     if m.losses is not None:
         attrs["losses"] = repr(m.losses)
     if m._phases is not None:
-        attrs["phases"] = told(m.phases, "" if m.scale is None else " s")
+        attrs["phases"] = phases_in_words(m.phases, "" if m.scale is None else " s")
         words = [kind.replace(" ", "_") for kind in KINDS]
         data["phase"][2].update(flag_values=list(range(len(words))), flag_meanings=" ".join(words))
     found: xarray.Dataset = lib.Dataset(data, coords, attrs)

@@ -16,7 +16,7 @@ _WHY = {
 }
 
 
-def check(losses: object, times: Floats, t0: float, settings: dict[str, Any]) -> None:
+def check_losses(losses: object, times: Floats, t0: float, settings: dict[str, Any]) -> None:
     """Raise ValueError for arguments that exclude losses; `settings` are the settings given, by name."""
     if made_law(losses)._function is None and not is_scalar(*losses._coefficients):  # type: ignore[attr-defined]
         raise ValueError(

@@ -13,9 +13,9 @@ import numpy as np
 
 from spincyl._body import Body
 from spincyl._input.hints import helpful
-from spincyl._input.numbers import Floats, Reals, metres, reals, refuse, si, within
+from spincyl._input.numbers import Floats, Reals, is_scalar, metres, reals, refuse, si, within
 from spincyl._phases import IMPULSE, LOST
-from spincyl._scale import Scale, unit
+from spincyl._scale import Scale, scale_of, unit
 
 if TYPE_CHECKING:
     from spincyl._motion import Motion
@@ -101,6 +101,21 @@ def measured(
     return body.in_metres(mass, gravity=gravity)
 
 
+def with_size(name: str, body: Any, scale: Scale | None) -> tuple[Body, Scale]:
+    """A single body and its scale: the given one, its own, or that of the measures it was made from."""
+    if not isinstance(body, Body):
+        raise TypeError(f"{name}: expected a Body, not {type(body).__name__}")
+    if not is_scalar(*body._numbers):
+        raise ValueError(f"{name}: expected a single body, not a family")
+    found = scale_of(scale, body)
+    if found is None and body._measured:
+        found = Scale(radius=float(body._measured["outer_diameter"]) / 2)
+    if found is None:
+        more = ", or give scale=" if name == "tube" else ""
+        raise ValueError(f"{name}: the size of the body is unknown; make the body with sc.measured{more}")
+    return body, found
+
+
 def natural_time(name: str, time: Reals, scale: Scale) -> Reals:
     """Convert a time or times from seconds to sqrt(R/g)."""
     with np.errstate(over="ignore"):  # an infinite time is refused by name later
@@ -160,11 +175,11 @@ def in_si(m: "Motion", body: Body, seconds: Floats, step: float | None) -> "Moti
     found: dict[str, Any] = {name: x for name, x in m.__dict__.items() if name not in made} | {
         "body": body,
         "t": seconds[: m.t.size].copy(),
-        "w": told("w", m.w, scale),
+        "w": output_in_si("w", m.w, scale),
         "error": m.error * scale._worst,
         "pose_error": m.pose_error * max(1.0, scale.radius),
         "force_error": m.force_error * (unit("normal", scale)[0] or 1.0),
-        "advice": m.advice * second,
+        "rk4": m.rk4 and m.rk4._replace(advice=m.rk4.advice * second),
         "event": event,
         "_asked": asked._replace(times=seconds, t0=asked.t0 * second, step=step),
         "_phases": _rows_in_si(m._phases, scale),
@@ -189,7 +204,7 @@ def _rows_in_si(rows: Floats | None, scale: Scale, *, impacts: bool = False) -> 
     return found
 
 
-def told(name: str, values: Any, scale: Scale | None) -> Any:
+def output_in_si(name: str, values: Any, scale: Scale | None) -> Any:
     """Convert an output of a motion to the motion's units; AttributeError if it needs an unknown mass."""
     factor, said = unit(name, scale)
     if factor is None and scale is not None and said in ("M g", "M g R"):

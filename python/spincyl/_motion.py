@@ -14,11 +14,11 @@ from spincyl import _core
 from spincyl._asked import Asked, Want, chosen, crossing, times_of
 from spincyl._body import Body
 from spincyl._contact import AnyContact, Coulomb
-from spincyl._ending import Ending, Event, RestsOn
+from spincyl._ending import Ending, Event, FixedStep, RestsOn
 from spincyl._input.equality import compared
 from spincyl._input.numbers import Floats, Reals, si
 from spincyl._labelled import AXES, Components, frame, labelled
-from spincyl._measured import in_si, natural_time, speaking, told
+from spincyl._measured import in_si, natural_time, output_in_si, speaking
 from spincyl._outputs import ALOFT, FRICTION, POSE, Outputs, lacks, output
 from spincyl._phases import LOST, RIMS, Impact, Phase, impacts, lowest, phases, slipping
 from spincyl._scale import Scale
@@ -77,15 +77,11 @@ class Motion(Outputs):
         Estimated error of the normal force and of the two components of the friction along e_h and e2 (M g or
         N), to first order in the errors of the state; NaN without want="force". The directions of e_h and e2
         in the laboratory have the error `pose_error`.
-    step_loss : float
-        Predicted fraction of the nutation's amplitude that a fixed step damps.
-    advice : float
-        Recommended step, which damps less than a thousandth of the amplitude and gives no `StepWarning`;
-        infinite unless `step` was given.
+    rk4 : FixedStep or None
+        What a fixed step does: the fraction of the nutation's amplitude that it damps (`loss`), a recommended
+        step (`advice`), and whether `StepWarning` was issued (`coarse`). None unless `step` was given.
     nfev : int
         Number of evaluations of the equations of motion; 0 for an exact motion.
-    coarse : bool
-        Whether a fixed step is so large that `StepWarning` was issued.
     """
 
     body: Body
@@ -100,10 +96,8 @@ class Motion(Outputs):
     error: float
     pose_error: float
     force_error: float
-    step_loss: float
-    advice: float
+    rk4: FixedStep | None
     nfev: int
-    coarse: bool
     _asked: Asked
     _setting: float
     _extra: dict[str, Any]
@@ -351,7 +345,7 @@ class Motion(Outputs):
 
     def _told(self, name: str, values: Floats) -> Floats:
         """Convert an output from natural units to those of the motion."""
-        found: Floats = values if self._natural is None else told(name, values, self.scale)
+        found: Floats = values if self._natural is None else output_in_si(name, values, self.scale)
         return found
 
     def _angle(self, name: str) -> Floats:
@@ -400,12 +394,19 @@ def rolled(body: Body, state: State, asked: Asked, numbers: tuple[_Six, _Four] |
         "contact": asked.contact,
         "status": status,
         "event": event,
+        "rk4": fixed_step(found),
         "_asked": asked,
         "_impacts": found.get("_impacts") if asked.restitution is not None else None,
     }
     m = object.__new__(Motion)
     object.__setattr__(m, "__dict__", found)
     return m
+
+
+def fixed_step(found: dict[str, Any]) -> FixedStep | None:
+    """Take the numbers of a fixed step from the results of the core; None if the motion has other steps."""
+    numbers = FixedStep(found.pop("step_loss"), found.pop("advice"), found.pop("coarse"))
+    return numbers if found["method"] == "rk4" else None
 
 
 ENDINGS = {int(ending): ending for ending in Ending}

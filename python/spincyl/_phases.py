@@ -117,7 +117,7 @@ def struck(restitution: object, contact: AnyContact) -> None:
         raise ValueError(f"restitution = {restitution!r} cannot be combined with a patch of contact: {why}")
 
 
-def check(state: State, contact: AnyContact, restitution: object, settings: dict[str, Any]) -> None:
+def check_contact(state: State, contact: AnyContact, restitution: object, settings: dict[str, Any]) -> None:
     """Raise ValueError for arguments that the contact excludes, such as a slip without friction.
 
     `settings` are the settings of rolling that were given, by name.
@@ -167,7 +167,7 @@ def phases(rows: Floats, state: Callable[..., Any] = slipping) -> tuple[Phase, .
     return tuple(found)
 
 
-def told(phases: Sequence[Phase], unit: str = "") -> str:
+def phases_in_words(phases: Sequence[Phase], unit: str = "") -> str:
     """Phases in words, "slipping from t = 0, rolling from t = 28.3"; if many, the first two and the last."""
     words = [f"{phase.kind} from t = {phase.time:.6g}{unit}" for phase in phases]
     if len(words) > 4:

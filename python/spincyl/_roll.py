@@ -223,7 +223,7 @@ def roll(
         }
         given |= {"want": want, "beyond": beyond, "restitution": restitution, "losses": losses}
         given["max_nfev"] = max_nfev
-        found = stones.roll(body, state, t, **given)  # type: ignore[arg-type]  # it refuses another state
+        found = stones.roll_stone(body, state, t, **given)  # type: ignore[arg-type]  # it refuses another state
         if found._doubt:
             why = f"after that its estimated error reaches {found.error:.2g}"
             warn(f"the motion is {found._doubt} (known_until); {why}", ErrorWarning)
@@ -258,9 +258,9 @@ def roll(
         m = in_si(m, one, times_of(seconds), step)
     if m.status == Ending.BOUNDED:
         warn(f"{given_up(m)} (Ending.BOUNDED)", RuntimeWarning)
-    if m.coarse:
-        why = f"RK4 damps the nutation by {100 * m.step_loss:.3g} % of its amplitude"
-        if m.step_loss <= 1e-3:
+    if m.rk4 is not None and m.rk4.coarse:
+        why = f"RK4 damps the nutation by {100 * m.rk4.loss:.3g} % of its amplitude"
+        if m.rk4.loss <= 1e-3:
             why = "the precession advances by more than 0.3 rad, or the nutation by 0.5 rad, in a step"
-        warn(f"step = {step!r}: {why}; give step={m.advice:.2e}, or tol=", StepWarning)
+        warn(f"step = {step!r}: {why}; give step={m.rk4.advice:.2e}, or tol=", StepWarning)
     return m

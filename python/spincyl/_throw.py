@@ -82,7 +82,7 @@ def thrown(body: Body, velocity: Reals, backspin: Reals, *, scale: Scale | None 
         if body.theta_end < np.nextafter(np.pi / 2, 0):
             why = "since the body must stand on edge; a cup, which rolls in a circle, needs a State"
             raise ValueError(f"theta_end = {body.theta_end!r}: expected at least pi/2, {why}")
-        state, slip = _core.thrown(float(velocity), float(backspin), six(body))
+        state, slip = _core.thrown(float(velocity), float(backspin), six_numbers(body))
         return State(*state, slip=(slip[0], slip[1]))
     w3, across = _core.thrown_w3(*given), _core.thrown_slip(*given)
     return _on_its_side(w3 * 0.0, w3, across)
@@ -230,7 +230,7 @@ def pressed(
     given = *push, *body._numbers
     if is_scalar(*given):
         one = [float(x) for x in push]
-        state, slip = _core.pressed(one[0], one[1], one[2], one[3], six(body))
+        state, slip = _core.pressed(one[0], one[1], one[2], one[3], six_numbers(body))
         return State(*state, slip=(slip[0], slip[1]))
     laws: tuple[Callable[..., Result], ...] = (_core.pressed_w1, _core.pressed_w3, _core.pressed_slip)
     w1, w3, across = (law(*given) for law in laws)
@@ -348,6 +348,6 @@ def _known(body: object, scale: Scale | None) -> Scale | None:
     return scale_of(scale, made("body", body, Body))
 
 
-def six(body: Body) -> tuple[float, float, float, float, float, float]:
+def six_numbers(body: Body) -> tuple[float, float, float, float, float, float]:
     ell, i1, i3, bore, fillet, most = (float(x) for x in body._numbers)
     return ell, i1, i3, bore, fillet, most

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from spincyl._ending import MESSAGES, Ending
-from spincyl._phases import how_found, told, two_rims
+from spincyl._phases import how_found, phases_in_words, two_rims
 
 if TYPE_CHECKING:
     from spincyl._motion import Motion
@@ -30,7 +30,7 @@ def message(m: "Motion") -> str:
     if m.t.size < m._asked.times.size > 1:
         errors += f"; {m.t.size} of {m._asked.times.size} times reached: plot against m.t"
     if m._by_steps or m._phases is not None:
-        phases = "" if m._phases is None else told(m.phases, _second(m))
+        phases = "" if m._phases is None else phases_in_words(m.phases, _second(m))
         return "; ".join(filter(None, (why, phases, _how(m), errors, m._doubt)))
     return f"{why}; found {_how(m)}, {errors}"
 

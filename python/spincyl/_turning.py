@@ -8,7 +8,7 @@ from spincyl._contact import Coulomb, Viscous, fitting, table
 from spincyl._input.numbers import Result, elementwise, is_scalar, number
 from spincyl._measured import natural_time, speaking
 from spincyl._scale import Scale
-from spincyl._throw import six
+from spincyl._throw import six_numbers
 
 
 @elementwise
@@ -86,7 +86,9 @@ def turning_spin(
     if contact is None:
         found: Result = _core.jellett_spin(*top._numbers)
         if np.ndim(found) == 0 and np.isnan(found):
-            _core.turning_spin(*table(Viscous(1.0), 0.0), 0.1, None, six(top))  # says why there is none
+            _core.turning_spin(
+                *table(Viscous(1.0), 0.0), 0.1, None, six_numbers(top)
+            )  # says why there is none
         return found
     if not isinstance(contact, Coulomb | Viscous):
         raise TypeError(f"contact: expected Coulomb or Viscous, not {contact!r}")
@@ -95,7 +97,7 @@ def turning_spin(
     fitting(contact, top.scale)
     time, leans = within_time(t, top.scale), float(number("lean", lean))
     with speaking(top.scale):
-        return np.float64(_core.turning_spin(*table(contact, 0.0), leans, time, six(top)))
+        return np.float64(_core.turning_spin(*table(contact, 0.0), leans, time, six_numbers(top)))
 
 
 def within_time(t: float | None, scale: Scale | None) -> float | None:

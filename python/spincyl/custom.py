@@ -32,6 +32,11 @@ from spincyl._state import State
 
 __all__ = ["Couple", "Friction"]
 
+
+def __dir__() -> list[str]:
+    return [*__all__, *(name for name in globals() if name.startswith("__"))]
+
+
 #: A couple from theta, w along e1, e2, e3 (an array of 3), and the normal force.
 CoupleFunction = Callable[[float, Floats, float], Sequence[float] | Floats]
 _ALONE = f"{OWN}, as the only loss"

@@ -61,7 +61,7 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return [*globals(), "typical"]
+    return [*__all__, "typical", *(name for name in globals() if name.startswith("__"))]
 
 
 _AIR, _DENSITY = 1.8e-5, 1.2  # Pa s, kg/m^3

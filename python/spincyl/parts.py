@@ -30,6 +30,11 @@ from spincyl._scale import Scale
 
 __all__ = ["Part", "assembled", "ball", "cap", "cone", "cylinder", "disk", "point", "ring", "shell", "wall"]
 
+
+def __dir__() -> list[str]:
+    return [*__all__, *(name for name in globals() if name.startswith("__"))]
+
+
 #: Codes of the forms, and the indices of heights among their numbers, from the lowest to the highest point.
 _SOLID, _BALL, _WALL, _SHELL, _RING = range(5)
 _HEIGHTS = {_SOLID: (4, 5), _BALL: (3, 2, 4), _WALL: (2, 3), _SHELL: (2, 1, 3), _RING: (1,)}

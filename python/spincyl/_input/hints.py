@@ -89,14 +89,6 @@ def of_texts(value: Any) -> str:
     return f"in a list write numbers without unit and quotes, not {str(first)[:40]!r}"
 
 
-class Named(type):
-    """Metaclass: the error about an unknown name of the class proposes known ones."""
-
-    def __getattr__(cls, name: str) -> Any:
-        more = "" if name.startswith("_") else instead(name, dir(cls))
-        raise AttributeError(f"type object {cls.__name__!r} has no attribute {name!r}{more}")
-
-
 class Hinting:
     """Base of bodies and states: the error about a missing attribute or index says what there is instead."""
 

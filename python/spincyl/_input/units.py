@@ -202,7 +202,7 @@ impulse = _natural_or("impulse", NewtonSeconds)
 speed = _natural_or("speed", MetresPerSecond)
 
 
-def whole(text: str) -> int:
+def whole_text(text: str) -> int:
     """A whole number, also written as 1e6."""
     try:
         return int(text)

@@ -206,7 +206,7 @@ def portrait(args: Namespace) -> None:
             with replaced(args.output) as part:
                 data.to_netcdf(part)
         elif suffix != "-":
-            _draw(data, args)
+            _draw_map(data, args)
     if suffix != "-":
         print(f"{args.points**2:,} points in {args.output}")
     elif args.json:
@@ -218,9 +218,9 @@ def portrait(args: Namespace) -> None:
         write_csv(told | {name: data[name].values for name in want}, sys.stdout)
 
 
-def _draw(data: Any, args: Namespace) -> None:
+def _draw_map(data: Any, args: Namespace) -> None:
     from spincyl import plot
-    from spincyl.plot._style import saved
+    from spincyl.studio.plot._style import saved
 
     extra("matplotlib", "plot").use("agg")
     plt: Any = extra("matplotlib.pyplot", "plot")
@@ -343,21 +343,3 @@ def delivered(
         suffix = Path(args.output).suffix.lower()
         shown = {".html": "the motion", ".glb": "the motion", ".json": "the scene", ".xml": "the scene"}
         print(f"{shown.get(suffix, f'{m.t.size} times')} in {args.output}")
-
-
-def report(args: Namespace) -> None:
-    """Measure speed against error on this machine."""
-    from spincyl import report as found
-
-    place = None if args.folder is None else folder(args.folder)
-    with Working("report") as working:
-        rows = found.measure(args.seconds, reference=args.reference, progress=working)
-        text = found.table(rows)
-    if place is None:
-        print(text)
-        return
-    with replaced(place / "report.md") as part:
-        part.write_text(text, encoding="utf-8")
-    print(place / "report.md")
-    if found.figure(rows, place / "report.png"):
-        print(place / "report.png")

@@ -14,7 +14,7 @@ import numpy as np
 import spincyl
 from spincyl import Scale
 from spincyl._input.numbers import Floats, extra
-from spincyl._input.units import angle, whole
+from spincyl._input.units import angle, whole_text
 from spincyl.cli._commands import body_of
 from spincyl.cli._files import needed, write_csv
 from spincyl.cli._losses import TEXT as LAWS
@@ -42,7 +42,7 @@ spincyl drift --ell 6 --bore 0.8 --theta 85deg --law dry-contour=1e-3 --law air-
 _ROWS = 11
 
 
-def options(sub: ArgumentParser) -> None:
+def drift_options(sub: ArgumentParser) -> None:
     """Add the options for the initial state, the losses and the output of a drift."""
     how = sub.add_argument_group("the drift")
     how.add_argument("--theta", type=angle, required=True, metavar="ANGLE", help="initial inclination")
@@ -53,7 +53,7 @@ def options(sub: ArgumentParser) -> None:
         default="rest",
         help="the centre is kept at rest (default), or the body rolls without slip",
     )
-    how.add_argument("--points", type=whole, help=f"number of rows (default {_ROWS}, in a file 401)")
+    how.add_argument("--points", type=whole_text, help=f"number of rows (default {_ROWS}, in a file 401)")
     how.add_argument(
         "-o",
         "--output",
@@ -78,7 +78,9 @@ def drift(args: Namespace) -> None:
         if suffix == ".csv":
             write_csv(columns, Path(args.output))
         elif suffix in _PICTURES:
-            _draw(spincyl.drift(replace(body, scale=scale), args.theta, losses, centre=args.centre), args)
+            _draw_drift(
+                spincyl.drift(replace(body, scale=scale), args.theta, losses, centre=args.centre), args
+            )
     # drop warnings about single times: the user did not choose the rows of the table
     messages = (str(warning.message) for warning in caught if "evaluated there" not in str(warning.message))
     for message in dict.fromkeys(messages):
@@ -162,10 +164,10 @@ def _print(columns: dict[str, Floats]) -> None:
         print("  " + "".join(f"{x:>16.9g}" for x in row))
 
 
-def _draw(found: Any, args: Namespace) -> None:
+def _draw_drift(found: Any, args: Namespace) -> None:
     """Draw inclination and precession rate against time."""
     extra("matplotlib", "plot").use("agg")
-    from spincyl.plot._style import saved
+    from spincyl.studio.plot._style import saved
 
     figure: Any = found.plot().figure
     saved(figure, Path(args.output))

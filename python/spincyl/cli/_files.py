@@ -93,7 +93,7 @@ def _write_nc(m: Motion, scale: Scale | None, path: Path) -> None:
 def _write_picture(m: Motion, scale: Scale | None, path: Path) -> None:
     extra("matplotlib", "plot").use("agg")
     from spincyl import plot
-    from spincyl.plot._style import saved
+    from spincyl.studio.plot._style import saved
 
     figure: Any = plot.motion(m)[0].figure
     saved(figure, path)

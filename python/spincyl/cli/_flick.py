@@ -18,7 +18,7 @@ from spincyl._input.units import (
     quantity,
     speed,
     time,
-    whole,
+    whole_text,
 )
 from spincyl._measured import speaking
 from spincyl.cli._commands import body_of, coulomb, delivered, natural, recipient
@@ -53,7 +53,7 @@ spincyl flick --ell 6 --bore 0.8 --mu 0.15 --w1 4 --launch-number 1.1 --t 200 --
 spincyl flick --ell 6 --bore 0.8 --mu 0.3 --w1 3 --launch-number 1.3 --loss rolling-resistance=1e-3"""
 
 
-def options(sub: ArgumentParser) -> None:
+def flick_options(sub: ArgumentParser) -> None:
     """Add the options for the launch of a tube and the output of its motion."""
     launch = sub.add_argument_group("the launch")
     hertz: dict[str, Any] = {"type": quantity("frequency"), "metavar": "HERTZ"}
@@ -101,7 +101,9 @@ def options(sub: ArgumentParser) -> None:
         help="last time in seconds (default 3; without a radius: --t 100)",
     )
     lasting.add_argument("--t", type=time, metavar="TIME", help="last time in sqrt(R/g), or as in 2s")
-    how.add_argument("--points", type=whole, default=2001, help="number of times, from 0 on (default 2001)")
+    how.add_argument(
+        "--points", type=whole_text, default=2001, help="number of times, from 0 on (default 2001)"
+    )
     how.add_argument("--tol", type=float, help="tolerance of each step of slipping (default 1e-14)")
     how.add_argument(
         "--restitution",

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from typing import Any
 
 from spincyl import __version__
-from spincyl._input.units import angle, part, quantity, time, whole
+from spincyl._input.units import angle, part, quantity, time, whole_text
 from spincyl.cli import _commands, _drift, _flick, _losses, _play
 
 _BODY = """\
@@ -87,15 +87,6 @@ With --radius, or for a measured tube, the table and the file also have seconds 
 
 _PLAY = f"{_play.TEXT}{_BODY}"
 
-_REPORT = """\
-Measure the error of the final state and the computing time of a trajectory on this machine: RK4 with
-several steps, an eighth-order method with several tolerances, the exact solution and, if SciPy is
-installed, its DOP853. Given a folder, write report.md and, if matplotlib is installed, report.png."""
-
-_REPORT_EXAMPLES = """\
-spincyl report
-spincyl report DIR --seconds 5min"""
-
 _FIGURES = """\
 Draw the figures of a lecture: the predictions in the paper of Jackson et al. (fig4 to fig8: solid if
 stable, dashed if not, points A to G marked; for the paper's criterion and for rolling), and figures
@@ -169,7 +160,9 @@ def parser() -> ArgumentParser:
         help="radius of the rounded rim, in outer radii (default 0: sharp)",
     )
     portrait.add_argument("--ell-max", type=float, default=2.0, help="largest aspect ratio (default 2)")
-    portrait.add_argument("--points", type=whole, default=1000, help="points along each axis (default 1000)")
+    portrait.add_argument(
+        "--points", type=whole_text, default=1000, help="points along each axis (default 1000)"
+    )
     portrait.add_argument("--contact", choices=("smooth", "rolling"), help="criterion (default: both)")
     slides: dict[str, Any] = {"action": "store_true", "help": "draw in 16:9; PNG has 1920 x 1080 pixels"}
     portrait.add_argument("--slides", **slides)
@@ -185,7 +178,7 @@ def parser() -> ArgumentParser:
         "flick", _flick.flick, "motion of a flicked tube: slipping, then rolling", _FLICK, _flick.EXAMPLES
     )
     _shape_options(flick)
-    _flick.options(flick)
+    _flick.flick_options(flick)
     _output_option(flick)
     _scale_options(flick)
     _json_option(flick, "print JSON instead of a table; with -o -, instead of CSV")
@@ -194,25 +187,14 @@ def parser() -> ArgumentParser:
         "drift", _drift.drift, "slow spin-down of a body: inclination over time", _DRIFT, _drift.EXAMPLES
     )
     _shape_options(drift)
-    _drift.options(drift)
+    _drift.drift_options(drift)
     _scale_options(drift)
     _json_option(drift, "print JSON instead of a table")
 
     play = command("play", _play.run, "interactive page in one file", _PLAY, _play.EXAMPLES)
     _shape_options(play)
-    _play.options(play)
+    _play.play_options(play)
     _scale_options(play)
-
-    report = command("report", _commands.report, "speed and error on this machine", _REPORT, _REPORT_EXAMPLES)
-    report.add_argument(
-        "folder", nargs="?", metavar="DIR", help="folder for the table and the figure (default: print)"
-    )
-    report.add_argument(
-        "--seconds", type=_duration, default=60.0, help="approximate running time (default 60)"
-    )
-    report.add_argument(
-        "--reference", metavar="CSV", help="file of high-precision motions, to measure the exact solution"
-    )
 
     figures = command(
         "figures", _commands.figures, "figures of a lecture, as files", _FIGURES, _FIGURES_EXAMPLES
@@ -303,7 +285,9 @@ def _roll_options(sub: ArgumentParser) -> None:
     how.add_argument(
         "--t", type=time, required=True, metavar="TIME", help="last time, in sqrt(R/g), or as in 2s"
     )
-    how.add_argument("--points", type=whole, default=2001, help="number of times, from 0 on (default 2001)")
+    how.add_argument(
+        "--points", type=whole_text, default=2001, help="number of times, from 0 on (default 2001)"
+    )
     how.add_argument("--step", type=time, metavar="TIME", help="use RK4 with this step")
     how.add_argument("--tol", type=float, help="use an eighth-order method with this tolerance per step")
     laws = ("rolling", "smooth", "coulomb", "viscous")

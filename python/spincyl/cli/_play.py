@@ -10,11 +10,11 @@ from pathlib import Path
 from spincyl import play
 from spincyl._contact import AnyContact
 from spincyl._input.units import angle, part
-from spincyl._pages.words import paper_tube
 from spincyl._scale import Scale
 from spincyl.cli._commands import body_of, contact_of
 from spincyl.cli._losses import losses_of, option
 from spincyl.cli._output import writable
+from spincyl.studio.pages.words import paper_tube
 
 TEXT = """\
 Write an interactive page: a single file that computes motions itself, also offline. Drag a point on
@@ -34,7 +34,7 @@ spincyl play --theta 80deg --contact coulomb --mu 0.3 --patch 0.01 -o dry.html
 spincyl play --balls --theta 78deg --open -o balls.html"""
 
 
-def options(sub: ArgumentParser) -> None:
+def play_options(sub: ArgumentParser) -> None:
     """Add the options for the initial state and the output of the page."""
     how = sub.add_argument_group("the motion with which the page begins")
     how.add_argument(

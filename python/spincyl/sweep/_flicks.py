@@ -145,7 +145,7 @@ def flicks(
         made("contact", contact, Coulomb)
     given = {"w1": w1, "hertz": hertz, "launch": launch, "spin_hertz": spin_hertz, "centre": centre}
     axes = {name: x for name, x in given.items() if x is not None}
-    start = flicked(body, **{name: _axis(lib, name, x) for name, x in axes.items()})
+    start = flicked(body, **{name: _axis_of_flicks(lib, name, x) for name, x in axes.items()})
     for word in how.keys() - signature(roll).parameters.keys():
         raise TypeError(f"flicks() got an unexpected keyword argument {word!r}")
     how = {"want": ("end", "rolling_time")} | how
@@ -164,7 +164,7 @@ def flicks(
     return found
 
 
-def _axis(lib: Any, name: str, value: Reals) -> Any:
+def _axis_of_flicks(lib: Any, name: str, value: Reals) -> Any:
     """A number, or an array with a dimension of this name."""
     given = reals(name, value)
     given = float(given) if is_scalar(given) else given

@@ -190,7 +190,7 @@ def inputs(rows: "xarray.Dataset") -> dict[str, Any]:
     given: dict[str, Any] = {name: _input(rows[name]) for name in _UNITS if name in rows.coords}
     scale = Scale(*(at[name] for name in ("radius", "mass", "gravity"))) if "radius" in at else None
     known: Any = True if scale is None else scale
-    found = _stones(given, scale) if stones else _bodies(given, scale)
+    found = _stones(given, scale) if stones else _body_and_start(given, scale)
     found |= {"t": rows["t"].to_numpy() if "t" in rows.coords else at["t"], "tol": at["tol"]}
     found |= {name: at[name] for name in ("mu", "step", "restitution", "stop_at", "max_nfev") if name in at}
     found |= {name: bool(at[name]) for name in ("beyond", "errors") if name in at}
@@ -212,7 +212,7 @@ def _input(array: Any) -> Any:
     return float(array) if array.ndim == 0 else array.reset_coords(drop=True)
 
 
-def _bodies(given: dict[str, Any], scale: Scale | None) -> dict[str, Any]:
+def _body_and_start(given: dict[str, Any], scale: Scale | None) -> dict[str, Any]:
     body = Body(*(given.get(f"body_{name}", np.nan) for name in FIELDS), scale=scale)
     slip = tuple(given[f"start_slip_{way}"] for way in ("along", "across") if f"start_slip_{way}" in given)
     more = {name: given.get(f"start_{name}") for name in ("height", "lift")}

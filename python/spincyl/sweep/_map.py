@@ -118,8 +118,8 @@ def portrait(
     if body is not None:
         ell, bore, fillet = _tube(body, bore, fillet)
     lazy = is_lazy(theta, ell, bore, fillet)
-    axes = {name: _axis(name, x) for name, x in zip(_AXES, (theta, ell, bore, fillet), strict=True)}
-    want = _wanted(want)
+    axes = {name: _axis_of_map(name, x) for name, x in zip(_AXES, (theta, ell, bore, fillet), strict=True)}
+    want = _wanted_of_map(want)
     cell = _cell(dtype)
     kinds: dict[str, Any] = {"want": want, "cell": cell}
     dims = [name for name, x in axes.items() if x.ndim]
@@ -130,7 +130,7 @@ def portrait(
         cores = 1 if threads is None else thread_count(threads)
         with many_blocks(), telling(progress, "map", by_default=False) as told:
             found = lib.apply_ufunc(
-                partial(_block, threads=cores, progress=told, **kinds),
+                partial(_block_of_map, threads=cores, progress=told, **kinds),
                 *labelled,
                 output_core_dims=[[]] * len(want),
                 dask="parallelized",
@@ -206,7 +206,7 @@ def points(
     >>> sc.sweep.points([0.4, 1.0, 0.4], [1.0, 1.0, 2.0])["rate"].round(4)
     array([1.4116, 1.302 , 0.4133])
     """
-    want = _wanted(want)
+    want = _wanted_of_map(want)
     cell = _cell(dtype)
     given = [floats(reals(name, x)) for name, x in zip(_AXES, (theta, ell, bore, fillet), strict=True)]
     fitting(dict(zip(_AXES, given, strict=True)))
@@ -274,11 +274,11 @@ def survey(
     >>> round(found["area"][sc.Region.FORBIDDEN], 3)
     0.251
     """
-    axes = {name: _axis(name, x) for name, x in zip(_AXES, (theta, ell, bore, fillet), strict=True)}
-    asked = _wanted(want)
+    axes = {name: _axis_of_map(name, x) for name, x in zip(_AXES, (theta, ell, bore, fillet), strict=True)}
+    asked = _wanted_of_map(want)
     if not (np.diff(axes["theta"].ravel()) >= 0).all():
         raise ValueError("theta: expected ascending inclinations")
-    columns = _bodies(axes["theta"], axes["ell"], axes["bore"], axes["fillet"])
+    columns = _grid_of_tubes(axes["theta"], axes["ell"], axes["bore"], axes["fillet"])
     found: dict[str, Any] = {}
     cores = thread_count(threads)
     if "region" in asked:
@@ -330,7 +330,7 @@ def boundaries(ell: Reals, bore: Reals = 0.0, fillet: Reals = 0.0) -> "xarray.Da
     array([1.1071, 0.7854, 0.4636])
     """
     lib = extra("xarray", "sweep")
-    axes = {name: _axis(name, x) for name, x in (("ell", ell), ("bore", bore), ("fillet", fillet))}
+    axes = {name: _axis_of_map(name, x) for name, x in (("ell", ell), ("bore", bore), ("fillet", fillet))}
     named = [lib.DataArray(x, dims=_dims(name, x)) for name, x in axes.items()]
     body = Body.tube(*named) if any(x.ndim for x in axes.values()) else Body.tube(*map(float, axes.values()))
     laws = {"theta_balance": _core.theta_balance, "theta_limit": _core.theta_limit}
@@ -365,13 +365,13 @@ def _grid(
 ) -> list[np.ndarray]:
     """The wanted arrays, of this shape. At most one dimension of each axis is longer than one."""
     arrays = {name: target(name, shape, np.uint8 if name == "region" else cell, given[name]) for name in want}
-    columns = _bodies(theta, np.ravel(ell), np.ravel(bore), np.ravel(fillet))
+    columns = _grid_of_tubes(theta, np.ravel(ell), np.ravel(bore), np.ravel(fillet))
     apart(arrays, columns)
     _core.portrait(columns, _flat(arrays), False, threads, progress)
     return list(arrays.values())
 
 
-def _block(*axes: Floats, want: tuple[str, ...], **kinds: Any) -> Any:
+def _block_of_map(*axes: Floats, want: tuple[str, ...], **kinds: Any) -> Any:
     """One block of a lazy map, for dask."""
     shape = np.broadcast_shapes(*(np.shape(x) for x in axes))
     found = _grid(*axes, want=want, shape=shape, given=dict.fromkeys(want), **kinds)
@@ -383,7 +383,7 @@ def _flat(arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     return {name: array.reshape(-1) for name, array in arrays.items()}
 
 
-def _bodies(theta: Floats, ell: Floats, bore: Floats, fillet: Floats) -> dict[str, Floats]:
+def _grid_of_tubes(theta: Floats, ell: Floats, bore: Floats, fillet: Floats) -> dict[str, Floats]:
     """The inclinations of a map and the flattened grid of its tubes, by name of the axis."""
     tubes = np.meshgrid(ell, bore, fillet, indexing="ij")
     return dict(zip(_AXES, (floats(x).reshape(-1) for x in (theta, *tubes)), strict=True))
@@ -415,7 +415,7 @@ def _tube(body: Body, bore: Reals, fillet: Reals) -> tuple[Reals, Reals, Reals]:
     return found
 
 
-def _wanted(want: str | Iterable[str]) -> tuple[str, ...]:
+def _wanted_of_map(want: str | Iterable[str]) -> tuple[str, ...]:
     return words("want", want, tuple(_UNITS))
 
 
@@ -434,7 +434,7 @@ def _dims(name: str, axis: Any) -> tuple[str, ...]:
     return (name,) if axis.ndim else ()
 
 
-def _axis(name: str, value: Reals) -> Any:
+def _axis_of_map(name: str, value: Reals) -> Any:
     kept = reals(name, value)
     if name == "theta":
         radians(name, kept)

@@ -282,7 +282,9 @@ def roll(
         gripping(states, f"contact={contact!r} has no law of friction; give contact=sc.Coulomb(mu)")
     of = TABLES[contact] if isinstance(contact, str) else law(contact)
     summaries = _core.summaries(of, losses is not None, restitution is not None)
-    wanted = _wanted(want, several, tuple(summaries), (of, losses is not None, restitution is not None))
+    wanted = _wanted_of_motions(
+        want, several, tuple(summaries), (of, losses is not None, restitution is not None)
+    )
     asked = asked._replace(spread="states" in wanted)
     fields = _fields(bodies, states, contact, losses)
     if losses is not None and losses._function is not None:
@@ -372,7 +374,7 @@ def _times(t: Reals) -> tuple[Floats, bool]:
     return at, True
 
 
-def _wanted(
+def _wanted_of_motions(
     want: str | Iterable[str] | None,
     several: bool,
     summaries: tuple[str, ...],

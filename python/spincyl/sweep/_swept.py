@@ -55,7 +55,9 @@ def swept(
     lazy, at = is_lazy(*fields.values()), asked.times
     options = crossing(asked._replace(contact=kind(asked.contact)))
     share = 1 if lazy and threads is None else thread_count(threads)
-    fill = partial(_block, law=law, given=tuple(fields), names=names, spread=spread, times=at, asked=options)
+    fill = partial(
+        _block_of_motions, law=law, given=tuple(fields), names=names, spread=spread, times=at, asked=options
+    )
     attrs: dict[str, object] = {"contact": named(asked.contact), "t": float(at[-1]), "tol": asked.tol}
     if not rubs(asked.contact):
         attrs["mu"] = asked.mu
@@ -107,7 +109,7 @@ def _about(name: str, labels: Mapping[str, tuple[str, str]]) -> dict[str, Any]:
     return {"units": unit, "long_name": meaning} | (flags(Status) if name == "status" else {})
 
 
-def _block(
+def _block_of_motions(
     *fields: Floats,
     law: Callable[..., None],
     given: tuple[str, ...],

@@ -1,0 +1,414 @@
+"""A film from above: the line between a tube's ends turns, and its length gives the inclination.
+
+```text
+direction(t) = 2 pi hertz t + const,    sin theta = line / length of the tube
+```
+"""
+
+import math
+import warnings
+from collections.abc import Mapping, Sequence
+from os import PathLike
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from spincyl._body import Body
+from spincyl._input.equality import compared
+from spincyl._input.numbers import Floats, number, reals
+from spincyl._measured import with_size
+from spincyl._scale import Scale
+from spincyl.lab._alias import Reading, Readings, read
+from spincyl.lab._columns import Columns
+from spincyl.lab._report import counted, section, variables, with_error
+from spincyl.lab._tracker import read_tracker
+
+_METRES = {"": 1.0, "m": 1.0, "cm": 1e-2, "mm": 1e-3, "in": 0.0254, "inch": 0.0254, "ft": 0.3048}
+_SECONDS = {"": 1.0, "s": 1.0, "sec": 1.0, "seconds": 1.0, "ms": 1e-3, "min": 60.0}
+_RULER = 1.05  # times the tube's length: a longer line raises an error, since noise does not explain it
+_SHORT = 0.0105  # times the tube's length: a shorter line raises an error, since a unit is probably wrong
+_FARTHEST = 1e12  # metres or seconds: larger numbers raise an error
+_WANDERS = 0.3  # radians: a direction that deviates more from uniform rotation causes a warning
+
+
+@compared
+class Filmed(NamedTuple):
+    """Steady state of a tube, measured in a film from above; returned by `from_above`.
+
+    Method: ``report()``.
+
+    Attributes
+    ----------
+    body : Body
+        The tube.
+    scale : Scale
+        Size of the tube.
+    t : ndarray, (n,)
+        Times of the frames in which both ends were tracked, in seconds, ascending.
+    direction : ndarray, (n,)
+        Direction of the line from the second end of the tube to the first, as seen from above, in radians,
+        unwrapped.
+    line : ndarray, (n,)
+        Length of this line in the film, in metres.
+    hertz : float
+        Turns per second, positive for both senses of rotation.
+    hertz_err : float
+        Standard error of `hertz`.
+    rate : float
+        Reduced rate.
+    rate_err : float
+        Standard error of `rate`.
+    theta : float
+        Measured inclination, in radians; NaN if the line is longer than the tube.
+    theta_err : float
+        Standard error of `theta`.
+    inclinations : ndarray, (k,)
+        Steady inclinations of the body at this rate, ascending.
+    unseen : int
+        Number of frames in which one of the ends was not tracked.
+    aliases : ndarray, (m,)
+        Turns per second of other rates that look the same from frame to frame, and for which the measured
+        inclination is steady as well; empty if the film is unambiguous.
+    predicted : float
+        The one of `inclinations` that is nearest to `theta`; NaN if there is none.
+    """
+
+    body: Body
+    scale: Scale
+    t: Floats
+    direction: Floats
+    line: Floats
+    hertz: float
+    hertz_err: float
+    rate: float
+    rate_err: float
+    theta: float
+    theta_err: float
+    inclinations: Floats
+    unseen: int
+    aliases: Floats
+
+    @property
+    def predicted(self) -> float:
+        """Steady inclination at this rate that is nearest to the measured one; NaN if there is none."""
+        if not self.inclinations.size:
+            return math.nan
+        near = math.pi / 2 if math.isnan(self.theta) else self.theta
+        return float(self.inclinations[np.abs(self.inclinations - near).argmin()])
+
+    def report(self) -> str:
+        """Return the measured values with their errors, and the steady inclination, in lmfit's style."""
+        turns = float(np.ptp(self.direction)) / (2 * math.pi)
+        rows = [
+            ("body", repr(self.body)),
+            ("frames", f"{self.t.size}, and {self.unseen} more in which an end was not found"),
+            ("film", f"{turns:.3g} turns in {float(np.ptp(self.t)):.4g} s"),
+        ]
+        degrees = [math.degrees(x) for x in (self.theta, self.theta_err, self.predicted)]
+        told = "(this rate has no steady state)" if math.isnan(degrees[2]) else f"(steady: {degrees[2]:.2f})"
+        found = variables(
+            [
+                ("turns per second", self.hertz, self.hertz_err, ""),
+                ("reduced rate", self.rate, self.rate_err, ""),
+                ("inclination, degrees", degrees[0], degrees[1], told),
+            ]
+        )
+        return "\n".join(section("Film from above", rows) + found)
+
+    def __repr__(self) -> str:
+        theta, theta_err, predicted = map(math.degrees, (self.theta, self.theta_err, self.predicted))
+        return (
+            f"<Filmed: {with_error(self.hertz, self.hertz_err)} turns a second,"
+            f" {with_error(theta, theta_err)} degrees, steady at {predicted:.3g}; {self.t.size} frames>"
+        )
+
+
+def from_above(
+    tracks: Mapping[str, Any] | str | PathLike[str],
+    tube: Any,
+    *,
+    scale: Scale | None = None,
+    ends: Sequence[str] | None = None,
+    ruler: float = 0.0,
+    encoding: str | None = None,
+) -> Filmed:
+    """Measure the rate and inclination of a tube whose two ends were tracked in a film from straight above.
+
+    Parameters
+    ----------
+    tracks : mapping or path
+        Tracks by name, as `read_tracker` returns them, or the path of a file for `read_tracker`. The track
+        of each end has the columns t, x and y, in seconds and metres. Units in brackets, such as "x (cm)",
+        are converted. Rows without a position are left out.
+    tube : Body
+        Single body of a known size: a measured body, a body from `Body.from_metres`, or any other body
+        together with `scale`.
+    scale : Scale, optional
+        Size of `tube`, for a body without a size of its own.
+    ends : two names, optional
+        Names of the tracks of the two ends. Default: O and X, or the only two tracks.
+    ruler : float
+        Relative standard error of the film's scale of length; 0.01 means one per cent. Near 90 degrees this
+        error limits the accuracy of the inclination.
+    encoding : str, optional
+        Encoding of the file, as in `read_table`.
+
+    Returns
+    -------
+    Filmed
+        ``.report()`` summarises the measurement; `compare` takes ``theta``, ``rate`` and their errors.
+
+    Raises
+    ------
+    ValueError
+        If there are fewer than three frames, a track or column is missing, or an end has two positions at
+        one time. If the line is much longer or very much shorter than the tube. If the tube turns by about
+        half a turn from frame to frame, and the inclination does not tell in which sense. If the size of the
+        tube is unknown.
+    TypeError
+        If an argument is of the wrong type; the message names it.
+    OSError
+        If the file cannot be read.
+
+    Warns
+    -----
+    UserWarning
+        If the line is a little longer than the tube; the inclination is then near 90 degrees but not known
+        exactly. If the direction does not turn evenly. If the inclination is more than four of its errors
+        from every steady state at the slowest rate that the frames may show; the message names faster rates
+        that look the same and are steady. If several rates are possible (`Filmed.aliases`).
+
+    Notes
+    -----
+    The rate is the slope of the direction over time, by least squares. Its error follows from the scatter,
+    and is larger if the errors of neighbouring frames are correlated. The inclination follows from the median
+    length of the line. If the tube turns by more than half a turn from frame to frame, it looks like a slow
+    rotation, often backwards: at 30 frames a second 20 turns a second look like 10. Of the rates that look
+    the same (up to two and a half turns from frame to frame, and 10 m/s at the ends of the tube), the slowest
+    is taken if the measured inclination is steady there. If it is not, and is steady at just one faster rate,
+    this rate is taken, with a warning. Uneven times of the frames also exclude rates. The inclination can
+    decide only as well as its error is known: give `ruler`.
+
+    Examples
+    --------
+    >>> import spincyl as sc
+    >>> inch = 25.4e-3
+    >>> tube = sc.Body.from_metres(outer_diameter=0.625 * inch, inner_diameter=0.5 * inch, length=3.75 * inch)
+    >>> sc.data.from_above(sc.data.example("tube_from_above"), tube)
+    <Filmed: 7.2936 +- 0.0018 turns a second, 82.98 +- 0.30 degrees, steady at 83.4; 32 frames>
+    """
+    body, scale = with_size("tube", tube, scale)
+    ruler = number("ruler", ruler)
+    if not 0 <= ruler < 0.5:
+        raise ValueError(f"ruler = {ruler!r}: expected at least 0 and less than 0.5; 0.01 means one per cent")
+    if isinstance(tracks, str | PathLike):
+        tracks = read_tracker(tracks, encoding=encoding)
+    if not isinstance(tracks, Mapping):
+        raise TypeError(f"tracks: expected a dict of tracks, or a path, not {type(tracks).__name__}")
+    first, second = (_positions(tracks, name) for name in _ends(tracks, ends))
+    t, between, unseen = _between(first, second)
+    tall = float(scale.metres(2.0 * (body.ell + body.fillet)))
+    line = np.abs(between)
+    share, share_err = _share(line / tall, ruler)
+    one = float(scale.hertz(body, 1.0))
+    # a line that is longer than the tube only says that the inclination is near 90 degrees
+    sine, sine_err = min(share, 1.0), max(share_err, share - 1)
+    films = read(t, _unwrapped(t, between), body, one, share * tall, sine, sine_err)
+    told = _aliased(films, t, math.degrees(math.asin(min(share, 1.0))))
+    slope, inclinations = films.taken.slope, films.taken.inclinations
+    hertz, hertz_err = abs(slope) / (2 * math.pi), films.taken.slope_err / (2 * math.pi)
+    # near 90 degrees the sine hardly changes, so errors are not small beside the distance from 90 degrees
+    low, high = (math.asin(min(max(share + k * share_err, 0.0), 1.0)) for k in (-1, 1))
+    theta = math.asin(share) if share <= 1 else math.nan
+    found = Filmed(
+        body=body,
+        scale=scale,
+        t=t,
+        direction=films.taken.direction,
+        line=line,
+        hertz=hertz,
+        hertz_err=hertz_err,
+        rate=hertz / one,
+        rate_err=hertz_err / one,
+        theta=theta,
+        theta_err=(high - low) / 2 if share <= 1 else math.nan,
+        inclinations=inclinations,
+        unseen=unseen,
+        aliases=np.array([other.hertz for other in films.possible if other is not films.taken]),
+    )
+    told = _unsteady(films.taken) or told
+    if told:
+        warnings.warn(told, UserWarning, stacklevel=2)
+    return found
+
+
+def _unsteady(taken: Reading) -> str:
+    """A warning if the direction does not turn evenly."""
+    if taken.scatter <= _WANDERS:
+        return ""
+    return (
+        f"the line deviates from uniform rotation by {taken.scatter:.2g} rad: the tube is not steady, or the"
+        " two marks were exchanged"
+    )
+
+
+def _aliased(films: Readings, t: Floats, degrees: float) -> str:
+    """A warning if the inclination is not steady at the slowest rate, or if other rates are possible as well.
+
+    Raises ValueError if the tube turns by almost half a turn from frame to frame, so that two rates are close
+    together, and the inclination does not tell which is right.
+    """
+    slow, taken, others = films.slowest, films.taken, [x for x in films.possible if x is not films.slowest]
+    most = abs(slow.slope) * float(np.median(np.diff(t)))
+    sure = len(films.possible) == 1 and films.possible[0] is taken
+    if most > 0.9 * math.pi and not sure:
+        raise ValueError(
+            f"tracks: the tube turns by {most / (2 * math.pi):.2g} of a turn from frame to frame, so that"
+            " the sense of rotation is not clear; film with more frames per second"
+        )
+    rates = " or ".join(f"{other.hertz:.5g}" for other in others)
+    alike = f"{rates} turns a second look the same at {films.fps:.4g} frames a second, and are steady there"
+    if len(others) < len(films.possible):  # the slowest is possible
+        return f"also {alike}: film with more frames per second" if others else ""
+    near = slow.inclinations
+    told = "never steady"
+    if near.size:
+        steady = math.degrees(near[np.abs(np.sin(near) - math.sin(math.radians(degrees))).argmin()])
+        told = f"steady at {steady:.3g} degrees, {slow.off:.2g} errors away"
+    told = f"the tube was seen at {degrees:.4g} degrees, but at {slow.hertz:.4g} turns a second it is {told}"
+    if taken is not slow:
+        return f"{told}; {alike}: the faster rate is taken"
+    if others:
+        return f"{told}; {alike}: film with more frames per second"
+    return f"{told}: is t in seconds, are radius and scale of length right, or does ruler= lack their error?"
+
+
+def _ends(tracks: Mapping[str, Any], ends: Sequence[str] | None) -> tuple[str, str]:
+    """The names of the two tracks of the tube's ends."""
+    known = ", ".join(map(repr, tracks)) or "none"
+    if ends is None:
+        found = ["O", "X"] if {"O", "X"} <= tracks.keys() else list(tracks)
+        if len(found) != 2:
+            many = f"{counted(len(found))} ({known})" if found else "none"
+            raise ValueError(f"tracks: expected two tracks, not {many}; name them, as in ends=('O', 'X')")
+    else:
+        try:
+            found = list(ends)
+        except TypeError:
+            raise TypeError(f"ends: expected two names, not {type(ends).__name__}") from None
+        texts = not isinstance(ends, str) and all(isinstance(name, str) for name in found)
+        if not texts or len(found) != 2 or found[0] == found[1]:
+            raise ValueError(f"ends = {ends!r}: expected the names of two tracks, as in ends=('O', 'X')")
+        for name in found:
+            if name not in tracks:
+                raise ValueError(f"ends: no track is called {name!r}; expected two of {known}")
+    return found[0], found[1]
+
+
+def _positions(tracks: Mapping[str, Any], name: str) -> tuple[Floats, Floats]:
+    """Times in seconds and positions x + iy in metres of a track."""
+    columns = tracks[name]
+    if not hasattr(columns, "keys"):
+        raise TypeError(f"tracks[{name!r}]: expected a dict of columns, not {type(columns).__name__}")
+    if not isinstance(columns, Columns):
+        columns = Columns((str(key), columns[key]) for key in list(columns.keys()))
+    found: list[Floats] = []
+    for wanted, units in (("t", _SECONDS), ("x", _METRES), ("y", _METRES)):
+        others = (wanted, wanted.upper(), *(("time", "Time") if wanted == "t" else ()))
+        key = next((k for k in others if k in columns), None)
+        if key is None:
+            there = ", ".join(map(repr, columns))
+            raise ValueError(f"tracks[{name!r}]: expected a column {wanted!r}; there are {there}")
+        unit = columns.units[key]
+        if unit not in units:
+            known = ", ".join(u for u in units if u)
+            raise ValueError(f"tracks[{name!r}]: unit {unit!r} of {key}: expected one of {known}")
+        values = np.asarray(reals(f"tracks[{name!r}][{key!r}]", columns[key]), np.float64)
+        if np.any(np.abs(values[np.isfinite(values)]) > _FARTHEST):
+            raise ValueError(f"tracks[{name!r}]: expected numbers up to {_FARTHEST:g} in {key}")
+        if values.ndim != 1 or (found and values.shape != found[0].shape):
+            raise ValueError(f"tracks[{name!r}]: expected columns of equal length; {key} has {values.shape}")
+        found.append(values * units[unit])
+    return found[0], found[1] + 1j * found[2]
+
+
+def _between(first: tuple[Floats, Floats], second: tuple[Floats, Floats]) -> tuple[Floats, Floats, int]:
+    """Ascending times, the vector from the second end to the first, and the number of rows that lack one."""
+    (t, one), (s, two) = (_ordered(*track) for track in (first, second))
+    # two files of one film have the same times to the written digits
+    fine = 1e-6 + 1e-3 * (float(np.median(np.diff(t))) if t.size > 1 else 0.0)
+    _, rows, others = np.intersect1d(np.round(t / fine), np.round(s / fine), return_indices=True)
+    t, between = t[rows], one[rows] - two[others]
+    seen = np.isfinite(between)
+    t, between = t[seen], between[seen]
+    unseen = max(len(one), len(two)) - t.size
+    if t.size < 3:
+        rest = f"; in {unseen} rows an end was not found" if unseen else ""
+        many = counted(t.size)
+        raise ValueError(f"tracks: expected at least three frames with both ends, not {many}{rest}")
+    if not (np.abs(between) > 0).all():
+        raise ValueError("tracks: both ends are at the same place; are these two tracks of the same mark?")
+    return t, between, unseen
+
+
+def _ordered(t: Floats, place: Floats) -> tuple[Floats, Floats]:
+    """A track in order of time, without rows that have no time or repeat an earlier row."""
+    known = np.isfinite(t)
+    t, place = t[known], place[known]
+    order = np.argsort(t, kind="stable")
+    t, place = t[order], place[order]
+    same = np.flatnonzero(np.diff(t) == 0)
+    differ = np.isfinite(place[same]) & np.isfinite(place[same + 1]) & (place[same] != place[same + 1])
+    if differ.any():
+        at = t[same[differ][0]]
+        raise ValueError(f"tracks: two positions at t = {at:.6g}; does the table contain two films?")
+    # of two rows with the same time, keep the one with a position
+    lost = np.append(same[~np.isfinite(place[same])], same[np.isfinite(place[same])] + 1).astype(int)
+    return np.delete(t, lost), np.delete(place, lost)
+
+
+def _share(shares: Floats, ruler: float) -> tuple[float, float]:
+    """The sine of the inclination, as the median of line over length of the tube; and its standard error."""
+    share = float(np.median(shares))
+    scatter = 1.4826 * float(np.median(np.abs(shares - share)))
+    error = math.hypot(1.2533 * scatter / math.sqrt(shares.size), ruler * share)
+    if share > max(_RULER, 1 + 4 * ruler):
+        units = {1 / factor: unit for unit, factor in _METRES.items() if unit and factor != 1.0}
+        near = min(units, key=lambda k: abs(math.log(share / k)))
+        hint = "; is the scale of length right?"
+        if 0.5 < share / near <= _RULER:
+            hint = f"; are x and y in {units[near]}?"
+        elif share > 100:
+            hint = "; are x and y in pixels? Set the scale of length in Tracker"
+        raise ValueError(f"tracks: the line between the ends is {share:.4g} times as long as the tube{hint}")
+    if share < _SHORT:
+        raise ValueError(
+            f"tracks: the line between the ends has only {share:.2g} of the tube's length; is the tube in"
+            " metres?"
+        )
+    if share > 1:
+        warnings.warn(
+            f"the line between the ends is {100 * (share - 1):.2g} % longer than the tube: the inclination is"
+            " near 90 degrees but not known exactly; film from the side as well",
+            UserWarning,
+            stacklevel=3,
+        )
+    return share, error
+
+
+def _unwrapped(t: Floats, between: Floats) -> Floats:
+    """The direction, unwrapped across gaps for the slowest rotation that the frames may show."""
+    gaps, steps = np.diff(t), between[1:] * between[:-1].conj()
+    close = gaps < 1.5 * np.median(gaps)
+    # the mean of directions, not of angles, which jump where the tube makes half a turn between two frames
+    step = float(np.angle(np.sum(steps[close] / np.abs(steps[close]))))
+    slope = step / float(np.median(gaps[close]))
+    direction = np.empty_like(t)
+    direction[0] = np.angle(between[0])
+    for k, gap in enumerate(gaps):
+        expected = direction[k] + slope * gap
+        off = np.angle(between[k + 1] * np.exp(-1j * expected))
+        direction[k + 1] = expected + off
+        if gap > 3 * np.median(gaps):  # refit the slope to the points before the gap
+            slope = float(np.polyfit(t[: k + 1], direction[: k + 1], 1)[0]) if k > 3 else slope
+    return direction

@@ -1,0 +1,28 @@
+"""Pictures: branches of steady states, the theta-ell map, the energy landscape, motions, losses, photographs.
+
+Most functions draw on the axes `ax=`, or on new ones, and return the axes; none calls `show()`.
+"""
+
+from spincyl.lab._figures import comparison, losses
+from spincyl.studio.plot._drift import drift
+from spincyl.studio.plot._figures import figures
+from spincyl.studio.plot._flicks import flicks
+from spincyl.studio.plot._frame import frame
+from spincyl.studio.plot._maps import Landmark, branches, energy, landmarks, portrait
+from spincyl.studio.plot._motions import exposure, motion
+
+__all__ = [
+    "Landmark",
+    "branches",
+    "comparison",
+    "drift",
+    "energy",
+    "exposure",
+    "figures",
+    "flicks",
+    "frame",
+    "landmarks",
+    "losses",
+    "motion",
+    "portrait",
+]

@@ -1,0 +1,160 @@
+"""Films of pages, as MP4 by ffmpeg or as GIF by Pillow; `frames` draws them."""
+
+import subprocess
+import warnings
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from pathlib import Path
+from shutil import which
+from tempfile import TemporaryFile
+from typing import Any
+
+import numpy as np
+
+from spincyl._input.files import replaced
+from spincyl._input.hints import installs
+from spincyl._input.numbers import extra, whole, within
+from spincyl._input.progress import Progress, telling
+from spincyl.studio.frames import Reel, frames, pictures, vector
+from spincyl.studio.poses import span
+
+_LONG = 10.0  # seconds, the default length of a film
+_LARGE = 20e6  # bytes; a larger file causes a warning
+
+
+def reel(
+    view: Any,
+    edges: Sequence[dict[str, Any]],
+    suffix: str,
+    fps: int | None,
+    size: tuple[int, int] | None,
+    seconds: float | None = None,
+) -> Reel:
+    """The settings of the film of a page for a kind of file; an error names a wrong argument."""
+    gif = suffix == ".gif"
+    fps = (25 if gif else 30) if fps is None else whole("fps", fps, 1, 240)
+    if gif and 100 % fps:
+        raise ValueError(f"fps = {fps}: expected a divisor of 100 for a GIF, such as 50, 25, 20 or 10")
+    size = ((640, 360) if gif else (1280, 720)) if size is None else size
+    if not isinstance(size, tuple | list) or len(size) != 2:
+        raise TypeError(f"size: expected width and height, not {size!r}")
+    sides = zip(("size: width", "size: height"), size, strict=True)
+    width, height = (whole(name, x, 64, 8192) for name, x in sides)
+    if suffix == ".mp4" and (width % 2 or height % 2):
+        raise ValueError(f"size = {size!r}: expected even numbers, which MP4 needs")
+    unit = 1.0 if view.scale is None else float(view.scale.seconds(1.0))
+    how = (unit, view._symbol, view._spun, view.slow, view.upper, fps, (width, height))
+    if seconds is None:
+        spans = [sorted(span(m)) for m in view.motions]
+        lasts = (max(b for _, b in spans) - min(a for a, _ in spans)) * view.slow * unit
+        if lasts > _LONG * (1 + 1e-9):
+            told = f"the film shows the first {_LONG:g} of {lasts:.3g} seconds; give seconds= for more"
+            warnings.warn(told, UserWarning, stacklevel=3)
+    return Reel(
+        view.motions,
+        view.labels,
+        edges,
+        *how,
+        _LONG if seconds is None else seconds,
+        view._colours,
+        view.look,
+    )
+
+
+def film(what: Reel, path: Path, progress: Progress | bool | None = None) -> None:
+    """Write the film, and tell how much of it is done."""
+    write = _gif if path.suffix.lower() == ".gif" else _mp4
+    extra("matplotlib", "film")
+    program = _program() if write is _mp4 else ""
+    count = what.times.size  # too long a film is refused before anything is written
+
+    def shown() -> Iterator[np.ndarray]:
+        for k, picture in enumerate(frames(what), 1):
+            yield picture
+            if told:
+                told(k / count)
+
+    with telling(progress, "film") as told, replaced(path) as part:
+        write(what, shown(), part, program)
+    large = path.stat().st_size
+    if large > _LARGE:
+        how = "reduce size=, fps= or seconds="
+        how += "; an .mp4 is much smaller" if write is _gif else ""
+        warnings.warn(f"{path}: {large / 1e6:.0f} MB; {how}", UserWarning, stacklevel=3)
+
+
+def still(what: Reel, path: Path, t: float | None) -> None:
+    """Write the picture at a time, in the page's unit of time."""
+    extra("matplotlib", "film")
+    from PIL import Image
+
+    spans = [sorted(span(m)) for m in what.motions]
+    first, last = (of(x) * what.unit for of, x in zip((min, max), zip(*spans, strict=True), strict=True))
+    t = first if t is None else within("t", t, first, last)
+    what, kind = what._replace(slow=1), path.suffix.lower()[1:]
+    if kind == "png":
+        (picture,) = pictures(what, np.array([t / what.unit]), still=True)
+    with replaced(path) as part:
+        if kind == "png":
+            Image.fromarray(picture).save(part, "PNG")
+        else:
+            vector(what, t / what.unit, part, kind)
+
+
+def _program() -> str:
+    """The path of ffmpeg: that of imageio-ffmpeg, or the one on the search path."""
+    try:
+        from imageio_ffmpeg import get_ffmpeg_exe
+
+        return str(get_ffmpeg_exe())
+    except (ImportError, RuntimeError):
+        found = which("ffmpeg")
+    if found is None:
+        how = installs("'spincyl[film]'")
+        raise ImportError(f"a film in MP4 needs ffmpeg: {how}, or the program ffmpeg on the search path")
+    return found
+
+
+def _mp4(what: Reel, pictures: Iterator[np.ndarray], path: Path, program: str) -> None:
+    """Write H.264 by ffmpeg, in colours that every player reads."""
+    width, height = what.size
+    words = [program, "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24"]
+    words += ["-s", f"{width}x{height}", "-r", str(what.fps), "-i", "-", "-an"]
+    # players assume BT.709 for a file without a mark, but ffmpeg converts by BT.601 unless told otherwise
+    words += ["-vf", "scale=out_color_matrix=bt709:out_range=tv", "-c:v", "libx264", "-crf", "18"]
+    words += ["-pix_fmt", "yuv420p", "-colorspace", "bt709", "-color_primaries", "bt709"]
+    words += ["-color_trc", "bt709"]
+    words += ["-movflags", "+faststart", "-f", "mp4", str(path)]
+    with TemporaryFile() as said:
+        process = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=said)
+        assert process.stdin is not None
+        try:
+            with suppress(BrokenPipeError):  # ffmpeg has ended early; its message follows
+                for picture in pictures:
+                    process.stdin.write(picture.tobytes())
+        except BaseException:
+            process.kill()
+            raise
+        finally:
+            with suppress(BrokenPipeError):
+                process.stdin.close()
+            code = process.wait()
+        if code:
+            said.seek(0)
+            told = said.read().decode(errors="replace").strip()
+            raise OSError(f"ffmpeg: {told or f'ended with code {code}'}")
+
+
+def _gif(what: Reel, pictures: Iterator[np.ndarray], path: Path, program: str) -> None:
+    """Write a GIF by Pillow, which comes with matplotlib; one palette for all frames avoids flicker."""
+    from PIL import Image
+
+    count = what.times.size
+    some = what._replace(size=(what.size[0] // 2, what.size[1] // 2))
+    looks = np.concatenate(list(frames(some, np.unique(np.linspace(0, count - 1, 6).astype(int)))))
+    palette = Image.fromarray(looks).quantize(255, Image.Quantize.MEDIANCUT)
+    inked = (Image.fromarray(x).quantize(palette=palette, dither=Image.Dither.NONE) for x in pictures)
+    first = next(inked)
+    first.save(
+        path, "GIF", save_all=True, append_images=inked, duration=1000 // what.fps, loop=0, optimize=False
+    )

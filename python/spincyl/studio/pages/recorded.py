@@ -1,0 +1,91 @@
+"""Data of motions for a page."""
+
+from typing import Any
+
+import numpy as np
+
+from spincyl._ellipsoid_motion import EllipsoidMotion
+from spincyl._motion import Motion
+from spincyl._phases import rubs
+from spincyl._scale import Scale
+from spincyl.studio.aloft import goes_up
+from spincyl.studio.look import Look
+from spincyl.studio.pages.few import base64
+from spincyl.studio.pages.slip import rubbing
+from spincyl.studio.pages.stone import numbers
+from spincyl.studio.poses import knots, packed, repeats, seen, span
+from spincyl.studio.shape import reach
+
+#: Factors of slow motion on a page.
+SLOW = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
+
+
+def shown(m: Motion, slips: bool) -> tuple[dict[str, Any], float]:
+    """The data of a motion for the page, and the largest number of turns per unit of time."""
+    first, last = sorted(span(m))
+    again = repeats(m)
+    found = knots(m) if again is None else knots(m, until=first + again.period)
+    data: dict[str, Any] = {"first": first, "last": last, "again": None}
+    if again is not None:
+        # the centre's path is rotated about a pivot, or shifted
+        pivot = again.shift / (1 - again.turn) if abs(1 - again.turn) > 1e-9 else None
+        data["again"] = {
+            "period": again.period,
+            "phi": again.phi,
+            "psi": again.psi,
+            "pivot": pivot and [pivot.real, pivot.imag],
+            "shift": [again.shift.real, again.shift.imag],
+        }
+    if isinstance(m, EllipsoidMotion):
+        data |= numbers(m, found[:, 0])
+    else:
+        data |= {"ell": m.body.ell, "i1": m.body.i1, "i3": m.body.i3}
+        if m.body.fillet > 0:
+            data |= {"fillet": m.body.fillet, "far": reach(m.body)}
+    packets = (packed(found) | (rubbing(m) if slips else {})).items()
+    data |= {name: base64(*x) if isinstance(x, tuple) else x for name, x in packets}
+    fastest = float(np.abs(found[:, 6:9]).max())
+    if isinstance(m, EllipsoidMotion) or m.body.fillet == 1 or goes_up(m):
+        # near a pole phi' and psi' are large and nearly cancel: use the angular velocity instead
+        (w,) = seen(m, found[:, 0], "w")
+        fastest = float(np.linalg.norm(w, axis=1).max())
+    return data, fastest / (2 * np.pi)
+
+
+def slips_or_flies(m: Motion) -> bool:
+    """Whether the page shows slip and contact forces."""
+    return rubs(m.contact) or goes_up(m)
+
+
+def turns(look: Look) -> str:
+    """Number of turns of the first exposure of a page, as text."""
+    many = look.exposure or 0.0
+    return "Infinity" if np.isinf(many) else f"{many:g}"
+
+
+def edges(m: Motion) -> dict[str, Any]:
+    """The notes for times before and after those shown, and for the end of the motion."""
+    start, last = span(m)
+    first, until = sorted((start, last))
+    found = {
+        "before": {"said": "shown from ", "at": first, "t": first, "event": False},
+        "after": {"said": "shown until ", "at": until, "t": until, "event": False},
+    }
+    if m.event is not None:
+        # `at` is the time from which the page shows the note, `t` the time in its text
+        beyond = m._asked.beyond and abs(m.event.time - start) < abs(last - start)
+        said = ("beyond the model: " if beyond else "ended: ") + m.message.split(" at t =")[0] + ", "
+        at = m.event.time if beyond else last
+        found["before" if last < start else "after"] = {
+            "said": said,
+            "at": at,
+            "t": m.event.time,
+            "event": True,
+        }
+    return found
+
+
+def slow_motion(turning: float, scale: Scale | None) -> int:
+    """The factor of slow motion with which no body turns much faster than once a second."""
+    second = 1.0 if scale is None else float(scale.seconds(1.0))
+    return next((x for x in SLOW if turning / second <= 1.5 * x), SLOW[-1])

@@ -1,0 +1,1 @@
+"""Figures of bodies and motions with matplotlib; users find them in `spincyl.plot`."""

@@ -1,0 +1,365 @@
+"""Scenes for checks of contact engines: body, table, initial state, and the known answer."""
+
+import json
+import math
+from contextlib import ExitStack
+from dataclasses import dataclass
+from functools import cached_property
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from spincyl._body import Body
+from spincyl._input.equality import compared
+from spincyl._input.files import path_of, replaced
+from spincyl._input.numbers import Floats, Reals, flag, floats, made, number, plain, reals, si, warn
+from spincyl._motion import Motion
+from spincyl._scale import Scale, scale_of
+from spincyl._state import State
+from spincyl.studio.mjcf import mjcf
+from spincyl.studio.scene_data import bounds, inclination, scene_data
+from spincyl.studio.shape import profiles, rotations
+
+#: Of a mesh for display: number of pieces of a profile that become one, and number of points round the axis.
+_PIECES, _AROUND = 4, 48
+#: Tolerance of unit quaternions; turn from the initial orientation, radians, above which there is a warning.
+_UNIT, _DOUBTED = 1e-3, 0.1
+#: Ratio of the last time to the end of the scene, and of the first deviation to the distance of the centre
+#: from the origin, above which there is a warning.
+_LONG, _AWAY = 10.0, 30.0
+#: Coefficients of the losses that act in the air.
+_IN_AIR = "b", "b2"
+
+
+@compared
+@dataclass(frozen=True, eq=False, repr=False)
+class Deviation:
+    """Deviation of a contact engine from the known motion; returned by `Scene.compare`. All in SI.
+
+    Attributes
+    ----------
+    time : ndarray, (n,)
+        Times that were compared, up to the end of the known motion, in seconds.
+    position : ndarray, (n,)
+        Distance between the engine's centre of mass and the known one at each time, in metres.
+    angle : ndarray, (n,)
+        Angle of the rotation from the known orientation to the engine's orientation, in radians, 0 to pi.
+    theta : ndarray, (n,)
+        Inclination of the body's axis 3 in the engine minus the known inclination, in radians.
+    position_error : float
+        Estimated error of the known positions, in metres. A `position` below it is no deviation of the
+        engine.
+    angle_error : float
+        Estimated error of the known orientations, in radians.
+    """
+
+    time: Floats
+    position: Floats
+    angle: Floats
+    theta: Floats
+    position_error: float
+    angle_error: float
+
+    def __repr__(self) -> str:
+        most = [np.abs(x).max() for x in (self.position, self.angle, self.theta)]
+        return (
+            f"<Deviation up to {self.time[-1]:.6g} s: centre {most[0]:.2g} m"
+            f" (answer {self.position_error:.1g}), turned {most[1]:.2g} rad"
+            f" (answer {self.angle_error:.1g}), theta {most[2]:.2g} rad>"
+        )
+
+
+class Scene:
+    """A body on a table, its initial state and its known motion; returned by `scene`.
+
+    Attributes
+    ----------
+    motion : Motion
+        The known motion (the "answer"), in natural units.
+    scale : Scale
+        Scale that converts the known motion to SI.
+    data : dict
+        Content of the JSON file: body, table, initial state and known motion, in SI. docs/engines.md lists
+        its keys.
+    mjcf : str
+        The scene in the format of MuJoCo (MJCF), with the initial state as the keyframe "start". A comment at
+        its top names the laws that MuJoCo does not have.
+    """
+
+    def __init__(self, motion: Motion, scale: Scale) -> None:
+        self.motion, self.scale = motion, scale
+
+    @cached_property
+    def data(self) -> dict[str, Any]:
+        """Body, table, initial state and known motion, as for JSON; None replaces NaN and infinity."""
+        found: dict[str, Any] = plain(scene_data(self.motion, self.scale, self._began))
+        return found
+
+    @property
+    def mjcf(self) -> str:
+        """The scene as MJCF, with contacts as stiff and friction as steady as MuJoCo's solver allows."""
+        return mjcf(self.data, self.scale.radius * _outside(self.motion.body))
+
+    def save(self, path: str | PathLike[str]) -> list[Path]:
+        """Write the scene as JSON, as MJCF or both, and return the paths.
+
+        Parameters
+        ----------
+        path : path-like
+            Path that ends with .json or .xml (MJCF); this file is written. For any other path both files are
+            written, and these endings are added to their names.
+
+        Returns
+        -------
+        list of Path
+            Paths of the files.
+
+        Raises
+        ------
+        OSError
+            If a file cannot be written. Existing files stay until all new ones are complete.
+        """
+        path = path_of("path", path)
+        if not path.name:
+            raise ValueError(f"path = {str(path)!r}: expected the name of a file")
+        known = {".json": self._json, ".xml": self._model}
+        only = path.suffix.lower() in known
+        paths = [path] if only else [path.with_name(path.name + suffix) for suffix in known]
+        texts = [known[x.suffix.lower()]() for x in paths]
+        with ExitStack() as all_:  # both files are written, or neither
+            for part, text in zip(map(all_.enter_context, map(replaced, paths)), texts, strict=True):
+                part.write_text(text, encoding="utf-8")
+        return paths
+
+    def compare(
+        self, time: Reals, position: Reals, orientation: Reals, *, scalar_first: bool = False
+    ) -> Deviation:
+        """Compare the trajectory of a contact engine with the known motion at the times of the engine.
+
+        Parameters
+        ----------
+        time : array_like, (n,)
+            Times of the engine since the initial state, in seconds, in ascending order. The known motion is
+            computed at these times, also after the last time of the scene. Times after an event that ends the
+            motion, such as the landing of the face, are left out.
+        position : array_like, (n, 3)
+            Positions of the centre of mass in the engine, in metres.
+        orientation : array_like, (n, 4)
+            Unit quaternions x, y, z, w in the engine. They rotate vectors from the axes of the body to the
+            axes of the laboratory; their sign does not matter.
+        scalar_first : bool
+            If true, the quaternions are w, x, y, z, as in MuJoCo and Drake.
+
+        Returns
+        -------
+        Deviation
+            Distances and angles at the times up to the end of the known motion.
+
+        Raises
+        ------
+        ValueError, TypeError
+            If an argument is invalid; the message names it.
+
+        Warns
+        -----
+        UserWarning
+            If the orientation at time 0 is not the initial one; the numbers of the quaternions may be in the
+            wrong order. If the last time is more than ten times that of the scene; the times may be in
+            milliseconds. If the first position is more than 30 times as far from the known position as that
+            is from the origin; the positions may be in millimetres.
+        """
+        t = _shaped("time", si("time", time, "second"), ())
+        x = _shaped("position", position, (t.size, 3))
+        q = _shaped("orientation", orientation, (t.size, 4), scalar_first)
+        if t[0] < 0 or (np.diff(t) < 0).any():
+            raise ValueError("time: expected seconds since the initial state, in ascending order")
+        last = self.scale.seconds(float(self.motion.t[-1]) - self._began)
+        if t[-1] > _LONG * last:
+            told = f"time: goes up to {t[-1]:.4g} s, but the scene ends at {last:.4g} s"
+            warn(f"{told}; are the times in milliseconds?")
+        m = self.motion.at(self._began + t / self.scale.seconds(1.0))
+        n = m.t.size
+        if not n:
+            raise ValueError(
+                f"time = {t[0]!r}: the known motion ends before this time: {m.message.split(';')[0]}"
+            )
+        apart = [np.linalg.norm(q[:n] + sign * m.orientation, axis=1) for sign in (-1, 1)]
+        angle = 4 * np.arcsin(np.minimum(np.minimum(*apart) / 2, 1.0))
+        if t[0] == 0 and angle[0] > _DOUBTED:
+            why = "expected quaternions x, y, z, w, or w, x, y, z with scalar_first=True"
+            warn(f"orientation: at time 0 it differs by {angle[0]:.2g} rad from the initial one; {why}")
+        metre, found = self.scale.radius, bounds(m)
+        off, turned = found["position"], found["orientation"]
+        away = np.linalg.norm(x[:n] - metre * m.centre, axis=1)
+        reach = metre * float(np.linalg.norm(m.centre[0]))
+        if away[0] > _AWAY * reach:
+            told = f"position: {away[0]:.2g} m from the known one at t = {t[0]:.4g} s, which is {reach:.2g} m"
+            warn(f"{told} from the origin; are the positions in millimetres?")
+        theta = inclination(q[:n]) - inclination(m.orientation)
+        return Deviation(t[:n], away, angle, theta, off * metre, turned)
+
+    def couple(
+        self,
+        orientation: Reals,
+        angular_velocity: Reals,
+        normal_force: float,
+        *,
+        scalar_first: bool = False,
+    ) -> Floats:
+        """Compute the couple with which the losses act on the body, for an engine without these losses.
+
+        Parameters
+        ----------
+        orientation : array_like, (4,)
+            Unit quaternion of the body, as in `compare`; the axis of the body must not be vertical.
+        angular_velocity : array_like, (3,)
+            Angular velocity along the axes of the laboratory, in rad/s.
+        normal_force : float
+            Normal force of the table, in newtons. In the air it is 0, and only the resistance of the air
+            acts.
+        scalar_first : bool
+            If true, the quaternion is w, x, y, z.
+
+        Returns
+        -------
+        ndarray, (3,)
+            Components of the couple along the axes of the laboratory, in N m; zero without losses. They are
+            exact to a few rounding errors.
+
+        Raises
+        ------
+        ValueError, TypeError
+            If an argument is invalid; the message names it.
+        """
+        q = _shaped("orientation", orientation, (4,), scalar_first)
+        w = _shaped("angular_velocity", angular_velocity, (3,)) * self.scale.seconds(1.0)
+        pressed = number("normal_force", normal_force) / self.scale.newtons(1.0)
+        laws = () if self.motion.losses is None else self.motion.losses.laws
+        couples = [law.couple for law in laws if pressed > 0 or law._parameter in _IN_AIR]
+        axis = rotations(q)[:, 2]
+        across = np.array([0.0, 0.0, 1.0]) - axis[2] * axis
+        first = across / np.linalg.norm(across)
+        frame = np.stack([first, np.cross(axis, first), axis])
+        state = State(float(inclination(q[np.newaxis])[0]), *(frame @ w).tolist())
+        total = sum((couple(self.motion.body, state, pressed) for couple in couples), np.zeros(3))
+        found: Floats = float(self.scale.joules(1.0)) * (total @ frame)
+        return found
+
+    @property
+    def _began(self) -> float:
+        return self.motion._asked.t0
+
+    def _model(self) -> str:
+        return self.mjcf
+
+    def _json(self) -> str:
+        return _lines(self.data) + "\n"
+
+    def __repr__(self) -> str:
+        last = self.scale.seconds(self.motion.t[-1] - self._began)
+        return f"<Scene of {self.motion.body!r}, {last:.6g} s; .save('scene') writes it>"
+
+
+def scene(motion: Motion, *, scale: Scale | None = None) -> Scene:
+    """Make a scene with a known motion, to check an engine that simulates contacts.
+
+    Parameters
+    ----------
+    motion : Motion
+        Motion of a body or a stone with any contact, from `roll`. The engine should reproduce it at the times
+        of the motion. Poses and forces are computed if the motion does not contain them.
+    scale : Scale, optional
+        Scale that converts a motion in natural units to SI; a measured body has its own. Default: R (for a
+        stone, the largest semi-axis) is 1 m, the mass is 1 kg, and g is 9.80665 m/s^2.
+
+    Returns
+    -------
+    Scene
+        ``.save("scene")`` writes scene.json and scene.xml (MJCF, for MuJoCo). `Scene.compare` computes the
+        deviations of an engine.
+
+    Raises
+    ------
+    ValueError
+        If the motion has no time after its initial state, goes backward in time, continues beyond an event or
+        is not known up to its last time; or if a measured body has no mass.
+    TypeError
+        If `motion` is not a Motion, or obeys a law of `spincyl.custom`.
+
+    Notes
+    -----
+    The scene contains the estimated errors of the motion. If the motion ends, for example because the face
+    lands, the scene ends at the same time and names the ending. For a body on both rims the scene contains
+    only the sum of the normal forces.
+
+    Examples
+    --------
+    >>> import spincyl as sc
+    >>> body = sc.Body.solid(2.5)
+    >>> scene = sc.scene(sc.roll(body, body.steady(1.3), [0.0, 1.0, 2.0]))
+    >>> [round(x, 6) for x in scene.data["start"]["position"]]
+    [-2.141397, 0.0, 1.632305]
+    """
+    made("motion", motion, Motion)
+    given = scale_of(scale, motion.body) or Scale(1.0)
+    given.newtons(1.0)  # raises an error for an unknown mass
+    m = motion.natural
+    t0, t = m._asked.t0, m.t
+    if not t.size or t[0] != t0:
+        t = np.concatenate([[t0], t])
+    for law in (m.contact, m.losses):
+        if getattr(law, "_function", None) is not None:
+            raise TypeError(f"motion: a scene cannot contain a law of your own, such as {law!r}")
+    if not (np.diff(t) > 0).all():
+        raise ValueError("motion: expected ascending times, since an engine starts at the first of them")
+    if m.event is not None and m._asked.beyond:
+        why = "expected a motion that ends at its event; leave out beyond=True"
+        raise ValueError(f"motion: continues beyond an event: {m.message}; {why}")
+    if t.size < 2:
+        raise ValueError(f"motion: expected a time after the initial state: {motion.message}")
+    if m._doubt or not math.isfinite(m.error):
+        raise ValueError(f"motion: expected a motion known up to its last time: {motion.message}")
+    m = m.wanting("pose", "force", t=None if t is m.t else t)
+    return Scene(m, given)
+
+
+def _lines(value: Any, begin: str = "\n ") -> str:
+    """Strict JSON with one line for each entry of an object."""
+    if not isinstance(value, dict):
+        return json.dumps(value, allow_nan=False)
+    entries = (f"{begin}{json.dumps(key)}: {_lines(x, begin + ' ')}" for key, x in value.items())
+    return "{" + ",".join(entries) + begin[:-1] + "}"
+
+
+def _shaped(name: str, value: Reals, shape: tuple[int, ...], scalar_first: bool | None = None) -> Floats:
+    """Finite numbers of a shape, where () is any (n,); with `scalar_first`, unit quaternions x, y, z, w."""
+    found = floats(reals(name, value))
+    fits = found.shape == shape if shape else found.ndim == 1
+    if not fits:
+        raise ValueError(f"{name}: expected finite numbers of shape {shape or '(n,)'}, not {found.shape}")
+    if not found.size:
+        raise ValueError(f"{name}: expected at least one number, not an empty array")
+    bad = np.argwhere(~np.isfinite(found))
+    if bad.size:
+        place = f"value {bad[0, 0]} is" if found.ndim == 1 else f"row {bad[0, 0]} has"
+        what = "NaN" if np.isnan(found[tuple(bad[0])]) else "an infinite number"
+        raise ValueError(f"{name}: {place} {what}; expected finite numbers")
+    if scalar_first is None:
+        return found
+    if (np.abs(np.linalg.norm(found, axis=-1) - 1) > _UNIT).any():
+        raise ValueError(f"{name}: expected unit quaternions")
+    return np.roll(found, -1, axis=-1) if flag("scalar_first", scalar_first) else found
+
+
+def _outside(body: Any) -> Floats:
+    """Points (n, 3) on a body that MuJoCo has no shape for; MuJoCo draws their convex hull."""
+    rounded = isinstance(body, Body) and 0 < body.fillet < 1
+    if not (isinstance(body, Body) and (body._parts or rounded)):
+        return np.empty((0, 3))
+    every = ((skin.corners, _PIECES if skin.normals else 1) for skin in profiles(body))
+    corners = np.array([x for found, step in every for x in (*found[::step], found[-1])])
+    angle = np.linspace(0, 2 * np.pi, _AROUND, endpoint=False)[:, np.newaxis]
+    r, z = corners.T
+    return np.stack([r * np.cos(angle), r * np.sin(angle), z + 0 * angle], -1).reshape(-1, 3)

@@ -1,0 +1,286 @@
+"""Content of the JSON file of a scene: body, table, initial state, and the known answer with errors, in SI.
+
+Vectors are along the axes of the laboratory, z up. The origin of a body is its centre of mass; its axes are
+those of `Motion.orientation`, for a stone those of its ellipsoid. docs/engines.md has the keys.
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from spincyl import _core
+from spincyl._body import Body
+from spincyl._contact import Coulomb, Viscous
+from spincyl._ellipsoid import Ellipsoid
+from spincyl._ellipsoid_motion import EllipsoidMotion
+from spincyl._input.numbers import Floats
+from spincyl._motion import Motion
+from spincyl._phases import KINDS, two_rims
+from spincyl._scale import Scale
+from spincyl.studio.shape import kind, landing, reach, rotations, skin
+
+VERSION = 1
+#: For each coefficient of loss: unit, exponents of metre, second and joule, and the couple of its law.
+_COUPLES: dict[str, tuple[str, tuple[float, float, float], str]] = {
+    "eps": ("m", (1, 0, 0), "eps*N*A*sign(q)*h/s"),
+    "c": ("N m s", (0, 1, 1), "c*A**2*q*h/s"),
+    "delta": ("m", (1, 0, 0), "-delta*N*t/norm(t)"),
+    "length": ("m", (1, 0, 0), "-length*N*sign(w_n)*n"),
+    "b": ("N m s", (0, 1, 1), "-b*w"),
+    "b2": ("N m s^2", (0, 2, 1), "-b2*norm(w)*w"),
+    "viscosity": ("Pa s", (-3, 1, 1), "pi/4*viscosity*R**3*q*h/s**2"),
+    "k": ("N m s^1.5", (0, 1.5, 1), "k*abs(q)**1.5*sign(q)*h/s"),
+}
+_SYMBOLS = (
+    "n: up. a: axis 3 of the body. w: angular velocity; w_n = w.n; t = w - w_n n. s = |n x a|."
+    " h = ((a.n) n - a)/s. q = (w.a - (a.n) w_n)/s^2. N: normal force, of both rims together."
+    " A = (radius of the circle + swollen_by s)/R. R: body.shape.radius."
+    " A couple acts on the body and takes the power -couple.w; in the air there are only b and b2."
+    " sign(0), and t/norm(t) of t = 0, is what keeps it 0, of at most the size 1."
+)
+_SLIPS = "-mu N u/|u| at the contact point, where u is its velocity over the table"
+_ROLLS = "what keeps the contact point at rest; any coefficient from `needed` on does"
+_PATCH = (
+    "-mu p(r) (u + (w.n) n x r)/|u + (w.n) n x r| per area of a disk of radius `patch`, and its moment"
+    " about n: p = 3 N/(2 pi patch^2) sqrt(1 - r^2/patch^2)"
+)
+#: Least error of the times of phases and impacts and of lost energies, in natural units.
+_LEAST = 1e-11
+#: Friction of a scene of rolling whose motion has no `mu`: least value, ratio to the needed value, largest.
+_MU = 1.0, 1.5, 1e3
+
+
+def scene_data(m: Motion, scale: Scale, t0: float) -> dict[str, Any]:
+    """The scene of a motion in natural units with poses and forces, whose initial state is at time `t0`."""
+    metre, second, joule = (float(x) for x in (scale.metres(1.0), scale.seconds(1.0), scale.joules(1.0)))
+    w, v = moving(m)
+    known = _known(m, metre, second, joule, w, v, t0)
+    return {
+        "spincyl-scene": VERSION,
+        "units": "SI: metres, kilograms, seconds, radians, newtons, joules",
+        "axes": "of the laboratory, z up; quaternions are x, y, z, w and turn the body's axes into these",
+        "scale": {"R": scale.radius, "M": scale.mass, "g": scale.gravity, "second": second},
+        "gravity": [0.0, 0.0, -scale.gravity],
+        "body": _body(m.body, scale, metre),
+        "table": _table(m, metre, second, joule, t0),
+        "start": {
+            **{name: known[name][0] for name in ("position", "orientation", "velocity", "angular_velocity")},
+            "angular_velocity_in_body_axes": (w[0] @ rotations(m.orientation[0]) / second).tolist(),
+        },
+        "expected": known,
+        "error": _errors(m, metre, second, joule, w, v),
+    }
+
+
+def moving(m: Motion) -> tuple[Floats, Floats]:
+    """(n, 3) each: angular velocity, and velocity of the centre of mass, along the laboratory's axes."""
+    slip = m._extra.get("slip", np.zeros((m.t.size, 2)))
+    lift = m._extra.get("lift", np.zeros(m.t.size))
+    if isinstance(m, EllipsoidMotion):
+        turned = rotations(m.orientation)
+        w = np.einsum("nij,nj->ni", turned, m.w)
+        # slip is along the x and y from which the smallest rotation gives the stone this vertical
+        x, y, z = m.vertical.T
+        least = np.column_stack([y, -x, np.zeros(x.size), 1 + z])
+        least[z == -1] = [1.0, 0.0, 0.0, 0.0]
+        least /= np.linalg.norm(least, axis=1)[:, np.newaxis]
+        u = np.einsum("nij,nkj,nk->ni", turned, rotations(least), np.column_stack([slip, lift]))
+    else:
+        phi = m.turns[0][:, 1]
+        zero, up = np.zeros(phi.size), np.array([0.0, 0.0, 1.0])
+        along = np.column_stack([np.cos(phi), np.sin(phi), zero])
+        across = np.column_stack([-np.sin(phi), np.cos(phi), zero])
+        c, s = np.cos(m.theta)[:, None], np.sin(m.theta)[:, None]
+        w1, w2, w3 = m.w.T[..., None]
+        w = w1 * (c * along + s * up) + w2 * across + w3 * (c * up - s * along)
+        u = slip[:, :1] * along + slip[:, 1:] * across + lift[:, None] * up
+    height = m._extra.get("height", np.zeros(m.t.size))
+    v = u + np.cross(w, m.centre - np.column_stack([m.contact_point, height]))
+    if m.contact == "smooth" and "slip" not in m._extra:
+        v[:, :2] = 0.0  # seen from above, the centre is at rest
+    return w, v
+
+
+def tensor(body: Body | Ellipsoid) -> Floats:
+    """(3, 3) tensor of inertia about the centre of mass, along the body's axes."""
+    moments = body.inertia if isinstance(body, Ellipsoid) else np.diag([body.i1, body.i1, body.i3])
+    return np.asarray(moments, np.float64)
+
+
+def inclination(orientation: Floats) -> Floats:
+    """(n,) angles from the vertical to axis 3 of these orientations."""
+    x, y, z = rotations(orientation)[:, :, 2].T
+    found: Floats = np.arctan2(np.hypot(x, y), z)
+    return found
+
+
+def bounds(m: Motion, w: Floats | float = 0.0, v: Floats | float = 0.0) -> dict[str, float]:
+    """Bounds of the errors of a motion by name, in natural units, from its angular velocities and velocities.
+
+    Without these only those of the state, the position and the orientation are right.
+    """
+    force = m.contact_force if "contact_force" in m._extra else 0.0
+    most = [float(np.linalg.norm(np.atleast_2d(x), axis=1).max(initial=0.0)) for x in (w, v, force)]
+    size = (reach(m.body), float(np.linalg.norm(tensor(m.body), 2)))
+    return _core.bounds((m.error, m.pose_error, m.force_error), size, (most[0], most[1], most[2]))
+
+
+def _body(body: Body | Ellipsoid, scale: Scale, metre: float) -> dict[str, Any]:
+    inertia = tensor(body) * scale.mass * metre**2
+    if isinstance(body, Ellipsoid):
+        end = float(body.theta_end)
+        shape: dict[str, Any] = {
+            "type": "ellipsoid",
+            "radius": metre,
+            "semi_axes": (np.asarray(body.axes) * metre).tolist(),
+            "centre": (-np.asarray(body.offset) * metre).tolist(),
+            "lands_at": None if math.isnan(end) else end,
+        }
+    else:
+        shape = _rims(body, metre)
+    moments, axes = np.linalg.eigh(inertia)
+    return {
+        "name": repr(body),
+        "mass": scale.mass,
+        "inertia": inertia.tolist(),
+        "inertia_is": "about the centre of mass, along the body's axes; the origin is the centre of mass",
+        "principal_moments": moments.tolist(),
+        "principal_axes": (axes * np.sign(np.linalg.det(axes)) + 0.0).T.tolist(),
+        "shape": shape,
+    }
+
+
+def _rims(body: Body, metre: float) -> dict[str, Any]:
+    """The parts of a body of revolution that can touch: one or two circles, swollen by the fillet."""
+    middle, wall, fillet, rim, bore = (x * metre for x in skin(body))
+    both = two_rims(body)
+    heights = [-wall, wall] if both else [middle if kind(body) == "ball" else -float(body.ell) * metre]
+    return {
+        "type": kind(body) if both or kind(body) == "ball" else "rim",
+        "radius": metre,
+        "inner_radius": bore if body.bore == body.bore else None,
+        "circles": [{"height": z, "radius": rim} for z in heights],
+        "swollen_by": fillet,
+        "half_length": wall + fillet if both else None,
+        "lands_at": landing(body),
+        "is": "all within swollen_by of the convex hull of the circles, which are about axis 3, at these"
+        " heights over the centre of mass; at the inclination lands_at something else touches the table",
+    }
+
+
+def _table(m: Motion, metre: float, second: float, joule: float, t0: float) -> dict[str, Any]:
+    contact, laws = m.contact, [] if m.losses is None else m.losses.laws
+    friction: dict[str, Any]
+    if isinstance(contact, Coulomb):
+        patch = float(contact.patch) * metre
+        friction = {"law": "coulomb", "mu": contact.mu, "static": contact.static, "patch": patch}
+        friction["force"] = _PATCH if patch else _SLIPS + "; while it is at rest, at most static N"
+    elif isinstance(contact, Viscous):
+        friction = {"law": "viscous", "c": float(contact.c) * second / metre, "unit": "s/m"}
+        friction["force"] = "-c N u at the contact point, where u is its velocity over the table"
+    elif contact == "smooth":
+        friction = {"law": "smooth", "mu": 0.0, "force": "none"}
+    else:
+        needed = math.inf if m._asked.restitution is not None else friction_needed(m, t0)
+        least, over, most = _MU
+        mu = m._asked.mu if m._asked.mu < math.inf else min(max(least, over * needed), most)
+        friction = {"law": "rolling", "mu": mu, "needed": needed, "force": _ROLLS}
+    losses = []
+    for law in laws:
+        unit, powers, couple = _COUPLES[law._parameter]
+        value = float(np.asarray(law.coefficient))
+        for x, power in zip((metre, second, joule), powers, strict=True):
+            value *= x**power
+        told = {"law": type(law).__name__, "coefficient": law._parameter, "value": value}
+        losses.append(told | {"unit": unit, "couple": couple})
+    return {
+        "point": [0.0, 0.0, 0.0],
+        "normal": [0.0, 0.0, 1.0],
+        "friction": friction,
+        "restitution": m._asked.restitution,
+        "restitution_is": "its square is the share of the work of compression that the normal force gives"
+        " back (Stronge); null: nothing strikes the table",
+        "losses": losses,
+        "symbols": _SYMBOLS,
+    }
+
+
+def friction_needed(m: Motion, t0: float) -> float:
+    """The coefficient of friction that rolling needs, at 4001 sampled times."""
+    t = np.linspace(t0, float(m.t[-1]), 4001)
+    return float(m.wanting("force", t=t).friction_coefficient.max(initial=0.0))
+
+
+def _known(
+    m: Motion, metre: float, second: float, joule: float, w: Floats, v: Floats, t0: float
+) -> dict[str, Any]:
+    """The known answer; NaN where the contact has no single point or force."""
+    weight, extra = joule / metre, m._extra
+    phase = extra.get("phase", np.zeros(m.t.size, int))
+    both = phase >= KINDS.index("lying")
+    normal = m.normal + np.where(both, extra.get("normal_other", 0.0), 0.0)
+    # where N < 0 the body leaves the table at once, and there is no force
+    leaves = normal < 0
+    force = np.where(both[:, None], np.nan, np.where(leaves[:, None], 0.0, m.contact_force))
+    point = np.column_stack([m.contact_point, np.zeros(m.t.size)])
+    point[both | (phase == KINDS.index("flying"))] = np.nan
+    found = {
+        "time": (m.t - t0) * second,
+        "position": m.centre * metre,
+        "orientation": m.orientation,
+        "velocity": v * (metre / second),
+        "angular_velocity": w / second,
+        "theta": inclination(m.orientation),
+        "energy": m.energy * joule,
+        "normal_force": np.where(leaves, 0.0, normal) * weight,
+        "contact_force": force * weight,
+        "contact_point": point * metre,
+    }
+    for name, key in (("heat_of_slip", "dissipated"), ("lost_by_losses", "work_lost")):
+        if key in extra:
+            found[name] = extra[key] * joule
+    told: dict[str, Any] = {name: x.tolist() for name, x in found.items()}
+    told["theta_is"] = "angle from the vertical to axis 3 of the body"
+    told["contact_is"] = (
+        "force of the table on the body, and where; null on both rims, and no place in the air"
+    )
+    if m._asked.restitution is not None:
+        told["height"] = (m.height * metre).tolist()
+        told["height_is"] = "of the lowest point of the body"
+        told["lost_in_impacts"] = (m.lost_in_impacts * joule).tolist()
+        told["impacts"] = [
+            {
+                "time": (x.time - t0) * second,
+                "kind": x.kind,
+                "normal_impulse": x.impulse[2] * joule * second / metre,
+                "energy_lost": x.lost * joule,
+            }
+            for x in m.impacts
+        ]
+    first = "slipping" if m.contact == "smooth" else "rolling"
+    begun = [(t0, first)] if m._phases is None else [(x.time, x.kind) for x in m.phases]
+    told["phases"] = [{"time": (t - t0) * second, "kind": name} for t, name in begun]
+    last = float(m.t[-1]) if m.event is None else m.event.time
+    why = m.message.split(";")[0]
+    told["ending"] = {"kind": m.status.name, "time": (last - t0) * second, "why": why}
+    return told
+
+
+def _errors(m: Motion, metre: float, second: float, joule: float, w: Floats, v: Floats) -> dict[str, Any]:
+    """Bounds of the errors at any time, from the estimated errors of states, poses and forces."""
+    found, spent = bounds(m, w, v), max(_LEAST, m.error)
+    return {
+        "position": found["position"] * metre,
+        "angle": found["orientation"],
+        "theta": found["state"],
+        "angular_velocity": found["angular_velocity"] / second,
+        "velocity": found["velocity"] * (metre / second),
+        "energy": found["energy"] * joule,
+        "normal_force": 2 * m.force_error * joule / metre,
+        "contact_force": found["force"] * joule / metre,
+        "contact_point": m.pose_error * metre,
+        "times_of_phases_and_impacts": spent * second,
+        "heat_and_losses": spent * joule,
+        "is": "the largest at any time; angle is that between orientations",
+    }
