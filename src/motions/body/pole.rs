@@ -14,16 +14,19 @@ use crate::motions::walk::numbers::{PHI, PSI, TIME, poses};
 
 /// A ball whose axis approaches its pole passes it in one step from this sine of theta on.
 const BESIDE_POLE: f64 = 1e-9;
+/// It passes so only within this time: an axis that comes to rest on the pole, or winds about it, does not pass it.
+const AT_MOST: f64 = 1e-7;
 
 /// A vector of the table, in the basis that is turned by the angle with this cosine and sine.
 fn turned([cos, sin]: [f64; 2], [h, two]: [f64; 2]) -> [f64; 2] {
     [cos * h + sin * two, cos * two - sin * h]
 }
 
-/// The time that a ball beside its pole takes to pass it; None if it is not near its pole, or moves away from it.
+/// The time that a ball beside its pole takes to pass it; None if it is not near its pole, moves away from it, or is slow.
 pub(crate) fn passage(s: f64, c: f64, [w1, w2]: [f64; 2]) -> Option<f64> {
     let nears = s * c * w2;
-    (s.abs() < BESIDE_POLE && nears > 0.0).then(|| 2.0 * nears / (w1 * w1 + c * c * w2 * w2))
+    let lasts = 2.0 * nears / (w1 * w1 + c * c * w2 * w2);
+    (s.abs() < BESIDE_POLE && nears > 0.0 && lasts < AT_MOST).then_some(lasts)
 }
 
 /// The numbers at the same inclination on the other side of the pole, from the numbers y of [`halt`](crate::motions::walk::numbers)
