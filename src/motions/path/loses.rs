@@ -1,17 +1,21 @@
 //! The phases in which a body loses energy while it rolls, or slides on a smooth table.
 
 use super::phases::{BodyWalk, LossyPhase};
+use super::rolls::FEW_STEPS;
 use super::write::state;
 use crate::error::Error;
 use crate::laws::contact::Table;
 use crate::laws::loss::Holds;
 use crate::laws::state::State;
-use crate::methods::flow::{Flow, Steps};
+use crate::methods::flow::{Flow, Spent, Steps};
 use crate::motions::Ending;
 use crate::motions::creep::LOST_DRILLING;
 use crate::motions::halt::Halt;
 use crate::motions::path::lossy::LossyFlow;
 use crate::motions::walk::{Next, Pause, Phases, after_rest, ending};
+
+/// Tolerance of steps that take the place of an exact solution, as a share of that of the motion.
+const EXACTLY: f64 = 0.1;
 
 impl<const N: usize> BodyWalk<'_, N> {
     /// Begins a phase that loses energy and rolls with friction up to `mu` N, or slides freely. Returns the
@@ -19,7 +23,9 @@ impl<const N: usize> BodyWalk<'_, N> {
     pub(super) fn begins_to_lose(&mut self, mu: f64) -> Result<Option<[f64; N]>, Error> {
         let on = (&self.of.body, self.contact());
         let (losses, y, friction) = (self.of.rolling_losses, self.of.state, self.friction());
-        let flow = LossyFlow::new(on, mu, &losses, self.of.slide.tol, &y).on_patch(&friction, &y);
+        // Such steps add little to the error.
+        let tol = if self.of.by_steps { EXACTLY * self.of.slide.tol } else { self.of.slide.tol };
+        let flow = LossyFlow::new(on, mu, &losses, tol, &y).on_patch(&friction, &y);
         if flow.is_patch() && flow.holds_drilling() {
             self.claims(LOST_DRILLING * drilling(&self.of.state).abs());
         }
@@ -50,9 +56,20 @@ impl<const N: usize> BodyWalk<'_, N> {
         let made = &mut self.made;
         let mut write = |y: &[f64; N]| made.lossy(&ask, (&body, &start, flow), y, kind);
         let times = &self.since[first..];
+        let by_steps = self.of.by_steps;
+        let steps = if by_steps { Steps { most: steps.most.min(FEW_STEPS), ..steps } } else { steps };
         let flown = flow.run(flow.place(y), steps, times, &mut write, go_on);
-        self.has_spent(flown.spent);
+        let erred = if by_steps { EXACTLY * flown.spent.erred } else { flown.spent.erred };
+        self.has_spent(Spent { erred, ..flown.spent });
         self.claims_time_error(flown.halt, flown.steep, &flown.y);
+        if flown.halt == Halt::Pause && by_steps {
+            // The first integrals continue the phase.
+            self.arrives(flown.y);
+            (self.of.lossy, self.of.rolls_briefly) = (None, false);
+            self.resumes_phase();
+            self.next = Some(Next::Rolls { at_limit: false });
+            return Ok(Pause::No);
+        }
         if flown.halt == Halt::Pause {
             return Ok(Pause::Here(flow.on_the_way().enter(&flown.y), Some(flown.step)));
         }

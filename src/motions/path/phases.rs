@@ -49,6 +49,10 @@ pub(crate) struct BodyPhases {
     /// Whether a phase without a slip is integrated; otherwise the first integrals solve it, as long as no energy is
     /// lost.
     pub(super) integrates: bool,
+    /// Whether the last phase of rolling by the first integrals was brief, and whether the current one, without losses, is
+    /// integrated.
+    pub(super) rolls_briefly: bool,
+    pub(super) by_steps: bool,
     /// Whether the body is a uniform ball, whose phases are known; and their errors.
     pub(super) uniform: bool,
     pub(super) roundings: Roundings,
@@ -107,6 +111,8 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
             state: start,
             start,
             integrates: ask.table == Table::Smooth || !rolling_losses.is_none(),
+            rolls_briefly: false,
+            by_steps: false,
             uniform: !poses(N) && knows(body, ask),
             roundings: Roundings::default(),
             #[cfg(feature = "many")]

@@ -7,6 +7,7 @@ use crate::laws::contact::{Contact, Table, force};
 use crate::laws::loss::GRACE;
 use crate::laws::pose::{Angle, Pose};
 use crate::laws::state::State;
+use crate::methods::flow::Flow;
 use crate::motions::Kind;
 use crate::motions::conserved::by_first_integrals;
 use crate::motions::halt::{lost, poses};
@@ -20,6 +21,13 @@ use nalgebra::Point2;
 /// The first integrals lose their digits where the axis is nearer to the vertical than this angle: a face has landed
 /// there, and a ball is integrated.
 const LEAST: f64 = 1e-8;
+
+/// A phase of rolling that ends with a slip after less than so many radians of its rotation or nutation is brief. The next
+/// one takes fewer steps, within a tolerance of at least `BY_STEPS`, than the first integrals take work; a phase with more
+/// than `FEW_STEPS` is continued by the first integrals, since it may last for ever.
+const BRIEFLY: f64 = 20.0;
+const BY_STEPS: f64 = 3e-10;
+pub(super) const FEW_STEPS: u64 = 64;
 
 /// A hop counts as low, and is integrated, if both its height and its speed are below this.
 const LOW_HOP: f64 = 0.1;
@@ -44,7 +52,9 @@ impl<const N: usize> BodyWalk<'_, N> {
         let (body, y) = (self.of.body, self.of.state);
         let upright = y.theta.min(PI - y.theta) < LEAST;
         // A ball may pass nearer to its pole than the first integrals can follow.
-        if self.of.integrates || self.hops_low() || upright && body.is_ball() {
+        self.of.by_steps =
+            self.of.rolls_briefly && self.of.slide.tol > BY_STEPS && !upright && !self.of.planar;
+        if self.of.integrates || self.hops_low() || upright && body.is_ball() || self.of.by_steps {
             return Ok(self.begins_to_lose(mu)?.map(WalkStep::Flows));
         }
         if upright {
@@ -125,10 +135,12 @@ impl<const N: usize> BodyWalk<'_, N> {
                 self.at[9..13].copy_from_slice(&numbers);
             }
         }
+        let began = self.made.path.phases.last().map_or(f64::NEG_INFINITY, |phase| phase.time - self.t0);
         let (s, c) = event.state.theta.sin_cos();
         let State { w1, w2, w3, .. } = event.state;
         self.at[..8].copy_from_slice(&[s, c, w1, w2, w3, 0.0, 0.0, event.time]);
         self.of.state = event.state;
+        self.of.rolls_briefly = 3.0 * (event.time - began) < BRIEFLY * self.of.slide.calm(&self.at);
         let next = match event.ending {
             Ending::Slip if rubs => after_rest(Phases::lets_go(self)),
             ending => Next::Ends(ending),

@@ -51,7 +51,7 @@ const WORTHWHILE: f64 = 30.0;
 const SPEEDS: usize = 64;
 
 /// Number of parts of a series between which margins are checked.
-const CHECKS: usize = 16;
+const CHECKS: usize = 8;
 /// Largest number of halvings of a series that is too long for its margins.
 const HALVINGS: u32 = 60;
 
@@ -215,9 +215,11 @@ impl<const K: usize> SlowSlips<K> {
             if sweep > 0 && off * (off / moved).min(1.0) <= 0.1 * self.tol.max(1e-13) {
                 break settling;
             }
+            // At this rate the changes would not become small enough in the sweeps that are left.
+            let least = if sweep > 1 { off * (off / moved).powi(MOST_SWEEPS - sweep) } else { 0.0 };
             moved = off;
             sweep += 1;
-            if off.is_nan() || sweep > MOST_SWEEPS {
+            if off.is_nan() || sweep > MOST_SWEEPS || least > self.tol.max(1e-13) {
                 return None;
             }
             // A Newton step moves the direction towards the solution of f = r alpha'.

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! y = (s, c, w1, w2, w3, u_h, u_2, t, heat; phi, psi, x, y)        in sigma, dt = |u|/(|u| + soft) dsigma
-//! u = 0   reached as exp(-sigma); the last 1e-13 is extrapolated linearly
+//! u = 0   reached as exp(-sigma); the last part, below a hundredth of a tolerance, is extrapolated linearly
 //! N0 = 0,   eps = 1,   theta = 0,   theta = theta_end                margins that turn negative
 //! ```
 //! [`rk8`] takes the steps. A margin that becomes negative within a step, even if it is positive again at the
@@ -33,6 +33,11 @@ pub(crate) use lossy::ways;
 /// The halts of the margins, in the order of the margins.
 const SLIP_ENDS: [Halt; MARGINS] =
     [Halt::Face, Halt::Side, Halt::LiftOff, Halt::Jam, Halt::Contour, Halt::Drilling];
+
+/// Error of the end of a slip that is extrapolated, in tolerances.
+const AT_ONCE: f64 = 0.01;
+/// Angle by which a direction beside that of a slip differs from it.
+const BESIDE: f64 = 1e-3;
 
 /// Sine of theta at which a slipping face has landed if it comes down by infinitely many turns. It is smaller
 /// than `FLAT`, since the time of the landing is extrapolated from the last turns.
@@ -88,6 +93,37 @@ impl Slide {
     /// The speed below which a slip counts as zero.
     pub fn over(&self) -> f64 {
         self.law.patch().map_or(slip_over(self.law.dry, self.law.strength), rests_below)
+    }
+
+    /// Whether the rest of the slip is so short that a linear extrapolation to its end has an error below `AT_ONCE`
+    /// tolerances: the square of the angle by which the body turns meanwhile, and its product with the angle by which
+    /// the slip turns.
+    #[inline(never)]
+    fn ends_at_once<const N: usize>(&self, place: &FlowPlace<N>) -> bool {
+        let ([u, v], [du, dv]) = ([5, 6].map(|i| place.y[i]), [5, 6].map(|i| place.rate[i]));
+        let (square, pace) = (u * u + v * v, place.rate[TIME]);
+        let left = square / -(u * du + v * dv);
+        let allowed = AT_ONCE * self.tol;
+        // `turns` is at least `pace`.
+        if !(left > 0.0 && left * pace * (left * pace) < allowed) {
+            return false;
+        }
+        let falls = (place.y[3] / place.y[0]).abs();
+        let turns = (3.0 / self.calm(&place.y)).max(falls) * pace;
+        let bends = (u * dv - v * du).abs() / square;
+        left * turns * (left * turns.max(bends)) < allowed && self.keeps_way(&place.y)
+    }
+
+    /// Whether a slip returns to its direction. A slip that leaves its direction the faster, the slower it is, may pass
+    /// by zero, however near.
+    fn keeps_way<const N: usize>(&self, y: &[f64; N]) -> bool {
+        let [s, c, w1, w2, w3, u, v] = core::array::from_fn(|i| y[i]);
+        let turns = |by: f64| {
+            let (u, v) = (u - by * v, v + by * u);
+            let at = self.acts((s, c), [w1, w2, w3], [u, v]).u;
+            u * at[1] - v * at[0]
+        };
+        !self.settled && turns(BESIDE) < turns(-BESIDE)
     }
 
     /// The energy of the body with these numbers.
@@ -354,7 +390,11 @@ impl Flow<MARGINS> for Slide {
         if self.law.patch().is_some() {
             return self.hardly_rubs(place);
         }
-        if self.sticks { vanished(place, self.over()).map(|y| (Halt::Standstill, y)) } else { None }
+        if !self.sticks {
+            return None;
+        }
+        let over = if self.ends_at_once(place) { f64::INFINITY } else { self.over() };
+        vanished(place, over).map(|y| (Halt::Standstill, y))
     }
 
     fn slows<const N: usize>(&self, halt: Halt, place: &FlowPlace<N>) -> f64 {
