@@ -4,6 +4,7 @@ use crate::common::{numbers, path_of, wander};
 use core::f64::consts::FRAC_PI_2;
 use spincyl::contact::{Friction, TableKind};
 use spincyl::ensemble::{Answer, Job, MotionOutput, MotionStarts, SUMMARIES, Summary, roll};
+use spincyl::motion::path::Kind;
 use spincyl::motion::{Ask, Ending, Method, Motion, Start, roll_with};
 use spincyl::{Body, Error, State, steady};
 
@@ -167,6 +168,44 @@ fn side_by_side_under_dry_friction_a_motion_is_what_it_is_alone() {
         }
     }
     assert!(known > 150 && kinds[0] > 50, "{known} {refused} {kinds:?}");
+}
+
+#[test]
+fn a_slip_that_passes_by_zero_goes_on_although_static_friction_would_hold_it() {
+    // The speed falls to 4e-8, in a direction from which the slip turns away the faster, the slower it is.
+    let body = Body::new(2.808382141997093, 2.901021546484324, 0.5440362559765276).unwrap();
+    let y = State {
+        theta: 1.3575242077105927,
+        w1: 1.678034898772723,
+        w2: -0.19962088694986957,
+        w3: 4.712563243361215,
+    };
+    let scene = (body, y, [0.09500249511438211, 0.13338357427089176]);
+    for tol in [1e-5, 1e-6, 1e-7, 1e-8] {
+        let m = alone(&scene, &Job { tol, ..Job::new(&[12.0]) }).unwrap();
+        assert!(path_of(&m).phases.len() == 1 && m.error < 1e3 * tol, "{tol:e}: {:e}", m.error);
+    }
+}
+
+#[test]
+fn rolling_between_slips_takes_steps_and_rolling_for_ever_none() {
+    let mut count = 0;
+    for scene in scenes(240, 44) {
+        let run = |tol: f64, until: f64| alone(&scene, &Job { tol, ..Job::new(&[until]) });
+        let Ok(m) = run(1e-8, 300.0) else { continue };
+        let phases = &path_of(&m).phases;
+        let Some(last) = phases.last() else { continue };
+        if phases.len() < 3 || m.event.is_some() || last.kind != Kind::Rolling || last.time > 60.0 {
+            continue;
+        }
+        let [fine, later] = [run(1e-12, 300.0), run(1e-8, 3e4)].map(Result::unwrap);
+        assert_eq!(later.evaluations, m.evaluations, "{scene:?}");
+        let off = numbers(&m.states[0]).into_iter().zip(numbers(&fine.states[0])).map(|(a, b)| (a - b).abs());
+        let off = off.fold(0.0, f64::max);
+        assert!(off <= m.error + fine.error, "{off:e} of {:e}, {scene:?}", m.error);
+        count += 1;
+    }
+    assert!(count > 5, "{count}");
 }
 
 #[test]

@@ -36,6 +36,8 @@ const SLIP_ENDS: [Halt; MARGINS] =
 
 /// Error of the end of a slip that is extrapolated, in tolerances.
 const AT_ONCE: f64 = 0.01;
+/// Largest angle by which such a slip still turns.
+const STRAIGHT: f64 = 1e-3;
 /// Angle by which a direction beside that of a slip differs from it.
 const BESIDE: f64 = 1e-3;
 
@@ -111,7 +113,8 @@ impl Slide {
         let falls = (place.y[3] / place.y[0]).abs();
         let turns = (3.0 / self.calm(&place.y)).max(falls) * pace;
         let bends = (u * dv - v * du).abs() / square;
-        left * turns * (left * turns.max(bends)) < allowed && self.keeps_way(&place.y)
+        let small = left * turns * (left * turns.max(bends)) < allowed;
+        small && left * bends < STRAIGHT && self.keeps_way(&place.y)
     }
 
     /// Whether a slip returns to its direction. A slip that leaves its direction the faster, the slower it is, may pass
