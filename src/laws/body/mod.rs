@@ -329,6 +329,11 @@ impl Body {
         self.fillet == 1.0
     }
 
+    /// Whether the body is a ball with equal moments and its centre of mass in its centre, on any part of which it rolls.
+    pub(crate) fn is_uniform_ball(&self) -> bool {
+        self.is_ball() && self.ell() == 0.0 && self.i1() == self.i3() && self.theta_end() >= PI
+    }
+
     /// The largest inclination for which steady states are computed; for a sharp rim at most pi/2, as in the paper.
     pub(crate) fn range(&self) -> f64 {
         if self.is_sharp() { self.theta_end.min(FRAC_PI_2) } else { self.theta_end }

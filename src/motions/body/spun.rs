@@ -19,7 +19,6 @@ use crate::laws::contact::Table;
 use crate::laws::contact::slip::Friction;
 use crate::laws::state::{drilling_of, rolling_of};
 use crate::motions::Ask;
-use core::f64::consts::PI;
 
 /// Roundings of the numbers of one phase.
 pub(crate) const OF_A_PHASE: f64 = 8.0;
@@ -38,12 +37,7 @@ pub(crate) fn knows(body: &Body, ask: &Ask) -> bool {
         Table::Rubs(Friction::Coulomb { patch, .. }) => patch == 0.0,
         Table::Rubs(Friction::Viscous { .. }) => false,
     };
-    is_uniform(body) && dry && !ask.pose && ask.losses.is_none()
-}
-
-/// Whether the body is a ball with equal moments and its centre of mass in its centre, on any part of which it rolls.
-pub(crate) fn is_uniform(body: &Body) -> bool {
-    body.is_ball() && body.ell() == 0.0 && body.i1() == body.i3() && body.theta_end() >= PI
+    body.is_uniform_ball() && dry && !ask.pose && ask.losses.is_none()
 }
 
 /// The errors of a motion whose phases are known: roundings of the speeds so far, the error of the axis, and that of the

@@ -19,7 +19,6 @@ pub(crate) mod slow;
 use super::face::FLAT;
 use super::pole;
 use super::roll::lossy::REST;
-use super::spun::is_uniform;
 use crate::laws::body::{Body, Rim, Shape, landing_angle};
 use crate::laws::contact::slip::{Friction, SlipResponse, Slipping};
 use crate::laws::loss::{Couples, Holds, Losses};
@@ -95,7 +94,7 @@ impl Slide {
             sticks: law.dry,
             flat,
             settled: false,
-            dies: law.patch().is_some() && is_uniform(body) && losses.is_none(),
+            dies: law.patch().is_some() && body.is_uniform_ball() && losses.is_none(),
             died: false,
             rolls_off: false,
             sure: 0.0,
