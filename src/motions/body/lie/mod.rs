@@ -200,7 +200,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         let other = speeds[1] < speeds[0];
         let [slow, fast] = if other { [speeds[1], speeds[0]] } else { speeds };
         let slow = slow + w2.abs();
-        if !flow.law.dry || !(slow < ROCKS_BESIDE * fast && slow < ROCKS_ON) {
+        if !(flow.law.dry && slow < ROCKS_BESIDE * fast && slow < ROCKS_ON) {
             return None;
         }
         let (begin, state) = (self.at, self.of.state);
