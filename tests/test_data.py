@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import spincyl as sc
-from spincyl.data import _cells, _tracker
+from spincyl.lab import _cells, _tracker
 
 CYLINDER = sc.Body.solid(2.5)
 

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import spincyl as sc
-from spincyl.data import _contents, _tracker
+from spincyl.lab import _contents, _tracker
 
 INCH = 25.4e-3
 TUBE = sc.Body.from_metres(outer_diameter=0.625 * INCH, inner_diameter=0.5 * INCH, length=3.75 * INCH)
