@@ -105,6 +105,44 @@ def test_only_the_rim_knows_where_a_body_touches():
     assert {file: len(lines) for file, lines in found.items() if lines} == expected, found
 
 
+# The angular velocities of the drilling, of the rolling and of the contact point.
+
+SINE, COSINE = r"\b(?:\w+\.)*(?:s|sin|angle\.0)\b", r"\b(?:\w+\.)*(?:c|cos|angle\.1)\b"
+FIRST, THIRD = r"(?:\w+\.)*(?:w1|w\[0\]|d1)(?!\w)", r"(?:\w+\.)*(?:w3|w\[2\]|d3)(?!\w)"
+ANGULAR = re.compile(
+    rf"{SINE} \* {FIRST} \+ {COSINE} \* {THIRD}|{COSINE} \* {FIRST} - {SINE} \* {THIRD}"
+    rf"|{THIRD} - {COSINE} / {SINE} \* {FIRST}"
+)
+
+
+@pytest.mark.parametrize(
+    "line", ["let q = s * w1 + c * w3;", "c * y.w1 - s * y.w3", "w[2] - angle.1 / angle.0 * w[0]"]
+)
+def test_an_angular_velocity_of_the_contact_is_known_in_any_spelling(line):
+    assert ANGULAR.search(line)
+
+
+def test_w_z_w_h_and_the_spin_have_one_home():
+    found = {name(path): sum(bool(ANGULAR.search(line)) for _, line in code(path)) for path in SOURCES}
+    assert found.pop("laws/state.rs") == 3
+    assert not {file: count for file, count in found.items() if count}
+
+
+# The numbers of a motion, which have names.
+
+INDEX = re.compile(r"\b(?:y|at|all|rates|begin|shown|rests|place\.rate)\[\d+\]")
+#: Rooms of motions, and how many bare indices they may have: those of short arrays, of quaternions, and of the numbers
+#: of a flight and of a lane.
+BARE = {"body": 43, "walk": 17, "custom": 0, "stone": 24}
+
+
+@pytest.mark.parametrize("room", BARE)
+def test_the_numbers_of_a_motion_have_names(room):
+    files = sorted((SRC / "motions" / room).glob("**/*.rs"))
+    assert files
+    assert sum(len(INDEX.findall(line)) for path in files for _, line in code(path)) <= BARE[room]
+
+
 # Names of types.
 
 TYPE = re.compile(

@@ -14,7 +14,7 @@ use crate::laws::contact::{Contact, Table, force, patch};
 use crate::laws::state::{State, drilling_of};
 use crate::motions::ask::row::OutputRow;
 use crate::motions::walk::errors::doubted;
-use crate::motions::walk::numbers::{HEAT, Halt, TIME, lost};
+use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, Halt, SIN, TIME, W1, W3, lost};
 use crate::motions::walk::two_runs::Followed;
 use crate::motions::{Kind, Limit};
 
@@ -118,8 +118,8 @@ impl<const N: usize> BodyWalk<'_, N> {
         self.rounds(length, angle, if over { 0.0 } else { spun.fastest * end / fast });
         let mut y = self.numbers(&at, now + length, heat(length));
         if !over {
-            let drilling = drilling_of((y[0], y[1]), y[2], y[4]);
-            (y[2], y[4]) = (y[2] - y[0] * drilling, y[4] - y[1] * drilling);
+            let drilling = drilling_of(y.angle(), y[W1], y[W3]);
+            (y[W1], y[W3]) = (y[W1] - y[SIN] * drilling, y[W3] - y[COS] * drilling);
         }
         self.slip_ends(y, if over { Halt::Time } else { Halt::Standstill });
     }

@@ -9,7 +9,9 @@
 //!
 //! Error: the slip that is left out, at most DRILLS eps, and the couple times the time in which w.n passes DRILLS.
 
-use super::flow::{HOLD, STONE_MARGINS, Seen, StoneFlow, Touch, slip_of};
+use super::flow::{
+    HOLD, SLID_X, SLID_Y, STONE_HEAT, STONE_MARGINS, Seen, StoneFlow, StoneNumbers, Touch, slip_of,
+};
 use crate::laws::contact::patch;
 use crate::laws::stone::law::{laboratory, turning};
 use crate::methods::flow::{Flow, FlowPlace};
@@ -33,7 +35,7 @@ impl StoneFlow<'_> {
     }
 
     pub(super) fn drilling<const N: usize>(&self, y: &[f64; N]) -> f64 {
-        dot(self.seen_at(y).at.n, [y[4], y[5], y[6]])
+        dot(self.seen_at(y).at.n, y.omega())
     }
 
     /// The speeds of the patch, with slopes in sigma; None for a point, and if the contact point is at rest.
@@ -50,7 +52,7 @@ impl StoneFlow<'_> {
         let (radius, rubbing) = (self.law.patch()?, self.rubbing(place)?);
         let left = rubbing.left(place.rate[TIME]);
         let mut rests: [f64; N] = core::array::from_fn(|i| place.y[i] + left * place.rate[i]);
-        (rests[8], rests[9]) = (0.0, 0.0);
+        (rests[SLID_X], rests[SLID_Y]) = (0.0, 0.0);
         rubbing.comes_to_rest(radius).then(|| (Halt::Standstill, self.kept(rests)))
     }
 
@@ -123,7 +125,7 @@ impl StoneFlow<'_> {
     pub(super) fn follows_within<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
         let ([u, v], turn) = (slip_of(&place.y), self.law.patch().unwrap_or(0.0) * self.drilling(&place.y));
         let eased = 4.0 * self.law.soft / self.law.strength;
-        stable_time([u, v, turn], place.rate[10] / place.rate[TIME], eased)
+        stable_time([u, v, turn], place.rate[STONE_HEAT] / place.rate[TIME], eased)
     }
 
     /// An implicit step and its stages.

@@ -30,6 +30,38 @@ pub(super) const STONE_MARGINS: usize = 4;
 pub(super) const WITHOUT_POSE: usize = 8;
 pub(super) const ALL: usize = 13;
 pub(super) const LOSING: usize = 14;
+/// The indices of the numbers of a stone's slip, its heat and the place of its contact point.
+pub(super) const SLID_X: usize = 8;
+pub(super) const SLID_Y: usize = 9;
+pub(super) const STONE_HEAT: usize = 10;
+pub(super) const STONE_X: usize = 11;
+pub(super) const STONE_Y: usize = 12;
+
+/// The numbers of a stone's motion that belong together.
+pub(super) trait StoneNumbers<T> {
+    /// The orientation.
+    fn quaternion(&self) -> [T; 4];
+    /// The angular velocity along the axes of the stone.
+    fn omega(&self) -> [T; 3];
+    /// The slip along x and y of the laboratory.
+    fn slid(&self) -> [T; 2];
+}
+
+impl<T: Copy, const N: usize> StoneNumbers<T> for [T; N] {
+    #[inline(always)]
+    fn quaternion(&self) -> [T; 4] {
+        [self[0], self[1], self[2], self[3]]
+    }
+    #[inline(always)]
+    fn omega(&self) -> [T; 3] {
+        [self[4], self[5], self[6]]
+    }
+    #[inline(always)]
+    fn slid(&self) -> [T; 2] {
+        [self[SLID_X], self[SLID_Y]]
+    }
+}
+
 /// A minimum of a margin is recorded if it is below this many tolerances of a step: the errors of a motion
 /// that counts as known may be that large.
 const NEAR_END: f64 = 1e7;
@@ -158,7 +190,7 @@ impl StoneFlow<'_> {
 
     /// The quantities whose zeros end the phase, in the state with the numbers `y`.
     pub fn margins_at<const N: usize>(&self, y: &[f64; N]) -> [f64; STONE_MARGINS] {
-        let (seen, w) = (self.seen_at(y), [y[4], y[5], y[6]]);
+        let (seen, w) = (self.seen_at(y), y.omega());
         self.on_patch(self.margins_of::<_, N>(&self.law, &seen, w), (&seen, w), self.grips(y))
     }
 
@@ -187,8 +219,8 @@ impl StoneFlow<'_> {
             let pulled = self.law.pulled(&at, w, across(&lab, way));
             rates[..4].copy_from_slice(&turning([a, b, c, d], w));
             rates[4..8].copy_from_slice(&[pulled.w[0], pulled.w[1], pulled.w[2], 1.0]);
-            (rates[8], rates[9]) = (growth * way[0], growth * way[1]);
-            (rates[11], rates[12]) = (dot(lab[0], at.r_rate), dot(lab[1], at.r_rate));
+            (rates[SLID_X], rates[SLID_Y]) = (growth * way[0], growth * way[1]);
+            (rates[STONE_X], rates[STONE_Y]) = (dot(lab[0], at.r_rate), dot(lab[1], at.r_rate));
             if let Some(lost) = at.lost.filter(|_| loses(N)) {
                 rates[N - 1] = -dot(lost.under(dot(pulled.force, at.n).max(0.0)), w);
             }
@@ -212,8 +244,12 @@ impl StoneFlow<'_> {
     pub fn pose<const N: usize>(&self, y: &[f64; N], still: [f64; 2]) -> StonePose {
         let Seen { lab, at, .. } = self.seen_at(y);
         let [x, y_r, z] = lab.map(|axis| -dot(axis, at.r));
-        let point = if self.touch == Touch::Smooth { [still[0] - x, still[1] - y_r] } else { [y[11], y[12]] };
-        StonePose::new([y[0], y[1], y[2], y[3]], point, [point[0] + x, point[1] + y_r, z])
+        let point = if self.touch == Touch::Smooth {
+            [still[0] - x, still[1] - y_r]
+        } else {
+            [y[STONE_X], y[STONE_Y]]
+        };
+        StonePose::new(y.quaternion(), point, [point[0] + x, point[1] + y_r, z])
     }
 }
 
@@ -228,7 +264,7 @@ fn unit<T: Real>(q: [T; 4]) -> [T; 4] {
 /// The state with these numbers.
 pub(super) fn state<const N: usize>(y: &[f64; N]) -> StoneState {
     let [a, b, c, d] = core::array::from_fn(|i| y[i]);
-    StoneState { vertical: laboratory([a, b, c, d])[2], w: [y[4], y[5], y[6]] }
+    StoneState { vertical: laboratory([a, b, c, d])[2], w: y.omega() }
 }
 
 /// The spin from these numbers and their rates.
@@ -240,7 +276,7 @@ pub(super) fn spot<const N: usize>(y: &[f64; N], rate: &[f64; N]) -> Spot {
 /// The slip among these numbers; zero if they have none.
 #[inline(always)]
 pub(super) fn slip_of<const N: usize>(y: &[f64; N]) -> [f64; 2] {
-    if N >= ALL { [y[8], y[9]] } else { [0.0; 2] }
+    if N >= ALL { y.slid() } else { [0.0; 2] }
 }
 
 /// The slip in the outputs: its components in the laboratory frame in which the stone has the orientation of
@@ -250,7 +286,7 @@ pub(super) fn output_slip<const N: usize>(y: &[f64; N]) -> [f64; 2] {
     if slip == [0.0; 2] {
         return slip;
     }
-    let u = across(&laboratory([y[0], y[1], y[2], y[3]]), slip);
+    let u = across(&laboratory(y.quaternion()), slip);
     let [x, y, _] = laboratory(state(y).orientation());
     [dot(x, u), dot(y, u)]
 }
@@ -269,22 +305,22 @@ impl Flow<STONE_MARGINS> for StoneFlow<'_> {
     #[inline(always)]
     fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {
         let Seen { lab, at, to, pace } = self.seen_at(y);
-        let w = [y[4], y[5], y[6]];
-        let [a, b, c, d] = turning([y[0], y[1], y[2], y[3]], w);
+        let w = y.omega();
+        let [a, b, c, d] = turning(y.quaternion(), w);
         let [e, f, g] = to.w;
         all[..WITHOUT_POSE].copy_from_slice(&[a, b, c, d, e, f, g, 1.0]);
         if N >= ALL {
             all[8..].fill(0.0);
             if self.touch == Touch::Slips {
                 let (u, rate) = (slip_of(y), self.law.slip_rate(&at, w, &to));
-                (all[8], all[9]) = (dot(lab[0], rate), dot(lab[1], rate));
-                all[10] = -(u[0] * dot(lab[0], to.force) + u[1] * dot(lab[1], to.force));
+                (all[SLID_X], all[SLID_Y]) = (dot(lab[0], rate), dot(lab[1], rate));
+                all[STONE_HEAT] = -(u[0] * dot(lab[0], to.force) + u[1] * dot(lab[1], to.force));
                 if self.law.patch().is_some() {
-                    all[10] -= to.couple * dot(w, at.n);
+                    all[STONE_HEAT] -= to.couple * dot(w, at.n);
                 }
-                (all[11], all[12]) = (u[0] + dot(lab[0], at.r_rate), u[1] + dot(lab[1], at.r_rate));
+                (all[STONE_X], all[STONE_Y]) = (u[0] + dot(lab[0], at.r_rate), u[1] + dot(lab[1], at.r_rate));
             } else if self.rests() {
-                (all[11], all[12]) = (dot(lab[0], at.r_rate), dot(lab[1], at.r_rate));
+                (all[STONE_X], all[STONE_Y]) = (dot(lab[0], at.r_rate), dot(lab[1], at.r_rate));
             }
         }
         if let Some(lost) = at.lost.filter(|_| loses(N)) {
@@ -343,7 +379,7 @@ impl Flow<STONE_MARGINS> for StoneFlow<'_> {
     }
 
     fn calm<const N: usize>(&self, y: &[f64; N]) -> f64 {
-        let turning = [y[4], y[5], y[6]].iter().fold(1.0, |most: f64, x| most.max(x.abs()));
+        let turning = y.omega().iter().fold(1.0, |most: f64, x| most.max(x.abs()));
         3.0 / turning
     }
 
@@ -401,9 +437,9 @@ impl Flow<STONE_MARGINS> for StoneFlow<'_> {
         let left = if speed > 0.0 { speed / slowing } else { 0.0 };
         let mut y: [f64; N] = core::array::from_fn(|i| place.y[i] + left * place.rate[i]);
         // A tiny slip remains, whose direction determines the friction at this time.
-        (y[8], y[9]) = (u[0] / speed * ALMOST_NONE, u[1] / speed * ALMOST_NONE);
+        (y[SLID_X], y[SLID_Y]) = (u[0] / speed * ALMOST_NONE, u[1] / speed * ALMOST_NONE);
         if speed == 0.0 {
-            (y[8], y[9]) = (0.0, 0.0);
+            (y[SLID_X], y[SLID_Y]) = (0.0, 0.0);
         }
         Some((Halt::Standstill, y))
     }

@@ -12,7 +12,7 @@
 //!
 //! Error: a stone that begins to roll gets the speed 2 `REST`.
 
-use super::flow::{Seen, StoneFlow, Touch, slip_of};
+use super::flow::{Seen, StoneFlow, StoneNumbers, Touch, slip_of};
 use crate::laws::contact::patch::rubs;
 use crate::laws::contact::together::{Resting, Together};
 use crate::laws::loss::{Couple, Holds, Law, NEAR, Ways, rounded};
@@ -72,7 +72,7 @@ impl StoneFlow<'_> {
 
     /// The derivative of that speed with respect to time.
     pub(super) fn rolling_growth<const N: usize>(&self, y: &[f64; N]) -> f64 {
-        let (Seen { at, to, .. }, w) = (self.seen_at(y), [y[4], y[5], y[6]]);
+        let (Seen { at, to, .. }, w) = (self.seen_at(y), y.omega());
         let rolling = rolling_of(at.n, w);
         dot(rolling, to.w) / dot(rolling, rolling).sqrt()
     }
@@ -121,7 +121,7 @@ impl StoneFlow<'_> {
     /// The motion that friction ceases to hold where the margin of the drilling fails; None if the drilling stops.
     pub(super) fn known<const N: usize>(&self, y: &[f64; N]) -> Option<(Resting, bool)> {
         let Holds { drilling, rolling, .. } = self.holds();
-        let margins = Self::held_margins(&self.law, &self.seen_at(y), [y[4], y[5], y[6]]);
+        let margins = Self::held_margins(&self.law, &self.seen_at(y), y.omega());
         if rolling && margins[1] <= margins[0] {
             Some((Resting::Rolling, true))
         } else {
@@ -158,7 +158,7 @@ impl StoneFlow<'_> {
                 losses.sets(Law::RollingResistance, 0.0);
             }
         }
-        let (lab, w) = (laboratory(core::array::from_fn(|i| y[i])), [y[4], y[5], y[6]]);
+        let (lab, w) = (laboratory(core::array::from_fn(|i| y[i])), y.omega());
         let at = law.losing(law.touching(lab[2], w), &lab, w);
         let (mu, u) = (self.law.strength, slips.unwrap_or([0.0; 2]));
         let size = u[0].hypot(u[1]);
@@ -241,7 +241,7 @@ impl StoneFlow<'_> {
     pub(super) fn seen_towards<const N: usize>(&self, y: &[f64; N], way: [f64; 2]) -> Seen<f64> {
         let mut seen = self.seen_at(y);
         if self.touch == Touch::Slips && self.law.dry && slip_of(y) == [0.0; 2] {
-            seen.to = self.law.pulled(&seen.at, [y[4], y[5], y[6]], across(&seen.lab, way));
+            seen.to = self.law.pulled(&seen.at, y.omega(), across(&seen.lab, way));
         }
         seen
     }
@@ -257,7 +257,7 @@ impl StoneFlow<'_> {
         let growth = self.rolling_growth(y);
         let back = || {
             let (mut back, n) = (*y, self.seen_at(y).at.n);
-            let rolling = rolling_of(n, [y[4], y[5], y[6]]);
+            let rolling = rolling_of(n, y.omega());
             (0..3).for_each(|i| back[4 + i] -= 2.0 * rolling[i]);
             self.rolling_growth(&back)
         };

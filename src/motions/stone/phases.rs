@@ -1,6 +1,8 @@
 //! The phases of a stone: their beginnings, their flows and their ends.
 
-use super::flow::{HOLD, Seen, StoneFlow, Touch, WITHOUT_POSE, output_slip, spot, state};
+use super::flow::{
+    HOLD, SLID_X, SLID_Y, Seen, StoneFlow, StoneNumbers, Touch, WITHOUT_POSE, output_slip, spot, state,
+};
 use super::known::Recorded;
 use super::loses::{HARDLY_ROLLS, REST};
 use super::slow::StoneSlips;
@@ -108,8 +110,7 @@ impl<'a, 'n, const N: usize> StoneWalk<'a, 'n, N> {
     /// The forces at a contact point at rest, which decide whether it sticks.
     fn rest(&self) -> HeldContact<impl Fn(f64) -> Option<f64>> {
         let law = self.of.flow.law;
-        let (lab, w) =
-            (laboratory(core::array::from_fn(|i| self.at[i])), [self.at[4], self.at[5], self.at[6]]);
+        let (lab, w) = (laboratory(core::array::from_fn(|i| self.at[i])), self.at.omega());
         let at = law.losing(law.touching(lab[2], w), &lab, w);
         let free = law.pulled(&at, w, [0.0; 3]);
         let held = law.rolling(&at, w).force;
@@ -192,7 +193,7 @@ impl<'a, 'n, const N: usize> StoneWalk<'a, 'n, N> {
             }
             Halt::Drilling | Halt::Rests => Next::SlipsOn,
             Halt::Slips if let Some(slip) = self.of.flow.creeps(&self.at).filter(|_| rubs) => {
-                (self.at[8], self.at[9]) = (slip[0], slip[1]);
+                (self.at[SLID_X], self.at[SLID_Y]) = (slip[0], slip[1]);
                 self.claims(LOST_DRILLING * self.of.flow.drilling(&self.at).abs());
                 self.forgets_a_moment(self.at[TIME]);
                 Next::Slips
@@ -283,7 +284,7 @@ impl<'a, 'n, const N: usize> StoneWalk<'a, 'n, N> {
                 break;
             }
         }
-        recorded.borrow_mut().grazes.push([self.at[7], room]);
+        recorded.borrow_mut().grazes.push([self.at[TIME], room]);
     }
 }
 
@@ -318,7 +319,7 @@ impl<'n, const N: usize> Phases<N> for StonePhases<'n> {
             if loses(N) {
                 // Rolling, rocking or drilling that is zero stays zero.
                 let (before, after) = (walk.of.flow.seen_at(&y).lab, walk.of.flow.seen_at(&walk.at).lab);
-                let [a, b, c] = before.map(|axis| dot(axis, [y[4], y[5], y[6]]));
+                let [a, b, c] = before.map(|axis| dot(axis, y.omega()));
                 let w = plus(across(&after, [a * up, b * down]), c * up, after[2]);
                 walk.at[4..7].copy_from_slice(&w);
             }

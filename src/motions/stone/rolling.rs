@@ -7,6 +7,7 @@
 //! their code is ten times as long. Error: from a second run with a larger tolerance and other steps;
 //! `tests/laws/stone.rs` compares it with `roll`.
 
+use super::flow::StoneNumbers;
 use super::phases::ROUGH_STRIDE;
 use crate::error::{Error, within};
 use crate::laws::stone::Ellipsoid;
@@ -115,9 +116,9 @@ impl FreeRolling {
         let mut write = |y: &[f64; N]| {
             let (mut rate, y) = (*y, &self.kept(*y));
             let (vertical, normal) = self.rates_of(y, &mut rate);
-            let state = StoneState { vertical, w: [y[4], y[5], y[6]] };
+            let state = StoneState { vertical, w: y.omega() };
             let rates = ([rate[0], rate[1], rate[2], rate[3]], [rate[7], rate[8]]);
-            let (orientation, centre) = ([y[0], y[1], y[2], y[3]], [y[7], y[8]]);
+            let (orientation, centre) = (y.quaternion(), [y[7], y[8]]);
             rows.push(RollingStone { time: y[FREE_TIME], orientation, centre, rates, state, normal });
         };
         let flown = self.run_whole(self.place(y), steps, times, &mut write, go_on)?;
@@ -196,6 +197,6 @@ impl Flow<0> for FreeRolling {
         y
     }
     fn theta<const M: usize>(&self, y: &[f64; M]) -> f64 {
-        laboratory([y[0], y[1], y[2], y[3]])[2][2].acos()
+        laboratory(y.quaternion())[2][2].acos()
     }
 }

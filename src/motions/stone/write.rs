@@ -1,6 +1,6 @@
 //! The outputs of a stone: states, poses and forces from its numbers.
 
-use super::flow::{StoneFlow, Touch, output_slip, state};
+use super::flow::{SLID_X, SLID_Y, STONE_HEAT, StoneFlow, Touch, output_slip, state};
 use crate::laws::stone::StoneState;
 use crate::methods::flow::Flow;
 use crate::motions::Ask;
@@ -25,13 +25,15 @@ pub(super) fn write<const N: usize>(
             0..=3 => flow.tol,
             4..=6 => by_speed,
             // An almost vanishing slip keeps its direction, so that its error does not change the friction.
-            8 | 9 if flow.touch == Touch::Slips && y[8].hypot(y[9]) > flow.over() => by_speed * 1e-3,
+            8 | 9 if flow.touch == Touch::Slips && y[SLID_X].hypot(y[SLID_Y]) > flow.over() => {
+                by_speed * 1e-3
+            }
             _ => 0.0,
         });
         let (force, off) = doubted_of(y, known, |y| flow.force(y, way).into());
         (Vector3::from(force), off)
     });
     let kind = if flow.rests() { Kind::Rolling } else { Kind::Slipping };
-    let row = OutputRow::on_table(state(y), output_slip(y), [y[10], lost(y)], kind);
+    let row = OutputRow::on_table(state(y), output_slip(y), [y[STONE_HEAT], lost(y)], kind);
     made.push(OutputRow { pose, force, ..row });
 }

@@ -15,6 +15,7 @@ use crate::laws::body::{Shape, landing_angle};
 use crate::laws::contact::grip;
 use crate::laws::contact::lossy::{Acted, Held, Lossy};
 use crate::laws::loss::{COUNT, Couples, Law, Ways, going};
+use crate::laws::state::drilling_of;
 use crate::methods::rk8;
 use crate::motions::body::face::lands_at;
 use crate::motions::dry::settled::{CLOSE, SLOWER};
@@ -127,7 +128,8 @@ impl<T: Real> LossyUnheld<T> {
         let contour = losses.has(Law::DryContour);
         let contour = if contour { going(ways.contour, w3 - c * precession, exactly) } else { one };
         let drilling = losses.has(Law::Drilling);
-        let drilling = if drilling { going(ways.drilling, s * w[0] + c * w3, exactly) } else { one };
+        let drilling =
+            if drilling { going(ways.drilling, drilling_of((s, c), w[0], w3), exactly) } else { one };
         let [normal, along, across] = acted.force;
         let held = grip(self.mu, normal, along * along + across * across);
         let held = self.mu.select_lt(one.splat(f64::MAX), held, one);

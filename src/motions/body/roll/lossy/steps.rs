@@ -94,7 +94,7 @@ impl LossyFlow {
         (seen[2], seen[4]) = (w[0], w[2]);
         rates[2..5].copy_from_slice(&self.response(angle, precession, w, self.held(0.0)).w);
         let mut there = pole::passed(&seen, &rates)?;
-        there[2] *= there[0];
+        there[P] *= there[SIN];
         Some(there)
     }
 
