@@ -21,7 +21,7 @@ FALLING = sc.custom.Friction(lambda u: 0.1 + 0.2 / (1 + u * u))
 def test_a_drag_written_as_a_function_moves_a_coin_as_the_librarys_does():
     own = sc.custom.Couple(lambda theta, w, normal: -0.01 * w)
     ours = sc.roll(COIN, START, T, losses=sc.loss.AirLinear(0.01), want=("pose", "force"))
-    for tol, most in ((None, 1e-9), (1e-13, 1e-12)):
+    for tol, most in ((None, 1e-9), (1e-13, 2e-12)):
         m = sc.roll(COIN, START, T, losses=own, tol=tol, want=("pose", "force"))
         assert abs(m.w - ours.w).max() < m.error + ours.error < most
         assert abs(m.work_lost - ours.work_lost).max() < 10 * most
@@ -343,24 +343,25 @@ def test_a_result_does_not_contain_a_law_of_your_own():
 
 
 def test_a_sweep_under_a_law_of_your_own_stops_where_rolling_begins():
-    slides = sc.State([0.5, 0.6], 0.0, 0.0, 3.0, slip=(0.1, 0.0))
+    tube = sc.Body.tube(6.0, bore=0.8)
+    slides = tube.with_centre_velocity(tube.steady([1.4, 1.5]), 0.0, 0.05)
     want = ("rolling_time", "rolling_w3", "phases")
     own = sc.custom.Friction(lambda u: 0.3)
     found, known = (
-        sc.sweep.roll(COIN, slides, 9.0, contact=law, stop_at="rolling", want=want)
+        sc.sweep.roll(tube, slides, 20.0, contact=law, stop_at="rolling", want=want)
         for law in (own, sc.Coulomb(0.3))
     )
-    assert (found["phases"] == 2).all() and (found["rolling_time"] > 0.1).all()
+    assert (found["phases"].to_numpy() == 2).all() and (found["rolling_time"].to_numpy() > 0.1).all()
     for name in want:
-        assert abs(found[name] - known[name]).max() < 1e-8
+        assert abs(found[name].to_numpy() - known[name].to_numpy()).max() < 1e-7
 
 
 def test_flicks_slip_under_a_law_of_your_own():
     tube, how = sc.Body.tube(6.0, bore=0.8), {"w1": [1.0, 2.0], "launch": 1.2}
     own = sc.custom.Friction(lambda u: 0.3)
     found, known = (sc.sweep.flicks(tube, 5.0, **how, contact=law) for law in (own, sc.Coulomb(0.3)))
-    assert found["outcome"].equals(known["outcome"])
-    assert abs(found["end"] - known["end"]).max() < 1e-7
+    assert found["outcome"].to_numpy().tolist() == known["outcome"].to_numpy().tolist()
+    assert abs(found["end"].to_numpy() - known["end"].to_numpy()).max() < 1e-7
 
 
 def test_a_custom_motion_is_shown_and_plotted():

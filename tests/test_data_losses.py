@@ -8,6 +8,7 @@ import pytest
 from scenes import LAWS
 
 import spincyl as sc
+from spincyl.lab import _curve, _line, _typical
 
 EULER = sc.Body.from_metres(outer_diameter=0.0751, length=0.0128)
 COIN = sc.Body.solid(0.0)
@@ -206,15 +207,15 @@ def test_the_log_log_line_is_biased_by_more_than_it_claims():
     line = sc.data.fit_losses(t, precession=precession, body=EULER, laws=[sc.loss.ViscousContour]).line
     assert 0.005 < line.exponent + 1 / 4 < 0.03
     # for an exact power the line has the true exponent and stopping time
-    power = sc.data._line.line(t, 0.3 * (100 - t) ** (2 / 3))
+    power = _line.line(t, 0.3 * (100 - t) ** (2 / 3))
     assert power.exponent == pytest.approx(2 / 3, abs=1e-6) and power.stops_at == pytest.approx(100, abs=1e-3)
     assert power.factor == pytest.approx(0.3, rel=1e-5)
-    assert sc.data._line.line(t, np.exp(-t)) is None
+    assert _line.line(t, np.exp(-t)) is None
 
 
 def test_the_error_of_the_line_is_its_scatter_on_a_true_power():
     rng, t = np.random.default_rng(7), np.linspace(0, 90, 100)
-    lines = [sc.data._line.line(t, (100 - t) ** 0.5 * (1 + 0.01 * rng.normal(size=100))) for _ in range(60)]
+    lines = [_line.line(t, (100 - t) ** 0.5 * (1 + 0.01 * rng.normal(size=100))) for _ in range(60)]
     pulls = [(line.exponent - 0.5) / line.exponent_err for line in lines]
     assert 0.75 < np.std(pulls) < 1.3 and abs(np.mean(pulls)) < 0.5
 
@@ -292,9 +293,9 @@ def test_a_small_second_loss_is_no_reason_to_doubt_the_unit_of_the_times():
     disk = sc.measured(outer_diameter="75mm", length="12.7mm", mass="440g")
     film = sc.loss.AirFilm.from_si(1.8e-5, scale=disk)
     far, near = (sc.loss.DryContour.from_si(x, scale=disk) for x in ("1e-5mm", "0.01mm"))
-    assert sc.data._typical.far_from_typical(far + film, disk.scale) == ""
-    assert sc.data._typical.far_from_typical(near, disk.scale) == ""
-    assert "eps = 1e-05 mm" in sc.data._typical.far_from_typical(far, disk.scale)
+    assert _typical.far_from_typical(far + film, disk.scale) == ""
+    assert _typical.far_from_typical(near, disk.scale) == ""
+    assert "eps = 1e-05 mm" in _typical.far_from_typical(far, disk.scale)
 
 
 def test_a_spin_down_that_no_law_explains_is_warned_of():
@@ -351,7 +352,7 @@ def test_a_fit_shows_itself_with_all_its_laws():
 
 def test_the_fitted_curve_goes_on_before_its_start_and_beyond_its_stop():
     # a trial with its stop before the last point must be drawn back to the point
-    curve = sc.data._curve.Curve(EULER, [sc.loss.DryContour], "rest", (0.01, 0.3), True)
+    curve = _curve.Curve(EULER, [sc.loss.DryContour], "rest", (0.01, 0.3), True)
     stop = curve.stops_at([1e-3], 0.3)
     assert stop == pytest.approx(float(sc.drift(EULER, 0.3, sc.loss.DryContour(1e-3)).stops_at), rel=1e-9)
     assert curve.stops_at([1e-3], np.nextafter(0.3, 1.0)) == stop, "an end is met but for rounding"

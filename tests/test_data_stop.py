@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import spincyl as sc
+from spincyl.lab import _stop
 
 COIN = sc.measured(outer_diameter="25.75mm", length="2.2mm", mass="8.5g")
 STOPS = ("DryContour", "ViscousContour", "RollingResistance", "AirFilm", "BoundaryLayer")
@@ -299,7 +300,7 @@ def test_normal_times_seldom_have_an_outlier():
         times = rng.normal(7.0, rng.choice([0.02, 0.2, 0.7]), rng.integers(5, 20))
         with warnings.catch_warnings(record=True) as said:
             warnings.simplefilter("always")
-            sc.data._stop._timed(np.round(times, 1 + k % 2), 0.1)
+            _stop._timed(np.round(times, 1 + k % 2), 0.1)
         warned += len(said)
     assert warned <= 3
 

@@ -215,8 +215,12 @@ def test_the_error_of_a_motion_covers_slips_and_times_in_si_too(radius):
     claimed = fine.error + rough.error
     assert np.abs(fine.slip - rough.slip).max() <= claimed
     assert abs(fine.phases[1].time - rough.phases[1].time) <= claimed
-    many = sc.sweep.roll(sized, state, t, contact=table, tol=1e-6)
-    assert float(many["error"]) == pytest.approx(rough.error, rel=0.05)
+    many, natural = (
+        sc.sweep.roll(of, state, times, contact=table, tol=1e-6)
+        for of, times in ((sized, t), (body, np.linspace(0.0, 20.0, 9)))
+    )
+    alone = sc.roll(body, state, np.linspace(0.0, 20.0, 9), contact=table, tol=1e-6)
+    assert float(many["error"] / natural["error"]) == pytest.approx(rough.error / alone.error, rel=0.05)
 
 
 # An unknown mass.

@@ -9,6 +9,7 @@ import pytest
 from few import few
 
 import spincyl as sc
+from spincyl.lab import _curve
 
 sys.path.append(str(Path(__file__).parents[1] / "benches"))
 import recordings
@@ -150,5 +151,5 @@ def test_balls_that_are_measured_beyond_90_degrees_are_fitted():
     top = sc.Body.ball(-0.25, 0.42, 0.4)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        pieces = sc.data._curve.branches(top, "rest")
+        pieces = _curve.branches(top, "rest")
     assert max(piece[-1] for piece in pieces) > np.radians(100)

@@ -49,8 +49,8 @@ const TOIL_PER_TIME: f64 = 40_000.0;
 const SPARES: bool = rk8::LOOPS || IN_REGISTERS;
 /// A part of an implicit step is divided into at most 2 to this power.
 const PARTINGS: i32 = 8;
-/// Largest share of the time up to an extrapolated halt at which an output is shown.
-const MOSTLY: f64 = 0.9;
+/// Largest share of the time up to an extrapolated halt at which an output is shown: the slip is not zero before its end.
+const MOSTLY: f64 = 1.0 - f64::EPSILON;
 /// Number of crawling steps between two calls of [`Flow::stuck`].
 const TIRING: u64 = 20_000;
 
