@@ -351,7 +351,7 @@ def test_a_sweep_under_a_law_of_your_own_stops_where_rolling_begins():
         sc.sweep.roll(tube, slides, 20.0, contact=law, stop_at="rolling", want=want)
         for law in (own, sc.Coulomb(0.3))
     )
-    assert (found["phases"].to_numpy() == 2).all() and (found["rolling_time"].to_numpy() > 0.1).all()
+    assert (found["phases"].to_numpy() == 2).all() and (found["rolling_time"].to_numpy() > 0.01).all()
     for name in want:
         assert abs(found[name].to_numpy() - known[name].to_numpy()).max() < 1e-7
 

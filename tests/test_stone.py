@@ -183,7 +183,7 @@ def test_up_to_the_end_of_a_slip_friction_is_that_of_the_slip_and_there_it_holds
     before, there = (
         sc.roll(STONE, state, t, contact=sc.Coulomb(0.2), want="force") for t in (ends - 1e-9, ends)
     )
-    assert before.phase[0] == "slipping" and there.phase[0] == "rolling"
+    assert before.phases[-1].kind == "slipping" and there.phases[-1].kind == "rolling"
     assert before.friction[0] == pytest.approx(0.2 * before.normal[0], rel=1e-12)
     assert there.normal[0] > 0 and there.friction[0] < 0.2 * there.normal[0]
 
