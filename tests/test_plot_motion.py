@@ -344,3 +344,15 @@ def test_a_map_of_flicks_has_each_outcome_where_it_is():
     ):
         with pytest.raises(ValueError, match=f"^found: .*{words}"):
             sc.plot.flicks(wrong)
+
+
+def test_a_whirr_is_computed_a_few_times_for_its_curves_and_not_once_for_each_halving(monkeypatch):
+    at, calls = type(sc.roll(CYLINDER, START, 1.0)).at, []
+    monkeypatch.setattr(sc.Motion, "at", lambda self, t: calls.append(np.size(t)) or at(self, t))
+    coin = sc.Body.solid(0.09)
+    whirr = sc.roll(coin, coin.steady(0.3), [0.0, 200.0], losses=sc.loss.RollingResistance(0.02))
+    assert whirr.event.ending == sc.Ending.FACE
+    tilt, _, _ = sc.plot.motion(whirr)
+    assert len(calls) <= 4
+    theta = curve(tilt)[1]
+    assert np.abs(np.diff(theta)).max() < 2.0, "degrees between two points of the curve"

@@ -137,8 +137,7 @@ pub(crate) fn check_options(ask: &Ask, start: &Start, custom: &Custom<'_>) -> Re
         return refuse("beyond", 1.0);
     }
     if let Some((law, value)) = ask.losses.iter().find(|(law, value)| law.presses() && *value > 0.0) {
-        let expected =
-            "only laws without the normal force together with a user-defined law; add this one to it";
+        let expected = "only laws without the normal force together with a user-defined law; write this one into the couple";
         return Err(Error::OutOfRange { name: law.parameter(), value, expected });
     }
     if custom.friction.is_some() && !matches!(ask.table, Table::Rubs(Friction::Coulomb { .. })) {

@@ -242,11 +242,16 @@ def _close(m: "Motion") -> "tuple[Motion, bool]":
         theta, phi = there.theta, there.phi
         if up is not None:
             theta, phi, _ = up.from_first(there.t, theta, phi, there.psi).T
-        long = np.maximum(np.abs(np.diff(theta)) / 0.02, np.abs(np.diff(phi)) / 0.1) > 1
-        long &= np.diff(share)[: long.size] > 1e-12
-        if not long.any():
+        turns = np.maximum(np.abs(np.diff(theta)) / 0.02, np.abs(np.diff(phi)) / 0.1)
+        apart = np.diff(share)
+        turns[apart[: turns.size] <= 1e-12] = 0
+        if turns.max(initial=0) <= 1:
             return there, True
-        share = np.sort(np.append(share, ((share[1:] + share[:-1]) / 2)[: long.size][long]))
+        # as many parts at once as the turns in each interval ask for: each round computes the motion again
+        parts = np.ones(apart.size, dtype=int)
+        parts[: turns.size] = np.where(turns > 1, np.clip(np.ceil(1.5 * turns), 2, 256), 1)
+        within = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)
+        share = np.append(np.repeat(share[:-1], parts) + np.repeat(apart / parts, parts) * within, 1.0)
     # times that are out of step with any nutation, so that the dots show its whole range
     share = (np.arange(_MOST) + np.arange(_MOST) * 0.618034 % 1) / _MOST
     return m.at(first + share * (last - first)), False
