@@ -543,3 +543,25 @@ def test_a_law_is_called_a_few_thousand_times_and_mostly_by_the_motion():
     (_, check), (nfev, whole) = counts["friction"]
     assert check < 2000
     assert whole - check < 4 * nfev
+
+
+def test_a_body_that_slips_where_no_unique_force_exists_raises_under_a_law_of_your_own_too():
+    body = sc.Body(0.48950128204831594, i1=0.014081517489595553, i3=0.01478685120782547)
+    start = sc.State(np.pi / 2, 0.0, 0.0, 0.0, slip=(1.13, 0.77))
+    for contact, losses in (
+        (sc.Coulomb(0.66), None),
+        (sc.custom.Friction(lambda u: 0.66), None),
+        (sc.Coulomb(0.66), sc.custom.Couple(lambda theta, w, normal: -0.004 * w)),
+    ):
+        with pytest.raises(ValueError, match="no unique contact force"):
+            sc.roll(body, start, 1.0, contact=contact, losses=losses)
+
+
+def test_a_fast_coin_that_is_let_go_slips_as_long_under_your_own_law_as_under_the_librarys():
+    body = sc.Body.solid(0.3402622960016425)
+    start = sc.State(1e-3, 0.78, 0.0, 0.0)  # phi' = 780
+    ends = []
+    for law in (sc.Coulomb(0.65), sc.custom.Friction(lambda u: 0.65)):
+        m = sc.roll(body, start, [0.0, 0.02], contact=law, tol=1e-13)
+        ends.append((m.w[-1], m.theta[-1], m.error))
+    assert abs(ends[0][0] - ends[1][0]).max() <= ends[0][2] + ends[1][2] < 1e-7

@@ -298,3 +298,12 @@ def test_a_loss_without_a_derivative_at_rest_does_not_stop_a_stiff_slip():
         m = sc.roll(sc.Body(1.1, 1.69, 1.43), start, 0.2, contact=sc.Coulomb(0.17, patch=patch), losses=law)
         assert m.status == sc.Ending.FACE and m.error < 1e-11
         assert abs(m.event.time - 0.016378) < 1e-5
+
+
+def test_the_error_of_a_uniform_ball_covers_the_little_slip_that_its_rougher_run_would_drop():
+    ball, table = sc.Body.ball(0.0, i1=0.4, i3=0.4), sc.Coulomb(0.19, patch=0.0046)
+    for k in range(6):
+        start = sc.State(0.3 + 0.4 * k, 3.9, -4.1, -5.4, slip=(-1e-9, 7e-11))
+        fine, found = (sc.roll(ball, start, [0.0, 300.0], contact=table, tol=tol) for tol in (1e-14, 1e-10))
+        off = max(abs(fine.theta[1] - found.theta[1]), *abs(fine.w[1] - found.w[1]))
+        assert off <= fine.error + found.error

@@ -269,14 +269,19 @@ impl<'a> CustomFlow<'a> {
         standstill_under(self.body, y, &self.friction(0.0), couples)
     }
 
+    /// The time in which the body turns by about a radian, at most a unit of time.
+    pub(super) fn moment<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        (self.calm(y) / 3.0).min((y[SIN] / y[W2]).abs()).min(1.0)
+    }
+
     /// The end of a phase, if the phase is over at once.
     pub(super) fn at_start<const N: usize>(&self, y: &[f64; N], at: &CustomResponse) -> Option<Ending> {
         let (end, theta) = (self.body.theta_end(), state(y).theta);
         let rises = y[W2] > 0.0 || y[W2] == 0.0 && at.w[1] > 0.0;
         match () {
+            () if self.slips && at.room <= 0.0 => Some(Ending::Painleve),
             () if end < PI && (theta > end || theta == end && !rises) => Some(Ending::Side),
             () if at.free <= 0.0 => Some(Ending::LiftOff),
-            () if self.slips && at.room <= 0.0 => Some(Ending::Painleve),
             () => None,
         }
     }

@@ -39,8 +39,8 @@ use flow::CustomFlow;
 const FAIR: f64 = 1e-10;
 /// Count of numbers of such a motion: those of a slip, the pose and the energy lost.
 const CUSTOM_NUMBERS: usize = 14;
-/// For this time a slip keeps its direction after static friction has ceased to hold. The error is the cube of this
-/// time.
+/// For this share of the time in which the body turns by a radian, at most of a unit of time, a slip keeps its direction
+/// after static friction has ceased to hold. The error is the cube of this share.
 const KEEPS_ITS_WAY: f64 = 1e-5;
 
 /// Computes the motion of a body with user-defined laws at `times`, up to the event that ends it.
@@ -278,7 +278,8 @@ impl<'l> Phases<CUSTOM_NUMBERS> for CustomPhases<'l> {
     /// At the limit itself a slip does not grow; later it does.
     fn lets_go(walk: &CustomWalk<'_, 'l>) -> Standstill {
         let flow = CustomFlow { slips: false, ..walk.of.flow };
-        flow.standstill(&state(&moved(&walk.at, &flow.rates(&walk.at), 0.5 * KEEPS_ITS_WAY)))
+        let half = 0.5 * KEEPS_ITS_WAY * flow.moment(&walk.at);
+        flow.standstill(&state(&moved(&walk.at, &flow.rates(&walk.at), half)))
     }
     fn no_unique_force(walk: &CustomWalk<'_, 'l>) -> Error {
         let flow = &walk.of.flow;
@@ -370,7 +371,8 @@ impl<'l> Phases<CUSTOM_NUMBERS> for CustomPhases<'l> {
         if walk.of.flow.slips {
             walk.made.path.slipping += y[TIME] - walk.began;
         }
-        walk.of.keeps = if halt == Halt::Slips { KEEPS_ITS_WAY } else { MOMENT };
+        let share = if halt == Halt::Slips { KEEPS_ITS_WAY } else { MOMENT };
+        walk.of.keeps = share * walk.of.flow.moment(&walk.at);
         match halt {
             Halt::Time | Halt::Pause => {}
             Halt::Standstill => {

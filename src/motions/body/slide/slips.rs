@@ -10,6 +10,7 @@ use crate::motions::body::face::turning_share;
 use crate::motions::body::phases::BodyWalk;
 use crate::motions::body::write::state;
 use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, Halt, SIN, TIME, W1, W2, loses};
+use crate::motions::walk::two_runs::CHANCE;
 use crate::motions::walk::{Next, Pause, Phases, after_rest, ending};
 
 /// A face barely lands if more than this share of its energy is in the turning, and it falls, rather than whirrs, if the
@@ -124,9 +125,17 @@ impl<const N: usize> BodyWalk<'_, N> {
     }
 
     /// Includes the length of the passage of a pole that has just ended in the estimated error, if an output lies in it:
-    /// there the numbers were linear in time.
+    /// there the numbers were linear in time. The couple of dry friction along the rim turns with e_h; that it counts as
+    /// constant changes w by twice what it does in this time, and by more where the body slips faster than it turns.
     pub(crate) fn claims_passage(&mut self) {
-        let lasts = 2.0 * self.at[SIN] / self.at[W1].hypot(self.at[W2]);
+        let speed = self.at[W1].hypot(self.at[W2]);
+        let lasts = 2.0 * self.at[SIN] / speed;
+        let contour = self.ask.losses.coefficient(Law::DryContour);
+        if contour > 0.0 {
+            let ([u_h, u_2], body) = (self.at.slip(), &self.of.body);
+            let normal = 1.0 + body.ell().abs() * speed * speed;
+            self.claims(2.0 * contour * normal * lasts / body.i1() * (1.0 + u_h.hypot(u_2) / speed));
+        }
         let last = self.made.motion.states.len().checked_sub(1).map(|i| self.since[i]);
         if last.is_some_and(|t| t > self.at[TIME] - lasts) {
             self.claims(lasts);
@@ -140,6 +149,8 @@ impl<const N: usize> BodyWalk<'_, N> {
             self.at[i] += share * turned;
         }
         self.claims(u_h.hypot(u_2));
+        // The steps of the slip have left an error of w, which from now on turns the axis as roundings of w do.
+        self.of.roundings.count += CHANCE * self.spent.erred * self.of.slide.tol / f64::EPSILON;
         self.stop_slip();
         self.of.state = state(&self.at);
     }
