@@ -149,10 +149,11 @@ pub(crate) trait Flow<const M: usize>: Copy {
     ) -> (rk8::Step<f64, N>, radau::Collocated<N>) {
         unreachable!("only a stiff flow takes implicit steps")
     }
-    /// Whether a step of this length is implicit.
+    /// Whether a part of a step is implicit, also a short one: nothing tests its error, and an explicit step that is hardly
+    /// stable has a large one.
     #[inline(always)]
-    fn is_implicit<const N: usize>(&self, from: &FlowPlace<N>, h: f64) -> bool {
-        Self::MAY_BE_STIFF && self.is_stiff(from) && h > self.stable(from)
+    fn is_implicit<const N: usize>(&self, from: &FlowPlace<N>) -> bool {
+        Self::MAY_BE_STIFF && self.is_stiff(from)
     }
     /// Called for each step that is taken, with the step, the length in sigma of the part that is taken, and the point
     /// at its end. The part ends where the flow ends; if that is at the last requested time, the length is that of the
@@ -196,7 +197,7 @@ pub(crate) trait Flow<const M: usize>: Copy {
         h: f64,
         stages: &mut rk8::Stages<f64, N>,
     ) -> rk8::Step<f64, N> {
-        if self.is_implicit(from, h) {
+        if self.is_implicit(from) {
             let (made, at) = self.implicit_step(from, h, None);
             stages[..radau::RADAU_STAGES].copy_from_slice(&at.moved);
             stages[radau::RADAU_STAGES..2 * radau::RADAU_STAGES].copy_from_slice(&at.rates);
