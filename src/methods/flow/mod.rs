@@ -47,6 +47,9 @@ const TOIL_PER_TIME: f64 = 40_000.0;
 /// Whether the stages form a loop in parts of steps and on processors without AVX2, which shortens the
 /// compilation.
 const SPARES: bool = rk8::LOOPS || IN_REGISTERS;
+/// The numbers right after an implicit step have an error this many times larger than the one that remains: that of the fast
+/// numbers, which decays in the next step.
+const BEFORE_IT_DECAYS: f64 = 20.0;
 /// A part of an implicit step is divided into at most 2 to this power.
 const PARTINGS: i32 = 8;
 /// Largest share of the time up to an extrapolated halt at which an output is shown: the slip is not zero before its end.
@@ -245,12 +248,12 @@ pub(crate) trait Flow<const M: usize>: Copy {
 
     /// The numbers after a part of length `h` of a step from a point.
     fn part<const N: usize>(&self, from: &FlowPlace<N>, h: f64) -> [f64; N] {
-        let y = self.part_at_once(from, h);
-        if Self::MAY_BE_STIFF && y[0].is_nan() {
-            // Newton's iteration has not converged, as it may in shorter parts.
+        if self.is_implicit(from) {
+            // Nothing tests the error of a part of an implicit step, which is larger than that of the whole step where the
+            // fast numbers still change.
             return self.part_in_parts(from, h);
         }
-        y
+        self.part_at_once(from, h)
     }
 
     #[inline(always)]
@@ -470,7 +473,7 @@ pub(crate) trait Flow<const M: usize>: Copy {
                 }
                 None => self.stopped(&after).inspect(|(halt, _)| steep = self.slows(*halt, &after)),
             };
-            spent.erred += error * self.fastest(&here.y);
+            spent.erred += if implicit { BEFORE_IT_DECAYS } else { 1.0 } * error * self.fastest(&here.y);
             let until = stop.as_ref().map_or(after.y[Self::TIME], |(_, y)| y[Self::TIME]);
             let step = (&here, &after, h);
             next += self.write_times(step, stop.as_ref(), (&times[next..], until), &mut last, write);
