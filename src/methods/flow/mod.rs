@@ -248,12 +248,12 @@ pub(crate) trait Flow<const M: usize>: Copy {
 
     /// The numbers after a part of length `h` of a step from a point.
     fn part<const N: usize>(&self, from: &FlowPlace<N>, h: f64) -> [f64; N] {
-        if self.is_implicit(from) {
-            // Nothing tests the error of a part of an implicit step, which is larger than that of the whole step where the
-            // fast numbers still change.
+        let y = self.part_at_once(from, h);
+        if Self::MAY_BE_STIFF && y[0].is_nan() {
+            // Newton's iteration has not converged, as it may in shorter parts.
             return self.part_in_parts(from, h);
         }
-        self.part_at_once(from, h)
+        y
     }
 
     #[inline(always)]
