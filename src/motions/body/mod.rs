@@ -62,7 +62,7 @@ pub fn follow(
 
 /// One run of a body's walk, with the tolerance `tol` of its steps. Its numbers include a pose and the lost energy only
 /// if `ask` needs them. With `integrates` a phase without a slip is integrated although no energy is lost.
-pub(crate) fn walked(
+pub(super) fn walked(
     (body, start): (&Body, &Start),
     ask: &Ask,
     (tol, integrates): (f64, bool),
@@ -131,7 +131,7 @@ fn check(body: &Body, start: &Start, ask: &Ask) -> Result<f64, Error> {
 }
 
 /// Returns an error for a slip without a law of friction.
-pub(crate) fn without_slip([along, across]: [f64; 2]) -> Result<(), Error> {
+pub(super) fn without_slip([along, across]: [f64; 2]) -> Result<(), Error> {
     let value = if along == 0.0 { across } else { along };
     if value == 0.0 {
         return Ok(());

@@ -36,7 +36,7 @@ pub(crate) type BodyWalk<'a, const N: usize> = Walk<'a, BodyPhases, N>;
 const ALL_BUT_FLAT: f64 = 1e-6;
 /// The first step of a rougher run is this many times as long as that of the finer run, so that
 /// their steps differ.
-pub(crate) const LONGER: f64 = 3.0;
+pub(super) const LONGER: f64 = 3.0;
 
 /// Size of cos theta below which a rougher run perturbs this number and not theta.
 const LEVEL: f64 = 1e-3;
@@ -46,45 +46,45 @@ pub(crate) struct BodyPhases {
     pub body: Body,
     pub slide: Slide,
     /// The state where the current phase begins or has ended, and the initial state.
-    pub(crate) state: State,
-    pub(crate) start: State,
+    pub(super) state: State,
+    pub(super) start: State,
     /// Whether a phase without a slip is integrated; otherwise the first integrals solve it, as long as no energy is
     /// lost.
-    pub(crate) integrates: bool,
+    pub(super) integrates: bool,
     /// Whether the last phase of rolling by the first integrals was brief, and whether the current one, without losses, is
     /// integrated.
     pub(crate) rolls_briefly: bool,
     pub(crate) by_steps: bool,
     /// Whether the body is a uniform ball, whose phases are known; and their errors.
-    pub(crate) uniform: bool,
-    pub(crate) roundings: Roundings,
+    pub(super) uniform: bool,
+    pub(super) roundings: Roundings,
     /// Whether the caller computes the phases of rolling that the first integrals solve, among those of other walks.
     #[cfg(feature = "many")]
     pub(crate) rolls_among: bool,
     /// The losses of a body that does not slip, with the drilling friction of a patch of contact.
-    pub(crate) rolling_losses: Losses,
+    pub(super) rolling_losses: Losses,
     /// The current phase, if it loses energy without a slip.
-    pub(crate) lossy: Option<LossyPhase>,
+    pub(super) lossy: Option<LossyPhase>,
     /// The current phase, if the body lies on both rims.
     pub(crate) lying: Option<Box<LyingPhase>>,
     /// The beginning of the next flight, or the height and the vertical velocity of a body in the air.
-    pub(crate) takeoff: Takeoff,
+    pub(super) takeoff: Takeoff,
     /// The energy that the impacts before the last one have taken, and the sum of energy, heat and all that was lost
     /// at the start.
-    pub(crate) struck: f64,
-    pub(crate) energy: Option<f64>,
+    pub(super) struck: f64,
+    pub(super) energy: Option<f64>,
     /// The step errors by which a rougher run has been perturbed.
-    pub(crate) shown: f64,
+    pub(super) shown: f64,
     /// Whether only theta changes, so that rounding must not make the body turn.
-    pub(crate) planar: bool,
+    pub(super) planar: bool,
     /// Estimates of the end of a slipping whirr; None if the losses do not let a whirr last for infinitely many turns.
-    pub(crate) tail: Option<LastTurns>,
+    pub(super) tail: Option<LastTurns>,
 }
 
 /// A phase that loses energy without a slip.
 #[derive(Clone, Copy)]
-pub(crate) struct LossyPhase {
-    pub(crate) flow: LossyFlow,
+pub(super) struct LossyPhase {
+    pub(super) flow: LossyFlow,
 }
 
 impl<'a, const N: usize> BodyWalk<'a, N> {
@@ -167,7 +167,7 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
     }
 
     /// Moves the walk to the numbers at which a flow has halted.
-    pub(crate) fn arrives(&mut self, at: [f64; N]) {
+    pub(super) fn arrives(&mut self, at: [f64; N]) {
         self.at = at;
         if leans_over(&mut self.at) {
             self.of.slide.leans_over();
@@ -193,7 +193,7 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
 
     /// Makes motions vanish exactly that have stopped, or that dry friction has held at zero but for the errors of the
     /// steps.
-    pub(crate) fn stops_exactly(&mut self, stops: Holds) {
+    pub(super) fn stops_exactly(&mut self, stops: Holds) {
         if stops == Holds::default() {
             return;
         }
@@ -236,7 +236,7 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
 
 impl BodyPhases {
     /// Perturbs the state by this share.
-    pub(crate) fn perturbs_by<const N: usize>(walk: &mut BodyWalk<'_, N>, share: f64) {
+    pub(super) fn perturbs_by<const N: usize>(walk: &mut BodyWalk<'_, N>, share: f64) {
         if share == 0.0 || walk.of.lying.is_some() {
             return;
         }
@@ -374,7 +374,7 @@ impl<const N: usize> Phases<N> for BodyPhases {
     }
 
     fn slips_known(walk: &mut BodyWalk<'_, N>) -> bool {
-        walk.of.slide.died = walk.at[5..7] == [0.0; 2] && walk.of.slide.has_died(&walk.at);
+        walk.of.slide.died = walk.at.slip() == [0.0; 2] && walk.of.slide.has_died(&walk.at);
         match walk.of.slide.law.patch().filter(|_| walk.of.slide.died) {
             _ if poses(N) => return false,
             Some(radius) => walk.creeps_uniformly(radius),

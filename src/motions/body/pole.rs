@@ -7,7 +7,8 @@
 //! Along e_h and e2 the numbers change by themselves within this short time, since e_h turns around; in the laboratory
 //! nothing happens. The differences that give the accelerations there lose no digits: e_h turns by an angle of order 1.
 //!
-//! Error: the square of the time of the passage. A couple along the rim turns with e_h; it counts as constant.
+//! Error: the square of the time of the passage. A couple along the rim turns with e_h, but counts as constant; the error
+//! is proportional to that time then, and is claimed (`claims_passage`).
 
 use crate::laws::state::{drilling_of, rolling_of};
 use crate::motions::walk::numbers::{PHI, PSI, TIME, poses};
@@ -29,7 +30,7 @@ pub(crate) fn passage(s: f64, c: f64, [w1, w2]: [f64; 2]) -> Option<f64> {
     (s.abs() < BESIDE_POLE && nears > 0.0 && lasts < AT_MOST).then_some(lasts)
 }
 
-/// The numbers at the same inclination on the other side of the pole, from the numbers y of [`halt`](crate::motions::walk::numbers)
+/// The numbers at the same inclination on the other side of the pole, from the [`numbers`](crate::motions::walk::numbers) y
 /// and their rates in time.
 pub(crate) fn passed<const N: usize>(y: &[f64; N], rates: &[f64; N]) -> Option<[f64; N]> {
     let [s, c, w1, w2, w3, u_h, u_2] = core::array::from_fn(|i| y[i]);

@@ -21,7 +21,7 @@ use crate::laws::state::{drilling_of, rolling_of};
 use crate::motions::Ask;
 
 /// Roundings of the numbers of one phase.
-pub(crate) const OF_A_PHASE: f64 = 8.0;
+pub(super) const OF_A_PHASE: f64 = 8.0;
 /// Two terms of the series in succession that are smaller than this end a part of it; in a part w h and a h^2 are at most
 /// 1, so that there are thirty terms at most.
 const NO_MORE: f64 = 1e-18;
@@ -43,7 +43,7 @@ pub(crate) fn knows(body: &Body, ask: &Ask) -> bool {
 /// The errors of a motion whose phases are known: roundings of the speeds so far, the error of the axis, and that of the
 /// time.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Roundings {
+pub(super) struct Roundings {
     pub count: f64,
     pub turned: f64,
     pub late: f64,
@@ -58,7 +58,7 @@ fn size([a, b, c]: [f64; 3]) -> f64 {
 }
 
 /// A phase from its start.
-pub(crate) struct Spun {
+pub(super) struct Spun {
     from: Aloft,
     /// The axis at the time `since` of the phase.
     axis: [f64; 3],

@@ -38,7 +38,7 @@ const LOSSY_TAIL: f64 = 1e-8;
 /// The tolerance of a step along an impact.
 const IMPACT_TOL: f64 = 3e-14;
 /// Both rims rattle until |cos theta| and the normal velocities of both are below this.
-pub(crate) const RATTLED: f64 = 1e-7;
+pub(super) const RATTLED: f64 = 1e-7;
 /// Error of the rest of a rattle, in units of the square of its velocities.
 const SUMMED: f64 = 1e2;
 /// Time of the rest of a rattle, in units of its velocities.
@@ -52,7 +52,7 @@ const BOTH_AT_ONCE: f64 = 1e-14;
 /// Impacts of both rims are over when no rim comes down faster than this share of the first velocity.
 const RATTLE_OVER: f64 = 1e-9;
 /// Share of its terms below which N0 is a rounding error.
-pub(crate) const ROUNDED: f64 = 1e-12;
+pub(super) const ROUNDED: f64 = 1e-12;
 /// A jam needs a larger impulse than this share of the slip.
 const JAM_TAKES: f64 = 1e-9;
 /// Largest number of impacts of both rims in turn.
@@ -74,7 +74,7 @@ fn gained(shape: &Shape<f64>, [old, new]: [&Aloft; 2]) -> [f64; 3] {
 impl<const N: usize> BodyWalk<'_, N> {
     /// The phase after the impact that stops a slip which presses the rim into the table. None where the rim could
     /// leave the table as well.
-    pub(crate) fn jams(&mut self, e: f64) -> Option<Next> {
+    pub(super) fn jams(&mut self, e: f64) -> Option<Next> {
         self.of.takeoff = Takeoff::default();
         let from = self.aloft();
         let [free, size] = self.pressed(&from);
@@ -103,7 +103,7 @@ impl<const N: usize> BodyWalk<'_, N> {
 
     /// The next phase after a landing.
     #[inline(never)]
-    pub(crate) fn strikes(&mut self) -> Next {
+    pub(super) fn strikes(&mut self) -> Next {
         let (e, shape) = (self.ask.restitution.unwrap_or(0.0), self.of.slide.law.shape);
         let mut from = self.aloft();
         if from.angle.0 < FLAT && self.of.body.rim() > 0.0 {
@@ -262,7 +262,7 @@ impl<const N: usize> BodyWalk<'_, N> {
 
     /// Computes the impacts of both rims at once while both come down, and of one rim in turn, until no rim comes down.
     #[inline(never)]
-    pub(crate) fn rattles(&mut self, e: f64) -> Next {
+    pub(super) fn rattles(&mut self, e: f64) -> Next {
         (self.at[SIN], self.at[COS]) = (1.0, 0.0);
         let shape = self.of.slide.law.shape;
         let mut at = Aloft { angle: (1.0, 0.0), ..self.aloft() };
@@ -374,7 +374,7 @@ impl<const N: usize> BodyWalk<'_, N> {
     }
 
     /// The next phase after a landing on both rims without a bounce.
-    pub(crate) fn lands_on_both(&mut self) -> Next {
+    pub(super) fn lands_on_both(&mut self) -> Next {
         let friction = match self.ask.table {
             Table::Rubs(friction) => friction,
             _ if self.at[W1] == 0.0 && self.at[W3] == 0.0 => Friction::coulomb(PERFECTLY_ROUGH),
@@ -417,7 +417,7 @@ impl<const N: usize> BodyWalk<'_, N> {
     }
 
     /// Moves the walk to the numbers after a landing on both rims.
-    pub(crate) fn lands_as(&mut self, landed: &Landed) {
+    pub(super) fn lands_as(&mut self, landed: &Landed) {
         if landed.outcome == Outcome::Changes {
             self.turns_over();
         }

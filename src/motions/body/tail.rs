@@ -26,7 +26,7 @@ const LEFT: f64 = 64.0;
 
 /// The estimates of the end of a whirr.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct LastTurns {
+pub(super) struct LastTurns {
     /// Time and p^(1/3) of the last value.
     last: Option<[f64; 2]>,
     /// The time of the end, its distance from the estimate before, and its error.

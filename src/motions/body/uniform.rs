@@ -14,7 +14,7 @@ use crate::laws::contact::{Contact, Table, force, patch};
 use crate::laws::state::{State, drilling_of};
 use crate::motions::ask::row::OutputRow;
 use crate::motions::walk::errors::doubted;
-use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, Halt, SIN, TIME, W1, W3, lost};
+use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, Halt, SIN, TIME, U2, UH, W1, W3, lost};
 use crate::motions::walk::two_runs::Followed;
 use crate::motions::{Kind, Limit};
 
@@ -52,7 +52,7 @@ impl<const N: usize> BodyWalk<'_, N> {
     }
 
     /// Rolls to the last time: nothing ends it.
-    pub(crate) fn rolls_uniformly(&mut self) {
+    pub(super) fn rolls_uniformly(&mut self) {
         let (now, spent, body) = (self.at[TIME], [self.at[HEAT], lost(&self.at)], self.of.body);
         let mut spun = Spun::new(&Aloft { slip: [0.0; 2], ..self.aloft() }, [0.0; 3], 0.0);
         while let Some(t) = self.until() {
@@ -65,58 +65,55 @@ impl<const N: usize> BodyWalk<'_, N> {
         }
     }
 
-    /// Slips until the slip vanishes, or to the last time.
-    pub(crate) fn slips_uniformly(&mut self) {
-        let (now, heat, mu) = (self.at[TIME], self.at[HEAT], self.of.slide.law.strength);
-        let (from, ask, slide) = (self.aloft(), self.ask, self.of.slide);
-        let mut spun = Spun::rubbing(&from, self.of.body.i3(), mu);
-        let speed = from.slip[0].hypot(from.slip[1]);
-        let slows = spun.slows;
-        let heat = |t: f64| heat + mu * speed * t * (1.0 - 0.5 * slows * t);
-        let (end, left) = (1.0 / slows, self.since.last().map_or(0.0, |t| t - now));
+    /// Follows a phase of friction, which ends after the time `end`, when a motion of the speed `stops` has stopped; `heat` is
+    /// its heat at a time. Returns the numbers at its end or at the last time, and whether that comes first; None if the
+    /// phase is too much work.
+    fn rubs_uniformly(
+        &mut self,
+        mut spun: Spun,
+        [end, stops]: [f64; 2],
+        heat: impl Fn(f64) -> f64,
+    ) -> Option<([f64; N], bool)> {
+        let (now, begun, ask, slide) = (self.at[TIME], self.at[HEAT], self.ask, self.of.slide);
+        let left = self.since.last().map_or(0.0, |t| t - now);
         if spun.toils(end.min(left)) {
             self.next = Some(self.gives_up(Limit::Evaluations));
-            return;
+            return None;
         }
         while let Some(t) = self.until().filter(|t| t - now <= end) {
             let at = self.spun(&mut spun, t - now).0;
-            let y = self.numbers(&at, t, heat(t - now));
-            self.made.slid(&ask, &slide, &y);
-        }
-        let over = self.until().is_none();
-        let length = if over { left } else { end };
-        let (mut at, angle) = self.spun(&mut spun, length);
-        self.rounds(length, angle, if over { 0.0 } else { spun.fastest * end / speed });
-        if !over {
-            at.slip = [0.0; 2];
-        }
-        let y = self.numbers(&at, now + length, heat(length));
-        self.slip_ends(y, if over { Halt::Time } else { Halt::Standstill });
-    }
-
-    /// Drills on a patch of contact without a slip, until the drilling ends, or to the last time.
-    pub(crate) fn creeps_uniformly(&mut self, radius: f64) {
-        let (now, heat, from) = (self.at[TIME], self.at[HEAT], self.aloft());
-        let (ask, slide, i3) = (self.ask, self.of.slide, self.of.body.i3());
-        let couple = slide.law.strength * radius * patch::of(0.0)[1];
-        let mut spun = Spun::drilling(&from, couple / i3);
-        let fast = spun.drills().abs();
-        let (end, left) = (i3 * fast / couple, self.since.last().map_or(0.0, |t| t - now));
-        let heat = |t: f64| heat + couple * fast * t * (1.0 - 0.5 * t / end);
-        if spun.toils(end.min(left)) {
-            self.next = Some(self.gives_up(Limit::Evaluations));
-            return;
-        }
-        while let Some(t) = self.until().filter(|t| t - now <= end) {
-            let at = self.spun(&mut spun, t - now).0;
-            let y = self.numbers(&at, t, heat(t - now));
+            let y = self.numbers(&at, t, begun + heat(t - now));
             self.made.slid(&ask, &slide, &y);
         }
         let over = self.until().is_none();
         let length = if over { left } else { end };
         let (at, angle) = self.spun(&mut spun, length);
-        self.rounds(length, angle, if over { 0.0 } else { spun.fastest * end / fast });
-        let mut y = self.numbers(&at, now + length, heat(length));
+        self.rounds(length, angle, if over { 0.0 } else { spun.fastest * end / stops });
+        Some((self.numbers(&at, now + length, begun + heat(length)), over))
+    }
+
+    /// Slips until the slip vanishes, or to the last time.
+    pub(super) fn slips_uniformly(&mut self) {
+        let (mu, from) = (self.of.slide.law.strength, self.aloft());
+        let spun = Spun::rubbing(&from, self.of.body.i3(), mu);
+        let (speed, slows) = (from.slip[0].hypot(from.slip[1]), spun.slows);
+        let heat = |t: f64| mu * speed * t * (1.0 - 0.5 * slows * t);
+        let Some((mut y, over)) = self.rubs_uniformly(spun, [1.0 / slows, speed], heat) else { return };
+        if !over {
+            (y[UH], y[U2]) = (0.0, 0.0);
+        }
+        self.slip_ends(y, if over { Halt::Time } else { Halt::Standstill });
+    }
+
+    /// Drills on a patch of contact without a slip, until the drilling ends, or to the last time.
+    pub(crate) fn creeps_uniformly(&mut self, radius: f64) {
+        let i3 = self.of.body.i3();
+        let couple = self.of.slide.law.strength * radius * patch::of(0.0)[1];
+        let spun = Spun::drilling(&self.aloft(), couple / i3);
+        let fast = spun.drills().abs();
+        let end = i3 * fast / couple;
+        let heat = |t: f64| couple * fast * t * (1.0 - 0.5 * t / end);
+        let Some((mut y, over)) = self.rubs_uniformly(spun, [end, fast], heat) else { return };
         if !over {
             let drilling = drilling_of(y.angle(), y[W1], y[W3]);
             (y[W1], y[W3]) = (y[W1] - y[SIN] * drilling, y[W3] - y[COS] * drilling);
@@ -125,7 +122,7 @@ impl<const N: usize> BodyWalk<'_, N> {
     }
 
     /// The impact of a ball whose contact point does not slip: friction has nothing to stop.
-    pub(crate) fn rebounds(&self, lift: f64, e: f64) -> Struck {
+    pub(super) fn rebounds(&self, lift: f64, e: f64) -> Struck {
         let hit = match self.ask.table {
             Table::Rolling { .. } => Hit::Sticks,
             Table::Rubs(friction) if friction.strength() > 0.0 || friction.sticks() => Hit::Sticks,
@@ -137,7 +134,7 @@ impl<const N: usize> BodyWalk<'_, N> {
     }
 
     /// Flies to its landing, or to the last time.
-    pub(crate) fn flies_uniformly(&mut self) {
+    pub(super) fn flies_uniformly(&mut self) {
         let (from, now) = (self.aloft(), self.at[TIME]);
         let (mut spun, up) = (Spun::new(&from, [0.0; 3], 0.0), from.lift);
         let fall = (up * up + 2.0 * from.height).sqrt();

@@ -28,7 +28,7 @@ pub(crate) fn pose<const N: usize>(y: &[f64; N]) -> Pose {
 }
 
 /// The pose with these angles, the contact point at this position, and the lowest point at this height.
-pub(crate) fn posed([phi, psi, x, y]: [f64; 4], height: f64) -> Pose {
+pub(super) fn posed([phi, psi, x, y]: [f64; 4], height: f64) -> Pose {
     let angle = |angle: f64| {
         let turns = (angle / TAU).round();
         Angle { turns, rest: angle - turns * TAU }.settled()
@@ -45,7 +45,7 @@ pub(crate) fn state_errors(y: &State, tol: f64) -> [f64; 2] {
 
 impl Followed {
     /// Adds a point of a slip to the outputs.
-    pub(crate) fn slid<const N: usize>(&mut self, ask: &Ask, slide: &Slide, y: &[f64; N]) {
+    pub(super) fn slid<const N: usize>(&mut self, ask: &Ask, slide: &Slide, y: &[f64; N]) {
         let now = state(y);
         let side = if y[SIN] < 0.0 { -1.0 } else { 1.0 };
         let slip = [side * y[UH], side * y[U2]];
@@ -66,7 +66,7 @@ impl Followed {
     }
 
     /// Adds a point of a phase that loses energy without a slip to the outputs.
-    pub(crate) fn lossy<const N: usize>(
+    pub(super) fn lossy<const N: usize>(
         &mut self,
         ask: &Ask,
         (body, start, flow): (&Body, &State, &LossyFlow),

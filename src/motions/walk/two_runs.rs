@@ -161,7 +161,7 @@ impl Followed {
 
 impl<S: Moving> Followed<S> {
     /// Whether the computation stopped before the last time of the motion.
-    pub(crate) fn is_given_up(&self) -> bool {
+    pub(super) fn is_given_up(&self) -> bool {
         self.motion.event.is_some_and(|event| event.ending == Ending::Bounded)
     }
 

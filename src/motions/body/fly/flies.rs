@@ -4,7 +4,7 @@
 //! leaves the table    a slip as t^3 where N0 = 0 falls;  a contact at rest with N0 < 0 as t^2;  a bounce as t
 //! ```
 //! N0 is the normal force without friction, whose sign decides, since friction scales the normal force by a positive
-//! factor. [`strikes`](crate::motions::body::strike) has the impacts.
+//! factor. [`strike`](crate::motions::body::strike) has the impacts.
 
 use super::air::{AirFlight, in_air};
 use super::lands::TOUCH;

@@ -18,7 +18,7 @@ use super::{Aloft, Flies, Flight};
 use crate::laws::body::Shape;
 
 /// Number of terms of the series at the start.
-pub(crate) const RIM_TERMS: usize = 30;
+pub(super) const RIM_TERMS: usize = 30;
 /// Within `near` the terms of the series fall by this factor; a landing before this share of `near` is sought with
 /// fewer terms, of which the last is below exp(-DIGITS).
 const NARROWS: f64 = 3.0;
@@ -35,10 +35,10 @@ const HEIGHTS: u32 = 1_000_000;
 pub(crate) type Leaves = Option<usize>;
 
 /// Sine and cosine of theta as power series in the time since the start.
-pub(crate) type AngleSeries = [[f64; RIM_TERMS]; 2];
+pub(super) type AngleSeries = [[f64; RIM_TERMS]; 2];
 
 /// A function of time with its derivative, whose second derivative is at most `bend`, and its rounding error.
-pub(crate) struct Falling<F: FnMut(f64) -> [f64; 2]> {
+pub(super) struct Falling<F: FnMut(f64) -> [f64; 2]> {
     pub of: F,
     pub bend: f64,
     pub touch: f64,
@@ -171,7 +171,7 @@ impl Flight {
     }
 
     /// The time up to which the series of a rim that touches at the start is used.
-    pub(crate) fn near(&self) -> f64 {
+    pub(super) fn near(&self) -> f64 {
         let (s, sine) = (self.from.angle.0, self.b.sin());
         if sine * self.rate > 0.0 && self.shape.rim.a > 0.0 {
             (0.4 * s / sine).ln_1p() / (3.0 * self.rate)
@@ -182,7 +182,7 @@ impl Flight {
 
     /// The landing up to the time `near` of a rim that touches at the start; 0 if it does not leave the table. `swung`
     /// gives the series of the inclination.
-    pub(crate) fn leaves(
+    pub(super) fn leaves(
         &self,
         side: f64,
         order: usize,

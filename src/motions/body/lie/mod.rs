@@ -75,7 +75,7 @@ impl<const N: usize> BodyWalk<'_, N> {
     ///
     /// The state on both rims is seen from the first one, whatever came before.
     #[inline(never)]
-    pub(crate) fn settles_on_side(&mut self) -> Next {
+    pub(super) fn settles_on_side(&mut self) -> Next {
         if self.made.path.upside_down {
             self.turns_over();
         }
@@ -195,7 +195,7 @@ impl<const N: usize> BodyWalk<'_, N> {
     pub(crate) fn rocks_to_pivot(&mut self) -> Option<Next> {
         let mut flow = self.flat()?;
         let (ell, mu) = (self.of.body.ell(), flow.law.strength);
-        let [w1, w2, u_h, u_2] = [2, 3, 5, 6].map(|i| self.at[i]);
+        let [w1, w2, u_h, u_2] = [W1, W2, UH, U2].map(|i| self.at[i]);
         let speeds = [u_2, u_2 - 2.0 * ell * w1].map(|across| u_h.hypot(across));
         let other = speeds[1] < speeds[0];
         let [slow, fast] = if other { [speeds[1], speeds[0]] } else { speeds };
@@ -328,7 +328,7 @@ impl<const N: usize> BodyWalk<'_, N> {
 
     /// Computes a phase on both rims, or begins its flow.
     #[inline(never)]
-    pub(crate) fn lies(&mut self) -> Option<WalkStep<N>> {
+    pub(super) fn lies(&mut self) -> Option<WalkStep<N>> {
         let flow = self.of.lying.as_ref()?.flow;
         if flow.stance == Stance::Rolls && self.ask.losses.is_none() {
             let (begin, began) = (self.at, self.at[TIME]);
@@ -350,7 +350,7 @@ impl<const N: usize> BodyWalk<'_, N> {
 
     /// Computes the flow of a phase on both rims.
     #[inline(never)]
-    pub(crate) fn lies_on(
+    pub(super) fn lies_on(
         &mut self,
         y: [f64; N],
         steps: Steps,
@@ -376,7 +376,7 @@ impl<const N: usize> BodyWalk<'_, N> {
     /// Ends a phase on both rims at the numbers `y`, and chooses the next one. Returns the numbers from which the same
     /// phase continues, if it does.
     #[inline(never)]
-    pub(crate) fn stops_lying(&mut self, y: [f64; N], halt: Halt) -> Option<[f64; N]> {
+    pub(super) fn stops_lying(&mut self, y: [f64; N], halt: Halt) -> Option<[f64; N]> {
         let mut phase = self.of.lying.take()?;
         self.at = y;
         (self.at[SIN], self.at[COS], self.at[W2]) = (1.0, 0.0, 0.0);
@@ -437,7 +437,7 @@ impl<const N: usize> BodyWalk<'_, N> {
     }
 
     /// A phase of this kind that begins at the current numbers; a body on both rims is seen from the first rim.
-    pub(crate) fn told(&self, kind: Kind) -> Phase {
+    pub(super) fn told(&self, kind: Kind) -> Phase {
         let (y, slip, over) = (self.of.state, self.at.slip(), self.made.path.upside_down);
         let lies = self.of.lying.is_some();
         let (state, slip) = if over && lies { mirrored(&self.of.body, &y, slip) } else { (y, slip) };
@@ -448,7 +448,7 @@ impl<const N: usize> BodyWalk<'_, N> {
     }
 
     /// Writes a body on both rims to the outputs.
-    pub(crate) fn writes_lying(&mut self, flow: &LyingFlow, y: &[f64; N]) {
+    pub(super) fn writes_lying(&mut self, flow: &LyingFlow, y: &[f64; N]) {
         let row = row_of(&self.ask, flow, (self.over().as_ref(), self.made.path.way), y);
         self.made.push(row);
     }
@@ -459,7 +459,7 @@ impl<const N: usize> BodyWalk<'_, N> {
     }
 
     /// The kind of a slip from rest; for a body that lies, the kind with both rims slipping.
-    pub(crate) fn kind_of_slip(&self) -> Kind {
+    pub(super) fn kind_of_slip(&self) -> Kind {
         if self.of.lying.is_some() { Kind::Lying } else { Kind::Slipping }
     }
 }

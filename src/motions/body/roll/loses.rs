@@ -20,7 +20,7 @@ const EXACTLY: f64 = 0.1;
 impl<const N: usize> BodyWalk<'_, N> {
     /// Begins a phase that loses energy and rolls with friction up to `mu` N, or slides freely. Returns the
     /// numbers of the flow, None if the phase is over at once.
-    pub(crate) fn begins_to_lose(&mut self, mu: f64) -> Result<Option<[f64; N]>, Error> {
+    pub(super) fn begins_to_lose(&mut self, mu: f64) -> Result<Option<[f64; N]>, Error> {
         let on = (&self.of.body, self.contact());
         let (losses, y, friction) = (self.of.rolling_losses, self.of.state, self.friction());
         // Such steps add little to the error.

@@ -37,7 +37,7 @@ const LOW_HOP: f64 = 0.1;
 
 impl<const N: usize> BodyWalk<'_, N> {
     /// Computes a rolling phase by the first integrals to its end, or begins its flow if the body loses energy.
-    pub(crate) fn rolls_on(
+    pub(super) fn rolls_on(
         &mut self,
         at_limit: bool,
         go_on: &mut dyn FnMut() -> bool,

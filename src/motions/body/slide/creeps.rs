@@ -26,7 +26,7 @@ const DEAD: f64 = 0.03;
 impl Slide {
     /// Writes the rates of the numbers on a patch of contact, whose couple also produces heat.
     #[inline(never)]
-    pub(crate) fn patched<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) -> SlipResponse<f64> {
+    pub(super) fn patched<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) -> SlipResponse<f64> {
         let (at, pace, heat) = self.law.answers(y.angle(), y.w(), y.slip());
         self.law.writes(y, all, (&at, pace));
         all[HEAT] += pace * heat;
@@ -69,7 +69,7 @@ impl Slide {
 
     /// The halt of a patch that no longer slips or drills, or of a slip that has died.
     #[inline(never)]
-    pub(crate) fn hardly_rubs<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
+    pub(super) fn hardly_rubs<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
         let (radius, rubbing) = (self.law.patch()?, self.rubbing(place)?);
         if !self.died && self.has_died(&place.y) {
             return Some((Halt::Standstill, place.y));
@@ -82,7 +82,7 @@ impl Slide {
 
     /// The response for margins with their slopes, of which there is one copy for a patch.
     #[inline(never)]
-    pub(crate) fn sloped_on(
+    pub(super) fn sloped_on(
         &self,
         (s, c): (Dual<f64>, Dual<f64>),
         w: [Dual<f64>; 3],
@@ -94,13 +94,13 @@ impl Slide {
 
     /// The longest step in sigma towards and past k = 1.
     #[inline(never)]
-    pub(crate) fn kinked<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
+    pub(super) fn kinked<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
         self.rubbing(place).map_or(f64::INFINITY, |rubbing| rubbing.longest(self.tol))
     }
 
     /// Whether u, or psi' under a couple that grows with it, follows the motion much faster than the body turns.
     #[inline(never)]
-    pub(crate) fn creeps_fast<const N: usize>(&self, place: &FlowPlace<N>) -> bool {
+    pub(super) fn creeps_fast<const N: usize>(&self, place: &FlowPlace<N>) -> bool {
         is_fast(self.follows_within(place), self.calm(&place.y))
     }
 
@@ -118,7 +118,7 @@ impl Slide {
     }
 
     /// An implicit step and its stages.
-    pub(crate) fn creeps_on<const N: usize>(
+    pub(super) fn creeps_on<const N: usize>(
         &self,
         from: &FlowPlace<N>,
         h: f64,

@@ -66,7 +66,7 @@ impl Slide {
     }
 
     /// The couple that holds the contact along the rim, and its limit, with the allowance for a contact that had settled.
-    pub(crate) fn surely<T: Real>(&self, [push, limit]: [T; 2]) -> [T; 2] {
+    pub(super) fn surely<T: Real>(&self, [push, limit]: [T; 2]) -> [T; 2] {
         [push, limit * limit.splat(1.0 + self.sure)]
     }
 

@@ -115,7 +115,7 @@ impl Slide {
     /// the slip turns.
     #[inline(never)]
     fn ends_at_once<const N: usize>(&self, place: &FlowPlace<N>) -> bool {
-        let ([u, v], [du, dv]) = ([5, 6].map(|i| place.y[i]), [5, 6].map(|i| place.rate[i]));
+        let ([u, v], [du, dv]) = (place.y.slip(), place.rate.slip());
         let (square, pace) = (u * u + v * v, place.rate[TIME]);
         let left = square / -(u * du + v * dv);
         let allowed = AT_ONCE * self.tol;
@@ -151,7 +151,7 @@ impl Slide {
     /// The response of the body, as one compiled copy of the law for callers that need it only
     /// once in a step.
     #[inline(never)]
-    pub(crate) fn acts(&self, angle: (f64, f64), w: [f64; 3], u: [f64; 2]) -> SlipResponse<f64> {
+    pub(super) fn acts(&self, angle: (f64, f64), w: [f64; 3], u: [f64; 2]) -> SlipResponse<f64> {
         self.law.answers(angle, w, u).0
     }
 
@@ -212,7 +212,7 @@ impl Slide {
     }
 
     /// Whether the margin `i` can end a slip of this body.
-    pub(crate) fn watches(&self, i: usize) -> bool {
+    pub(super) fn watches(&self, i: usize) -> bool {
         match SLIP_ENDS[i] {
             Halt::Face => !self.ball,
             Halt::Side => self.theta_end < PI,

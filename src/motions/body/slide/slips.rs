@@ -9,7 +9,7 @@ use crate::motions::Ending;
 use crate::motions::body::face::turning_share;
 use crate::motions::body::phases::BodyWalk;
 use crate::motions::body::write::state;
-use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, Halt, SIN, TIME, W1, W2, loses};
+use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, Halt, SIN, TIME, W1, W2, W3, loses};
 use crate::motions::walk::two_runs::CHANCE;
 use crate::motions::walk::{Next, Pause, Phases, after_rest, ending};
 
@@ -145,7 +145,7 @@ impl<const N: usize> BodyWalk<'_, N> {
     /// Ends the rest of a slip of a uniform ball, which friction turns into rolling.
     fn drops_slip(&mut self, [u_h, u_2]: [f64; 2]) {
         let ([s, c], share) = ([self.at[SIN], self.at[COS]], 1.0 / (1.0 + self.of.body.i3()));
-        for (i, turned) in [(2, -(c * u_2)), (3, u_h), (4, s * u_2)] {
+        for (i, turned) in [(W1, -(c * u_2)), (W2, u_h), (W3, s * u_2)] {
             self.at[i] += share * turned;
         }
         self.claims(u_h.hypot(u_2));

@@ -56,7 +56,7 @@ impl LossyFlow {
 
     /// The response on a patch, and the law with the length that belongs to its force.
     #[inline(never)]
-    pub(crate) fn acts_on_patch(
+    pub(super) fn acts_on_patch(
         &self,
         law: &Lossy<f64>,
         angle: (f64, f64),
@@ -84,13 +84,13 @@ impl LossyFlow {
     }
 
     #[inline(never)]
-    pub(crate) fn margin_on_patch(&self, y: [f64; 5], i: usize) -> f64 {
+    pub(super) fn margin_on_patch(&self, y: [f64; 5], i: usize) -> f64 {
         ends_where_it_drills(self, self.margins_of(&self.fitted(y), y), y)[i]
     }
 
     /// The margins with their slopes, which neglect the change of the length.
     #[inline(never)]
-    pub(crate) fn margins_on_patch(&self, y: [Dual<f64>; 5]) -> [Dual<f64>; MARGINS] {
+    pub(super) fn margins_on_patch(&self, y: [Dual<f64>; 5]) -> [Dual<f64>; MARGINS] {
         let length = self.fitted(y.map(|x| x.value)).losses.coefficient(Law::Drilling);
         let mut law = self.sloped;
         law.losses.sets(Law::Drilling, Dual { value: length, slope: 0.0 });
@@ -99,7 +99,7 @@ impl LossyFlow {
 
     /// Writes the rates of the numbers; the couple of the patch is friction, which makes heat.
     #[inline(never)]
-    pub(crate) fn rates_on_patch<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {
+    pub(super) fn rates_on_patch<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {
         let ([w1, _, w3], force) = self.rates(y, all);
         let (mu, eps) = (self.slides, self.radius());
         let drilling = drilling_of(y.angle(), w1, w3).abs();

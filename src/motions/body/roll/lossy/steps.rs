@@ -91,14 +91,14 @@ impl LossyFlow {
         let (precession, w) = self.turning([y[SIN], y[COS], y[P], y[W2], y[W3]]);
         pole::passage(angle.0, angle.1, [w[0], w[1]])?;
         let (mut seen, mut rates) = (*y, place.rate.map(|rate| rate / place.rate[TIME]));
-        (seen[2], seen[4]) = (w[0], w[2]);
-        rates[2..5].copy_from_slice(&self.response(angle, precession, w, self.held(0.0)).w);
+        (seen[W1], seen[W3]) = (w[0], w[2]);
+        rates[W1..=W3].copy_from_slice(&self.response(angle, precession, w, self.held(0.0)).w);
         let mut there = pole::passed(&seen, &rates)?;
         there[P] *= there[SIN];
         Some(there)
     }
 
-    pub(crate) fn margins_of<T: Real>(&self, law: &Lossy<T>, y: [T; 5]) -> [T; MARGINS] {
+    pub(super) fn margins_of<T: Real>(&self, law: &Lossy<T>, y: [T; 5]) -> [T; MARGINS] {
         let [s, c, _, w2, _] = y;
         let (precession, w) = self.turning(y);
         let one = s.splat(1.0);
@@ -145,7 +145,7 @@ impl LossyFlow {
 
     /// Writes the rates of the numbers. Returns w and the contact force.
     #[inline(always)]
-    pub(crate) fn rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) -> ([f64; 3], [f64; 3]) {
+    pub(super) fn rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) -> ([f64; 3], [f64; 3]) {
         let [s, c, w2] = [y[SIN], y[COS], y[W2]];
         let (precession, w, acted) = if self.hold == Hold::Settled {
             let (precession, w, acted, _) = self.settled((s, c), y[P], w2);
