@@ -266,7 +266,7 @@ def tables(found: dict[tuple[str, str, str, str, str], Cell]) -> str:
         for e in dict.fromkeys(e for _, e in keys):
             alike[tuple(body for body, other in keys if other == e)].append(e)
         heads = [f"{', '.join(names)}; restitution {' or '.join(es)}" for names, es in alike.items()]
-        text.append(f"### {'; '.join(heads)}\n\n{table}")
+        text.append(f"## {'; '.join(heads)}\n\n{table}")
     return "\n".join(text)
 
 
