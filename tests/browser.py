@@ -32,6 +32,8 @@ window.requestAnimationFrame = draw => setTimeout(() => next(draw), 80);
 """
 #: What this browser says of its own way to bring a picture to the screen; no page can help it.
 OF_ITSELF = "GPU stall due to ReadPixels"
+#: How many milliseconds a page may take at least, on a machine with other work.
+PATIENCE = 120_000.0
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 MISSING = "no Chromium: `apt-get install chromium` or `playwright install chromium` gets one, SPINCYL_BROWSER names one"
 
@@ -77,14 +79,15 @@ def executable():
 def started(driver):
     """A running browser, and how many milliseconds a test waits for a page.
 
-    A machine that takes long for a first page takes long for others: a test waits two hundred times as long.
+    A machine that takes long for a first page takes long for others: a test waits two hundred times as long, and at least
+    `PATIENCE`, since other work may begin later.
     """
     began = time.perf_counter()
     running = driver.launch(executable_path=executable(), args=[*FLAGS, BODIES_ONLY])
     first = running.new_page()
     first.goto("data:text/html,<canvas>")
     first.close()
-    return running, 1000 * max(30.0, 200 * (time.perf_counter() - began))
+    return running, max(PATIENCE, 200_000 * (time.perf_counter() - began))
 
 
 def run(*words, **environment):

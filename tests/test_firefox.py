@@ -2,6 +2,7 @@
 
 import os
 
+import browser
 import pytest
 from page_scenes import page_of
 from playing import LAPTOP, ask, settled, state
@@ -33,6 +34,7 @@ def seen(firefox, tmp_path):
 
     def show(what, at=""):
         page = context.new_page()
+        page.set_default_timeout(browser.PATIENCE)
         page.on("pageerror", lambda e: complaints.append(str(e)))
         page.goto(what.save(tmp_path / "page.html").as_uri() + at)
         page.wait_for_selector("html[data-drawn]")

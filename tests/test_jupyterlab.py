@@ -9,6 +9,7 @@ import time
 import urllib.request
 from contextlib import suppress
 
+import browser
 import pytest
 
 NEEDED = ("anywidget", "jupyterlab", "nbconvert")
@@ -93,7 +94,7 @@ def notebook(chromium, lab):
 
     def show(name):
         context = chromium.new_context(viewport={"width": 1280, "height": 3400}, reduced_motion="reduce")
-        context.set_default_timeout(120_000)
+        context.set_default_timeout(browser.PATIENCE)
         contexts.append(context)
         page = context.new_page()
         page.asked = []
@@ -256,6 +257,7 @@ def test_a_notebook_that_nbconvert_runs_shows_the_page_and_asks_for_no_more_than
         )
         assert done.returncode == 0, done.stderr
         context = chromium.new_context(viewport={"width": 1280, "height": 800}, reduced_motion="reduce")
+        context.set_default_timeout(browser.PATIENCE)
         page = context.new_page()
         asked[name] = set()
         page.on("request", lambda r, name=name: asked[name].add(r.url.split(".ipynb")[0]))

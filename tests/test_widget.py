@@ -55,6 +55,7 @@ def notebook(chromium, tmp_path):
         )
         page = chromium.new_page(viewport={"width": 1280, "height": 1600}, reduced_motion="reduce")
         opened.append(page)
+        page.set_default_timeout(chromium.patience)
         page.goto(path.as_uri())
         for i, _ in enumerate(outputs):
             page.frames[i + 1].wait_for_function("() => document.documentElement.dataset.drawn !== undefined")

@@ -113,6 +113,7 @@ def print_out(made):
     with sync_playwright() as driver:
         chromium = driver.chromium.launch(executable_path=browser.executable(), args=browser.FLAGS)
         paper = chromium.new_page()
+        paper.set_default_timeout(browser.PATIENCE)
         paper.goto(made.absolute().as_uri())
         paper.evaluate("async () => { await MathJax.startup.promise; await document.fonts.ready }")
         wrong = paper.locator("[data-mjx-error]").count()

@@ -25,9 +25,11 @@
 //!
 //! Error: 1e-12 of the largest velocity; a test of `throw` compares with the three-dimensional model.
 
+use super::lying::{Lying, from_other};
 use super::slip::Friction;
 use crate::error::{Error, within};
 use crate::laws::body::{Body, LEVEL_ON_UNEQUAL_RIMS};
+use crate::laws::loss::Losses;
 use crate::laws::state::State;
 use core::f64::consts::FRAC_PI_2;
 
@@ -102,13 +104,10 @@ pub fn rises(body: &Body, y: &State, slip: [f64; 2], mu: f64) -> bool {
 /// The normal forces N_low and N_up on a body that lies on its side while both rims slip; a force is negative where
 /// that end rises.
 ///
-/// The forces are NaN where a rim does not slip, since its friction is not known from the state alone.
+/// With friction, the forces are NaN where a rim does not slip, since its friction is not known from the state alone.
 pub fn normals(body: &Body, y: &State, slip: [f64; 2], mu: f64) -> [f64; 2] {
-    let ell = body.ell();
-    let [low, up] =
-        [slip[1], slip[1] - 2.0 * ell * y.w1].map(|across| mu * (slip[0] / slip[0].hypot(across)));
-    let raised = (ell - low - body.i3() * y.w1 * y.w3) / (2.0 * ell + up - low);
-    [1.0 - raised, raised]
+    let lying = Lying::on(body, &Friction::coulomb(mu), &Losses::NONE);
+    lying.slipping([y.w1, y.w3, slip[0], slip[1]], [0.0; 2]).force.map(|[normal, ..]| normal)
 }
 
 /// The plastic landing of the other rim at theta = pi/2, with w2 <= 0, on a table with the friction `mu`.
@@ -277,10 +276,8 @@ pub(crate) fn pivoted(body: &Body, y: &State, slip: [f64; 2], mu: f64, other: bo
 /// phi becomes phi + pi, psi becomes -psi, and the contact point moves by 2 ell against e_h.
 pub fn mirrored(body: &Body, y: &State, slip: [f64; 2]) -> (State, [f64; 2]) {
     let theta = if y.theta == FRAC_PI_2 { y.theta } else { core::f64::consts::PI - y.theta };
-    (
-        State { theta, w2: 0.0 - y.w2, w3: 0.0 - y.w3, ..*y },
-        [0.0 - slip[0], 2.0 * body.ell() * y.w1 - slip[1]],
-    )
+    let [w1, w3, u_h, u_2] = from_other(body.ell(), [y.w1, y.w3, slip[0], slip[1]]);
+    (State { theta, w1, w2: 0.0 - y.w2, w3 }, [u_h, u_2])
 }
 
 /// Kinetic energy at theta = pi/2, from the state, and the slip and the vertical velocity of the lower rim.

@@ -19,6 +19,7 @@ pub(crate) mod lands;
 
 use super::write::posed;
 use crate::laws::body::Shape;
+use crate::laws::contact::lying::from_other;
 use crate::laws::pose::Pose;
 use crate::laws::state::State;
 use crate::methods::flow::Spent;
@@ -72,10 +73,11 @@ impl Aloft {
     pub fn on_other_rim(&self, shape: &Shape<f64>) -> Self {
         let ((s, c), [w1, w2, w3], [phi, psi, x, y]) = (self.angle, self.w, self.pose);
         let (apart, above) = (2.0 * shape.rim.ell, shape.rim.between(self.angle));
+        let [w1, w3, u_h, u_2] = from_other(shape.rim.ell, [w1, w3, self.slip[0], self.slip[1]]);
         Self {
             angle: (s, 0.0 - c),
-            w: [w1, 0.0 - w2, 0.0 - w3],
-            slip: [-(above * w2) - self.slip[0], apart * w1 - self.slip[1]],
+            w: [w1, 0.0 - w2, w3],
+            slip: [u_h - above * w2, u_2],
             lift: self.lift + apart * s * w2,
             height: self.height + above,
             pose: [phi + PI, 0.0 - psi, x - apart * s * phi.cos(), y - apart * s * phi.sin()],
