@@ -257,6 +257,7 @@ LEAVING = """async () => {
   const form = Object.assign(document.createElement("form"), { action: location.pathname + "?sent", method: "get" });
   document.body.append(form);
   form.submit();
+  for (let i = 0; i < 600 && said.length < 2; i++) await new Promise(done => setTimeout(done, 100));
   await new Promise(done => setTimeout(done, 300));
   return [said.sort(), document.baseURI.startsWith('file:///nowhere/')];
 }"""
