@@ -107,11 +107,9 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
         let mut at = [0.0; N];
         at[..7].copy_from_slice(&[s, c, start.w1, start.w2, start.w3, slip[0], slip[1]]);
         let rolling_losses = with_patch(&ask.losses, &ask.table.friction());
-        let mut slide = Slide::new(body, &ask.table.friction(), &ask.losses, tol);
-        slide.fine = fine;
         let of = BodyPhases {
             body: *body,
-            slide,
+            slide: Slide::new(body, &ask.table.friction(), &ask.losses, tol),
             state: start,
             start,
             integrates: ask.table == Table::Smooth || !rolling_losses.is_none(),

@@ -59,7 +59,7 @@ impl Slide {
     /// Whether the slip of a uniform ball has died, which nothing feeds while the ball drills.
     #[inline(never)]
     pub(in crate::motions::body) fn has_died<const N: usize>(&self, y: &[f64; N]) -> bool {
-        self.dies && y[UH].hypot(y[U2]) <= DEAD * self.fine * Self::fastest(y) && self.creeps(y)
+        self.dies && y[UH].hypot(y[U2]) <= DEAD * self.tol * Self::fastest(y) && self.creeps(y)
     }
 
     /// Whether a uniform ball on a patch does not drill but for rounding, so that it rolls on for ever.

@@ -73,8 +73,6 @@ pub(crate) struct Slide {
     /// The share by which the couple that holds the contact along the rim may exceed its limit, after it has settled.
     sure: f64,
     pub tol: f64,
-    /// The requested tolerance, which `tol` exceeds in a rougher run.
-    pub fine: f64,
 }
 
 impl Slide {
@@ -101,7 +99,6 @@ impl Slide {
             rolls_off: false,
             sure: 0.0,
             tol,
-            fine: tol,
         }
     }
 
