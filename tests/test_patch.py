@@ -302,8 +302,8 @@ def test_a_loss_without_a_derivative_at_rest_does_not_stop_a_stiff_slip():
 
 def test_the_error_of_a_uniform_ball_covers_the_little_slip_that_its_rougher_run_would_drop():
     ball, table = sc.Body.ball(0.0, i1=0.4, i3=0.4), sc.Coulomb(0.19, patch=0.0046)
-    for k in range(6):
-        start = sc.State(0.3 + 0.4 * k, 3.9, -4.1, -5.4, slip=(-1e-9, 7e-11))
+    for slip, k in [(1e-9, k) for k in range(6)] + [(1e-6, 0), (1e-6, 3), (1e-8, 5)]:
+        start = sc.State(0.3 + 0.4 * k, 3.9, -4.1, -5.4, slip=(-slip, 0.07 * slip))
         fine, found = (sc.roll(ball, start, [0.0, 300.0], contact=table, tol=tol) for tol in (1e-14, 1e-10))
         off = max(abs(fine.theta[1] - found.theta[1]), *abs(fine.w[1] - found.w[1]))
         assert off <= fine.error + found.error
