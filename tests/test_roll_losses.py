@@ -157,6 +157,20 @@ def test_the_claimed_error_holds_for_a_loose_tolerance():
 # Ends.
 
 
+@pytest.mark.parametrize("tol", [1e-10, 1e-12, 1e-14])
+def test_the_claimed_error_holds_for_a_ball_that_slips_past_its_pole_under_dry_contour(tol):
+    # It passes at 1e-11 rad, where the couple along the rim turns around; with max_step = T/40 and T/400 the DOP853 solution of
+    # Newton's and Euler's equations in the laboratory differs by 8e-16.
+    ball, slip = sc.Body.ball(0.3, i1=0.41, i3=0.29), (1.0191144642353, -0.8022225522535057)
+    w = 0.006774199454874067, -0.6064994781183143, -0.0002939698336618509
+    start = sc.State(3.081228146965839, *w, slip=slip)
+    m = sc.roll(ball, start, [0.0, 0.25], contact=sc.Coulomb(0.06), losses=loss.DryContour(0.024), tol=tol)
+    theta, w = 3.0528562933795835, (0.0005009171730152344, 0.5814024642075429, -0.0006528895369972301)
+    slip = -0.9792736396089864, 0.7939617815526692
+    off = max(abs(m.theta[1] - theta), *abs(m.w[1] - w), *abs(m.slip[1] - slip))
+    assert off <= m.error < 1e-8
+
+
 def test_a_whirr_whose_contact_stops_falls_flat_and_says_so():
     m = sc.roll(DISK, DISK.steady(0.3), np.linspace(0, 400, 2001), losses=DRY, want="force")
     assert m.status is sc.Ending.FACE == 1 and not m.success
