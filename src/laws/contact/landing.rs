@@ -254,23 +254,6 @@ pub(crate) fn settled(
     (State { w2: 0.0, ..after }, if slip == [0.0; 2] { slip } else { slips[0] })
 }
 
-/// The state of a body that rocks from rim to rim, lower and lower, until the rim that slips more slowly rests: the
-/// lower rim, or the other one if `other`. Impulses of either sign take w2 and the slip of this rim at once.
-///
-/// The other rim slips in the same direction in each landing, and between them. The mean forces of rocking are therefore
-/// those of a pivot, and the changes of the momenta determine the impulses beyond these. Error: of second order.
-pub(crate) fn pivoted(body: &Body, y: &State, slip: [f64; 2], mu: f64, other: bool) -> State {
-    let (ell, i1, i3) = (body.ell(), body.i1(), body.i3());
-    let over = slip[1] - 2.0 * ell * y.w1;
-    let (slow, fast, way) = if other { (over, slip[1], -1.0) } else { (slip[1], over, 1.0) };
-    let along = -(slip[0] + y.w2);
-    let rubs = -mu * fast.signum() * 0.5 * (way * (along - i1 * y.w2) / ell - ell * y.w2);
-    let (straight, turning) = (1.0 + 1.0 / i3, ell * ell / i1);
-    let stops = -(slow + (straight - turning) * rubs) / (straight + turning);
-    let [low, up] = if other { [rubs, stops] } else { [stops, rubs] };
-    State { w1: y.w1 + ell * (low - up) / i1, w2: 0.0, w3: y.w3 - (low + up) / i3, ..*y }
-}
-
 /// The state and the slip of a body on its side as seen from its other rim, which then is the lower one.
 ///
 /// phi becomes phi + pi, psi becomes -psi, and the contact point moves by 2 ell against e_h.

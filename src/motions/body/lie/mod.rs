@@ -18,7 +18,7 @@ use super::fly::flies::pose_from;
 use super::phases::BodyWalk;
 use super::write;
 use crate::error::Error;
-use crate::laws::contact::landing::{mirrored, pivoted};
+use crate::laws::contact::landing::mirrored;
 use crate::laws::contact::lying::{Lain, Lying};
 use crate::laws::contact::slip::Friction;
 use crate::laws::contact::standstill::{Standstill, standstill, towards};
@@ -203,13 +203,10 @@ impl<const N: usize> BodyWalk<'_, N> {
         if !(flow.law.dry && slow < ROCKS_BESIDE * fast && slow < ROCKS_ON) {
             return None;
         }
-        let (begin, state) = (self.at, self.of.state);
-        let after = pivoted(&self.of.body, &State { w2, ..state }, [u_h, u_2], mu, other);
-        let slips = if other { 2.0 * ell * after.w1 } else { 0.0 };
-        (self.at[W1], self.at[W2], self.at[W3], self.at[UH], self.at[U2]) =
-            (after.w1, 0.0, after.w3, 0.0, slips);
+        let begin = self.at;
+        (self.at[W2], self.at[UH], self.at[U2]) = (0.0, 0.0, if other { 2.0 * ell * w1 } else { 0.0 });
         flow.stance = Stance::Pivots { other };
-        flow.turn = after.w1.signum();
+        flow.turn = w1.signum();
         self.sets_ways(&mut flow);
         let Lain { force, .. } = flow.lain(&self.at);
         let [n, across, along] = force[usize::from(other)];
@@ -217,12 +214,14 @@ impl<const N: usize> BodyWalk<'_, N> {
         // A rim that is only just held, or presses little, takes longer to come to rest.
         let lasts =
             ROCKS_LONG * slow * (1.0 / mu + 1.0 / ell) / (least * (1.0 - across.hypot(along) / (mu * n)));
-        let held = flow.law.held != [false; 2] || after.w1 * w1 <= 0.0;
+        let held = flow.law.held != [false; 2];
         if held || least <= 0.0 || !(0.0..ROCKS_ON).contains(&lasts) {
             self.at = begin;
             return None;
         }
-        self.claims(lasts);
+        // The impulses that take the speed `slow` would change w1 and w3 by as much as friction does in this time.
+        let pushes = mu * (ell / self.of.body.i1()).max(1.0 / self.of.body.i3());
+        self.claims(slow + lasts * (1.0 + pushes));
         self.sets_state();
         let energy = |y: &[f64; N]| self.of.slide.energy(y);
         let lost = energy(&begin) - energy(&self.at);
