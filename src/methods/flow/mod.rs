@@ -52,6 +52,9 @@ const SPARES: bool = rk8::LOOPS || IN_REGISTERS;
 const BEFORE_IT_DECAYS: f64 = 20.0;
 /// A part of an implicit step is divided into at most 2 to this power.
 const PARTINGS: i32 = 8;
+/// The longest part of a step in which an output is sought, and the largest number of parts that are tried for it.
+const BEYOND: f64 = 1.1;
+const HALVINGS: u32 = 100;
 /// Largest share of the time up to an extrapolated halt at which an output is shown: the slip is not zero before its end.
 const MOSTLY: f64 = 1.0 - f64::EPSILON;
 /// Number of crawling steps between two calls of [`Flow::stuck`].
@@ -283,20 +286,31 @@ pub(crate) trait Flow<const M: usize>: Copy {
         y
     }
 
-    /// The numbers at time `t` within a step of `h` that ends at `after`, by Newton's iteration on parts of the step.
+    /// The numbers at time `t` within a step of `h` that ends at `after`, by Newton's iteration on parts of the step, and by
+    /// bisection where that leaves the parts between which the time lies; NaN if no part comes that near to the time. An
+    /// implicit part may be a little late at the end of the step.
     fn at_time<const N: usize>(&self, from: &FlowPlace<N>, after: &FlowPlace<N>, h: f64, t: f64) -> [f64; N] {
         let span = after.y[Self::TIME] - from.y[Self::TIME];
+        let near = (1e-9 * span).max(f64::EPSILON * t.abs());
+        let (mut low, mut high) = (0.0, BEYOND);
         let mut x = ((t - from.y[Self::TIME]) / span).clamp(0.0, 1.0);
-        for _ in 0..8 {
+        for _ in 0..HALVINGS {
             let y = self.part(from, x * h);
             let rate = self.rates(&y);
             let left = t - y[Self::TIME];
-            if left.abs() <= 1e-9 * span || left == 0.0 {
+            if left.abs() <= near {
                 return core::array::from_fn(|i| y[i] + left / rate[Self::TIME] * rate[i]);
             }
-            x = (x + left / (rate[Self::TIME] * h)).clamp(0.0, 1.0);
+            // A part that is NaN is too long.
+            if left > 0.0 {
+                low = x;
+            } else {
+                high = x;
+            }
+            let newton = x + left / (rate[Self::TIME] * h);
+            x = if low < newton && newton < high { newton } else { 0.5 * (low + high) };
         }
-        self.part(from, x * h)
+        [f64::NAN; N]
     }
 
     /// Writes the numbers at those of the `times` that are not after `until`, within a step of `h` between two points, and

@@ -9,19 +9,20 @@ thread_local! {
     static EVALUATED: Cell<u64> = const { Cell::new(0) };
 }
 
-/// A flow with steps of 1, in which only time changes; its first margin is a polynomial of time with these
-/// zeros.
+/// A flow with steps of 1, in which time changes, and the first number as sigma; its first margin is a polynomial of time
+/// with these zeros. An uneven clock goes this many times faster halfway through its first step.
 #[derive(Clone, Copy)]
 struct Clock {
     zeros: [f64; 3],
     count: usize,
+    uneven: f64,
 }
 
 impl Clock {
     fn of(all: &[f64]) -> Self {
         let mut zeros = [0.0; 3];
         zeros[..all.len()].copy_from_slice(all);
-        Self { zeros, count: all.len() }
+        Self { zeros, count: all.len(), uneven: 0.0 }
     }
 
     fn face(&self, t: Dual<f64>) -> Dual<f64> {
@@ -49,10 +50,11 @@ impl Flow<MARGINS> for Clock {
     fn theta<const N: usize>(&self, _: &[f64; N]) -> f64 {
         0.0
     }
-    fn write_rates<const N: usize>(&self, _: &[f64; N], all: &mut [f64; N]) {
+    fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {
         EVALUATED.set(EVALUATED.get() + 1);
         *all = [0.0; N];
-        all[TIME] = 1.0;
+        let past = self.uneven * (y[0] - 0.5);
+        (all[0], all[TIME]) = (1.0, self.uneven.max(1.0) / (1.0 + past * past));
     }
     fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; MARGINS] {
         let mut all = [Dual { value: 1.0, slope: 0.0 }; MARGINS];
@@ -160,6 +162,21 @@ fn a_flow_that_is_exhausted_ends_where_it_is_and_says_why() {
     };
     assert!(matches!(whole(Steps { patience: 3, ..patient }, true), Err(Error::Endless { .. })));
     assert!(matches!(whole(patient, false), Ok(None)) && matches!(whole(patient, true), Ok(Some(_))));
+}
+
+#[test]
+fn an_output_is_at_its_time_also_where_newtons_iteration_runs_to_and_fro() {
+    let clock = Clock { uneven: 50.0, ..Clock::of(&[]) };
+    let steps = Steps { first: Some(1.0), most: 1, patience: PATIENCE, toil: TOIL, tired: false };
+    let from = clock.place([0.0; 9]);
+    let whole = clock.run(from, steps, &[9.0], &mut |_: &[f64; 9]| (), &mut || true).y[TIME];
+    for i in 1..100 {
+        let t = 0.01 * f64::from(i) * whole;
+        let mut found = 0.0;
+        clock.run(from, steps, &[t, 9.0], &mut |y: &[f64; 9]| found = y[0], &mut || true);
+        let there = clock.part(&from, found)[TIME];
+        assert!((there - t).abs() < 1e-8, "{t}: {there}");
+    }
 }
 
 #[test]
