@@ -12,17 +12,17 @@ use core::f64::consts::TAU;
 
 pub(crate) fn pose_distance(a: &Pose, b: &Pose) -> f64 {
     let angle = |a: Angle, b: Angle| ((a.turns - b.turns) * TAU + (a.rest - b.rest)).abs();
-    let moved = (a.contact_point - b.contact_point).norm().max((a.height - b.height).abs());
-    angle(a.phi, b.phi).max(angle(a.psi, b.psi)).max(moved)
+    let moved = [(a.contact_point - b.contact_point).norm(), (a.height - b.height).abs()];
+    moved.into_iter().fold(larger(angle(a.phi, b.phi), angle(a.psi, b.psi)), larger)
 }
 
 /// The largest difference between two poses that are seen from the two equal rims of a body, `a` from the one that was
 /// not down at the start. The points on the table differ along the lean, by a length of the body.
 pub(crate) fn pose_distance_over(a: &Pose, b: &Pose) -> f64 {
     let by = |a: Angle, turns: f64, rest: f64| ((a.turns - turns) * TAU + (a.rest - rest)).abs();
-    let turned = by(a.phi, b.phi.turns + 0.5, b.phi.rest).max(by(a.psi, -b.psi.turns, -b.psi.rest));
+    let turned = larger(by(a.phi, b.phi.turns + 0.5, b.phi.rest), by(a.psi, -b.psi.turns, -b.psi.rest));
     let ((sin, cos), moved) = (b.phi.radians().sin_cos(), a.contact_point - b.contact_point);
-    turned.max((moved.y * cos - moved.x * sin).abs())
+    larger(turned, (moved.y * cos - moved.x * sin).abs())
 }
 
 /// Relative error of a number of a state from a few roundings.
@@ -62,7 +62,7 @@ pub(crate) fn doubted_of<const K: usize>(
 /// The largest difference between the numbers of two forces.
 pub(crate) fn force_distance(a: &Force, b: &Force) -> f64 {
     let [normal, along, across] = [a.normal - b.normal, a.along - b.along, a.across - b.across];
-    normal.abs().max(along.abs()).max(across.abs())
+    [normal, along, across].into_iter().fold(0.0, |most, x| larger(most, x.abs()))
 }
 
 /// Sets the error of an integrated motion from the exact motion at some of its times, or at all if they are fewer than
@@ -101,15 +101,15 @@ pub(crate) fn judge(motion: &mut Motion, swing: &Swing, exact: Option<Event>, t0
 /// infinity.
 pub(crate) fn compare(motion: &mut Motion, other: &Motion) {
     for (i, (a, b)) in motion.states.iter().zip(&other.states).enumerate() {
-        motion.error = motion.error.max(a.distance(b));
+        motion.error = larger(motion.error, a.distance(b));
         if let (Some(poses), Some(others)) = (&motion.poses, &other.poses) {
-            motion.pose_error = motion.pose_error.max(pose_distance(&poses[i], &others[i]));
+            motion.pose_error = larger(motion.pose_error, pose_distance(&poses[i], &others[i]));
         }
     }
     match (motion.event, other.event) {
         (None, None) => {}
         (Some(a), Some(b)) if a.ending == b.ending => {
-            motion.error = motion.error.max(a.state.distance(&b.state)).max((a.time - b.time).abs());
+            motion.error = larger(motion.error, larger(a.state.distance(&b.state), (a.time - b.time).abs()));
         }
         _ => motion.error = f64::INFINITY,
     }

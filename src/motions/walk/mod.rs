@@ -28,6 +28,7 @@ use crate::methods::flow::{PATIENCE, Spent, Steps, toil_of};
 use crate::motions::ask::result::{Ending, Event, Kind, Limit, Phase, Strike};
 use crate::motions::walk::numbers::{Halt, TIME};
 use crate::motions::walk::two_runs::{BRIEF, Followed};
+use crate::numbers::larger;
 pub(crate) use phases::Phases;
 pub(crate) use slips::{SlowLaw, SlowSeries};
 
@@ -480,9 +481,9 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         self.ask.table.friction()
     }
 
-    /// Raises the estimated error of the motion to at least this error.
+    /// Raises the estimated error of the motion to at least this error, which remains if it is NaN.
     pub fn claims(&mut self, error: f64) {
-        self.made.motion.error = self.made.motion.error.max(error);
+        self.made.motion.error = larger(self.made.motion.error, error);
     }
 
     /// The factor by which a rougher run exaggerates an error that both runs make alike, so that the scaled difference

@@ -7,6 +7,7 @@
 use crate::error::{Error, copied, grow, room};
 use crate::laws::state::State;
 use crate::motions::{Ending, Kind, Limit, Motion, Moving, Path, Phase};
+use crate::numbers::larger;
 
 /// A motion and its path, before the path becomes a part of the motion.
 #[derive(Debug, Clone, PartialEq)]
@@ -178,13 +179,17 @@ impl<S: Moving> Followed<S> {
         let given_up = self.is_given_up();
         let motion = &mut self.motion;
         let (mut off, mut turned, mut pressed) = (0f64, 0f64, 0f64);
-        let mut apart = |by: f64| off = off.max(by);
+        let mut apart = |by: f64| off = larger(off, by);
         // After impacts of both rims one run may see the body from one rim, and the other run from the other rim.
         let hops = !self.path.impacts.is_empty();
         let distance = |a: &S, b: &S, u: &[f64; 2], v: &[f64; 2]| {
-            let direct = a.distance(b).max((u[0] - v[0]).abs()).max((u[1] - v[1]).abs());
+            let slips = [u[0] - v[0], u[1] - v[1]];
+            let direct = slips.into_iter().fold(a.distance(b), |most, u| larger(most, u.abs()));
             let there = b.seen_from_other_rim().filter(|_| hops);
-            there.map_or(direct, |b| direct.min(a.distance(&b).max((u[0] + v[0]).abs())))
+            there.map_or(direct, |b| {
+                let over = larger(a.distance(&b), (u[0] + v[0]).abs());
+                if over < direct { over } else { direct }
+            })
         };
         let runs =
             [(motion.states.iter().zip(&self.path.slip)), rough.motion.states.iter().zip(&rough.path.slip)];
@@ -225,16 +230,17 @@ impl<S: Moving> Followed<S> {
         if let (Some(poses), Some(others)) = (&motion.poses, &rough.motion.poses) {
             for (i, (a, b)) in poses.iter().zip(others).enumerate() {
                 let [over, there] = [&self.path.rims, &rough.path.rims].map(|of| of.get(i) == Some(&1));
-                turned = turned.max(match (over, there) {
+                let apart = match (over, there) {
                     (true, false) => S::pose_distance_over(a, b),
                     (false, true) => S::pose_distance_over(b, a),
                     _ => S::pose_distance(a, b),
-                });
+                };
+                turned = larger(turned, apart);
             }
         }
         if let (Some(forces), Some(others)) = (&motion.forces, &rough.motion.forces) {
             for (a, b) in forces.iter().zip(others) {
-                pressed = pressed.max(S::force_distance(a, b));
+                pressed = larger(pressed, S::force_distance(a, b));
             }
         }
         let mut ends = motion.event.map(|e| e.ending) == rough.motion.event.map(|e| e.ending)
@@ -244,7 +250,7 @@ impl<S: Moving> Followed<S> {
         if let (Some(event), None) | (None, Some(event)) = (motion.event, rough.motion.event)
             && let Some(late) = last.map(|t| (event.time - t).abs()).filter(|late| *late <= LATE)
         {
-            (ends, off) = (true, off.max(late));
+            (ends, off) = (true, larger(off, late));
         }
         let fastest =
             self.path.phases.iter().fold(1.0, |most: f64, p| {
@@ -276,18 +282,24 @@ impl<S: Moving> Followed<S> {
         } else {
             claimed
         };
-        let grown = |off: f64| off * (claimed * parted / (parted - off).max(0.0)).min(claimed.max(1.0));
-        let settled = |claim: f64, off: f64| if ends { claim + grown(off) + least } else { f64::INFINITY };
+        let grown_to =
+            |off: f64, parted: f64| off * (claimed * parted / (parted - off).max(0.0)).min(claimed.max(1.0));
+        let grown = |off: f64| grown_to(off, parted);
+        let settled = |claim: f64, off: f64| if ends { claim + off + least } else { f64::INFINITY };
         let state_claim = motion.error;
-        motion.error = settled(state_claim, off);
+        motion.error = settled(state_claim, grown(off));
+        // An error that cannot be computed counts as infinite.
+        motion.error = if motion.error.is_nan() { f64::INFINITY } else { motion.error };
         // The errors of the forces were computed for states with errors of one tolerance; the states have
         // larger errors.
         let larger = (grown(off) + least) / tol;
-        motion.force_error = settled(motion.force_error * larger.max(1.0), pressed);
+        motion.force_error = settled(motion.force_error * larger.max(1.0), grown(pressed));
         // Rounding errors of the angles of a pose are proportional to these angles.
         let turning = motion.poses.iter().flatten().last().map_or(0.0, S::turning);
         // After an impact the errors of its time and of its sum are also those of the pose.
         let state_claim = if hops { state_claim } else { 0.0 };
+        // Angles have parted where they differ by a share of a radian, as where two balls pass on two sides of their poles.
+        let turned = grown_to(turned, PARTED);
         motion.pose_error = settled(motion.pose_error + state_claim, turned) + 32.0 * f64::EPSILON * turning;
         Ok(())
     }

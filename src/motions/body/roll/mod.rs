@@ -18,6 +18,7 @@ use crate::motions::walk::errors::doubted;
 use crate::motions::walk::numbers::{COS, HEAT, PHI, TIME, W2, lost, poses};
 use crate::motions::walk::{Next, Phases, WalkStep, after_rest};
 use crate::motions::{Ask, Ending, Motion, Start};
+use crate::numbers::larger;
 use core::f64::consts::{PI, TAU};
 use nalgebra::Point2;
 
@@ -110,7 +111,7 @@ impl<const N: usize> BodyWalk<'_, N> {
     ) -> Result<(), Error> {
         let (body, rubs) = (self.of.body, self.ask.table.rubs());
         self.claims(rolled.error);
-        self.made.motion.pose_error = self.made.motion.pose_error.max(rolled.pose_error);
+        self.made.motion.pose_error = larger(self.made.motion.pose_error, rolled.pose_error);
         let spent = [self.at[HEAT], lost(&self.at)];
         if self.of.planar {
             rolled.states.iter_mut().chain(rolled.event.iter_mut().map(|e| &mut e.state)).for_each(|y| {
