@@ -41,6 +41,8 @@ const SECANTS: usize = 40;
 const ASIDE: f64 = 1e-5;
 /// A step is near its limit of stability if its length times the slope of the rates is more than this.
 const STABLE: f64 = 0.3;
+/// A slip lasts if it loses less than this share of its speed in a unit of sigma, in which it approaches its direction.
+const ENDS_SLOWLY: f64 = 0.02;
 /// A law is stiff if it pulls w at this many times the rate at which w changes.
 const FAR_FASTER: f64 = 100.0;
 
@@ -302,10 +304,12 @@ impl Flow<CUSTOM_MARGINS> for CustomFlow<'_> {
         self.writes(y, &self.answer(y), all);
     }
 
-    /// The smaller a slip that begins, the faster it approaches its slow direction.
+    /// The slower a slip, the faster it approaches its slow direction. Where it also ends at its own pace, as most slips do,
+    /// that is no faster in sigma than its end.
     fn is_stiff<const N: usize>(&self, place: &FlowPlace<N>) -> bool {
-        let grows = place.y[UH] * place.rate[UH] + place.y[U2] * place.rate[U2] > 0.0;
-        grows && is_fast(self.stable(place) * place.rate[TIME], self.calm(&place.y))
+        let ([u, v], [du, dv]) = (place.y.slip(), place.rate.slip());
+        let lasts = u * du + v * dv > -ENDS_SLOWLY * (u * u + v * v);
+        lasts && is_fast(self.stable(place) * place.rate[TIME], self.calm(&place.y))
     }
 
     fn implicit_step<const N: usize>(
