@@ -171,6 +171,11 @@ pub(crate) trait Flow<const M: usize>: Copy {
     /// Called with a point within a step near which margin `i` has a minimum, and with that minimum, which is
     /// positive and less than the variation of the margin in the step.
     fn grazed<const N: usize>(&self, _: &[f64; N], _: usize, _: f64) {}
+    /// For a step that is too long to see what it passes, the share of it by which it is tried again.
+    #[inline(always)]
+    fn passes_unseen<const N: usize>(&self, _: &[f64; N], _: &[f64; N]) -> Option<f64> {
+        None
+    }
     /// The inclination that an error names.
     fn theta<const N: usize>(&self, y: &[f64; N]) -> f64;
 
@@ -451,9 +456,10 @@ pub(crate) trait Flow<const M: usize>: Copy {
             let (y, carry) = plus(&here.y, &here.carry, &made.change);
             let y = self.kept(y);
             let after = FlowPlace { y, carry, rate: self.rates(&y) };
-            if error.is_nan() || error > 1.0 || after.rate.iter().any(|x| x.is_nan()) {
+            let unseen = self.passes_unseen(&here.y, &y);
+            if error.is_nan() || error > 1.0 || unseen.is_some() || after.rate.iter().any(|x| x.is_nan()) {
                 let tried = h;
-                h *= growth(error).min(0.7);
+                h *= growth(error).min(unseen.unwrap_or(0.7));
                 if implicit {
                     ways.fails(tried, !error.is_nan(), &mut h, stable);
                 }

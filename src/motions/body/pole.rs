@@ -11,12 +11,24 @@
 //! is proportional to that time then, and is claimed (`claims_passage`).
 
 use crate::laws::state::{drilling_of, rolling_of};
-use crate::motions::walk::numbers::{PHI, PSI, TIME, poses};
+use crate::motions::walk::numbers::{PHI, PSI, SIN, TIME, W1, poses};
 
 /// A ball whose axis approaches its pole passes it in one step from this sine of theta on.
 const BESIDE_POLE: f64 = 1e-9;
 /// It passes so only within this time: an axis that comes to rest on the pole, or winds about it, does not pass it.
 const AT_MOST: f64 = 1e-7;
+
+/// A step past the pole is tried again up to this share of the way to it.
+const APPROACHES: f64 = 0.8;
+
+/// The share by which a step is tried again that passes the pole without seeing on which side, if that counts: phi turns to
+/// that side, and so does e_h with a couple of dry friction along the rim. None for another step, and for a body that only
+/// rocks.
+#[inline(always)]
+pub(crate) fn passes_unseen<const N: usize>(from: &[f64; N], y: &[f64; N], counts: bool) -> Option<f64> {
+    let passes = from[SIN] * y[SIN] < 0.0 && from[W1] != 0.0 && (poses(N) || counts);
+    passes.then(|| APPROACHES * from[SIN] / (from[SIN] - y[SIN]))
+}
 
 /// A vector of the table, in the basis that is turned by the angle with this cosine and sine.
 fn turned([cos, sin]: [f64; 2], [h, two]: [f64; 2]) -> [f64; 2] {

@@ -21,7 +21,7 @@ use super::pole;
 use super::roll::lossy::REST;
 use crate::laws::body::{Body, Rim, Shape, landing_angle};
 use crate::laws::contact::slip::{Friction, SlipResponse, Slipping};
-use crate::laws::loss::{Couples, Holds, Losses};
+use crate::laws::loss::{Couples, Holds, Law, Losses};
 use crate::laws::state::State;
 use crate::methods::flow::{FASTEST, Flow, FlowPlace};
 use crate::methods::{radau, rk8};
@@ -415,6 +415,12 @@ impl Flow<MARGINS> for Slide {
         }
         let over = if self.ends_at_once(place) { f64::INFINITY } else { self.over() };
         vanished(place, over).map(|y| (Halt::Standstill, y))
+    }
+
+    #[inline(always)]
+    fn passes_unseen<const N: usize>(&self, from: &[f64; N], y: &[f64; N]) -> Option<f64> {
+        let turns = loses(N) && self.law.losses.is_some_and(|losses| losses.has(Law::DryContour));
+        pole::passes_unseen(from, y, turns).filter(|_| self.ball && !self.settled)
     }
 
     fn slows<const N: usize>(&self, halt: Halt, place: &FlowPlace<N>) -> f64 {

@@ -297,6 +297,12 @@ impl Flow<MARGINS> for LossyFlow {
         close.then_some((Halt::Settles, *y))
     }
 
+    #[inline(always)]
+    fn passes_unseen<const N: usize>(&self, from: &[f64; N], y: &[f64; N]) -> Option<f64> {
+        let turns = self.law.losses.has(Law::DryContour);
+        pole::passes_unseen(from, y, turns).filter(|_| self.ball && self.hold == Hold::No)
+    }
+
     fn slows<const N: usize>(&self, halt: Halt, place: &FlowPlace<N>) -> f64 {
         if halt == Halt::Rests { self.rolling_growth(place)[1].abs() } else { f64::INFINITY }
     }
