@@ -359,6 +359,42 @@ def test_the_centre_moves_with_the_slip(name):
     assert np.abs(moved - lab(now, *body.centre_velocity(now.states))).max() < 1e-6
 
 
+@pytest.mark.parametrize(
+    ("ell", "mu", "w", "slip"),
+    [
+        (
+            0.45452423163,
+            0.13918190402,
+            (1.01081626494, -0.14123339803, 0.45944048615),
+            (0.00245788, -0.00185561),
+        ),
+        (
+            0.04062161554,
+            0.04137137054,
+            (1.09298735384, -0.01176233950, 0.04439891208),
+            (-0.0050553, -0.00077348),
+        ),
+        (
+            0.04958277802,
+            0.19571662961,
+            (1.09395524377, -0.02012260026, 0.05424134001),
+            (-0.0027745, 0.00010006),
+        ),
+    ],
+)
+def test_the_end_of_a_slip_is_known_to_a_tenth_of_the_tolerance(ell, mu, w, slip):
+    body, start = sc.Body.solid(ell), sc.State(0.3, *w, slip=slip)
+    fine, found = (
+        next(
+            p.time
+            for p in sc.roll(body, start, 0.2, contact=sc.Coulomb(mu), tol=tol).phases
+            if p.kind == "rolling"
+        )
+        for tol in (1e-14, 1e-9)
+    )
+    assert abs(found - fine) < 1e-10
+
+
 def test_a_hoop_on_a_wet_table_never_stops_slipping():
     c = 0.3
     m = sc.roll(HOOP, THROWN, [0.0, 1.0, 5.0], contact=sc.Viscous(c))
