@@ -122,9 +122,56 @@ fn a_uniform_ball_whose_slip_has_died_on_a_patch_costs_nothing_and_its_drilling_
         assert_eq!([late.evaluations, last.evaluations], [early.evaluations; 2]);
         assert_eq!(late.path.as_ref().unwrap().slip[0], [0.0; 2]);
         assert!(drilling(&last).abs() < 1e-15);
+        // Its energy, that of a ball without a slip, becomes heat.
+        let whole = |m: &Motion| {
+            let y = m.states.last().unwrap();
+            let rolling = y.theta.cos() * y.w1 - y.theta.sin() * y.w3;
+            let turning = 0.4 * (y.w1 * y.w1 + y.w2 * y.w2 + y.w3 * y.w3);
+            0.5 * (turning + rolling * rolling + y.w2 * y.w2) + m.path.as_ref().unwrap().heat
+        };
+        for m in [&late, &last] {
+            let gained = whole(m) - whole(&early);
+            assert!(gained.abs() < 1e-13, "{tol:e}: {gained:e}");
+        }
         let falls = (drilling(&early) - drilling(&late)) / 130.0;
         let couple = 3.0 * core::f64::consts::PI / 16.0 * 0.2 * 1e-3;
         assert!((falls.abs() - couple / 0.4).abs() < 1e-14, "{tol:e}: {falls}");
+    }
+}
+
+#[test]
+fn a_uniform_ball_that_rolls_under_dry_friction_costs_nothing_and_stops_when_its_couples_say() {
+    let inertia = 0.4;
+    let ball = Body::ball(0.0, inertia, inertia).unwrap();
+    let start = State { theta: 1.0, w1: -2.0, w2: 1.0, w3: 3.0 };
+    let (sin, cos) = start.theta.sin_cos();
+    let rolling = (cos * start.w1 - sin * start.w3).hypot(start.w2);
+    let drilling = sin * start.w1 + cos * start.w3;
+    let energy = 0.5 * ((1.0 + inertia) * rolling * rolling + inertia * drilling * drilling);
+    let (arm, length) = (2e-2, 5e-4);
+    let ends = [(1.0 + inertia) * rolling / arm, inertia * drilling.abs() / length];
+    let losses = Losses::of(Law::RollingResistance, arm) + Losses::of(Law::Drilling, length);
+    for table in [Table::Rolling { mu: f64::INFINITY }, Friction::coulomb(0.3).into()] {
+        let ask = Ask::on(table).with_losses(losses);
+        let m = followed(&ball, start.into(), 1e4, ask, 1e-10);
+        let event = m.event.unwrap();
+        assert_eq!((m.evaluations, event.ending), (0, Ending::Stops), "{table:?}");
+        let late = (event.time - ends[0].max(ends[1])).abs();
+        assert!(late <= m.error && m.error < 1e-8, "{late:e} {:e}", m.error);
+        let lost = m.path.as_ref().unwrap().lost;
+        assert!((lost - energy).abs() < 1e-13 * energy, "{lost} {energy}");
+        // With poses the same ball is integrated.
+        let times = [0.7, 30.0, ends[0] - 1.0, 0.5 * (ends[0] + ends[1])];
+        let [known, stepped] = [false, true].map(|pose| {
+            let ask = ask.with_pose(pose).with_method(Method::Tolerance(1e-12));
+            roll_with(&ball, start, &times, &ask, || true).unwrap().unwrap()
+        });
+        assert!(stepped.evaluations > 1000);
+        for (a, b) in known.states.iter().zip(&stepped.states) {
+            let off = [a.theta - b.theta, a.w1 - b.w1, a.w2 - b.w2, a.w3 - b.w3];
+            let off = off.into_iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+            assert!(off <= known.error + stepped.error && off < 1e-8, "{off:e} {:e}", stepped.error);
+        }
     }
 }
 

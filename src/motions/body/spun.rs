@@ -4,6 +4,7 @@
 //! rolls, flies    w stays in space, and the axis n turns about it
 //! slips           u = u0 (1 - t/T),   T = |u0|/(mu (1 + 1/I)),   w = w0 + a t,   a = mu z x u0/(I |u0|)
 //! creeps, u = 0   w = w0 + a t,   a = -sgn(w_z) mu eps g(0) z/I                           on a patch, until w_z = 0
+//! resisted        w = w0 + a t,   a = -f w_h/(|w_h| (1 + I)) - d sgn(w_z) z/I             until w_h = 0, or w_z = 0
 //! n' = w x n      n = sum n_k t^k,   (k + 1) n_{k+1} = w0 x n_k + a x n_{k-1}        in parts of a radian
 //! ```
 //! The normal force on the table is the weight, rolling needs no friction, and a slip keeps its direction (Coriolis,

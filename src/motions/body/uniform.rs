@@ -8,15 +8,21 @@
 
 use super::fly::Aloft;
 use super::phases::BodyWalk;
+use super::roll::lossy::LossyFlow;
+use super::slide::Slide;
 use super::spun::{OF_A_PHASE, Spun};
 use crate::laws::contact::impact::{Hit, Struck};
 use crate::laws::contact::{Contact, Table, force, patch};
-use crate::laws::state::{State, drilling_of};
+use crate::laws::loss::{Holds, Law};
+use crate::laws::state::{State, drilling_of, rolling_of};
 use crate::motions::ask::row::OutputRow;
+use crate::motions::walk::Next;
 use crate::motions::walk::errors::doubted;
-use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, Halt, SIN, TIME, U2, UH, W1, W3, lost};
-use crate::motions::walk::two_runs::Followed;
-use crate::motions::{Kind, Limit};
+use crate::motions::walk::numbers::{
+    BodyNumbers, COS, HEAT, Halt, SIN, TIME, U2, UH, W1, W3, loses, lost, poses,
+};
+use crate::motions::walk::two_runs::{CHANCE, Followed};
+use crate::motions::{Ending, Kind, Limit};
 
 impl<const N: usize> BodyWalk<'_, N> {
     /// The ball after a time of a phase, with its error among the claims.
@@ -44,10 +50,14 @@ impl<const N: usize> BodyWalk<'_, N> {
         self.claims(late);
     }
 
-    fn numbers(&self, at: &Aloft, time: f64, heat: f64) -> [f64; N] {
+    fn numbers(&self, at: &Aloft, time: f64, [heat, lost]: [f64; 2]) -> [f64; N] {
         let ((s, c), [w1, w2, w3], [u, v]) = (at.angle, at.w, at.slip);
         let mut y = self.at;
-        y[..9].copy_from_slice(&[s, c, w1, w2, w3, u, v, time, heat]);
+        y[..8].copy_from_slice(&[s, c, w1, w2, w3, u, v, time]);
+        y[HEAT] += heat;
+        if loses(N) {
+            y[N - 1] += lost;
+        }
         y
     }
 
@@ -65,16 +75,18 @@ impl<const N: usize> BodyWalk<'_, N> {
         }
     }
 
-    /// Follows a phase of friction, which ends after the time `end`, when a motion of the speed `stops` has stopped; `heat` is
-    /// its heat at a time. Returns the numbers at its end or at the last time, and whether that comes first; None if the
-    /// phase is too much work.
+    /// Follows a phase of friction, which ends after the time `end`, when a motion of the speed `stops` has stopped; `spent`
+    /// is its heat and what the losses have taken at a time, and `resists` the flow of a ball that does not slip. Returns
+    /// the numbers at its end or at the last time, and whether that comes first; None if the phase is too much work.
     fn rubs_uniformly(
         &mut self,
         mut spun: Spun,
         [end, stops]: [f64; 2],
-        heat: impl Fn(f64) -> f64,
+        spent: impl Fn(f64) -> [f64; 2],
+        resists: Option<&LossyFlow>,
     ) -> Option<([f64; N], bool)> {
-        let (now, begun, ask, slide) = (self.at[TIME], self.at[HEAT], self.ask, self.of.slide);
+        let (now, ask, slide) = (self.at[TIME], self.ask, self.of.slide);
+        let (body, start) = (self.of.body, self.of.start);
         let left = self.since.last().map_or(0.0, |t| t - now);
         if spun.toils(end.min(left)) {
             self.next = Some(self.gives_up(Limit::Evaluations));
@@ -82,14 +94,17 @@ impl<const N: usize> BodyWalk<'_, N> {
         }
         while let Some(t) = self.until().filter(|t| t - now <= end) {
             let at = self.spun(&mut spun, t - now).0;
-            let y = self.numbers(&at, t, begun + heat(t - now));
-            self.made.slid(&ask, &slide, &y);
+            let y = self.numbers(&at, t, spent(t - now));
+            match resists {
+                Some(flow) => self.made.lossy(&ask, (&body, &start, flow), &y, Kind::Rolling),
+                None => self.made.slid(&ask, &slide, &y),
+            }
         }
         let over = self.until().is_none();
         let length = if over { left } else { end };
         let (at, angle) = self.spun(&mut spun, length);
         self.rounds(length, angle, if over { 0.0 } else { spun.fastest * end / stops });
-        Some((self.numbers(&at, now + length, begun + heat(length)), over))
+        Some((self.numbers(&at, now + length, spent(length)), over))
     }
 
     /// Slips until the slip vanishes, or to the last time.
@@ -97,8 +112,10 @@ impl<const N: usize> BodyWalk<'_, N> {
         let (mu, from) = (self.of.slide.law.strength, self.aloft());
         let spun = Spun::rubbing(&from, self.of.body.i3(), mu);
         let (speed, slows) = (from.slip[0].hypot(from.slip[1]), spun.slows);
-        let heat = |t: f64| mu * speed * t * (1.0 - 0.5 * slows * t);
-        let Some((mut y, over)) = self.rubs_uniformly(spun, [1.0 / slows, speed], heat) else { return };
+        let spent = |t: f64| [mu * speed * t * (1.0 - 0.5 * slows * t), 0.0];
+        let Some((mut y, over)) = self.rubs_uniformly(spun, [1.0 / slows, speed], spent, None) else {
+            return;
+        };
         if !over {
             (y[UH], y[U2]) = (0.0, 0.0);
         }
@@ -112,13 +129,57 @@ impl<const N: usize> BodyWalk<'_, N> {
         let spun = Spun::drilling(&self.aloft(), couple / i3);
         let fast = spun.drills().abs();
         let end = i3 * fast / couple;
-        let heat = |t: f64| couple * fast * t * (1.0 - 0.5 * t / end);
-        let Some((mut y, over)) = self.rubs_uniformly(spun, [end, fast], heat) else { return };
+        let spent = |t: f64| [couple * fast * t * (1.0 - 0.5 * t / end), 0.0];
+        let Some((mut y, over)) = self.rubs_uniformly(spun, [end, fast], spent, None) else { return };
         if !over {
             let drilling = drilling_of(y.angle(), y[W1], y[W3]);
             (y[W1], y[W3]) = (y[W1] - y[SIN] * drilling, y[W3] - y[COS] * drilling);
         }
         self.slip_ends(y, if over { Halt::Time } else { Halt::Standstill });
+    }
+
+    /// Whether the phase of rolling that begins is known: only dry friction slows the ball, by couples that are constant in
+    /// the laboratory.
+    pub(super) fn slows_evenly(&self) -> bool {
+        let mut losses = self.of.rolling_losses.iter();
+        let dry = losses.all(|(law, _)| matches!(law, Law::RollingResistance | Law::Drilling));
+        !poses(N) && dry && self.of.body.is_uniform_ball() && self.contact() == Contact::Rolling
+    }
+
+    /// Rolls under rolling resistance and drills, each until it stops, to rest or to the last time.
+    pub(super) fn rolls_to_rest(&mut self, flow: &LossyFlow) {
+        let (losses, inertia) = (self.of.rolling_losses, self.of.body.i3());
+        let couples = [Law::RollingResistance, Law::Drilling].map(|law| losses.coefficient(law));
+        let rates = [couples[0] / (1.0 + inertia), couples[1] / inertia];
+        // The steps so far have left an error of w, which from now on turns the axis as roundings of w do.
+        self.of.roundings.count += CHANCE * self.spent.erred * self.of.slide.tol / f64::EPSILON;
+        loop {
+            let from = self.aloft();
+            let ([w1, w2, w3], angle) = (from.w, from.angle);
+            let (rolling, drilling) = (rolling_of(angle, w1, w3), drilling_of(angle, w1, w3));
+            // What has stopped moves on by roundings.
+            let rests = 4.0 * f64::EPSILON * Slide::fastest(&self.at);
+            let speeds = [rolling.hypot(w2), drilling.abs()].map(|x| if x <= rests { 0.0 } else { x });
+            if speeds == [0.0; 2] {
+                self.stops_exactly(Holds { rolling: true, drilling: true, contour: false });
+                self.next = Some(Next::Ends(Ending::Stops));
+                return;
+            }
+            let slows = [0, 1].map(|i| if speeds[i] > 0.0 { rates[i] } else { 0.0 });
+            let ends = [0, 1].map(|i| if slows[i] > 0.0 { speeds[i] / slows[i] } else { f64::INFINITY });
+            let per = if speeds[0] > 0.0 { slows[0] / speeds[0] } else { 0.0 };
+            let push = [-per * rolling, -per * w2, -slows[1] * drilling.signum()];
+            let (end, stops) = if ends[0] <= ends[1] { (ends[0], speeds[0]) } else { (ends[1], speeds[1]) };
+            let lost = |t: f64, i: usize| couples[i] * t * (speeds[i] - 0.5 * slows[i] * t);
+            let spent = |t: f64| [0.0, lost(t, 0) + lost(t, 1)];
+            let spun = Spun::new(&from, push, 0.0);
+            let Some((y, over)) = self.rubs_uniformly(spun, [end, stops], spent, Some(flow)) else { return };
+            self.arrives(y);
+            if over {
+                return;
+            }
+            self.stops_exactly(Holds { rolling: end == ends[0], drilling: end == ends[1], contour: false });
+        }
     }
 
     /// The impact of a ball whose contact point does not slip: friction has nothing to stop.

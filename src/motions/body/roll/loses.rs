@@ -39,6 +39,12 @@ impl<const N: usize> BodyWalk<'_, N> {
                 Ok(None)
             }
             Some(halt) => self.meets_halt(halt),
+            None if self.slows_evenly() => {
+                self.of.lossy = None;
+                self.stops_exactly(Holds { drilling: flow.is_patch(), ..Holds::default() });
+                self.rolls_to_rest(&flow);
+                Ok(None)
+            }
             None => Ok(Some(flow.enter(&self.at))),
         }
     }
