@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from spincyl._ellipsoid_motion import EllipsoidMotion
+from spincyl._ending import Ending
 from spincyl._motion import Motion
 from spincyl._phases import rubs
 from spincyl._scale import Scale
@@ -21,7 +22,10 @@ SLOW = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 
 
 def shown(m: Motion, slips: bool) -> tuple[dict[str, Any], float]:
-    """The data of a motion for the page, and the largest number of turns per unit of time."""
+    """The data of a motion for the page, and the largest number of turns per unit of time.
+
+    A face that lands turns the faster the flatter it is: the last tenth of its time does not count.
+    """
     first, last = sorted(span(m))
     again = repeats(m)
     found = knots(m) if again is None else knots(m, until=first + again.period)
@@ -44,7 +48,9 @@ def shown(m: Motion, slips: bool) -> tuple[dict[str, Any], float]:
             data |= {"fillet": m.body.fillet, "far": reach(m.body)}
     packets = (packed(found) | (rubbing(m) if slips else {})).items()
     data |= {name: base64(*x) if isinstance(x, tuple) else x for name, x in packets}
-    fastest = float(np.abs(found[:, 6:9]).max())
+    whirrs = m.event is not None and m.event.ending == Ending.FACE
+    counts = found[:, 0] <= first + (0.9 if whirrs else 1.0) * (last - first)
+    fastest = float(np.abs(found[counts, 6:9]).max())
     if isinstance(m, EllipsoidMotion) or m.body.fillet == 1 or goes_up(m):
         # near a pole phi' and psi' are large and nearly cancel: use the angular velocity instead
         (w,) = seen(m, found[:, 0], "w")

@@ -306,7 +306,7 @@ def view(
         the bodies. Without any scale, sqrt(R/g) is shown as one second.
     slow : int, optional
         Factor of slow motion when the page opens: 1, 2, 5, 10, ... 1000. Default: chosen so that no body
-        turns much faster than once a second.
+        turns much faster than once a second, except in the last tenth of the time of a face that lands.
     upper : {"O", "X"}
         Symbol on the upper end. This is the symbol that the eye sees on a spinning tube.
     drawn : str or sequence of str, optional
