@@ -44,3 +44,39 @@ def test_errors_are_a_flag_and_stones_have_them_always():
     stone = sc.Ellipsoid.rattleback((1.0, 0.15, 0.1), twist=0.1)
     with pytest.raises(ValueError, match="errors.*only for bodies"):
         sc.sweep.roll(stone, stone.spinning([-0.6, 0.5], pitch=0.02), 1.0, errors=False)
+
+
+@pytest.mark.parametrize(
+    ("contact", "how", "said"),
+    [
+        (
+            sc.Coulomb(0.3, patch=[0.02, 0.01]),
+            {"losses": sc.loss.Drilling(1e-3)},
+            "^2 of 2 motions are invalid .*; motion 0, .*: patch = 0.02: expected 0 together with drilling",
+        ),
+        (
+            sc.Coulomb(0.3, patch=[0.0, 0.01]),
+            {"restitution": 0.5},
+            "^1 of 2 motions are invalid .*; motion 1, .*: patch = 0.01: expected 0 together with a restitution",
+        ),
+    ],
+)
+def test_a_sweep_gives_the_reason_for_which_laws_do_not_go_together(contact, how, said):
+    with pytest.warns(RuntimeWarning, match=said):
+        found = sc.sweep.roll(sc.Body.solid(1.5), sc.State(1.2, 0.1, 0.0, 0.3), 1.0, contact=contact, **how)
+    invalid = found.status == sc.sweep.Status.INVALID
+    assert invalid.sum() == int(said[1]) and np.isnan(found.theta.where(invalid)).all()
+
+
+def test_a_sweep_warns_of_large_errors_as_a_single_motion_does():
+    body, start, how = (
+        sc.Body.ball(0.3, 0.4, 0.35),
+        sc.State(0.5, 1.0, 0.4, 0.8),
+        {"losses": LAWS["losses"]["losses"]},
+    )
+    with pytest.warns(sc.ErrorWarning, match="estimated error of the motion"):
+        alone = sc.roll(body, start, 400.0, tol=0.01, **how)
+    starts = sc.State(0.5, 1.0, 0.4, np.array([0.8, np.nan]))
+    with pytest.warns(sc.ErrorWarning, match="^1 of 2 motions have estimated errors above 0.1"):
+        found = sc.sweep.roll(body, starts, 400.0, tol=0.01, **how)
+    assert alone.error > 0.1 and found.error[0] > 0.1

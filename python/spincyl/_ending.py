@@ -88,6 +88,10 @@ MESSAGES = {
 }
 
 
+#: An estimated error beyond this is warned of.
+DOUBTFUL = 0.1
+
+
 class ErrorWarning(UserWarning):
     """The estimated error of a motion is too large.
 

@@ -8,7 +8,7 @@ import numpy as np
 from spincyl._asked import Method, Want, ask, times_of
 from spincyl._body import Body
 from spincyl._contact import AnyContact, fitting
-from spincyl._ending import Ending, ErrorWarning
+from spincyl._ending import DOUBTFUL, Ending, ErrorWarning
 from spincyl._input.hints import helpful
 from spincyl._input.numbers import Reals, number, si, warn
 from spincyl._measured import in_si, natural_time, speaking
@@ -251,7 +251,7 @@ def roll(
     with speaking(scale):
         asked = ask(start, t, t0, step, tol, method, contact, mu, beyond, want, restitution, losses, max_nfev)
         m = rolled(one if scale is None else one.natural, start, asked, numbers)
-    if step is None and restitution is None and not m.error <= 0.1:
+    if step is None and restitution is None and not m.error <= DOUBTFUL:
         warn(f"the estimated error of the motion is {m.error:.2g}, in natural units", ErrorWarning)
     if scale is not None:
         step = None if step is None else number("step", si("step", given_step, "second"))

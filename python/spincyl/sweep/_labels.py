@@ -6,8 +6,13 @@ from typing import Any
 
 import numpy as np
 
+from spincyl import _core
+from spincyl._ending import DOUBTFUL, ErrorWarning
 from spincyl._input.numbers import Floats, Reals, extra, warn
 from spincyl.sweep._common import many_blocks
+
+_BODY = ("ell", "i1", "i3", "bore", "fillet", "theta_end")
+_START = ("theta", "w1", "w2", "w3")
 
 
 class Status(IntEnum):
@@ -64,6 +69,40 @@ def given_up(status: np.ndarray) -> None:
         told = f"{count} of {status.size} motions were given up (Status.BOUNDED) and are NaN"
         why = "they reached a limit of evaluations (max_nfev=), of phases, of impacts or of rounding"
         warn(f"{told}: {why}", RuntimeWarning)
+
+
+def refused(columns: dict[str, Floats], asked: dict[str, Any], status: np.ndarray) -> None:
+    """Warn if motions are invalid although their inputs are numbers, with the reason of the first one."""
+    numbers = [x for name, x in columns.items() if name != "theta_end"]  # NaN where the body says it
+    rows = np.flatnonzero((status == Status.INVALID) & ~np.isnan(sum(numbers)))
+    if not rows.size:
+        return
+    row = {name: float(np.broadcast_to(x, status.shape)[rows[0]]) for name, x in columns.items()}
+    row["bore"] = np.nan  # the moments tell it
+    body, start = (tuple(row[name] for name in of) for of in (_BODY, _START))
+    own: dict[str, tuple[str, ...]] = {
+        "coefficients": ("coefficient", "static", "patch"),
+        "slip": ("slip_along", "slip_across"),
+        "aloft": ("height", "lift"),
+        "losses": tuple(name for name, _ in _core.loss_laws()),
+    }
+    given = {option: [row[name] for name in of] for option, of in own.items() if of[0] in row}
+    try:
+        _core.roll(body, start, np.zeros(1), asked | given)
+    except ValueError as error:
+        told = f"{rows.size} of {status.size} motions are invalid (Status.INVALID) and are NaN"
+        warn(f"{told}; motion {rows[0]}, in natural units: {error}", RuntimeWarning)
+
+
+def uncertain(asked: dict[str, Any], error: np.ndarray, status: np.ndarray) -> None:
+    """Warn of large estimated errors, as `spincyl.roll` does."""
+    if asked.get("step") is not None or "restitution" in asked or not asked.get("errors", True):
+        return
+    known = ~np.isin(status, [Status.INVALID, Status.PAINLEVE, Status.LANDING, Status.BOUNDED])
+    large = known & ~(error <= DOUBTFUL)
+    if large.any():
+        told = f"{np.count_nonzero(large)} of {status.size} motions have estimated errors above {DOUBTFUL}"
+        warn(f"{told}, in natural units, up to {error[large].max():.2g}", ErrorWarning)
 
 
 def broadcast(fields: dict[str, Reals]) -> tuple[tuple[int, ...], list[str]]:

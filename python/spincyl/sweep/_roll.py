@@ -36,7 +36,7 @@ from spincyl._roll import is_stone
 from spincyl._state import State, gripping, landed
 from spincyl.sweep._common import is_lazy
 from spincyl.sweep._inputs import kept_bodies, kept_contact
-from spincyl.sweep._labels import flags, given_up
+from spincyl.sweep._labels import flags, given_up, refused, uncertain
 from spincyl.sweep._swept import Question, swept
 
 if TYPE_CHECKING:
@@ -210,10 +210,12 @@ def roll(
     RuntimeWarning
         If the computation of motions is given up; the message gives the number of motions. The limits are
         those of `spincyl.roll`, also for stones. Such a motion has NaN and `Status.BOUNDED`; its "end" is the
-        time at which it was given up.
+        time at which it was given up. Also if motions are invalid although all their numbers are finite; the
+        message gives the reason for the first of them.
     ErrorWarning
-        If the estimated errors of stones become too large before the last time (see the Notes); the message
-        gives the number of stones.
+        If estimated errors exceed 0.1, as for `spincyl.roll`; the message gives the number of motions. If
+        those of stones become too large before the last time (see the Notes); the message gives the number
+        of stones.
 
     Notes
     -----
@@ -411,3 +413,5 @@ def _fill(
     """Fill the columns of a block of motions."""
     _core.ensemble(columns, times, asked, out, (threads, is_roomy()), progress)
     given_up(out["status"])
+    refused(columns, asked, out["status"])
+    uncertain(asked, out["error"], out["status"])
