@@ -212,10 +212,16 @@ fn a_disk_on_a_small_patch_that_presses_hard_takes_steps_of_its_motion_also_betw
 }
 
 #[test]
-fn a_billiard_ball_that_creeps_on_a_patch_costs_a_few_steps_in_each_turn() {
-    for (tol, most) in TOLERANCES.into_iter().zip([22_000, 28_000, 42_000]) {
-        let m = ball_on_a_patch(3e-4, 30.0, tol);
-        assert!(m.evaluations <= most, "{tol:e}: {} evaluations, {most} allowed", m.evaluations);
+fn a_billiard_ball_costs_nothing_once_it_creeps_and_little_until_it_stands() {
+    for (tol, most) in TOLERANCES.into_iter().zip([5_000, 8_000, 12_000]) {
+        let [early, late] = [60.0, 200.0].map(|until| ball_on_a_patch(3e-4, until, tol));
+        assert_eq!(early.evaluations, late.evaluations, "{tol:e}");
+        let stands = ball_on_a_patch(1e-2, 1000.0, tol);
+        assert_eq!(stands.ending(), Ending::Stops);
+        for m in [late, stands] {
+            assert!(m.evaluations <= most, "{tol:e}: {} evaluations, {most} allowed", m.evaluations);
+            assert!(m.error < 1e5 * tol, "{tol:e}: {:e}", m.error);
+        }
     }
 }
 

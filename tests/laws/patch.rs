@@ -64,6 +64,50 @@ fn a_ball_that_only_drills_slows_down_by_three_sixteenths_of_pi() {
 }
 
 #[test]
+fn a_ball_that_rolls_heavily_creeps_with_a_constant_k_and_slows_down_evenly() {
+    let (inertia, mu, eps, arm) = (0.4, 0.2, 0.05, 0.02);
+    let ball = Body::ball(0.0, inertia, inertia).unwrap();
+    let state = State { theta: 1.0, w1: -2.0, w2: 1.0, w3: 3.0 };
+    let ask = Ask::on(on(mu, eps)).with_losses(Losses::of(Law::RollingResistance, arm));
+    let times = [20.0, 50.0, 90.0, 130.0, 1000.0];
+    let m = roll_with(&ball, Start::from(state), &times, &ask, || true).unwrap().unwrap();
+    let slips = &m.path.as_ref().unwrap().slip;
+    let seen = |i: usize| {
+        let (y, [u, v]) = (m.states[i], slips[i]);
+        let rolling = y.theta.cos() * y.w1 - y.theta.sin() * y.w3;
+        // The slip is along the velocity of the centre.
+        assert!((u * rolling + v * y.w2).abs() < 1e-12);
+        [u.hypot(v) / (eps * drilling(&y).abs()), rolling.hypot(y.w2), drilling(&y).abs()]
+    };
+    let [k, rolls, drills] = seen(0);
+    let [force, couple] = patch::of(k).map(|share| mu * share);
+    assert!((force * (1.0 + inertia) - arm - eps * eps * k * couple).abs() < 1e-12);
+    for (i, t) in times.iter().enumerate().take(4).skip(1) {
+        let (since, [same, rolling, drilling]) = (t - times[0], seen(i));
+        assert!((same - k).abs() < 1e-10, "{same} for {k}");
+        assert!((rolls - rolling - (arm - force) / inertia * since).abs() < 1e-11, "{rolling}");
+        assert!((drills - drilling - eps * couple / inertia * since).abs() < 1e-11, "{drilling}");
+    }
+    assert_eq!(m.ending(), Ending::Stops);
+}
+
+#[test]
+fn a_drilling_that_friction_holds_does_not_begin_again_by_the_errors_of_the_steps() {
+    // The steps follow the pose. Its drilling ends long before its rolling.
+    let ball = Body::ball(0.0, 0.4, 0.4).unwrap();
+    let state = State { theta: 1.0, w1: 1.6, w2: 0.7, w3: 2.2 };
+    let ask = Ask::on(on(0.2, 0.07)).with_losses(Losses::of(Law::RollingResistance, 0.01)).with_pose(true);
+    for tol in [1e-5, 1e-6, 1e-7] {
+        let ask = ask.with_method(Method::Tolerance(tol));
+        let m = roll_with(&ball, Start::from(state), &[1000.0], &ask, || true).unwrap().unwrap();
+        assert_eq!(m.ending(), Ending::Stops, "{tol:e}");
+        assert!(m.error < 1.0, "{tol:e}: {:e}", m.error);
+        let kinds: Vec<Kind> = m.path.as_ref().unwrap().phases.iter().map(|phase| phase.kind).collect();
+        assert_eq!(kinds, [Kind::Slipping, Kind::Rolling], "{tol:e}");
+    }
+}
+
+#[test]
 fn a_homogeneous_ball_slips_straight_on_whatever_its_side_spin() {
     let mut r = wander(521);
     let ball = Body::ball(0.0, 0.4, 0.4).unwrap();

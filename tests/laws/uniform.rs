@@ -3,8 +3,9 @@
 use crate::common::many::Many;
 use crate::common::{drawn, path_of, wander};
 use crate::flight::{coulomb, dropped};
-use spincyl::contact::{Contact, Table, TableKind};
+use spincyl::contact::{Contact, Friction, Table, TableKind};
 use spincyl::ensemble::{Answer, Job};
+use spincyl::loss::{Law, Losses};
 use spincyl::motion::path::Kind;
 use spincyl::motion::{Ask, Ending, Method, Motion, Start, roll_with};
 use spincyl::{Body, State};
@@ -79,6 +80,54 @@ fn a_uniform_ball_moves_as_one_whose_moments_differ_in_the_last_digits() {
     assert!(slips > claims.len() / 4 && hops > 2 * claims.len(), "{slips} {hops}");
     claims.sort_by(f64::total_cmp);
     assert!(claims[claims.len() / 2] < 1e-11, "{:e}", claims[claims.len() / 2]);
+}
+
+#[test]
+fn a_ball_under_rolling_resistance_moves_as_one_whose_moments_differ_in_the_last_digits() {
+    let mut r = wander(653);
+    let (mut costs, mut stops) = ([0; 2], 0);
+    for case in 0..drawn(240) {
+        let inertia = 0.3 + 0.36 * r();
+        let [known, other] = [1.0, 1.0 + 2e-13].map(|more| Body::ball(0.0, inertia * more, inertia).unwrap());
+        let [mu, arm, patch] = [
+            0.05 + 0.4 * r(),
+            10f64.powf(-1.0 - 2.5 * r()),
+            [0.0, 10f64.powf(-0.7 - 2.5 * r())][usize::from(case % 4 > 0)],
+        ];
+        let start = any_start(false, &mut r);
+        let fast = [start.state.w1, start.state.w2, start.state.w3]
+            .into_iter()
+            .fold(0.3, |x: f64, w| x.max(w.abs()));
+        let until = 60.0 * 10f64.powf(0.7 * r()) / fast;
+        let times = [0.1, 0.4, 0.8, 1.0].map(|share| share * until);
+        let ask = Ask::on(Friction::Coulomb { mu, fixed: mu, patch })
+            .with_losses(Losses::of(Law::RollingResistance, arm))
+            .with_force(true)
+            .with_method(Method::Tolerance(1e-9));
+        let [a, b] = [known, other].map(|body| moved(&body, &start, &ask, &times));
+        let told = format!("{case} {mu} {arm} {patch} {start:?}");
+        assert_eq!((a.ending(), a.states.len()), (b.ending(), b.states.len()), "{told}");
+        for (cost, m) in costs.iter_mut().zip([&a, &b]) {
+            *cost += m.evaluations;
+        }
+        stops += usize::from(a.ending() == Ending::Stops);
+        let (path, others) = (path_of(&a), path_of(&b));
+        let doubt = a.error + b.error + 1e-9;
+        for (i, (y, z)) in a.states.iter().zip(&b.states).enumerate() {
+            let off = [y.theta - z.theta, y.w1 - z.w1, y.w2 - z.w2, y.w3 - z.w3];
+            let slip = [path.slip[i][0] - others.slip[i][0], path.slip[i][1] - others.slip[i][1]];
+            let heats = [&path.dissipated, &path.work_lost].map(|all| all[i]);
+            let theirs = [&others.dissipated, &others.work_lost].map(|all| all[i]);
+            let heat = [0, 1].map(|k| (heats[k] - theirs[k]) / fast.max(4.0));
+            for x in off.into_iter().chain(slip).chain(heat) {
+                assert!(x.abs() < doubt, "{x:e} {doubt:e} at {} of {told}", times[i]);
+            }
+        }
+        if let (Some(one), Some(two)) = (a.event, b.event) {
+            assert!((one.time - two.time).abs() < doubt, "{one:?} {two:?} {told}");
+        }
+    }
+    assert!(costs[0] < costs[1] / 4 && stops > 10, "{costs:?} {stops}");
 }
 
 #[test]

@@ -329,6 +329,12 @@ impl Losses {
         self.coefficients == [0.0; COUNT]
     }
 
+    /// The coefficient of this law if it is the only one; 0 without any law, and None with another law.
+    pub(crate) fn is_only(&self, law: Law) -> Option<f64> {
+        let coefficient = self.coefficient(law);
+        (*self == Self::of(law, coefficient)).then_some(coefficient)
+    }
+
     /// Whether a face comes down by infinitely many turns: some law causes this, and no law along the contour stops the
     /// contact.
     pub(crate) fn turn_endlessly(&self) -> bool {

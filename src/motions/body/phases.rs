@@ -372,10 +372,14 @@ impl<const N: usize> Phases<N> for BodyPhases {
     }
 
     fn slips_known(walk: &mut BodyWalk<'_, N>) -> bool {
-        walk.of.slide.died = walk.at.slip() == [0.0; 2] && walk.of.slide.has_died(&walk.at);
-        match walk.of.slide.law.patch().filter(|_| walk.of.slide.died) {
+        let left = walk.of.slide.has_died(&walk.at);
+        walk.of.slide.died = left.is_some();
+        if let Some(left) = left {
+            walk.drops_slip(left);
+        }
+        match walk.of.slide.creeping.filter(|_| left.is_some()) {
             _ if poses(N) => return false,
-            Some(radius) => walk.creeps_uniformly(radius),
+            Some(creeping) => walk.creeps_uniformly(creeping),
             None if walk.of.uniform => walk.slips_uniformly(),
             None => return false,
         }

@@ -3,13 +3,14 @@
 //! ```text
 //! rolls, flies    w stays in space, and the axis n turns about it
 //! slips           u = u0 (1 - t/T),   T = |u0|/(mu (1 + 1/I)),   w = w0 + a t,   a = mu z x u0/(I |u0|)
-//! creeps, u = 0   w = w0 + a t,   a = -sgn(w_z) mu eps g(0) z/I                           on a patch, until w_z = 0
+//! creeps          w = w0 + a t,   u = u0 w_z/w_z0                on a patch (`creep`), until w_h = 0, or w_z = 0
 //! resisted        w = w0 + a t,   a = -f w_h/(|w_h| (1 + I)) - d sgn(w_z) z/I             until w_h = 0, or w_z = 0
 //! n' = w x n      n = sum n_k t^k,   (k + 1) n_{k+1} = w0 x n_k + a x n_{k-1}        in parts of a radian
 //! ```
 //! The normal force on the table is the weight, rolling needs no friction, and a slip keeps its direction (Coriolis,
-//! Theorie mathematique des effets du jeu de billard (1835)). All vectors are along e_h, e2 and z of the phase's
-//! beginning, where n = (-s, 0, c). With poses the walk computes a uniform ball as any other body.
+//! Theorie mathematique des effets du jeu de billard (1835)). Here w_h is the whole horizontal part of w. All vectors are
+//! along e_h, e2 and z of the phase's beginning, where n = (-s, 0, c). With poses the walk computes a uniform ball as any
+//! other body.
 //!
 //! Error: a few roundings of each phase, of which every later angle, speed and time has its share; of w1, w2 and the slip
 //! over sin(theta).
@@ -89,10 +90,18 @@ impl Spun {
         Self::new(from, [-across, along, 0.0], mu * (1.0 + 1.0 / inertia) / speed)
     }
 
-    /// A ball whose drilling the couple of a patch slows down, in a unit of time by `rate`, while it does not slip.
-    pub fn drilling(from: &Aloft, rate: f64) -> Self {
-        let Self { w: [.., w_z], .. } = Self::new(from, [0.0; 3], 0.0);
-        Self::new(from, [0.0, 0.0, -rate * w_z.signum()], 0.0)
+    /// A ball whose rolling and drilling slow down by these rates. Its slip, if it creeps, vanishes with its drilling.
+    pub fn slowing(from: &Aloft, [rolls, drills]: [f64; 2]) -> Self {
+        let free = Self::new(from, [0.0; 3], 0.0);
+        let ([x, y, z], speed) = (free.w, free.rolling());
+        let [x, y] = if speed > 0.0 { [x, y].map(|w| -(rolls * w / speed)) } else { [0.0; 2] };
+        let slows = if drills > 0.0 { drills / z.abs() } else { 0.0 };
+        Self::new(from, [x, y, -(drills * z.signum())], slows)
+    }
+
+    /// The speed of the rolling at the start.
+    pub fn rolling(&self) -> f64 {
+        self.w[0].hypot(self.w[1])
     }
 
     /// The velocity of the drilling at the start.

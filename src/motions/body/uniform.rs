@@ -9,19 +9,20 @@
 use super::fly::Aloft;
 use super::phases::BodyWalk;
 use super::roll::lossy::LossyFlow;
-use super::slide::Slide;
+use super::slide::{Slide, is_still};
 use super::spun::{OF_A_PHASE, Spun};
 use crate::laws::contact::impact::{Hit, Struck};
 use crate::laws::contact::{Contact, Table, force, patch};
 use crate::laws::loss::{Holds, Law};
 use crate::laws::state::{State, drilling_of, rolling_of};
 use crate::motions::ask::row::OutputRow;
+use crate::motions::dry::creep::Creeping;
 use crate::motions::walk::Next;
 use crate::motions::walk::errors::doubted;
 use crate::motions::walk::numbers::{
     BodyNumbers, COS, HEAT, Halt, SIN, TIME, U2, UH, W1, W3, loses, lost, poses,
 };
-use crate::motions::walk::two_runs::{CHANCE, Followed};
+use crate::motions::walk::two_runs::Followed;
 use crate::motions::{Ending, Kind, Limit};
 
 impl<const N: usize> BodyWalk<'_, N> {
@@ -122,20 +123,36 @@ impl<const N: usize> BodyWalk<'_, N> {
         self.slip_ends(y, if over { Halt::Time } else { Halt::Standstill });
     }
 
-    /// Drills on a patch of contact without a slip, until the drilling ends, or to the last time.
-    pub(crate) fn creeps_uniformly(&mut self, radius: f64) {
-        let i3 = self.of.body.i3();
-        let couple = self.of.slide.law.strength * radius * patch::of(0.0)[1];
-        let spun = Spun::drilling(&self.aloft(), couple / i3);
-        let fast = spun.drills().abs();
-        let end = i3 * fast / couple;
-        let spent = |t: f64| [couple * fast * t * (1.0 - 0.5 * t / end), 0.0];
-        let Some((mut y, over)) = self.rubs_uniformly(spun, [end, fast], spent, None) else { return };
-        if !over {
-            let drilling = drilling_of(y.angle(), y[W1], y[W3]);
-            (y[W1], y[W3]) = (y[W1] - y[SIN] * drilling, y[W3] - y[COS] * drilling);
-        }
-        self.slip_ends(y, if over { Halt::Time } else { Halt::Standstill });
+    /// Drills and creeps on a patch of contact, until the drilling or the rolling ends, or to the last time.
+    pub(crate) fn creeps_uniformly(&mut self, creeping: Creeping) {
+        let (inertia, law, still) = (self.of.body.i3(), &self.of.slide.law, is_still(&self.at));
+        let k = if still { 0.0 } else { creeping.k };
+        let [force, couple] = patch::of(k).map(|share| law.strength * law.patch().unwrap_or(0.0) * share);
+        let rates = if still { [0.0, couple / inertia] } else { creeping.rates };
+        let arm = if still { 0.0 } else { self.ask.losses.coefficient(Law::RollingResistance) };
+        let spun = Spun::slowing(&self.aloft(), rates);
+        let speeds = [spun.rolling(), spun.drills().abs()];
+        let ends = [0, 1].map(|i| if rates[i] > 0.0 { speeds[i] / rates[i] } else { f64::INFINITY });
+        let first = usize::from(ends[1] <= ends[0]);
+        let spent = |t: f64| {
+            [(1, k * force + couple), (0, arm)].map(|(i, by)| by * t * (speeds[i] - 0.5 * rates[i] * t))
+        };
+        let stops = [ends[first], speeds[first]];
+        let Some((mut y, over)) = self.rubs_uniformly(spun, stops, spent, None) else { return };
+        let halt = match first {
+            _ if over => Halt::Time,
+            0 => {
+                self.of.slide.died = false;
+                Halt::Rests
+            }
+            _ => {
+                let drilling = drilling_of(y.angle(), y[W1], y[W3]);
+                (y[W1], y[W3]) = (y[W1] - y[SIN] * drilling, y[W3] - y[COS] * drilling);
+                (y[UH], y[U2]) = (0.0, 0.0);
+                Halt::Standstill
+            }
+        };
+        self.slip_ends(y, halt);
     }
 
     /// Whether the phase of rolling that begins is known: only dry friction slows the ball, by couples that are constant in
@@ -151,8 +168,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         let (losses, inertia) = (self.of.rolling_losses, self.of.body.i3());
         let couples = [Law::RollingResistance, Law::Drilling].map(|law| losses.coefficient(law));
         let rates = [couples[0] / (1.0 + inertia), couples[1] / inertia];
-        // The steps so far have left an error of w, which from now on turns the axis as roundings of w do.
-        self.of.roundings.count += CHANCE * self.spent.erred * self.of.slide.tol / f64::EPSILON;
+        self.inherits_errors();
         loop {
             let from = self.aloft();
             let ([w1, w2, w3], angle) = (from.w, from.angle);
@@ -167,12 +183,10 @@ impl<const N: usize> BodyWalk<'_, N> {
             }
             let slows = [0, 1].map(|i| if speeds[i] > 0.0 { rates[i] } else { 0.0 });
             let ends = [0, 1].map(|i| if slows[i] > 0.0 { speeds[i] / slows[i] } else { f64::INFINITY });
-            let per = if speeds[0] > 0.0 { slows[0] / speeds[0] } else { 0.0 };
-            let push = [-per * rolling, -per * w2, -slows[1] * drilling.signum()];
             let (end, stops) = if ends[0] <= ends[1] { (ends[0], speeds[0]) } else { (ends[1], speeds[1]) };
             let lost = |t: f64, i: usize| couples[i] * t * (speeds[i] - 0.5 * slows[i] * t);
             let spent = |t: f64| [0.0, lost(t, 0) + lost(t, 1)];
-            let spun = Spun::new(&from, push, 0.0);
+            let spun = Spun::slowing(&from, slows);
             let Some((y, over)) = self.rubs_uniformly(spun, [end, stops], spent, Some(flow)) else { return };
             self.arrives(y);
             if over {

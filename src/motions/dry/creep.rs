@@ -5,7 +5,10 @@
 //! S = |u|,   R = eps |w_z|                        the patch rests if S + R <= eps DRILLS, and no longer grows
 //! S = R k,   f(k) = F/(mu N)                      the slip of a creep under the force F
 //! dt/dsigma < STIFF/3 (3 radians of the turning)  u follows the motion much faster than the body turns
+//! a uniform ball:   k stays,   F = mu f(k) = (delta + mu eps^2 k g(k))/(1 + I)
+//!                   |w_h|' = -(delta - F)/I,   |w_z|' = -mu eps g(k)/I              under rolling resistance delta
 //! ```
+//! With a constant k the slip of a ball falls with its drilling, and u' = -F (1 + 1/I) + delta/I has this rate.
 //! [`radau`](crate::methods::radau) takes the steps where u is that fast, unless they are too short to pay; at k = 1 the
 //! steps are short.
 //!
@@ -32,6 +35,10 @@ const REST_IS_NEAR: f64 = 1e-6;
 /// The drilling at which a patch begins to be held, or at which a creep begins, has no friction while it changes from
 /// or to zero; the estimated error includes this many times that drilling.
 pub(crate) const LOST_DRILLING: f64 = 4.0;
+/// Largest number of approximations to the k of a ball, whose error falls by about eps^2 in each of them.
+const APPROXIMATIONS: usize = 60;
+/// Two of them that differ by less than this share are the same k.
+const SAME_K: f64 = 1e-14;
 /// A step takes at most this share of the distance to k = 1.
 const NEARER_K: f64 = 0.5;
 
@@ -108,4 +115,32 @@ pub(crate) fn slip_under(force: [f64; 2], limit: f64, turn: f64, radius: f64) ->
     let friction = force[0].hypot(force[1]);
     let slip = turn * patch::slip_for((friction / limit).min(MOST_CREEP));
     (friction > 0.0 && slip + turn > rests_below(radius)).then(|| force.map(|f| -(slip / friction * f)))
+}
+
+/// A uniform ball that creeps on a patch: its k, and the rates at which the speed of its rolling and its drilling fall.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Creeping {
+    pub k: f64,
+    pub rates: [f64; 2],
+}
+
+impl Creeping {
+    /// The creep under friction of this strength on a patch of this radius, and under rolling resistance with the arm
+    /// `arm`; None if friction is too weak to slow the ball down with its rolling.
+    pub fn under(inertia: f64, [mu, radius, arm]: [f64; 3]) -> Option<Self> {
+        let mut k = 0.0;
+        for _ in 0..APPROXIMATIONS {
+            let couple = mu * radius * patch::of(k)[1];
+            let force = (arm + radius * couple * k) / (1.0 + inertia);
+            if force >= mu {
+                return None;
+            }
+            let next = patch::slip_for(force / mu);
+            if (next - k).abs() <= SAME_K * k {
+                return Some(Self { k, rates: [(arm - force) / inertia, couple / inertia] });
+            }
+            k = next;
+        }
+        None
+    }
 }

@@ -10,18 +10,28 @@
 use super::Slide;
 use crate::laws::body::Shape;
 use crate::laws::contact::slip::SlipResponse;
-use crate::laws::state::drilling_of;
+use crate::laws::state::{drilling_of, rolling_of};
 use crate::methods::flow::{Flow, FlowPlace};
 use crate::methods::{radau, rk8};
+use crate::motions::body::roll::lossy::REST;
 use crate::motions::dry::creep::{Rubbing, is_fast, known_slip, stable_time};
-use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, Halt, SIN, TIME, U2, UH, W1, W3, loses};
+use crate::motions::walk::numbers::{
+    BodyNumbers, COS, HEAT, Halt, SIN, TIME, U2, UH, W1, W2, W3, loses, poses,
+};
 use crate::numbers::Dual;
 use nalgebra::SMatrix;
 
 /// The number of numbers that react to each other: sine, cosine, w and u.
 const REACTING: usize = 7;
-/// The slip of a uniform ball has died where it is below this share of the tolerance.
+/// The slip of a uniform ball has died where it is below this share of the tolerance, and where it differs by less than
+/// `STEADY` tolerances from that of a creep, which steps do not follow more closely.
 const DEAD: f64 = 0.03;
+const STEADY: f64 = 0.3;
+
+/// Whether a body neither rolls nor rocks.
+pub(in crate::motions::body) fn is_still<const N: usize>(y: &[f64; N]) -> bool {
+    rolling_of(y.angle(), y[W1], y[W3]).hypot(y[W2]) < REST
+}
 
 impl Slide {
     /// Writes the rates of the numbers on a patch of contact, whose couple also produces heat.
@@ -56,22 +66,42 @@ impl Slide {
         self.sloped.patch().map(|patch| Rubbing::of([u_h, u_2], drilling_of((s, c), w1, w3), patch))
     }
 
-    /// Whether the slip of a uniform ball has died, which nothing feeds while the ball drills.
-    #[inline(never)]
-    pub(in crate::motions::body) fn has_died<const N: usize>(&self, y: &[f64; N]) -> bool {
-        self.dies && y[UH].hypot(y[U2]) <= DEAD * self.tol * Self::fastest(y) && self.creeps(y)
+    /// The slip of the creep of a uniform ball on a patch; it is zero while the ball does not roll. None for another body,
+    /// and with poses where the slip does not vanish, since it would turn with e_h.
+    fn creep_of<const N: usize>(&self, y: &[f64; N]) -> Option<[f64; 2]> {
+        let (creeping, angle) = (self.creeping?, y.angle());
+        if creeping.k == 0.0 || is_still(y) {
+            return Some([0.0; 2]);
+        }
+        let way = [y[W2], -rolling_of(angle, y[W1], y[W3])];
+        let turn = self.law.patch()? * drilling_of(angle, y[W1], y[W3]).abs();
+        (!poses(N)).then(|| way.map(|v| creeping.k * turn * v / way[0].hypot(way[1])))
     }
 
-    /// Whether a uniform ball on a patch does not drill but for rounding, so that it rolls on for ever.
+    /// The difference of the slip of a uniform ball from its creep, if it has died: nothing feeds it while the ball
+    /// drills.
+    #[inline(never)]
+    pub(in crate::motions::body) fn has_died<const N: usize>(&self, y: &[f64; N]) -> Option<[f64; 2]> {
+        let creep = self.creep_of(y)?;
+        let left = [y[UH] - creep[0], y[U2] - creep[1]];
+        let share = if creep == [0.0; 2] { DEAD } else { STEADY };
+        let dead = left[0].hypot(left[1]) <= share * self.tol * Self::fastest(y);
+        (dead && self.creeps(y)).then_some(left)
+    }
+
+    /// Whether a uniform ball on a patch does not drill but for rounding, so that it rolls on for ever without losses.
     pub(in crate::motions::body) fn no_longer_drills<const N: usize>(&self, y: &[f64; N]) -> bool {
-        self.dies && drilling_of(y.angle(), y[W1], y[W3]).abs() <= f64::EPSILON * Self::fastest(y)
+        let drilling = drilling_of(y.angle(), y[W1], y[W3]);
+        self.law.losses.is_none()
+            && self.creeping.is_some()
+            && drilling.abs() <= f64::EPSILON * Self::fastest(y)
     }
 
     /// The halt of a patch that no longer slips or drills, or of a slip that has died.
     #[inline(never)]
     pub(super) fn hardly_rubs<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
         let (radius, rubbing) = (self.law.patch()?, self.rubbing(place)?);
-        if !self.died && self.has_died(&place.y) {
+        if !self.died && self.has_died(&place.y).is_some() {
             return Some((Halt::Standstill, place.y));
         }
         let left = rubbing.left(place.rate[TIME]);

@@ -25,7 +25,7 @@ use crate::laws::loss::{Couples, Holds, Law, Losses};
 use crate::laws::state::State;
 use crate::methods::flow::{FASTEST, Flow, FlowPlace};
 use crate::methods::{radau, rk8};
-use crate::motions::dry::creep::{IMPLICIT_TURNS, rests_below};
+use crate::motions::dry::creep::{Creeping, IMPLICIT_TURNS, rests_below};
 use crate::motions::dry::settled::EFFORT;
 use crate::motions::walk::numbers::{
     BodyNumbers, COS, HEAT, Halt, MARGINS, PHI, SIN, TIME, U2, UH, W1, W2, W3, loses, pose_rates, poses,
@@ -33,6 +33,7 @@ use crate::motions::walk::numbers::{
 use crate::motions::walk::{MOMENT, slip_over};
 use crate::numbers::{Dual, Real};
 use core::f64::consts::PI;
+pub(super) use creeps::is_still;
 pub(crate) use lossy::ways;
 
 /// The halts of the margins, in the order of the margins.
@@ -66,8 +67,9 @@ pub(crate) struct Slide {
     flat: f64,
     /// Whether a couple that grows with psi' has almost stopped the contact along the rim.
     pub settled: bool,
-    /// Whether the body is a uniform ball on a patch of contact, whose slip dies; and whether it has died.
-    dies: bool,
+    /// The creep of a uniform ball on a patch of contact, without other losses than rolling resistance, in which every slip
+    /// ends; and whether the slip has become this creep.
+    pub(super) creeping: Option<Creeping>,
     pub died: bool,
     /// Whether rolling and rocking begin from rest, in the direction that the signs of the losses have.
     rolls_off: bool,
@@ -95,7 +97,10 @@ impl Slide {
             sticks: law.dry,
             flat,
             settled: false,
-            dies: law.patch().is_some() && body.is_uniform_ball() && losses.is_none(),
+            creeping: law.patch().filter(|_| body.is_uniform_ball()).and_then(|radius| {
+                let arm = losses.is_only(Law::RollingResistance)?;
+                Creeping::under(body.i3(), [law.strength, radius, arm])
+            }),
             died: false,
             rolls_off: false,
             sure: 0.0,

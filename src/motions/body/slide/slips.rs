@@ -1,6 +1,7 @@
 //! The slipping phases of a body, and the phase that follows each of them.
 
 use super::Slide;
+use super::creeps::is_still;
 use crate::error::Error;
 use crate::laws::loss::Holds;
 use crate::laws::loss::Law;
@@ -9,7 +10,7 @@ use crate::motions::Ending;
 use crate::motions::body::face::turning_share;
 use crate::motions::body::phases::BodyWalk;
 use crate::motions::body::write::state;
-use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, Halt, SIN, TIME, W1, W2, W3, loses};
+use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, Halt, SIN, TIME, U2, UH, W1, W2, W3, loses};
 use crate::motions::walk::two_runs::CHANCE;
 use crate::motions::walk::{Next, Pause, Phases, after_rest, ending};
 
@@ -95,8 +96,7 @@ impl<const N: usize> BodyWalk<'_, N> {
                 self.claims_passage();
                 self.next = Some(Next::SlipsOn);
             }
-            Halt::Standstill if !self.of.slide.died && self.of.slide.has_died(&self.at) => {
-                self.drops_slip(slip);
+            Halt::Standstill if !self.of.slide.died && self.of.slide.has_died(&self.at).is_some() => {
                 self.resumes_phase();
                 self.next = Some(Next::Slips);
             }
@@ -142,17 +142,24 @@ impl<const N: usize> BodyWalk<'_, N> {
         }
     }
 
-    /// Ends the rest of a slip of a uniform ball, which friction turns into rolling.
-    fn drops_slip(&mut self, [u_h, u_2]: [f64; 2]) {
-        let ([s, c], share) = ([self.at[SIN], self.at[COS]], 1.0 / (1.0 + self.of.body.i3()));
+    /// Ends what the slip of a uniform ball has beside its creep, which friction turns into rolling, unless rolling
+    /// resistance holds that.
+    pub(crate) fn drops_slip(&mut self, [u_h, u_2]: [f64; 2]) {
+        let [s, c] = [self.at[SIN], self.at[COS]];
+        let held = !self.ask.losses.is_none() && is_still(&self.at);
+        let share = if held { 0.0 } else { 1.0 / (1.0 + self.of.body.i3()) };
         for (i, turned) in [(W1, -(c * u_2)), (W2, u_h), (W3, s * u_2)] {
             self.at[i] += share * turned;
         }
+        (self.at[UH], self.at[U2]) = (self.at[UH] - u_h, self.at[U2] - u_2);
         self.claims(u_h.hypot(u_2));
-        // The steps of the slip have left an error of w, which from now on turns the axis as roundings of w do.
-        self.of.roundings.count += CHANCE * self.spent.erred * self.of.slide.tol / f64::EPSILON;
-        self.stop_slip();
+        self.inherits_errors();
         self.of.state = state(&self.at);
+    }
+
+    /// The steps of a slip have left an error of w, which in phases that are known turns the axis as roundings of w do.
+    pub(crate) fn inherits_errors(&mut self) {
+        self.of.roundings.count += CHANCE * self.spent.erred * self.of.slide.tol / f64::EPSILON;
     }
 
     /// The error of the time at which a falling face has landed, although it hardly cleared the table or hardly did not:

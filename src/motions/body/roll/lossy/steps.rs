@@ -322,6 +322,15 @@ impl Flow<MARGINS> for LossyFlow {
         (self.hold == Hold::No && slow && soft).then_some(Halt::Settles)
     }
 
+    /// A drilling that is held stays zero. The errors of the steps would let it begin on a patch of contact.
+    fn kept<const N: usize>(&self, mut y: [f64; N]) -> [f64; N] {
+        if self.hold == Hold::No && self.ways.holds.drilling {
+            let drilling = y[P] + y[COS] * y[W3];
+            (y[P], y[W3]) = (y[P] - y[SIN] * y[SIN] * drilling, y[W3] - y[COS] * drilling);
+        }
+        y
+    }
+
     fn shown<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
         let mut shown = *y;
         let [s, c, q] = [y[SIN], y[COS], y[P]];
