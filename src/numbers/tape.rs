@@ -248,11 +248,12 @@ pub(crate) struct Player {
     results: [Vec<u16>; 2],
 }
 
-/// The sum of a_j b_(n-j) over 0 < j < n.
+/// The sum of a_j b_(n-j) over 0 < j < n, of even and of odd j, so that one product does not wait for the other.
 #[inline(always)]
 fn between(a: &Row, b: &Row, n: usize) -> f64 {
-    let (a, b) = (&a.at[1..n], &b.at[1..n]);
-    a.iter().zip(b.iter().rev()).fold(0.0, |sum, (a, b)| sum + a * b)
+    let mut sums = [0.0; 2];
+    (1..n).for_each(|j| sums[j % 2] += a.at[j] * b.at[n - j]);
+    sums[0] + sums[1]
 }
 
 impl Player {
@@ -339,7 +340,22 @@ impl Player {
         }
     }
 
+    /// Computes coefficient `n` of each operation. Each order has its own code, whose sums have no loops, except where the
+    /// code has to be short.
     fn order(&mut self, range: Range<usize>, n: usize) {
+        #[cfg(not(short_code))]
+        macro_rules! orders {
+            ($($n:literal)+) => { match n { $($n => self.order_here(range, $n),)+ _ => self.order_here(range, n) } };
+        }
+        #[cfg(not(short_code))]
+        orders!(1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17);
+        #[cfg(short_code)]
+        self.order_here(range, n);
+    }
+
+    #[cfg_attr(short_code, inline(never))]
+    #[cfg_attr(not(short_code), inline(always))]
+    fn order_here(&mut self, range: Range<usize>, n: usize) {
         // With this bound the compiler omits the checks of the indices of rows.
         let n = n.min(TERMS - 1);
         for (i, op) in range.clone().zip(&self.ops[range]) {

@@ -101,8 +101,10 @@ const STOPPED: f64 = 1e-15;
 /// as the slip dies out.
 const STRAIGHT: f64 = 1e-8;
 const STRAIGHT_ON: f64 = 1e-14;
-/// The error of a slip across the lean is at most this share of the slip, so that a slip that lasts long can die out.
+/// The error of a slip across the lean is at most this share of the slip, so that a slip that lasts long can die out; and
+/// the share where that is less than the tolerance, below which no error counts.
 const DIES: f64 = 1e-6;
+const DYING: f64 = 1e-3;
 /// The first step along an impact.
 const FIRST: f64 = 0.3;
 /// Largest number of steps along an impact.
@@ -274,7 +276,7 @@ impl RimImpact {
             // A jam makes impulses that are large compared with the fall.
             let per = |i: usize| match i {
                 0 => per_slip,
-                1 => per_slip.max(1.0 / (DIES * place[1].abs())),
+                1 => per_slip.max(1.0 / (DIES * place[1].abs()).max(self.tol.min(DYING * place[1].abs()))),
                 _ => 1.0 / (self.tol * place[i].abs().max(1.0)),
             };
             let error = made.error(per, 7.0);

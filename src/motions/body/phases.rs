@@ -37,6 +37,8 @@ const ALL_BUT_FLAT: f64 = 1e-6;
 /// The first step of a rougher run is this many times as long as that of the finer run, so that
 /// their steps differ.
 pub(super) const LONGER: f64 = 3.0;
+/// The first step of a phase, as a share of the last step of the phase of its kind before.
+const LATELY: f64 = 0.5;
 
 /// Size of cos theta below which a rougher run perturbs this number and not theta.
 const LEVEL: f64 = 1e-3;
@@ -77,6 +79,8 @@ pub(crate) struct BodyPhases {
     pub(super) shown: f64,
     /// Whether only theta changes, so that rounding must not make the body turn.
     pub(super) planar: bool,
+    /// The steps at the ends of the last slip and of the last phase that loses energy without one, in their variables.
+    pub(super) lately: [f64; 2],
     /// Estimates of the end of a slipping whirr; None if the losses do not let a whirr last for infinitely many turns.
     pub(super) tail: Option<LastTurns>,
 }
@@ -127,6 +131,7 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
             energy: None,
             shown: 0.0,
             planar: start.w1 == 0.0 && start.w3 == 0.0 && slip[1] == 0.0,
+            lately: [0.0; 2],
             tail: (!body.is_ball() && ask.losses.turn_endlessly()).then(LastTurns::default),
         };
         let mut walk = Self::new(of, at, ask, fine, (time, times))?;
@@ -464,13 +469,19 @@ impl<const N: usize> Phases<N> for BodyPhases {
         walk.rolls_on(at_limit, go_on)
     }
 
+    /// The first step is a share of the last one of the phase of its kind before, since a body that slips in each nod
+    /// does so with much the same steps.
     /// The first step of a rougher run is longer. Two runs with the same steps would have the same errors, and their
     /// difference would not show the growth of these errors from an unstable initial state.
     fn first(walk: &BodyWalk<'_, N>, y: &[f64; N]) -> f64 {
         let first = match (&walk.of.lying, walk.lossy()) {
             (Some(phase), _) => phase.flow.first(y),
-            (_, Some(flow)) => flow.first(y),
-            _ => walk.of.slide.first(y),
+            (_, Some(flow)) => flow.first(y).max((LATELY * walk.of.lately[1]).min(flow.calm(y))),
+            _ => {
+                let slide = &walk.of.slide;
+                let pace = if slide.law.dry { slide.rubs(y) / (slide.rubs(y) + slide.law.soft) } else { 1.0 };
+                slide.first(y).max((LATELY * walk.of.lately[0]).min(slide.calm(y) / pace))
+            }
         };
         if walk.perturbation > 0.0 { LONGER * first } else { first }
     }

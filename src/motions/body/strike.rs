@@ -35,8 +35,9 @@ const SUM_ERROR: f64 = 1.0;
 const TURNS: f64 = 10.0;
 /// The same share for a body with losses, which act at a contact, but not on a body that bounces.
 const LOSSY_TAIL: f64 = 1e-8;
-/// The tolerance of a step along an impact.
-const IMPACT_TOL: f64 = 3e-14;
+/// The tolerance of a step along an impact: this share of that of a motion, within these two limits.
+const IMPACT_SHARE: f64 = 1e-4;
+const IMPACT_TOL: [f64; 2] = [3e-14, 1e-12];
 /// Both rims rattle until |cos theta| and the normal velocities of both are below this.
 pub(super) const RATTLED: f64 = 1e-7;
 /// Error of the rest of a rattle, in units of the square of its velocities.
@@ -171,7 +172,8 @@ impl<const N: usize> BodyWalk<'_, N> {
         } else {
             (1.0, 1.0)
         };
-        RimImpact { slip, lift, light, tol: IMPACT_TOL * rougher, longer }
+        let tol = (IMPACT_SHARE * self.of.slide.fine).clamp(IMPACT_TOL[0], IMPACT_TOL[1]);
+        RimImpact { slip, lift, light, tol: tol * rougher, longer }
     }
 
     /// A bound of the change by the losses in a unit of time, under a normal force. The couple of the air below a face

@@ -183,6 +183,10 @@ impl<const K: usize> SlowSlips<K> {
                 return None;
             }
             let grows = if begin > 0.0 { lambda.at[0] } else { growth };
+            if f_alpha >= (terms - 1) as f64 * grows {
+                // The speed falls so fast, compared with the return of the direction, that a term of the series is infinite.
+                return None;
+            }
             let before = angle;
             for n in 0..terms - 1 {
                 if n > 0 {

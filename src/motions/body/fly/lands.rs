@@ -24,6 +24,8 @@ pub(super) const RIM_TERMS: usize = 30;
 const NARROWS: f64 = 3.0;
 const EARLY: f64 = 0.5;
 const DIGITS: f64 = 36.0;
+/// A term of the second order that is smaller than this, in units of the fall, may be an error of the numbers.
+const HARDLY: f64 = 1e-8;
 /// A cell shorter than this, in units of the time since the start, in which the height is below `TOUCH` counts as a
 /// touch.
 const SHORT_CELL: f64 = 1e-9;
@@ -210,7 +212,10 @@ impl Flight {
         near: f64,
         (terms, swung): (usize, &dyn Fn(f64, usize) -> AngleSeries),
     ) -> Result<Option<f64>, NoLanding> {
-        let series = &self.heights(side, near, &swung(near, terms))[order..terms];
+        let heights = self.heights(side, near, &swung(near, terms));
+        // A normal force that has just become negative is hardly larger than the errors of the numbers, as this term.
+        let vanishes = side > 0.0 && order == 2 && heights[2] <= 0.0 && heights[2] > -HARDLY * near * near;
+        let series = &heights[if vanishes { 3 } else { order }..terms];
         if series[0] <= 0.0 {
             return Ok(Some(0.0));
         }

@@ -67,6 +67,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         let flown = flow.run(flow.place(y), steps, times, &mut write, go_on);
         let erred = if by_steps { EXACTLY * flown.spent.erred } else { flown.spent.erred };
         self.has_spent(Spent { erred, ..flown.spent });
+        self.of.lately[1] = flown.step;
         self.claims_time_error(flown.halt, flown.steep, &flown.y);
         if flown.halt == Halt::Pause && by_steps {
             // The first integrals continue the phase.

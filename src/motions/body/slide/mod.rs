@@ -43,8 +43,8 @@ const SLIP_ENDS: [Halt; MARGINS] =
 /// Error of the end of a slip that is extrapolated, in tolerances. It is far below this bound: with a bound of 1 it was at most
 /// 0.1, and no claim of 432 random motions was too small; with a bound of 100 it was up to 7, and two claims were.
 const AT_ONCE: f64 = 0.01;
-/// Largest angle by which such a slip still turns.
-const STRAIGHT: f64 = 1e-3;
+/// Largest angle between the direction of such a slip and its mean.
+const STRAIGHT: f64 = 1e-2;
 /// Angle by which a direction beside that of a slip differs from it.
 const BESIDE: f64 = 1e-3;
 
@@ -113,36 +113,69 @@ impl Slide {
         self.law.patch().map_or(slip_over(self.law.dry, self.law.strength), rests_below)
     }
 
-    /// Whether the rest of the slip is so short that a linear extrapolation to its end has an error below `AT_ONCE`
-    /// tolerances: the square of the angle by which the body turns meanwhile, and its product with the angle by which
-    /// the slip turns.
+    /// The numbers at the end of a slip whose rest is so short that a single step has an error below `AT_ONCE` tolerances:
+    /// the cube of the angle by which the body turns meanwhile, and its product with the square of that by which the slip
+    /// turns. None for a longer rest.
+    ///
+    /// ```text
+    /// r alpha' = -k (alpha - a),   r = r0 (1 - t/T),   p = k T/r0:   the mean of alpha is alpha0 + (a - alpha0) p/(1 + p)
+    /// ```
+    /// The direction alpha returns to a, which moves with the body, so that it is taken in the middle of the time T. The
+    /// rates in the middle, in the mean direction, are those of the step.
     #[inline(never)]
-    fn ends_at_once<const N: usize>(&self, place: &FlowPlace<N>) -> bool {
+    fn ends_at_once<const N: usize>(&self, place: &FlowPlace<N>) -> Option<[f64; N]> {
         let ([u, v], [du, dv]) = (place.y.slip(), place.rate.slip());
         let (square, pace) = (u * u + v * v, place.rate[TIME]);
         let left = square / -(u * du + v * dv);
-        let allowed = AT_ONCE * self.tol;
-        // `turns` is at least `pace`.
-        if !(left > 0.0 && left * pace * (left * pace) < allowed) {
-            return false;
+        let (time, allowed) = (left * pace, AT_ONCE * self.tol);
+        let third = |turns: f64| turns * turns * turns < allowed;
+        // The angle `turns` is at least the time that is left.
+        if self.settled || !(left > 0.0 && third(time)) {
+            return None;
         }
         let falls = (place.y[W2] / place.y[SIN]).abs();
-        let turns = (3.0 / self.calm(&place.y)).max(falls) * pace;
-        let bends = (u * dv - v * du).abs() / square;
-        let small = left * turns * (left * turns.max(bends)) < allowed;
-        small && left * bends < STRAIGHT && self.keeps_way(&place.y)
-    }
-
-    /// Whether a slip returns to its direction. A slip that leaves its direction the faster, the slower it is, may pass
-    /// by zero, however near.
-    fn keeps_way<const N: usize>(&self, y: &[f64; N]) -> bool {
-        let [s, c, w1, w2, w3, u, v] = core::array::from_fn(|i| y[i]);
-        let turns = |by: f64| {
-            let (u, v) = (u - by * v, v + by * u);
-            let at = self.acts((s, c), [w1, w2, w3], [u, v]).u;
-            u * at[1] - v * at[0]
+        let turns = (time * (3.0 / self.calm(&place.y)).max(falls)).max(left / self.rooted(place));
+        if !third(turns) {
+            return None;
+        }
+        // The torque of the direction by an angle `by` beside that of the slip, which has the size `share` at the
+        // numbers `y`.
+        let beside = |by: f64, share: f64| [share * (u - by * v), share * (v + by * u)];
+        let bends = |y: &[f64; N], by: f64, share: f64| {
+            let [u, v] = beside(by, share);
+            let at = self.acts(y.angle(), y.w(), [u, v]).u;
+            (u * at[1] - v * at[0]) / (share * square)
         };
-        !self.settled && turns(BESIDE) < turns(-BESIDE)
+        // A slip that leaves its direction the faster, the slower it is, may pass by zero, however near.
+        let returns = (bends(&place.y, -BESIDE, 1.0) - bends(&place.y, BESIDE, 1.0)) / (2.0 * BESIDE);
+        let share = time / (1.0 + time * returns);
+        let first = share * bends(&place.y, 0.0, 1.0);
+        let middle = |rates: &[f64; N], by: f64| {
+            let mut y: [f64; N] = core::array::from_fn(|i| place.y[i] + 0.5 * time * rates[i]);
+            [y[UH], y[U2]] = beside(by, 0.5);
+            y
+        };
+        let in_time = |y: &[f64; N]| {
+            let all = self.rates(y);
+            all.map(|rate| rate / all[TIME])
+        };
+        let mut begin = place.y;
+        [begin[UH], begin[U2]] = beside(first, 1.0);
+        let half = middle(&in_time(&begin), first);
+        let mean = share * (returns * first + bends(&half, first, 0.5));
+        if !(returns > 0.0 && mean.abs().max(first.abs()) < STRAIGHT && turns * mean * mean < allowed) {
+            return None;
+        }
+        let half = middle(&in_time(&half), mean);
+        let rates = in_time(&half);
+        let ([u, v], [du, dv]) = (half.slip(), rates.slip());
+        let lasts = 2.0 * (u * u + v * v) / -(u * du + v * dv);
+        if !(lasts > 0.5 * time && lasts < 2.0 * time) {
+            return None;
+        }
+        let mut end: [f64; N] = core::array::from_fn(|i| place.y[i] + lasts * rates[i]);
+        (end[UH], end[U2]) = (0.0, 0.0);
+        Some(end)
     }
 
     /// The energy of the body with these numbers.
@@ -267,6 +300,17 @@ impl Slide {
             }
         }
         y
+    }
+}
+
+impl Slide {
+    /// The longest step in sigma towards the roots of the losses.
+    fn rooted<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
+        let Some(losses) = self.sloped.losses.filter(|_| loses(N) && !self.settled) else {
+            return f64::INFINITY;
+        };
+        let [s, c, w1, w2, w3] = core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
+        losses.longest(&losses.seen(&self.sloped.shape.rim, (s, c), w1 / s, [w1, w2, w3]), false)
     }
 }
 
@@ -419,8 +463,8 @@ impl Flow<MARGINS> for Slide {
         if !self.sticks {
             return None;
         }
-        let over = if self.ends_at_once(place) { f64::INFINITY } else { self.over() };
-        vanished(place, over).map(|y| (Halt::Standstill, y))
+        let end = self.ends_at_once(place).or_else(|| vanished(place, self.over()));
+        end.map(|y| (Halt::Standstill, y))
     }
 
     #[inline(always)]
@@ -481,9 +525,7 @@ impl Flow<MARGINS> for Slide {
         if self.law.patch().is_some() {
             most = most.min(self.kinked(place));
         }
-        let Some(losses) = self.sloped.losses.filter(|_| loses(N) && !self.settled) else { return most };
-        let [s, c, w1, w2, w3] = core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
-        most.min(losses.longest(&losses.seen(&self.sloped.shape.rim, (s, c), w1 / s, [w1, w2, w3]), false))
+        most.min(self.rooted(place))
     }
 
     /// The halt where the steps become short because the force grows without bound.

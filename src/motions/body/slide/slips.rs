@@ -41,6 +41,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         let mut write = |y: &[f64; N]| made.slid(&ask, &slide, y);
         let slid = slide.run(place, steps, &self.since[first..], &mut write, go_on);
         self.has_spent(slid.spent);
+        self.of.lately[0] = slid.step;
         if slid.halt == Halt::Pause {
             if let Some(end) = self.whirr_ends(&slid.y) {
                 self.arrives(slid.y);
