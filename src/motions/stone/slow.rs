@@ -52,6 +52,7 @@ impl<const N: usize> SlowLaw<N> for StoneSlips {
             until,
             ends,
             pays: slow.pays(until, ends),
+            settling: slow.settling,
             angle: slow.angle,
         }))
     }

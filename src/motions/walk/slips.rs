@@ -1,7 +1,7 @@
 //! A slip from rest: by series in time, until an integrator continues the slip, or the slip ends.
 
 use super::numbers::{Halt, TIME};
-use super::slow::SLOW_SLIP;
+use super::slow::{SLOW_SLIP, pays};
 use super::{Next, Pause, Phases, Walk};
 use crate::laws::contact::standstill::towards;
 use crate::motions::ask::result::Ending;
@@ -23,6 +23,8 @@ pub(crate) struct SlowSeries<const N: usize> {
     pub ends: bool,
     /// Whether this series takes less work than the steps of an integrator would.
     pub pays: bool,
+    /// The time in which a deviation of the direction falls by a factor e, per speed.
+    pub settling: f64,
     /// The angle alpha of the direction of the slip.
     pub angle: Series,
 }
@@ -61,6 +63,9 @@ pub(super) struct Looked {
     evaluations: u64,
     skips: [u32; 2],
 }
+
+/// A series lasts at most about this many times as long as the one before it.
+const STRETCHES: f64 = 2.0;
 
 /// Phases shorter than this, in units of time, may be left out.
 const A_MOMENT: f64 = 1e-6;
@@ -191,7 +196,8 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
             // The direction of a slow slip returns to its zero of f in a time proportional to the speed, so
             // that an integrator would need tiny steps.
             let speed = y[P::SLIP].hypot(y[P::SLIP + 1]);
-            let stays_slow = whole && on && self.toil() > 0;
+            let may_pay = pays(STRETCHES * series.until, series.settling * speed);
+            let stays_slow = whole && on && may_pay && self.toil() > 0;
             let next = if stays_slow { slow.follow(&y, series.angle.about(until), 0.0, speed) } else { None };
             match next.filter(|next| next.pays) {
                 Some(next) => series = next,

@@ -47,6 +47,11 @@ fn soon(x: &Series, terms: usize, allowed: f64) -> f64 {
 /// steps spans about six of them. In a settling time a deviation of the direction falls by a factor e.
 const WORTHWHILE: f64 = 30.0;
 
+/// Whether a series up to the time `until` takes less work than an integrator.
+pub(crate) fn pays(until: f64, settling: f64) -> bool {
+    until > WORTHWHILE * settling
+}
+
 /// Number of times at which the speed along a series is tested for a zero.
 const SPEEDS: usize = 64;
 
@@ -112,8 +117,8 @@ pub(crate) struct SlowSlip<const K: usize> {
     pub slip: [Series; 2],
     pub angle: Series,
     speed: Series,
-    /// The settling time at the start, in which a deviation of the direction falls by a factor e.
-    settling: f64,
+    /// The settling time at the start, in which a deviation of the direction falls by a factor e, per speed.
+    pub settling: f64,
     pub terms: usize,
     tol: f64,
 }
@@ -209,7 +214,7 @@ impl<const K: usize> SlowSlips<K> {
                 player.set(Self::SPEED, n + 1, faster);
             }
             Self::direct(player, &turns, terms - 1);
-            let settling = begin / -f_alpha;
+            let settling = 1.0 / -f_alpha;
             if begin == 0.0 {
                 break settling;
             }
@@ -261,7 +266,7 @@ impl<const K: usize> SlowSlip<K> {
     /// Whether this series takes less work than the steps of an integrator would up to the time `until`. The end of a
     /// slip takes many steps, since its speed falls by a few factors e in each.
     pub fn pays(&self, until: f64, ends: bool) -> bool {
-        ends || until > WORTHWHILE * self.settling
+        ends || pays(until, self.settling * self.speed.at[0])
     }
 
     /// The time up to which the series of these numbers may be used, and whether the slip ends then.

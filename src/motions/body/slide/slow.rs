@@ -119,6 +119,7 @@ impl<const N: usize> SlowLaw<N> for BodySlips {
             until,
             ends,
             pays: slow.pays(until, ends),
+            settling: slow.settling,
             angle: slow.angle,
         }))
     }
