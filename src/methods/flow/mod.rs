@@ -125,6 +125,10 @@ pub(crate) trait Flow<const M: usize>: Copy {
     fn is_extrapolated(_: Self::Halt) -> bool {
         false
     }
+    /// Whether the way to such a halt is a parabola that begins at the rates of the last point.
+    fn is_curved(_: Self::Halt) -> bool {
+        false
+    }
     /// The numbers of the output, from those of this flow.
     fn shown<const N: usize>(&self, y: &[f64; N]) -> [f64; N];
     /// Moves the numbers after a step back to the surface of an invariant, from which rounding and step
@@ -320,7 +324,7 @@ pub(crate) trait Flow<const M: usize>: Copy {
 
     /// Writes the numbers at those of the `times` that are not after `until`, within a step of `h` between two points, and
     /// returns the number of those times; `last` gets the numbers at the last of them. Up to an extrapolated halt the
-    /// numbers are linear in time.
+    /// numbers are linear in time, or a parabola.
     #[inline(always)]
     fn write_times<const N: usize>(
         &self,
@@ -337,11 +341,16 @@ pub(crate) trait Flow<const M: usize>: Copy {
                 break;
             }
             *last = match stopped.filter(|_| t > after.y[Self::TIME]) {
-                Some((_, y)) => {
+                Some((halt, y)) => {
                     let (begin, end) = (after.y[Self::TIME], y[Self::TIME]);
                     // Rounding must not make a slip vanish before its end.
                     let share = ((t - begin) / (end - begin)).min(MOSTLY);
-                    core::array::from_fn(|i| after.y[i] + share * (y[i] - after.y[i]))
+                    let left = if Self::is_curved(*halt) { share * (1.0 - share) } else { 0.0 };
+                    let lasts = (end - begin) / after.rate[Self::TIME];
+                    core::array::from_fn(|i| {
+                        let moves = y[i] - after.y[i];
+                        after.y[i] + share * moves + left * (lasts * after.rate[i] - moves)
+                    })
                 }
                 None => self.at_time(from, after, h, t),
             };

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! y = (s, c, w1, w2, w3, u_h, u_2, t, heat; phi, psi, x, y)        in sigma, dt = |u|/(|u| + soft) dsigma
-//! u = 0   reached as exp(-sigma); the last part, below a hundredth of a tolerance, is extrapolated linearly
+//! u = 0   reached as exp(-sigma); the last part is one step, where its error is below a hundredth of a tolerance
 //! N0 = 0,   eps = 1,   theta = 0,   theta = theta_end                margins that turn negative
 //! ```
 //! [`rk8`] takes the steps. A margin that becomes negative within a step, even if it is positive again at the
@@ -345,6 +345,10 @@ impl Flow<MARGINS> for Slide {
         matches!(halt, Halt::Standstill | Halt::Pole)
     }
 
+    fn is_curved(halt: Halt) -> bool {
+        halt == Halt::Standstill
+    }
+
     fn theta<const N: usize>(&self, y: &[f64; N]) -> f64 {
         y[SIN].atan2(y[COS])
     }
@@ -439,7 +443,7 @@ impl Flow<MARGINS> for Slide {
         }
     }
 
-    /// The halt of an almost vanished slip, extrapolated linearly to u = 0, or of a body that
+    /// The halt of an almost vanished slip, extrapolated to u = 0, or of a body that
     /// rests or settles.
     fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
         if loses(N)
