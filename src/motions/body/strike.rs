@@ -172,7 +172,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         } else {
             (1.0, 1.0)
         };
-        let tol = (IMPACT_SHARE * self.of.slide.fine).clamp(IMPACT_TOL[0], IMPACT_TOL[1]);
+        let tol = (IMPACT_SHARE * self.of.slide.tol / rougher).clamp(IMPACT_TOL[0], IMPACT_TOL[1]);
         RimImpact { slip, lift, light, tol: tol * rougher, longer }
     }
 
