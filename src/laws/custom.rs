@@ -44,6 +44,23 @@ impl<F: Fn(f64) -> f64> FrictionLaw for F {
     }
 }
 
+/// The law of sliding friction in an impact. `()` is one of the library, whose coefficient is constant, and costs no code.
+pub(crate) trait SpeedLaw: Copy {
+    /// Whether the coefficient depends on the speed of the slip.
+    #[inline(always)]
+    fn varies(&self) -> bool {
+        false
+    }
+
+    /// The coefficient at this speed, if it varies.
+    #[inline(always)]
+    fn coefficient_at(&self, _speed: f64) -> f64 {
+        f64::NAN
+    }
+}
+
+impl SpeedLaw for () {}
+
 /// The user-defined laws of a motion; by default there are none.
 #[derive(Clone, Copy, Default)]
 #[non_exhaustive]

@@ -13,13 +13,15 @@
 //! along e_h. For every mu and every body the impact has one outcome. A slip jams if its friction presses the rim into
 //! the table faster than the impulse slows it, so that no contact force exists (Painleve): an impact that begins with
 //! u_n = 0 stops the slip (Genot and Brogliato, Eur. J. Mech. A 18, 653 (1999)). The motion is straight, and the
-//! formulas are closed, except for a first slip whose direction turns; a viscous film is linear.
+//! formulas are closed, except for a first slip whose direction turns; a viscous film is linear. Under a coefficient that
+//! depends on the speed the same equations hold with the coefficient at the current speed, and steps follow them.
 //!
 //! Error: 1e-13 of the largest velocity; a test of `laws` compares with integration in the laboratory's axes.
 
 use super::slip::Friction;
 use super::table::Table;
 use crate::laws::body::Shape;
+use crate::laws::custom::SpeedLaw;
 use crate::methods::flow::only_zero;
 use crate::methods::rk8;
 use crate::methods::search::crossing;
@@ -156,7 +158,8 @@ impl RimImpact {
     /// The impact under this law of contact with the restitution `e`. None for a rolling contact without a solution,
     /// whose friction would lift the body before the slip has stopped or would exceed mu times the normal impulse, and
     /// after too many steps.
-    pub fn on(&self, table: &Table, e: f64) -> Option<Struck> {
+    /// Along the impact the coefficient of `own` is that at the current speed.
+    pub fn on(&self, table: &Table, e: f64, own: &impl SpeedLaw) -> Option<Struck> {
         let [a_h, a_2, a_n, b] = self.light;
         let big = if self.lift < 0.0 { -self.lift } else { self.slip[0].hypot(self.slip[1]) };
         let keeps = (1.0 - e) * (1.0 + e);
@@ -178,12 +181,22 @@ impl RimImpact {
                 course.film(c * big, slip, self.light);
                 Hit::Slips
             }
-            Table::Rubs(friction @ Friction::Coulomb { mu, fixed, .. }) if mu > 0.0 || friction.sticks() => {
-                stopped = !self.slides(&mut course, mu, slip)?;
+            Table::Rubs(friction @ Friction::Coulomb { mu, fixed, .. })
+                if mu > 0.0 || friction.sticks() || own.varies() =>
+            {
+                let law = |speed: f64| own.coefficient_at(speed * big);
+                stopped = if own.varies() {
+                    !self.slides_under(&mut course, slip, &law)?
+                } else {
+                    !self.slides(&mut course, mu, slip)?
+                };
                 if !stopped {
                     Hit::Slips
                 } else if b.abs() <= fixed * a_h {
                     Hit::Sticks
+                } else if own.varies() {
+                    self.slips_on_under(&mut course, &law)?;
+                    Hit::SlipsOn
                 } else {
                     course.straight(a_n - mu * b.abs(), [-mu * b.signum(), 0.0], f64::INFINITY);
                     Hit::SlipsOn
@@ -249,16 +262,47 @@ impl RimImpact {
             ];
             *to = change.map(|x| per * x);
         };
-        let mut place = [slip[0], slip[1], 0.0, 0.0, 0.0, course.lift, 0.0];
-        let (mut stages, mut h) = ([place; rk8::STAGES], FIRST * self.longer);
-        let (mut steps, keeps) = (0, course.keeps);
-        let done = loop {
+        let place = [slip[0], slip[1], 0.0, 0.0, 0.0, course.lift, 0.0];
+        let over = |place: &[f64; 7]| {
             let sigma = place[0].hypot(place[1]);
             let grows = turns < -b * place[0].signum();
             // A slip along the lean may last long.
-            if sigma < STOPPED || place[1].abs() < (if grows { STRAIGHT_ON } else { STRAIGHT }) * sigma {
+            sigma < STOPPED || place[1].abs() < (if grows { STRAIGHT_ON } else { STRAIGHT }) * sigma
+        };
+        let (place, done) = self.follows(course, place, rates, over, 0.0)?;
+        let [u_h, u_2, _, _, p, ..] = place;
+        let sigma = u_h.hypot(u_2);
+        if done || sigma < STOPPED {
+            return Some(done);
+        }
+        let way = [u_h.signum(), 0.0];
+        let ended = straight(course, way, sigma);
+        // The remaining slip across the lean falls as a power of the slip.
+        let (slow, long) = (-slows(way), (course.impulse[2] - p) / sigma);
+        let log = if slow * long == 0.0 { -long } else { (-slow * long).max(-1.0).ln_1p() / slow };
+        course.impulse[1] += u_2 * (mu * a_2 * log).exp_m1() / a_2;
+        Some(ended)
+    }
+
+    /// Follows an impact by steps from `place`, the numbers u_h, u_2, P_h, P_2, p, u_n and W, until it ends or is `over`.
+    /// Returns the numbers there, and whether the impact ends; None after too many steps. The error of a slip is relative
+    /// to its speed, or to `slow` if that is more.
+    #[inline(always)]
+    fn follows(
+        &self,
+        course: &mut ImpactCourse,
+        mut place: [f64; 7],
+        rates: impl Fn(&[f64; 7], &mut [f64; 7]) + Copy,
+        over: impl Fn(&[f64; 7]) -> bool,
+        slow: f64,
+    ) -> Option<([f64; 7], bool)> {
+        let (mut stages, mut h) = ([place; rk8::STAGES], FIRST * self.longer);
+        let (mut steps, keeps) = (0, course.keeps);
+        let done = loop {
+            if over(&place) {
                 break false;
             }
+            let sigma = place[0].hypot(place[1]).max(slow);
             steps += 1;
             if steps > IMPACT_STEPS {
                 return None;
@@ -276,7 +320,10 @@ impl RimImpact {
             // A jam makes impulses that are large compared with the fall.
             let per = |i: usize| match i {
                 0 => per_slip,
-                1 => per_slip.max(1.0 / (DIES * place[1].abs()).max(self.tol.min(DYING * place[1].abs()))),
+                1 if place[1] != 0.0 => {
+                    per_slip.max(1.0 / (DIES * place[1].abs()).max(self.tol.min(DYING * place[1].abs())))
+                }
+                1 => per_slip,
                 _ => 1.0 / (self.tol * place[i].abs().max(1.0)),
             };
             let error = made.error(per, 7.0);
@@ -329,20 +376,58 @@ impl RimImpact {
             }
             h *= rk8::growth(error);
         };
-        let [u_h, u_2, p_h, p_2, p, lift, work] = place;
+        let [_, _, p_h, p_2, p, lift, work] = place;
         course.impulse = [p_h, p_2, p];
         (course.lift, course.work) = (lift, work);
-        let sigma = u_h.hypot(u_2);
-        if done || sigma < STOPPED {
-            return Some(done);
+        Some((place, done))
+    }
+
+    /// The first slip under a coefficient that depends on its speed. Returns whether the impact ends before the slip stops,
+    /// or None after too many steps.
+    fn slides_under(
+        &self,
+        course: &mut ImpactCourse,
+        slip: [f64; 2],
+        law: &dyn Fn(f64) -> f64,
+    ) -> Option<bool> {
+        let [a_h, a_2, a_n, b] = self.light;
+        let speed = slip[0].hypot(slip[1]);
+        if speed <= STOPPED * (1.0 + speed) {
+            return Some(false);
         }
-        let way = [u_h.signum(), 0.0];
-        let ended = straight(course, way, sigma);
-        // The remaining slip across the lean falls as a power of the slip.
-        let (slow, long) = (-slows(way), (course.impulse[2] - p) / sigma);
-        let log = if slow * long == 0.0 { -long } else { (-slow * long).max(-1.0).ln_1p() / slow };
-        course.impulse[1] += u_2 * (mu * a_2 * log).exp_m1() / a_2;
-        Some(ended)
+        // With dp = sigma/(sigma + mu) dx, in which nothing is singular, also where mu vanishes with the speed.
+        let rates = |&[u_h, u_2, _, _, _, lift, _]: &[f64; 7], to: &mut [f64; 7]| {
+            let sigma = u_h.hypot(u_2).max(f64::MIN_POSITIVE);
+            let mu = law(sigma);
+            let (per, along, across) = (1.0 / (sigma + mu), mu * u_h, mu * u_2);
+            let change = [
+                b * sigma - a_h * along,
+                -(a_2 * across),
+                -along,
+                -across,
+                sigma,
+                a_n * sigma - b * along,
+                lift * sigma,
+            ];
+            *to = change.map(|x| per * x);
+        };
+        let place = [slip[0], slip[1], 0.0, 0.0, 0.0, course.lift, 0.0];
+        let over = |place: &[f64; 7]| place[0].hypot(place[1]) < STOPPED;
+        self.follows(course, place, rates, over, 0.0).map(|(_, done)| done)
+    }
+
+    /// The slip along the lean that begins where friction cannot hold the contact point, to the end of the impact. None
+    /// after too many steps.
+    fn slips_on_under(&self, course: &mut ImpactCourse, law: &dyn Fn(f64) -> f64) -> Option<()> {
+        let [a_h, _, a_n, b] = self.light;
+        let way = b.signum();
+        let rates = |&[u_h, _, _, _, _, lift, _]: &[f64; 7], to: &mut [f64; 7]| {
+            let drag = way * law((way * u_h).max(0.0));
+            *to = [b - a_h * drag, 0.0, -drag, 0.0, 1.0, a_n - b * drag, lift];
+        };
+        let [p_h, p_2, p] = course.impulse;
+        let place = [0.0, 0.0, p_h, p_2, p, course.lift, course.work];
+        self.follows(course, place, rates, |_| false, 1.0).map(|_| ())
     }
 }
 

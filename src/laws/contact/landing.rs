@@ -23,12 +23,16 @@
 //! gains energy. One rim bounces as in `contact::impact`. Without friction both rims stay if ell^2 >= I1; with
 //! friction if ell^2 - ell Q_up,h/P_up >= I1.
 //!
+//! Under a coefficient that depends on the speed, mu is that of the slip after the impact: this too takes energy, since
+//! the impulse opposes that slip.
+//!
 //! Error: 1e-12 of the largest velocity; a test of `throw` compares with the three-dimensional model.
 
 use super::lying::{Lying, from_other};
 use super::slip::Friction;
 use crate::error::{Error, within};
 use crate::laws::body::{Body, LEVEL_ON_UNEQUAL_RIMS};
+use crate::laws::custom::SpeedLaw;
 use crate::laws::loss::Losses;
 use crate::laws::state::State;
 use core::f64::consts::FRAC_PI_2;
@@ -118,17 +122,18 @@ pub fn normals(body: &Body, y: &State, slip: [f64; 2], mu: f64) -> [f64; 2] {
 pub fn land(body: &Body, y: &State, slip: [f64; 2], mu: f64) -> Result<Landed, Error> {
     two_rims(body)?;
     within("mu", mu, (0.0, 1e100), "0 <= mu <= 1e100")?;
-    land_at(body, y, (slip, 0.0), &Friction::coulomb(mu))
+    land_at(body, y, (slip, 0.0), &Friction::coulomb(mu), &())
 }
 
 /// The plastic landing with any law of friction, also for a body whose lower rim comes down at the same time, at the
 /// velocity `lift` <= 0. A viscous film takes the impulse c P u, with the slip u after the impact, as dry friction
-/// does.
+/// does. A coefficient that depends on the speed, of `own`, is that of the slip after the impact.
 pub(crate) fn land_at(
     body: &Body,
     y: &State,
     (slip, lift): ([f64; 2], f64),
     friction: &Friction,
+    own: &impl SpeedLaw,
 ) -> Result<Landed, Error> {
     let most = 1e100;
     within("theta", y.theta, (FRAC_PI_2, FRAC_PI_2), "pi/2, where the other rim lands")?;
@@ -141,13 +146,13 @@ pub(crate) fn land_at(
         let lost = before - energy(body, &y, slip, 0.0);
         Landed { outcome, state: y, slip, lost }
     };
-    let mu = friction.strength();
-    Ok(match compressed(body, y, (slip, lift), friction)? {
+    let mu = |[u, v]: [f64; 2]| coefficient(own, friction.strength(), || u.hypot(v));
+    Ok(match compressed(body, y, (slip, lift), friction, own)? {
         Compressed { here: true, there: true, end: Pushed { y, slip, .. } } => {
             let (there, other) = mirrored(body, &y, slip);
-            if rises(body, &y, slip, mu) {
+            if rises(body, &y, slip, mu(slip)) {
                 end(Outcome::Rises, y, slip)
-            } else if rises(body, &there, other, mu) {
+            } else if rises(body, &there, other, mu(other)) {
                 end(Outcome::Changes, there, other)
             } else {
                 end(Outcome::Lies, y, slip)
@@ -168,12 +173,13 @@ pub(crate) fn bounced(
     y: &State,
     (slip, lift): ([f64; 2], f64),
     friction: &Friction,
+    own: &impl SpeedLaw,
     e: f64,
 ) -> Result<(State, [f64; 2], f64, f64), Error> {
-    let Compressed { end, .. } = compressed(body, y, (slip, lift), friction)?;
+    let Compressed { end, .. } = compressed(body, y, (slip, lift), friction, own)?;
     let (mu, dry) = strength(friction);
     let given = Rims::Given(end.push.map(|p| e * p));
-    let again = Impact { body, y: end.y, slip: end.slip, lift: end.lift, mu, dry, rims: given }.solved();
+    let again = Impact { body, y: end.y, slip: end.slip, lift: end.lift, mu, dry, own, rims: given }.solved();
     let Some(after) = again else { return Err(Error::Landing { mu, outcomes: 0 }) };
     let lost = energy(body, y, slip, lift) - energy(body, &after.y, after.slip, after.lift);
     Ok((after.y, after.slip, after.lift, lost))
@@ -184,6 +190,11 @@ struct Compressed {
     here: bool,
     there: bool,
     end: Pushed,
+}
+
+/// The coefficient of sliding friction, `mu` unless it varies with the speed.
+fn coefficient(own: &impl SpeedLaw, mu: f64, speed: impl Fn() -> f64) -> f64 {
+    if own.varies() { own.coefficient_at(speed()) } else { mu }
 }
 
 /// The coefficient of a law of friction, and whether it is dry.
@@ -197,11 +208,12 @@ fn compressed(
     y: &State,
     (slip, lift): ([f64; 2], f64),
     friction: &Friction,
+    own: &impl SpeedLaw,
 ) -> Result<Compressed, Error> {
     let (mu, dry) = strength(friction);
     let comes = y.w2 < 0.0 || lift < 0.0;
     let on = |y: &State, slip: [f64; 2], lift: f64, rims| {
-        Impact { body, y: *y, slip, lift, mu, dry, rims }.solved()
+        Impact { body, y: *y, slip, lift, mu, dry, own, rims }.solved()
     };
     let lies = on(y, slip, lift, Rims::Both);
     let rocks = if comes { on(y, slip, lift, Rims::Other) } else { None };
@@ -238,19 +250,20 @@ pub(crate) fn settled(
     y: &State,
     (slip, lift): ([f64; 2], f64),
     friction: &Friction,
+    own: &impl SpeedLaw,
 ) -> (State, [f64; 2]) {
     let (ell, (mu, dry)) = (body.ell(), strength(friction));
     let least = REVERSES * (lift.abs() + ell * y.w2.abs());
     let drag = |[u, v]: [f64; 2]| {
         let size = u.hypot(v);
-        let per = if dry { size } else { 1.0 };
+        let (per, mu) = (if dry { size } else { 1.0 }, coefficient(own, mu, || size));
         [u, v].map(|u| if !dry || size > least { mu * u / per } else { 0.0 })
     };
     let (low, up) = (drag(slip), drag([slip[0], slip[1] - 2.0 * ell * y.w1]));
     let (down, turn) = (-(lift + ell * y.w2), -body.i1() * y.w2);
     let there = (turn + down * (ell - low[0])) / (2.0 * ell + up[0] - low[0]);
     let q = [low.map(|d| -(down - there) * d), up.map(|d| -there * d)];
-    let (after, slips) = Impact { body, y: *y, slip, lift, mu, dry, rims: Rims::Both }.after(&q, 0.0);
+    let (after, slips) = Impact { body, y: *y, slip, lift, mu, dry, own, rims: Rims::Both }.after(&q, 0.0);
     (State { w2: 0.0, ..after }, if slip == [0.0; 2] { slip } else { slips[0] })
 }
 
@@ -283,7 +296,7 @@ enum Rims {
 }
 
 /// An impact with the normal impulses of `rims`.
-struct Impact<'a> {
+struct Impact<'a, L> {
     body: &'a Body,
     y: State,
     slip: [f64; 2],
@@ -292,6 +305,7 @@ struct Impact<'a> {
     /// The coefficient mu of dry friction, or c of a viscous film.
     mu: f64,
     dry: bool,
+    own: &'a L,
     rims: Rims,
 }
 
@@ -307,7 +321,7 @@ struct Pushed {
 /// Friction impulses of the lower and the upper rim, each along e_h and e2.
 type Impulses = [[f64; 2]; 2];
 
-impl Impact<'_> {
+impl<L: SpeedLaw> Impact<'_, L> {
     /// The normal impulses P of both rims, and w2 after the impact.
     fn pushed(&self, q: &Impulses) -> ([f64; 2], f64) {
         let (ell, i1, w, along) = (self.body.ell(), self.body.i1(), -self.y.w2, q[0][0] + q[1][0]);
@@ -358,12 +372,18 @@ impl Impact<'_> {
         let speeds = [self.slip[0].abs(), self.slip[1].abs(), other, -self.y.w2, -self.lift, given];
         let velocity = step * speeds.into_iter().fold(0.0, f64::max);
         let mut q: Impulses = [[0.0; 2]; 2];
-        for _ in 0..STEPS {
+        let mut mu = [self.mu; 2];
+        for i in 0..if self.own.varies() { OWN_STEPS } else { STEPS } {
             let (p, w2) = self.pushed(&q);
             let (_, slips) = self.after(&q, w2);
             let mut moved = 0f64;
             for k in 0..2 {
-                let most = self.mu * p[k].max(0.0);
+                if self.own.varies() {
+                    // Under a coefficient that is steep this search would circle, unless each coefficient follows slowly.
+                    let at = self.own.coefficient_at(slips[k][0].hypot(slips[k][1]));
+                    mu[k] += (at - mu[k]) / (1 + i / FOLLOWS) as f64;
+                }
+                let most = mu[k] * p[k].max(0.0);
                 let tried = [q[k][0] - step * slips[k][0], q[k][1] - step * slips[k][1]];
                 let size = tried[0].hypot(tried[1]);
                 let share = match self.dry {
@@ -393,6 +413,7 @@ impl Impact<'_> {
         let [least, most] = [square - reach - i1, square + reach - i1];
         let rounding = SAME * (i1 + square);
         self.dry
+            && !self.own.varies()
             && self.lift == 0.0
             && reach < i1 + square
             && match self.rims {
@@ -428,3 +449,7 @@ const SAME: f64 = 1e-12;
 /// The largest number of steps of the search for the impulses: some tens are usual, I3 = 0.001 takes
 /// thousands.
 const STEPS: usize = 100_000;
+/// The same number under a coefficient that depends on the speed, and the number of steps after which the coefficient
+/// follows the speed by a smaller share.
+const OWN_STEPS: usize = 20_000;
+const FOLLOWS: usize = 100;

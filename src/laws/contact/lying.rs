@@ -25,10 +25,12 @@ use crate::numbers::Real;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Lying<T> {
     pub shape: Shape<T>,
-    /// The coefficient mu, or c.
-    pub strength: T,
+    /// The coefficient mu, or c, at the rim from which the state is seen and at the other rim.
+    pub strength: [T; 2],
     pub dry: bool,
     pub losses: Option<Couples<T>>,
+    /// The couple of a user-defined law in the state for which this law is made.
+    pub own: Option<[T; 3]>,
     /// Whether dry losses hold w1, and w3, at zero.
     pub held: [bool; 2],
 }
@@ -60,14 +62,16 @@ impl Lying<f64> {
     pub fn on(body: &Body, friction: &Friction, losses: &Losses) -> Self {
         let dry = matches!(*friction, Friction::Coulomb { mu, .. } if mu > 0.0 || friction.sticks());
         let losses = Couples::some(losses);
-        Self { shape: body.shape(), strength: friction.strength(), dry, losses, held: [false; 2] }
+        let strength = [friction.strength(); 2];
+        Self { shape: body.shape(), strength, dry, losses, own: None, held: [false; 2] }
     }
 
     /// The largest couples with which dry losses hold w1 and w3.
     pub fn limits(&self) -> [f64; 2] {
         // All couples that are not dry vanish at this speed.
         const SLOW: f64 = 1e-100;
-        self.couple([SLOW, SLOW], [1.0; 2]).map(f64::abs)
+        let [m1, _, m3] = Self { own: None, ..*self }.couple([SLOW, SLOW], [1.0; 2]);
+        [m1.abs(), m3.abs()]
     }
 }
 
@@ -76,9 +80,10 @@ impl<T: Real> Lying<T> {
     pub fn map<U: Real>(&self, number: impl Fn(T) -> U) -> Lying<U> {
         Lying {
             shape: self.shape.map(&number),
-            strength: number(self.strength),
+            strength: self.strength.map(&number),
             dry: self.dry,
             losses: self.losses.as_ref().map(|losses| losses.map(&number)),
+            own: self.own.map(|m| m.map(&number)),
             held: self.held,
         }
     }
@@ -88,14 +93,23 @@ impl<T: Real> Lying<T> {
         [u_h, u_2 - (self.shape.rim.ell + self.shape.rim.ell) * w1]
     }
 
-    /// The friction per normal force, with its sign reversed, at a rim that slips with `u`.
-    pub fn drag(&self, u: [T; 2]) -> [T; 2] {
+    /// The friction per normal force, with its sign reversed, at a rim of this strength that slips with `u`.
+    pub fn drag(&self, strength: T, u: [T; 2]) -> [T; 2] {
         let size = if self.dry { u[0].mac(u[0], u[1] * u[1]).sqrt() } else { u[0].splat(1.0) };
-        u.map(|u| self.strength * u / size)
+        u.map(|u| strength * u / size)
     }
 
-    /// The couples m1 and m3 of the losses; `ways` are the signs of w1 and w3 for the dry ones.
-    fn couple(&self, [w1, w3]: [T; 2], ways: [f64; 2]) -> [T; 2] {
+    /// The couples m1, m2 and m3 of the losses; `ways` are the signs of w1 and w3 for the dry ones. Only a user-defined
+    /// law may have m2, which then takes no power.
+    fn couple(&self, w: [T; 2], ways: [f64; 2]) -> [T; 3] {
+        let [m1, m3] = self.couple_of_losses(w, ways);
+        match self.own {
+            Some([o1, o2, o3]) => [m1 + o1, o2, m3 + o3],
+            None => [m1, m1.splat(0.0), m3],
+        }
+    }
+
+    fn couple_of_losses(&self, [w1, w3]: [T; 2], ways: [f64; 2]) -> [T; 2] {
         let zero = w1.splat(0.0);
         let Some(losses) = &self.losses else { return [zero; 2] };
         let one = w1.splat(1.0);
@@ -107,7 +121,7 @@ impl<T: Real> Lying<T> {
     }
 
     /// The motion under these normal forces and this friction.
-    fn under(&self, [w1, w3, u_h, u_2]: Flat<T>, force: [[T; 3]; 2], [m1, m3]: [T; 2]) -> Lain<T> {
+    fn under(&self, [w1, w3, u_h, u_2]: Flat<T>, force: [[T; 3]; 2], [m1, _, m3]: [T; 3]) -> Lain<T> {
         let (ell, i1, i3) = (self.shape.rim.ell, self.shape.i1, self.shape.i3);
         let [[_, low, low_h], [_, up, up_h]] = force;
         let (apart, all) = (ell * (low - up), low + up);
@@ -125,45 +139,56 @@ impl<T: Real> Lying<T> {
     pub fn slipping_along(&self, y: Flat<T>, [low, up]: [[T; 2]; 2], ways: [f64; 2]) -> Lain<T> {
         let [w1, w3, ..] = y;
         let (ell, zero) = (self.shape.rim.ell, w1.splat(0.0));
-        let lift = self.shape.i3 * w1 * w3;
+        let couple = self.couple([w1, w3], ways);
+        let mut lift = self.shape.i3 * w1 * w3;
+        if self.own.is_some() {
+            lift = lift + couple[1];
+        }
         let room = ell + ell + up[0] - low[0];
         let (n, m) = ((ell + lift + up[0]) / room, (ell - lift - low[0]) / room);
         let force = [(n, low), (m, up)].map(|(n, d)| [n, zero - n * d[1], zero - n * d[0]]);
-        self.under(y, force, self.couple([w1, w3], ways))
+        self.under(y, force, couple)
     }
 
     /// Motion with both rims slipping.
     pub fn slipping(&self, y: Flat<T>, ways: [f64; 2]) -> Lain<T> {
-        let drags = [self.drag([y[2], y[3]]), self.drag(self.other_slip(y))];
+        let [low, up] = self.strength;
+        let drags = [self.drag(low, [y[2], y[3]]), self.drag(up, self.other_slip(y))];
         self.slipping_along(y, drags, ways)
     }
 
-    /// Motion where the rim from which the state is seen sticks, and the other slips across the axis; `turn` is the
-    /// sign of w1.
-    fn pivots_here(&self, y: Flat<T>, turn: f64, ways: [f64; 2]) -> Lain<T> {
+    /// Motion where the rim from which the state is seen sticks, and the other slips across the axis with friction of the
+    /// strength `mu`; `turn` is the sign of w1.
+    fn pivots_here(&self, y: Flat<T>, mu: T, turn: f64, ways: [f64; 2]) -> Lain<T> {
         let [w1, w3, ..] = y;
         let Shape { rim, i1, i3 } = self.shape;
         let (ell, one, zero) = (rim.ell, w1.splat(1.0), w1.splat(0.0));
         let along = zero - w1 * (w3 - ell * w1);
-        let lean = (i3 * w1 * w3 - along) / (ell + ell);
+        let couple @ [m1, m2, m3] = self.couple([w1, w3], ways);
+        let mut push = i3 * w1 * w3 - along;
+        if self.own.is_some() {
+            push = push + m2;
+        }
+        let lean = push / (ell + ell);
         let half = one.splat(0.5);
         let (n, m) = (half + lean, half - lean);
-        let up = self.strength * m * one.splat(turn);
-        let [m1, m3] = self.couple([w1, w3], ways);
+        let up = mu * m * one.splat(turn);
         let (square, axial) = (ell * ell / i1, if self.held[1] { zero } else { one / i3 });
         let pull = ell * m1 / i1 - axial * m3;
         let low = zero - ((one + axial - square) * up + pull) / (one + axial + square);
-        self.under([w1, w3, zero, zero], [[n, low, along], [m, up, zero]], [m1, m3])
+        self.under([w1, w3, zero, zero], [[n, low, along], [m, up, zero]], couple)
     }
 
     /// Motion where one rim sticks: the other rim if `other`.
     pub fn pivots(&self, y: Flat<T>, other: bool, turn: f64, ways: [f64; 2]) -> Lain<T> {
         if !other {
-            return self.pivots_here(y, turn, ways);
+            return self.pivots_here(y, self.strength[1], turn, ways);
         }
         let ell = self.shape.rim.ell;
+        let back = |[m1, m2, m3]: [T; 3]| [m1, ell.splat(0.0) - m2, ell.splat(0.0) - m3];
+        let seen = Self { own: self.own.map(back), ..*self };
         let Lain { force: [there, here], w: [d1, d3], couple: [m1, m3], .. } =
-            self.pivots_here(from_other(ell, y), turn, [ways[0], -ways[1]]);
+            seen.pivots_here(from_other(ell, y), self.strength[0], turn, [ways[0], -ways[1]]);
         let zero = d1.splat(0.0);
         let seen = |[n, across, along]: [T; 3]| [n, zero - across, zero - along];
         // Axes e_h and e2 of the other rim point the other way.
@@ -176,10 +201,15 @@ impl<T: Real> Lying<T> {
     pub fn rolls(&self, [_, w3, ..]: Flat<T>, ways: [f64; 2]) -> Lain<T> {
         let (one, zero) = (w3.splat(1.0), w3.splat(0.0));
         let half = w3.splat(0.5);
-        let [_, m3] = self.couple([zero, w3], ways);
+        let [m1, m2, m3] = self.couple([zero, w3], ways);
         let m3 = if self.held[1] { zero } else { m3 };
         let d3 = m3 / (one + self.shape.i3);
-        let force = [half, half * d3, zero];
-        Lain { force: [force, force], w: [zero, d3], u: [zero; 2], couple: [zero, m3] }
+        let mut force = [[half, half * d3, zero]; 2];
+        if self.own.is_some() {
+            let ell = self.shape.rim.ell;
+            let (turns, leans) = (half * m1 / ell, half * m2 / ell);
+            force = [[half + leans, half * d3 - turns, zero], [half - leans, half * d3 + turns, zero]];
+        }
+        Lain { force, w: [zero, d3], u: [zero; 2], couple: [zero, m3] }
     }
 }

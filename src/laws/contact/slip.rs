@@ -100,9 +100,22 @@ impl Friction {
     }
 }
 
+/// How the coefficient of friction follows the speed of a slip: `()` is constant, and costs no code.
+pub(crate) trait FollowsSpeed<T>: Copy {
+    /// The coefficient of dry friction at a speed, or that of a film which pulls as much; `constant` if it does not vary.
+    fn strength(&self, constant: T, speed: impl FnOnce() -> T, dry: bool) -> T;
+}
+
+impl<T> FollowsSpeed<T> for () {
+    #[inline(always)]
+    fn strength(&self, constant: T, _: impl FnOnce() -> T, _: bool) -> T {
+        constant
+    }
+}
+
 /// A body on a table with friction.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Slipping<T, G = ()> {
+pub(crate) struct Slipping<T, G = (), L = ()> {
     pub shape: Shape<T>,
     per_i1: T,
     per_i3: T,
@@ -116,6 +129,8 @@ pub(crate) struct Slipping<T, G = ()> {
     pub losses: Option<Couples<T, G>>,
     /// The radius of the patch of contact; None for a point.
     radius: Option<T>,
+    /// How the coefficient varies; `strength` is that at rest.
+    varies: L,
 }
 
 /// The accelerations and the contact force in one state.
@@ -145,11 +160,18 @@ impl<T: Real> Slipping<T> {
         let reach = shape.rim.ell.abs() + shape.rim.rho;
         // Friction changes the slip by about this speed in a quarter of the unit of time.
         let soft = strength * (one + reach * reach * per_i1 + per_i3) * strength.splat(0.25);
-        Self { shape: *shape, per_i1, per_i3, strength, soft, dry, losses: None, radius: None }
+        Self { shape: *shape, per_i1, per_i3, strength, soft, dry, losses: None, radius: None, varies: () }
     }
 }
 
-impl<T: Real, G: OwnCouple<T>> Slipping<T, G> {
+impl<T: Real, G: OwnCouple<T>, L: FollowsSpeed<T>> Slipping<T, G, L> {
+    /// Returns this body with a coefficient of friction that follows the speed.
+    #[must_use]
+    pub fn varying<M>(self, varies: M) -> Slipping<T, G, M> {
+        let Self { shape, per_i1, per_i3, strength, soft, dry, losses, radius, .. } = self;
+        Slipping { shape, per_i1, per_i3, strength, soft, dry, losses, radius, varies }
+    }
+
     /// Returns this body on a patch of this radius.
     #[must_use]
     pub fn with_patch(self, radius: Option<T>) -> Self {
@@ -162,11 +184,16 @@ impl<T: Real, G: OwnCouple<T>> Slipping<T, G> {
         self.radius
     }
 
+    /// How the coefficient of friction varies.
+    pub fn varies(&self) -> &L {
+        &self.varies
+    }
+
     /// Returns this body with losses.
     #[must_use]
-    pub fn with_losses<H>(self, losses: Option<Couples<T, H>>) -> Slipping<T, H> {
-        let Self { shape, per_i1, per_i3, strength, soft, dry, radius, .. } = self;
-        Slipping { shape, per_i1, per_i3, strength, soft, dry, losses, radius }
+    pub fn with_losses<H>(self, losses: Option<Couples<T, H>>) -> Slipping<T, H, L> {
+        let Self { shape, per_i1, per_i3, strength, soft, dry, radius, varies, .. } = self;
+        Slipping { shape, per_i1, per_i3, strength, soft, dry, losses, radius, varies }
     }
 
     /// The response with a couple `push` h/s along the contour that makes psi' change at this rate, with dt/dsigma and
@@ -200,6 +227,7 @@ impl<T: Real, G: OwnCouple<T>> Slipping<T, G> {
         w: [T; 3],
         u: [T; 2],
         (pull, size, sum): ([T; 2], T, T),
+        strength: T,
         twist: Option<T>,
     ) -> (SlipResponse<T>, T) {
         let Shape { rim, i1, i3 } = &self.shape;
@@ -212,7 +240,7 @@ impl<T: Real, G: OwnCouple<T>> Slipping<T, G> {
             inertia = inertia - lever * couple.pressed[1];
         }
         let holds = self.losses.as_ref().map_or(Holds::default(), Couples::holds);
-        let mut left = size * inertia - self.strength * pull[0] * lever * height;
+        let mut left = size * inertia - strength * pull[0] * lever * height;
         let mut room = left - s.splat(JAMMED) * size * inertia;
         if holds.rolling {
             // The centre stays at its height, so that N = 1.
@@ -232,7 +260,7 @@ impl<T: Real, G: OwnCouple<T>> Slipping<T, G> {
             free = w1.splat(1.0);
         }
         let share = free * (per * s * sum);
-        let grip = self.strength * share;
+        let grip = strength * share;
         let (across, along) = (-(grip * pull[0]), -(grip * pull[1]));
         let force = [share * size, along, across];
         let [mut t1, mut t2, mut t3] = newton::torque(&self.shape, angle, turn, w, force);
@@ -328,7 +356,7 @@ impl<T: Real, G: OwnCouple<T>> Slipping<T, G> {
     #[inline(always)]
     pub fn towards(&self, angle: (T, T), w: [T; 3], u: [T; 2], way: [T; 2]) -> SlipResponse<T> {
         let one = self.strength.splat(1.0);
-        self.with(angle, w, u, (way, one, one), None).0
+        self.with(angle, w, u, (way, one, one), self.strength, None).0
     }
 
     /// Velocity of the centre along e_h and e2.
@@ -336,6 +364,17 @@ impl<T: Real, G: OwnCouple<T>> Slipping<T, G> {
     pub fn centre(&self, angle: (T, T), [w1, w2, w3]: [T; 3], [u_h, u_2]: [T; 2]) -> [T; 2] {
         let rim = &self.shape.rim;
         [rim.height(angle).mac(w2, u_h), u_2 - rim.depth(angle) * w1 + rim.radius(angle) * w3]
+    }
+
+    /// The coefficient of friction at this slip.
+    #[inline(always)]
+    pub fn strength_at(&self, u: [T; 2]) -> T {
+        self.varies.strength(
+            self.strength,
+            #[inline(always)]
+            || u[0].mac(u[0], u[1] * u[1]).sqrt(),
+            self.dry,
+        )
     }
 
     /// The response in a state and dt/dsigma there; under dry friction `u` must not be zero.
@@ -347,7 +386,7 @@ impl<T: Real, G: OwnCouple<T>> Slipping<T, G> {
             size = u[0].mac(u[0], u[1] * u[1]).sqrt();
             sum = size + self.soft;
         }
-        self.with(angle, w, u, (u, size, sum), None)
+        self.with(angle, w, u, (u, size, sum), self.strength_at(u), None)
     }
 
     /// The response in a state, dt/dsigma there, and the heat of the couple of the patch in a unit of time.
@@ -361,7 +400,7 @@ impl<T: Real, G: OwnCouple<T>> Slipping<T, G> {
         let [share, twist, size] = rubs(u[0].mac(u[0], u[1] * u[1]).sqrt(), drilling, patch);
         let pull = u.map(|u| u * share * size);
         let twist = self.strength * twist;
-        let (at, pace) = self.with((s, c), w, u, (pull, size, size + self.soft), Some(twist));
+        let (at, pace) = self.with((s, c), w, u, (pull, size, size + self.soft), self.strength, Some(twist));
         (at, pace, -(twist * at.force[0] * drilling))
     }
 
@@ -398,6 +437,13 @@ impl Slipping<f64> {
         Self::of(&body.shape(), friction.strength(), dry).with_patch((patch > 0.0).then_some(patch))
     }
 
+    /// The equations of slipping of a body on a table with this friction and these losses.
+    pub fn on_losing(body: &Body, friction: &Friction, losses: &Losses) -> Self {
+        Self::on(body, friction).with_losses(Couples::some(losses))
+    }
+}
+
+impl<L: FollowsSpeed<f64>> Slipping<f64, (), L> {
     /// One compiled copy of [`Slipping::on_patch`].
     #[inline(never)]
     fn on_a_patch(
@@ -422,11 +468,6 @@ impl Slipping<f64> {
         }
     }
 
-    /// The equations of slipping of a body on a table with this friction and these losses.
-    pub fn on_losing(body: &Body, friction: &Friction, losses: &Losses) -> Self {
-        Self::on(body, friction).with_losses(Couples::some(losses))
-    }
-
     /// The contact force N, F2 and Fh in a state.
     pub fn force(&self, y: &State, u: [f64; 2]) -> Force {
         let [normal, along, across] = self.answers(y.theta.sin_cos(), [y.w1, y.w2, y.w3], u).0.force;
@@ -434,7 +475,7 @@ impl Slipping<f64> {
     }
 }
 
-impl<G: OwnCouple<f64>> Slipping<f64, G> {
+impl<G: OwnCouple<f64>, L: FollowsSpeed<f64>> Slipping<f64, G, L> {
     /// The power of the losses, without that of friction.
     pub fn power(&self, angle: (f64, f64), w: [f64; 3], normal: f64) -> f64 {
         self.losses.map_or(0.0, |losses| {

@@ -262,6 +262,15 @@ impl Couples<f64> {
         Couples { coefficients, present, ways, given }
     }
 
+    /// The laws that act on a body in the air; None if no law does.
+    pub fn in_air(losses: &Losses) -> Option<Self> {
+        let mut left = *losses;
+        for law in Law::ALL.iter().copied().filter(|law| !law.acts_in_air()) {
+            left.coefficients[law as usize] = 0.0;
+        }
+        Self::some(&left)
+    }
+
     /// The couples of these losses; None if nothing is lost.
     pub fn some(losses: &Losses) -> Option<Self> {
         (!losses.is_none()).then(|| Self::of(losses, |x| x))

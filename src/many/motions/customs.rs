@@ -8,7 +8,7 @@ use crate::laws::loss::Losses;
 use crate::many::threads::share_aside;
 use crate::methods::beat::Beat;
 use crate::motions::custom::{check_options, followed};
-use crate::motions::{Ask, Method, Start};
+use crate::motions::{Ask, Method};
 use std::sync::OnceLock;
 
 /// Number of such motions in a block.
@@ -39,8 +39,7 @@ pub(crate) fn roll_custom(
         CustomLaws::Here(custom) => *custom,
         CustomLaws::Anywhere(of) => of(),
     };
-    let any = Start::from(crate::State::from([0.0; 4]));
-    check_options(&job.ask(None, Losses::NONE), &any, &custom)?;
+    check_options(&job.ask(None, Losses::NONE), &custom)?;
     spare()?;
     let mut out = TimedOutput { out, times };
     match laws {

@@ -59,12 +59,12 @@ impl<T: SideBySide> Flows<T, 8, 5> for Slips<T> {
 
     #[inline(always)]
     fn error(&self, tol: T, y: &[T; 8], made: &rk8::Step<T, 8>) -> T {
-        Slide::error(tol, y, made, self.law.dry)
+        <Slide>::error(tol, y, made, self.law.dry)
     }
 
     #[inline(always)]
     fn fastest(&self, y: &[T; 8]) -> T {
-        Slide::fastest(y)
+        <Slide>::fastest(y)
     }
 
     #[inline(always)]

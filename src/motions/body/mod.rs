@@ -16,7 +16,8 @@
 pub(crate) mod face;
 pub(crate) mod fly;
 pub(crate) mod lie;
-mod phases;
+pub(crate) mod own;
+pub(crate) mod phases;
 pub(crate) mod pole;
 pub(crate) mod roll;
 pub(crate) mod slide;
@@ -30,12 +31,14 @@ use super::{Ask, Motion, Start};
 pub use super::{Hit, Kind, Path, Phase, Strike};
 use crate::error::{Error, within};
 use crate::laws::body::Body;
+use crate::laws::contact::Table;
+use crate::laws::contact::slip::{Friction, centre_velocity};
 use crate::methods::SHORT_CODE;
 pub use crate::motions::ask::FINE;
 use crate::motions::ask::{check_flow, check_patch, check_times_after};
 use crate::motions::exact;
 use crate::motions::walk::two_runs::{Followed, judged};
-pub(crate) use phases::BodyWalk;
+pub(crate) use phases::{BodyPhases, BodyWalk};
 
 /// The motion of a body that slips or loses energy, for [`roll_with`](crate::motions::motion::roll_with).
 /// A web page that needs no other motion calls this function directly, so that its program contains no other code. A
@@ -93,8 +96,22 @@ fn walk<'a, const N: usize>(
     Ok(walk)
 }
 
+/// The question and the start of a motion on a smooth table with impacts: the centre is at rest until an impact, and the
+/// body slips without friction.
+pub(super) fn without_friction(body: &Body, ask: &Ask, start: &Start) -> (Ask, Start) {
+    let (mut ask, mut start) = (*ask, *start);
+    if ask.table == Table::Smooth && ask.restitution.is_some() {
+        ask.table = Friction::coulomb(0.0).into();
+        if start.aloft.is_none() {
+            let [v_h, v_2] = centre_velocity(body, &start.state, [0.0; 2]);
+            start.slip = [0.0 - v_h, 0.0 - v_2];
+        }
+    }
+    (ask, start)
+}
+
 /// Returns the tolerance of the steps, or an error for a body, an initial state or options out of range.
-fn check(body: &Body, start: &Start, ask: &Ask) -> Result<f64, Error> {
+pub(super) fn check(body: &Body, start: &Start, ask: &Ask) -> Result<f64, Error> {
     match start.aloft {
         Some([height, _]) if height > 0.0 => exact::check_in_air(body, &start.state)?,
         _ => exact::check(body, &start.state)?,

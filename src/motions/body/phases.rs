@@ -1,14 +1,15 @@
 //! The phases of a body of revolution: their beginnings, their flows and their ends.
 
-use super::check;
 use super::fly::Takeoff;
 use super::lie::flow::LyingPhase;
+use super::own::{Own, Stepped};
 use super::roll::lossy::{LossyFlow, with_patch};
-use super::slide::Slide;
 use super::slide::slow::{BodySlips, Slippery};
+use super::slide::{Slide, Varying};
 use super::spun::{Roundings, knows};
 use super::tail::LastTurns;
 use super::write::{self, state};
+use super::{check, without_friction};
 use crate::error::Error;
 use crate::laws::body::Body;
 use crate::laws::contact::slip::{Friction, centre_velocity, painleve};
@@ -24,32 +25,37 @@ use crate::motions::walk::numbers::{
 };
 use crate::motions::walk::slow::clear_until;
 use crate::motions::walk::two_runs::CHANCE;
-use crate::motions::walk::{Next, Pause, Phases, STILL, SlowSeries, Walk, WalkStep};
+use crate::motions::walk::{MOMENT, Next, Pause, Phases, STILL, SlowSeries, Walk, WalkStep};
 use crate::motions::{Ask, Ending, Kind, Phase, Start};
 use core::f64::consts::{FRAC_PI_2, PI};
 
 /// The walk of a body of revolution.
-pub(crate) type BodyWalk<'a, const N: usize> = Walk<'a, BodyPhases, N>;
+pub(crate) type BodyWalk<'a, const N: usize, G = ()> = Walk<'a, BodyPhases<G>, N>;
 
 /// Sine of theta below which a falling face counts as landed if slipping and sticking alternate without an advance of
 /// time.
 const ALL_BUT_FLAT: f64 = 1e-6;
 /// The first step of a rougher run is this many times as long as that of the finer run, so that
 /// their steps differ.
-pub(super) const LONGER: f64 = 3.0;
+pub(crate) const LONGER: f64 = 3.0;
 /// The first step of a phase, as a share of the last step of the phase of its kind before.
 const LATELY: f64 = 0.5;
 
+/// For this share of the time in which the body turns by a radian, at most of a unit of time, a slip keeps its direction
+/// after static friction has ceased to hold. The error is the cube of this share.
+pub(crate) const KEEPS_ITS_WAY: f64 = 1e-5;
 /// Size of cos theta below which a rougher run perturbs this number and not theta.
 const LEVEL: f64 = 1e-3;
 
 /// The data of a body's walk: its equations, and the current phase.
-pub(crate) struct BodyPhases {
+pub(crate) struct BodyPhases<G: Own = ()> {
     pub body: Body,
-    pub slide: Slide,
+    /// The laws of the user.
+    pub own: G,
+    pub slide: Slide<G::Speeds>,
     /// The state where the current phase begins or has ended, and the initial state.
-    pub(super) state: State,
-    pub(super) start: State,
+    pub state: State,
+    pub start: State,
     /// Whether a phase without a slip is integrated; otherwise the first integrals solve it, as long as no energy is
     /// lost.
     pub(super) integrates: bool,
@@ -68,7 +74,7 @@ pub(crate) struct BodyPhases {
     /// The current phase, if it loses energy without a slip.
     pub(super) lossy: Option<LossyPhase>,
     /// The current phase, if the body lies on both rims.
-    pub(crate) lying: Option<Box<LyingPhase>>,
+    pub(crate) lying: Option<Box<LyingPhase<G>>>,
     /// The beginning of the next flight, or the height and the vertical velocity of a body in the air.
     pub(super) takeoff: Takeoff,
     /// The energy that the impacts before the last one have taken, and the sum of energy, heat and all that was lost
@@ -96,55 +102,38 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
     /// one.
     pub fn of_body(body: &Body, ask: &Ask, tol: f64, times: &'a [f64], start: &Start) -> Result<Self, Error> {
         let fine = check(body, start, ask)?;
-        let &Start { state: start, mut slip, time, aloft } = start;
-        let mut ask = *ask;
-        if ask.table == Table::Smooth && ask.restitution.is_some() {
-            // On a smooth table the centre is at rest until an impact; then the body slips without friction.
-            ask.table = Friction::coulomb(0.0).into();
-            if aloft.is_none() {
-                let [v_h, v_2] = centre_velocity(body, &start, [0.0; 2]);
-                slip = [0.0 - v_h, 0.0 - v_2];
-            }
-        }
-        let ask = &ask;
-        let (s, c) = start.theta.sin_cos();
-        let mut at = [0.0; N];
-        at[..7].copy_from_slice(&[s, c, start.w1, start.w2, start.w3, slip[0], slip[1]]);
-        let rolling_losses = with_patch(&ask.losses, &ask.table.friction());
-        let of = BodyPhases {
-            body: *body,
-            slide: Slide::new(body, &ask.table.friction(), &ask.losses, tol),
-            state: start,
-            start,
-            integrates: ask.table == Table::Smooth || !rolling_losses.is_none(),
-            rolls_briefly: false,
-            by_steps: false,
-            uniform: !poses(N) && knows(body, ask),
-            roundings: Roundings::default(),
-            #[cfg(feature = "many")]
-            rolls_among: false,
-            rolling_losses,
-            lossy: None,
-            lying: None,
-            takeoff: Takeoff::default(),
-            struck: 0.0,
-            energy: None,
-            shown: 0.0,
-            planar: start.w1 == 0.0 && start.w3 == 0.0 && slip[1] == 0.0,
-            lately: [0.0; 2],
-            tail: (!body.is_ball() && ask.losses.turn_endlessly()).then(LastTurns::default),
-        };
+        let (ask, start) = without_friction(body, ask, start);
+        Self::of_laws(body, &ask, (tol, fine), times, &start, ())
+    }
+}
+
+impl<'a, G: Stepped, const N: usize> BodyWalk<'a, N, G> {
+    /// A walk under these laws, with steps of the tolerance `tol`, where `fine` is the requested one.
+    pub fn of_laws(
+        body: &Body,
+        ask: &Ask,
+        (tol, fine): (f64, f64),
+        times: &'a [f64],
+        start: &Start,
+        own: G,
+    ) -> Result<Self, Error> {
+        let &Start { time, aloft, .. } = start;
+        let at = numbers_at(start);
+        let mut of = BodyPhases::of(body, ask, tol, start, own);
+        of.uniform = !G::IS && !poses(N) && knows(body, ask);
         let mut walk = Self::new(of, at, ask, fine, (time, times))?;
         walk.next = Some(match aloft {
             Some(aloft) => walk.starts_in_air(aloft),
             None => walk.first_phase()?,
         });
-        if start.theta < body.theta_end() {
-            BodyPhases::perturbs(&mut walk);
+        if start.state.theta < body.theta_end() {
+            Phases::perturbs(&mut walk);
         }
         Ok(walk)
     }
+}
 
+impl<G: Stepped, const N: usize> BodyWalk<'_, N, G> {
     /// The flow of the current phase, if the body loses energy without a slip.
     pub fn lossy(&self) -> Option<&LossyFlow> {
         self.of.lossy.as_ref().map(|phase| &phase.flow)
@@ -178,20 +167,23 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
         self.of.state = state(&self.at);
     }
 
-    /// Whether the contact point slips.
-    fn slips_here(&self) -> bool {
-        let (slip, slide) = (self.at.slip(), &self.of.slide);
-        self.ask.table.rubs() && (slip != [0.0; 2] || !slide.law.dry || slide.creeps(&self.at))
-    }
-
-    /// The force of the table on a body in the state `y`, with the current slip.
-    pub(crate) fn force_here(&self, y: &State) -> Force {
+    /// The force of the table on one rim in the state `y`, with the current slip.
+    pub(crate) fn force_on_rim(&self, y: &State) -> Force
+    where
+        BodyPhases<G>: Phases<N>,
+    {
         let (body, losses) = (&self.of.body, &self.ask.losses);
         match self.slips_here() {
             true => self.of.slide.law.force(y, self.at.slip()),
             false if losses.is_none() => force(self.contact(), body, y),
             false => lossy::force(self.contact(), body, y, losses),
         }
+    }
+
+    /// Whether the contact point slips.
+    pub(super) fn slips_here(&self) -> bool {
+        let (slip, slide) = (self.at.slip(), &self.of.slide);
+        self.ask.table.rubs() && (slip != [0.0; 2] || !slide.law.dry || slide.creeps(&self.at))
     }
 
     /// Makes motions vanish exactly that have stopped, or that dry friction has held at zero but for the errors of the
@@ -237,9 +229,51 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
     }
 }
 
-impl BodyPhases {
+/// The first numbers of a motion from this start.
+pub(crate) fn numbers_at<const N: usize>(start: &Start) -> [f64; N] {
+    let (State { theta, w1, w2, w3 }, [along, across]) = (start.state, start.slip);
+    let ((s, c), mut at) = (theta.sin_cos(), [0.0; N]);
+    at[..TIME].copy_from_slice(&[s, c, w1, w2, w3, along, across]);
+    at
+}
+
+impl<G: Own> BodyPhases<G> {
+    /// The data of a walk under these laws, with steps of the tolerance `tol`.
+    pub(crate) fn of(body: &Body, ask: &Ask, tol: f64, start: &Start, own: G) -> Self {
+        let &Start { state, slip, .. } = start;
+        let rolling_losses = with_patch(&ask.losses, &ask.table.friction());
+        let slide = Slide::new(body, &ask.table.friction(), &ask.losses, tol, own.speeds());
+        Self {
+            body: *body,
+            own,
+            slide,
+            state,
+            start: state,
+            integrates: ask.table == Table::Smooth || !rolling_losses.is_none(),
+            rolls_briefly: false,
+            by_steps: false,
+            uniform: false,
+            roundings: Roundings::default(),
+            #[cfg(feature = "many")]
+            rolls_among: false,
+            rolling_losses,
+            lossy: None,
+            lying: None,
+            takeoff: Takeoff::default(),
+            struck: 0.0,
+            energy: None,
+            shown: 0.0,
+            planar: state.w1 == 0.0 && state.w3 == 0.0 && slip[1] == 0.0 && !own.has_couple(),
+            lately: [0.0; 2],
+            tail: (!G::IS && !body.is_ball() && ask.losses.turn_endlessly()).then(LastTurns::default),
+        }
+    }
+
     /// Perturbs the state by this share.
-    pub(super) fn perturbs_by<const N: usize>(walk: &mut BodyWalk<'_, N>, share: f64) {
+    pub(crate) fn perturbs_by<const N: usize>(walk: &mut BodyWalk<'_, N, G>, share: f64)
+    where
+        Self: Phases<N>,
+    {
         if share == 0.0 || walk.of.lying.is_some() {
             return;
         }
@@ -257,9 +291,24 @@ impl BodyPhases {
         walk.of.state = State { theta, w1, w2: w2 * down, w3 };
         walk.at[..5].copy_from_slice(&[s, c, w1, w2 * down, w3]);
     }
+
+    /// The share by which a rougher run perturbs the state at the end of a phase. A motion that has hopped is also
+    /// perturbed by a share of the step errors since the last time: impacts multiply them, and where both runs take the
+    /// same steps only this shows by how much.
+    pub(crate) fn share_of_errors<const N: usize>(walk: &mut BodyWalk<'_, N, G>) -> f64
+    where
+        Self: Phases<N, State = State>,
+    {
+        let mut share = walk.perturbation;
+        if share > 0.0 && !walk.made.path.impacts.is_empty() {
+            let erred = walk.spent.erred - core::mem::replace(&mut walk.of.shown, walk.spent.erred);
+            share += CHANCE * erred * walk.of.slide.tol * walk.sign_of_rounding();
+        }
+        share
+    }
 }
 
-impl<const N: usize> Phases<N> for BodyPhases {
+impl<G: Stepped, const N: usize> Phases<N> for BodyPhases<G> {
     type State = State;
     type Slow = BodySlips;
     const SLIP: usize = 5;
@@ -274,22 +323,16 @@ impl<const N: usize> Phases<N> for BodyPhases {
     fn over(&self) -> f64 {
         self.slide.over()
     }
-    fn seen(walk: &BodyWalk<'_, N>, kind: Kind) -> Phase {
+    fn seen(walk: &BodyWalk<'_, N, G>, kind: Kind) -> Phase {
         walk.told(kind)
     }
 
-    /// A motion that has hopped is also perturbed by a share of the step errors since the last time: impacts multiply
-    /// them, and where both runs take the same steps only this shows by how much.
-    fn perturbs(walk: &mut BodyWalk<'_, N>) {
-        let mut share = walk.perturbation;
-        if share > 0.0 && !walk.made.path.impacts.is_empty() {
-            let erred = walk.spent.erred - core::mem::replace(&mut walk.of.shown, walk.spent.erred);
-            share += CHANCE * erred * walk.of.slide.tol * walk.sign_of_rounding();
-        }
+    fn perturbs(walk: &mut BodyWalk<'_, N, G>) {
+        let share = Self::share_of_errors(walk);
         BodyPhases::perturbs_by(walk, share);
     }
 
-    fn write(walk: &mut BodyWalk<'_, N>, y: &[f64; N]) {
+    fn write(walk: &mut BodyWalk<'_, N, G>, y: &[f64; N]) {
         if let Some(phase) = &walk.of.lying {
             let flow = phase.flow;
             return walk.writes_lying(&flow, y);
@@ -297,50 +340,53 @@ impl<const N: usize> Phases<N> for BodyPhases {
         walk.made.slid(&walk.ask, &walk.of.slide, y);
     }
 
-    fn write_here(walk: &mut BodyWalk<'_, N>) {
+    fn write_here(walk: &mut BodyWalk<'_, N, G>) {
         let (y, slip, at) = (&walk.of.state, walk.at.slip(), &walk.at);
         let kind = if walk.slips_here() { Kind::Slipping } else { walk.kind() };
-        let force = walk.ask.force.then(|| doubted(y, [0.0; 2], |y| walk.force_here(y)));
+        let force = walk.ask.force.then(|| doubted(y, [0.0; 2], |y| walk.force_on_rim(y)));
         let pose = poses(N).then(|| write::pose(at));
         let row = OutputRow::on_table(*y, slip, [at[HEAT], lost(at)], kind);
         walk.made.push(OutputRow { pose, force, ..row });
     }
 
-    fn ends_slip(walk: &mut BodyWalk<'_, N>) -> Option<Halt> {
+    fn ends_slip(walk: &mut BodyWalk<'_, N, G>) -> Option<Halt> {
         if walk.is_level() {
             return Some(Halt::Side);
         }
         walk.of.slide.at_start(&walk.of.state, walk.at.slip())
     }
 
-    fn lies(walk: &mut BodyWalk<'_, N>, found: Standstill) -> Option<Ending> {
+    fn lies(walk: &mut BodyWalk<'_, N, G>, found: Standstill) -> Option<Ending> {
         let (end, theta) = (walk.of.body.theta_end(), walk.of.state.theta);
         let lies = end < PI && (theta > end || theta == end && (walk.is_level() || !walk.rises(found)));
         lies.then_some(Ending::Side)
     }
 
     /// A phase without a slip checks its own margins when it begins.
-    fn begins_without_slip(_: &mut BodyWalk<'_, N>) -> Next {
+    fn begins_without_slip(_: &mut BodyWalk<'_, N, G>) -> Next {
         Next::Rolls { at_limit: false }
     }
 
-    fn rests(walk: &BodyWalk<'_, N>) -> Standstill {
+    fn rests(walk: &BodyWalk<'_, N, G>) -> Standstill {
         let (of, losses) = (&walk.of, &walk.ask.losses);
         standstill(&of.body, &of.state, &walk.friction(), losses)
     }
-    fn lets_go(walk: &BodyWalk<'_, N>) -> Standstill {
+    fn lets_go(walk: &BodyWalk<'_, N, G>) -> Standstill {
         let_go(&walk.of.body, &walk.of.state, &walk.friction(), &walk.ask.losses)
     }
 
-    fn no_unique_force(walk: &BodyWalk<'_, N>) -> Error {
+    fn no_unique_force(walk: &BodyWalk<'_, N, G>) -> Error {
         let (mu, theta) = (walk.friction().strength(), walk.of.state.theta);
         Error::Painleve { mu, theta, limit: painleve(&walk.of.body, theta) }
     }
 
-    fn audits(walk: &mut BodyWalk<'_, N>) {
+    fn normal_here(walk: &BodyWalk<'_, N, G>) -> f64 {
+        walk.force_on_rim(&walk.of.state).normal
+    }
+    fn audits(walk: &mut BodyWalk<'_, N, G>) {
         walk.compares_energy();
     }
-    fn is_over(walk: &mut BodyWalk<'_, N>, next: &Next) -> bool {
+    fn is_over(walk: &mut BodyWalk<'_, N, G>, next: &Next) -> bool {
         let fall = walk.at[COS] * walk.at[W2];
         if loses(N) && walk.still > STILL && walk.at[SIN] < ALL_BUT_FLAT && fall > 0.0 {
             // Whether the face slips or sticks no longer matters, since it is almost on the table.
@@ -358,11 +404,11 @@ impl<const N: usize> Phases<N> for BodyPhases {
         false
     }
 
-    fn goes_on(walk: &mut BodyWalk<'_, N>, ending: Ending) -> Next {
+    fn goes_on(walk: &mut BodyWalk<'_, N, G>, ending: Ending) -> Next {
         walk.continues_after(ending)
     }
     fn goes(
-        walk: &mut BodyWalk<'_, N>,
+        walk: &mut BodyWalk<'_, N, G>,
         kind: Kind,
         _: &mut dyn FnMut() -> bool,
     ) -> Result<Option<WalkStep<N>>, Error> {
@@ -372,11 +418,11 @@ impl<const N: usize> Phases<N> for BodyPhases {
         walk.flies();
         Ok(None)
     }
-    fn slip_kind(walk: &BodyWalk<'_, N>) -> Kind {
+    fn slip_kind(walk: &BodyWalk<'_, N, G>) -> Kind {
         walk.kind_of_slip()
     }
 
-    fn slips_known(walk: &mut BodyWalk<'_, N>) -> bool {
+    fn slips_known(walk: &mut BodyWalk<'_, N, G>) -> bool {
         let left = walk.of.slide.has_died(&walk.at);
         walk.of.slide.died = left.is_some();
         if let Some(left) = left {
@@ -390,48 +436,48 @@ impl<const N: usize> Phases<N> for BodyPhases {
         }
         true
     }
-    fn slips(walk: &mut BodyWalk<'_, N>) -> [f64; N] {
+    fn slips(walk: &mut BodyWalk<'_, N, G>) -> [f64; N] {
         walk.of.slide.sets_ways(&walk.of.state, walk.at.slip(), [0.0; 2], None);
         Self::slips_on(walk)
     }
-    fn slips_on(walk: &mut BodyWalk<'_, N>) -> [f64; N] {
+    fn slips_on(walk: &mut BodyWalk<'_, N, G>) -> [f64; N] {
         if walk.of.slide.begins_to_roll().is_some() {
             return walk.begins_at_once([0.0; 2], 0.0);
         }
         walk.of.slide.enter(&walk.at)
     }
 
-    fn rubbing(walk: &BodyWalk<'_, N>) -> f64 {
+    fn rubbing(walk: &BodyWalk<'_, N, G>) -> f64 {
         walk.of.slide.rubs(&walk.at)
     }
-    fn begins_slowly(walk: &BodyWalk<'_, N>) -> bool {
-        walk.of.slide.law.patch().is_none() && walk.of.slide.begins_to_roll().is_none()
+    fn begins_slowly(walk: &BodyWalk<'_, N, G>) -> bool {
+        !G::Speeds::VARIES && walk.of.slide.law.patch().is_none() && walk.of.slide.begins_to_roll().is_none()
     }
 
-    fn has_series(walk: &BodyWalk<'_, N>) -> bool {
+    fn has_series(walk: &BodyWalk<'_, N, G>) -> bool {
         let (of, slide) = (&walk.of, &walk.of.slide);
         let alone = of.lossy.is_none() && of.lying.is_none();
         alone && slide.law.dry && !slide.settled && Self::begins_slowly(walk)
     }
 
-    fn lets_slip(walk: &mut BodyWalk<'_, N>, way: [f64; 2]) {
+    fn lets_slip(walk: &mut BodyWalk<'_, N, G>, way: [f64; 2]) {
         if walk.of.lying.is_none() {
             walk.of.slide.sets_ways(&walk.of.state, [0.0; 2], way, None);
         }
     }
-    fn slow(walk: &BodyWalk<'_, N>) -> BodySlips {
+    fn slow(walk: &BodyWalk<'_, N, G>) -> BodySlips {
         let tol = walk.of.slide.tol;
         match &walk.of.lying {
             Some(phase) => BodySlips::of(&Slippery::Two(phase.flow.law, phase.flow.ways), tol, N),
-            None => BodySlips::of(&Slippery::One(walk.of.slide.law), tol, N),
+            None => BodySlips::of(&Slippery::One(walk.of.slide.law.varying(())), tol, N),
         }
     }
 
-    fn is_slow(walk: &BodyWalk<'_, N>, known: &BodySlips) -> bool {
-        walk.of.lying.is_none() && known.are_under(&walk.of.slide.law)
+    fn is_slow(walk: &BodyWalk<'_, N, G>, known: &BodySlips) -> bool {
+        walk.of.lying.is_none() && known.are_under(&walk.of.slide.law.varying(()))
     }
 
-    fn clear_until(walk: &BodyWalk<'_, N>, series: &SlowSeries<N>) -> f64 {
+    fn clear_until(walk: &BodyWalk<'_, N, G>, series: &SlowSeries<N>) -> f64 {
         if let Some(phase) = &walk.of.lying {
             return clear_until(series.until, |_, moment| {
                 let place = FlowPlace { y: series.at(moment), carry: [0.0; N], rate: [0.0; N] };
@@ -452,17 +498,30 @@ impl<const N: usize> Phases<N> for BodyPhases {
         })
     }
 
-    fn nudged(walk: &mut BodyWalk<'_, N>, way: [f64; 2], growth: f64) -> [f64; N] {
+    fn nudged(walk: &mut BodyWalk<'_, N, G>, way: [f64; 2], growth: f64) -> [f64; N] {
         if let Some(phase) = &walk.of.lying {
             return phase.flow.nudged(&walk.at, way, growth);
         }
-        let y = walk.of.slide.nudged(&walk.at, way, growth);
+        let slide = walk.of.slide;
+        let begins = walk.at.slip() == [0.0; 2] && way != [0.0; 2] && slide.begins_to_roll().is_none();
+        if G::Speeds::VARIES && begins {
+            // A slip that begins continuously grows from zero, and keeps its direction for a moment.
+            let share = if growth == 0.0 { KEEPS_ITS_WAY } else { MOMENT };
+            let lasts = share * slide.moment(&walk.at);
+            let from = walk.at[TIME];
+            while let Some(t) = walk.until().filter(|t| *t <= from + lasts) {
+                let y = slide.slipped(&walk.at, way, t - from);
+                Self::write(walk, &y);
+            }
+            return slide.slipped(&walk.at, way, lasts);
+        }
+        let y = slide.nudged(&walk.at, way, growth);
         walk.of.slide.rolls_freely();
         y
     }
 
     fn rolls(
-        walk: &mut BodyWalk<'_, N>,
+        walk: &mut BodyWalk<'_, N, G>,
         at_limit: bool,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Option<WalkStep<N>>, Error> {
@@ -473,7 +532,7 @@ impl<const N: usize> Phases<N> for BodyPhases {
     /// does so with much the same steps.
     /// The first step of a rougher run is longer. Two runs with the same steps would have the same errors, and their
     /// difference would not show the growth of these errors from an unstable initial state.
-    fn first(walk: &BodyWalk<'_, N>, y: &[f64; N]) -> f64 {
+    fn first(walk: &BodyWalk<'_, N, G>, y: &[f64; N]) -> f64 {
         let first = match (&walk.of.lying, walk.lossy()) {
             (Some(phase), _) => phase.flow.first(y),
             (_, Some(flow)) => flow.first(y).max((LATELY * walk.of.lately[1]).min(flow.calm(y))),
@@ -487,7 +546,7 @@ impl<const N: usize> Phases<N> for BodyPhases {
     }
 
     fn flows(
-        walk: &mut BodyWalk<'_, N>,
+        walk: &mut BodyWalk<'_, N, G>,
         y: [f64; N],
         steps: Steps,
         go_on: &mut dyn FnMut() -> bool,
@@ -501,7 +560,7 @@ impl<const N: usize> Phases<N> for BodyPhases {
         }
     }
 
-    fn slip_halts(walk: &mut BodyWalk<'_, N>, y: [f64; N], halt: Halt) {
+    fn slip_halts(walk: &mut BodyWalk<'_, N, G>, y: [f64; N], halt: Halt) {
         if walk.of.lying.is_some() {
             walk.stops_lying(y, halt);
             return;
@@ -509,7 +568,7 @@ impl<const N: usize> Phases<N> for BodyPhases {
         walk.slip_ends(y, halt);
     }
 
-    fn leaves_margin(walk: &BodyWalk<'_, N>, halt: Halt) -> bool {
+    fn leaves_margin(walk: &BodyWalk<'_, N, G>, halt: Halt) -> bool {
         halt == Halt::Side
             && walk.of.body.theta_end() == FRAC_PI_2
             && walk.made.path.phases.last().is_some_and(|phase| phase.state.theta == FRAC_PI_2)
@@ -519,7 +578,7 @@ impl<const N: usize> Phases<N> for BodyPhases {
     fn grows(&self, halt: Halt, y: &[f64; N]) -> Option<f64> {
         match halt {
             Halt::Side | Halt::Rests | Halt::Rises | Halt::Changes | Halt::Turned => Some(1.0),
-            Halt::LiftOff | Halt::Slips | Halt::Jam => Some(Slide::fastest(y)),
+            Halt::LiftOff | Halt::Slips | Halt::Jam => Some(<Slide>::fastest(y)),
             _ => None,
         }
     }

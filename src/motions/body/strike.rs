@@ -10,17 +10,18 @@
 //! order, about TAIL, and part of the estimated error. The friction of all bounces is lost in impacts.
 
 use super::fly::{Aloft, Takeoff};
-use super::phases::{BodyWalk, LONGER};
+use super::own::Own;
+use super::phases::{BodyPhases, BodyWalk, LONGER};
 use crate::laws::body::Shape;
 use crate::laws::contact::impact::{Hit, RimImpact, Struck, lightness, turned};
 use crate::laws::contact::landing::{Landed, Outcome, REVERSES, bounced, land_at, settled};
 use crate::laws::contact::slip::Friction;
-use crate::laws::contact::{FLAT, Force, Table};
+use crate::laws::contact::{FLAT, Table};
 use crate::laws::loss::{Couples, Kinematics};
 use crate::laws::newton;
 use crate::laws::state::State;
-use crate::motions::walk::Next;
 use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, SIN, TIME, W1, W2, W3};
+use crate::motions::walk::{Next, Phases};
 use crate::motions::{Ending, Kind, Limit, Method, Moving, Strike};
 use core::f64::consts::FRAC_PI_2;
 
@@ -38,6 +39,8 @@ const LOSSY_TAIL: f64 = 1e-8;
 /// The tolerance of a step along an impact: this share of that of a motion, within these two limits.
 const IMPACT_SHARE: f64 = 1e-4;
 const IMPACT_TOL: [f64; 2] = [3e-14, 1e-12];
+/// The same tolerance under a coefficient that depends on the speed, in units of the tolerance of the motion.
+const OWN_IMPACT_TOL: f64 = 1e-3;
 /// Both rims rattle until |cos theta| and the normal velocities of both are below this.
 pub(super) const RATTLED: f64 = 1e-7;
 /// Error of the rest of a rattle, in units of the square of its velocities.
@@ -72,7 +75,10 @@ fn gained(shape: &Shape<f64>, [old, new]: [&Aloft; 2]) -> [f64; 3] {
     core::array::from_fn(|i| new[i] - old[i])
 }
 
-impl<const N: usize> BodyWalk<'_, N> {
+impl<G: Own, const N: usize> BodyWalk<'_, N, G>
+where
+    BodyPhases<G>: Phases<N, State = State>,
+{
     /// The phase after the impact that stops a slip which presses the rim into the table. None where the rim could
     /// leave the table as well.
     pub(super) fn jams(&mut self, e: f64) -> Option<Next> {
@@ -162,7 +168,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             // Rounding must not make the slip turn.
             (light[1], light[2], light[3]) = (light[0], 1.0, 0.0);
         }
-        self.rim_impact(from.slip, from.lift, light).on(&self.ask.table, e)
+        self.rim_impact(from.slip, from.lift, light).on(&self.ask.table, e, &self.of.own)
     }
 
     /// The impact of a rim. A rougher run begins it with a longer step, so that the two runs take different steps.
@@ -172,7 +178,10 @@ impl<const N: usize> BodyWalk<'_, N> {
         } else {
             (1.0, 1.0)
         };
-        let tol = (IMPACT_SHARE * self.of.slide.tol / rougher).clamp(IMPACT_TOL[0], IMPACT_TOL[1]);
+        let fine = self.of.slide.tol / rougher;
+        let tol = (IMPACT_SHARE * fine).clamp(IMPACT_TOL[0], IMPACT_TOL[1]);
+        // A law of the user need not be smooth.
+        let tol = if self.of.own.varies() { OWN_IMPACT_TOL * fine } else { tol };
         RimImpact { slip, lift, light, tol: tol * rougher, longer }
     }
 
@@ -180,12 +189,27 @@ impl<const N: usize> BodyWalk<'_, N> {
     /// does not depend on that force.
     fn couples(&self, at: &Aloft, force: f64) -> f64 {
         let (body, sum) = (&self.of.body, self.ask.losses.coefficients.iter().sum::<f64>());
+        if self.of.own.has_couple() {
+            let own = self.of.own.couple(&at.state(), force);
+            let losses = Couples::of(&self.ask.losses, |x| x);
+            return own
+                .into_iter()
+                .fold(self.most_couple(at, losses, sum * force), |most: f64, m| most.max(m.abs()))
+                / body.i1().min(body.i3());
+        }
         let Some(losses) = Couples::some(&self.ask.losses) else { return 0.0 };
+        self.most_couple(at, losses, sum * force) / body.i1().min(body.i3())
+    }
+
+    fn most_couple(&self, at: &Aloft, losses: Couples<f64>, pressed: f64) -> f64 {
         let fastest = at.w.into_iter().fold(1.0, |most: f64, w| most.max(w.abs()));
         let seen = Kinematics::of(&self.of.slide.law.shape.rim, at.angle, at.w[0] / at.angle.0, at.w);
-        let most =
-            losses.at(&seen).free.into_iter().fold(sum * fastest * force, |most: f64, m| most.max(m.abs()));
-        most / body.i1().min(body.i3())
+        losses.at(&seen).free.into_iter().fold(pressed * fastest, |most: f64, m| most.max(m.abs()))
+    }
+
+    /// Whether a loss or a couple of the user takes energy.
+    pub(super) fn loses_energy(&self) -> bool {
+        !self.ask.losses.is_none() || self.of.own.has_couple()
     }
 
     /// The time of all bounces after an impact, if they are over so soon that they are summed.
@@ -198,7 +222,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             Method::Tolerance(tol) => (TAIL_SHARE * tol).clamp(TAIL, LONGEST_TAIL),
             _ => TAIL,
         };
-        let tail = if self.ask.losses.is_none() { tail } else { LOSSY_TAIL * tail };
+        let tail = if self.loses_energy() { LOSSY_TAIL * tail } else { tail };
         if 2.0 * struck.lift * struck.lift >= tail * fall {
             return None;
         }
@@ -207,10 +231,14 @@ impl<const N: usize> BodyWalk<'_, N> {
         let [u_h, u_2] = struck.slip.map(|u| u / struck.lift);
         if struck.hit == Hit::Sticks || u_h.hypot(u_2) < REVERSES {
             // Each bounce has the slip that the previous flight has caused.
-            let [along, across] = law.towards(from.angle, w, [0.0; 2], [0.0; 2]).u;
+            let [along, across] =
+                self.of.own.slides(&self.of.slide, from.angle, w, [0.0; 2], Some([0.0; 2])).0.u;
             let [along, across] = [along - b * force, across].map(|rate| 2.0 * rate / fall);
             let slip = [u_h + along, u_2 + across];
-            ratio = self.rim_impact(slip, -1.0, light).on(&self.ask.table, e).map_or(1.0, |next| next.lift);
+            // In units of the bounce, unless a law of the user has a speed of its own.
+            let unit = if self.of.own.varies() { struck.lift } else { 1.0 };
+            let next = self.rim_impact(slip.map(|u| u * unit), -unit, light);
+            ratio = next.on(&self.ask.table, e, &self.of.own).map_or(1.0, |next| next.lift / unit);
         }
         let left = 2.0 * struck.lift / (fall * (1.0 - ratio));
         (ratio < 1.0 && left * struck.lift < tail).then_some(left)
@@ -223,7 +251,9 @@ impl<const N: usize> BodyWalk<'_, N> {
         let speed = after.slip[0].hypot(after.slip[1]);
         let mut share = SUM_ERROR * left * bounce;
         if speed > 0.0 {
-            let Force { along, across, .. } = self.of.slide.law.force(&after.state(), after.slip);
+            let State { theta, w1, w2, w3 } = after.state();
+            let (angle, slide) = (theta.sin_cos(), &self.of.slide);
+            let [_, along, across] = self.of.own.slides(slide, angle, [w1, w2, w3], after.slip, None).0.force;
             let heat = -(left * (across * after.slip[0] + along * after.slip[1]));
             if let Some(last) = self.made.path.impacts.last_mut() {
                 last.lost += heat;
@@ -324,7 +354,8 @@ impl<const N: usize> BodyWalk<'_, N> {
             Table::Smooth => (Friction::coulomb(0.0), false),
         };
         let (y, slip, lift, lost) =
-            bounced(&self.of.body, &before, (at.slip, at.lift), &friction, e).map_err(|_| Ending::Landing)?;
+            bounced(&self.of.body, &before, (at.slip, at.lift), &friction, &self.of.own, e)
+                .map_err(|_| Ending::Landing)?;
         let mut after = Aloft { w: [y.w1, y.w2, y.w3], slip, lift, ..at };
         if rolls {
             let slips = [slip, after.on_other_rim(&shape).slip].into_iter().flatten();
@@ -366,7 +397,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         let (v, still) = (law.centre(from.angle, from.w, from.slip), law.centre(flat, from.w, [0.0; 2]));
         // Where the rims slip, the centre keeps its velocity while the axis comes to lie level.
         let slip = if from.slip == [0.0; 2] { from.slip } else { [v[0] - still[0], v[1] - still[1]] };
-        let (y, slip) = settled(&self.of.body, &state, (slip, from.lift), &friction);
+        let (y, slip) = settled(&self.of.body, &state, (slip, from.lift), &friction, &self.of.own);
         let lift = from.lift + law.shape.rim.lever(from.angle) * from.w[1];
         let before = newton::energy(&law.shape, from.angle, from.w, [v[0], v[1], lift]) + from.height;
         self.at[HEAT] += before - law.energy(&y, slip);
@@ -387,7 +418,8 @@ impl<const N: usize> BodyWalk<'_, N> {
         }
         let before = State { theta: FRAC_PI_2, ..self.of.state };
         let lift = self.of.takeoff.lift;
-        let Ok(landed) = land_at(&self.of.body, &before, (self.at.slip(), lift), &friction) else {
+        let Ok(landed) = land_at(&self.of.body, &before, (self.at.slip(), lift), &friction, &self.of.own)
+        else {
             return Next::Ends(Ending::Landing);
         };
         let (shape, other) = (self.of.slide.law.shape, !self.made.path.upside_down);

@@ -7,7 +7,8 @@
 //! [`spun`](super::spun) has the equations. No rougher run has to show these errors, which do not grow otherwise.
 
 use super::fly::Aloft;
-use super::phases::BodyWalk;
+use super::own::{Own, Stepped};
+use super::phases::{BodyPhases, BodyWalk};
 use super::roll::lossy::LossyFlow;
 use super::slide::{Slide, is_still};
 use super::spun::{OF_A_PHASE, Spun};
@@ -17,15 +18,18 @@ use crate::laws::loss::{Holds, Law};
 use crate::laws::state::{State, drilling_of, rolling_of};
 use crate::motions::ask::row::OutputRow;
 use crate::motions::dry::creep::Creeping;
-use crate::motions::walk::Next;
 use crate::motions::walk::errors::doubted;
 use crate::motions::walk::numbers::{
     BodyNumbers, COS, HEAT, Halt, SIN, TIME, U2, UH, W1, W3, loses, lost, poses,
 };
 use crate::motions::walk::two_runs::Followed;
+use crate::motions::walk::{Next, Phases};
 use crate::motions::{Ending, Kind, Limit};
 
-impl<const N: usize> BodyWalk<'_, N> {
+impl<G: Own, const N: usize> BodyWalk<'_, N, G>
+where
+    BodyPhases<G>: Phases<N, State = State>,
+{
     /// The ball after a time of a phase, with its error among the claims.
     fn spun(&mut self, spun: &mut Spun, t: f64) -> (Aloft, f64) {
         let (mut at, angle) = spun.at(t);
@@ -51,6 +55,43 @@ impl<const N: usize> BodyWalk<'_, N> {
         self.claims(late);
     }
 
+    /// The impact of a ball whose contact point does not slip: friction has nothing to stop.
+    pub(super) fn rebounds(&self, lift: f64, e: f64) -> Struck {
+        let hit = match self.ask.table {
+            Table::Rolling { .. } => Hit::Sticks,
+            Table::Rubs(friction) if friction.strength() > 0.0 || friction.sticks() => Hit::Sticks,
+            _ => Hit::Smooth,
+        };
+        let impulse = [0.0, 0.0, -((1.0 + e) * lift)];
+        let lost = 0.5 * (1.0 - e) * (1.0 + e) * lift * lift;
+        Struck { impulse, slip: [0.0; 2], lift: 0.0 - e * lift, hit, lost }
+    }
+
+    /// Flies to its landing, or to the last time.
+    pub(super) fn flies_uniformly(&mut self) {
+        let (from, now) = (self.aloft(), self.at[TIME]);
+        let (mut spun, up) = (Spun::new(&from, [0.0; 3], 0.0), from.lift);
+        let fall = (up * up + 2.0 * from.height).sqrt();
+        let end = if up < 0.0 { 2.0 * from.height / (fall - up) } else { up + fall };
+        while let Some(t) = self.until().map(|t| t - now).filter(|t| *t <= end) {
+            let at = self.spun(&mut spun, t).0;
+            // A product that vanishes exactly at the landing.
+            let height = if t == 0.0 { from.height } else { 0.5 * (end - t) * (t + (fall - up)) };
+            self.writes_with(&Aloft { height, lift: up - t, ..at }, Kind::Flying, 0.0);
+        }
+        if self.since.last().is_none_or(|last| end > last - now) {
+            return;
+        }
+        let (at, angle) = self.spun(&mut spun, end);
+        self.rounds(end, angle, 0.0);
+        self.at[TIME] = now + end;
+        self.sets(&Aloft { height: 0.0, lift: -fall, ..at });
+        let next = self.strikes();
+        self.continues_with(next);
+    }
+}
+
+impl<G: Stepped, const N: usize> BodyWalk<'_, N, G> {
     fn numbers(&self, at: &Aloft, time: f64, [heat, lost]: [f64; 2]) -> [f64; N] {
         let ((s, c), [w1, w2, w3], [u, v]) = (at.angle, at.w, at.slip);
         let mut y = self.at;
@@ -174,7 +215,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             let ([w1, w2, w3], angle) = (from.w, from.angle);
             let (rolling, drilling) = (rolling_of(angle, w1, w3), drilling_of(angle, w1, w3));
             // What has stopped moves on by roundings.
-            let rests = 4.0 * f64::EPSILON * Slide::fastest(&self.at);
+            let rests = 4.0 * f64::EPSILON * <Slide>::fastest(&self.at);
             let speeds = [rolling.hypot(w2), drilling.abs()].map(|x| if x <= rests { 0.0 } else { x });
             if speeds == [0.0; 2] {
                 self.stops_exactly(Holds { rolling: true, drilling: true, contour: false });
@@ -194,41 +235,6 @@ impl<const N: usize> BodyWalk<'_, N> {
             }
             self.stops_exactly(Holds { rolling: end == ends[0], drilling: end == ends[1], contour: false });
         }
-    }
-
-    /// The impact of a ball whose contact point does not slip: friction has nothing to stop.
-    pub(super) fn rebounds(&self, lift: f64, e: f64) -> Struck {
-        let hit = match self.ask.table {
-            Table::Rolling { .. } => Hit::Sticks,
-            Table::Rubs(friction) if friction.strength() > 0.0 || friction.sticks() => Hit::Sticks,
-            _ => Hit::Smooth,
-        };
-        let impulse = [0.0, 0.0, -((1.0 + e) * lift)];
-        let lost = 0.5 * (1.0 - e) * (1.0 + e) * lift * lift;
-        Struck { impulse, slip: [0.0; 2], lift: 0.0 - e * lift, hit, lost }
-    }
-
-    /// Flies to its landing, or to the last time.
-    pub(super) fn flies_uniformly(&mut self) {
-        let (from, now) = (self.aloft(), self.at[TIME]);
-        let (mut spun, up) = (Spun::new(&from, [0.0; 3], 0.0), from.lift);
-        let fall = (up * up + 2.0 * from.height).sqrt();
-        let end = if up < 0.0 { 2.0 * from.height / (fall - up) } else { up + fall };
-        while let Some(t) = self.until().map(|t| t - now).filter(|t| *t <= end) {
-            let at = self.spun(&mut spun, t).0;
-            // A product that vanishes exactly at the landing.
-            let height = if t == 0.0 { from.height } else { 0.5 * (end - t) * (t + (fall - up)) };
-            self.writes_with(&Aloft { height, lift: up - t, ..at }, Kind::Flying, 0.0);
-        }
-        if self.since.last().is_none_or(|last| end > last - now) {
-            return;
-        }
-        let (at, angle) = self.spun(&mut spun, end);
-        self.rounds(end, angle, 0.0);
-        self.at[TIME] = now + end;
-        self.sets(&Aloft { height: 0.0, lift: -fall, ..at });
-        let next = self.strikes();
-        self.continues_with(next);
     }
 }
 

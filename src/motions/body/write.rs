@@ -1,7 +1,7 @@
 //! The outputs of a walk: states, poses and forces from its numbers.
 
 use super::roll::lossy::LossyFlow;
-use super::slide::Slide;
+use super::slide::{Slide, Varying};
 use crate::laws::body::Body;
 use crate::laws::contact::Table;
 use crate::laws::pose::{Angle, Pose};
@@ -45,7 +45,7 @@ pub(crate) fn state_errors(y: &State, tol: f64) -> [f64; 2] {
 
 impl Followed {
     /// Adds a point of a slip to the outputs.
-    pub(super) fn slid<const N: usize>(&mut self, ask: &Ask, slide: &Slide, y: &[f64; N]) {
+    pub(super) fn slid<L: Varying, const N: usize>(&mut self, ask: &Ask, slide: &Slide<L>, y: &[f64; N]) {
         let now = state(y);
         let side = if y[SIN] < 0.0 { -1.0 } else { 1.0 };
         let slip = [side * y[UH], side * y[U2]];
@@ -54,7 +54,7 @@ impl Followed {
         let towards = if slip == [0.0, 0.0] && slide.law.dry { self.path.way } else { slip };
         let force = ask.force.then(|| {
             let (force, doubt) =
-                doubted(&now, state_errors(&now, slide.tol), |y| slide.law.force(y, towards));
+                doubted(&now, state_errors(&now, slide.tol), |y| slide.force(y, slip, towards));
             // No table pulls: such a force is an error.
             (force, doubt.max(-force.normal))
         });

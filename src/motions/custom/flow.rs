@@ -9,15 +9,17 @@
 use crate::error::Error;
 use crate::laws::body::{Body, landing_angle};
 use crate::laws::contact::lossy::{Acted, Held, Lossy};
-use crate::laws::contact::slip::{Friction, Slipping};
+use crate::laws::contact::lying::{Flat, Lying};
+use crate::laws::contact::slip::{Friction, SlipResponse, Slipping};
 use crate::laws::contact::standstill::{Standstill, standstill_under};
 use crate::laws::contact::{Contact, Force, Table, grip};
-use crate::laws::custom::{Custom, fault_of_couple, fault_of_friction};
+use crate::laws::custom::{CoupleLaw, Custom, FrictionLaw, SpeedLaw, fault_of_couple, fault_of_friction};
 use crate::laws::loss::{Couple, Couples, Losses, UnderCouple};
 use crate::laws::state::State;
 use crate::methods::flow::{Flow, FlowPlace};
 use crate::methods::{radau, rk8};
 use crate::motions::body::face::FLAT;
+use crate::motions::body::own::{ASIDE, Own, differences, slopes};
 use crate::motions::body::slide::{Slide, contact_velocity, first, longest, vanished};
 use crate::motions::body::write::state;
 use crate::motions::dry::creep::is_fast;
@@ -28,17 +30,12 @@ use crate::motions::walk::slip_over;
 use crate::motions::{Ask, Ending, Kind};
 use crate::numbers::Dual;
 use core::cell::Cell;
-use core::f64::consts::PI;
-use nalgebra::SMatrix;
+use core::f64::consts::{FRAC_PI_2, PI};
 
 /// Number of margins: face, other rim, normal force, and room or grip.
 const CUSTOM_MARGINS: usize = 4;
-/// The number of coupled numbers: sine, cosine, w and u.
-const COUPLED: usize = 7;
 /// Largest number of secants for the normal force.
 const SECANTS: usize = 40;
-/// Share of the longest step, or of a number, over which a slope is computed.
-const ASIDE: f64 = 1e-5;
 /// A step is near its limit of stability if its length times the slope of the rates is more than this.
 const STABLE: f64 = 0.3;
 /// A slip lasts if it loses less than this share of its speed in a unit of sigma, in which it approaches its direction.
@@ -48,7 +45,7 @@ const FAR_FASTER: f64 = 100.0;
 
 /// One phase: its body, its laws, and a flag that is true if the contact point slips.
 #[derive(Clone, Copy)]
-pub(super) struct CustomFlow<'a> {
+pub(crate) struct CustomFlow<'a> {
     pub body: &'a Body,
     pub ask: &'a Ask,
     pub custom: Custom<'a>,
@@ -56,6 +53,9 @@ pub(super) struct CustomFlow<'a> {
     pub fault: &'a Cell<Option<Error>>,
     pub slips: bool,
     pub tol: f64,
+    /// The direction in which the current slip began from rest, and the time for which it keeps that direction.
+    pub way: [f64; 2],
+    pub keeps: f64,
 }
 
 /// The response of the body: accelerations, force, the rates of the slip and of the time, and the margin of the slip.
@@ -79,6 +79,14 @@ fn upright(angle: (f64, f64), w: [f64; 3]) -> (f64, State) {
 }
 
 impl<'a> CustomFlow<'a> {
+    /// The state as seen from the lower rim of a body with two rims, and -1 if that is the other one, else 1.
+    fn from_lower(&self, y: &State) -> (State, f64) {
+        if y.theta <= FRAC_PI_2 || self.body.ell() <= 0.0 || self.body.theta_end() != FRAC_PI_2 {
+            return (*y, 1.0);
+        }
+        (State { theta: PI - y.theta, w2: -y.w2, w3: -y.w3, ..*y }, -1.0)
+    }
+
     /// The law of sliding friction at a speed.
     pub(super) fn friction(&self, speed: f64) -> Friction {
         match (self.ask.table.friction(), self.custom.friction) {
@@ -161,7 +169,7 @@ impl<'a> CustomFlow<'a> {
     /// Whether steps of the length `h` from the numbers `y` are short only because a law is stiff: the couple pulls w
     /// towards a slow motion much faster than w changes, and than rotation and nutation allow.
     pub(super) fn is_kept_short<const N: usize>(&self, y: &[f64; N], h: f64) -> bool {
-        let (fast, rate) = (Slide::fastest(y), self.rates(y));
+        let (fast, rate) = (<Slide>::fastest(y), self.rates(y));
         let mut slope = 0f64;
         for j in 2..5 {
             let mut more = *y;
@@ -289,6 +297,111 @@ impl<'a> CustomFlow<'a> {
     }
 }
 
+impl SpeedLaw for CustomFlow<'_> {
+    fn varies(&self) -> bool {
+        self.custom.friction.is_some()
+    }
+
+    /// NaN for a wrong value, which is noted.
+    fn coefficient_at(&self, speed: f64) -> f64 {
+        let mu = self.friction(speed).strength();
+        match fault_of_friction(mu, speed) {
+            Some(fault) => {
+                self.fault.set(Some(fault));
+                f64::NAN
+            }
+            None => mu,
+        }
+    }
+}
+
+impl Own for CustomFlow<'_> {
+    const IS: bool = true;
+    type Speeds = ();
+    fn speeds(&self) {}
+
+    fn has_couple(&self) -> bool {
+        self.custom.couple.is_some()
+    }
+
+    fn couple(&self, y: &State, normal: f64) -> [f64; 3] {
+        let (seen, side) = self.from_lower(y);
+        match self.custom.couple {
+            Some(_) if self.custom.has_failed() => [f64::NAN; 3],
+            Some(law) => {
+                let [m1, m2, m3] = law.couple(self.body, &seen, normal);
+                if (m1 + m2 + m3).is_nan() && [y.theta, y.w1, y.w2, y.w3].iter().all(|x| x.is_finite()) {
+                    self.fault.set(fault_of_couple([m1, m2, m3], &seen, normal));
+                }
+                [m1, side * m2, side * m3]
+            }
+            None => [0.0; 3],
+        }
+    }
+
+    fn takes_fault(&self) -> Option<Error> {
+        self.fault.take().filter(|_| !self.custom.has_failed())
+    }
+
+    fn is_faulty(&self) -> bool {
+        self.custom.has_failed() || self.fault.get().is_some()
+    }
+
+    fn finds_fault(&self, speeds: &[f64], y: &State, normal: f64) -> bool {
+        if !self.custom.has_failed() {
+            let slow = |law: &dyn FrictionLaw| {
+                speeds.iter().find_map(|&speed| fault_of_friction(law.coefficient(speed), speed))
+            };
+            let seen = self.from_lower(y).0;
+            let turns =
+                |law: &dyn CoupleLaw| fault_of_couple(law.couple(self.body, &seen, normal), &seen, normal);
+            let fault = self.custom.couple.and_then(turns);
+            self.fault.set(fault.or_else(|| self.custom.friction.and_then(slow)));
+        }
+        self.is_faulty()
+    }
+
+    fn in_air(&self, losses: &Losses) -> Option<Couples<f64>> {
+        let air = ().in_air(losses);
+        if self.has_couple() { air.or(Some(Couples::of(&Losses::NONE, |x| x))) } else { air }
+    }
+
+    fn slides(
+        &self,
+        _: &Slide,
+        angle: (f64, f64),
+        w: [f64; 3],
+        u: [f64; 2],
+        way: Option<[f64; 2]>,
+    ) -> (SlipResponse<f64>, f64) {
+        let CustomResponse { w, u, force, free, room, power, .. } =
+            CustomFlow::slides(self, angle, w, u, way);
+        (SlipResponse { w, u, free, room, force, held: [0.0; 2], kept: [0.0; 2] }, power)
+    }
+
+    fn rolls(&self, _: &Body, y: &State, _: &Losses) -> ([f64; 3], f64) {
+        let at = CustomFlow::rolls(self, y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
+        (at.w, at.power)
+    }
+
+    fn standstill(&self, _: &Body, y: &State, _: &Friction, _: &Losses) -> Standstill {
+        CustomFlow::standstill(self, y)
+    }
+
+    fn lying(&self, law: &Lying<f64>, y: Flat<f64>) -> Option<Lying<f64>> {
+        let [w1, w3, u_h, u_2] = y;
+        let [other_h, other_2] = law.other_slip(y);
+        let strength = |speed: f64| {
+            let speed = if law.dry { speed } else { speed.max(f64::MIN_POSITIVE) };
+            self.friction(speed).strength() / if law.dry { 1.0 } else { speed }
+        };
+        let varied = self.varies().then(|| [u_h.hypot(u_2), other_h.hypot(other_2)].map(strength));
+        let state = State { theta: FRAC_PI_2, w1, w2: 0.0, w3 };
+        let own = self.has_couple().then(|| self.couple(&state, 1.0));
+        Some(Lying { strength: varied.unwrap_or(law.strength), own, ..*law })
+    }
+}
+
 impl Flow<CUSTOM_MARGINS> for CustomFlow<'_> {
     type Halt = Halt;
     const TIME: usize = TIME;
@@ -318,25 +431,14 @@ impl Flow<CUSTOM_MARGINS> for CustomFlow<'_> {
         h: f64,
         guess: radau::Guess<N>,
     ) -> (rk8::Step<f64, N>, radau::Collocated<N>) {
-        let (y, fast, slip) = (&from.y, Slide::fastest(&from.y), from.y[UH].hypot(from.y[U2]));
+        let (y, fast, slip) = (&from.y, <Slide>::fastest(&from.y), from.y[UH].hypot(from.y[U2]));
         let sizes = [y[SIN], 1.0, fast, fast, fast, slip, slip];
-        let mut slopes = SMatrix::<f64, COUPLED, COUPLED>::zeros();
-        for j in 0..COUPLED {
-            let (mut more, mut less) = (*y, *y);
-            (more[j], less[j]) = (y[j] + ASIDE * sizes[j], y[j] - ASIDE * sizes[j]);
-            let [above, below] = [self.rates(&more), self.rates(&less)];
-            (0..COUPLED).for_each(|i| slopes[(i, j)] = (above[i] - below[i]) / (more[j] - less[j]));
-        }
+        let slopes = slopes(y, &sizes, |y| self.rates(y));
         radau::step(|y, all| self.write_rates(y, all), y, &slopes, &sizes, (h, 0.01 * self.tol), guess)
     }
 
     fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; CUSTOM_MARGINS] {
-        let by = ASIDE * self.calm(&place.y).min(1.0);
-        let aside = |by: f64| {
-            self.all_margins(&core::array::from_fn::<f64, N, _>(|i| by.mul_add(place.rate[i], place.y[i])))
-        };
-        let [before, here, after] = [aside(-by), self.all_margins(&place.y), aside(by)];
-        core::array::from_fn(|i| Dual { value: here[i], slope: (after[i] - before[i]) / (2.0 * by) })
+        differences(place, self.calm(&place.y), |y| self.all_margins(y))
     }
 
     fn margin<const N: usize>(&self, y: &[f64; N], i: usize) -> f64 {
@@ -349,11 +451,13 @@ impl Flow<CUSTOM_MARGINS> for CustomFlow<'_> {
     }
 
     fn error<const N: usize>(&self, y: &[f64; N], made: &rk8::Step<f64, N>) -> f64 {
-        Slide::error(self.tol, y, made, self.slips)
+        // Only a slip that may come to rest keeps its direction; on a film there may be no slip at all.
+        let dry = self.slips && self.ask.table.friction().sticks();
+        <Slide>::error(self.tol, y, made, dry)
     }
 
     fn fastest<const N: usize>(&self, y: &[f64; N]) -> f64 {
-        Slide::fastest(y)
+        <Slide>::fastest(y)
     }
 
     fn first<const N: usize>(&self, y: &[f64; N]) -> f64 {

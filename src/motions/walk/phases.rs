@@ -48,6 +48,10 @@ pub(crate) trait Phases<const N: usize>: Sized {
     /// The error for an initial state without a unique contact force.
     fn no_unique_force(walk: &Walk<'_, Self, N>) -> Error;
 
+    /// The normal force at the current numbers; negative where a table would have to pull.
+    fn normal_here(_: &Walk<'_, Self, N>) -> f64 {
+        0.0
+    }
     /// Tests the numbers between two phases; what cannot be true is an error of the motion.
     fn audits(_: &mut Walk<'_, Self, N>) {}
     /// Ends the motion before the next phase if its end is already known. Returns whether it has ended.

@@ -17,9 +17,11 @@
 use super::lands::{AngleSeries, Falling, Leaves, NoLanding, RIM_TERMS, TOUCH};
 use super::{Aloft, Flies, Flight};
 use crate::laws::body::Shape;
-use crate::laws::loss::{Couples, Kinematics, Law, Losses};
+use crate::laws::loss::{Couples, Kinematics};
+use crate::laws::state::State;
 use crate::methods::flow::Spent;
 use crate::methods::rk8;
+use crate::motions::body::own::Own;
 use crate::numbers::tape::{Tape, Taped};
 use crate::numbers::{Real, TERMS};
 use core::f64::consts::{FRAC_PI_2, TAU};
@@ -43,6 +45,12 @@ const STEP_NOISE: f64 = 100.0;
 /// Angle of phi in a part of a step, and length of a part in units of the first step, below which a part is not divided.
 const FAR_TURN: f64 = 1.0;
 const SHORT_PART: f64 = 1e-9;
+/// Number of terms of a polynomial through the values of a couple of the user.
+const FITTED: usize = 7;
+/// Number of coordinates of the vertical and of w.
+const MOVING: usize = 6;
+/// The couple of the user within a step is at most this many times as large as at its ends.
+const COUPLE_GROWS: f64 = 4.0;
 /// Below this size of the cosine of theta its sine follows from it.
 const LEVEL_COSINE: f64 = 0.5;
 
@@ -57,7 +65,7 @@ struct AirStep {
 }
 
 /// A flight against the air.
-pub(crate) struct AirFlight {
+pub(crate) struct AirFlight<G = ()> {
     shape: Shape<f64>,
     from: Aloft,
     /// The quaternion at the start.
@@ -65,19 +73,16 @@ pub(crate) struct AirFlight {
     /// The flight without the air, which has the parabola of the centre.
     free: Flight,
     losses: Couples<f64>,
+    own: G,
     steps: Vec<AirStep>,
     tol: f64,
     first: f64,
     spent: Spent,
 }
 
-/// The laws that act on a body in the air; None if no law does.
-pub(crate) fn in_air(losses: &Losses) -> Option<Couples<f64>> {
-    let mut left = *losses;
-    for law in Law::ALL.iter().copied().filter(|law| !law.acts_in_air()) {
-        left.coefficients[law as usize] = 0.0;
-    }
-    Couples::some(&left)
+/// The angular velocity along the axes of the body.
+fn turning(y: &AirNumbers) -> [f64; 3] {
+    [y[4], y[5], y[6]]
 }
 
 /// The axis of the body in the laboratory, and its change since the start.
@@ -95,9 +100,14 @@ fn axes([w, x, y, z]: [f64; 4]) -> [[f64; 3]; 3] {
     ]
 }
 
-impl AirFlight {
-    /// The first step is `longer` by this factor.
-    pub fn new(shape: &Shape<f64>, from: &Aloft, losses: Couples<f64>, (tol, longer): (f64, f64)) -> Self {
+impl<G: Own> AirFlight<G> {
+    /// A flight against the air of these losses and of `own` laws. The first step is `longer` by this factor.
+    pub fn new(
+        shape: &Shape<f64>,
+        from: &Aloft,
+        (losses, own): (Couples<f64>, G),
+        (tol, longer): (f64, f64),
+    ) -> Self {
         let free = Flight::new(shape, from);
         let from = &free.from;
         // The axes of the body are e1, e2 and e3 at the start, which lean toward x.
@@ -112,12 +122,42 @@ impl AirFlight {
             Spent { evaluations: 0, erred: 0.0, patience: 0, exhausted: None },
         );
         let facing = [cos, 0.0, -sin, 0.0];
-        Self { shape: *shape, from: *from, facing, free, losses, steps, tol, first, spent }
+        Self { shape: *shape, from: *from, facing, free, losses, own, steps, tol, first, spent }
     }
 
-    /// The couple of the air along the axes of the body.
-    fn couple(&self, w: [f64; 3]) -> [f64; 3] {
-        self.losses.at(&Kinematics::of(&self.shape.rim, (1.0, 0.0), w[0], w)).free
+    /// The couple of the air along the axes of the body, with these numbers.
+    fn couple(&self, y: &AirNumbers) -> [f64; 3] {
+        let w = turning(y);
+        let m = self.losses.at(&Kinematics::of(&self.shape.rim, (1.0, 0.0), w[0], w)).free;
+        if !self.own.has_couple() {
+            return m;
+        }
+        let own = self.own_couple(y);
+        core::array::from_fn(|i| m[i] + own[i])
+    }
+
+    /// The size of the couple of the air.
+    fn pulls(&self, y: &AirNumbers) -> f64 {
+        let [m1, m2, m3] = self.couple(y);
+        m1.hypot(m2).hypot(m3)
+    }
+
+    /// The state with these numbers, and the sine and cosine of psi in it.
+    fn state(&self, y: &AirNumbers) -> (State, [f64; 2]) {
+        // The vertical is s e1 + c e3.
+        let [first, second, axis] = axes(self.quaternion(y));
+        let (up, s) = ([first[2], second[2]], first[2].hypot(second[2]));
+        let [cos, sin] = if s > 0.0 { up.map(|x| x / s) } else { [1.0, 0.0] };
+        let [x, z, w3] = turning(y);
+        let (w1, w2) = (cos * x + sin * z, cos * z - sin * x);
+        (State { theta: s.atan2(axis[2]), w1, w2, w3 }, [sin, cos])
+    }
+
+    /// The couple of the user along the axes of the body. No normal force acts.
+    fn own_couple(&self, y: &AirNumbers) -> [f64; 3] {
+        let (state, [sin, cos]) = self.state(y);
+        let [m1, m2, m3] = self.own.couple(&state, 0.0);
+        [cos * m1 - sin * m2, sin * m1 + cos * m2, m3]
     }
 
     /// The quaternion of the body's axes.
@@ -127,8 +167,8 @@ impl AirFlight {
 
     fn rates(&self, y: &AirNumbers) -> AirNumbers {
         let (Shape { i1, i3, .. }, [a, b, c, d]) = (self.shape, self.quaternion(y));
-        let [x, z, w] = [y[4], y[5], y[6]];
-        let [m1, m2, m3] = self.couple([x, z, w]);
+        let [x, z, w] = turning(y);
+        let [m1, m2, m3] = self.couple(y);
         [
             -0.5 * (b * x + c * z + d * w),
             0.5 * (a * x + c * w - d * z),
@@ -211,16 +251,50 @@ impl AirFlight {
     }
 }
 
-impl AirFlight {
-    /// The coefficients of sine and cosine of theta in powers of the time since the start.
-    fn series(&self) -> [[f64; TERMS]; 2] {
+impl<G: Own> AirFlight<G> {
+    /// The coefficients of the couple of the user in powers of the time, up to `near`: a polynomial through its values.
+    fn fitted(&self, near: f64) -> [[f64; FITTED]; 3] {
+        let mut all = [[0.0; FITTED]; 3];
+        if !self.own.has_couple() {
+            return all;
+        }
+        let wide = near / (FITTED - 1) as f64;
+        let values: [[f64; 3]; FITTED] = core::array::from_fn(|k| {
+            let y = self.part(&self.steps[0], wide * k as f64).0;
+            self.own_couple(&y)
+        });
+        for (i, all) in all.iter_mut().enumerate() {
+            let mut divided = values.map(|m| m[i]);
+            for order in 1..FITTED {
+                for k in (order..FITTED).rev() {
+                    divided[k] = (divided[k] - divided[k - 1]) / order as f64;
+                }
+            }
+            // Newton's form, in units of `wide`, to powers of the time.
+            for k in (0..FITTED).rev() {
+                for power in (1..FITTED).rev() {
+                    all[power] = all[power - 1] - k as f64 * all[power];
+                }
+                all[0] = divided[k] - k as f64 * all[0];
+            }
+            all.iter_mut().enumerate().for_each(|(k, x)| *x /= wide.powi(k as i32));
+        }
+        all
+    }
+
+    /// The coefficients of sine and cosine of theta in powers of the time since the start, where those of the couple of
+    /// the user are known.
+    fn series(&self, own: &[[f64; FITTED]; 3]) -> [[f64; TERMS]; 2] {
         let tape = Tape::default();
         let number = |x: f64| tape.number(x);
-        let given: [Taped<'_>; 6] = core::array::from_fn(|_| tape.given());
-        let ([x, y, z, w1, w2, w3], zero) = (given, number(0.0));
+        let given: [Taped<'_>; 9] = core::array::from_fn(|_| tape.given());
+        let ([x, y, z, w1, w2, w3, o1, o2, o3], zero) = (given, number(0.0));
         let Shape { rim, i1, i3 } = self.shape.map(number);
         let seen = Kinematics::of(&rim, (number(1.0), zero), w1, [w1, w2, w3]);
-        let [m1, m2, m3] = self.losses.map(number).at(&seen).free;
+        let [mut m1, mut m2, mut m3] = self.losses.map(number).at(&seen).free;
+        if self.own.has_couple() {
+            (m1, m2, m3) = (m1 + o1, m2 + o2, m3 + o3);
+        }
         // The height of a ball does not depend on s, which may be zero.
         let sine = if self.shape.rim.a > 0.0 { (x * x + y * y).sqrt() } else { zero };
         let results = [
@@ -234,16 +308,20 @@ impl AirFlight {
         ];
         let mut player = tape.player(&given, &results, &[]);
         let ((s, c), [w1, w2, w3]) = (self.from.angle, self.from.w);
-        [s, 0.0, c, w1, w2, w3].into_iter().enumerate().for_each(|(i, x)| player.set(i, 0, x));
+        let [o1, o2, o3] = own.map(|m| m[0]);
+        [s, 0.0, c, w1, w2, w3, o1, o2, o3].into_iter().enumerate().for_each(|(i, x)| player.set(i, 0, x));
         player.begin();
         for n in 1..TERMS {
-            for i in 0..given.len() {
+            for i in 0..MOVING {
                 let rate = player.result(i).at[n - 1];
                 player.set(i, n, rate / n as f64);
             }
+            for (i, m) in own.iter().enumerate() {
+                player.set(MOVING + i, n, m.get(n).copied().unwrap_or(0.0));
+            }
             player.go_on(n);
         }
-        [player.result(given.len()).at, *player.given(2)]
+        [player.result(MOVING).at, *player.given(2)]
     }
 
     /// The earliest landing of a rim that touches at the start, up to the time until which a series shows it; and the
@@ -253,8 +331,11 @@ impl AirFlight {
         if leaves == [None; 2] {
             return Ok((first, clear));
         }
-        let series = self.series();
         let mut near = AIR_SHARE * self.free.near();
+        if self.own.has_couple() {
+            near = near.min(2.0 * self.first);
+        }
+        let series = self.series(&self.fitted(near));
         let size = |near: f64, all: core::ops::Range<usize>| {
             let term = |at: &[f64; TERMS], k: usize| at[k].abs() * near.powi(k as i32);
             all.flat_map(|k| series.iter().map(move |at| term(at, k))).fold(0.0, f64::max)
@@ -284,18 +365,19 @@ impl AirFlight {
     }
 }
 
-impl Flies for AirFlight {
+impl<G: Own> Flies for AirFlight<G> {
     fn lands(
         &mut self,
         leaves: [Leaves; 2],
         two: bool,
         until: f64,
     ) -> Result<Option<(f64, bool)>, NoLanding> {
-        let (rim, i1, [w1, w2, w3]) = (self.shape.rim, self.shape.i1, self.from.w);
+        let (Shape { rim, i1, i3 }, [w1, w2, w3]) = (self.shape, self.from.w);
         let reach = rim.ell.abs() + rim.a;
-        let [m1, m2, m3] = self.couple(self.from.w);
-        let turn = self.free.rate * self.free.rate + m1.hypot(m2).hypot(m3) / i1;
-        let bend = (reach * turn - 1.0).max(1e-9);
+        let bends = |square: f64, pull: f64| (reach * (square + pull / i1) - 1.0).max(1e-9);
+        let mut bend = bends(self.free.rate * self.free.rate, self.pulls(&self.steps[0].y));
+        // The energy that turns the body falls under a couple of the user, too.
+        let most = i1.max(i3) * (i1 * (w1 * w1 + w2 * w2) + i3 * w3 * w3) / (i1 * i1);
         let (soon, clear) = self.leaves(leaves, two)?;
         let soon = soon.filter(|(t, _)| *t <= until);
         let until = soon.map_or(until, |(t, _)| t);
@@ -310,8 +392,17 @@ impl Flies for AirFlight {
             let (y, error) = self.part(&step, h);
             self.spent.evaluations += RATES_PER_STEP;
             if error.is_nan() || error > 1.0 {
+                if error.is_nan() && self.own.is_faulty() {
+                    return Err(NoLanding);
+                }
                 h *= rk8::growth(error).min(0.7);
                 continue;
+            }
+            if self.own.has_couple() {
+                if self.own.finds_fault(&[], &self.state(&y).0, 0.0) {
+                    return Err(NoLanding);
+                }
+                bend = bends(most, COUPLE_GROWS * self.pulls(&step.y).max(self.pulls(&y)));
             }
             let mut first: Option<(f64, bool)> = None;
             for (i, clear) in clear.into_iter().enumerate().take(if two { 2 } else { 1 }) {
@@ -350,7 +441,8 @@ impl Flies for AirFlight {
         let y = if part > 0.0 { self.part(step, part).0 } else { step.y };
         let [phi, psi] = self.turned(step, [0.0, part], step.angles, &y);
         let (sin, cos) = psi.sin_cos();
-        let w = [y[4] * cos - y[5] * sin, y[4] * sin + y[5] * cos, y[6]];
+        let [along, aside, w3] = turning(&y);
+        let w = [along * cos - aside * sin, along * sin + aside * cos, w3];
         let [x, across, cosine] = self.leans(&y).axis;
         let sine = if cosine.abs() < LEVEL_COSINE {
             ((1.0 - cosine) * (1.0 + cosine)).sqrt()

@@ -6,7 +6,7 @@
 //! N0 is the normal force without friction, whose sign decides, since friction scales the normal force by a positive
 //! factor. [`strike`](crate::motions::body::strike) has the impacts.
 
-use super::air::{AirFlight, in_air};
+use super::air::AirFlight;
 use super::lands::TOUCH;
 use crate::laws::body::Shape;
 use crate::laws::contact::{Force, Table};
@@ -15,6 +15,7 @@ use crate::laws::state::State;
 use crate::methods::flow::Spent;
 use crate::motions::ask::row::OutputRow;
 use crate::motions::body::fly::{Aloft, Flies, Flight, Takeoff};
+use crate::motions::body::own::Own;
 use crate::motions::body::phases::{BodyPhases, BodyWalk, LONGER};
 use crate::motions::body::strike::{RATTLED, ROUNDED};
 use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, PHI, SIN, TIME, W2, loses, lost, poses};
@@ -34,7 +35,10 @@ pub(crate) fn pose_from(at: &Aloft, shape: &Shape<f64>, over: bool, pose: [f64; 
 /// A bounce in which the body turns by less than this angle is short; its landing is that of a power series.
 const SHORT_BOUNCE: f64 = 0.1;
 
-impl<const N: usize> BodyWalk<'_, N> {
+impl<G: Own, const N: usize> BodyWalk<'_, N, G>
+where
+    BodyPhases<G>: Phases<N, State = State>,
+{
     pub(crate) fn has_two_rims(&self) -> bool {
         self.of.body.ell() > 0.0 && self.of.body.theta_end() == FRAC_PI_2
     }
@@ -101,7 +105,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         }
         let law = &self.of.slide.law;
         let (shape, angle) = (&law.shape, from.angle);
-        let at = law.towards(angle, from.w, [0.0; 2], [0.0; 2]);
+        let at = self.of.own.slides(&self.of.slide, angle, from.w, [0.0; 2], Some([0.0; 2])).0;
         let (lever, [w1, w2, w3]) = (shape.rim.lever(angle), from.w);
         let square = (shape.rim.slope(angle) * w2 * w2).abs();
         let turning = shape.i3 * w1 * w3 - shape.i1 * angle.1 / angle.0 * w1 * w1;
@@ -136,12 +140,12 @@ impl<const N: usize> BodyWalk<'_, N> {
                 // An output at the initial time shows the body before it lands, as outputs at other landings do. Where a
                 // table would have to pull at the rim that rises, there is no force.
                 let from = self.aloft();
-                let pulls = self.force_here(&self.of.state).normal < 0.0;
+                let pulls = <BodyPhases<G> as Phases<N>>::normal_here(self) < 0.0;
                 while self.until().is_some_and(|t| t <= self.at[TIME]) {
                     if pulls {
                         self.writes_with(&from, self.kind(), f64::NAN);
                     } else {
-                        BodyPhases::write_here(self);
+                        Phases::write_here(self);
                     }
                 }
                 if e == 0.0 || down * self.of.body.ell() <= RATTLED {
@@ -166,11 +170,11 @@ impl<const N: usize> BodyWalk<'_, N> {
         let shape = self.of.slide.law.shape;
         let (from, now) = (self.aloft(), self.at[TIME]);
         let Takeoff { leaves, .. } = self.of.takeoff;
-        let mut course: Box<dyn Flies> = match in_air(&self.ask.losses) {
+        let mut course: Box<dyn Flies> = match self.of.own.in_air(&self.ask.losses) {
             Some(losses) => {
                 // The first step of a rougher run is longer, so that the two runs take different steps.
                 let longer = if self.perturbation > 0.0 { LONGER } else { 1.0 };
-                Box::new(AirFlight::new(&shape, &from, losses, (self.of.slide.tol, longer)))
+                Box::new(AirFlight::new(&shape, &from, (losses, self.of.own), (self.of.slide.tol, longer)))
             }
             None => Box::new(Flight::new(&shape, &from)),
         };

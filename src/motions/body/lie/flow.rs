@@ -11,9 +11,11 @@ use crate::laws::body::Shape;
 use crate::laws::contact::grip;
 use crate::laws::contact::lying::{Flat, Lain, Lying};
 use crate::laws::loss::{GRACE, SLACK};
+use crate::laws::state::State;
 use crate::methods::flow::{Flow, FlowPlace};
 use crate::methods::rk8;
 use crate::motions::Kind;
+use crate::motions::body::own::{Own, differences};
 use crate::motions::body::slide::longest;
 use crate::motions::walk::MOMENT;
 use crate::motions::walk::numbers::{
@@ -51,15 +53,16 @@ const LYING_ENDS: [Halt; MARGINS] =
 const TURNS_WITHIN: f64 = 5.0;
 
 /// A phase on both rims.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct LyingPhase {
-    pub flow: LyingFlow,
+#[derive(Clone, Copy)]
+pub(crate) struct LyingPhase<G = ()> {
+    pub flow: LyingFlow<G>,
 }
 
 /// A body on both rims, and the motions that dry losses hold.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct LyingFlow {
+#[derive(Clone, Copy)]
+pub(crate) struct LyingFlow<G = ()> {
     pub law: Lying<f64>,
+    own: G,
     sloped: Lying<Dual<f64>>,
     pub stance: Stance,
     /// The signs of w1 and w3 for the dry losses, and of w1 in a pivot.
@@ -80,12 +83,13 @@ fn flat<T: Copy>(y: &[T]) -> Flat<T> {
     [y[W1], y[W3], y[UH], y[U2]]
 }
 
-impl LyingFlow {
-    pub fn new(law: Lying<f64>, fixed: f64, (over, tol): (f64, f64)) -> Self {
+impl<G: Own> LyingFlow<G> {
+    pub fn new(law: Lying<f64>, own: G, fixed: f64, (over, tol): (f64, f64)) -> Self {
         let (ell, i1, i3) = (law.shape.rim.ell, law.shape.i1, law.shape.i3);
-        let soft = if law.dry { 0.25 * law.strength * (1.0 + ell * ell / i1 + 1.0 / i3) } else { 0.0 };
+        let soft = if law.dry { 0.25 * law.strength[0] * (1.0 + ell * ell / i1 + 1.0 / i3) } else { 0.0 };
         let mut flow = Self {
             law,
+            own,
             sloped: law.map(|value| Dual { value, slope: 0.0 }),
             stance: Stance::Slips,
             ways: [0.0; 2],
@@ -114,9 +118,14 @@ impl LyingFlow {
         }
     }
 
+    /// The law at these numbers.
+    pub fn law_at(&self, y: Flat<f64>) -> Lying<f64> {
+        if G::IS { self.own.lying(&self.law, y).unwrap_or(self.law) } else { self.law }
+    }
+
     /// Forces and accelerations at these numbers.
     pub fn lain<const N: usize>(&self, y: &[f64; N]) -> Lain<f64> {
-        self.lain_of(&self.law, flat(y))
+        if G::IS { self.lain_of(&self.law_at(flat(y)), flat(y)) } else { self.lain_of(&self.law, flat(y)) }
     }
 
     /// Forces and accelerations at these numbers; a rim at rest from which the state is seen, but which slips, slips off
@@ -125,8 +134,9 @@ impl LyingFlow {
         if self.stance != Stance::Slips || !self.law.dry || y.slip() != [0.0; 2] {
             return self.lain(y);
         }
-        let (law, y) = (&self.law, flat(y));
-        law.slipping_along(y, [way.map(|x| law.strength * x), law.drag(law.other_slip(y))], self.ways)
+        let (law, y) = (&self.law_at(flat(y)), flat(y));
+        let [low, up] = law.strength;
+        law.slipping_along(y, [way.map(|x| low * x), law.drag(up, law.other_slip(y))], self.ways)
     }
 
     /// The speeds of the slips of both rims.
@@ -159,8 +169,16 @@ impl LyingFlow {
                 let turning = one.splat(self.turn) * y[0];
                 [there[0], here[0], grips(if other { there } else { here }), turning, one, hold(1)]
             }
-            Stance::Rolls => [one, one, grips(here), one, one, hold(1)],
+            Stance::Rolls => {
+                // Only a couple of the user presses the rims differently.
+                let grips = if G::IS { grips(here).min(grips(there)) } else { grips(here) };
+                [one, one, grips, one, one, hold(1)]
+            }
         }
+    }
+
+    fn all_margins<const N: usize>(&self, y: &[f64; N]) -> [f64; MARGINS] {
+        self.margins_of(&self.law_at(flat(y)), flat(y))
     }
 
     /// The largest speed, at least 1.
@@ -178,9 +196,13 @@ impl LyingFlow {
         let Shape { rim, i1, i3 } = self.law.shape;
         let (turns, shifts) = (rim.ell * rim.ell / i1, 1.0 + 1.0 / i3);
         let ([here, there], [a, b]) = (self.lain(y).force, self.speeds(y));
-        let (low, up) = (here[0] / a, there[0] / b);
+        let (mut low, mut up, mut strength) = (here[0] / a, there[0] / b, self.law.strength[0]);
+        if G::IS {
+            let [here, there] = self.law_at(flat(y)).strength;
+            (low, up, strength) = (here * low, there * up, 1.0);
+        }
         let (sum, product) = ((low + up) * (turns + shifts), 4.0 * low * up * turns * shifts);
-        0.5 * self.law.strength * (sum + (sum * sum - 4.0 * product).max(0.0).sqrt())
+        0.5 * strength * (sum + (sum * sum - 4.0 * product).max(0.0).sqrt())
     }
 
     /// The numbers at the time `MOMENT` after the beginning of a slip along `way`, of the rim from which the state is
@@ -188,19 +210,21 @@ impl LyingFlow {
     pub fn nudged<const N: usize>(&self, start: &[f64; N], way: [f64; 2], growth: f64) -> [f64; N] {
         let mut y = *start;
         (y[UH], y[U2]) = (MOMENT * growth * way[0], MOMENT * growth * way[1]);
-        let at = self.law.slipping(flat(&y), self.ways);
+        let at = self.law_at(flat(&y)).slipping(flat(&y), self.ways);
         (y[W1], y[W3]) = (y[W1] + MOMENT * at.w[0], y[W3] + MOMENT * at.w[1]);
         y[TIME] += MOMENT;
         y
     }
 }
 
-impl Flow<MARGINS> for LyingFlow {
+impl<G: Own> Flow<MARGINS> for LyingFlow<G> {
     type Halt = Halt;
     const TIME: usize = TIME;
     const OVER: Halt = Halt::Time;
     const PAUSE: Halt = Halt::Pause;
     const ENDLESS: Halt = Halt::Endless;
+    /// Each call of a law of the user may be slow.
+    const BREATH: u64 = if G::IS { 1 } else { 256 };
 
     fn is_extrapolated(halt: Halt) -> bool {
         matches!(halt, Halt::Standstill | Halt::OtherStandstill)
@@ -233,12 +257,15 @@ impl Flow<MARGINS> for LyingFlow {
     }
 
     fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; MARGINS] {
+        if G::IS {
+            return differences(place, self.calm(&place.y), |y| self.all_margins(y));
+        }
         let y: [Dual<f64>; 7] = core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
         self.margins_of(&self.sloped, flat(&y))
     }
 
     fn margin<const N: usize>(&self, y: &[f64; N], i: usize) -> f64 {
-        self.margins_of(&self.law, flat(y))[i]
+        if G::IS { self.all_margins(y)[i] } else { self.margins_of(&self.law, flat(y))[i] }
     }
 
     fn end(&self, i: usize) -> Halt {
@@ -285,6 +312,13 @@ impl Flow<MARGINS> for LyingFlow {
 
     /// The halt of an almost vanished slip, extrapolated linearly to zero.
     fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
+        if G::IS {
+            let [w1, w3, ..] = flat(&place.y);
+            let state = State { theta: FRAC_PI_2, w1, w2: 0.0, w3 };
+            if self.own.finds_fault(&self.speeds(&place.y), &state, 1.0) {
+                return Some((Halt::Endless, place.y));
+            }
+        }
         if self.stance != Stance::Slips || !self.law.dry {
             return None;
         }

@@ -15,13 +15,14 @@ mod rocks;
 
 use super::fly::Aloft;
 use super::fly::flies::pose_from;
-use super::phases::BodyWalk;
+use super::own::Own;
+use super::phases::{BodyPhases, BodyWalk};
 use super::write;
 use crate::error::Error;
 use crate::laws::contact::landing::mirrored;
 use crate::laws::contact::lying::{Lain, Lying};
 use crate::laws::contact::slip::Friction;
-use crate::laws::contact::standstill::{Standstill, standstill, towards};
+use crate::laws::contact::standstill::{Standstill, towards};
 use crate::laws::contact::{Force, Table};
 use crate::laws::loss::GRACE;
 use crate::laws::state::State;
@@ -53,9 +54,12 @@ const DIRECTIONS: usize = 240;
 /// A growth rate of the speed below this counts as zero.
 const SLIPS_FASTER: f64 = 1e-11;
 
-impl<const N: usize> BodyWalk<'_, N> {
+impl<G: Own, const N: usize> BodyWalk<'_, N, G>
+where
+    BodyPhases<G>: Phases<N, State = State>,
+{
     /// The laws of the body on both rims; None for a rolling contact, with which the body cannot turn.
-    fn flat(&self) -> Option<LyingFlow> {
+    fn flat(&self) -> Option<LyingFlow<G>> {
         let friction = match self.ask.table {
             Table::Rubs(friction) => friction,
             Table::Rolling { mu } if self.at[W1] == 0.0 && self.at[UH] == 0.0 && self.at[U2] == 0.0 => {
@@ -68,7 +72,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             Friction::Coulomb { fixed, .. } => fixed,
             Friction::Viscous { .. } => 0.0,
         };
-        Some(LyingFlow::new(law, fixed, (self.of.slide.over(), self.of.slide.tol)))
+        Some(LyingFlow::new(law, self.of.own, fixed, (self.of.slide.over(), self.of.slide.tol)))
     }
 
     /// The phase of a body at theta = pi/2 with w2 = 0: on both rims, or on one of them that rises.
@@ -101,9 +105,11 @@ impl<const N: usize> BodyWalk<'_, N> {
             }
             [false, false] => {
                 let [here, there] = self.normals(&mut flow);
-                let mu = flow.law.strength;
-                let room = if flow.law.dry {
-                    ell + ell + mu * (u_h / u_h.hypot(other) - u_h / u_h.hypot(u_2))
+                let [low, up] = flow.law_at([w1, w3, u_h, u_2]).strength;
+                let room = if flow.law.dry && low == up {
+                    ell + ell + low * (u_h / u_h.hypot(other) - u_h / u_h.hypot(u_2))
+                } else if flow.law.dry {
+                    ell + ell + up * u_h / u_h.hypot(other) - low * u_h / u_h.hypot(u_2)
                 } else {
                     1.0
                 };
@@ -121,19 +127,28 @@ impl<const N: usize> BodyWalk<'_, N> {
         }
     }
 
+    /// Whether the friction of the rim that carries the body presses it into the table.
+    fn jams_here(&self, slip: [f64; 2]) -> bool {
+        if G::IS {
+            let State { w1, w2, w3, .. } = self.of.state;
+            return self.of.own.slides(&self.of.slide, (1.0, 0.0), [w1, w2, w3], slip, None).0.room <= 0.0;
+        }
+        self.of.slide.at_start(&self.of.state, slip) == Some(Halt::Jam)
+    }
+
     fn sets_state(&mut self) {
         self.of.state = State { w1: self.at[W1], w3: self.at[W3], ..self.of.state };
     }
 
     /// The normal forces of both rims while both slip, with the signs of the dry losses set.
-    fn normals(&self, flow: &mut LyingFlow) -> [f64; 2] {
+    fn normals(&self, flow: &mut LyingFlow<G>) -> [f64; 2] {
         self.sets_ways(flow);
         let [here, there] = flow.lain(&self.at).force;
         [here[0], there[0]]
     }
 
     /// Sets the signs of the motions that dry losses resist, and which of them they hold.
-    fn sets_ways(&self, flow: &mut LyingFlow) {
+    fn sets_ways(&self, flow: &mut LyingFlow<G>) {
         let moving = [self.at[W1], self.at[W3]];
         flow.ways = moving.map(sign_or_zero);
         let rolls = flow.stance == Stance::Rolls;
@@ -149,13 +164,15 @@ impl<const N: usize> BodyWalk<'_, N> {
     }
 
     /// Begins a phase on both rims.
-    fn begins_stance(&mut self, mut flow: LyingFlow, stance: Stance) -> Next {
+    fn begins_stance(&mut self, mut flow: LyingFlow<G>, stance: Stance) -> Next {
         (flow.stance, flow.turn) = (stance, self.at[W1].signum());
         self.sets_ways(&mut flow);
         let law = &flow.law;
         if stance == Stance::Rolls {
-            let slows = flow.lain(&self.at).w[1];
-            if slows.abs() > flow.fixed * (1.0 + GRACE) {
+            let Lain { w: [_, slows], force, .. } = flow.lain(&self.at);
+            // Only a couple of the user presses the rims differently, or turns the body about the vertical.
+            let slips = |[n, across, _]: [f64; 3]| across.abs() > flow.fixed * n * (1.0 + GRACE);
+            if slows.abs() > flow.fixed * (1.0 + GRACE) || G::IS && force.into_iter().any(slips) {
                 // Both rims slip across, since friction cannot slow the body as much as the losses do.
                 self.at[U2] = -slows.signum() * NUDGED;
                 return self.begins_stance(flow, Stance::Slips);
@@ -183,10 +200,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             return after_rest(Phases::rests(self));
         }
         // The friction of one rim alone may press it into the table: an impact stops the slip or raises the other rim.
-        match self.of.slide.at_start(&self.of.state, slip) {
-            Some(Halt::Jam) => Next::Ends(Ending::Painleve),
-            _ => Next::Slips,
-        }
+        if self.jams_here(slip) { Next::Ends(Ending::Painleve) } else { Next::Slips }
     }
 
     /// The phase in which one rim rests, if a rocking that has begun at theta = pi/2 ends in it so soon that it is
@@ -194,11 +208,12 @@ impl<const N: usize> BodyWalk<'_, N> {
     #[inline(never)]
     pub(crate) fn rocks_to_pivot(&mut self) -> Option<Next> {
         let mut flow = self.flat()?;
-        let (ell, mu) = (self.of.body.ell(), flow.law.strength);
+        let ell = self.of.body.ell();
         let [w1, w2, u_h, u_2] = [W1, W2, UH, U2].map(|i| self.at[i]);
         let speeds = [u_2, u_2 - 2.0 * ell * w1].map(|across| u_h.hypot(across));
         let other = speeds[1] < speeds[0];
         let [slow, fast] = if other { [speeds[1], speeds[0]] } else { speeds };
+        let mu = if self.of.own.varies() { self.of.own.coefficient_at(fast) } else { flow.law.strength[0] };
         let slow = slow + w2.abs();
         if !(flow.law.dry && slow < ROCKS_BESIDE * fast && slow < ROCKS_ON) {
             return None;
@@ -232,7 +247,7 @@ impl<const N: usize> BodyWalk<'_, N> {
 
     /// The phase of a body with one rim at rest while the other slips; the other rim is at rest if `other`.
     #[inline(never)]
-    fn rests_on_one(&mut self, mut flow: LyingFlow, other: bool) -> Next {
+    fn rests_on_one(&mut self, mut flow: LyingFlow<G>, other: bool) -> Next {
         let ways = flow.ways;
         flow.stance = Stance::Pivots { other };
         flow.turn = self.at[W1].signum();
@@ -251,7 +266,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         };
         let (state, _) = seen(other);
         let friction = self.friction();
-        let found = standstill(&self.of.body, &state, &friction, &self.ask.losses);
+        let found = self.of.own.standstill(&self.of.body, &state, &friction, &self.ask.losses);
         let alone = matches!(found, Standstill::Sticks | Standstill::Slips { .. });
         if alone && self.lifts(&state, found) {
             if other {
@@ -261,8 +276,8 @@ impl<const N: usize> BodyWalk<'_, N> {
             return after_rest(found);
         }
         let (state, slip) = seen(!other);
-        let law = &self.of.slide.law;
-        let (one, _) = law.at((1.0, 0.0), [state.w1, 0.0, state.w3], slip);
+        let w = [state.w1, 0.0, state.w3];
+        let one = self.of.own.slides(&self.of.slide, (1.0, 0.0), w, slip, None).0;
         if one.room > 0.0 && one.force[0] > 0.0 && one.w[1] > 0.0 {
             return self.rises_on(other);
         }
@@ -271,11 +286,14 @@ impl<const N: usize> BodyWalk<'_, N> {
 
     /// Whether the other rim rises while this rim, which is at rest, carries the body alone.
     fn lifts(&self, state: &State, found: Standstill) -> bool {
-        let law = &self.of.slide.law;
         let w = [state.w1, 0.0, state.w3];
         match found {
             Standstill::Slips { alpha, .. } => {
-                law.towards((1.0, 0.0), w, [0.0; 2], towards(alpha)).w[1] > 0.0
+                let way = Some(towards(alpha));
+                self.of.own.slides(&self.of.slide, (1.0, 0.0), w, [0.0; 2], way).0.w[1] > 0.0
+            }
+            _ if self.of.own.has_couple() => {
+                self.of.own.rolls(&self.of.body, state, &self.ask.losses).0[1] > 0.0
             }
             _ => {
                 let ell = self.of.body.ell();
@@ -288,23 +306,24 @@ impl<const N: usize> BodyWalk<'_, N> {
     /// A slip of the rim at rest, from which the state is seen from now on, while the other rim slips as well.
     /// `against` is the direction of a slip that begins continuously.
     #[inline(never)]
-    fn slips_off_two(&mut self, mut flow: LyingFlow, other: bool, against: Option<f64>) -> Next {
+    fn slips_off_two(&mut self, mut flow: LyingFlow<G>, other: bool, against: Option<f64>) -> Next {
         if other {
             self.turns_over();
         }
         (self.at[UH], self.at[U2]) = (0.0, 0.0);
         flow.stance = Stance::Slips;
         let y = [self.at[W1], self.at[W3], 0.0, 0.0];
-        let mu = flow.law.strength;
-        let up = flow.law.drag(flow.law.other_slip(y));
+        let law = flow.law_at(y);
+        let [mu, up] = law.strength;
+        let up = law.drag(up, law.other_slip(y));
         flow.ways = [sign_or_zero(y[0]), sign_or_zero(y[1])];
         flow.holds([false; 2]);
         let ways = flow.ways;
         // f and lambda; f is multiplied by the factor of the normal forces, so that it has no poles.
         let turns = |alpha: f64| {
             let [cos, sin] = towards(alpha);
-            let at = flow.law.slipping_along(y, [[mu * cos, mu * sin], up], ways);
-            let room = 2.0 * flow.law.shape.rim.ell + up[0] - mu * cos;
+            let at = law.slipping_along(y, [[mu * cos, mu * sin], up], ways);
+            let room = 2.0 * law.shape.rim.ell + up[0] - mu * cos;
             let sound = at.force.iter().all(|force| force[0] >= 0.0);
             (room * (cos * at.u[1] - sin * at.u[0]), cos * at.u[0] + sin * at.u[1], sound)
         };
@@ -327,9 +346,9 @@ impl<const N: usize> BodyWalk<'_, N> {
 
     /// Computes a phase on both rims, or begins its flow.
     #[inline(never)]
-    pub(super) fn lies(&mut self) -> Option<WalkStep<N>> {
+    pub(crate) fn lies(&mut self) -> Option<WalkStep<N>> {
         let flow = self.of.lying.as_ref()?.flow;
-        if flow.stance == Stance::Rolls && self.ask.losses.is_none() {
+        if flow.stance == Stance::Rolls && !self.loses_energy() {
             let (begin, began) = (self.at, self.at[TIME]);
             while let Some(t) = self.until() {
                 let mut y = begin;
@@ -349,7 +368,7 @@ impl<const N: usize> BodyWalk<'_, N> {
 
     /// Computes the flow of a phase on both rims.
     #[inline(never)]
-    pub(super) fn lies_on(
+    pub(crate) fn lies_on(
         &mut self,
         y: [f64; N],
         steps: Steps,
@@ -362,6 +381,9 @@ impl<const N: usize> BodyWalk<'_, N> {
         let mut write = |y: &[f64; N]| made.push(row_of(&ask, &flow, seen, y));
         let flown = flow.run(flow.place(y), steps, &self.since[first..], &mut write, go_on);
         self.has_spent(flown.spent);
+        // Beyond the last step that was taken a wrong value does not count.
+        let fault = self.of.own.takes_fault();
+        fault.filter(|_| flown.halt == Halt::Endless).map_or(Ok(()), Err)?;
         // Where a dry loss stops w1 or w3, the acceleration changes at a time as uncertain as that of an end.
         let stops = matches!(flown.halt, Halt::Drilling | Halt::Contour);
         let halt = if stops { Halt::Turned } else { flown.halt };
@@ -375,7 +397,7 @@ impl<const N: usize> BodyWalk<'_, N> {
     /// Ends a phase on both rims at the numbers `y`, and chooses the next one. Returns the numbers from which the same
     /// phase continues, if it does.
     #[inline(never)]
-    pub(super) fn stops_lying(&mut self, y: [f64; N], halt: Halt) -> Option<[f64; N]> {
+    pub(crate) fn stops_lying(&mut self, y: [f64; N], halt: Halt) -> Option<[f64; N]> {
         let mut phase = self.of.lying.take()?;
         self.at = y;
         (self.at[SIN], self.at[COS], self.at[W2]) = (1.0, 0.0, 0.0);
@@ -436,7 +458,7 @@ impl<const N: usize> BodyWalk<'_, N> {
     }
 
     /// A phase of this kind that begins at the current numbers; a body on both rims is seen from the first rim.
-    pub(super) fn told(&self, kind: Kind) -> Phase {
+    pub(crate) fn told(&self, kind: Kind) -> Phase {
         let (y, slip, over) = (self.of.state, self.at.slip(), self.made.path.upside_down);
         let lies = self.of.lying.is_some();
         let (state, slip) = if over && lies { mirrored(&self.of.body, &y, slip) } else { (y, slip) };
@@ -447,7 +469,7 @@ impl<const N: usize> BodyWalk<'_, N> {
     }
 
     /// Writes a body on both rims to the outputs.
-    pub(super) fn writes_lying(&mut self, flow: &LyingFlow, y: &[f64; N]) {
+    pub(crate) fn writes_lying(&mut self, flow: &LyingFlow<G>, y: &[f64; N]) {
         let row = row_of(&self.ask, flow, (self.over().as_ref(), self.made.path.way), y);
         self.made.push(row);
     }
@@ -458,16 +480,16 @@ impl<const N: usize> BodyWalk<'_, N> {
     }
 
     /// The kind of a slip from rest; for a body that lies, the kind with both rims slipping.
-    pub(super) fn kind_of_slip(&self) -> Kind {
+    pub(crate) fn kind_of_slip(&self) -> Kind {
         if self.of.lying.is_some() { Kind::Lying } else { Kind::Slipping }
     }
 }
 
 /// The outputs of a body on both rims, as seen from the first rim; `over` are numbers of the same phase if these and `y`
 /// are seen from the other rim. A rim whose slip just begins slips along `way`.
-fn row_of<const N: usize>(
+fn row_of<G: Own, const N: usize>(
     ask: &Ask,
-    flow: &LyingFlow,
+    flow: &LyingFlow<G>,
     (over, way): (Option<&Aloft>, [f64; 2]),
     y: &[f64; N],
 ) -> OutputRow<State> {

@@ -8,9 +8,10 @@
 //! summed, and that time, times the angle by which a slow slip turns.
 
 use crate::laws::contact::landing::{Outcome, land_at};
-use crate::laws::contact::{Contact, lossy};
 use crate::laws::state::State;
-use crate::motions::body::phases::BodyWalk;
+use crate::motions::body::own::Own;
+use crate::motions::body::phases::{BodyPhases, BodyWalk};
+use crate::motions::walk::Phases;
 use crate::motions::walk::numbers::{
     BodyNumbers, COS, HEAT, PHI, SIN, TIME, U2, UH, W1, W2, W3, loses, pose_rates, poses,
 };
@@ -23,7 +24,10 @@ const SOON_OVER: f64 = 1e-6;
 const TURNED: f64 = 1e-2;
 const TURNS_SLIP: f64 = 3.0;
 
-impl<const N: usize> BodyWalk<'_, N> {
+impl<G: Own, const N: usize> BodyWalk<'_, N, G>
+where
+    BodyPhases<G>: Phases<N, State = State>,
+{
     /// The numbers at the end of a rocking that has just begun another hop at theta = pi/2; None if the end is not
     /// near.
     pub(crate) fn rocks_out(&mut self) -> Option<([f64; N], f64)> {
@@ -48,16 +52,11 @@ impl<const N: usize> BodyWalk<'_, N> {
                 slowest = slowest.min(slip[0].hypot(slip[1]));
             }
             let (rate, drift, warms, taken) = if sticks {
-                let (dy, taken) = lossy::derivative(Contact::Rolling, &self.of.body, &y, &self.ask.losses);
-                ([dy.w1, dy.w2, dy.w3], [0.0; 2], 0.0, taken)
+                let (rate, taken) = self.of.own.rolls(&self.of.body, &y, &self.ask.losses);
+                (rate, [0.0; 2], 0.0, taken)
             } else {
-                let at = law.at((1.0, 0.0), w, slip).0;
-                (
-                    at.w,
-                    at.u,
-                    -(at.force[1] * slip[1] + at.force[2] * slip[0]),
-                    law.power((1.0, 0.0), w, at.force[0]),
-                )
+                let (at, taken) = self.of.own.slides(&self.of.slide, (1.0, 0.0), w, slip, None);
+                (at.w, at.u, -(at.force[1] * slip[1] + at.force[2] * slip[0]), taken)
             };
             if rate[1] >= 0.0 {
                 return None;
@@ -80,7 +79,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             self.at[W2] = -rises;
             let before = State { theta: FRAC_PI_2, w1: self.at[W1], w2: -rises, w3: self.at[W3] };
             let slip = self.at.slip();
-            let landed = land_at(&self.of.body, &before, (slip, 0.0), &self.friction()).ok()?;
+            let landed = land_at(&self.of.body, &before, (slip, 0.0), &self.friction(), &self.of.own).ok()?;
             if landed.outcome != Outcome::Changes {
                 return None;
             }

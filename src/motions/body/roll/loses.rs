@@ -8,6 +8,7 @@ use crate::laws::loss::Holds;
 use crate::laws::state::State;
 use crate::methods::flow::{Flow, Spent, Steps};
 use crate::motions::Ending;
+use crate::motions::body::own::Stepped;
 use crate::motions::body::phases::{BodyWalk, LossyPhase};
 use crate::motions::body::write::state;
 use crate::motions::dry::creep::LOST_DRILLING;
@@ -17,7 +18,7 @@ use crate::motions::walk::{Next, Pause, Phases, after_rest, ending};
 /// Tolerance of steps that take the place of an exact solution, as a share of that of the motion.
 const EXACTLY: f64 = 0.1;
 
-impl<const N: usize> BodyWalk<'_, N> {
+impl<G: Stepped, const N: usize> BodyWalk<'_, N, G> {
     /// Begins a phase that loses energy and rolls with friction up to `mu` N, or slides freely. Returns the
     /// numbers of the flow, None if the phase is over at once.
     pub(super) fn begins_to_lose(&mut self, mu: f64) -> Result<Option<[f64; N]>, Error> {

@@ -7,12 +7,13 @@
 //! Where the patch drills slowly, u follows the forces of rolling thousands of times faster than the body moves, and
 //! [`radau`] takes the steps.
 
-use super::Slide;
+use super::{Slide, Varying};
 use crate::laws::body::Shape;
 use crate::laws::contact::slip::SlipResponse;
 use crate::laws::state::{drilling_of, rolling_of};
 use crate::methods::flow::{Flow, FlowPlace};
 use crate::methods::{radau, rk8};
+use crate::motions::body::own::slopes;
 use crate::motions::body::roll::lossy::REST;
 use crate::motions::dry::creep::{Rubbing, is_fast, known_slip, stable_time};
 use crate::motions::walk::numbers::{
@@ -33,7 +34,7 @@ pub(in crate::motions::body) fn is_still<const N: usize>(y: &[f64; N]) -> bool {
     rolling_of(y.angle(), y[W1], y[W3]).hypot(y[W2]) < REST
 }
 
-impl Slide {
+impl<L: Varying> Slide<L> {
     /// Writes the rates of the numbers on a patch of contact, whose couple also produces heat.
     #[inline(never)]
     pub(super) fn patched<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) -> SlipResponse<f64> {
@@ -158,7 +159,10 @@ impl Slide {
         let (fast, converged) = (Self::fastest(y), 0.01 * self.tol);
         let slip = known_slip(self.rubs(y), self.law.patch().unwrap_or(0.0), fast, converged);
         let sizes = [y[SIN], 1.0, fast, fast, fast, slip, slip];
-        let slopes = self.slopes(&radau::middle(y, &guess));
+        let middle = radau::middle(y, &guess);
+        let sizes_at = [y[SIN], 1.0, fast, fast, fast, slip, slip];
+        let slopes =
+            if L::VARIES { slopes(&middle, &sizes_at, |y| self.rates(y)) } else { self.slopes(&middle) };
         radau::step(|y, all| self.write_rates(y, all), y, &slopes, &sizes, (h, converged), guess)
     }
 

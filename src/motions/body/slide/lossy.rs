@@ -1,12 +1,12 @@
 //! Losses during a slip: the signs of the motions that dry losses resist, the settling of the contact of a
 //! falling face, and the end of the rolling.
 
-use super::Slide;
+use super::{Slide, Varying};
 use crate::laws::body::Shape;
 use crate::laws::contact::grip;
 use crate::laws::contact::lossy::DAMPED;
 use crate::laws::contact::patch::rubs;
-use crate::laws::contact::slip::{SlipResponse, Slipping};
+use crate::laws::contact::slip::{FollowsSpeed, SlipResponse, Slipping};
 use crate::laws::contact::together::{Resting, Rubs, Together};
 use crate::laws::loss::{
     Couples, GRACE, Holds, Kinematics, Law, Losses, NEAR, SLACK, Ways, going, mirrored, rolling_growth,
@@ -22,7 +22,7 @@ use crate::numbers::{Dual, Real, sign_or_zero};
 /// The share by which a couple may exceed the limit of friction that holds a contact which had settled.
 const HELD_SURELY: f64 = 1e-6;
 
-impl Slide {
+impl<L: Varying> Slide<L> {
     /// Sets the signs (`ways`) of the motions that dry losses resist, and which of them friction holds, at a state whose
     /// contact has not settled. `toward` is the direction of a slip from rest, and `known` a motion that friction has
     /// just ceased to hold (true), or that it holds in any case.
@@ -72,7 +72,7 @@ impl Slide {
 
     /// The friction of a slip, or of one that begins in the direction `toward`: the force -N pull and the couple N twist.
     fn pulls(&self, (s, c): (f64, f64), w: [f64; 3], slip: [f64; 2], toward: [f64; 2]) -> ([f64; 2], f64) {
-        let mu = self.law.strength;
+        let mu = self.law.strength_at(slip);
         if !self.law.dry {
             return (slip.map(|u| mu * u), 0.0);
         }
@@ -201,7 +201,7 @@ impl Slide {
     /// along the contour.
     pub(crate) fn pushed_on<T: Real>(
         &self,
-        bare: &Slipping<T>,
+        bare: &Slipping<T, (), impl FollowsSpeed<T>>,
         angle: (T, T),
         w: [T; 3],
         u: [T; 2],

@@ -20,7 +20,8 @@ use super::face::FLAT;
 use super::pole;
 use super::roll::lossy::REST;
 use crate::laws::body::{Body, Rim, Shape, landing_angle};
-use crate::laws::contact::slip::{Friction, SlipResponse, Slipping};
+use crate::laws::contact::Force;
+use crate::laws::contact::slip::{FollowsSpeed, Friction, SlipResponse, Slipping};
 use crate::laws::loss::{Couples, Holds, Law, Losses};
 use crate::laws::state::State;
 use crate::methods::flow::{FASTEST, Flow, FlowPlace};
@@ -45,6 +46,8 @@ const SLIP_ENDS: [Halt; MARGINS] =
 const AT_ONCE: f64 = 0.01;
 /// Largest angle between the direction of such a slip and its mean.
 const STRAIGHT: f64 = 1e-2;
+/// The least growth of a slip that begins, so that it has a direction.
+pub(crate) const LEAST_GROWTH: f64 = 1e-30;
 /// Angle by which a direction beside that of a slip differs from it.
 const BESIDE: f64 = 1e-3;
 
@@ -52,14 +55,27 @@ const BESIDE: f64 = 1e-3;
 /// than `FLAT`, since the time of the landing is extrapolated from the last turns.
 const FLATTER: f64 = 1e-14;
 
+/// How the friction of a slip varies: `()` does not.
+pub(crate) trait Varying: FollowsSpeed<f64> + FollowsSpeed<Dual<f64>> {
+    const VARIES: bool;
+    /// Looks for a wrong coefficient at the speed of a step that is taken. Returns whether there is one.
+    fn finds_fault_at(&self, _speed: f64) -> bool {
+        false
+    }
+}
+
+impl Varying for () {
+    const VARIES: bool = false;
+}
+
 /// The equations of a body that slips, and the ends of its slip.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Slide {
-    pub law: Slipping<f64>,
+#[derive(Clone, Copy)]
+pub(crate) struct Slide<L = ()> {
+    pub law: Slipping<f64, (), L>,
     /// The law for numbers with a slope.
-    sloped: Slipping<Dual<f64>>,
+    sloped: Slipping<Dual<f64>, (), L>,
     /// The law without the couples along the contour.
-    bare: Slipping<f64>,
+    bare: Slipping<f64, (), L>,
     theta_end: f64,
     ball: bool,
     sticks: bool,
@@ -78,11 +94,11 @@ pub(crate) struct Slide {
     pub tol: f64,
 }
 
-impl Slide {
-    pub fn new(body: &Body, friction: &Friction, losses: &Losses, tol: f64) -> Self {
-        let law = Slipping::on_losing(body, friction, losses);
+impl<L: Varying> Slide<L> {
+    pub fn new(body: &Body, friction: &Friction, losses: &Losses, tol: f64, varies: L) -> Self {
+        let law = Slipping::on_losing(body, friction, losses).varying(varies);
         let dual = |value: f64| Dual { value, slope: 0.0 };
-        let sloped = Slipping::of(&law.shape.map(dual), dual(law.strength), law.dry);
+        let sloped = Slipping::of(&law.shape.map(dual), dual(law.strength), law.dry).varying(varies);
         let sloped =
             sloped.with_losses(law.losses.map(|losses| losses.map(dual))).with_patch(law.patch().map(dual));
         let (theta_end, ball) = (body.theta_end(), body.is_ball());
@@ -191,6 +207,16 @@ impl Slide {
         self.law.answers(angle, w, u).0
     }
 
+    /// The contact force in a state; a slip that begins has the direction `way`.
+    pub fn force(&self, y: &State, slip: [f64; 2], way: [f64; 2]) -> Force {
+        if L::VARIES && slip == [0.0; 2] {
+            let [normal, along, across] =
+                self.law.towards(y.theta.sin_cos(), [y.w1, y.w2, y.w3], slip, way).force;
+            return Force { normal, along, across };
+        }
+        self.law.force(y, if slip == [0.0; 2] { way } else { slip })
+    }
+
     /// The halt by the first margin that fails at the start of a slip; None if all margins are positive.
     pub fn at_start(&self, y: &State, u: [f64; 2]) -> Option<Halt> {
         let (s, c) = y.theta.sin_cos();
@@ -256,6 +282,38 @@ impl Slide {
         }
     }
 
+    /// The time in which the body turns by about a radian, at most a unit of time.
+    pub(crate) fn moment<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        (longest(y, &self.law.shape) / 3.0).min((y[SIN] / y[W2]).abs()).min(1.0)
+    }
+
+    /// The rates of all numbers in time, for a slip that begins along `way` under a law of the user.
+    fn rates_along<const N: usize>(&self, y: &[f64; N], way: [f64; 2]) -> [f64; N] {
+        let ((s, c), w, mut all) = (y.angle(), y.w(), [0.0; N]);
+        let at = self.law.towards((s, c), w, [0.0; 2], way);
+        self.law.writes(y, &mut all, (&at, 1.0));
+        let turning = [w[0] / s, w[2] - c * w[0] / s];
+        if poses(N) {
+            let over = contact_velocity(&self.law.shape.rim, (s, c), w[1], turning[1], y.slip());
+            all[PHI..PHI + 4].copy_from_slice(&pose_rates(y[PHI], turning, over));
+        }
+        if loses(N) {
+            all[N - 1] = self.law.power((s, c), w, at.force[0]);
+        }
+        all
+    }
+
+    /// The numbers at the time `lasts` after a slip has begun along `way` under a law of the user, by the rates at the
+    /// middle of that time.
+    pub(crate) fn slipped<const N: usize>(&self, from: &[f64; N], way: [f64; 2], lasts: f64) -> [f64; N] {
+        let moved = |rate: &[f64; N], by: f64| core::array::from_fn(|i| by.mul_add(rate[i], from[i]));
+        let half: [f64; N] = moved(&self.rates_along(from, way), 0.5 * lasts);
+        let mut all: [f64; N] = moved(&self.rates_along(&half, way), lasts);
+        let speed = (all[UH] * way[0] + all[U2] * way[1]).max(LEAST_GROWTH * lasts);
+        (all[UH], all[U2]) = (speed * way[0], speed * way[1]);
+        all
+    }
+
     /// The numbers at the time `MOMENT` after the beginning of a slip along `way`, whose speed grows at the
     /// rate `growth`. Used where no series exists.
     pub(crate) fn nudged<const N: usize>(&self, start: &[f64; N], way: [f64; 2], growth: f64) -> [f64; N] {
@@ -280,6 +338,7 @@ impl Slide {
             1.0,
         ]);
         if rests {
+            let growth = if L::VARIES { growth.max(LEAST_GROWTH) } else { growth };
             (rates[UH], rates[U2]) = (growth * way[0], growth * way[1]);
         }
         rates[HEAT] = heat - (at.force[1] * u[1] + at.force[2] * u[0]);
@@ -303,7 +362,7 @@ impl Slide {
     }
 }
 
-impl Slide {
+impl<L: Varying> Slide<L> {
     /// The longest step in sigma towards the roots of the losses.
     fn rooted<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
         let Some(losses) = self.sloped.losses.filter(|_| loses(N) && !self.settled) else {
@@ -314,17 +373,22 @@ impl Slide {
     }
 }
 
-impl Flow<MARGINS> for Slide {
+impl<L: Varying> Flow<MARGINS> for Slide<L> {
     type Halt = Halt;
     const TIME: usize = TIME;
     const OVER: Halt = Halt::Time;
     const PAUSE: Halt = Halt::Pause;
     const ENDLESS: Halt = Halt::Endless;
     const MAY_BE_STIFF: bool = true;
+    /// Each call of a law of the user may be slow.
+    const BREATH: u64 = if L::VARIES { 1 } else { 256 };
 
     #[inline(always)]
     fn is_stiff<const N: usize>(&self, place: &FlowPlace<N>) -> bool {
-        self.law.patch().is_some() && !self.died && self.creeps_fast(place)
+        // A slip under a law of the user has no series. The smaller it begins, the faster it approaches its direction.
+        let begins = || place.y[UH] * place.rate[UH] + place.y[U2] * place.rate[U2] > 0.0;
+        let creeps = self.law.patch().is_some() && !self.died || L::VARIES && !self.settled && begins();
+        creeps && self.creeps_fast(place)
     }
 
     fn stable<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
@@ -446,6 +510,9 @@ impl Flow<MARGINS> for Slide {
     /// The halt of an almost vanished slip, extrapolated to u = 0, or of a body that
     /// rests or settles.
     fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
+        if L::VARIES && self.law.varies().finds_fault_at(place.y[UH].hypot(place.y[U2])) {
+            return Some((Halt::Endless, place.y));
+        }
         if loses(N)
             && !self.settled
             && let Some(rest) = self.comes_to_rest(place)

@@ -8,6 +8,7 @@ use crate::laws::loss::Law;
 use crate::methods::flow::{Flow, FlowPlace, Steps};
 use crate::motions::Ending;
 use crate::motions::body::face::turning_share;
+use crate::motions::body::own::Stepped;
 use crate::motions::body::phases::BodyWalk;
 use crate::motions::body::write::state;
 use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, Halt, SIN, TIME, U2, UH, W1, W2, W3, loses};
@@ -24,7 +25,7 @@ const ROCKINGS: f64 = 8.0;
 /// Number of steps between two estimates of the end of a whirr that slips.
 const STEPS_PER_LOOK: u64 = 64;
 
-impl<const N: usize> BodyWalk<'_, N> {
+impl<G: Stepped, const N: usize> BodyWalk<'_, N, G> {
     /// Computes a slip from `place`, within the limits `steps`.
     pub(crate) fn slides(
         &mut self,
@@ -42,6 +43,9 @@ impl<const N: usize> BodyWalk<'_, N> {
         let slid = slide.run(place, steps, &self.since[first..], &mut write, go_on);
         self.has_spent(slid.spent);
         self.of.lately[0] = slid.step;
+        // Beyond the last step that was taken a wrong value does not count.
+        let fault = self.of.own.takes_fault();
+        fault.filter(|_| slid.halt == Halt::Endless).map_or(Ok(()), Err)?;
         if slid.halt == Halt::Pause {
             if let Some(end) = self.whirr_ends(&slid.y) {
                 self.arrives(slid.y);
@@ -107,7 +111,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             }
             Halt::Settles => {
                 self.of.slide.settled = true;
-                self.claims(Slide::settled_doubt(&y));
+                self.claims(<Slide>::settled_doubt(&y));
                 self.next = Some(Next::SlipsOn);
             }
             Halt::Contour | Halt::Drilling | Halt::Rocking | Halt::Rests => {

@@ -44,7 +44,7 @@ impl BodySlips {
         let slips = SlowSlips::of(tol, |tape, [s, c, w1, _, w3], slip, way| {
             let taped = law.map(|x| tape.number(x));
             let y = [w1, w3, slip[0], slip[1]];
-            let mu = taped.strength;
+            let [mu, _] = taped.strength;
             let [u, v] = taped.other_slip(y);
             let size = (u * u + v * v).sqrt();
             let at = taped.slipping_along(y, [way.map(|x| mu * x), [mu * u / size, mu * v / size]], ways);
