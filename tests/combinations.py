@@ -87,19 +87,16 @@ REASONS = [
            "These laws act along a rim, and a stone has none."),
     Reason("C", r"together with drilling friction, which gives the same couple", True,
            "The friction of a patch already resists drilling; the law would count it twice."),
-    Reason("D", r"^restitution: only for bodies of revolution", False,
+    Reason("D", r"are those of a body of revolution, and a stone has no axis", True,
+           "A couple of your own is a function of the inclination of an axis, and a stone has none."),
+    Reason("E", r"^restitution: only for bodies of revolution", False,
            "Impacts of stones are not computed yet: their motion ends where they leave the table."),
-    Reason("E", r"^restitution = .* cannot be combined with a patch of contact", False,
+    Reason("F", r"^restitution = .* cannot be combined with a patch of contact", False,
            "Impacts on a patch are not computed yet."),
-    Reason("F", r"^restitution = .*: expected none together with a user-defined law", False,
-           "Impacts, flight and bodies on both rims are not computed yet under a law of your own."),
-    Reason("G", r"only laws without the normal force together with a user-defined law", False,
-           "A law that is proportional to the normal force is not computed yet beside a law of your own. Put it into a"
-           " `custom.Couple`, with its step rounded."),
-    Reason("H", r"^patch = .*: expected none together with a user-defined law", False,
-           "A patch is not computed yet under a law of your own."),
-    Reason("I", r"a law of your own works only .*for bodies of revolution", False,
-           "Laws of your own are not computed yet for stones."),
+    Reason("G", r"^patch = .*: expected none together with a user-defined law", False,
+           "A patch is not computed yet under a couple of your own."),
+    Reason("H", r"a law of your own works only .*for bodies of revolution", False,
+           "Friction of your own is not computed yet for stones."),
 ]  # fmt: skip
 #: The refusal of a body in the air whose outline is not known.
 SHAPE = r"^theta_end = .* its shape is unknown"

@@ -374,9 +374,16 @@ def test_a_custom_motion_is_shown_and_plotted():
     plt.close("all")
 
 
-def test_a_dry_loss_belongs_into_the_law_of_your_own():
-    with pytest.raises(ValueError, match="delta = 0.01: expected only laws without the normal force"):
-        sc.roll(COIN, START, T, contact=FALLING, losses=sc.loss.RollingResistance(0.01))
+@pytest.mark.parametrize("contact", [sc.Viscous(0.5), sc.custom.Friction(lambda u: 0.3 * math.tanh(u / 0.3))])
+def test_a_body_without_a_slip_begins_to_slip_on_a_film_under_a_law_of_your_own(contact):
+    own = sc.custom.Couple(lambda theta, w, normal: -0.01 * w)
+    m = sc.roll(COIN, START, T, contact=contact, losses=own)
+    assert m.status == sc.Ending.DONE and np.hypot(*m.slip[-1]) > 0.0
+    sums = m.energy + m.dissipated + m.work_lost
+    assert np.ptp(sums) < 1e-9 + 10 * m.error
+    if isinstance(contact, sc.Viscous):
+        ours = sc.roll(COIN, START, T, contact=contact, losses=sc.loss.AirLinear(0.01))
+        assert abs(m.w - ours.w).max() < m.error + ours.error
 
 
 def test_a_couple_of_ones_own_differs_from_every_other_law_and_is_printed_by_its_name():

@@ -36,6 +36,9 @@ def check_losses(losses: object, times: Floats, t0: float, settings: dict[str, A
 def of_stone(losses: object, body: Any) -> Loss:
     """Return a loss law that acts on stones, or an error that names the law."""
     found = made_law(losses, body)
+    if found._function is not None:
+        why = "theta, e1, e2 and e3 of a couple of your own are those of a body of revolution, and a stone has no axis"
+        raise TypeError(f"losses = {losses!r}: {why}")
     for law in found.laws:
         if law._parameter not in _core.stone_losses():
             why = "acts along a rim, which a stone lacks; take air, rolling resistance or drilling"

@@ -57,8 +57,9 @@ class Couple(Loss):
         ``function(theta, w, normal)`` returns the couple on the body, in M g R: its three components along
         e1, e2, e3 of `State`. The arguments of the function are the inclination `theta` in radians, the
         angular velocity `w` in sqrt(g/R) (an array of its components along the same axes), and the normal
-        force `normal` in M g, 0 or more. For a measured body the units are N m, rad/s and N. The power that
-        the couple takes, ``-couple @ w``, must not be negative.
+        force `normal` in M g, 0 or more; in the air it is 0, and a body with two rims is seen from the
+        lower one. For a measured body the units are N m, rad/s and N. The power that the couple takes,
+        ``-couple @ w``, must not be negative.
 
     Raises
     ------
@@ -154,6 +155,11 @@ class Friction(Coulomb):
         a stone, for lazy arrays, or on a page.
     ValueError
         In `sc.roll` and `sc.sweep.roll`, if the coefficient is negative, is not finite, or jumps.
+
+    Notes
+    -----
+    Along the impact of a rim the coefficient is that of the current speed. Where both rims land at once, it
+    is that of each rim's slip after the impact.
 
     Examples
     --------
