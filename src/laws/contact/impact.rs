@@ -320,7 +320,7 @@ impl RimImpact {
             // A jam makes impulses that are large compared with the fall.
             let per = |i: usize| match i {
                 0 => per_slip,
-                1 if place[1] != 0.0 => {
+                1 if place[1].abs() > STRAIGHT_ON * sigma => {
                     per_slip.max(1.0 / (DIES * place[1].abs()).max(self.tol.min(DYING * place[1].abs())))
                 }
                 1 => per_slip,
