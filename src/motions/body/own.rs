@@ -16,8 +16,8 @@ use crate::laws::custom::SpeedLaw;
 use crate::laws::loss::{Couples, Losses};
 use crate::laws::state::State;
 use crate::methods::flow::FlowPlace;
+use crate::motions::dry::creep::ASIDE;
 use crate::numbers::Dual;
-use nalgebra::SMatrix;
 
 /// The laws of a body's walk.
 pub(crate) trait Own: SpeedLaw {
@@ -73,9 +73,6 @@ pub(crate) trait Own: SpeedLaw {
     }
 }
 
-/// Share of the longest step, or of a number, over which a slope is computed.
-pub(crate) const ASIDE: f64 = 1e-5;
-
 /// Margins at a place, with slopes that are differences over a share of the time `calm`, since a user-defined law has no
 /// derivative.
 pub(crate) fn differences<const N: usize, const M: usize>(
@@ -88,22 +85,6 @@ pub(crate) fn differences<const N: usize, const M: usize>(
         |by: f64| margins(&core::array::from_fn::<f64, N, _>(|i| by.mul_add(place.rate[i], place.y[i])));
     let [before, here, after] = [aside(-by), margins(&place.y), aside(by)];
     core::array::from_fn(|i| Dual { value: here[i], slope: (after[i] - before[i]) / (2.0 * by) })
-}
-
-/// The derivatives of the first M rates by the first M numbers, of these sizes, as differences.
-pub(crate) fn slopes<const N: usize, const M: usize>(
-    y: &[f64; N],
-    sizes: &[f64; M],
-    rates: impl Fn(&[f64; N]) -> [f64; N],
-) -> SMatrix<f64, M, M> {
-    let mut slopes = SMatrix::zeros();
-    for j in 0..M {
-        let (mut more, mut less) = (*y, *y);
-        (more[j], less[j]) = (y[j] + ASIDE * sizes[j], y[j] - ASIDE * sizes[j]);
-        let [above, below] = [rates(&more), rates(&less)];
-        (0..M).for_each(|i| slopes[(i, j)] = (above[i] - below[i]) / (more[j] - less[j]));
-    }
-    slopes
 }
 
 /// The laws of a walk whose slips and whose rolling the library's flows follow.

@@ -19,10 +19,10 @@ use crate::laws::state::State;
 use crate::methods::flow::{Flow, FlowPlace};
 use crate::methods::{radau, rk8};
 use crate::motions::body::face::FLAT;
-use crate::motions::body::own::{ASIDE, Own, differences, slopes};
+use crate::motions::body::own::{Own, differences};
 use crate::motions::body::slide::{Slide, contact_velocity, first, longest, vanished};
 use crate::motions::body::write::state;
-use crate::motions::dry::creep::is_fast;
+use crate::motions::dry::creep::{ASIDE, is_fast, slopes};
 use crate::motions::walk::numbers::{
     BodyNumbers, COS, HEAT, Halt, PHI, SIN, TIME, U2, UH, W1, W2, W3, pose_rates,
 };

@@ -16,8 +16,9 @@ use crate::laws::contact::{Contact, lossy};
 use crate::laws::custom::{FrictionLaw, SpeedLaw, fault_of_friction};
 use crate::laws::loss::Losses;
 use crate::laws::state::State;
-use crate::motions::body::own::{ASIDE, Own, Stepped, library_answers};
+use crate::motions::body::own::{Own, Stepped, library_answers};
 use crate::motions::body::slide::{Slide, Varying};
+use crate::motions::dry::creep::ASIDE;
 use crate::numbers::Dual;
 use core::cell::Cell;
 

@@ -16,7 +16,10 @@
 
 use crate::laws::contact::patch;
 use crate::numbers::{Dual, Real};
+use nalgebra::SMatrix;
 
+/// Share of the longest step, or of a number, over which a slope is computed.
+pub(crate) const ASIDE: f64 = 1e-5;
 /// A patch that drills faster than this, in sqrt(g/R), creeps.
 pub(crate) const DRILLS: f64 = 1e-10;
 /// A contact point that friction has released begins to creep with at most this share of the friction of a slip.
@@ -143,4 +146,20 @@ impl Creeping {
         }
         None
     }
+}
+
+/// The derivatives of the first M rates by the first M numbers, of these sizes, as differences.
+pub(crate) fn slopes<const N: usize, const M: usize>(
+    y: &[f64; N],
+    sizes: &[f64; M],
+    rates: impl Fn(&[f64; N]) -> [f64; N],
+) -> SMatrix<f64, M, M> {
+    let mut slopes = SMatrix::zeros();
+    for j in 0..M {
+        let (mut more, mut less) = (*y, *y);
+        (more[j], less[j]) = (y[j] + ASIDE * sizes[j], y[j] - ASIDE * sizes[j]);
+        let [above, below] = [rates(&more), rates(&less)];
+        (0..M).for_each(|i| slopes[(i, j)] = (above[i] - below[i]) / (more[j] - less[j]));
+    }
+    slopes
 }

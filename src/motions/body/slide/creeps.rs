@@ -13,9 +13,8 @@ use crate::laws::contact::slip::SlipResponse;
 use crate::laws::state::{drilling_of, rolling_of};
 use crate::methods::flow::{Flow, FlowPlace};
 use crate::methods::{radau, rk8};
-use crate::motions::body::own::slopes;
 use crate::motions::body::roll::lossy::REST;
-use crate::motions::dry::creep::{Rubbing, is_fast, known_slip, stable_time};
+use crate::motions::dry::creep::{Rubbing, is_fast, known_slip, slopes, stable_time};
 use crate::motions::walk::numbers::{
     BodyNumbers, COS, HEAT, Halt, SIN, TIME, U2, UH, W1, W2, W3, loses, poses,
 };
