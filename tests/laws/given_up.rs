@@ -190,7 +190,7 @@ fn each_limit_has_its_reason_in_words() {
     let (w1, w3, mu) = (3.392822265625, 3.324289864719004, 0.20241508483886717);
     let slips = Start::from(State { theta: std::f64::consts::FRAC_PI_2, w1, w2: 0.0, w3 });
     let slips = slips.with_slip([0.0, (6.0 - tube.i1() / 6.0) * w1 - w3]);
-    let ask = Ask::on(Friction::coulomb(mu)).with_method(Method::Tolerance(1e-8));
+    let ask = Ask::on(Friction::coulomb(mu)).with_method(Method::Tolerance(1e-9));
     let m = roll_with(&tube, slips, &[2e5], &ask, || true).unwrap().unwrap();
     assert_eq!((m.ending(), m.limit), (Ending::Bounded, Some(Limit::Changes)));
 }

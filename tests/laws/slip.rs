@@ -224,7 +224,8 @@ fn a_tube_that_slips_in_every_nod_is_not_said_to_jam() {
     let (w1, w3, mu) = (3.392822265625, 3.324289864719004, 0.20241508483886717);
     let start = State { theta: FRAC_PI_2, w1, w2: 0.0, w3 };
     let slip = [0.0, (6.0 - tube.i1() / 6.0) * w1 - w3];
-    let ask = Ask::on(Friction::coulomb(mu)).with_method(Method::Tolerance(1e-8));
+    // Each slip is shorter than the one before. Within 1e-8 they are lost among the errors of the steps after 7,000.
+    let ask = Ask::on(Friction::coulomb(mu)).with_method(Method::Tolerance(1e-9));
     let to = |t: f64| roll_with(&tube, Start::from(start).with_slip(slip), &[t], &ask, || true);
     assert!(path_of(&to(1e3).unwrap().unwrap()).phases.len() > 100);
     // A motion that is given up returns its phases up to there.
