@@ -54,7 +54,7 @@ const BEFORE_IT_DECAYS: f64 = 20.0;
 const PARTINGS: i32 = 8;
 /// The longest part of a step in which an output is sought, and the largest number of parts that are tried for it.
 const BEYOND: f64 = 1.1;
-const HALVINGS: u32 = 100;
+const SEARCHES: u32 = 100;
 /// Largest share of the time up to an extrapolated halt at which an output is shown: the slip is not zero before its end.
 const MOSTLY: f64 = 1.0 - f64::EPSILON;
 /// Number of crawling steps between two calls of [`Flow::stuck`].
@@ -303,7 +303,7 @@ pub(crate) trait Flow<const M: usize>: Copy {
         let near = (1e-9 * span).max(f64::EPSILON * t.abs());
         let (mut low, mut high) = (0.0, BEYOND);
         let mut x = ((t - from.y[Self::TIME]) / span).clamp(0.0, 1.0);
-        for _ in 0..HALVINGS {
+        for _ in 0..SEARCHES {
             let y = self.part(from, x * h);
             let rate = self.rates(&y);
             let left = t - y[Self::TIME];

@@ -40,6 +40,9 @@ use crate::motions::exact;
 use crate::motions::walk::two_runs::{Followed, judged};
 pub(crate) use phases::{BodyPhases, BodyWalk};
 
+/// The share of the estimated error of the states that counts as an error of a ball's axis.
+const AXIS: f64 = 0.25;
+
 /// The motion of a body that slips or loses energy, for [`roll_with`](crate::motions::motion::roll_with).
 /// A web page that needs no other motion calls this function directly, so that its program contains no other code. A
 /// motion that is too much work, or whose equations lose their digits on the way, ends there with
@@ -60,7 +63,13 @@ pub fn follow(
         found.knows_itself(fine);
         return Ok(found.into());
     }
-    Ok(judged(fine, times, run)?.into())
+    let mut found = judged(fine, times, run)?;
+    if body.is_ball() {
+        // Beside a pole the lean has no direction: phi has the error of the axis over sin(theta).
+        let (error, sines) = (found.motion.error, found.motion.states.iter().map(|y| y.theta.sin()));
+        found.motion.pose_error += AXIS * (error / (error + sines.fold(1.0, f64::min))).min(1.0);
+    }
+    Ok(found.into())
 }
 
 /// One run of a body's walk, with the tolerance `tol` of its steps. Its numbers include a pose and the lost energy only

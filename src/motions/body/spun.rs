@@ -49,6 +49,8 @@ pub(super) struct Roundings {
     pub count: f64,
     pub turned: f64,
     pub late: f64,
+    /// The sum of the step errors that the roundings include.
+    pub inherited: f64,
 }
 
 fn cross([a, b, c]: [f64; 3], [x, y, z]: [f64; 3]) -> [f64; 3] {

@@ -183,8 +183,8 @@ impl<S: Moving> Followed<S> {
         // After impacts of both rims one run may see the body from one rim, and the other run from the other rim.
         let hops = !self.path.impacts.is_empty();
         let distance = |a: &S, b: &S, u: &[f64; 2], v: &[f64; 2]| {
-            let slips = [u[0] - v[0], u[1] - v[1]];
-            let direct = slips.into_iter().fold(a.distance(b), |most, u| larger(most, u.abs()));
+            let slips = u.iter().zip(v).map(|(u, v)| (u - v).abs());
+            let direct = slips.fold(a.distance(b), larger);
             let there = b.seen_from_other_rim().filter(|_| hops);
             there.map_or(direct, |b| {
                 let over = larger(a.distance(&b), (u[0] + v[0]).abs());

@@ -162,9 +162,12 @@ impl<G: Stepped, const N: usize> BodyWalk<'_, N, G> {
         self.of.state = state(&self.at);
     }
 
-    /// The steps of a slip have left an error of w, which in phases that are known turns the axis as roundings of w do.
+    /// The steps since the last known phase have left an error of w, which in phases that are known turns the axis as
+    /// roundings of w do.
     pub(crate) fn inherits_errors(&mut self) {
-        self.of.roundings.count += CHANCE * self.spent.erred * self.of.slide.tol / f64::EPSILON;
+        let of = &mut self.of.roundings;
+        let erred = self.spent.erred - core::mem::replace(&mut of.inherited, self.spent.erred);
+        of.count += CHANCE * erred * self.of.slide.tol / (f64::EPSILON * Slide::fastest(&self.at));
     }
 
     /// The error of the time at which a falling face has landed, although it hardly cleared the table or hardly did not:
