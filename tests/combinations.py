@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+from loss_rows import USUAL
 
 import spincyl as sc
 
@@ -56,14 +57,7 @@ TABLES = {
 }
 LOSSES = {
     "none": None,
-    "`DryContour`": sc.loss.DryContour(1e-3),
-    "`ViscousContour`": sc.loss.ViscousContour(1e-3),
-    "`RollingResistance`": sc.loss.RollingResistance(1e-3),
-    "`Drilling`": sc.loss.Drilling(1e-3),
-    "`AirLinear`": sc.loss.AirLinear(1e-3),
-    "`AirQuadratic`": sc.loss.AirQuadratic(1e-3),
-    "`AirFilm`": sc.loss.AirFilm(1e-4),
-    "`BoundaryLayer`": sc.loss.BoundaryLayer(1e-4),
+    **{f"`{name}`": law for name, law in USUAL.items()},
     "a sum": sc.loss.RollingResistance(1e-3) + sc.loss.AirLinear(1e-3),
     "your own": sc.custom.Couple(lambda theta, w, normal: -1e-3 * w),
 }

@@ -4,6 +4,7 @@ import warnings
 
 import numpy as np
 import pytest
+from loss_rows import ROWS
 
 import spincyl as sc
 
@@ -104,16 +105,7 @@ def test_the_picture_of_a_comparison_in_hertz_is_in_hertz():
     plt.close("all")
 
 
-LAWS = {
-    "DryContour": "0.01 mm",
-    "ViscousContour": "1e-08 N m s",
-    "RollingResistance": "0.05 mm",
-    "Drilling": "0.02 mm",
-    "AirLinear": "1e-09 N m s",
-    "AirQuadratic": "1e-09 N m s²",
-    "AirFilm": "1.8e-05 Pa s",
-    "BoundaryLayer": "0.1 C",
-}
+LAWS = {law.__name__: row.printed for law, row in ROWS.items()}
 
 
 @pytest.mark.parametrize("name", LAWS)

@@ -11,6 +11,7 @@ import xarray as xr
 import spincyl as sc
 from spincyl import loss
 from spincyl._contact import CODES
+from spincyl._loss import LAWS
 from spincyl.sweep import _inputs, _save
 
 RNG = np.random.default_rng(7)
@@ -249,7 +250,7 @@ def test_what_is_no_sweep_has_no_inputs():
 @pytest.mark.parametrize("name", CODES["Law"])
 def test_the_unit_of_a_coefficient_is_what_from_si_divides_by(name):
     scale, kind = sc.Scale(0.03, 0.2, 9.0), getattr(loss, name)
-    text = _inputs._COEFFICIENTS[kind].replace("^", "**").replace(" ", "*")
+    text = LAWS[dataclasses.fields(kind)[0].name].natural.replace("^", "**").replace(" ", "*")
     unit = eval(text, {"M": 0.2, "R": 0.03, "g": 9.0, "sqrt": np.sqrt})
     # of a boundary layer `from_si` takes a number C, and the power is C sqrt(density viscosity) R^4 |psi'|^(5/2)
     si, given = (

@@ -11,6 +11,7 @@ import pytest
 import xarray as xr
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from loss_rows import ROWS, rates
 
 import spincyl as sc
 from spincyl import _core
@@ -27,17 +28,7 @@ from spincyl.loss import (
     ViscousContour,
 )
 
-LAWS = {
-    DryContour: "eps",
-    ViscousContour: "c",
-    RollingResistance: "delta",
-    Drilling: "length",
-    AirLinear: "b",
-    AirQuadratic: "b2",
-    AirFilm: "viscosity",
-    BoundaryLayer: "k",
-}
-EXPONENTS = (2 / 3, 1 / 2, 2, None, None, None, 1 / 3, 4 / 9)
+LAWS = {law: row.coefficient for law, row in ROWS.items()}
 COIN, PIPE, ROUNDED = sc.Body.solid(0.0), sc.Body.tube(6.0, bore=0.8), sc.Body.solid(1.5, fillet=0.3)
 EULER = sc.Scale(radius=0.0375, mass=0.44)
 WHIRR = COIN.steady(0.1)
@@ -106,9 +97,10 @@ def test_a_law_does_not_change(law, name):
 
 
 def test_names_and_exponents_are_those_of_the_core():
-    assert _core.loss_laws() == list(zip(LAWS.values(), EXPONENTS, strict=True))
-    for place, (law, exponent) in enumerate(zip(LAWS, EXPONENTS, strict=True)):
-        assert law(0.1).exponent == exponent
+    told = [(row["parameter"], row["exponent"]) for row in _core.loss_laws()]
+    assert told == [(row.coefficient, row.exponent) for row in ROWS.values()]
+    for place, (law, row) in enumerate(ROWS.items()):
+        assert law(0.1).exponent == row.exponent
         assert law(0.1)._coefficients == [0.1 if k == place else 0.0 for k in range(len(LAWS))]
     assert ALL._coefficients == [10.0**-k for k in range(len(LAWS))]
 
@@ -160,26 +152,15 @@ def test_what_is_no_loss_is_refused(make, error, match):
 # Power.
 
 
-def power(law, body, y, n=1.0):
-    """The table of losses for sharp rims, written independently."""
-    (s, c), x = (np.sin(y.theta), np.cos(y.theta)), law.coefficient
-    spin, square = y.w3 - c / s * y.w1, y.w1**2 + y.w2**2 + y.w3**2
-    return {
-        DryContour: lambda: x * n * abs(spin),
-        ViscousContour: lambda: x * spin**2,
-        RollingResistance: lambda: x * n * np.hypot(s * spin, y.w2),
-        Drilling: lambda: x * n * abs(s * y.w1 + c * y.w3),
-        AirLinear: lambda: x * square,
-        AirQuadratic: lambda: x * square**1.5,
-        AirFilm: lambda: np.pi / 4 * x * spin**2 / s,
-        BoundaryLayer: lambda: x * abs(spin) ** 2.5,
-    }[type(law)]()
+def power(law, y, n=1.0):
+    """The power of a law for sharp rims, by the table of the tests."""
+    return law.coefficient * ROWS[type(law)].power(rates(y, n))
 
 
 @laws
 def test_a_law_takes_the_power_of_its_table(law, name):
     found = law(0.03).power(PIPE, STATE, 1.7)
-    assert found == pytest.approx(power(law(0.03), PIPE, STATE, 1.7), rel=1e-14) and found > 0
+    assert found == pytest.approx(power(law(0.03), STATE, 1.7), rel=1e-14) and found > 0
     dry = law in (DryContour, RollingResistance, Drilling)
     assert law(0.03).power(PIPE, STATE) == pytest.approx(found / (1.7 if dry else 1.0), rel=1e-14)
 
@@ -284,18 +265,9 @@ def test_a_power_in_watts_is_that_of_the_law_in_si_units(law, name):
     seconds, joules = small.seconds(1.0), small.joules(1.0)
     natural = law.from_si(0.1, scale=small)
     watts = natural.power(COIN, STATE) * joules / seconds
-    spin, s = abs(STATE.spin) / seconds, np.sin(STATE.theta)
-    weight, w = 3.0 * 5.0, STATE.angular_velocity / seconds
-    expected = {
-        DryContour: 0.1 * weight * spin,
-        ViscousContour: 0.1 * spin**2,
-        RollingResistance: 0.1 * weight * np.hypot(s * spin, STATE.w2 / seconds),
-        Drilling: 0.1 * weight * abs(s * STATE.w1 + np.cos(STATE.theta) * STATE.w3) / seconds,
-        AirLinear: 0.1 * w**2,
-        AirQuadratic: 0.1 * w**3,
-        AirFilm: np.pi / 4 * 0.1 * 2.0**3 * spin**2 / s,
-        BoundaryLayer: 0.1 * np.sqrt(1.2 * 1.8e-5) * 2.0**4 * spin**2.5,
-    }[law]
+    # of a boundary layer `from_si` takes a number C, and k is C sqrt(density viscosity) R^4
+    coefficient = 0.1 * (np.sqrt(1.2 * 1.8e-5) * 2.0**4 if law is BoundaryLayer else 1.0)
+    expected = coefficient * ROWS[law].power(rates(STATE, 3.0 * 5.0, seconds, radius=2.0))
     assert watts == pytest.approx(expected, rel=1e-13)
 
 

@@ -6,23 +6,15 @@ import pickle
 
 import numpy as np
 import pytest
+from loss_rows import USUAL
 
 import spincyl as sc
 from spincyl import loss
 
 COIN, DISK, PIPE = sc.Body.solid(0.0), sc.Body.solid(0.1704), sc.Body.tube(6.0, bore=0.8)
 ROUNDED, SPHERE = sc.Body.solid(1.5, fillet=0.3), sc.Body.ball(0.0, 0.4, 0.4)
-DRY = loss.DryContour(5e-3)
-LAWS = {
-    "DryContour": DRY,
-    "ViscousContour": loss.ViscousContour(1e-3),
-    "RollingResistance": loss.RollingResistance(5e-3),
-    "Drilling": loss.Drilling(5e-3),
-    "AirLinear": loss.AirLinear(1e-2),
-    "AirQuadratic": loss.AirQuadratic(1e-2),
-    "AirFilm": loss.AirFilm(1e-5),
-    "BoundaryLayer": loss.BoundaryLayer(1e-3),
-}
+DRY = USUAL["DryContour"]
+LAWS = dict(USUAL)
 LAWS["all"] = sum(LAWS.values())
 CONTACTS = {
     "rolling": "rolling",

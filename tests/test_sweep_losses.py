@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from loss_rows import USUAL
 
 import spincyl as sc
 from spincyl import loss
@@ -9,15 +10,9 @@ from spincyl import loss
 DISK, ROUNDED, PIPE = sc.Body.solid(0.1704), sc.Body.solid(0.8, fillet=0.2), sc.Body.tube(2.0, bore=0.8)
 COUNT = 24
 THETA = np.linspace(0.1, 1.2, COUNT)
-LAWS = {
+LAWS = USUAL | {
     "DryContour": loss.DryContour(np.geomspace(2e-3, 2e-2, COUNT)),
-    "ViscousContour": loss.ViscousContour(1e-3),
-    "RollingResistance": loss.RollingResistance(5e-3),
-    "Drilling": loss.Drilling(5e-3),
     "AirLinear": loss.AirLinear(np.geomspace(1e-3, 1e-2, COUNT)),
-    "AirQuadratic": loss.AirQuadratic(1e-2),
-    "AirFilm": loss.AirFilm(1e-5),
-    "BoundaryLayer": loss.BoundaryLayer(1e-3),
 }
 LAWS["some"] = LAWS["DryContour"] + LAWS["AirLinear"] + LAWS["Drilling"]
 CONTACTS = {"rolling": "rolling", "smooth": "smooth", "Coulomb": sc.Coulomb(0.2)}
@@ -167,7 +162,11 @@ def test_what_makes_no_sense_with_losses_is_refused_before_any_work():
         ({"losses": loss.DryContour}, TypeError, "^losses: expected a loss from sc.loss"),
         ({"losses": dry, "step": 1e-3}, ValueError, "^step, mu, beyond: cannot be combined with"),
         ({"losses": dry, "beyond": True}, ValueError, "^step, mu, beyond: cannot be combined with"),
-        ({"losses": dry, "restitution": 1.1}, ValueError, "^restitution = 1.1: expected 0 to 1"),
+        (
+            {"losses": dry, "restitution": 1.1},
+            ValueError,
+            "^restitution = 1.1: expected None, or 0 <= restitution <= 1",
+        ),
         ({"losses": dry, "stop_at": "rolling"}, ValueError, "^stop_at: needs contact"),
         ({"losses": dry, "contact": "sticky"}, ValueError, "^contact = 'sticky'"),
         ({"losses": dry, "want": "theta_max"}, ValueError, "^want = 'theta_max': expected some of"),

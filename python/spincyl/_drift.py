@@ -27,7 +27,7 @@ from spincyl._input.numbers import (
     si,
 )
 from spincyl._input.threads import thread_count
-from spincyl._loss import made_law
+from spincyl._loss import LAWS, made_law
 from spincyl._state import State, gripping
 from spincyl._upward import above
 from spincyl.loss import film_fills
@@ -307,7 +307,7 @@ def drift(
 #: The columns of drifts: bodies, states, and the coefficients of the loss laws.
 _COLUMNS: tuple[str, ...] = (
     *("ell", "i1", "i3", "bore", "fillet", "theta_end", "theta", "w1", "w2", "w3"),
-    *(name for name, _ in _core.loss_laws()),
+    *LAWS,
 )
 
 

@@ -1,8 +1,9 @@
 """The base of the loss laws, each with one positive coefficient, and sums of laws."""
 
+import re
 import warnings
 from dataclasses import dataclass, fields
-from typing import Any, ClassVar, TypeVar
+from typing import Any, ClassVar, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -25,10 +26,22 @@ from spincyl._input.reprs import call
 from spincyl._scale import Scale, other, scale_of
 from spincyl._state import State, numbers
 
-#: Name of the coefficient and exponent of each law, in the order of the core.
-_LAWS = dict(_core.loss_laws())
-#: Unit in which each coefficient is printed; a text with it is what `from_si` takes.
-_PRINTED = dict(zip(_LAWS, ("mm", "N m s", "mm", "mm", "N m s", "N m s²", "Pa s", "C"), strict=True))
+
+class LossRow(NamedTuple):
+    """A row of the core's table of loss laws."""
+
+    parameter: str  #: the name of the coefficient
+    exponent: float | None  #: with which a thin disk comes to its end
+    measures: str  #: what the unit of the coefficient measures, such as a length
+    natural: str
+    si: str
+    printed: str  #: the unit in which the coefficient is printed; a text with it is what `from_si` takes
+    exponents: tuple[float, float, float]  #: of metre, second and joule in the unit
+    in_air: bool  #: whether the law acts on a body in the air
+
+
+#: The loss laws by the names of their coefficients, in the order of the core.
+LAWS = {row["parameter"]: LossRow(**row) for row in _core.loss_laws()}
 _MOST = 1e6
 _Kind = TypeVar("_Kind", bound="Law")
 _EXPECTED = "expected a positive number: a loss takes energy"
@@ -50,7 +63,7 @@ class Loss:
     def _coefficients(self) -> list[Reals]:
         """The coefficient of each law in the order of the core; 0 for absent laws."""
         own = {law._parameter: law.coefficient for law in self.laws}
-        return [own.get(name, 0.0) for name in _LAWS]
+        return [own.get(name, 0.0) for name in LAWS]
 
     def _natural(self, scale: Scale | None) -> "Loss":
         """The law in natural units, of a body with this scale."""
@@ -118,6 +131,10 @@ class Law(Loss):
 
     #: False for a coefficient in natural units; True, or the scale, if it was given in SI.
     _sized: "Scale | bool" = False
+    #: On the command line: a coefficient in natural units, one in SI, and the law in words.
+    _example: ClassVar[tuple[str, str, str]]
+    #: The couple in the file of a scene, with a coefficient in SI; `studio/scene_data.py` has the symbols.
+    _couple_in_si: ClassVar[str]
 
     def __init__(self, coefficient: Reals) -> None:
         raise TypeError(
@@ -141,6 +158,10 @@ class Law(Loss):
         return fields(self)[0].name  # type: ignore[arg-type]
 
     @property
+    def _row(self) -> LossRow:
+        return LAWS[self._parameter]
+
+    @property
     def coefficient(self) -> Reals:
         """The coefficient of the law."""
         return getattr(self, self._parameter)
@@ -156,7 +177,7 @@ class Law(Loss):
 
         Natural units if the size is unknown, or if the law needs the mass and it is unknown.
         """
-        unit = _PRINTED[self._parameter]
+        unit = self._row.printed
         if not isinstance(scale, Scale) or not (unit == "mm" or scale._is_weighed):
             return 1.0, ""
         with warnings.catch_warnings(action="ignore"):  # a mass of 1 kg is as good as any
@@ -165,7 +186,7 @@ class Law(Loss):
     @property
     def exponent(self) -> float | None:
         """Exponent n: theta of a thin disk falls as (remaining time)^n. None if the disk never stops."""
-        return _LAWS[self._parameter]
+        return self._row.exponent
 
     @property
     def laws(self) -> "tuple[Law, ...]":
@@ -252,6 +273,11 @@ def positive(name: str, value: Reals, unit: str = "") -> Reals:
         found = float(found)
     refuse(name, found, lambda x: ~((x > 0) & np.isfinite(x)), _EXPECTED)
     return found
+
+
+def typed(kind: type[Law]) -> str:
+    """The name of a law on the command line and in the address of a page: "dry-contour" for DryContour."""
+    return re.sub(r"\B(?=[A-Z])", "-", kind.__name__).lower()
 
 
 def over(value: Reals, unit: float) -> Reals:

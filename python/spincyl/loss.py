@@ -32,8 +32,9 @@ from typing import Any, Self, TypeVar
 import numpy as np
 
 from spincyl._body import Body
+from spincyl._contact import CODES
 from spincyl._input.numbers import Reals, Result, fitting
-from spincyl._loss import Law, Loss, Sum, arm, over, positive, sized, units
+from spincyl._loss import LAWS, Law, Loss, Sum, arm, over, positive, sized, units
 from spincyl._scale import Scale
 from spincyl._upward import above
 
@@ -82,6 +83,8 @@ class DryContour(Law):
     """
 
     eps: Reals
+    _example = "5e-3", "0.2mm", "dry friction along the rim"
+    _couple_in_si = "eps*N*A*sign(q)*h/s"
 
     @classmethod
     def from_si(cls, eps: Reals, *, scale: Scale | Body) -> Self:
@@ -104,6 +107,8 @@ class ViscousContour(Law):
     """
 
     c: Reals
+    _example = "1e-3", "1e-6Nms", "the same, proportional to the speed of the contact point"
+    _couple_in_si = "c*A**2*q*h/s"
 
     @classmethod
     def from_si(cls, c: Reals, *, scale: Scale | Body) -> Self:
@@ -126,6 +131,8 @@ class RollingResistance(Law):
     """
 
     delta: Reals
+    _example = "1e-3", "0.04mm", "rolling resistance: distance of the normal force ahead of the contact"
+    _couple_in_si = "-delta*N*t/norm(t)"
 
     @classmethod
     def from_si(cls, delta: Reals, *, scale: Scale | Body) -> Self:
@@ -148,6 +155,8 @@ class Drilling(Law):
     """
 
     length: Reals
+    _example = "1e-3", "0.04mm", "friction against rotation about the vertical"
+    _couple_in_si = "-length*N*sign(w_n)*n"
 
     @classmethod
     def from_si(cls, length: Reals, *, scale: Scale | Body) -> Self:
@@ -168,6 +177,8 @@ class AirLinear(Law):
     """
 
     b: Reals
+    _example = "1e-4", "1e-7Nms", "air resistance proportional to the angular velocity"
+    _couple_in_si = "-b*w"
 
     @classmethod
     def from_si(cls, b: Reals, *, scale: Scale | Body) -> Self:
@@ -189,6 +200,8 @@ class AirQuadratic(Law):
     """
 
     b2: Reals
+    _example = "1e-5", "1e-9Nms2", "air resistance proportional to its square"
+    _couple_in_si = "-b2*norm(w)*w"
 
     @classmethod
     def from_si(cls, b2: Reals, *, scale: Scale | Body) -> Self:
@@ -215,6 +228,8 @@ class AirFilm(Law):
     """
 
     viscosity: Reals
+    _example = "1e-7", "18uPas", "thin film of air under the face: viscosity of the air"
+    _couple_in_si = "pi/4*viscosity*R**3*q*h/s**2"
 
     @classmethod
     def from_si(cls, viscosity: Reals = _AIR, *, scale: Scale | Body) -> Self:
@@ -240,6 +255,8 @@ class BoundaryLayer(Law):
     """
 
     k: Reals
+    _example = "1e-6", "0.1C", "boundary layer of air under the face; C is a number of order 0.1"
+    _couple_in_si = "k*abs(q)**1.5*sign(q)*h/s"
 
     @classmethod
     def from_si(
@@ -264,6 +281,10 @@ def _told(kind: type[_Kind], coefficient: Reals, names: str, scale: Scale | Body
         return sized(kind(coefficient), scale)
     except ValueError as e:
         raise ValueError(f"{names}: {e}") from None
+
+
+#: The laws by the names of their coefficients, in the order of the core.
+KINDS: dict[str, type[Law]] = dict(zip(LAWS, map(globals().__getitem__, CODES["Law"]), strict=True))
 
 
 def film_fills(viscosity: Reals, scale: Scale) -> Result:

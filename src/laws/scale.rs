@@ -102,14 +102,8 @@ impl Scale {
     }
 
     fn unit_of(&self, law: Law) -> f64 {
-        let (metre, second, joule) = (self.radius, self.second(), self.joule());
-        match law {
-            Law::DryContour | Law::RollingResistance | Law::Drilling => metre,
-            Law::ViscousContour | Law::AirLinear => joule * second,
-            Law::AirQuadratic => joule * second * second,
-            Law::AirFilm => joule * second / metre / metre / metre,
-            Law::BoundaryLayer => joule * second * second.sqrt(),
-        }
+        let [metres, seconds, joules] = law.unit().exponents();
+        self.radius.powf(metres) * self.second().powf(seconds) * self.joule().powf(joules)
     }
 
     fn second(&self) -> f64 {

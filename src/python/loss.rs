@@ -25,11 +25,34 @@ fn losses_of(x: &[f64]) -> (Losses, f64) {
     (Losses { coefficients: core::array::from_fn(|i| x[i]) }, x[COUNT])
 }
 
-/// The name of each law's coefficient, and the exponent with which a thin disk comes to its end, in the order of the
-/// laws.
+/// What Python knows of a loss law, apart from the documentation of its class.
+#[derive(IntoPyObject)]
+pub struct LossRow {
+    /// The name of the coefficient.
+    parameter: &'static str,
+    /// The exponent with which a thin disk comes to its end.
+    exponent: Option<f64>,
+    /// What the unit of the coefficient measures.
+    measures: &'static str,
+    /// The unit of the coefficient in natural units, in SI, and as it is printed and read.
+    natural: &'static str,
+    si: &'static str,
+    printed: &'static str,
+    /// The exponents of metre, second and joule in the unit.
+    exponents: [f64; 3],
+    /// Whether the law also acts on a body in the air.
+    in_air: bool,
+}
+
+/// The rows of the table of loss laws, in its order.
 #[pyfunction]
-pub fn loss_laws() -> [(&'static str, Option<f64>); COUNT] {
-    core::array::from_fn(|i| (Law::ALL[i].parameter(), Law::ALL[i].exponent()))
+pub fn loss_laws() -> Vec<LossRow> {
+    let row = |law: &Law| {
+        let ([measures, natural, si, printed], exponents) = (law.unit().texts(), law.unit().exponents());
+        let (parameter, exponent, in_air) = (law.parameter(), law.exponent(), law.acts_in_air());
+        LossRow { parameter, exponent, measures, natural, si, printed, exponents, in_air }
+    };
+    Law::ALL.iter().map(row).collect()
 }
 
 /// The names of the coefficients of all laws.

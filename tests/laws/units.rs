@@ -1,10 +1,11 @@
 //! Scales, kicks, and the two rates of a kappa.
 
 use crate::common::any_state;
+use crate::common::loss_power::{LossRates, loss_power};
 use proptest::prelude::*;
 use spincyl::loss::{Law, Losses};
 use spincyl::{Body, Scale, rolling, stability};
-use std::f64::consts::{FRAC_PI_4, PI};
+use std::f64::consts::PI;
 
 proptest! {
     #![proptest_config(crate::common::cases(256))]
@@ -88,18 +89,11 @@ proptest! {
         let rate = |w: f64| scale.radians_per_second(w);
         let (w, (s, c)) = (y.angular_velocity().map(rate), y.theta.sin_cos());
         let (spin, weight) = (rate(y.spin()), kg * g);
+        let rolling = (c * w.x - s * w.z).hypot(w.y);
+        let drilling = s * w.x + c * w.z;
+        let at = LossRates { weight, spin, rolling, drilling, whole: w.norm(), sine: s, radius: r };
         for &law in Law::ALL {
-            let watts = match law {
-                Law::DryContour => x * weight * spin.abs(),
-                Law::ViscousContour => x * spin * spin,
-                Law::RollingResistance => x * weight * (c * w.x - s * w.z).hypot(w.y),
-                Law::Drilling => x * weight * (s * w.x + c * w.z).abs(),
-                Law::AirLinear => x * w.norm_squared(),
-                Law::AirQuadratic => x * w.norm().powi(3),
-                Law::AirFilm => FRAC_PI_4 * x * r.powi(3) * spin * spin / s,
-                Law::BoundaryLayer => x * spin.abs().powf(2.5),
-                _ => panic!("{law:?}: its power in SI is not in tests/laws/units.rs"),
-            };
+            let watts = x * loss_power(law, &at);
             let losses = Losses::of(law, scale.coefficient(law, x));
             let found = scale.watts(losses.power(&body, &y, 1.0));
             prop_assert!((found - watts).abs() <= 1e-11 * watts, "{:?}: {} {}", law, found, watts);

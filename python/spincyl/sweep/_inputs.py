@@ -4,14 +4,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from spincyl import _core, loss
+from spincyl import _core
 from spincyl._body import Body
-from spincyl._contact import CODES, AnyContact, Coulomb, Viscous
+from spincyl._contact import AnyContact, Coulomb, Viscous
 from spincyl._input.numbers import Floats, Reals, components, extra, floats, made
-from spincyl._loss import Law, Loss, Sum, sized
+from spincyl._loss import LAWS, Loss, Sum, sized
 from spincyl._repr import FIELDS
 from spincyl._scale import Scale
 from spincyl._state import State
+from spincyl.loss import KINDS
 
 if TYPE_CHECKING:
     import xarray
@@ -23,20 +24,6 @@ _W = ("w1", "w2", "w3")
 _MOMENTS = ("i1", "i3")
 _AXES = _core.stone_names()  # of a stone: semi-axes, inertia, offset, theta_end
 _NORMAL = ("n1", "n2", "n3")
-_LAWS: dict[str, type[Law]] = {
-    name: getattr(loss, kind) for kind, (name, _) in zip(CODES["Law"], _core.loss_laws(), strict=True)
-}
-#: The natural unit of the coefficient of each loss law.
-_COEFFICIENTS = {
-    loss.DryContour: "R",
-    loss.ViscousContour: "M R sqrt(g R)",
-    loss.RollingResistance: "R",
-    loss.Drilling: "R",
-    loss.AirLinear: "M R sqrt(g R)",
-    loss.AirQuadratic: "M R^2",
-    loss.AirFilm: "M g^(1/2)/R^(3/2)",
-    loss.BoundaryLayer: "M g^(1/4) R^(7/4)",
-}
 #: The coordinates of all inputs, with their units; in the units of a stone, a replaces R.
 _UNITS = (
     dict(zip((f"body_{name}" for name in FIELDS), ("R", "M R^2", "M R^2", "1", "R", "rad"), strict=True))
@@ -46,7 +33,7 @@ _UNITS = (
     | {f"start_slip_{way}": "sqrt(g R)" for way in ("along", "across", "x", "y")}
     | {"start_theta": "rad", "start_height": "R", "start_lift": "sqrt(g R)"}
     | {"contact_mu": "1", "contact_static": "1", "contact_patch": "R", "contact_c": "1/sqrt(g R)"}
-    | {f"loss_{name}": _COEFFICIENTS[law] for name, law in _LAWS.items()}
+    | {f"loss_{name}": row.natural for name, row in LAWS.items()}
 )
 
 
@@ -202,7 +189,7 @@ def inputs(rows: "xarray.Dataset") -> dict[str, Any]:
     else:
         found["contact"] = at["contact"]
     laws = [
-        sized(law(given[f"loss_{name}"]), known) for name, law in _LAWS.items() if f"loss_{name}" in given
+        sized(law(given[f"loss_{name}"]), known) for name, law in KINDS.items() if f"loss_{name}" in given
     ]
     return found | ({"losses": Sum(laws) if len(laws) > 1 else laws[0]} if laws else {})
 

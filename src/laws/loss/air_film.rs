@@ -7,7 +7,7 @@
 //! rim gives 1.28. The film has to fill the gap, theta^(3/4) < nu^(1/2) (R/(4 g))^(1/4)/R, which is 0.005 rad for
 //! Euler's disk. A thin disk has theta = (pi viscosity tau/(2 I1))^(1/3) at the time tau before its end.
 
-use super::{EndPowers, Kinematics, LossLaw, Resists};
+use super::{EndPowers, Kinematics, LossLaw, Resists, Unit};
 use crate::numbers::Real;
 use core::f64::consts::FRAC_PI_4;
 
@@ -16,6 +16,7 @@ pub(super) struct AirFilm;
 
 impl LossLaw for AirFilm {
     const PARAMETER: &str = "viscosity";
+    const UNIT: Unit = Unit::Viscosity;
     const RESISTS: Resists = Resists::Contour;
     const NEEDS_FACE: bool = true;
     const POWERS: EndPowers = EndPowers { face: [-2.0; 2], balanced: 3.0, critical: 2.0, upright: -1.0 };

@@ -5,7 +5,7 @@
 //! ```
 //! The law is Stokes's law for a rotating body. A thin disk never stops: sin theta falls as exp(-2 b t/(3 I1)).
 
-use super::{EndPowers, Kinematics, LossLaw, Resists};
+use super::{EndPowers, Kinematics, LossLaw, Resists, Unit};
 use crate::numbers::Real;
 
 #[derive(Debug)]
@@ -13,6 +13,7 @@ pub(super) struct AirLinear;
 
 impl LossLaw for AirLinear {
     const PARAMETER: &str = "b";
+    const UNIT: Unit = Unit::Damping;
     const RESISTS: Resists = Resists::All;
     const POWERS: EndPowers = EndPowers { face: [1.0; 2], balanced: 1.0, critical: 0.0, upright: 0.0 };
 

@@ -5,7 +5,7 @@
 //! ```
 //! The law is Newton's law of drag, integrated along the body. A thin disk never stops.
 
-use super::{EndPowers, Kinematics, LossLaw, Resists, Speed};
+use super::{EndPowers, Kinematics, LossLaw, Resists, Speed, Unit};
 use crate::numbers::Real;
 
 #[derive(Debug)]
@@ -13,6 +13,7 @@ pub(super) struct AirQuadratic;
 
 impl LossLaw for AirQuadratic {
     const PARAMETER: &str = "b2";
+    const UNIT: Unit = Unit::Drag;
     const RESISTS: Resists = Resists::All;
     const ROOT: Option<Speed> = Some(Speed::Whole);
     const POWERS: EndPowers = EndPowers { face: [1.5; 2], balanced: 1.5, critical: 0.0, upright: 0.0 };

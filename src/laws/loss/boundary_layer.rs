@@ -6,7 +6,7 @@
 //! The law is in Bildsten, Phys. Rev. E 66, 056309 (2002); it holds above the angle at which Moffatt's film fills the
 //! gap; C is of order 0.1. A thin disk has theta = (3 k tau/(2 I1^(5/4)))^(4/9) at the time tau before its end.
 
-use super::{EndPowers, Kinematics, LossLaw, Resists, Speed};
+use super::{EndPowers, Kinematics, LossLaw, Resists, Speed, Unit};
 use crate::numbers::Real;
 
 #[derive(Debug)]
@@ -14,6 +14,7 @@ pub(super) struct BoundaryLayer;
 
 impl LossLaw for BoundaryLayer {
     const PARAMETER: &str = "k";
+    const UNIT: Unit = Unit::Layer;
     const RESISTS: Resists = Resists::Contour;
     const NEEDS_FACE: bool = true;
     const ROOT: Option<Speed> = Some(Speed::Spin);

@@ -229,7 +229,7 @@ pub(crate) fn going<T: Real>(way: T, x: T, slack: T) -> T {
 }
 
 /// The angular velocity with psi' and w2 reversed, at the same w_z = phi' + c psi'.
-pub(crate) fn mirrored((s, c): (f64, f64), [w1, w2, w3]: [f64; 3]) -> [f64; 3] {
+pub(crate) fn reversed_turns((s, c): (f64, f64), [w1, w2, w3]: [f64; 3]) -> [f64; 3] {
     let spin = spin_of((s, c), w1, w3);
     [w1 + 2.0 * s * c * spin, -w2, w3 - 2.0 * s * s * spin]
 }

@@ -7,7 +7,7 @@
 //! in Contensou 1963, Leine, Arch. Appl. Mech. 79, 1063 (2009). It never stops a thin disk: sin^(-1/2) theta grows by
 //! length t/(3 sqrt I1). It stops a body of finite height as rolling resistance does.
 
-use super::{EndPowers, Kinematics, LossLaw, Resists};
+use super::{EndPowers, Kinematics, LossLaw, Resists, Unit};
 use crate::numbers::Real;
 
 #[derive(Debug)]
@@ -15,6 +15,7 @@ pub(super) struct Drilling;
 
 impl LossLaw for Drilling {
     const PARAMETER: &str = "length";
+    const UNIT: Unit = Unit::Length;
     const RESISTS: Resists = Resists::Drilling;
     const PRESSES: bool = true;
     const POWERS: EndPowers = EndPowers { face: [1.5, 0.5], balanced: 0.5, critical: 0.0, upright: 0.0 };

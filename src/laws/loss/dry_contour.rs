@@ -7,7 +7,7 @@
 //! Sci. 15, 27 (2005); Leine, Arch. Appl. Mech. 79, 1063 (2009). Where the contact point stops, the couple has any
 //! value up to eps N A h/s. A thin disk has theta = (eps tau/sqrt I1)^(2/3) at the time tau before its end.
 
-use super::{EndPowers, Kinematics, LossLaw, Resists};
+use super::{EndPowers, Kinematics, LossLaw, Resists, Unit};
 use crate::numbers::Real;
 
 #[derive(Debug)]
@@ -15,6 +15,7 @@ pub(super) struct DryContour;
 
 impl LossLaw for DryContour {
     const PARAMETER: &str = "eps";
+    const UNIT: Unit = Unit::Length;
     const RESISTS: Resists = Resists::Contour;
     const PRESSES: bool = true;
     const POWERS: EndPowers = EndPowers { face: [-0.5; 2], balanced: 1.5, critical: 1.0, upright: 1.0 };

@@ -23,6 +23,47 @@ pub(crate) enum Resists {
     All,
 }
 
+/// The unit of the coefficient of a law.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Unit {
+    /// A length.
+    Length,
+    /// A couple over an angular velocity.
+    Damping,
+    /// A couple over the square of an angular velocity.
+    Drag,
+    /// A viscosity.
+    Viscosity,
+    /// A couple over an angular velocity to the power 3/2.
+    Layer,
+}
+
+impl Unit {
+    /// What a unit measures, the unit in natural units and in SI, and the unit in which a coefficient is printed and
+    /// read again: C is the number of order 0.1 with which a boundary layer is given.
+    #[cfg(feature = "python")]
+    pub const fn texts(self) -> [&'static str; 4] {
+        match self {
+            Self::Length => ["length", "R", "m", "mm"],
+            Self::Damping => ["damping", "M R sqrt(g R)", "N m s", "N m s"],
+            Self::Drag => ["drag", "M R^2", "N m s^2", "N m s²"],
+            Self::Viscosity => ["viscosity", "M g^(1/2)/R^(3/2)", "Pa s", "Pa s"],
+            Self::Layer => ["layer", "M g^(1/4) R^(7/4)", "N m s^1.5", "C"],
+        }
+    }
+
+    /// The exponents of metre, second and joule in the unit.
+    pub const fn exponents(self) -> [f64; 3] {
+        match self {
+            Self::Length => [1.0, 0.0, 0.0],
+            Self::Damping => [0.0, 1.0, 1.0],
+            Self::Drag => [0.0, 2.0, 1.0],
+            Self::Viscosity => [-3.0, 1.0, 1.0],
+            Self::Layer => [0.0, 1.5, 1.0],
+        }
+    }
+}
+
 /// A speed at whose zero the couple of a law is not smooth, because the law contains a root of the square of this speed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Speed {
@@ -51,6 +92,8 @@ pub(crate) struct EndPowers {
 pub(crate) trait LossLaw {
     /// The name of the coefficient.
     const PARAMETER: &'static str;
+    /// The unit of the coefficient.
+    const UNIT: Unit;
     /// The motion that the law resists.
     const RESISTS: Resists;
     /// The behaviour of the power near the ends of a drift.

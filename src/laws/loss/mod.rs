@@ -38,9 +38,9 @@ use crate::numbers::codes::coded;
 use core::ops::Add;
 pub(crate) use couples::{
     Couple, Couples, GRACE, Holds, Kinematics, NEAR, OwnCouple, SLACK, UnderCouple, Ways, going, holds,
-    mirrored, rolling_growth, rounded, still_needs,
+    reversed_turns, rolling_growth, rounded, still_needs,
 };
-pub(crate) use law::{EndPowers, LossLaw, Resists, Speed};
+pub(crate) use law::{EndPowers, LossLaw, Resists, Speed, Unit};
 
 /// The enumeration of the laws from the table below, and the call of the type that implements each law. The laws are
 /// called by `match`, so that they are inlined in lanes.
@@ -64,6 +64,11 @@ macro_rules! laws {
             /// The name of the coefficient of this law.
             pub fn parameter(self) -> &'static str {
                 match self { $(Self::$Law => $file::$Law::PARAMETER,)+ }
+            }
+
+            /// The unit of the coefficient of this law.
+            pub(crate) const fn unit(self) -> Unit {
+                match self { $(Self::$Law => $file::$Law::UNIT,)+ }
             }
 
             /// The motion that this law resists.

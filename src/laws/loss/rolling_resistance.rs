@@ -6,7 +6,7 @@
 //! The law is in Coulomb 1785 and any textbook. It resists rolling along the rim and rocking over it together. A thin
 //! disk has theta = (delta tau)^2/(9 I1) at the time tau before its end, and makes infinitely many turns until then.
 
-use super::{EndPowers, Kinematics, LossLaw, Resists, Speed};
+use super::{EndPowers, Kinematics, LossLaw, Resists, Speed, Unit};
 use crate::numbers::Real;
 
 /// The speed below which the couple falls to zero with the speed; squares of smaller speeds are rounded away.
@@ -17,6 +17,7 @@ pub(super) struct RollingResistance;
 
 impl LossLaw for RollingResistance {
     const PARAMETER: &str = "delta";
+    const UNIT: Unit = Unit::Length;
     const RESISTS: Resists = Resists::Rolling;
     const PRESSES: bool = true;
     const ROOT: Option<Speed> = Some(Speed::Rolling);

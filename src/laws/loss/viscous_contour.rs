@@ -7,7 +7,7 @@
 //! McDonald, arXiv physics/0008227 (2001). A thin disk has cos theta = exp(-2 c tau/(3 I1)) at the time tau before its
 //! end, and theta = (4 c tau/(3 I1))^(1/2) near the end.
 
-use super::{EndPowers, Kinematics, LossLaw, Resists};
+use super::{EndPowers, Kinematics, LossLaw, Resists, Unit};
 use crate::numbers::Real;
 
 #[derive(Debug)]
@@ -15,6 +15,7 @@ pub(super) struct ViscousContour;
 
 impl LossLaw for ViscousContour {
     const PARAMETER: &str = "c";
+    const UNIT: Unit = Unit::Damping;
     const RESISTS: Resists = Resists::Contour;
     const POWERS: EndPowers = EndPowers { face: [-1.0; 2], balanced: 3.0, critical: 2.0, upright: 2.0 };
 

@@ -1,5 +1,6 @@
 //! Generators of bodies and states, the independent model, and reference motions of that model.
 
+pub mod loss_power;
 pub mod many;
 pub mod rim;
 

@@ -1,6 +1,7 @@
 //! With the centre at rest: the table of the thin disk, energies, ends, refusals.
 
 use super::{apart, disk, drift, laws_of};
+use crate::common::loss_power::{LossRates, loss_power};
 use spincyl::drift::{Drift, End};
 use spincyl::loss::{Law, Losses};
 use spincyl::{Body, rolling, steady};
@@ -26,17 +27,9 @@ fn power(law: Law, theta: f64) -> f64 {
     let (s, c) = theta.sin_cos();
     let rate = 1.0 / (I1 * s).sqrt();
     let (spin, turn) = (c * rate, rate * s);
-    match law {
-        Law::DryContour => spin,
-        Law::ViscousContour => spin * spin,
-        Law::RollingResistance => s * spin,
-        Law::Drilling => s * turn,
-        Law::AirLinear => turn * turn,
-        Law::AirQuadratic => turn.powi(3),
-        Law::AirFilm => core::f64::consts::FRAC_PI_4 * spin * spin / s,
-        Law::BoundaryLayer => spin.powf(2.5),
-        law => panic!("{law}: its power is not in the table of tests/laws/drift/rest.rs"),
-    }
+    let (rolling, drilling) = (s * spin, s * turn);
+    let at = LossRates { weight: 1.0, spin, rolling, drilling, whole: turn, sine: s, radius: 1.0 };
+    loss_power(law, &at)
 }
 
 #[test]

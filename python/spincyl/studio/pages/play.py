@@ -19,11 +19,12 @@ from spincyl._ellipsoid import Ellipsoid
 from spincyl._ellipsoid_motion import EllipsoidMotion
 from spincyl._input.files import path_of, replaced
 from spincyl._input.numbers import flag, made, si, within
-from spincyl._loss import Loss, made_law
+from spincyl._loss import Loss, made_law, typed
 from spincyl._motion import Motion
 from spincyl._roll import roll
 from spincyl._scale import Scale
 from spincyl._state import State
+from spincyl.loss import KINDS
 from spincyl.studio.cards import drawing
 from spincyl.studio.pages.deflated import packed
 from spincyl.studio.pages.joined import filled, frame, line, script, style
@@ -367,9 +368,7 @@ def _rattling(words: dict[str, Any]) -> EllipsoidMotion:
     )
     push, unit = np.radians(0.02), made("scale", stone.scale, Scale).seconds(1.0)
     start = stone.spinning(words["spin"] * unit, pitch=push, roll=push)
-    motion = roll(stone, start, np.linspace(0.0, 20.0, 2401), want="pose")
-    assert isinstance(motion, EllipsoidMotion)
-    return motion
+    return roll(stone, start, np.linspace(0.0, 20.0, 2401), want="pose")
 
 
 def _needed(friction: bool, contact: AnyContact, losses: Loss | None, body: Body | None = None) -> None:
@@ -397,12 +396,18 @@ def _json(what: Any) -> str:
     return json.dumps(what, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
 
 
+def _body(friction: bool) -> str:
+    """The elements of the page, with the names of the loss laws and the scenes."""
+    laws = _json([*map(typed, KINDS.values())])
+    presets = _json([{"name": name, "state": told} for name, told in scenes(friction)])
+    return filled("play.body.html", {"laws": laws, "presets": presets})
+
+
 @cache
 def _packed(friction: bool) -> str:
     """The core and all text of the page, in the format that the loader unpacks."""
     core = decompress(files("spincyl.studio.pages").joinpath("cores", CORES[friction]).read_bytes())
-    presets = _json([{"name": name, "state": told} for name, told in scenes(friction)])
-    shown = filled("play.body.html", {"presets": presets})
+    shown = _body(friction)
     return packed(
         core, "\0".join([style(["play.css"]), shown, script(_SCRIPTS if friction else _LEAN)]).encode()
     )

@@ -1,22 +1,21 @@
 """The words in which the live page describes bodies, initial states, contacts and losses, and its scenes."""
 
-import re
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from spincyl import loss
 from spincyl._body import Body
 from spincyl._contact import AnyContact, Coulomb, Viscous, code, table
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._input.numbers import is_scalar, made, within
-from spincyl._loss import Law, Loss, sized
+from spincyl._loss import Loss, sized, typed
 from spincyl._measured import measured
 from spincyl._scale import Scale
 from spincyl._state import State
 from spincyl._throw import pressed, thrown
+from spincyl.loss import KINDS
 from spincyl.studio import parts_shape
 from spincyl.studio.surface import SHADE
 
@@ -104,8 +103,7 @@ def words_of_loss(losses: Loss | None) -> dict[str, Any]:
             f"losses = {losses!r}: expected one loss with a single coefficient, since a page has only one"
         )
     (law,) = losses.laws
-    name = re.sub(r"\B(?=[A-Z])", "-", type(law).__name__).lower()
-    return {"law": name, "loss": float(law.coefficient)}
+    return {"law": typed(type(law)), "loss": float(law.coefficient)}
 
 
 def body_of(words: Mapping[str, Any]) -> Body:
@@ -163,8 +161,8 @@ def losses_of(words: Mapping[str, Any]) -> Loss | None:
     name = words.get("law", "none")
     if name == "none" or not words.get("loss"):
         return None
-    law: Law = getattr(loss, "".join(map(str.capitalize, name.split("-"))))(words["loss"])
-    return sized(law)  # its unit was checked when it was set
+    (kind,) = (kind for kind in KINDS.values() if typed(kind) == name)
+    return sized(kind(words["loss"]))  # its unit was checked when it was set
 
 
 def scenes(friction: bool = True) -> Iterator[tuple[str, dict[str, Any]]]:

@@ -7,8 +7,8 @@ const RANGE = {
   precession: [-20, 20], mu: [0, 5], patch: [0, 0.5], c: [0, 20], restitution: [0, 1], loss: [0, 1], until: [1, 2000], slow: [1, 1000], t: [0, 1e9], expose: [0, 3], radius: [1e-6, 1e3], mass: [1e-9, 1e9], gravity: [1e-6, 1e6], twist: [-0.3, 0.3], spin: [-50, 50],
 };
 const CONTACTS = ["rolling", "smooth", "coulomb", "viscous"]; // in the order of the codes of the core
-// the loss laws in the order of the core: name and label
-const LAWS = { none: "none", "dry-contour": "dry contour", "viscous-contour": "viscous contour", "rolling-resistance": "rolling resistance", drilling: "drilling", "air-linear": "air, linear", "air-quadratic": "air, quadratic", "air-film": "air film", "boundary-layer": "boundary layer" };
+// the loss laws in the order of the core, which Python tells: name and label
+const LAWS = Object.fromEntries(["none", ...JSON.parse(document.getElementById("laws").textContent)].map(name => [name, name.replaceAll("-", " ")]));
 // i1 and i3 belong to a body that is not a tube, end is the inclination at which it lands, w is a state that is
 // not steady: w1, w2, w3 and the slip. radius, mass and gravity belong to a measured body, in metres,
 // kilograms and m/s^2. patch is the radius of the contact, in R. Without a restitution a motion ends where the body leaves the table. stone has the semi-axes of a rattleback in metres, twist is in radians and spin in
