@@ -3,6 +3,7 @@
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use spincyl::ensemble::{Job, MotionOutput, MotionStarts, roll};
+use spincyl::motion::{Ask, Method};
 use spincyl::{Body, steady};
 
 const COUNT: usize = 16_384;
@@ -71,14 +72,24 @@ fn ensembles(c: &mut Criterion) {
             })
         });
     };
-    let job = Job { beyond: true, ..Job::new(&times) };
+    let job = Job::new(&times).with_ask(Ask::default().with_beyond(true));
     for kick in [0.05, 0.4, 0.8] {
         bench(&format!("final state, kick {kick}"), many(kick), job, COUNT);
     }
     bench("final state, kick 0.05, one body", one(0.05), job, COUNT);
     bench("final state, kick 0.05, within 1e-6", many(0.05), Job { tol: 1e-6, ..job }, COUNT);
-    bench("final state, kick 0.05, its end watched", many(0.05), Job { beyond: false, ..job }, COUNT);
-    bench("rk4, a step of 0.01", many(0.05), Job { step: Some(0.01), ..job }, COUNT * 2000);
+    bench(
+        "final state, kick 0.05, its end watched",
+        many(0.05),
+        job.with_ask(job.ask.with_beyond(false)),
+        COUNT,
+    );
+    bench(
+        "rk4, a step of 0.01",
+        many(0.05),
+        job.with_ask(job.ask.with_method(Method::Step(0.01))),
+        COUNT * 2000,
+    );
     group.finish();
 }
 

@@ -190,7 +190,7 @@ def test_the_outcome_of_a_flick_that_goes_on_is_what_the_motion_says():
     [
         ({"restitution": None}, "^state: the body is in the air, height = 0.5: give restitution"),
         ({"restitution": -0.1}, "^restitution = -0.1: expected None, or 0 <= restitution <= 1"),
-        ({"restitution": np.nan}, "^restitution = nan: expected None, or"),
+        ({"restitution": np.nan}, "^restitution = NaN: expected None, or"),
         (
             {"restitution": 0.5, "contact": "rolling", "step": 1e-3},
             "^step = 0.001 cannot be combined with restitution=",

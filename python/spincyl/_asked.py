@@ -49,35 +49,34 @@ def crossing(
 
     Defaults are left out, since passing them can take longer than a short motion.
     """
-    _, t0, step, tol, _, contact, mu, beyond, want, restitution, losses, stop_at, max_nfev, *many = asked
-    spread, errors = many
-    options: dict[str, Any] = {"t0": t0} if t0 else {}
+    options: dict[str, Any] = {"t0": asked.t0} if asked.t0 else {}
+    contact, mu = asked.contact, asked.mu
     if contact != "rolling" or mu != math.inf:
         options["table"], options["coefficients"] = table(contact, mu, own=True)
         if not isinstance(contact, str) and contact._function is not None:
             options["friction"] = contact._function
-    if step is not None or tol is not None:
-        options |= {"step": step, "tol": tol}
-    if want:
-        options |= {"pose": "pose" in want, "force": "force" in want}
-    if beyond:
+    if asked.step is not None or asked.tol is not None:
+        options |= {"step": asked.step, "tol": asked.tol}
+    if asked.want:
+        options |= {"pose": "pose" in asked.want, "force": "force" in asked.want}
+    if asked.beyond:
         options["beyond"] = True
     if slip is not None:
         options["slip"] = slip
     if aloft is not None:
         options["aloft"] = aloft
-    if losses is not None:
-        own = losses._function
-        options |= {"losses": losses._coefficients} if own is None else {"couple": own}
-    if restitution is not None:
-        options["restitution"] = float(restitution)
-    if stop_at:
+    if asked.losses is not None:
+        own = asked.losses._function
+        options |= {"losses": asked.losses._coefficients} if own is None else {"couple": own}
+    if asked.restitution is not None:
+        options["restitution"] = float(asked.restitution)
+    if asked.stop_at:
         options["stop_at_rolling"] = True
-    if max_nfev is not None:
-        options["max_nfev"] = max_nfev
-    if spread:
+    if asked.max_nfev is not None:
+        options["max_nfev"] = asked.max_nfev
+    if asked.spread:
         options["spread"] = True
-    if not errors:
+    if not asked.errors:
         options["errors"] = False
     return options
 
@@ -120,6 +119,7 @@ def chosen(wants: tuple[Want | Iterable[Want], ...]) -> frozenset[Want]:
 def ask(
     state: State,
     t: Reals,
+    *,
     t0: float | None,
     step: float | None,
     tol: float | None,
@@ -180,5 +180,6 @@ def ask(
         check_contact(state, contact, restitution, given)
     # the default `want` is an empty tuple: `choices` would take longer than this test
     want = NOTHING if type(want) is tuple and not want else choices(want)
+    # by position, since names would take as long as all checks; a test compares the order
     asked = Asked(times, t0, step, tol, method, contact, mu, beyond, want, restitution, losses)
     return asked if max_nfev is None else asked._replace(max_nfev=evaluations(max_nfev))

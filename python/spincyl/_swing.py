@@ -113,8 +113,7 @@ def single(body: Body, state: State) -> tuple[_Six, _Four]:
     """The numbers of a single body and a single state."""
     of, at = made("body", body, Body)._numbers, numbers(state)
     (ell, i1, i3, bore, fillet, most), (theta, w1, w2, w3) = of, at
-    shape = type(ell) is type(i1) is type(i3) is type(bore) is type(fillet) is type(most) is float
-    if shape and type(theta) is type(w1) is type(w2) is type(w3) is float:
+    if body._single and type(theta) is type(w1) is type(w2) is type(w3) is float:
         return of, at
     for name, values in (("body", of), ("state", at)):
         if not is_scalar(*values):

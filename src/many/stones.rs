@@ -5,7 +5,7 @@ use crate::error::{Error, room};
 use crate::laws::loss::Losses;
 use crate::laws::stone::{Ellipsoid, StoneState};
 use crate::motions::Path;
-use crate::motions::stone::check;
+use crate::motions::stone::check_stone;
 use crate::motions::stone::followed;
 use crate::motions::stone::known::Recorded;
 use crate::motions::stone::turns::Reversals;
@@ -92,7 +92,7 @@ pub fn many(
     threads: usize,
     go_on: &mut dyn FnMut(f64) -> bool,
 ) -> Result<Option<Vec<StoneSummary>>, Error> {
-    check(&StoneState { vertical: [0.0, 0.0, 1.0], w: [0.0; 3] }.into(), times, ask)?;
+    check_stone(&StoneState { vertical: [0.0, 0.0, 1.0], w: [0.0; 3] }.into(), times, ask)?;
     let mut all = room(count)?;
     all.resize(count, StoneSummary::none(Ending::Invalid));
     let blocks = all.chunks_mut(16).enumerate().collect();

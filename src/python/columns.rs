@@ -57,7 +57,7 @@ impl<'a> FilledColumns<'a> {
 }
 
 /// A column of codes that is filled.
-pub fn codes<'py>(columns: &Bound<'py, PyDict>, name: &str) -> PyResult<PyReadwriteArray1<'py, u8>> {
+pub fn code_column<'py>(columns: &Bound<'py, PyDict>, name: &str) -> PyResult<PyReadwriteArray1<'py, u8>> {
     let found = columns.get_item(name)?;
     found.ok_or_else(|| PyValueError::new_err(format!("no column {name}")))?.extract()
 }

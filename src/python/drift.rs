@@ -1,7 +1,7 @@
 //! Slow drifts: the functions read and fill columns by name.
 
 use super::body_of;
-use super::columns::{GivenColumns, STATE, codes, numbers};
+use super::columns::{GivenColumns, STATE, code_column, numbers};
 use super::loss::parameters;
 use super::watch::Watch;
 use crate::error::room;
@@ -57,7 +57,7 @@ pub fn drift_stops<'py>(
     let given = GivenColumns::of(&given)?;
     let starts = starts(&given, centre)?;
     let (mut stops_at, mut ends_at_theta) = (numbers(&out, "stops_at")?, numbers(&out, "ends_at_theta")?);
-    let mut ended = codes(&out, "ended")?;
+    let mut ended = code_column(&out, "ended")?;
     let out = DriftOutput {
         stops_at: stops_at.as_slice_mut()?,
         ends_at_theta: ends_at_theta.as_slice_mut()?,

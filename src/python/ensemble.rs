@@ -1,14 +1,16 @@
 //! Many motions: the functions read and fill columns by name.
 
-use super::columns::{FilledColumns, GivenColumns, STATE, codes};
+use super::columns::{FilledColumns, GivenColumns, STATE, code_column};
 use super::custom::with_laws;
 use super::loss::parameters;
 use super::options::{MotionAsked, table_of};
 use super::watch::Watch;
+use crate::laws::loss::Losses;
 use crate::many::columns::LossColumns;
 use crate::many::motions::{
     CustomLaws, Job, MotionOutput, MotionStarts, SUMMARIES, Summary, roll_among, roll_custom,
 };
+use crate::motions::{Ask, Method};
 use numpy::{PyReadonlyArray1, PyReadwriteArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -70,20 +72,11 @@ pub fn ensemble<'py>(
         losses: given.some(parameters())?.map(LossColumns),
         aloft: given.some(["height", "lift"])?,
     };
-    let table = table_of(asked.table)?;
-    let job = Job {
-        table,
-        mu: if table.rubs() { f64::INFINITY } else { asked.coefficients[0] },
-        times: times.as_slice()?,
-        tol: asked.tol.ok_or_else(|| PyValueError::new_err("no option tol"))?,
-        step: asked.step,
-        beyond: asked.beyond,
-        restitution: asked.restitution,
-        max_evaluations: asked.max_nfev,
-        stop_at_rolling: asked.stop_at_rolling,
-        errors: asked.errors,
-    };
-    let (mut method, mut status) = (codes(&out, "method")?, codes(&out, "status")?);
+    let tol = asked.tol.ok_or_else(|| PyValueError::new_err("no option tol"))?;
+    let method = asked.step.map_or(Method::Exact, Method::Step);
+    let ask = Ask { method, losses: Losses::NONE, ..asked.ask_without_custom()? };
+    let job = Job { ask, times: times.as_slice()?, tol, errors: asked.errors };
+    let (mut method, mut status) = (code_column(&out, "method")?, code_column(&out, "status")?);
     let mut numbers: Vec<(String, PyReadwriteArray1<'py, f64>)> = Vec::new();
     for (name, x) in out.iter() {
         let name: String = name.extract()?;

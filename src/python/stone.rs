@@ -1,6 +1,6 @@
 //! Stones: their numbers, their constructors, the rocking of an upright spin, and many motions.
 
-use super::columns::{GivenColumns, codes, numbers};
+use super::columns::{GivenColumns, code_column, numbers};
 use super::options::MotionAsked;
 use super::watch::Watch;
 use crate::Error;
@@ -220,7 +220,7 @@ pub fn stones<'py>(
     let slip: [&[f64]; 2] = columns.all(["slip_x", "slip_y"])?;
     let friction = columns.some(["coefficient", "static", "patch"])?;
     let lost = columns.some(core::array::from_fn::<_, COUNT, _>(|i| Law::ALL[i].parameter()))?;
-    let mut status = codes(out, "status")?;
+    let mut status = code_column(out, "status")?;
     let status = status.as_slice_mut()?;
     let count = status.len();
     let at = |column: &[f64], i: usize| column[if column.len() == 1 { 0 } else { i }];

@@ -72,7 +72,7 @@ fn every_motion_in_lanes_has_the_state_that_is_claimed() {
     for r in motions().into_iter().filter(|r| r.kind == "state") {
         for tol in [1e-6, 1e-10, 1e-13] {
             let times = [r.t];
-            let job = Job { table: r.contact.into(), tol, beyond: true, ..Job::new(&times) };
+            let job = Job { ask: Ask::on(r.contact).with_beyond(true), tol, ..Job::new(&times) };
             let many = Many::of(&[(r.body, r.start)]).run(&job, 1);
             let off = distance(&many.last(0), &r.values);
             assert!(off <= many.error[0], "{}: {off} > {}", r.scene, many.error[0]);
@@ -90,8 +90,8 @@ fn lanes_and_single_motions_agree_within_what_both_claim() {
     let times = [0.3, 5.0, 40.0];
     for (all, least) in [(kicked(drawn(1000)), drawn(700)), (kicked_rounded(drawn(600)), drawn(300))] {
         for (contact, tol) in BOTH.into_iter().flat_map(|of| [1e-6, 1e-11, 1e-13].map(|tol| (of, tol))) {
-            let many =
-                Many::of(&all).run(&Job { table: contact.into(), tol, beyond: true, ..Job::new(&times) }, 2);
+            let many = Many::of(&all)
+                .run(&Job { ask: Ask::on(contact).with_beyond(true), tol, ..Job::new(&times) }, 2);
             let mut lanes = 0;
             for (i, (body, start)) in all.iter().enumerate() {
                 let in_lanes = many.method[i] == Answer::Lanes as u8;
@@ -130,7 +130,7 @@ fn ends_are_those_of_single_motions() {
     all.extend([kicked(600), kicked_rounded(800), kicked_softly(200)].concat());
     let times = [2.0, 8.0];
     for mu in [f64::INFINITY, 0.3] {
-        let many = Many::of(&all).run(&Job { mu, ..Job::new(&times) }, 2);
+        let many = Many::of(&all).run(&Job::new(&times).with_ask(Ask::on(Table::Rolling { mu })), 2);
         let mut ended = [0, 0];
         for (i, (body, y)) in all.iter().enumerate() {
             let Ok(alone) = moved(body, y, &times, Ask::default().with_table(Table::Rolling { mu })) else {
@@ -154,7 +154,7 @@ fn the_extremes_are_those_of_a_dense_look() {
     let all = kicked(120);
     for span in [0.4, 9.0, -3.0] {
         let times = [span];
-        let many = Many::of(&all).run(&Job { beyond: true, ..Job::new(&times) }, 2);
+        let many = Many::of(&all).run(&Job::new(&times).with_ask(Ask::default().with_beyond(true)), 2);
         for (i, (body, y)) in all.iter().enumerate() {
             let Ok(swing) = Swing::new(body, y, Contact::Rolling, false) else { continue };
             let mut found = [f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY, 0.0];
@@ -192,7 +192,8 @@ fn c4_c5_no_bit_depends_on_threads_neighbours_or_place() {
         let mixed = kicked_rounded(count).into_iter().zip(kicked_softly(count));
         let mut all: Vec<_> = mixed.flat_map(|(a, b)| [a, b]).collect();
         all.extend(kicked(more));
-        let job = Job { step, ..Job::new(&times) };
+        let job =
+            Job::new(&times).with_ask(Ask::default().with_method(step.map_or(Method::Exact, Method::Step)));
         let whole = Many::of(&all).run(&job, 1);
         for threads in [2, 3, 4, 5, 7, 16] {
             let other = Many::of(&all).run(&job, threads);
@@ -250,7 +251,8 @@ fn a_fillet_of_nothing_and_an_end_of_its_own_are_what_a_body_has_by_itself() {
 fn rk4_in_lanes_is_rk4() {
     let all = kicked(128);
     let times = [1.0, 2.505];
-    let many = Many::of(&all).run(&Job { step: Some(0.01), beyond: true, ..Job::new(&times) }, 1);
+    let many = Many::of(&all)
+        .run(&Job::new(&times).with_ask(Ask::default().with_method(Method::Step(0.01)).with_beyond(true)), 1);
     let mut lanes = 0;
     for (i, (body, y)) in all.iter().enumerate() {
         if many.method[i] != Answer::Step as u8 {
@@ -269,8 +271,11 @@ fn rk4_in_lanes_is_rk4() {
     }
     assert!(lanes > 100, "{lanes}");
     // half the step has a sixteenth of the error, where that is well above the error of exact motions
-    let exact = Many::of(&all).run(&Job { beyond: true, ..Job::new(&times) }, 1);
-    let fine = Many::of(&all).run(&Job { step: Some(0.005), beyond: true, ..Job::new(&times) }, 1);
+    let exact = Many::of(&all).run(&Job::new(&times).with_ask(Ask::default().with_beyond(true)), 1);
+    let fine = Many::of(&all).run(
+        &Job::new(&times).with_ask(Ask::default().with_method(Method::Step(0.005)).with_beyond(true)),
+        1,
+    );
     let clear = (0..all.len()).filter(|i| fine.error[*i] > 50.0 * exact.error[*i]);
     let ratios: Vec<f64> = clear.map(|i| many.error[i] / fine.error[i]).collect();
     assert!(ratios.len() > 5 && ratios.iter().all(|r| (12.0..18.0).contains(r)), "{ratios:?}");
@@ -328,9 +333,14 @@ fn what_makes_no_sense_is_refused_or_marked() {
     assert!(refused(&Job::new(&[])).contains("at least one time"));
     assert!(refused(&Job::new(&[1.0, 0.5])).contains("in order"));
     assert!(refused(&Job { tol: 0.0, ..Job::new(&times) }).starts_with("tol = 0.0"));
-    assert!(refused(&Job { table: TableKind::Coulomb, ..Job::new(&times) }).starts_with("mu = inf"));
-    assert!(refused(&Job { mu: f64::NAN, ..Job::new(&times) }).starts_with("mu = NaN"));
-    assert!(refused(&Job { step: Some(0.0), ..Job::new(&times) }).starts_with("step = 0.0"));
+    assert!(refused(&Job::new(&times).with_ask(Ask::on(TableKind::Coulomb))).starts_with("mu = inf"));
+    assert!(
+        refused(&Job::new(&times).with_ask(Ask::on(Table::Rolling { mu: f64::NAN }))).starts_with("mu = NaN")
+    );
+    assert!(
+        refused(&Job::new(&times).with_ask(Ask::default().with_method(Method::Step(0.0))))
+            .starts_with("step = 0.0")
+    );
 }
 
 #[test]
@@ -349,7 +359,7 @@ fn a_body_released_at_rest_falls() {
     // a wide swing that starts next to its turning point: half the digits of its phase were lost
     let body = Body::solid(2.8057204670343325).unwrap();
     let y = State { theta: 0.2718205029824101, w1: 0.10806715919341818, w2: 0.0, w3: 0.3032062403632308 };
-    let lanes = Many::of(&[(body, y)]).run(&Job { beyond: true, ..Job::new(&[7.0]) }, 1);
+    let lanes = Many::of(&[(body, y)]).run(&Job::new(&[7.0]).with_ask(Ask::default().with_beyond(true)), 1);
     let swing = Swing::new(&body, &y, Contact::Rolling, false).unwrap();
     let off = distance(&lanes.last(0), &numbers(&swing.state(7.0)));
     assert!(off <= lanes.error[0] + swing.error(7.0) && off < 1e-12, "{off:e}, claimed {:e}", lanes.error[0]);
@@ -368,7 +378,7 @@ fn starts_at_rest_or_almost_go_the_way_of_an_integrator_by_every_route() {
         let exact = moved(&body, &y, &times, scene.with_method(Method::Exact)).unwrap();
         let posed = moved(&body, &y, &times, scene.with_method(Method::Exact).with_pose(true)).unwrap();
         let lanes =
-            Many::of(&[(body, y)]).run(&Job { table: contact.into(), beyond: true, ..Job::new(&times) }, 1);
+            Many::of(&[(body, y)]).run(&Job::new(&times).with_ask(Ask::on(contact).with_beyond(true)), 1);
         let there = truth.states.len();
         assert!(exact.states.len() == there && posed.states.len() == there, "{y:?}");
         let Some(there) = truth.states.first() else { continue };
@@ -389,7 +399,7 @@ fn starts_at_rest_or_almost_go_the_way_of_an_integrator_by_every_route() {
 
 /// Whether a steady state is unchanged at a time, within its claim.
 fn stays(body: &Body, y: &State, t: f64) -> bool {
-    let many = Many::of(&[(*body, *y)]).run(&Job { beyond: true, ..Job::new(&[t]) }, 1);
+    let many = Many::of(&[(*body, *y)]).run(&Job::new(&[t]).with_ask(Ask::default().with_beyond(true)), 1);
     distance(&many.last(0), &numbers(y)) <= many.error[0]
 }
 
@@ -413,7 +423,7 @@ proptest! {
     fn no_state_gives_a_wrong_number_unmarked(body in prop_oneof![2 => any_body(), 1 => any_rounded()], y in any_state(), t in 0.0..30.0f64) {
         let times = [t];
         for contact in BOTH {
-            let many = Many::of(&[(body, y)]).run(&Job { table: contact.into(), beyond: true, ..Job::new(&times) }, 1);
+            let many = Many::of(&[(body, y)]).run(&Job::new(&times).with_ask(Ask::on(contact).with_beyond(true)), 1);
             if many.method[0] != Answer::Lanes as u8 {
                 continue;
             }

@@ -285,6 +285,6 @@ fn a_start_in_the_air_needs_a_restitution_and_a_place_above_the_table() {
         of(1.0, &far)
             .unwrap_err()
             .to_string()
-            .starts_with("restitution = 1.01: expected 0 <= restitution <= 1")
+            .starts_with("restitution = 1.01: expected None, or 0 <= restitution <= 1")
     );
 }

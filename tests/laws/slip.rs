@@ -281,7 +281,7 @@ fn together(of: &[Vec<f64>; 4], times: &[f64], threads: usize) -> (Vec<Vec<f64>>
     out.last = Some(core::array::from_fn(|_| columns.next().unwrap()));
     out.last_slip = Some(core::array::from_fn(|_| columns.next().unwrap()));
     out.summary = core::array::from_fn(|_| summary.next().unwrap());
-    let job = Job { table: TableKind::Coulomb, tol: 1e-12, ..Job::new(times) };
+    let job = Job { ask: Ask::on(TableKind::Coulomb), tol: 1e-12, ..Job::new(times) };
     assert!(roll(&starts, &job, out, threads, |_| true).unwrap());
     (last.into_iter().chain(sums).collect(), error, status)
 }

@@ -2,7 +2,7 @@
 
 use crate::common::{numbers, path_of, wander};
 use core::f64::consts::FRAC_PI_2;
-use spincyl::contact::{Friction, TableKind};
+use spincyl::contact::{Friction, Table, TableKind};
 use spincyl::ensemble::{Answer, Job, MotionOutput, MotionStarts, SUMMARIES, Summary, roll};
 use spincyl::motion::path::Kind;
 use spincyl::motion::{Ask, Ending, Method, Motion, Start, roll_with};
@@ -32,7 +32,7 @@ impl Swept {
         let [mu, fixed] = [0, 1].map(|k| column(&|a| a.2[k]));
         let mut starts =
             MotionStarts::new(bodies.each_ref().map(Vec::as_slice), states.each_ref().map(Vec::as_slice));
-        if job.table.rubs() {
+        if job.ask.table.rubs() {
             starts.coefficients = Some([&mu, &fixed, &[0.0]]);
         }
         let (count, times) = (all.len(), job.times.len());
@@ -90,7 +90,7 @@ fn scenes(count: usize, seed: u64) -> Scenes {
 fn alone((body, y, [mu, fixed]): &(Body, State, [f64; 2]), job: &Job<'_>) -> Result<Motion, Error> {
     let table = Friction::Coulomb { mu: *mu, fixed: *fixed, patch: 0.0 };
     let mut ask = Ask::on(table).with_method(Method::Tolerance(job.tol));
-    ask.restitution = job.restitution;
+    ask.restitution = job.ask.restitution;
     let found = roll_with(body, Start::from(*y), job.times, &ask, || true);
     found.map(|motion| motion.expect("nobody interrupts"))
 }
@@ -103,9 +103,9 @@ fn a_body_that_static_friction_holds_moves_as_with_a_largest_coefficient_and_by_
             (body, steady::state(&body, 1.3).unwrap().kicked(0.05), [5.0; 2])
         })
         .collect();
-    let limited = Job { mu: 5.0, tol: 1e-8, ..Job::new(&[20.0]) };
+    let limited = Job { ask: Ask::on(Table::Rolling { mu: 5.0 }), tol: 1e-8, ..Job::new(&[20.0]) };
     let rolling = Swept::of(&all, &limited);
-    let rubbing = Swept::of(&all, &Job { table: TableKind::Coulomb, ..limited });
+    let rubbing = Swept::of(&all, &limited.with_ask(limited.ask.with_table(TableKind::Coulomb)));
     assert!(rubbing.status.iter().all(|status| *status == Ending::Done as u8));
     if rolling.method[0] == Answer::Lanes as u8 {
         assert!(rubbing.method == rolling.method && rubbing.error == rolling.error);
@@ -125,9 +125,8 @@ fn side_by_side_under_dry_friction_a_motion_is_what_it_is_alone() {
         for times in [&[12.0][..], &[0.0, 1.5, 6.0, 12.0]] {
             let all = scenes(if restitution.is_none() { 160 } else { 30 }, 40 + k as u64);
             let job = Job {
-                table: TableKind::Coulomb,
+                ask: Ask::on(TableKind::Coulomb).with_restitution(restitution),
                 tol: [1e-6, 1e-9, 1e-12][k],
-                restitution,
                 ..Job::new(times)
             };
             let found = Swept::of(&all, &job);
@@ -214,7 +213,11 @@ fn rolling_between_slips_takes_steps_and_rolling_for_ever_none() {
 #[test]
 fn without_estimated_errors_a_motion_has_the_same_bits() {
     for restitution in [None, Some(0.5)] {
-        let job = Job { table: TableKind::Coulomb, tol: 1e-8, restitution, ..Job::new(&[2.0, 9.0]) };
+        let job = Job {
+            ask: Ask::on(TableKind::Coulomb).with_restitution(restitution),
+            tol: 1e-8,
+            ..Job::new(&[2.0, 9.0])
+        };
         let all = scenes(60, 50);
         let [with, without] = [true, false].map(|errors| Swept::of(&all, &Job { errors, ..job }));
         assert!(with.bits() == without.bits());

@@ -28,7 +28,7 @@ from spincyl._input.numbers import (
 )
 from spincyl._input.progress import Progress
 from spincyl._input.threads import is_roomy
-from spincyl._loss import Loss, made_law
+from spincyl._loss import LAWS, Loss, made_law
 from spincyl._lossy import narrow
 from spincyl._measured import natural_time, speaking
 from spincyl._phases import rubs, struck
@@ -255,7 +255,17 @@ def roll(
             raise ValueError(
                 "step, beyond, stop_at, errors: only for bodies of revolution; leave them out for stones"
             )
-        stones = _stones.question(bodies, states, t, want, contact, tol, mu, losses, max_nfev)
+        stones = _stones.question(
+            bodies,
+            states,
+            t,
+            want=want,
+            contact=contact,
+            tol=tol,
+            mu=mu,
+            losses=losses,
+            max_nfev=max_nfev,
+        )
         labels = LABELS | _stones.LABELS
         found = swept(_stones.fill, stones, labels, threads=threads, progress=progress, length="a")
         if losses is not None:
@@ -326,7 +336,7 @@ def _checked(asked: Asked, losses: Loss | None) -> Asked:
     if not rubs(contact) and asked.stop_at is not None:
         raise ValueError("stop_at: needs contact=sc.Coulomb(...) or contact=sc.Viscous(...)")
     if asked.restitution is not None:
-        within("restitution", number("restitution", asked.restitution), 0.0, 1.0, "or None")
+        number("restitution", asked.restitution)  # its range is known to the core
     struck(asked.restitution, contact)
     one_of("stop_at", asked.stop_at, (None, "rolling"))
     if rubs(contact) or losses is not None or asked.restitution is not None:
@@ -354,8 +364,7 @@ def _fields(bodies: Body, states: State, contact: AnyContact, losses: Loss | Non
     if states.height is not None:
         fields |= {"height": states.height, "lift": states.lift}
     if losses is not None and losses._function is None:
-        names = (name for name, _ in _core.loss_laws())
-        fields |= zip(names, losses._coefficients, strict=True)
+        fields |= zip(LAWS, losses._coefficients, strict=True)
     return fields
 
 

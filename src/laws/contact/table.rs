@@ -40,6 +40,13 @@ impl From<Contact> for Table {
     }
 }
 
+impl From<TableKind> for Table {
+    /// The law of this kind for many motions with coefficients of their own: here they are infinite, without a patch.
+    fn from(kind: TableKind) -> Self {
+        kind.with([f64::INFINITY, f64::INFINITY, 0.0])
+    }
+}
+
 impl Table {
     /// Rolling with this coefficient of friction; or smooth, where the coefficient is ignored.
     pub fn of(contact: Contact, mu: f64) -> Self {

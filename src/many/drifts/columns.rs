@@ -6,7 +6,7 @@ use crate::laws::loss::Losses;
 use crate::laws::state::State;
 use crate::many::columns::{LossColumns, Split, at, fit, rows};
 use crate::motions::drift::rest::Rest;
-use crate::motions::drift::{Drift, End, check};
+use crate::motions::drift::{Drift, End, check_drift};
 
 /// The motion of the centre during a drift. Arrays hold the number of the variant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -92,7 +92,7 @@ impl DriftRow {
     /// The end of the drift with the centre at rest, its inclination and its time.
     pub(crate) fn end_at_rest(&self) -> Result<(End, f64, f64), Error> {
         let body = self.body()?;
-        check(&body, &self.losses)?;
+        check_drift(&body, &self.losses)?;
         Ok(Rest::unwatched(&body, self.state[0], &self.losses)?.end())
     }
 }

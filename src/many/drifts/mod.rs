@@ -54,7 +54,7 @@ fn all(
     let blocks = blocks(out, count, DRIFTS_PER_BLOCK)?;
     Ok(share(blocks, threads, go_on, |RowBlock { first, count, mut out }, still| {
         if starts.centre == Centre::Rolling {
-            return rolling_lanes::stops(level(), starts, first, &mut out, still);
+            return rolling_lanes::rolling_stops(level(), starts, first, &mut out, still);
         }
         let (round, sharp): (Vec<usize>, Vec<usize>) =
             (first..first + count).partition(|i| starts.is_rounded(*i));

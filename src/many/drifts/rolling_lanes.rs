@@ -196,13 +196,13 @@ impl Waiting<4, DRIFT_MARGINS> for Drifts<'_, '_, '_> {
 
 fn begin(row: &DriftRow) -> Result<(Rolling<'static>, Numbers<f64>), Error> {
     let body = row.body()?;
-    crate::motions::drift::check(&body, &row.losses)?;
+    crate::motions::drift::check_drift(&body, &row.losses)?;
     Rolling::begin(&body, &State::from(row.state), &row.losses)
 }
 
 /// Computes the ends of the drifts from `first` on, for all rows of `out`. Only drifts under the same laws
 /// share their lanes: a law with the coefficient 0 would not change a drift, but its rates may overflow.
-pub(crate) fn stops(
+pub(crate) fn rolling_stops(
     level: Option<Level>,
     starts: &DriftStarts<'_>,
     first: usize,

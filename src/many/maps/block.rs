@@ -46,7 +46,7 @@ impl Slot<'_> {
                 if !gaps && count == T::COUNT {
                     x.spill(out)
                 } else {
-                    put(out, x, gaps, |x| !x.is_nan(), |x| x)
+                    put_lanes(out, x, gaps, |x| !x.is_nan(), |x| x)
                 }
             }
             Self::Single(out) => {
@@ -54,7 +54,7 @@ impl Slot<'_> {
                 if !gaps && count == T::COUNT {
                     T::spill_single(x.single(), out);
                 } else {
-                    put(out, x, gaps, |x| !x.is_nan(), |x| x as f32);
+                    put_lanes(out, x, gaps, |x| !x.is_nan(), |x| x as f32);
                 }
             }
         }
@@ -79,7 +79,7 @@ impl Part for Option<Slot<'_>> {
 
 /// Stores the lanes that fit; with `gaps` only those that are `known`.
 #[inline(always)]
-fn put<T: Narrow, F>(
+fn put_lanes<T: Narrow, F>(
     out: &mut [F],
     x: T,
     gaps: bool,
@@ -161,7 +161,13 @@ impl<'a> Block<'a> {
         }
         if let Some(out) = &mut self.region {
             // In the lane of a body with the other kind of rim the code is 0, `Region::Invalid`.
-            put(&mut out[start..start + count], found.region, gaps, |code| code > 0.0, |code| code as u8);
+            put_lanes(
+                &mut out[start..start + count],
+                found.region,
+                gaps,
+                |code| code > 0.0,
+                |code| code as u8,
+            );
         }
     }
 }

@@ -114,7 +114,7 @@ fn portrait_of(
     go_on: &mut dyn FnMut(f64) -> bool,
 ) -> Result<bool, Error> {
     let only_rate = out.is_rate();
-    let Some(columns) = gathered(bodies, only_rate, go_on)? else { return Ok(false) };
+    let Some(columns) = body_columns(bodies, only_rate, go_on)? else { return Ok(false) };
     let (count, level) = (bodies.len(), level());
     let mixed = columns.sharp.is_some() || columns.lean.is_some();
     let (mut rest, mut blocks) = (out, room(tiles(theta, count).count())?);
@@ -147,7 +147,7 @@ pub(super) struct Columns {
 }
 
 /// The bodies in columns; None if `go_on` returns false.
-fn gathered(
+fn body_columns(
     bodies: &[Option<Body>],
     only_rate: bool,
     go_on: &mut dyn FnMut(f64) -> bool,

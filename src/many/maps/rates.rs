@@ -83,11 +83,11 @@ pub(super) fn rows_at(
     width: usize,
     out: &mut Slot<'_>,
 ) {
-    in_lanes!(level, simd => rows(zero(simd), theta, columns, width, out), else unreachable!("{ALONE}"));
+    in_lanes!(level, simd => rate_rows(zero(simd), theta, columns, width, out), else unreachable!("{ALONE}"));
 }
 
 #[inline(always)]
-fn rows<S: Simd>(like: f64x8<S>, theta: &[f64], columns: &[Lean], width: usize, out: &mut Slot<'_>) {
+fn rate_rows<S: Simd>(like: f64x8<S>, theta: &[f64], columns: &[Lean], width: usize, out: &mut Slot<'_>) {
     for (from, columns) in near(columns) {
         let part = from..(from + columns.len() * LANES).min(width);
         for (row, &theta) in theta.iter().enumerate() {
@@ -126,7 +126,7 @@ fn rows<S: Simd>(like: f64x8<S>, theta: &[f64], columns: &[Lean], width: usize, 
 /// The minimum and the maximum of the squared rate in some rows of a map. Points that can be neither are excluded
 /// without a division, and many rows at once.
 pub(super) fn extremes_at(level: Option<Level>, theta: &[f64], columns: &[Lean], width: usize) -> Extrema {
-    in_lanes!(level, simd => extremes(zero(simd), theta, columns, width), else unreachable!("{ALONE}"))
+    in_lanes!(level, simd => rate_extremes(zero(simd), theta, columns, width), else unreachable!("{ALONE}"))
 }
 
 /// Number of rows whose columns are examined together: a column is skipped if no inclination between the
@@ -134,7 +134,7 @@ pub(super) fn extremes_at(level: Option<Level>, theta: &[f64], columns: &[Lean],
 const RUN: usize = 16;
 
 #[inline(always)]
-fn extremes<S: Simd>(like: f64x8<S>, theta: &[f64], columns: &[Lean], width: usize) -> Extrema {
+fn rate_extremes<S: Simd>(like: f64x8<S>, theta: &[f64], columns: &[Lean], width: usize) -> Extrema {
     let mut best = Best::nothing(like);
     let mut bounds = [like.splat(f64::INFINITY), like.splat(f64::NEG_INFINITY)];
     let mut passing = Vec::with_capacity(columns.len());

@@ -3,7 +3,7 @@
 
 use super::best::{Best, Extrema};
 use super::rates::{Lean, extremes_at};
-use super::{gathered, tiles};
+use super::{body_columns, tiles};
 use crate::error::{Error, room};
 use crate::laws::body::Body;
 use crate::many::threads::share;
@@ -35,7 +35,7 @@ fn found(
     go_on: &mut dyn FnMut(f64) -> bool,
 ) -> Result<Option<[Extrema; 4]>, Error> {
     let only_rate = wanted == [true, false, false, false];
-    let Some(columns) = gathered(bodies, only_rate, go_on)? else { return Ok(None) };
+    let Some(columns) = body_columns(bodies, only_rate, go_on)? else { return Ok(None) };
     let mut whole = [None; 4];
     let level = crate::numbers::level();
     if let Some(columns) = &columns.lean {

@@ -4,11 +4,10 @@ use super::columns::TimedOutput;
 use super::{Job, MotionBlock, MotionOutput, MotionStarts, RowBlock, blocks};
 use crate::error::{Error, spare};
 use crate::laws::custom::Custom;
-use crate::laws::loss::Losses;
 use crate::many::threads::share_aside;
 use crate::methods::beat::Beat;
+use crate::motions::Start;
 use crate::motions::custom::{check_options, followed};
-use crate::motions::{Ask, Method};
 use std::sync::OnceLock;
 
 /// Number of such motions in a block.
@@ -39,7 +38,7 @@ pub(crate) fn roll_custom(
         CustomLaws::Here(custom) => *custom,
         CustomLaws::Anywhere(of) => of(),
     };
-    check_options(&job.ask(None, Losses::NONE), &custom)?;
+    check_options(&job.ask, &custom)?;
     spare()?;
     let mut out = TimedOutput { out, times };
     match laws {
@@ -80,10 +79,7 @@ impl MotionBlock<'_> {
         let (starts, job, mut checked) = (self.starts, self.job, None);
         for k in 0..count {
             let i = self.first + k;
-            let ask = Ask {
-                method: Method::Tolerance(job.tol),
-                ..job.ask(starts.coefficients(i), starts.losses(i))
-            };
+            let ask = job.ask_of(starts.coefficients(i), starts.losses(i));
             let body = starts.body(i);
             // A law may be checked once for all motions of a body, but it is at fault for whatever it does.
             if let Ok(body) = body

@@ -21,8 +21,7 @@ use crate::motions::body::BodyWalk;
 use crate::motions::body::spun::knows;
 use crate::motions::walk::Pause;
 use crate::motions::walk::two_runs::{Followed, rougher};
-use crate::motions::{Ask, Ending, Method};
-use crate::motions::{Kind, Phase};
+use crate::motions::{Ending, Kind, Phase};
 use crate::numbers::in_lanes;
 use crate::numbers::side_by_side::{SideBySide, zero};
 use fearless_simd::Level;
@@ -101,10 +100,7 @@ impl<'a> MotionBlock<'a> {
         for k in left {
             let (starts, i) = (self.starts, self.first + k);
             let body = starts.body(i);
-            let ask = Ask {
-                method: Method::Tolerance(self.job.tol),
-                ..self.job.ask(starts.coefficients(i), starts.losses(i))
-            };
+            let ask = self.job.ask_of(starts.coefficients(i), starts.losses(i));
             if let Ok(body) = body
                 && knows(&body, &ask)
             {
@@ -125,9 +121,7 @@ impl<'a> MotionBlock<'a> {
             walked.push(k);
             for &tol in tols {
                 let walk = body.and_then(|body| BodyWalk::of_body(&body, &ask, tol, times, &starts.start(i)));
-                all.walks.push(
-                    walk.map(|walk| walk.rolling_among(wide && can_roll_among(self.job.table, &ask.table))),
-                );
+                all.walks.push(walk.map(|walk| walk.rolling_among(wide && can_roll_among(&ask.table))));
             }
         }
         for i in 0..all.walks.len() {

@@ -144,7 +144,7 @@ impl MotionBlock<'_> {
 
     /// The number of series in `TERMS` that are tried for the motions of this job.
     fn series(&self, round: bool) -> usize {
-        if !self.job.beyond && can(self, round) { SHORT } else { TERMS.len() }
+        if !self.job.ask.beyond && can(self, round) { SHORT } else { TERMS.len() }
     }
 
     /// The motions sorted by the shortest series that may be precise enough, and the motions that are too
@@ -190,7 +190,7 @@ impl MotionBlock<'_> {
         let Some(mut worst) = self.write_states(swings, row, some, out, go_on) else { return };
         self.write_periods(swings, some, &mut worst, out);
         let sure = self.sure(swings, row, some, &worst[..some.len()], out);
-        let answer = if self.job.step.is_some() { Answer::Step } else { Answer::Lanes };
+        let answer = if self.job.step().is_some() { Answer::Step } else { Answer::Lanes };
         if let Some(first) = in_a_row(some).filter(|_| sure[..some.len()].iter().all(|sure| *sure)) {
             let here = first..first + some.len();
             out.error[here.clone()].copy_from_slice(&worst[..some.len()]);
@@ -232,7 +232,7 @@ impl MotionBlock<'_> {
     ) -> Option<[f64; MOST]> {
         let (job, like, times) = (self.job, row.theta_end, self.job.times.len());
         let row_at = in_a_row(some);
-        let mut walk = job.step.map(|step| {
+        let mut walk = job.step().map(|step| {
             apart(
                 like,
                 #[inline(always)]
@@ -320,16 +320,16 @@ impl MotionBlock<'_> {
         for (sure, worst) in sure.iter_mut().zip(worst) {
             *sure = worst.is_finite();
         }
-        if let Some(step) = job.step {
+        if let Some(step) = job.step() {
             let fastest_turn = swings.fastest_turn();
             for (k, sure) in sure[..some.len()].iter_mut().enumerate() {
                 *sure &= fastest_turn.lane(k) * step.abs() < CAREFUL;
             }
         }
-        let inclined = !job.beyond || out.wants(Summary::ThetaMin) || out.wants(Summary::ThetaMax);
+        let inclined = !job.ask.beyond || out.wants(Summary::ThetaMin) || out.wants(Summary::ThetaMax);
         let [low, high] = if inclined { swings.inclinations(span) } else { [span; 2] };
         let least = |grip: Grip, roughly: bool| swings.least(grip, span, roughly);
-        if !job.beyond {
+        if !job.ask.beyond {
             let normal = least(Grip::Normal, true);
             let slips = if self.may_slip() { Some(least(Grip::Friction, true)) } else { None };
             for (k, sure) in sure[..some.len()].iter_mut().enumerate() {
@@ -373,12 +373,13 @@ const CAREFUL: f64 = 0.25;
 mod tests {
     use super::super::{Job, MotionStarts, SUMMARIES};
     use super::*;
-    use crate::laws::contact::TableKind;
+    use crate::laws::contact::Table;
+    use crate::motions::{Ask, Method};
 
     /// All results of some motions, as bits.
     fn bits(
         run: impl Fn(&MotionBlock<'_>, usize, &mut MotionOutput<'_>) -> Vec<usize>,
-        (table, fillet): (TableKind, f64),
+        (table, fillet): (Contact, f64),
     ) -> Vec<u64> {
         const COUNT: usize = 90;
         let column =
@@ -395,10 +396,12 @@ mod tests {
         let starts =
             MotionStarts::new(bodies.each_ref().map(Vec::as_slice), states.each_ref().map(Vec::as_slice));
         let times = [1.0, 30.0];
-        let job = Job { table, step: Some(0.01), ..Job::new(&times) };
+        let exact = Job::new(&times).with_ask(Ask::on(table));
+        let stepped = exact.with_ask(exact.ask.with_method(Method::Step(0.01)));
         let mut all = Vec::new();
-        let exact = Job { step: None, ..job };
-        for job in [job, exact, Job { beyond: true, ..exact }, Job { mu: 0.3, ..exact }] {
+        let beyond = exact.with_ask(exact.ask.with_beyond(true));
+        let limited = exact.with_ask(exact.ask.with_table(Table::of(table, 0.3)));
+        for job in [stepped, exact, beyond, limited] {
             let mut last: [Vec<f64>; 4] = core::array::from_fn(|_| vec![7.0; COUNT]);
             let mut sums: [Vec<f64>; SUMMARIES] = core::array::from_fn(|_| vec![7.0; COUNT]);
             let (mut error, mut method, mut status) = (vec![7.0; COUNT], vec![7; COUNT], vec![7; COUNT]);

@@ -32,9 +32,9 @@ pub use super::columns::LossColumns;
 use super::columns::{RowBlock, blocks};
 use super::threads::share_aside;
 use crate::error::{Error, spare, spare_for, within};
-use crate::laws::contact::{Contact, TableKind};
+use crate::laws::contact::{Contact, Table};
 use crate::laws::loss::Losses;
-use crate::motions::ask::{check, check_flow, check_times_after};
+use crate::motions::ask::{check_conserving, check_flow, check_times_after};
 use crate::motions::{Ask, Method};
 use crate::numbers::codes::coded;
 use columns::TimedOutput;
@@ -43,28 +43,17 @@ pub(crate) use customs::{CustomLaws, roll_custom};
 use fearless_simd::Level;
 use std::sync::OnceLock;
 
-/// The options that are the same for all motions of a call.
+/// What is the same for all motions of a call: the options, the times and the tolerance.
 #[derive(Debug, Clone, Copy)]
 pub struct Job<'a> {
-    /// The kind of contact of all motions.
-    pub table: TableKind,
-    /// Coefficient of friction of all contacts without coefficients of their own, finite where bodies may slip; if it
-    /// is infinite, rolling never ends by slip.
-    pub mu: f64,
+    /// The options of every motion. Coefficients of friction that the motions have themselves replace those of
+    /// [`Ask::table`], which is then only the kind of contact. [`Ask::method`] is exact, or a fixed step. Losses are
+    /// columns of [`MotionStarts`], and poses and forces belong to single motions.
+    pub ask: Ask,
     /// Times of the states, in order and on one side of 0; with friction or losses none is negative.
     pub times: &'a [f64],
     /// The allowed error of a motion; with friction or losses, the tolerance of a step.
     pub tol: f64,
-    /// The fixed step of RK4, which then replaces the first integrals.
-    pub step: Option<f64>,
-    /// Whether a motion continues past an event; a landing of the face always ends the motion.
-    pub beyond: bool,
-    /// The coefficient of restitution, as in [`Ask`].
-    pub restitution: Option<f64>,
-    /// The largest number of evaluations of each motion, as in [`Ask`].
-    pub max_evaluations: Option<u64>,
-    /// Whether a motion ends where it begins to roll, as in [`Ask`].
-    pub stop_at_rolling: bool,
     /// Whether errors are estimated of motions that are integrated because of friction, losses or impacts. Each of them is
     /// then computed a second time, with a larger tolerance; otherwise its error is NaN.
     pub errors: bool,
@@ -73,18 +62,13 @@ pub struct Job<'a> {
 impl<'a> Job<'a> {
     /// A job of rolling by first integrals with the tolerance 1e-10, in which the first event ends a motion.
     pub fn new(times: &'a [f64]) -> Self {
-        Self {
-            table: TableKind::Rolling,
-            mu: f64::INFINITY,
-            times,
-            tol: 1e-10,
-            step: None,
-            beyond: false,
-            restitution: None,
-            max_evaluations: None,
-            stop_at_rolling: false,
-            errors: true,
-        }
+        Self { ask: Ask::default(), times, tol: 1e-10, errors: true }
+    }
+
+    /// Returns this job with these options.
+    #[must_use]
+    pub fn with_ask(self, ask: Ask) -> Self {
+        Self { ask, ..self }
     }
 
     fn span(&self) -> f64 {
@@ -92,32 +76,52 @@ impl<'a> Job<'a> {
     }
 
     fn contact(&self) -> Contact {
-        self.table.contact()
+        self.ask.table.contact()
     }
 
-    /// The options of one motion, with its own coefficients of friction if it has any.
-    fn ask(&self, coefficients: Option<[f64; 3]>, losses: Losses) -> Ask {
-        Ask {
-            table: self.table.with(coefficients.unwrap_or([self.mu, self.mu, 0.0])),
-            losses,
-            method: self.step.map_or(Method::Exact, Method::Step),
-            beyond: self.beyond,
-            restitution: self.restitution,
-            max_evaluations: self.max_evaluations,
-            stop_at_rolling: self.stop_at_rolling,
-            ..Ask::default()
-        }
+    /// The fixed step, if the job has one.
+    fn step(&self) -> Option<f64> {
+        if let Method::Step(step) = self.ask.method { Some(step) } else { None }
+    }
+
+    /// The table of one motion, with its own coefficients of friction if it has any.
+    fn table(&self, own: Option<[f64; 3]>) -> Table {
+        own.map_or(self.ask.table, |own| self.ask.table.with_coefficients(own))
+    }
+
+    /// The options of one motion that is integrated, with its own coefficients of friction and losses.
+    fn ask_of(&self, own: Option<[f64; 3]>, losses: Losses) -> Ask {
+        Ask { table: self.table(own), losses, method: Method::Tolerance(self.tol), ..self.ask }
+    }
+
+    /// This job for phases of rolling: with a law of friction no motion continues past an event.
+    fn of_rolling(&self) -> Self {
+        self.with_ask(self.ask.with_beyond(self.ask.beyond && !self.ask.table.rubs()))
     }
 
     /// Returns an error for options that are invalid for every motion.
     fn check(&self, flows: bool, own_tables: bool) -> Result<(), Error> {
-        let ask = self.ask(None, Losses::NONE);
+        let ask = self.ask;
+        let unknown = |name, value, expected| Err(Error::OutOfRange { name, value, expected });
+        if let Some((law, coefficient)) = ask.losses.iter().next() {
+            return unknown(
+                law.parameter(),
+                coefficient,
+                "0: losses of many motions are columns of their starts",
+            );
+        }
+        if let Method::Tolerance(tol) = ask.method {
+            return unknown("method", tol, "no tolerance, which is `tol` of the job");
+        }
+        if ask.pose || ask.force {
+            return unknown("pose, force", 1.0, "false: many motions have states only");
+        }
         if !flows {
             within("tol", self.tol, (1e-15, 1e-1), "1e-15 <= tol <= 0.1")?;
-            return check(&ask, 0.0, self.times).map(|_| ());
+            return check_conserving(&ask, 0.0, self.times).map(|_| ());
         }
-        let method = self.step.map_or(Method::Tolerance(self.tol), Method::Step);
-        if !(self.table.rubs() && own_tables) {
+        let method = self.step().map_or(Method::Tolerance(self.tol), Method::Step);
+        if !(self.ask.table.rubs() && own_tables) {
             ask.table.check()?;
         }
         check_flow(&Ask { method, ..ask })?;
@@ -183,7 +187,7 @@ pub(crate) fn roll_among(
     let (count, times) = (starts.len(), job.times.len());
     assert!(starts.fit(), "columns of different lengths");
     assert!(out.fits(count, times), "an array does not fit");
-    let flows = job.table.rubs() || starts.losses.is_some() || job.restitution.is_some();
+    let flows = job.ask.table.rubs() || starts.losses.is_some() || job.ask.restitution.is_some();
     job.check(flows, starts.coefficients.is_some())?;
     let size = if flows {
         let workers = threads.min(count.div_ceil(FLOWS));
@@ -247,13 +251,14 @@ impl MotionBlock<'_> {
 
     /// Whether motions that roll may begin to slip.
     fn may_slip(&self) -> bool {
-        let limited = self.job.table.rubs() || self.job.mu.is_finite();
-        limited && self.job.contact() == Contact::Rolling && !self.job.beyond
+        let table = self.job.ask.table;
+        let limited = table.rubs() || table.mu().is_finite();
+        limited && self.job.contact() == Contact::Rolling && !self.job.ask.beyond
     }
 
     /// The largest ratio of friction to normal force with which motion `i` of the block rolls.
     fn grip(&self, i: usize) -> f64 {
-        let own = self.starts.coefficients(self.first + i).filter(|_| self.job.table.rubs());
-        own.map_or(self.job.mu, |[_, fixed, _]| fixed)
+        let own = self.starts.coefficients(self.first + i).filter(|_| self.job.ask.table.rubs());
+        own.map_or(self.job.ask.table.mu(), |[_, fixed, _]| fixed)
     }
 }

@@ -18,7 +18,7 @@ use crate::error::Error;
 use crate::laws::body::{Body, Shape};
 use crate::laws::contact::slip::Friction;
 use crate::laws::contact::standstill::is_certain;
-use crate::laws::contact::{Contact, Table, TableKind};
+use crate::laws::contact::{Contact, Table};
 use crate::laws::state::State;
 use crate::many::columns::at;
 use crate::motions::ask::rests_on::rolled_rests_on;
@@ -36,8 +36,8 @@ const PRECISE: f64 = 2e-12;
 const ENDINGS: [Ending; 3] = [Ending::Done, Ending::Slip, Ending::Side];
 
 /// Whether phases of rolling on this table may be computed in lanes, where the coefficient of static friction is squared.
-pub(super) fn can_roll_among(kind: TableKind, table: &Table) -> bool {
-    kind.contact() == Contact::Rolling && (!table.rubs() || (table.mu() * table.mu()).is_finite())
+pub(super) fn can_roll_among(table: &Table) -> bool {
+    table.contact() == Contact::Rolling && (!table.rubs() || (table.mu() * table.mu()).is_finite())
 }
 
 impl MotionBlock<'_> {
@@ -49,9 +49,9 @@ impl MotionBlock<'_> {
         out: &mut MotionOutput<'_>,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Vec<usize> {
-        let job = Job { beyond: self.job.beyond && !self.job.table.rubs(), ..*self.job };
+        let job = self.job.of_rolling();
         let work = MotionBlock { job: &job, ..*self };
-        if level.is_none() || job.stop_at_rolling || job.beyond {
+        if level.is_none() || job.ask.stop_at_rolling || job.ask.beyond {
             return (0..count).collect();
         }
         let (rolling, mut others): (Vec<usize>, Vec<usize>) = (0..count).partition(|i| work.may_roll(*i));
@@ -79,8 +79,7 @@ impl MotionBlock<'_> {
         if glides || other || y.w1 == 0.0 && y.w3 == 0.0 || fillet == 1.0 || starts.is_down(row) {
             return false;
         }
-        let own = starts.coefficients(row).unwrap_or([self.job.mu, self.job.mu, 0.0]);
-        match self.job.table.with(own) {
+        match self.job.table(starts.coefficients(row)) {
             Table::Rolling { .. } => true,
             Table::Rubs(friction @ Friction::Coulomb { mu, fixed, patch }) => {
                 let point = friction.check().is_ok() && patch == 0.0 && (fixed * fixed).is_finite();
@@ -93,7 +92,7 @@ impl MotionBlock<'_> {
     /// Adds the results of a path of one phase to those of a solved motion; returns whether the motion is such a path.
     fn rolled(&self, i: usize, out: &mut MotionOutput<'_>) -> bool {
         let ending = if out.status[i] == Ending::Side as u8 { Ending::Side } else { Ending::Done };
-        if out.status[i] != ending as u8 || ending == Ending::Side && self.job.restitution.is_some() {
+        if out.status[i] != ending as u8 || ending == Ending::Side && self.job.ask.restitution.is_some() {
             return false;
         }
         let start = self.starts.state(self.first + i);
@@ -141,7 +140,7 @@ impl MotionBlock<'_> {
             ..MotionStarts::new(bodies.each_ref().map(Vec::as_slice), states.each_ref().map(Vec::as_slice))
         };
         let tol = (SHARE * self.job.tol).clamp(1e-15, PRECISE);
-        let job = Job { tol, beyond: self.job.beyond && !self.job.table.rubs(), ..*self.job };
+        let job = Job { tol, ..self.job.of_rolling() };
         let work = MotionBlock { starts: &starts, job: &job, first: 0, since: Some(&since) };
 
         let columns = |rows: usize| [(); 4].map(|()| vec![f64::NAN; rows]);

@@ -3,7 +3,8 @@
 
 use super::{Job, MotionBlock, MotionOutput, MotionStarts};
 use crate::laws::body::Body;
-use crate::laws::contact::TableKind;
+use crate::laws::contact::slip::Friction;
+use crate::motions::Ask;
 use crate::numbers::side_by_side::zero;
 use crate::states::steady;
 use core::f64::consts::FRAC_PI_2;
@@ -40,7 +41,7 @@ fn left((bodies, states): &Starts, tol: f64, beyond: bool) -> Option<[usize; 2]>
     let starts =
         MotionStarts::new(bodies.each_ref().map(Vec::as_slice), states.each_ref().map(Vec::as_slice));
     let times = [20.0];
-    let job = Job { tol, beyond, ..Job::new(&times) };
+    let job = Job { tol, ..Job::new(&times).with_ask(Ask::default().with_beyond(beyond)) };
     let work = MotionBlock { starts: &starts, job: &job, first: 0, since: None };
     let (mut error, mut method, mut status) = (vec![0.0; COUNT], vec![0; COUNT], vec![0; COUNT]);
     let mut out = MotionOutput::new(&mut error, &mut method, &mut status);
@@ -88,7 +89,7 @@ fn rubbing(since: Option<&[f64]>, times: &[f64]) -> Option<(Vec<u64>, Vec<usize>
     let mut starts =
         MotionStarts::new(bodies.each_ref().map(Vec::as_slice), states.each_ref().map(Vec::as_slice));
     starts.coefficients = Some([&[0.3], &[0.4], &[0.0]]);
-    let job = Job { tol: 1e-12, table: TableKind::Coulomb, ..Job::new(times) };
+    let job = Job { tol: 1e-12, ..Job::new(times).with_ask(Ask::on(Friction::coulomb(0.3))) };
     let work = MotionBlock { starts: &starts, job: &job, first: 0, since };
     let (mut error, mut method, mut status) = (vec![0.0; COUNT], vec![0; COUNT], vec![0; COUNT]);
     let mut last: [Vec<f64>; 4] = core::array::from_fn(|_| vec![0.0; COUNT]);

@@ -3,7 +3,6 @@
 use super::{Answer, Job, MotionBlock, MotionOutput, Summary};
 use crate::error::{Error, room};
 use crate::laws::body::Body;
-use crate::laws::loss::Losses;
 use crate::laws::state::State;
 use crate::motions::exact::Swing;
 use crate::motions::exact::extrema;
@@ -67,7 +66,7 @@ fn watched(
 ) -> Result<Option<SingleMotion>, Error> {
     let Some(motion) = followed(body, start, job.times, job, go_on)? else { return Ok(None) };
     // A job that continues past events ends a motion only where the face lands.
-    let event = motion.event.filter(|e| !job.beyond || e.ending == Ending::Face);
+    let event = motion.event.filter(|e| !job.ask.beyond || e.ending == Ending::Face);
     Ok(Some(SingleMotion {
         last: event.map_or(motion.states.last().copied().unwrap_or(*start), |e| e.state),
         end: event.map_or(job.span(), |e| e.time),
@@ -90,7 +89,7 @@ fn followed(
     job: &Job<'_>,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Option<motion::Motion>, Error> {
-    match motion::roll_with(body, start, times, &job.ask(None, Losses::NONE), go_on) {
+    match motion::roll_with(body, start, times, &job.ask, go_on) {
         Err(e @ Error::Memory { .. }) => Err(e),
         found => Ok(found.ok().flatten()),
     }
@@ -110,7 +109,7 @@ pub(super) fn roll(
     let extremes =
         [Summary::ThetaMin, Summary::ThetaMax, Summary::NormalMin, Summary::FrictionCoefficientMax];
     let extremes_wanted = extremes.iter().any(|x| out.wants(*x));
-    let easily = job.beyond && job.step.is_none();
+    let easily = job.ask.beyond && job.step().is_none();
     let turning = out.wants(Summary::PrecessionPerPeriod);
     let swing = if easily || extremes_wanted || turning || out.wants(Summary::Period) {
         Swing::new(&body, &start, job.contact(), turning).ok()

@@ -241,7 +241,7 @@ impl From<&State> for Start {
 }
 
 /// Checks the options of a motion that conserves energy. Returns the signed span from the initial to the last time.
-pub(crate) fn check(ask: &Ask, t0: f64, times: &[f64]) -> Result<f64, Error> {
+pub(crate) fn check_conserving(ask: &Ask, t0: f64, times: &[f64]) -> Result<f64, Error> {
     ask.table.check()?;
     check_stop_at_rolling(ask)?;
     let span = check_times(t0, times)?;
@@ -286,7 +286,7 @@ pub(crate) fn check_times_after(t0: f64, times: &[f64]) -> Result<(), Error> {
 
 /// Checks the options of a motion with friction or losses. Returns the tolerance of its steps.
 pub(crate) fn check_flow(ask: &Ask) -> Result<f64, Error> {
-    within("restitution", ask.restitution.unwrap_or(0.0), (0.0, 1.0), "0 <= restitution <= 1")?;
+    within("restitution", ask.restitution.unwrap_or(0.0), (0.0, 1.0), "None, or 0 <= restitution <= 1")?;
     check_stop_at_rolling(ask)?;
     match ask.method {
         Method::Exact => Ok(FINE),

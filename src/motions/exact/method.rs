@@ -7,7 +7,7 @@ use super::tolerance::within;
 use crate::error::Error;
 use crate::laws::body::Body;
 use crate::methods::SHORT_CODE;
-use crate::motions::ask::check;
+use crate::motions::ask::check_conserving;
 use crate::motions::exact::{self, Swing};
 use crate::motions::rk4::stepped;
 use crate::motions::walk::errors::pressed;
@@ -26,7 +26,7 @@ pub(crate) fn conserved(
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Motion, Error> {
     exact::check(body, &start.state)?;
-    let course = Course::of(body, start, times, ask.pose, check(ask, start.time, times)?);
+    let course = Course::of(body, start, times, ask.pose, check_conserving(ask, start.time, times)?);
     let swing = Swing::new(body, course.start, ask.table.contact(), ask.pose).ok();
     let (limits, swing) = (Limits::new(body, &ask.table), swing.as_ref());
     let found = match ask.method {
@@ -46,7 +46,7 @@ pub(crate) fn by_first_integrals(
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Motion, Error> {
     exact::check(body, &start.state)?;
-    let course = Course::of(body, start, times, ask.pose, check(ask, start.time, times)?);
+    let course = Course::of(body, start, times, ask.pose, check_conserving(ask, start.time, times)?);
     if !SHORT_CODE && let Some(motion) = quickly(body, course.start, course.t0, times, ask, go_on)? {
         return Ok(motion);
     }

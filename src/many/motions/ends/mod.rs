@@ -114,7 +114,7 @@ impl Marches<'_, '_> {
                 First::Unknown => left.push(*i),
             }
         }
-        let sought = Sought { ends: !job.beyond, slips: self.work.may_slip(), turns: false };
+        let sought = Sought { ends: !job.ask.beyond, slips: self.work.may_slip(), turns: false };
         let kind = MarchKind { contact: job.contact(), round: self.round, sought };
         let span = job.span().abs();
         let mut again = tasks;
@@ -168,7 +168,7 @@ impl Marches<'_, '_> {
         let time_way = if job.span() < 0.0 { -1.0 } else { 1.0 };
         let grip = self.work.grip(i);
         let Begun { angle: (sin, cos), rate, over } = begun(&body, job.contact(), grip, &start, time_way);
-        let over = over.filter(|_| !job.beyond);
+        let over = over.filter(|_| !job.ask.beyond);
         if over.is_none() && self.work.may_slip() && grip < LEAST_GRIP {
             return First::Unknown;
         }
@@ -183,7 +183,7 @@ impl Marches<'_, '_> {
                 return First::Unknown;
             }
         }
-        let side = if job.beyond { NOWHERE } else { side_of(body.theta_end()) };
+        let side = if job.ask.beyond { NOWHERE } else { side_of(body.theta_end()) };
         let task = MarchTask {
             index: i,
             shape: [body.ell(), body.i1(), body.i3(), body.fillet()],
@@ -280,7 +280,7 @@ enum First {
 
 /// Whether marches can compute a block: the margin of slip has no series for a rounded rim.
 pub(super) fn can(work: &MotionBlock<'_>, round: bool) -> bool {
-    work.job.step.is_none() && !(round && work.may_slip())
+    work.job.step().is_none() && !(round && work.may_slip())
 }
 
 /// The ending of a motion at an event.
