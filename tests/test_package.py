@@ -89,6 +89,7 @@ def functions_and_classes(text):
     return {x.name for x in ast.parse(text).body if isinstance(x, ast.FunctionDef | ast.ClassDef)} - {
         "__getattr__",
         "__dir__",
+        "_",  # what `register` of a `singledispatch` takes has no name
     }
 
 
@@ -237,6 +238,64 @@ def test_the_name_of_a_function_or_class_occurs_once_in_a_layer():
             homes.setdefault((layer(module), name), []).append(module)
     assert len(homes) > 700
     assert not {name: modules for name, modules in homes.items() if len(modules) > 1}
+
+
+def by_position(x):
+    """The arguments of a function that can be given by position, without self."""
+    return [a.arg for a in [*x.args.posonlyargs, *x.args.args] if a.arg not in ("self", "cls")]
+
+
+def tuples(x):
+    """The tuples of three or more parts without names in the hints of a function."""
+    arguments = [*x.args.posonlyargs, *x.args.args, *x.args.kwonlyargs]
+    hints = [hint for hint in [*(a.annotation for a in arguments), x.returns] if hint is not None]
+    for part in (part for hint in hints for part in ast.walk(hint)):
+        if isinstance(part, ast.Subscript) and ast.unparse(part.value) == "tuple":
+            parts = part.slice.elts if isinstance(part.slice, ast.Tuple) else []
+            if len(parts) > 2 and ast.unparse(parts[-1]) != "...":
+                yield ast.unparse(part)
+
+
+def functions_of_package():
+    for name, path in modules_of_python().items():
+        for x in ast.walk(ast.parse(path.read_text("utf-8"))):
+            if isinstance(x, ast.FunctionDef):
+                yield name, x
+
+
+def test_no_function_of_python_takes_more_than_six_arguments_by_position():
+    found = {
+        f"{name}.{x.name}": len(given)
+        for name, x in functions_of_package()
+        if len(given := by_position(x)) > 6
+    }
+    assert not found
+
+
+def test_few_hints_have_tuples_without_names():
+    # mostly the numbers of a body, of a state and of a contact, and rows of tables
+    found = [(name, x.name) for name, x in functions_of_package() for _ in tuples(x)]
+    assert len(found) <= 54, found
+
+
+def asks_for_stones(text):
+    """The number of calls of isinstance with a class of stones: where code asks what a body is."""
+    calls = [
+        x
+        for x in ast.walk(ast.parse(text))
+        if isinstance(x, ast.Call) and ast.unparse(x.func) == "isinstance"
+    ]
+    return sum("Ellipsoid" in ast.unparse(x.args[1]) for x in calls)
+
+
+def test_what_a_stone_does_in_another_way_is_known_to_its_class():
+    # `roll` chooses between two ways, and a page with controls refuses a stone with advice
+    assert asks_for_stones("isinstance(x, Ellipsoid)\nisinstance(m, A | EllipsoidMotion)\nf(Ellipsoid)") == 2
+    found = {name: asks_for_stones(path.read_text("utf-8")) for name, path in modules_of_python().items()}
+    assert {name: count for name, count in found.items() if count} == {
+        "spincyl._roll": 1,
+        "spincyl.studio.pages.words": 1,
+    }
 
 
 @pytest.mark.parametrize(

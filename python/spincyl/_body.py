@@ -98,8 +98,7 @@ class Body(Laws, Sized, Hinting):
     _single: ClassVar[bool] = False  # whether every field is a float: one body, not a family
 
     def __post_init__(self) -> None:
-        if self.scale is not None and not isinstance(self.scale, Scale):
-            raise TypeError(f"scale: expected a Scale, not {type(self.scale).__name__}")
+        self._check_scale()
         given = [reals(name, getattr(self, name)) for name in FIELDS]
         if is_scalar(*given):
             given = [float(x) + 0.0 for x in given]  # turns -0.0 into 0.0

@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
@@ -102,10 +102,10 @@ class Ellipsoid(Sized):
     _unit: Any = field(default=1.0, kw_only=True, repr=False, compare=False)
     # whether a warning about the moments has been issued
     _doubted: bool = field(default=False, kw_only=True, repr=False, compare=False)
+    _length: ClassVar[str] = "a"
 
     def __post_init__(self) -> None:
-        if self.scale is not None and not isinstance(self.scale, Scale):
-            raise TypeError(f"scale: expected a Scale, not {type(self.scale).__name__}")
+        self._check_scale()
         axes = vectors("axes", self.axes, 3)
         inertia = doubles(reals("inertia", self.inertia))
         if inertia.shape[-2:] != (3, 3) or inertia.ndim < 2:

@@ -1,20 +1,16 @@
 """The motion of a stone."""
 
-from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 
 from spincyl import _core
-from spincyl._asked import Asked, Method, Want, ask, chosen, crossing, times_of
-from spincyl._contact import AnyContact, built_in, fitting
+from spincyl._asked import Asked, crossing
+from spincyl._contact import AnyContact, built_in
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._ellipsoid_state import EllipsoidState
 from spincyl._ending import Event
-from spincyl._input.numbers import Floats, Reals, components, made, si
-from spincyl._loss import Loss
-from spincyl._lossy import check_losses, narrow, of_stone
-from spincyl._measured import in_si, natural_time, speaking
+from spincyl._input.numbers import Floats, components, made
 from spincyl._motion import ENDINGS, Motion, fixed_step
 from spincyl._outputs import FRICTION, Number
 from spincyl._phases import rubs
@@ -36,6 +32,8 @@ class EllipsoidMotion(Motion):
         "w": ("axis", ["1", "2", "3"], ["w1", "w2", "w3"]),
         "slip": ("plan", ["x", "y"], ["slip_x", "slip_y"]),
     }
+    _nods = False
+    _turning = "spin"
     body: Ellipsoid  # type: ignore[assignment]
     start: EllipsoidState  # type: ignore[assignment]
     slip = Number(
@@ -111,29 +109,8 @@ class EllipsoidMotion(Motion):
         """(6, n) array with the rows n1, n2, n3 (`vertical`) and w1, w2, w3."""
         return np.vstack([self.vertical.T, self.w.T])
 
-    def wanting(self, *want: Want | Iterable[Want], t: Reals | None = None) -> "EllipsoidMotion":
-        """Compute the motion again with further outputs, or at other times `t`.
-
-        Each argument `want` is "pose", "force", or a list of both, as in `roll`. Outputs that this motion
-        already has are kept.
-        """
-        a = self._asked
-        return roll_stone(
-            self.body,
-            self.start,
-            a.times if t is None else t,
-            t0=a.t0,
-            step=None,
-            tol=a.tol,
-            method=None,
-            contact=a.contact,
-            mu=a.mu,
-            want=a.want | chosen(want),
-            beyond=a.beyond,
-            restitution=None,
-            losses=a.losses,
-            max_nfev=a.max_nfev,
-        )
+    def _again(self, asked: Asked) -> "EllipsoidMotion":
+        return rolled_stone(self.body, self.start, asked)
 
     def _angle(self, name: str) -> Floats:
         raise AttributeError(f"{name}: only for bodies of revolution; for a stone use orientation")
@@ -145,24 +122,11 @@ def unstruck(restitution: object) -> None:
         raise ValueError("restitution: only for bodies of revolution; a stone ends where it leaves the table")
 
 
-def roll_stone(
-    body: Ellipsoid,
-    state: EllipsoidState,
-    t: Reals,
-    *,
-    t0: float | None,
-    step: float | None,
-    tol: float | None,
-    method: Method | None,
-    contact: AnyContact,
-    mu: float,
-    want: Want | Iterable[Want],
-    beyond: bool,
-    restitution: float | None,
-    losses: Loss | None,
-    max_nfev: int | None,
-) -> "EllipsoidMotion":
-    """Compute the motion of a stone: `spincyl.roll` calls this."""
+def start_of(state: Any, contact: AnyContact, step: object, method: object, restitution: object) -> Any:
+    """The state from which a stone starts, without a slip where no law of friction acts.
+
+    An error names an argument that only bodies of revolution have.
+    """
     made("state", state, EllipsoidState)
     if not rubs(contact) and state._slips:
         why = f"contact={contact!r} has no law of friction; give contact=sc.Coulomb(mu)"
@@ -173,25 +137,7 @@ def roll_stone(
         )
     unstruck(restitution)
     built_in(contact)
-    if losses is not None:
-        narrow(of_stone(losses, body), contact)
-    scale, seconds = body.scale, t
-    if scale is not None:
-        fitting(contact, scale)
-        seconds = si("t", t, "second")
-        t = natural_time("t", t, scale)
-        t0 = t0 if t0 is None else natural_time("t0", t0, scale)
-    plain = EllipsoidState(state.vertical, state.w) if not rubs(contact) else state
-    with speaking(scale, "a"):
-        given: Any = plain
-        asked = ask(given, t, t0, None, tol, None, contact, mu, beyond, want, None, None, max_nfev)
-        if losses is not None:
-            check_losses(losses, asked.times, asked.t0, {})
-            asked = asked._replace(losses=losses)
-        m = rolled_stone(body.natural, state, asked)
-    if scale is not None:
-        m = in_si(m, body, times_of(seconds), None)  # type: ignore[arg-type, assignment]
-    return m
+    return state if rubs(contact) else EllipsoidState(state.vertical, state.w)
 
 
 def rolled_stone(body: Ellipsoid, state: EllipsoidState, asked: Asked) -> EllipsoidMotion:

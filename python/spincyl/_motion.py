@@ -107,6 +107,8 @@ class Motion(Outputs):
     _natural: "Motion | None" = None  # for a motion in SI: the same in natural units
     _limit: tuple[str, str] | None = None  # name and reason of the limit at which the computation stopped
     _axes: ClassVar[Components] = AXES
+    _nods: ClassVar[bool] = True  # whether first integrals give a nutation, as for a body of revolution
+    _turning: ClassVar[str] = "phi"  # the output that tells how the body turns about the vertical
     _begun: ClassVar[Callable[..., Any]] = staticmethod(slipping)  # makes the state of a phase
 
     @property
@@ -260,7 +262,7 @@ class Motion(Outputs):
         if self._natural is not None:
             scale: Any = self.body.scale
             seconds = self._asked.times if t is None else times_of(si("t", t, "second"))
-            with speaking(scale):
+            with speaking(scale, self.body._length):
                 of = self._natural.wanting(more, t=None if t is None else natural_time("t", seconds, scale))
             return self if of is self._natural else in_si(of, self.body, seconds, self._asked.step)
         have = self._asked.want
@@ -269,7 +271,7 @@ class Motion(Outputs):
         asked = self._asked._replace(want=have | more)
         if t is not None:
             asked = asked._replace(times=times_of(t))
-        return rolled(self.body, self.start, asked)  # warnings were issued for the first computation
+        return self._again(asked)  # warnings were issued for the first computation
 
     def at(self, t: Reals) -> "Motion":
         """The same motion at other times, with the same initial state, method and optional outputs.
@@ -354,6 +356,10 @@ class Motion(Outputs):
         return angle
 
     # Motions of other kinds of bodies override these.
+
+    def _again(self, asked: Asked) -> "Motion":
+        """The motion computed again with these arguments."""
+        return rolled(self.body, self.start, asked)
 
     @property
     def _by_steps(self) -> bool:

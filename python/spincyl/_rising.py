@@ -5,7 +5,7 @@ import numpy as np
 from spincyl import _core
 from spincyl._contact import Coulomb, Viscous, fitting, table
 from spincyl._ellipsoid import Ellipsoid
-from spincyl._input.numbers import Result, number
+from spincyl._input.numbers import Result, made, number
 from spincyl._measured import speaking
 from spincyl._turning import within_time
 
@@ -73,8 +73,7 @@ def rising_spin(
     >>> round(float(sc.rising_spin(egg, sc.Coulomb(0.3, patch=0.2 / 30.8))), 1)
     4.8
     """
-    if not isinstance(egg, Ellipsoid):
-        raise TypeError(f"egg: expected an Ellipsoid, not {type(egg).__name__}")
+    made("egg", egg, Ellipsoid)
     if contact is None:
         return np.float64(_core.rising_spin(None, (0.0, 0.0, 0.0), 0.1, None, egg._numbers))
     if not isinstance(contact, Coulomb | Viscous):

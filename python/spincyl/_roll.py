@@ -210,37 +210,25 @@ def roll(
     >>> len(m.impacts), m.phases[-1].kind, round(m.phases[-1].time, 5)
     (23, 'rolling', 3.0)
     """
-    if is_stone(body):
+    one: Any = body
+    given: Any = state
+    stone = type(body) is not Body and is_stone(body)
+    if stone:
         from spincyl import _ellipsoid_motion as stones
 
-        given: dict[str, Any] = {
-            "t0": t0,
-            "step": step,
-            "tol": tol,
-            "method": method,
-            "contact": contact,
-            "mu": mu,
-        }
-        given |= {"want": want, "beyond": beyond, "restitution": restitution, "losses": losses}
-        given["max_nfev"] = max_nfev
-        found = stones.roll_stone(body, state, t, **given)  # type: ignore[arg-type]  # it refuses another state
-        if found._doubt:
-            why = f"after that its estimated error reaches {found.error:.2g}"
-            warn(f"the motion is {found._doubt} (known_until); {why}", ErrorWarning)
-        if found.status == Ending.BOUNDED:
-            warn(f"{given_up(found)} (Ending.BOUNDED)", RuntimeWarning)
-        return found
-    # `single` raises for other types
-    one: Body = body  # type: ignore[assignment]
-    start: State = state  # type: ignore[assignment]
-    numbers = single(one, start)
-    scale, seconds, given_step = one.scale, t, step
-    if losses is not None and scale is not None:
-        from spincyl._loss import made_law
+        start = stones.start_of(given, contact, step, method, restitution)
+        if losses is not None:
+            from spincyl._lossy import of_stone
 
-        made_law(losses, one)
-        losses = losses._natural(scale)
+            of_stone(losses, body)
+    else:
+        numbers, start = single(one, given), given
+    scale, seconds, given_step = body.scale, t, step
     if scale is not None:
+        if losses is not None:
+            from spincyl._loss import made_law
+
+            losses = made_law(losses, one)._natural(scale)
         fitting(contact, scale)
         contact = contact if isinstance(contact, str) else contact._natural(scale)
         seconds = si("t", t, "second")
@@ -248,14 +236,32 @@ def roll(
         t0, step = (
             x if x is None else natural_time(name, x, scale) for name, x in (("t0", t0), ("step", step))
         )
-    with speaking(scale):
-        asked = ask(start, t, t0, step, tol, method, contact, mu, beyond, want, restitution, losses, max_nfev)
-        m = rolled(one if scale is None else one.natural, start, asked, numbers)
-    if step is None and restitution is None and not m.error <= DOUBTFUL:
+    with speaking(scale, body._length):
+        asked = ask(
+            start,
+            t,
+            t0=t0,
+            step=step,
+            tol=tol,
+            method=method,
+            contact=contact,
+            mu=mu,
+            beyond=beyond,
+            want=want,
+            restitution=restitution,
+            losses=losses,
+            max_nfev=max_nfev,
+        )
+        of = one if scale is None else one.natural
+        m: Motion = stones.rolled_stone(of, given, asked) if stone else rolled(of, start, asked, numbers)
+    if not stone and step is None and restitution is None and not m.error <= DOUBTFUL:
         warn(f"the estimated error of the motion is {m.error:.2g}, in natural units", ErrorWarning)
     if scale is not None:
         step = None if step is None else number("step", si("step", given_step, "second"))
         m = in_si(m, one, times_of(seconds), step)
+    if stone and m._doubt:
+        why = f"after that its estimated error reaches {m.error:.2g}"
+        warn(f"the motion is {m._doubt} (known_until); {why}", ErrorWarning)
     if m.status == Ending.BOUNDED:
         warn(f"{given_up(m)} (Ending.BOUNDED)", RuntimeWarning)
     if m.rk4 is not None and m.rk4.coarse:

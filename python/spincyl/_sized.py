@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable
 from functools import cached_property
-from typing import Self
+from typing import Any, ClassVar, Self
 
 from spincyl._input.numbers import number, si, warn
 from spincyl._input.units import dubious
@@ -14,6 +14,8 @@ class Sized:
     """Base of bodies that may be measured: `scale` is None if the size is unknown."""
 
     scale: Scale | None
+    #: The letter of the unit of length: R of a rim, or a, the largest semi-axis of a stone.
+    _length: ClassVar[str] = "R"
     #: The unit of length in metres, as far as it is known; an error names `radius`.
     _radius: Callable[[], float]
     #: Kind, length and width, and volume (0 if unknown) of the body, in natural units.
@@ -92,6 +94,12 @@ class Sized:
             how = "as sc.measured(...) makes for a tube, body.in_metres(radius=...) for any other"
             raise AttributeError(f"{what}: needs a measured body, {how}")
         return self.scale
+
+    def _check_scale(self) -> None:
+        """Raise TypeError for a scale of another type."""
+        given: Any = self.scale
+        if given is not None and not isinstance(given, Scale):
+            raise TypeError(f"scale: expected a Scale, not {type(given).__name__}")
 
     def _doubt_of(self, scale: Scale) -> str:
         """Why millimetres or grams are suspected in a size; empty if they are not."""

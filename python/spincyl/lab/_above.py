@@ -213,7 +213,7 @@ def from_above(
     one = float(scale.hertz(body, 1.0))
     # a line that is longer than the tube only says that the inclination is near 90 degrees
     sine, sine_err = min(share, 1.0), max(share_err, share - 1)
-    films = read(t, _unwrapped(t, between), body, one, share * tall, sine, sine_err)
+    films = read(t, _unwrapped(t, between), body, one=one, line=share * tall, sine=sine, sine_err=sine_err)
     told = _aliased(films, t, math.degrees(math.asin(min(share, 1.0))))
     slope, inclinations = films.taken.slope, films.taken.inclinations
     hertz, hertz_err = abs(slope) / (2 * math.pi), films.taken.slope_err / (2 * math.pi)

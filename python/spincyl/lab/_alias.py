@@ -61,7 +61,7 @@ def uniform(t: Floats, direction: Floats) -> tuple[float, float, float]:
 
 
 def read(
-    t: Floats, direction: Floats, body: Body, one: float, line: float, sine: float, sine_err: float
+    t: Floats, direction: Floats, body: Body, *, one: float, line: float, sine: float, sine_err: float
 ) -> Readings:
     """All rates that look like a direction, unwrapped for the slowest; `one` is the unit of rates in hertz.
 

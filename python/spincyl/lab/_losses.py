@@ -2,7 +2,8 @@
 
 import math
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -130,9 +131,19 @@ def fit_losses(
             None if x is None else 2 * np.pi * reals(name, turns_per_second(name, x))
             for name, x in (("hertz", hertz), ("hertz_err", hertz_err))
         )
-    columns = t, theta, precession, t_err, theta_err, precession_err
+    spindown = partial(
+        measured,
+        body,
+        t,
+        theta,
+        precession,
+        t_err=t_err,
+        theta_err=theta_err,
+        precession_err=precession_err,
+        start=start,
+    )
     with telling(progress, "fit") as told:
-        found, refused = _every(odrpack, body, columns, centres(centre), asked(laws), start, told)
+        found, refused = _every(odrpack, body, spindown, centres(centre), asked(laws), told)
     whole = []
     for raw in found:
         try:
@@ -196,10 +207,9 @@ class _Raw(NamedTuple):
 def _every(
     odrpack: Any,
     body: Body,
-    columns: tuple[Any, Any, Any, Any, Any, Any],
+    spindown: Callable[..., SpinDown],
     kept: Any,
     sums: Any,
-    start: float | None,
     told: Progress | None,
 ) -> tuple[list[_Raw], list[tuple[str, Any, Exception]]]:
     """The fits of every law, and the laws that are refused with the reasons."""
@@ -208,7 +218,7 @@ def _every(
     count, rounds = len(kept) * len(sums), 2  # the second with errors that the first has estimated
     for one in kept:
         try:
-            data = measured(body, *columns, one, start, max(map(len, sums)))
+            data = spindown(centre=one, laws=max(map(len, sums)))
         except Several:
             raise
         except ValueError as e:

@@ -115,6 +115,7 @@ def measured(
     t: Reals,
     theta: Reals | None,
     precession: Reals | None,
+    *,
     t_err: Reals | None,
     theta_err: Reals | None,
     precession_err: Reals | None,

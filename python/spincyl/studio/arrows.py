@@ -9,14 +9,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from spincyl._ellipsoid import Ellipsoid
 from spincyl._input.numbers import Floats
 from spincyl._motion import Motion
 from spincyl.studio.aloft import goes_up
 from spincyl.studio.look import Camera
 from spincyl.studio.painted import Painted, Piece, painted, whole
 from spincyl.studio.poses import seen, span
-from spincyl.studio.shape import Profile, lathe, rotations
+from spincyl.studio.shape import Profile, lathe, rotations, tensor
 
 _NEAR = 1e-4  # time step of a difference, over the time in which the body turns by one radian
 _SAMPLES = 600
@@ -65,8 +64,7 @@ def vectors(m: Motion, t: Floats, drawn: tuple[str, ...]) -> Vectors:
     turned = rotations(orientation)
     turning = (turned[2] - turned[0]) / long[..., np.newaxis] @ np.swapaxes(turned[1], -1, -2)
     omega = np.stack([turning[:, i, j] - turning[:, j, i] for i, j in ((2, 1), (0, 2), (1, 0))], -1) / 2
-    inertia = m.body.inertia if isinstance(m.body, Ellipsoid) else np.diag([m.body.i1, m.body.i1, m.body.i3])
-    momentum = np.einsum("nij,jk,nlk,nl->ni", turned[1], np.asarray(inertia), turned[1], omega)
+    momentum = np.einsum("nij,jk,nlk,nl->ni", turned[1], tensor(m.body), turned[1], omega)
     found = {"omega": omega, "momentum": momentum, "velocity": (centre[2] - centre[0]) / long}
     if "force" in drawn:
         (force,) = seen(m, t, "contact_force")
@@ -102,7 +100,7 @@ def drawings(
     tips: list[Tip] = []
     if "axis" in drawn:
         for piece, name, root, way, wide, long in _rods(now, half):
-            found.append(_set(piece, colours[name], root, way, wide, long, camera))
+            found.append(_set(piece, colours[name], root, way, wide=wide, long=long, camera=camera))
         places = camera(np.stack([now.contact, now.centre, 2 * now.centre - now.contact]))
         tips += [Tip(letter, "ink", at, at) for letter, at in zip(_POINTS, places, strict=True)]
     for name, letter in _LETTERS.items():
@@ -116,8 +114,8 @@ def drawings(
         )
         wide = 0.5 * np.sqrt(half * long) if force else (0.85 if name == "momentum" else 1.3) * long
         root, way = now.contact if force else now.centre, now.of[name] / size
-        found.append(_set(_HALO, colours["paper"], root, way, wide, long, camera, back=True))
-        found.append(_set(_ARROW, colours[name], root, way, wide, long, camera))
+        found.append(_set(_HALO, colours["paper"], root, way, wide=wide, long=long, camera=camera, back=True))
+        found.append(_set(_ARROW, colours[name], root, way, wide=wide, long=long, camera=camera))
         tips.append(Tip(letter, name, camera(root + long * way), camera(root)))
     return found, tips
 
@@ -142,6 +140,7 @@ def _set(
     colour: Any,
     root: Floats,
     way: Floats,
+    *,
     wide: float,
     long: float,
     camera: Camera,

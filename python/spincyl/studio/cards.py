@@ -119,13 +119,13 @@ def _motion(found: Motion) -> tuple[list[tuple[str, str]], tuple[float, ...]]:
         rows.append(("losses", titled(found.losses, found.scale)))
     reached: tuple[float, ...] = ()
     if found.t.size:
-        time = "√(a/g)" if isinstance(found, EllipsoidMotion) and found.scale is None else _time(found.scale)
+        time = _time(found.scale, found.body._length)
         rows += [
             ("times", f"{found.t.size}, from {found.t[0]:.6g} to {found.t[-1]:.6g} {time}"),
             ("θ at this time" if found.t.size == 1 else "θ at these times", span_in_words(found.theta)),
         ]
         reached = float(found.theta.min()), float(found.theta.max())
-    plain = found.losses is None and found.event is None and not isinstance(found, EllipsoidMotion)
+    plain = found.losses is None and found.event is None and found._nods
     if found.t.size and plain and isinstance(found.contact, str):
         with suppress(ValueError):  # `nutation` fails close to a body that lies flat
             turns = nutation(found.body, found.start, found.contact)
@@ -149,8 +149,8 @@ def swing(found: Swing) -> str:
     return framed("Swing", rows, drawing(None, found.theta_max, "θ", (found.theta_min,)))
 
 
-def _time(scale: Scale | None) -> str:
-    return "√(R/g)" if scale is None else "s"
+def _time(scale: Scale | None, length: str = "R") -> str:
+    return f"√({length}/g)" if scale is None else "s"
 
 
 def _length(x: Reals, scale: Scale | None) -> str:

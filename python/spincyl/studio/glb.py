@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 
-from spincyl._ellipsoid_motion import EllipsoidMotion
 from spincyl._input.numbers import Floats
 from spincyl._motion import Motion
 from spincyl._scale import Scale
@@ -126,7 +125,7 @@ def _frames(m: Motion) -> tuple[Floats, Floats, Floats]:
     # the axis about the vertical, which may be larger
     w, theta = seen(m, coarse, "w", "theta")
     rates = np.linalg.norm(w, axis=1)
-    if not isinstance(m, EllipsoidMotion):
+    if m._nods:
         rates = np.maximum(rates, np.abs(w[:, 0] / np.sin(theta)))
     count = np.ceil(4 * np.maximum(rates[1:], rates[:-1]) * np.diff(coarse)).astype(int) + 1
     if goes_up(m):  # straight lines between frames are within 0.002 R of the parabola of a fall

@@ -15,7 +15,7 @@ from spincyl._body import Body
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._input.numbers import Floats
 from spincyl.studio.look import Camera
-from spincyl.studio.shape import Letter, Part, Profile, lathe, marks, profiles
+from spincyl.studio.shape import Letter, Part, Profile, kind, lathe, marks, profiles
 
 _SUN = np.array([-0.45, -0.5, 0.75]) / math.sqrt(0.45**2 + 0.5**2 + 0.75**2)
 _SAME = 1e-9  # heights closer than this, in R, are one
@@ -82,7 +82,7 @@ def pieces(body: Body | Ellipsoid, surface: list[Part], upper: Letter) -> list[P
     """The pieces of the surface of a body, and of its marks."""
     surfaces = [whole(part) for part in surface]
     found = [*surfaces, *map(whole, marks(body, upper))]
-    if isinstance(body, Ellipsoid):  # convex: only its marks have to be last
+    if kind(body) == "stone":  # convex: only its marks have to be last
         return [piece._replace(rank=(0, float(k))) for k, piece in enumerate(found)]
     ends = [end for piece in surfaces for end in (piece.corners[..., 2].min(), piece.corners[..., 2].max())]
     heights = np.unique(np.round(ends, 9))

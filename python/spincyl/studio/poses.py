@@ -14,6 +14,7 @@ an instant apart, with the slopes before and after it. The angles refer to the f
 
 from contextlib import suppress
 from dataclasses import replace
+from functools import singledispatch
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -86,7 +87,7 @@ def pace(m: "Motion") -> float:
     shorter as a disk falls. For a stone it is roughly the mean duration of its rockings, from the number of
     evaluations.
     """
-    if isinstance(m.body, Ellipsoid):
+    if not m._nods:
         many = m.nfev / _EVALUATIONS * (m._setting / 1e-14) ** 0.1
         return float(abs(_end(m) - m._asked.t0) / max(many, 1e-3))
     if goes_up(m):
@@ -210,7 +211,7 @@ def knots(m: "Motion", tolerance: float = 2e-3, until: float | None = None) -> F
             break
         left, right = found[dropped - 1], found[dropped + 1]
         kept = found[dropped]
-        ends = _apart(m, _cubic(left, right, kept[:, 0]), kept[:, 1 : _wide(found)])
+        ends = _apart(m.body, _cubic(left, right, kept[:, 0]), kept[:, 1 : _wide(found)])
         fits = np.maximum(ends, _missed(m, left, right, up)) < tolerance / 2
         if not fits.any():
             break
@@ -259,19 +260,23 @@ def _missed(m: "Motion", left: Floats, right: Floats, up: Aloft | None) -> Float
     worst = np.zeros(len(left))
     for share in (0.19, 0.46, 0.77):
         t = left[:, 0] + share * (right[:, 0] - left[:, 0])
-        worst = np.maximum(worst, _apart(m, _cubic(left, right, t), _places(m, t, up)))
+        worst = np.maximum(worst, _apart(m.body, _cubic(left, right, t), _places(m, t, up)))
     return worst
 
 
-def _apart(m: "Motion", drawn: Floats, true: Floats) -> Floats:
+@singledispatch
+def _apart(body: Any, drawn: Floats, true: Floats) -> Floats:
     """Distance between numbers of drawn and true poses: the largest difference of an angle or a position.
 
     For a stone also of its contact point, which moves far under a small rotation where the surface is flat.
     """
-    if not isinstance(m.body, Ellipsoid):
-        apart: Floats = np.abs(drawn - true).max(axis=1)
-        return apart
-    (q, *at), (p, *there) = _stood(m.body, drawn), _stood(m.body, true)
+    apart: Floats = np.abs(drawn - true).max(axis=1)
+    return apart
+
+
+@_apart.register
+def _(stone: Ellipsoid, drawn: Floats, true: Floats) -> Floats:
+    (q, *at), (p, *there) = _stood(stone, drawn), _stood(stone, true)
     places = [np.abs(a - b).max(axis=1) for a, b in zip(at, there, strict=True)]
     found: Floats = np.maximum(2 * np.linalg.norm(q - p, axis=1), np.maximum(*places))
     return found
@@ -288,7 +293,7 @@ def _stood(stone: Ellipsoid, numbers: Floats) -> tuple[Floats, Floats, Floats]:
 
 def _places(m: "Motion", t: Floats, up: Aloft | None) -> Floats:
     """The numbers of poses along a last axis, in the order of `knots`."""
-    if isinstance(m.body, Ellipsoid):
+    if not m._nods:
         turn, centre = seen(m, t, "orientation", "centre")
         return np.concatenate([turn[..., :3], centre[..., :2], turn[..., 3:]], -1)
     theta, phi, psi, centre = seen(m, t, "theta", "phi", "psi", "centre")

@@ -5,6 +5,7 @@ those of `Motion.orientation`, for a stone those of its ellipsoid. docs/engines.
 """
 
 import math
+from functools import singledispatch
 from typing import Any
 
 import numpy as np
@@ -15,28 +16,19 @@ from spincyl._contact import Coulomb, Viscous
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._ellipsoid_motion import EllipsoidMotion
 from spincyl._input.numbers import Floats
+from spincyl._loss import LAWS
 from spincyl._motion import Motion
 from spincyl._phases import KINDS, two_rims
 from spincyl._scale import Scale
-from spincyl.studio.shape import kind, landing, reach, rotations, skin
+from spincyl.studio.shape import kind, landing, reach, rotations, skin, tensor
 
 VERSION = 1
-#: For each coefficient of loss: unit, exponents of metre, second and joule, and the couple of its law.
-_COUPLES: dict[str, tuple[str, tuple[float, float, float], str]] = {
-    "eps": ("m", (1, 0, 0), "eps*N*A*sign(q)*h/s"),
-    "c": ("N m s", (0, 1, 1), "c*A**2*q*h/s"),
-    "delta": ("m", (1, 0, 0), "-delta*N*t/norm(t)"),
-    "length": ("m", (1, 0, 0), "-length*N*sign(w_n)*n"),
-    "b": ("N m s", (0, 1, 1), "-b*w"),
-    "b2": ("N m s^2", (0, 2, 1), "-b2*norm(w)*w"),
-    "viscosity": ("Pa s", (-3, 1, 1), "pi/4*viscosity*R**3*q*h/s**2"),
-    "k": ("N m s^1.5", (0, 1.5, 1), "k*abs(q)**1.5*sign(q)*h/s"),
-}
 _SYMBOLS = (
     "n: up. a: axis 3 of the body. w: angular velocity; w_n = w.n; t = w - w_n n. s = |n x a|."
     " h = ((a.n) n - a)/s. q = (w.a - (a.n) w_n)/s^2. N: normal force, of both rims together."
     " A = (radius of the circle + swollen_by s)/R. R: body.shape.radius."
-    " A couple acts on the body and takes the power -couple.w; in the air there are only b and b2."
+    " A couple acts on the body and takes the power -couple.w; in the air there are only"
+    f" {' and '.join(row.parameter for row in LAWS.values() if row.in_air)}."
     " sign(0), and t/norm(t) of t = 0, is what keeps it 0, of at most the size 1."
 )
 _SLIPS = "-mu N u/|u| at the contact point, where u is its velocity over the table"
@@ -55,7 +47,7 @@ def scene_data(m: Motion, scale: Scale, t0: float) -> dict[str, Any]:
     """The scene of a motion in natural units with poses and forces, whose initial state is at time `t0`."""
     metre, second, joule = (float(x) for x in (scale.metres(1.0), scale.seconds(1.0), scale.joules(1.0)))
     w, v = moving(m)
-    known = _known(m, metre, second, joule, w, v, t0)
+    known = _known(m, metre, second, joule, w=w, v=v, t0=t0)
     return {
         "spincyl-scene": VERSION,
         "units": "SI: metres, kilograms, seconds, radians, newtons, joules",
@@ -77,24 +69,7 @@ def moving(m: Motion) -> tuple[Floats, Floats]:
     """(n, 3) each: angular velocity, and velocity of the centre of mass, along the laboratory's axes."""
     slip = m._extra.get("slip", np.zeros((m.t.size, 2)))
     lift = m._extra.get("lift", np.zeros(m.t.size))
-    if isinstance(m, EllipsoidMotion):
-        turned = rotations(m.orientation)
-        w = np.einsum("nij,nj->ni", turned, m.w)
-        # slip is along the x and y from which the smallest rotation gives the stone this vertical
-        x, y, z = m.vertical.T
-        least = np.column_stack([y, -x, np.zeros(x.size), 1 + z])
-        least[z == -1] = [1.0, 0.0, 0.0, 0.0]
-        least /= np.linalg.norm(least, axis=1)[:, np.newaxis]
-        u = np.einsum("nij,nkj,nk->ni", turned, rotations(least), np.column_stack([slip, lift]))
-    else:
-        phi = m.turns[0][:, 1]
-        zero, up = np.zeros(phi.size), np.array([0.0, 0.0, 1.0])
-        along = np.column_stack([np.cos(phi), np.sin(phi), zero])
-        across = np.column_stack([-np.sin(phi), np.cos(phi), zero])
-        c, s = np.cos(m.theta)[:, None], np.sin(m.theta)[:, None]
-        w1, w2, w3 = m.w.T[..., None]
-        w = w1 * (c * along + s * up) + w2 * across + w3 * (c * up - s * along)
-        u = slip[:, :1] * along + slip[:, 1:] * across + lift[:, None] * up
+    w, u = _turning(m, slip, lift)
     height = m._extra.get("height", np.zeros(m.t.size))
     v = u + np.cross(w, m.centre - np.column_stack([m.contact_point, height]))
     if m.contact == "smooth" and "slip" not in m._extra:
@@ -102,10 +77,29 @@ def moving(m: Motion) -> tuple[Floats, Floats]:
     return w, v
 
 
-def tensor(body: Body | Ellipsoid) -> Floats:
-    """(3, 3) tensor of inertia about the centre of mass, along the body's axes."""
-    moments = body.inertia if isinstance(body, Ellipsoid) else np.diag([body.i1, body.i1, body.i3])
-    return np.asarray(moments, np.float64)
+@singledispatch
+def _turning(m: Motion, slip: Floats, lift: Floats) -> tuple[Floats, Floats]:
+    """Angular velocity, and velocity of the contact point with its slip and lift."""
+    phi = m.turns[0][:, 1]
+    zero, up = np.zeros(phi.size), np.array([0.0, 0.0, 1.0])
+    along = np.column_stack([np.cos(phi), np.sin(phi), zero])
+    across = np.column_stack([-np.sin(phi), np.cos(phi), zero])
+    c, s = np.cos(m.theta)[:, None], np.sin(m.theta)[:, None]
+    w1, w2, w3 = m.w.T[..., None]
+    w = w1 * (c * along + s * up) + w2 * across + w3 * (c * up - s * along)
+    return w, slip[:, :1] * along + slip[:, 1:] * across + lift[:, None] * up
+
+
+@_turning.register
+def _(m: EllipsoidMotion, slip: Floats, lift: Floats) -> tuple[Floats, Floats]:
+    turned = rotations(m.orientation)
+    # slip is along the x and y from which the smallest rotation gives the stone this vertical
+    x, y, z = m.vertical.T
+    least = np.column_stack([y, -x, np.zeros(x.size), 1 + z])
+    least[z == -1] = [1.0, 0.0, 0.0, 0.0]
+    least /= np.linalg.norm(least, axis=1)[:, np.newaxis]
+    u = np.einsum("nij,nkj,nk->ni", turned, rotations(least), np.column_stack([slip, lift]))
+    return np.einsum("nij,nj->ni", turned, m.w), u
 
 
 def inclination(orientation: Floats) -> Floats:
@@ -128,17 +122,6 @@ def bounds(m: Motion, w: Floats | float = 0.0, v: Floats | float = 0.0) -> dict[
 
 def _body(body: Body | Ellipsoid, scale: Scale, metre: float) -> dict[str, Any]:
     inertia = tensor(body) * scale.mass * metre**2
-    if isinstance(body, Ellipsoid):
-        end = float(body.theta_end)
-        shape: dict[str, Any] = {
-            "type": "ellipsoid",
-            "radius": metre,
-            "semi_axes": (np.asarray(body.axes) * metre).tolist(),
-            "centre": (-np.asarray(body.offset) * metre).tolist(),
-            "lands_at": None if math.isnan(end) else end,
-        }
-    else:
-        shape = _rims(body, metre)
     moments, axes = np.linalg.eigh(inertia)
     return {
         "name": repr(body),
@@ -147,11 +130,12 @@ def _body(body: Body | Ellipsoid, scale: Scale, metre: float) -> dict[str, Any]:
         "inertia_is": "about the centre of mass, along the body's axes; the origin is the centre of mass",
         "principal_moments": moments.tolist(),
         "principal_axes": (axes * np.sign(np.linalg.det(axes)) + 0.0).T.tolist(),
-        "shape": shape,
+        "shape": _touching(body, metre),
     }
 
 
-def _rims(body: Body, metre: float) -> dict[str, Any]:
+@singledispatch
+def _touching(body: Any, metre: float) -> dict[str, Any]:
     """The parts of a body of revolution that can touch: one or two circles, swollen by the fillet."""
     middle, wall, fillet, rim, bore = (x * metre for x in skin(body))
     both = two_rims(body)
@@ -166,6 +150,18 @@ def _rims(body: Body, metre: float) -> dict[str, Any]:
         "lands_at": landing(body),
         "is": "all within swollen_by of the convex hull of the circles, which are about axis 3, at these"
         " heights over the centre of mass; at the inclination lands_at something else touches the table",
+    }
+
+
+@_touching.register
+def _(stone: Ellipsoid, metre: float) -> dict[str, Any]:
+    end = float(stone.theta_end)
+    return {
+        "type": "ellipsoid",
+        "radius": metre,
+        "semi_axes": (np.asarray(stone.axes) * metre).tolist(),
+        "centre": (-np.asarray(stone.offset) * metre).tolist(),
+        "lands_at": None if math.isnan(end) else end,
     }
 
 
@@ -188,12 +184,11 @@ def _table(m: Motion, metre: float, second: float, joule: float, t0: float) -> d
         friction = {"law": "rolling", "mu": mu, "needed": needed, "force": _ROLLS}
     losses = []
     for law in laws:
-        unit, powers, couple = _COUPLES[law._parameter]
         value = float(np.asarray(law.coefficient))
-        for x, power in zip((metre, second, joule), powers, strict=True):
+        for x, power in zip((metre, second, joule), law._row.exponents, strict=True):
             value *= x**power
         told = {"law": type(law).__name__, "coefficient": law._parameter, "value": value}
-        losses.append(told | {"unit": unit, "couple": couple})
+        losses.append(told | {"unit": law._row.si, "couple": law._couple_in_si})
     return {
         "point": [0.0, 0.0, 0.0],
         "normal": [0.0, 0.0, 1.0],
@@ -213,7 +208,7 @@ def friction_needed(m: Motion, t0: float) -> float:
 
 
 def _known(
-    m: Motion, metre: float, second: float, joule: float, w: Floats, v: Floats, t0: float
+    m: Motion, metre: float, second: float, joule: float, *, w: Floats, v: Floats, t0: float
 ) -> dict[str, Any]:
     """The known answer; NaN where the contact has no single point or force."""
     weight, extra = joule / metre, m._extra

@@ -11,7 +11,8 @@ surface another 3.0e-4 of its radius.
 """
 
 import math
-from typing import Literal, NamedTuple
+from functools import singledispatch
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -47,19 +48,23 @@ _LIFT = 0.006  # height of the marks above the surface
 
 __all__ = [
     "BLUE", "IVORY", "ORANGE", "SHADE", "Kind", "Letter", "Part", "Profile", "kind", "landing", "lathe",
-    "marks", "parts", "profiles", "reach", "rotations", "size", "skin", "steepest",
+    "marks", "parts", "profiles", "reach", "rotations", "size", "skin", "steepest", "tensor",
 ]  # fmt: skip
 
 
-def kind(body: Body | Ellipsoid) -> Kind:
+@singledispatch
+def kind(body: Any) -> Kind:
     """The kind of shape to draw; for a general body a guess from the inclination at which it lands."""
-    if isinstance(body, Ellipsoid):
-        return "stone"
     if body.fillet < 1:
         return "cylinder"
     if not np.isnan(body.bore):
         return "capsule" if body.ell > 0 else "ball"
     return "balls" if body.ell > 0 and abs(body.theta_end - np.pi / 2) < 1e-9 else "ball"
+
+
+@kind.register
+def _(stone: Ellipsoid) -> Kind:
+    return "stone"
 
 
 def landing(body: Body) -> float:
@@ -74,18 +79,31 @@ def steepest(body: Body) -> float:
     return min(landing(body), np.pi / 2) if body.fillet == 0 else landing(body)
 
 
-def reach(body: Body | Ellipsoid) -> float:
+@singledispatch
+def reach(body: Any) -> float:
     """Largest distance of the body's surface from its centre of mass."""
-    if isinstance(body, Ellipsoid):
-        return stone_shape.reach_of_stone(body)
     return max(math.hypot(r, z) for profile in profiles(body) for r, z in profile.corners)
 
 
-def size(body: Body | Ellipsoid) -> float:
+@singledispatch
+def size(body: Any) -> float:
     """Radius of the sphere about the centre of a body that a camera has to show."""
-    if isinstance(body, Ellipsoid) or body._parts:
-        return reach(body)
-    return math.hypot(1.0, float(body.ell))
+    return reach(body) if body._parts else math.hypot(1.0, float(body.ell))
+
+
+for _function in (reach, size):
+    _function.register(Ellipsoid, stone_shape.reach_of_stone)
+
+
+@singledispatch
+def tensor(body: Any) -> Floats:
+    """(3, 3) tensor of inertia about the centre of mass, along the body's axes."""
+    return np.diag([body.i1, body.i1, body.i3]).astype(np.float64)
+
+
+@tensor.register
+def _(stone: Ellipsoid) -> Floats:
+    return np.asarray(stone.inertia, np.float64)
 
 
 class Skin(NamedTuple):
@@ -114,13 +132,12 @@ def skin(body: Body) -> Skin:
     return Skin(-ell if lower else 0.0, 0.0 if lower else ell, fillet, 1.0 - fillet, _drawn_bore(body))
 
 
-def profiles(body: Body | Ellipsoid) -> list[Profile]:
+@singledispatch
+def profiles(body: Any) -> list[Profile]:
     """The surface of a body without its marks.
 
     A body of unknown bore is drawn solid, a tube with a wall of at least 0.02 R.
     """
-    if isinstance(body, Ellipsoid):
-        return stone_shape.profiles_of_stone(body)
     if body._parts:
         return parts_shape.profiles_of_parts(body)
     ell, bore = float(body.ell), _drawn_bore(body)
@@ -134,6 +151,9 @@ def profiles(body: Body | Ellipsoid) -> list[Profile]:
     if ell and bore:
         surface.append(Profile("bore", SHADE, [(bore, ell), (bore, -ell)]))
     return surface
+
+
+profiles.register(Ellipsoid, stone_shape.profiles_of_stone)
 
 
 def _rounded(body: Body) -> list[Profile]:
@@ -191,12 +211,19 @@ def _ball(body: Body) -> list[Profile]:
 def marks(body: Body | Ellipsoid, upper: Letter = "O") -> list[Part]:
     """The two marks; `upper` is the symbol on the upper end, or the colour of the first mark of a stone."""
     one_of("upper", upper, ("O", "X"))
-    if isinstance(body, Ellipsoid):
-        return stone_shape.marks_of_stone(body, upper)
+    found: list[Part] = _marks(body, upper)
+    return found
+
+
+@singledispatch
+def _marks(body: Any, upper: Letter) -> list[Part]:
     if body._parts:
         return parts_shape.marks_of_parts(body, upper)
     lower: Letter = "X" if upper == "O" else "O"
     return [_mark(body, upper, 1), _mark(body, lower, -1)]
+
+
+_marks.register(Ellipsoid, stone_shape.marks_of_stone)
 
 
 def parts(body: Body | Ellipsoid, upper: Letter = "O") -> list[Part]:

@@ -5,7 +5,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from spincyl._ellipsoid import Ellipsoid
 from spincyl._input.numbers import Floats
 from spincyl._motion import Motion
 from spincyl._phases import rubs
@@ -46,7 +45,7 @@ def shown(m: Motion, times: Floats, upper: Letter, drawn: tuple[str, ...] = ()) 
     arrows = bool({*drawn} - {"path"})
     centre, orientation, theta = seen(m, np.clip(times, first, last), "centre", "orientation", "theta")
     spin = None
-    if isinstance(m.body, Ellipsoid):
+    if m._turning == "spin":
         (spin,) = seen(m, np.clip(times, first, last), "spin")
     along = np.linspace(first, last, _PATH)
     contact, way = seen(m, along, "contact_point", "centre")
@@ -84,8 +83,8 @@ def shown(m: Motion, times: Floats, upper: Letter, drawn: tuple[str, ...] = ()) 
 
 def _turns(m: Motion, along: Floats) -> Floats:
     """Turns about the vertical at ascending times; for a stone the integral of its spin."""
-    if not isinstance(m.body, Ellipsoid):
-        found: Floats = seen(m, along, "phi")[0] / (2 * np.pi)
-        return found
-    (spin,) = seen(m, along, "spin")
-    return np.append(0.0, np.cumsum(np.diff(along) * (spin[1:] + spin[:-1]) / 2)) / (2 * np.pi)
+    (turned,) = seen(m, along, m._turning)
+    if m._turning == "spin":
+        turned = np.append(0.0, np.cumsum(np.diff(along) * (turned[1:] + turned[:-1]) / 2))
+    found: Floats = turned / (2 * np.pi)
+    return found

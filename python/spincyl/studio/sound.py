@@ -20,12 +20,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from spincyl._ellipsoid_motion import EllipsoidMotion
 from spincyl._input.files import path_of, replaced
 from spincyl._input.numbers import Floats, number, si, whole
 from spincyl._scale import Scale, scale_of
 from spincyl.studio.aloft import FLIES, goes_up
 from spincyl.studio.poses import seen, span
+from spincyl.studio.shape import kind
 
 if TYPE_CHECKING:
     from spincyl._motion import Motion
@@ -49,7 +49,7 @@ def sound(
     path = path_of("path", path)
     if path.suffix.lower() != ".wav":
         raise ValueError(f"path = {str(path)!r}: expected a name that ends in .wav")
-    if isinstance(m, EllipsoidMotion):
+    if kind(m.body) == "stone":
         raise TypeError("body: expected a Body, whose contact point runs round a rim, not an Ellipsoid")
     scale, m = scale_of(scale, m.body), m.natural
     if scale is None:

@@ -13,7 +13,7 @@ from spincyl._ellipsoid_state import EllipsoidState
 from spincyl._ending import ErrorWarning
 from spincyl._input.numbers import Floats, Reals, components, made, number, si, warn, within, words
 from spincyl._input.progress import Progress
-from spincyl._loss import Loss
+from spincyl._loss import LAWS, Loss
 from spincyl._lossy import narrow, of_stone
 from spincyl._measured import natural_time
 from spincyl.sweep._inputs import kept_contact, kept_stones
@@ -30,6 +30,7 @@ def question(
     stones: Ellipsoid,
     states: object,
     t: Reals,
+    *,
     want: str | Iterable[str] | None,
     contact: AnyContact,
     tol: float,
@@ -62,8 +63,7 @@ def question(
         fields |= zip(("coefficient", "static", "patch"), contact._numbers, strict=True)
     if losses is not None:
         narrow(of_stone(losses, stones), contact)
-        names_of = (name for name, _ in _core.loss_laws())
-        fields |= zip(names_of, losses._coefficients, strict=True)
+        fields |= zip(LAWS, losses._coefficients, strict=True)
     asked = Asked(np.array([end]), tol=number("tol", tol), contact=contact, mu=number("mu", mu))
     asked = asked._replace(max_nfev=evaluations(max_nfev))
     told = kept_stones(stones, states) | kept_contact(contact)

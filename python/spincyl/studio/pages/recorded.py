@@ -4,7 +4,6 @@ from typing import Any
 
 import numpy as np
 
-from spincyl._ellipsoid_motion import EllipsoidMotion
 from spincyl._ending import Ending
 from spincyl._motion import Motion
 from spincyl._phases import rubs
@@ -15,7 +14,6 @@ from spincyl.studio.pages.few import base64
 from spincyl.studio.pages.slip import rubbing
 from spincyl.studio.pages.stone import numbers
 from spincyl.studio.poses import knots, packed, repeats, seen, span
-from spincyl.studio.shape import reach
 
 #: Factors of slow motion on a page.
 SLOW = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
@@ -40,18 +38,13 @@ def shown(m: Motion, slips: bool) -> tuple[dict[str, Any], float]:
             "pivot": pivot and [pivot.real, pivot.imag],
             "shift": [again.shift.real, again.shift.imag],
         }
-    if isinstance(m, EllipsoidMotion):
-        data |= numbers(m, found[:, 0])
-    else:
-        data |= {"ell": m.body.ell, "i1": m.body.i1, "i3": m.body.i3}
-        if m.body.fillet > 0:
-            data |= {"fillet": m.body.fillet, "far": reach(m.body)}
+    data |= numbers(m, found[:, 0])
     packets = (packed(found) | (rubbing(m) if slips else {})).items()
     data |= {name: base64(*x) if isinstance(x, tuple) else x for name, x in packets}
     whirrs = m.event is not None and m.event.ending == Ending.FACE
     counts = found[:, 0] <= first + (0.9 if whirrs else 1.0) * (last - first)
     fastest = float(np.abs(found[counts, 6:9]).max())
-    if isinstance(m, EllipsoidMotion) or m.body.fillet == 1 or goes_up(m):
+    if not m._nods or m.body.fillet == 1 or goes_up(m):
         # near a pole phi' and psi' are large and nearly cancel: use the angular velocity instead
         (w,) = seen(m, found[:, 0], "w")
         fastest = float(np.linalg.norm(w, axis=1).max())

@@ -4,7 +4,6 @@ from typing import Any
 
 import numpy as np
 
-from spincyl._ellipsoid_motion import EllipsoidMotion
 from spincyl._input.numbers import Floats
 from spincyl._motion import Motion
 from spincyl._phases import KINDS
@@ -41,7 +40,7 @@ def forces(m: Motion, t: Floats) -> Floats:
         force = force - np.nan_to_num(there.contact_force_other)
     push = force[:, :2] @ [1, 1j]
     slip = np.zeros(push.shape, complex) if m._phases is None else there.slip @ [1, 1j]
-    if isinstance(there, EllipsoidMotion):
+    if not there._nods:
         # the axes of a state's slip are rotated by this angle about the vertical
         z, w = there.orientation[:, 2:].T
         slip = slip * np.exp(2j * np.arctan2(z, w))

@@ -1,5 +1,6 @@
 """Data about a stone for the page: its numbers, its surfaces, and the times at which the spin reverses."""
 
+from functools import singledispatch
 from itertools import pairwise
 from typing import Any
 
@@ -18,13 +19,15 @@ _SHARE = 0.1  # a reversed spin counts from this share of the first spin on
 _BETWEEN = 8  # samples between two knots
 
 
-def stone(m: Motion) -> bool:
-    """Whether the motion is that of a stone."""
-    return isinstance(m, EllipsoidMotion)
+@singledispatch
+def numbers(m: Motion, t: Floats) -> dict[str, Any]:
+    """Numbers of the body; of a stone the times of its reversals, and `ell` of a cylinder of its reach."""
+    found = {"ell": m.body.ell, "i1": m.body.i1, "i3": m.body.i3}
+    return found | ({"fillet": m.body.fillet, "far": reach(m.body)} if m.body.fillet > 0 else {})
 
 
-def numbers(m: EllipsoidMotion, t: Floats) -> dict[str, Any]:
-    """Numbers of the stone, and times of its reversals; a cylinder with this `ell` has the same reach."""
+@numbers.register
+def _(m: EllipsoidMotion, t: Floats) -> dict[str, Any]:
     far = reach(m.body)
     return {
         "ell": max(0.0, far * far - 1) ** 0.5,
@@ -35,8 +38,17 @@ def numbers(m: EllipsoidMotion, t: Floats) -> dict[str, Any]:
     }
 
 
-def turned(body: Ellipsoid, upper: Letter) -> dict[str, Any]:
-    """The surface of a stone, and its marks."""
+@singledispatch
+def turned(body: Any, upper: Letter) -> dict[str, Any]:
+    """The surface of a body, and its marks."""
+    return {
+        "turned": [{"colour": p.colour, "corners": corners(p)} for p in profiles(body)],
+        "marks": [packed_part(part) for part in marks(body, upper)],
+    }
+
+
+@turned.register
+def _(body: Ellipsoid, upper: Letter) -> dict[str, Any]:
     flat = turned_marks(body, upper)
     return {
         "turned": [*map(_stretched, profiles(body)), *(_stretched(p, mark=True) for p in flat)],

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 from spincyl._contact import named
-from spincyl._ellipsoid_motion import EllipsoidMotion
 from spincyl._input.files import path_of, replaced
 from spincyl._input.numbers import one_of, within
 from spincyl._input.progress import Progress, telling
@@ -17,11 +16,10 @@ from spincyl._scale import Scale, scale_of
 from spincyl.studio.aloft import goes_up
 from spincyl.studio.glb import glb
 from spincyl.studio.look import Look, look
-from spincyl.studio.pages.few import corners, packed_part
 from spincyl.studio.pages.joined import colours, filled, frame, line, script, style
 from spincyl.studio.pages.recorded import SLOW, edges, shown, slips_or_flies, slow_motion, turns
-from spincyl.studio.pages.stone import stone, turned
-from spincyl.studio.shape import Letter, marks, profiles
+from spincyl.studio.pages.stone import turned
+from spincyl.studio.shape import Letter, marks
 
 #: The style sheets and scripts of the page, in their order. "rounded" is used if a body has a fillet or is a
 #: stone, "stone" and "spin" if there is a stone, "forces" and "slip" if a contact has a law of friction, and
@@ -66,6 +64,7 @@ class View:
         self,
         motions: Sequence[Motion],
         labels: Sequence[str],
+        *,
         title: str,
         scale: Scale | None,
         slow: int | None,
@@ -86,9 +85,9 @@ class View:
     @property
     def html(self) -> str:
         """The page as text."""
-        rounded = any(stone(m) or m.body.fillet > 0 for m in self.motions)
+        rounded = any(not m._nods or m.body.fillet > 0 for m in self.motions)
         there = {"rounded": rounded, "forces": self._slips, "slip": self._slips}
-        there |= dict.fromkeys(("stone", "spin"), any(map(stone, self.motions)))
+        there |= dict.fromkeys(("stone", "spin"), any(not m._nods for m in self.motions))
         there["aloft"] = any(map(goes_up, self.motions))
         useless = [word for word in there if not there[word]]
         styles, scripts = (
@@ -206,12 +205,7 @@ class View:
         shapes: list[dict[str, Any]] = []
         motions = []
         for m, label, poses in zip(self.motions, self.labels, self._poses, strict=True):
-            shape: dict[str, Any]
-            if isinstance(m, EllipsoidMotion):
-                shape = turned(m.body, self.upper)
-            else:
-                shape = {"turned": [{"colour": p.colour, "corners": corners(p)} for p in profiles(m.body)]}
-                shape["marks"] = [packed_part(part) for part in marks(m.body, self.upper)]
+            shape = turned(m.body, self.upper)
             if shape not in shapes:
                 shapes.append(shape)
             motions.append({"label": label, "shape": shapes.index(shape)} | edges(m) | poses)
@@ -225,7 +219,7 @@ class View:
                 "look": {"drawn": self.look.drawn, "above": self.look.above, "exposure": turns(self.look)},
             }
             | (self._speeds() | {"follow": self.look.follow} if self._slips else {})
-            | (self._rates() if any(map(stone, self.motions)) else {})
+            | (self._rates() if any(not m._nods for m in self.motions) else {})
         )
 
     @property
@@ -241,7 +235,7 @@ class View:
     @property
     def _length(self) -> str:
         """The symbol of the unit of length: the largest semi-axis of stones, else the radius."""
-        return "a" if all(map(stone, self.motions)) else "R"
+        return "a" if all(m.body._length == "a" for m in self.motions) else "R"
 
     @property
     def _colours(self) -> dict[str, tuple[float, float, float]]:
@@ -397,4 +391,6 @@ def view(
     for m in motions:
         marks(m.body, upper)  # raises ValueError if `upper` is neither "O" nor "X"
     how = look(drawn, above, follow, exposure)
-    return View([m.natural for m in motions], labels, title, scale, slow, upper, how)
+    return View(
+        [m.natural for m in motions], labels, title=title, scale=scale, slow=slow, upper=upper, look=how
+    )

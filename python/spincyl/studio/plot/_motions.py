@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from spincyl._contact import Coulomb, Viscous, named
-from spincyl._ellipsoid_motion import EllipsoidMotion
 from spincyl._input.numbers import Floats, extra, made, number, within
 from spincyl._loss import titled
 from spincyl._motion import Motion
@@ -112,7 +111,7 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
     how = {"rolling": "rolling", "smooth": "smooth table"}.get(named(m.contact)) or _law(m)
     if m.losses is not None:
         how = f"{how}, {titled(m.losses, scale)}"
-    if isinstance(m, EllipsoidMotion):
+    if not m._nods:
         _spin(tilt, m, t, scale, thick)
         if float(m.theta.max()) < np.pi / 3:
             _rockings(tilt, m, t, below)
@@ -178,7 +177,7 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
     return [tilt, path, force]
 
 
-def _spin(ax: "Axes", m: EllipsoidMotion, t: Any, scale: "Scale | None", style: dict[str, Any]) -> None:
+def _spin(ax: "Axes", m: Any, t: Any, scale: "Scale | None", style: dict[str, Any]) -> None:
     """Draw the spin of a stone on a second axis of the inclination; the spin reverses at zero."""
     right = ax.twinx()
     right.plot(t, _in(scale, "w", m.spin), color=ORANGE, **style)
@@ -187,7 +186,7 @@ def _spin(ax: "Axes", m: EllipsoidMotion, t: Any, scale: "Scale | None", style: 
     ax.yaxis.label.set_color(BLUE)
 
 
-def _rockings(ax: "Axes", m: EllipsoidMotion, t: Any, legend: dict[str, Any]) -> None:
+def _rockings(ax: "Axes", m: Any, t: Any, legend: dict[str, Any]) -> None:
     """Draw the envelopes of both rockings: the maxima of the angle of each axis from the horizontal."""
     ax.lines[0].set_alpha(0.25)
     tilts = np.abs(90 - np.degrees(m.inclinations))
@@ -201,7 +200,7 @@ def _rockings(ax: "Axes", m: EllipsoidMotion, t: Any, legend: dict[str, Any]) ->
 
 def _straight(m: "Motion") -> "Floats | None":
     """Distance of the centre of a body that rolls straight at constant inclination; None for others."""
-    if isinstance(m, EllipsoidMotion) or np.ptp(m.theta) > 1e-6 or np.ptp(m.phi) > 1e-6:
+    if not m._nods or np.ptp(m.theta) > 1e-6 or np.ptp(m.phi) > 1e-6:
         return None
     plan = m.centre[:, :2] - m.centre[0, :2]
     away = np.hypot(*plan.T)
@@ -235,7 +234,7 @@ def _close(m: "Motion") -> "tuple[Motion, bool]":
     up = aloft(m, first, last) if goes_up(m) else None
     if up is not None:  # both sides of each kink
         share = np.union1d(share, (up.edges - first) / (last - first))
-    if isinstance(m, EllipsoidMotion):  # integrated again for other times
+    if not m._nods:  # integrated again for other times
         return m.at(first + share * (last - first)), True
     while share.size < _MOST:
         there = m.at(first + share * (last - first))
