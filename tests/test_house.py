@@ -4,6 +4,7 @@ import pathlib
 import re
 
 import pytest
+import subjects
 from circles import circle
 
 ROOT = pathlib.Path(__file__).parents[1]
@@ -180,6 +181,148 @@ def test_the_name_of_a_type_stands_once():
     assert len(homes) > 100
     twice = {word: places for word, places in homes.items() if len(places) > 1}
     assert not twice, twice
+
+
+# Names of functions.
+
+FUNCTION = re.compile(r'^(?:pub(?:\([^)]*\))? )?(?:const )?(?:unsafe )?(?:extern "" )?fn (\w+)')
+#: Names of functions outside of types that occur twice in a layer, with the reason.
+NAMESAKES = {
+    "laws": {
+        **dict.fromkeys(
+            ("energy", "derivative", "force", "centre_velocity"), "the same quantity of each contact"
+        ),
+    },
+    "motions": {
+        **dict.fromkeys(
+            ("roll", "rolled", "roll_with", "followed", "walk"), "the same of a body and of a stone"
+        ),
+        "first_event": "of a motion and of its swing, for users and inside",
+        "follow": "a motion by first integrals and one by phases",
+        "check": "of a state, and of a motion under laws of users",
+        "state": "of a body and of a stone",
+        "error": "the norm of a flow",
+    },
+    "many": {
+        "roll": "all motions, and one of them",
+        "stops": "all drifts, and those in lanes",
+        "put": "of a row, and of a motion",
+        "scatter": "of maps, and of their rates",
+    },
+    "methods": {"step": "of each method"},
+    "numbers": {
+        "sin_cos": "of a number and of a sum",
+        **dict.fromkeys(("best", "registers"), "one for each kind of processor"),
+    },
+}
+
+
+def twice_in_a_layer():
+    homes = {}
+    for path in SOURCES:
+        layer = path.relative_to(SRC).parts[0]
+        for _, line in code(path):
+            if path.stem != "tests" and (found := FUNCTION.match(line)):
+                homes.setdefault(layer, {}).setdefault(found[1], []).append(name(path))
+    assert sum(map(len, homes.values())) > 500
+    twice = {layer: {x for x, files in names.items() if len(files) > 1} for layer, names in homes.items()}
+    return {layer: names for layer, names in twice.items() if names}
+
+
+def test_the_name_of_a_function_stands_once_in_a_layer_or_there_is_a_reason():
+    assert twice_in_a_layer() == {layer: set(names) for layer, names in NAMESAKES.items()}
+
+
+# Arguments of functions.
+
+
+def parts_of(text):
+    """The parts of a text between commas that are not in brackets."""
+    found, part, depth, before = [], "", 0, ""
+    for letter in text:
+        depth += (letter in "([{<") - (letter in ")]}" or (letter == ">" and before != "-"))
+        if letter == "," and not depth:
+            found, part = [*found, part.strip()], ""
+        else:
+            part += letter
+        before = letter
+    return [x for x in [*found, part.strip()] if x]
+
+
+def closing(text, at):
+    """The place after the bracket that closes the one at this place."""
+    depth = 0
+    for place in range(at, len(text)):
+        arrow = text[place - 1 : place + 1] == "->"
+        depth += (text[place] in "(<") - (text[place] in ")>" and not arrow)
+        if not depth:
+            return place + 1
+    raise AssertionError(text[at : at + 80])
+
+
+def signatures(text):
+    """Name, arguments without self, and type of the result of each function."""
+    for found in re.finditer(r"\bfn (\w+)", text):
+        at = found.end()
+        at = closing(text, at) if text[at] == "<" else at
+        if text[at] == "(":
+            end = closing(text, at)
+            told = parts_of(text[at + 1 : end - 1])
+            given = [x for x in told if not re.fullmatch(r"&?(?:'\w+ )?(?:mut )?self(?:: .*)?", x, re.S)]
+            yield found[1], given, re.split(r"\bwhere\b|[{;]", text[end:], maxsplit=1)[0]
+
+
+def sizes_of_tuples(text):
+    """The number of parts of each tuple in a type."""
+    opened = []
+    for place, letter in enumerate(text):
+        if letter == "(":
+            opened.append(place)
+        elif letter == ")" and opened:
+            at = opened.pop()
+            if not re.search(r"\b(?:Fn|FnMut|FnOnce|fn)$", text[:at]):
+                yield len(parts_of(text[at + 1 : place]))
+
+
+def test_arguments_and_tuples_are_counted():
+    text = "fn f<T: Fn(f64, u8) -> bool>(&self, a: [f64; 2], (b, c): (u8, u8), d: &dyn Fn(u8, u8, u8)) -> (u8, T, T) {"
+    assert [(x, len(given)) for x, given, _ in signatures(text)] == [("f", 3)]
+    assert [*sizes_of_tuples("(u8, (f64, f64, f64), fn(u8, u8, u8) -> u8)")] == [3, 3]
+
+
+#: Functions with more than six arguments, all of them by position: what Python calls, and two of lanes.
+LONG = {
+    "python/drift.rs": {"drift_ask"},
+    "python/ensemble.rs": {"ensemble"},
+    "python/mod.rs": {"rate_of_one"},
+    "python/stone.rs": {"stones"},
+    "many/maps/survey.rs": {"all_extrema_of"},
+    "many/motions/ends/march.rs": {"march"},
+}
+
+
+def test_no_function_takes_more_than_six_arguments_by_position():
+    found = {}
+    for path in SOURCES:
+        for word, given, _ in signatures("\n".join(line for _, line in code(path))):
+            if len(given) > 6:
+                found.setdefault(name(path), set()).add(word)
+    assert found == LONG
+
+
+#: How many tuples of three or more parts without names stand in the signatures of a layer.
+UNNAMED = {"motions": 12, "laws": 5, "many": 5, "python": 3, "methods": 2}
+
+
+def test_few_signatures_have_tuples_without_names():
+    found = {}
+    for path in SOURCES:
+        for _, given, result in signatures("\n".join(line for _, line in code(path))):
+            types = [x.partition(":")[2] for x in given] + [result]
+            many = sum(size > 2 for text in types for size in sizes_of_tuples(text))
+            layer = path.relative_to(SRC).parts[0]
+            found[layer] = found.get(layer, 0) + many
+    assert {layer: many for layer, many in found.items() if many > UNNAMED.get(layer, 0)} == {}
 
 
 # Imports between modules.
@@ -398,3 +541,12 @@ def test_every_test_that_a_head_promises_exists():
                 broken.append(f"{name(path)}:{number}: {text}")
     assert promised > 10
     assert not broken, "\n".join(broken)
+
+
+def test_the_page_of_the_tests_is_up_to_date():
+    told = dict(subjects.promised())
+    assert told["src/laws/loss/mod.rs"] == ["tests/laws/losses.rs"] and len(told) > 40
+    assert subjects.PAGE.read_text("utf-8") == subjects.page(), "run python tests/subjects.py --write"
+    rows = subjects.page().split("## The core")[1]
+    for path in [*(ROOT / "tests").glob("test_*.py"), *(ROOT / "tests" / "laws").glob("*.rs")]:
+        assert f"| `{path.relative_to(ROOT / 'tests').as_posix()}` | " in rows, f"{path.name} has no head"

@@ -98,7 +98,7 @@ fn sign_below_one(p: &[Sum<f64>]) -> f64 {
 /// The root bracketed by `low` and `high`, where `p` changes from the sign `sign_low`. Newton's steps are taken while
 /// they shrink fast; otherwise the bracket is halved.
 fn between(p: &[Sum<f64>], slope: &[Sum<f64>], mut low: f64, mut high: f64, sign_low: f64) -> f64 {
-    let mut t = middle(low, high);
+    let mut t = middle_of(low, high);
     let mut step = high - low;
     loop {
         let v = value(p, t).hi;
@@ -113,7 +113,7 @@ fn between(p: &[Sum<f64>], slope: &[Sum<f64>], mut low: f64, mut high: f64, sign
         }
         let next = t + newton;
         let shrinks = newton.abs() <= 0.5 * step;
-        let next = if low < next && next < high && shrinks { next } else { middle(low, high) };
+        let next = if low < next && next < high && shrinks { next } else { middle_of(low, high) };
         if next <= low || next >= high {
             return t;
         }
@@ -123,7 +123,7 @@ fn between(p: &[Sum<f64>], slope: &[Sum<f64>], mut low: f64, mut high: f64, sign
 }
 
 /// The middle of two numbers, or of their exponents where the numbers differ by more than a factor of 2.
-fn middle(low: f64, high: f64) -> f64 {
+fn middle_of(low: f64, high: f64) -> f64 {
     if high > 2.0 * low {
         f64::from_bits((low.to_bits() + high.to_bits()) / 2)
     } else {

@@ -102,8 +102,8 @@ pub(crate) fn short_sincos<T: Real>(theta: T, floor: f64) -> Short<T> {
     let head = half.fma(z, one);
     let rest = half.fma(z, one - head);
     let z_lo = x.fma(x, -z);
-    let s = Sum::ordered(x, (x * z).fma(horner(z, &SHORT_SINE), x_lo * head));
-    let tail = (z * z).fma(horner(z, &SHORT_COSINE), half.fma(z_lo, -(x * x_lo)));
+    let s = Sum::ordered(x, (x * z).fma(polynomial(z, &SHORT_SINE), x_lo * head));
+    let tail = (z * z).fma(polynomial(z, &SHORT_COSINE), half.fma(z_lo, -(x * x_lo)));
     let c = Sum::ordered(head, rest + tail);
     let swap = |yes: T, no: T| quarter.select_lt(theta, yes, no);
     Short {
@@ -120,7 +120,7 @@ fn small<T: Real>(x: T, x_lo: T) -> [Sum<T>; 2] {
     let z = Sum::product(x, x);
 
     // sin x = x - x^3/6 + x^5 (1/120 - ...)
-    let series = horner(z.hi, &SINE);
+    let series = polynomial(z.hi, &SINE);
     let sixth = x.splat(1.0 / 6.0);
     let cube = Sum::product(x, z.hi);
     let third = Sum::product(cube.hi, sixth);
@@ -133,7 +133,7 @@ fn small<T: Real>(x: T, x_lo: T) -> [Sum<T>; 2] {
     );
 
     // cos x = 1 - x^2/2 + x^4 (1/24 - ...)
-    let series = horner(z.hi, &COSINE);
+    let series = polynomial(z.hi, &COSINE);
     let half = x.splat(0.5);
     let c = Sum::ordered(one, -(z.hi * half));
     let c = Sum::ordered(c.hi, c.lo + ((z.hi * z.hi) * series - z.lo * half - x * x_lo));
@@ -151,8 +151,8 @@ pub(crate) fn sin_cos<T: Real>(theta: T) -> (T, T) {
     let beyond = (theta.splat(core::f64::consts::PI) - theta) + theta.splat(2.0 * HALF_PI_LO);
     let x = theta.select_lt(quarter, theta, theta.select_lt(most, level, beyond));
     let z = x * x;
-    let sin = horner(z, &SINE).fma(z, theta.splat(-1.0 / 6.0));
-    let cos = horner(z, &COSINE);
+    let sin = polynomial(z, &SINE).fma(z, theta.splat(-1.0 / 6.0));
+    let cos = polynomial(z, &COSINE);
     let sin = (x * z).fma(sin, x);
     let half = z * theta.splat(0.5);
     // `head` is 1 - z/2; the last term adds its rounding error.
@@ -175,7 +175,7 @@ pub(crate) fn arctan2<T: Real>(y: T, x: T) -> T {
     let below = upper.select_lt(small, small + large, large);
     let r = above / below.max(y.splat(f64::MIN_POSITIVE));
     // The coefficients come from Chebyshev interpolation of atan(r)/r in r^2; their error is 4e-18.
-    let series = horner(
+    let series = polynomial(
         r * r,
         &[
             -0.017805397205419446,
@@ -198,7 +198,7 @@ pub(crate) fn arctan2<T: Real>(y: T, x: T) -> T {
 
 /// The value of the polynomial with these coefficients, highest power first.
 #[inline(always)]
-fn horner<T: Real>(x: T, coefficients: &[f64]) -> T {
+fn polynomial<T: Real>(x: T, coefficients: &[f64]) -> T {
     let mut sum = x.splat(coefficients[0]);
     for &c in &coefficients[1..] {
         sum = sum.fma(x, x.splat(c));

@@ -43,13 +43,13 @@ impl<S: Simd> Lane for f64x8<S> {
     }
     #[inline(always)]
     fn aside<R>(self, work: impl FnOnce() -> R) -> R {
-        apart(self.token(), work)
+        apart_of(self.token(), work)
     }
 }
 
 #[cold]
 #[inline(never)]
-fn apart<S: Simd, R>(simd: S, work: impl FnOnce() -> R) -> R {
+fn apart_of<S: Simd, R>(simd: S, work: impl FnOnce() -> R) -> R {
     simd.vectorize(work)
 }
 

@@ -162,7 +162,7 @@ impl Told for StoneState {
 
 /// The arrays of a motion for Python; None if `go_on` returns false.
 #[inline(never)] // its frame is not on the stack of the motion
-fn columns<S: Told>(
+fn motion_columns<S: Told>(
     m: &Motion<S>,
     body: &S::Body,
     (ask, loses): (&Ask, bool),
@@ -295,7 +295,7 @@ fn under_own_laws<'py>(
         with_laws(py, asked, |laws| custom::roll_with(body, start, times, &ask, laws, || watch.still()))?;
     watch.done(py)?;
     let m = rolled?.ok_or_else(|| PyRuntimeError::new_err("the motion was interrupted"))?;
-    let columns = columns(&m, body, (&ask, loses), &mut || true)?.unwrap_or_default();
+    let columns = motion_columns(&m, body, (&ask, loses), &mut || true)?.unwrap_or_default();
     dictionary(py, (&m, body), columns, rubs(&ask))
 }
 
@@ -355,7 +355,7 @@ where
     let mut watch = Watch::new(None);
     let found = py.detach(|| {
         let Some(motion) = roll(&mut watch)? else { return Ok(None) };
-        let columns = columns(&motion, body, (ask, loses), &mut || watch.still())?;
+        let columns = motion_columns(&motion, body, (ask, loses), &mut || watch.still())?;
         Ok::<_, Error>(columns.map(|columns| (motion, columns)))
     })?;
     watch.done(py)?;

@@ -2,15 +2,11 @@
 //!
 //! All files are one program, since the compiler would take as long for each of several.
 
-mod at_once;
-mod beside_folds;
-mod beside_turns;
-mod big;
+mod big_integers;
 mod common;
 mod custom;
 mod drift;
 mod endings;
-mod ends;
 mod ensemble;
 mod equations;
 mod evaluations;
@@ -23,12 +19,14 @@ mod hard_cases;
 mod hopping;
 mod impacts;
 mod integrators;
-mod leaving;
+mod leaving_the_model;
 mod losing_slips;
 mod losses;
 mod lying;
+mod many_ends;
+mod many_near_turns;
 mod measured;
-mod moving;
+mod near_folds;
 mod paper;
 mod parts;
 mod patch;
@@ -36,6 +34,8 @@ mod poses;
 mod public;
 mod references;
 mod resting;
+mod rounded_motions;
+mod several_held;
 mod slip;
 mod stability;
 mod steady_states;

@@ -1,6 +1,6 @@
 //! Inclinations of a rate, folds, ridges and boundaries of stability: each is right, and none is missing.
 
-use crate::big::{self, Big};
+use crate::big_integers::{self as big, Big};
 use crate::common::{any_body, any_fillet, any_rim, tube_or_rounded};
 use crate::{ULP, condition, place, sharp, steady_end};
 use proptest::prelude::*;

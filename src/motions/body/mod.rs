@@ -55,7 +55,7 @@ pub fn follow(
     ask: &Ask,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Motion, Error> {
-    let fine = check(body, start, ask)?;
+    let fine = check_walk(body, start, ask)?;
     check_times_after(start.time, times)?;
     let mut run = |tol: f64, times: &[f64]| walked((body, start), ask, (tol, false), times, go_on);
     if !SHORT_CODE && spun::knows(body, ask) {
@@ -120,7 +120,7 @@ pub(super) fn without_friction(body: &Body, ask: &Ask, start: &Start) -> (Ask, S
 }
 
 /// Returns the tolerance of the steps, or an error for a body, an initial state or options out of range.
-pub(super) fn check(body: &Body, start: &Start, ask: &Ask) -> Result<f64, Error> {
+pub(super) fn check_walk(body: &Body, start: &Start, ask: &Ask) -> Result<f64, Error> {
     match start.aloft {
         Some([height, _]) if height > 0.0 => exact::check_in_air(body, &start.state)?,
         _ => exact::check(body, &start.state)?,

@@ -9,7 +9,7 @@ use super::slide::{Slide, Varying};
 use super::spun::{Roundings, knows};
 use super::tail::LastTurns;
 use super::write::{self, state};
-use super::{check, without_friction};
+use super::{check_walk, without_friction};
 use crate::error::Error;
 use crate::laws::body::Body;
 use crate::laws::contact::slip::{Friction, centre_velocity, painleve};
@@ -101,7 +101,7 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
     /// A walk from its initial state, with steps of the tolerance `tol`, which is the requested tolerance or a larger
     /// one.
     pub fn of_body(body: &Body, ask: &Ask, tol: f64, times: &'a [f64], start: &Start) -> Result<Self, Error> {
-        let fine = check(body, start, ask)?;
+        let fine = check_walk(body, start, ask)?;
         let (ask, start) = without_friction(body, ask, start);
         Self::of_laws(body, &ask, (tol, fine), times, &start, ())
     }

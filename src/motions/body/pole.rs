@@ -31,7 +31,7 @@ pub(crate) fn passes_unseen<const N: usize>(from: &[f64; N], y: &[f64; N], count
 }
 
 /// A vector of the table, in the basis that is turned by the angle with this cosine and sine.
-fn turned([cos, sin]: [f64; 2], [h, two]: [f64; 2]) -> [f64; 2] {
+fn rotated([cos, sin]: [f64; 2], [h, two]: [f64; 2]) -> [f64; 2] {
     [cos * h + sin * two, cos * two - sin * h]
 }
 
@@ -65,7 +65,7 @@ pub(crate) fn passed<const N: usize>(y: &[f64; N], rates: &[f64; N]) -> Option<[
     let lean: [f64; 2] = core::array::from_fn(|i| lean[i] + 0.5 * lasts * (early[i] + late[i]));
     let s = lean[0].hypot(lean[1]).copysign(s);
     let way = lean.map(|x| -x / s);
-    let ([h, w2], [u_h, u_2]) = (turned(way, level_then), turned(way, slip));
+    let ([h, w2], [u_h, u_2]) = (rotated(way, level_then), rotated(way, slip));
     let c = (1.0 - s * s).sqrt().copysign(c);
     let mut there: [f64; N] = core::array::from_fn(|i| y[i] + lasts * rates[i]);
     let w = [c * h + s * upright_then, w2, c * upright_then - s * h];

@@ -132,7 +132,7 @@ pub(crate) fn followed(
 /// Checks a motion under such laws. Returns the tolerance of its steps.
 fn check(body: &Body, start: &Start, ask: &Ask, custom: &Custom<'_>) -> Result<f64, Error> {
     check_options(ask, custom)?;
-    let tol = body::check(body, start, ask)?;
+    let tol = body::check_walk(body, start, ask)?;
     Ok(if ask.method == Method::Exact { FAIR } else { tol })
 }
 

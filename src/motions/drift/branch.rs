@@ -142,7 +142,7 @@ impl Exact {
     /// The place at an inclination whose distance `below` theta0 is known more precisely.
     pub fn place_at(&self, theta: Sum<f64>, below: f64) -> BranchAngle<f64> {
         let rim = self.branch.shape.rim;
-        let (s, c) = angle(theta);
+        let (s, c) = sum_sin_cos(theta);
         // A ball has no theta0, so that its n comes from the lever.
         let n = if self.body.is_ball() { -rim.lever((s, c)) } else { rim.a.hypot(rim.ell) * below.sin() };
         let more = self.branch.excess * (c * rim.radius((s, c)));
@@ -169,7 +169,7 @@ impl Exact {
 
 /// Sine and cosine of an angle in (0, pi), which is a sum of two doubles.
 #[inline(always)]
-fn angle(theta: Sum<f64>) -> (f64, f64) {
+fn sum_sin_cos(theta: Sum<f64>) -> (f64, f64) {
     let (s, c) = sin_cos(theta.hi);
     (s + c * theta.lo, c - s * theta.lo)
 }

@@ -67,7 +67,7 @@ impl Drift {
     /// # Ok::<(), spincyl::Error>(())
     /// ```
     pub fn at_rest(body: &Body, theta: f64, losses: &Losses) -> Result<Self, Error> {
-        check(body, losses)?;
+        check_drift(body, losses)?;
         Ok(Self { kept: Kept::Rest(Box::new(Rest::new(body, theta, losses)?)) })
     }
 
@@ -76,7 +76,7 @@ impl Drift {
     /// Errors: as for [`at_rest`](Self::at_rest), and `OutOfRange` for a state that is not steady to six digits and for
     /// a state that is unstable in rolling, kappa <= 0.
     pub fn rolling(body: &Body, y: &State, losses: &Losses) -> Result<Self, Error> {
-        check(body, losses)?;
+        check_drift(body, losses)?;
         Ok(Self { kept: Kept::Rolling(Box::new(DriftCourse::new(body, y, losses)?)) })
     }
 
@@ -157,7 +157,7 @@ pub(crate) struct DriftState {
 }
 
 /// Returns an error for losses or a body without a drift.
-pub(crate) fn check(body: &Body, losses: &Losses) -> Result<(), Error> {
+pub(crate) fn check_drift(body: &Body, losses: &Losses) -> Result<(), Error> {
     losses.check_for(body)?;
     if losses.is_none() {
         let expected = "at least one law with a positive coefficient: without losses there is no drift";

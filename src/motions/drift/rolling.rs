@@ -157,7 +157,7 @@ impl Rolling<'_> {
         }
         let mut of = Circular::new(&body.shape(), !body.is_sharp(), Couples::of(losses, |x| x));
         // A body that precesses backwards drifts as its mirror image does.
-        let (first, far) = turned([y.theta, rate.abs(), y.w3 * rate.signum(), 0.0], 1.0);
+        let (first, far) = from_other_end([y.theta, rate.abs(), y.w3 * rate.signum(), 0.0], 1.0);
         // The given state is steady to at least six digits; steps of Newton's method make it steady to all
         // digits.
         let start = (0..4).fold(first, |y, _| of.settled(&y, far));
@@ -198,7 +198,7 @@ impl Rolling<'_> {
             if flown.halt != DriftHalt::Turned {
                 return Ok(flown);
             }
-            (y, self.far) = turned(flown.y, self.far);
+            (y, self.far) = from_other_end(flown.y, self.far);
             self.start[0] = PI - self.start[0];
             first = Some(flown.step);
         }
@@ -240,7 +240,7 @@ pub(crate) fn counted<T: Real>(theta: T, far: T) -> T {
 }
 
 /// Returns these numbers with the inclination counted from the other end if it is above `FROM_ABOVE`.
-fn turned([theta, rate, w3, t]: Numbers<f64>, far: f64) -> (Numbers<f64>, f64) {
+fn from_other_end([theta, rate, w3, t]: Numbers<f64>, far: f64) -> (Numbers<f64>, f64) {
     if theta < FROM_ABOVE { ([theta, rate, w3, t], far) } else { ([PI - theta, rate, w3, t], -far) }
 }
 

@@ -161,7 +161,7 @@ pub(super) fn lines<T: Real, const N: usize>(law: &Reduced<T>, start: [T; 4]) ->
     }
     let zero = start[0].splat(0.0);
     let of = law.at((start[0], start[1]));
-    let [mut s, mut c, mut p, mut n] = begun(start);
+    let [mut s, mut c, mut p, mut n] = first_terms(start);
     let (mut square, mut m, mut push) = ([zero; N], [zero; N], [zero; N]);
     let (mut s_c, mut s_push) = ([zero; N], [zero; N]);
     for k in 0..N {
@@ -183,7 +183,7 @@ pub(super) fn lines<T: Real, const N: usize>(law: &Reduced<T>, start: [T; 4]) ->
 
 /// Series with the first terms `start`; all other terms are 0.
 #[inline(always)]
-fn begun<T: Real, const N: usize>(start: [T; 4]) -> [[T; N]; 4] {
+fn first_terms<T: Real, const N: usize>(start: [T; 4]) -> [[T; N]; 4] {
     start.map(|x| {
         let mut series = [x.splat(0.0); N];
         series[0] = x;
@@ -197,7 +197,7 @@ fn rounded_lines<T: Real, const N: usize>(law: &Reduced<T>, start: [T; 4]) -> [[
     let zero = start[0].splat(0.0);
     let (rim, i1, i3) = (&law.shape.rim, law.shape.i1, law.shape.i3);
     let (a, ell, rho) = (rim.a, rim.ell, rim.rho);
-    let [mut s, mut c, mut p, mut n] = begun(start);
+    let [mut s, mut c, mut p, mut n] = first_terms(start);
     let (mut square, mut m) = ([zero; N], [zero; N]);
     // D; I3 (I3 + A^2 + rho c L) as `feed`; I3 L - I1 rho c as `turn`; A; then P'/s as `push` and n'/A as `spin`.
     let (mut d, mut feed, mut turn, mut radius) = ([zero; N], [zero; N], [zero; N], [zero; N]);

@@ -114,7 +114,7 @@ pub(crate) fn within(
     };
     let mut motion = run(tol, ask.beyond)?;
     if let Some(made) = motion.event.filter(|made| motion.limit.is_none() && !known.agrees(Some(*made))) {
-        motion = decided(course, &known, ask, (motion, made), tol, &mut run)?;
+        motion = decided_ends(course, &known, ask, (motion, made), tol, &mut run)?;
     }
     // Steps can miss an end of the exact solution.
     if motion.event.is_none() {
@@ -139,7 +139,7 @@ fn ended(motion: &mut Motion, known: &Known<'_>, course: &Course<'_>, ask: &Ask)
 /// is accurate enough to decide, the steps are continued beyond their end. If this is impossible, since the face has
 /// landed, or if that solution is not accurate enough, the steps are repeated with smaller tolerances until these
 /// confirm an end.
-fn decided(
+fn decided_ends(
     course: &Course<'_>,
     known: &Known<'_>,
     ask: &Ask,

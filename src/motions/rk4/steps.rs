@@ -75,7 +75,7 @@ struct Runner<'a, const N: usize, const ROUND: bool> {
     motion: Motion,
 }
 
-fn state<const N: usize>(y: &[f64; N]) -> State {
+fn stepped_state<const N: usize>(y: &[f64; N]) -> State {
     State { theta: y[0], w1: y[1], w2: y[2], w3: y[3] }
 }
 
@@ -85,7 +85,7 @@ fn derivative<const N: usize, const ROUND: bool>(
     y: &[f64; N],
     angle: (f64, f64),
 ) -> [f64; N] {
-    let now = state(y);
+    let now = stepped_state(y);
     let [w1, w2, w3] = rates.at_on::<ROUND>(angle.0, angle.1, [now.w1, now.w2, now.w3]);
     let dy = State { theta: -now.w2, w1, w2, w3 };
     let mut changes = [0.0; N];
@@ -168,7 +168,7 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
                 let spent = steps > most / 4;
                 if spent || beat.is_due() && !go_on() {
                     let limit = if spent { Limit::Evaluations } else { Limit::Interrupted };
-                    let (time, state) = (t0 + self.here.t, state(&self.here.at.y));
+                    let (time, state) = (t0 + self.here.t, stepped_state(&self.here.at.y));
                     self.motion.event = Some(Event { ending: Ending::Bounded, time, state, rim: 0 });
                     self.motion.limit = Some(limit);
                     break;
@@ -213,7 +213,7 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
     #[inline(always)]
     fn ahead(&mut self, rates: &Rates<f64>, t: f64) -> Result<Option<Stage<N>>, Error> {
         let (here, law) = (&self.here, (rates, self.contact));
-        let fast = state(&here.at.y).precession().abs();
+        let fast = stepped_state(&here.at.y).precession().abs();
         if self.unguarded && (t - here.t).abs() * fast > 1.0 {
             let (time, theta) = (self.course.t0 + here.t, here.at.y[0]);
             return Err(Error::Step { step: (t - here.t).abs(), time, theta, advice: 0.3 / fast });
@@ -272,7 +272,7 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
     /// Adds a point to the outputs of the motion.
     fn write(&mut self, place: &Stage<N>) {
         let y = &place.at.y;
-        let now = state(y);
+        let now = stepped_state(y);
         self.motion.states.push(now);
         if let Some(poses) = &mut self.motion.poses
             && N == 8

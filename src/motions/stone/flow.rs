@@ -129,7 +129,7 @@ impl StoneFlow<'_> {
         w: [T; 3],
         slip: Option<[T; 2]>,
     ) -> Seen<T> {
-        let lab = laboratory(if law.patch().is_some() { unit(q) } else { q });
+        let lab = laboratory(if law.patch().is_some() { unit_quaternion(q) } else { q });
         let mut at = law.touching(lab[2], w);
         let zero = w[0].splat(0.0);
         let mut even = zero.splat(1.0);
@@ -256,7 +256,7 @@ impl StoneFlow<'_> {
 /// The unit quaternion along another, which at the stages of a step is not quite one. The difference, times w^2, would be
 /// an acceleration of the slip, which a small patch would answer with all its friction.
 #[inline(always)]
-fn unit<T: Real>(q: [T; 4]) -> [T; 4] {
+fn unit_quaternion<T: Real>(q: [T; 4]) -> [T; 4] {
     let per = q[0].splat(1.0) / q.iter().fold(q[0].splat(0.0), |sum, x| x.mac(*x, sum)).sqrt();
     q.map(|x| x * per)
 }

@@ -26,7 +26,7 @@ pub use rolling::{RollingStone, rolling};
 const UNIT: f64 = 1e-9;
 
 /// Checks an initial state and options. Returns the state with a vertical of length 1, and the tolerance.
-pub(crate) fn check(
+pub(crate) fn check_stone(
     start: &Start<StoneState>,
     times: &[f64],
     ask: &Ask,

@@ -7,7 +7,7 @@
 //! Error: from a second run with a larger tolerance, as for a body with friction; `tests/laws/stone.rs`
 //! compares it with references of 25 digits.
 
-use super::check;
+use super::check_stone;
 use super::flow::{ALL, LOSING};
 use super::known::{Recorded, Runs, settle};
 use super::phases::StoneWalk;
@@ -70,7 +70,7 @@ pub(crate) fn followed(
     recorded: &RefCell<Recorded>,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Followed<StoneState>, Error> {
-    let (start, fine) = check(start, times, ask)?;
+    let (start, fine) = check_stone(start, times, ask)?;
     let mut run = |tol: f64, times: &[f64], recorded| {
         let of = (stone, &start);
         if ask.losses.is_none() {

@@ -19,7 +19,7 @@ use crate::states::steady::{self, MOST, Shares};
 /// All are NaN for `ell` above 1e30 or I1/I3 above 1e60. The error is 16 ulp times the conditioning.
 pub fn boundaries(body: &Body, contact: Contact) -> [f64; MOST] {
     if !body.is_sharp() {
-        return rounded(body, contact);
+        return rounded_boundaries(body, contact);
     }
     // For a critical body m = n: both cubics contain the factor n, which cancels in kappa.
     let divided = body.excess() == 0.0;
@@ -48,7 +48,7 @@ pub(super) fn cubic<C: Coefficient>(body: &Body, contact: Contact, divided: bool
 }
 
 /// The boundaries of a body with a rounded rim, at inclinations below theta_end.
-fn rounded(body: &Body, contact: Contact) -> [f64; MOST] {
+fn rounded_boundaries(body: &Body, contact: Contact) -> [f64; MOST] {
     let Shares { s, c, radius, depth, height, slope, n, m, sigma: [sigma, over], .. } = &Shares::of(body);
     let (i1, i3, rho) = (&Trig::of(body.i1()), &Trig::of(body.i3()), &Trig::of(body.fillet()));
     let one = Trig::of(1.0);

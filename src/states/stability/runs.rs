@@ -152,18 +152,18 @@ pub(crate) fn runs(body: &Body, tangents: &[f64], mut report: impl FnMut(Region,
     let mut from = 0;
     for &(place, which) in &changes.all[..changes.count] {
         if place > from {
-            report(region_of(negative), from, place);
+            report(region_of_signs(negative), from, place);
             from = place;
         }
         negative ^= which;
     }
-    report(region_of(negative), from, tangents.len());
+    report(region_of_signs(negative), from, tangents.len());
     true
 }
 
 /// The region, from the bits that are set where n, m and the polynomials of rolling and smooth kappa are
 /// negative.
-fn region_of(negative: u8) -> Region {
+fn region_of_signs(negative: u8) -> Region {
     let [n, m, rolling, smooth] = [1, 2, 4, 8].map(|bit| negative & bit != 0);
     match (n == m, rolling == m, smooth == m) {
         (false, ..) => Region::Forbidden,

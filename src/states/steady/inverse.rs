@@ -60,7 +60,7 @@ fn solve(body: &Body, speed: f64) -> Option<[f64; MOST]> {
         return None;
     }
     if !body.is_sharp() {
-        return rounded(body, speed);
+        return rounded_inclinations(body, speed);
     }
     let (quartic, below_one) = quartic(body, speed);
     let mut theta = [f64::NAN; MOST];
@@ -73,7 +73,7 @@ fn solve(body: &Body, speed: f64) -> Option<[f64; MOST]> {
 }
 
 /// The inclinations of [`solve`] for a rounded rim.
-fn rounded(body: &Body, speed: f64) -> Option<[f64; MOST]> {
+fn rounded_inclinations(body: &Body, speed: f64) -> Option<[f64; MOST]> {
     let (a, rho, ell, d) =
         (body.rim_sum(), Sum::from(body.fillet()), Sum::from(body.ell()), body.excess_sum());
     let w = Sum::product(speed, speed);

@@ -9,7 +9,7 @@ use crate::laws::contact::patch::rubs;
 use crate::laws::contact::slip::{FollowsSpeed, SlipResponse, Slipping};
 use crate::laws::contact::together::{Resting, Rubs, Together};
 use crate::laws::loss::{
-    Couples, GRACE, Holds, Kinematics, Law, Losses, NEAR, SLACK, Ways, going, mirrored, rolling_growth,
+    Couples, GRACE, Holds, Kinematics, Law, Losses, NEAR, SLACK, Ways, going, reversed_turns, rolling_growth,
 };
 use crate::laws::state::{State, drilling_of, rolling_of, spin_of};
 use crate::methods::flow::FlowPlace;
@@ -300,7 +300,7 @@ impl<L: Varying> Slide<L> {
         }
         let [s, c, w1, w2, w3] = core::array::from_fn(|i| place.y[i]);
         let [speed, rate] = self.rolling_growth(place, [w1, w2, w3]);
-        let back = mirrored((s, c), [w1, w2, w3]);
+        let back = reversed_turns((s, c), [w1, w2, w3]);
         if speed > 4.0 * NEAR || rate >= 0.0 || self.rolling_growth(place, back)[1] >= 0.0 {
             return None;
         }

@@ -167,7 +167,7 @@ impl<G: Stepped, const N: usize> BodyWalk<'_, N, G> {
     pub(crate) fn inherits_errors(&mut self) {
         let of = &mut self.of.roundings;
         let erred = self.spent.erred - core::mem::replace(&mut of.inherited, self.spent.erred);
-        of.count += CHANCE * erred * self.of.slide.tol / (f64::EPSILON * Slide::fastest(&self.at));
+        of.count += CHANCE * erred * self.of.slide.tol / (f64::EPSILON * <Slide>::fastest(&self.at));
     }
 
     /// The error of the time at which a falling face has landed, although it hardly cleared the table or hardly did not:

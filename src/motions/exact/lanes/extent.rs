@@ -1,6 +1,6 @@
 //! Extreme inclinations, the contact force and the precession of a motion in lanes.
 
-use super::series::turned;
+use super::series::turned_since;
 use super::{LanePhase, Midpoints, Swings};
 use crate::laws::contact::force_of;
 use crate::laws::contact::reduced::Rates;
@@ -84,7 +84,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
     #[inline(always)]
     fn inclination(&self, u: T) -> T {
         let (_, cos) = sin_cos(u);
-        self.theta + turned(self.sin, self.cos, self.mid - self.amp * cos)
+        self.theta + turned_since(self.sin, self.cos, self.mid - self.amp * cos)
     }
 
     /// The least value of a [`Grip`] from time 0 to `t`; or, if `roughly`, a lower bound, which is enough for a

@@ -33,7 +33,9 @@ use crate::numbers::power::{divide, horner};
 use crate::numbers::{Real, arctan2, sin_cos};
 use core::f64::consts::{PI, TAU};
 pub(crate) use extent::Grip;
-use series::{angle, balance, ending, lines, parabola, steepness, turned, turning_points};
+use series::{
+    angle_at, lane_lines, left_out, parabola, square_of_rate, steepness, turned_since, turning_points,
+};
 pub(crate) use single::{QuickMotion, QuickTask, quick};
 
 /// Capacity from which on the number of terms is chosen at run time, so that one code serves series of
@@ -142,7 +144,7 @@ impl<T: Real, const K: usize> Clock<T, K> {
             let y = mid - amp * number(*cosine);
             let q = (y - two * cos).fma(y, one);
             let h = zero - horner(rest, y);
-            *slope = two * sin * (law.inertia(|| angle(sin, cos, y, q)) / (h * q * q)).sqrt();
+            *slope = two * sin * (law.inertia(|| angle_at(sin, cos, y, q)) / (h * q * q)).sqrt();
             weakest = h.select_lt(weakest, h, weakest);
             fastest = fastest.min(*slope);
             slowest = slowest.max(*slope);
@@ -173,8 +175,8 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         let (zero, one, two) = (number(0.0), number(1.0), number(2.0));
         let tilting = law.inertia(|| (sin, cos)) * w2 * w2;
         let (mut w1, mut w3, mut force) = ([w1_0; N], [w3_0; N], [tilting; N]);
-        lines::<_, N>(&law, sin, cos, &mut w1[..n], &mut w3[..n]);
-        balance::<_, N>(&law, sin, cos, &w1[..n], &w3[..n], &mut force[..n]);
+        lane_lines::<_, N>(&law, sin, cos, &mut w1[..n], &mut w3[..n]);
+        square_of_rate::<_, N>(&law, sin, cos, &w1[..n], &w3[..n], &mut force[..n]);
 
         // The zeros of the parabola are the first estimates of the turning points for Newton's method.
         let [low, high] = turning_points(&force[..n]);
@@ -208,7 +210,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
             + force[0];
         let noise = number(f64::EPSILON) * terms;
         let depth = amp * amp * weakest;
-        let cut = ending(&force[..n], reach) / depth.max(number(f64::MIN_POSITIVE));
+        let cut = left_out(&force[..n], reach) / depth.max(number(f64::MIN_POSITIVE));
         let misfit = (misfit_low.abs() + misfit_high.abs() * amp) / depth.max(number(f64::MIN_POSITIVE));
         let misfit = zero.select_lt(amp, misfit, zero);
         let cut = zero.select_lt(amp, cut, zero);
@@ -258,7 +260,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
                 noise: off + number(4.0 * f64::EPSILON),
                 place: off
                     + amp * (cut + misfit)
-                    + (ending(&w1[..n], reach) + ending(&w3[..n], reach)) / state_per_y,
+                    + (left_out(&w1[..n], reach) + left_out(&w3[..n], reach)) / state_per_y,
                 time: series + half * per_time + slowest * off,
                 per_time: per_time + last / half * ratio * ratio + number(4.0 * f64::EPSILON),
                 clock_slope,
@@ -336,7 +338,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         let one = self.theta.splat(1.0);
         let y = self.mid - self.amp * cos_u;
         let q = (y - (self.cos + self.cos)).fma(y, one);
-        let (s, c) = angle(self.sin, self.cos, y, q);
+        let (s, c) = angle_at(self.sin, self.cos, y, q);
         let inertia = self.law.inertia(|| (s, c));
         let n = self.terms();
         let tilt = self.amp * sin_u * (-horner(&self.rest[..n - 2], y) / inertia).sqrt();
@@ -368,7 +370,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         };
         let error = of(doubt.place, self.late(t, at));
         let least = of(doubt.noise, doubt.noise * (t.abs() + self.period()) + rounded);
-        ([self.theta + turned(self.sin, self.cos, y), w1, w2, w3], error, least)
+        ([self.theta + turned_since(self.sin, self.cos, y), w1, w2, w3], error, least)
     }
 
     /// Error of the time at which the motion reaches a place.
@@ -395,8 +397,8 @@ pub(crate) fn width<T: Real>(law: &Reduced<T>, [theta, w1, w2, w3]: [T; 4]) -> T
     }
     let (mut w1, mut w3, mut force) = ([w1; 3], [w3; 3], [zero; 3]);
     force[0] = tilting;
-    lines::<_, 3>(law, sin, cos, &mut w1, &mut w3);
-    balance::<_, 3>(law, sin, cos, &w1, &w3, &mut force);
+    lane_lines::<_, 3>(law, sin, cos, &mut w1, &mut w3);
+    square_of_rate::<_, 3>(law, sin, cos, &w1, &w3, &mut force);
     let [low, high] = parabola(&force);
     high.max(zero - low) + (low + high) * zero
 }

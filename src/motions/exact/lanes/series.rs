@@ -8,7 +8,7 @@ use crate::numbers::{Real, arctan2};
 
 /// Sine and cosine of theta at y, where Q is known.
 #[inline(always)]
-pub fn angle<T: Real>(sin: T, cos: T, y: T, q: T) -> (T, T) {
+pub fn angle_at<T: Real>(sin: T, cos: T, y: T, q: T) -> (T, T) {
     let one = y.splat(1.0);
     (sin * (one - y * y) / q, cos.fma(y.fma(y, one), -(y + y)) / q)
 }
@@ -17,7 +17,7 @@ pub fn angle<T: Real>(sin: T, cos: T, y: T, q: T) -> (T, T) {
 /// kept, and the other is computed from it. Along a chain of series an error of 1e-16 in s^2 + c^2 would otherwise stay
 /// in 1 -+ c, which may be as small as 1e-16 itself.
 #[inline(always)]
-pub fn unit<T: Real>((s, c): (T, T)) -> (T, T) {
+pub fn on_circle<T: Real>((s, c): (T, T)) -> (T, T) {
     let (zero, one) = (s.splat(0.0), s.splat(1.0));
     let left = |x: T| ((one - x) * (one + x)).max(zero).sqrt();
     let large = left(s);
@@ -28,7 +28,7 @@ pub fn unit<T: Real>((s, c): (T, T)) -> (T, T) {
 
 /// theta - theta0 at y, computed as 2 atan(s0 y/(1 - c0 y)).
 #[inline(always)]
-pub fn turned<T: Real>(sin: T, cos: T, y: T) -> T {
+pub fn turned_since<T: Real>(sin: T, cos: T, y: T) -> T {
     let half = arctan2(sin * y.abs(), (-cos).fma(y, y.splat(1.0)));
     let turn = half + half;
     y.select_lt(y.splat(0.0), -turn, turn)
@@ -36,7 +36,7 @@ pub fn turned<T: Real>(sin: T, cos: T, y: T) -> T {
 
 /// Bound of the terms left out of a series within `reach`, for a function whose singularities are on the unit circle.
 #[inline(always)]
-pub fn ending<T: Real>(series: &[T], reach: T) -> T {
+pub fn left_out<T: Real>(series: &[T], reach: T) -> T {
     let n = series.len();
     let left = reach.splat(1.0) / (reach.splat(1.0) - reach);
     series[n - 1].abs().max(series[n - 2].abs()).max(series[n - 3].abs()) * power(reach, n) * left * left
@@ -67,9 +67,9 @@ pub fn power<T: Real>(x: T, n: usize) -> T {
 
 /// The series of w1 and w3 in y, from their first terms; N is the capacity.
 #[inline(always)]
-pub fn lines<T: Real, const N: usize>(law: &Reduced<T>, sin: T, cos: T, w: &mut [T], n: &mut [T]) {
+pub fn lane_lines<T: Real, const N: usize>(law: &Reduced<T>, sin: T, cos: T, w: &mut [T], n: &mut [T]) {
     if law.round {
-        return rounded_lines::<_, N>(law, sin, cos, w, n);
+        return rounded_lane_lines::<_, N>(law, sin, cos, w, n);
     }
     let count = w.len().min(n.len());
     let number = |x: f64| sin.splat(x);
@@ -155,7 +155,7 @@ impl<T: Real> Quadratics<T> {
 
 /// The series of w1 and w3 about a place on a rounded rim.
 #[inline(always)]
-fn rounded_lines<T: Real, const N: usize>(law: &Reduced<T>, sin: T, cos: T, w: &mut [T], n: &mut [T]) {
+fn rounded_lane_lines<T: Real, const N: usize>(law: &Reduced<T>, sin: T, cos: T, w: &mut [T], n: &mut [T]) {
     let number = |x: f64| sin.splat(x);
     let (zero, two) = (number(0.0), number(2.0));
     let (i1, i3, rim) = (law.shape.i1, law.shape.i3, &law.shape.rim);
@@ -239,7 +239,7 @@ fn rounded_balance<T: Real, const N: usize>(
 
 /// The series of F = J theta'^2 from its first term: twice the energy less that of the turning and of the height.
 #[inline(always)]
-pub fn balance<T: Real, const N: usize>(
+pub fn square_of_rate<T: Real, const N: usize>(
     law: &Reduced<T>,
     sin: T,
     cos: T,

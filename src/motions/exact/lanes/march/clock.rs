@@ -10,7 +10,7 @@
 
 use super::{Rule, here};
 use crate::laws::contact::reduced::Reduced;
-use crate::motions::exact::lanes::series::angle;
+use crate::motions::exact::lanes::series::angle_at;
 use crate::numbers::power::{divide, horner};
 use crate::numbers::{Lane, arctan2, sin_cos};
 
@@ -118,7 +118,7 @@ impl<'a, T: Lane, const N: usize> PanelClock<'a, T, N> {
             let y = eta[i] * self.way;
             let q = (y - (self.cos + self.cos)).fma(y, one);
             *weakest = weakest.min(w);
-            let inertia = self.law.inertia(|| angle(self.sin, self.cos, y, q));
+            let inertia = self.law.inertia(|| angle_at(self.sin, self.cos, y, q));
             rates[i] = twice * (inertia / (w * q * q)).sqrt();
         }
         rates
@@ -166,7 +166,7 @@ impl<'a, T: Lane, const N: usize> PanelClock<'a, T, N> {
             for i in 0..4 {
                 let y = self.place(cosines[i]) * self.way;
                 let q = (y - (self.cos + self.cos)).fma(y, y.splat(1.0));
-                let (sine, _) = angle(self.sin, self.cos, y, q);
+                let (sine, _) = angle_at(self.sin, self.cos, y, q);
                 rates[i] = rates[i] * (horner(w1, y) / sine);
                 size = rates[i].abs().fma(from.splat(two[i / 2].weight), size);
             }

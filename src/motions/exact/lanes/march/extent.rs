@@ -3,7 +3,7 @@
 use super::{Knot, March, here};
 use crate::laws::contact::force_of;
 use crate::laws::contact::reduced::Rates;
-use crate::motions::exact::lanes::series::{angle, balance, lines, turned, unit};
+use crate::motions::exact::lanes::series::{angle_at, lane_lines, on_circle, square_of_rate, turned_since};
 use crate::numbers::Lane;
 use crate::numbers::power::horner;
 
@@ -35,8 +35,8 @@ impl<T: Lane> March<T> {
         let (zero, one) = (number(0.0), number(1.0));
         let (law, s, c) = (&self.law, knot.sin, knot.cos);
         let (mut w1, mut w3, mut force) = ([knot.w1; N], [knot.w3; N], [knot.force; N]);
-        lines::<_, N>(law, s, c, &mut w1, &mut w3);
-        balance::<_, N>(law, s, c, &w1, &w3, &mut force);
+        lane_lines::<_, N>(law, s, c, &mut w1, &mut w3);
+        square_of_rate::<_, N>(law, s, c, &w1, &w3, &mut force);
         let rates = Rates::of(law.contact, &law.shape, law.round);
         let [sin_side, cos_side] = self.side;
         let level = (way * (sin_side * c - cos_side * s) / (sin_side + s)).max(zero);
@@ -53,7 +53,7 @@ impl<T: Lane> March<T> {
                     let eta = width.mac(number(j as f64), from);
                     let y = eta * way;
                     let q = (y - (c + c)).fma(y, one);
-                    let angle = angle(s, c, y, q);
+                    let angle = angle_at(s, c, y, q);
                     let square = (horner(&force, y) / law.inertia(|| angle)).max(zero);
                     let w = [horner(&w1, y), square.sqrt(), horner(&w3, y)];
                     let [normal, along, across] = force_of(law, angle, w, rates.at(angle.0, angle.1, w));
@@ -68,9 +68,9 @@ impl<T: Lane> March<T> {
         }
         let y = out * way;
         let q = (y - (c + c)).fma(y, one);
-        let (sin, cos) = unit(angle(s, c, y, q));
+        let (sin, cos) = on_circle(angle_at(s, c, y, q));
         let knot = Knot {
-            theta: knot.theta + turned(s, c, y),
+            theta: knot.theta + turned_since(s, c, y),
             sin,
             cos,
             w1: horner(&w1, y),

@@ -5,13 +5,13 @@
 //! time    quadrature error of the clock + time * (error of F)/(amp^2 W) + error of the place over the speed there
 //! place   (rounding error, truncation of the series that vanishes and F's part in it)/(its slope) + Newton's error
 //! ```
-//! The head of [`march`](super) has the panels. These are bounds of the terms, not of their sum; in the tests of `ends`
-//! they are never below half the true error.
+//! The head of [`march`](super) has the panels. These are bounds of the terms, not of their sum; in the tests of
+//! `many_ends` they are never below half the true error.
 
 use super::clock::PanelClock;
 use super::{Between, Comes, Knot, March, Met, PanelSeries, Reached, here, is, press};
 use crate::laws::contact::FLAT;
-use crate::motions::exact::lanes::series::{angle, ending, steepness, turned, unit};
+use crate::motions::exact::lanes::series::{angle_at, left_out, on_circle, steepness, turned_since};
 use crate::numbers::Lane;
 use crate::numbers::power::horner;
 
@@ -47,7 +47,7 @@ impl<T: Lane> March<T> {
         let &Reached { code, out, apart, .. } = reached;
         let y = out * way;
         let q = (y - (c + c)).fma(y, one);
-        let (sin, cos) = unit(angle(s, c, y, q));
+        let (sin, cos) = on_circle(angle_at(s, c, y, q));
         let jay = law.inertia(|| (sin, cos));
         let force = is(code, Comes::Turn, zero, clock.force(out, apart).max(zero));
         // The fall from here to the face increases w2 when the face lands.
@@ -59,7 +59,7 @@ impl<T: Lane> March<T> {
         let [w1_slope, w3_slope, force_slope] = slopes;
         let y_rate = tilt / per_y;
         let rate = tilt + y_rate * (w1_slope + w3_slope) + force_slope / (two * jay * per_y);
-        let theta = knot.theta + turned(s, c, y);
+        let theta = knot.theta + turned_since(s, c, y);
         let doubt = knot.doubt;
         let knot = Knot { theta, sin, cos, w1: horner(&of.w1, y), w3: horner(&of.w3, y), force, doubt };
         JudgedState { knot, tilt, jay, per_y, slopes, rate }
@@ -90,7 +90,7 @@ impl<T: Lane> March<T> {
         // F at this knot has the roundings of the earlier panels as well. They are independent, so that their squares add.
         let noise = number(8.0 * f64::EPSILON) * self.sizes(knot, [most_w1, most_w3]);
         let noise = noise.mac(noise, knot.doubt * knot.doubt).sqrt();
-        let cut = ending(&of.force, out);
+        let cut = left_out(&of.force, out);
         let amp = half * (ends.high - ends.low);
         // If both ends are divided out, only the slope and the curvature of F are uncertain near the start.
         let both = number(1.5).select_lt(ends.is_low + ends.is_high, amp, amp * amp);
@@ -101,7 +101,7 @@ impl<T: Lane> March<T> {
         for k in (0..N).rev() {
             size = size.fma(out, zero.select_lt(which, of.grip[k], of.press[k]).abs());
         }
-        let left = zero.select_lt(which, ending(&of.grip, out), ending(&of.press, out));
+        let left = zero.select_lt(which, left_out(&of.grip, out), left_out(&of.press, out));
         // An error of F at the knot is also an error of the forces.
         let blur = press::blur(law, angle, noise) * is(code, Comes::Slip, two * (one + self.mu_square), one);
         let vanishing = (number(16.0 * f64::EPSILON) * size + left + blur) / steep + miss;
@@ -121,8 +121,8 @@ impl<T: Lane> March<T> {
         let place = zero.select_lt(timed, (noise + cut) / (two * amp * weakest), place);
         let off = place * (per_y + w1_slope + w3_slope)
             + tilt_off
-            + ending(&of.w1, out)
-            + ending(&of.w3, out)
+            + left_out(&of.w1, out)
+            + left_out(&of.w3, out)
             + number(8.0 * f64::EPSILON) * (one + most_w1 + most_w3);
         // When a spinning body lands, w1 = P/s has the absolute error of P's terms, which almost cancel, divided by s. So has
         // the precession w1/s on the way.

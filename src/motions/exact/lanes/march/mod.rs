@@ -20,7 +20,7 @@ mod judge;
 mod press;
 mod signs;
 
-use super::series::{balance, ending, lines};
+use super::series::{lane_lines, left_out, square_of_rate};
 use crate::laws::contact::FLAT;
 use crate::laws::contact::reduced::Reduced;
 pub(crate) use crate::methods::gauss::Rule;
@@ -172,7 +172,7 @@ impl<T: Lane> March<T> {
         let zero = way.splat(0.0);
         let angle = (knot.sin, knot.cos);
         let of = self.terms::<N>(knot, way, sought);
-        let ends = turning(&of.force);
+        let ends = turns_of_force(&of.force);
         let FirstEvent { code, at, miss, steep } = self.first(knot, way, sought, &of, &ends);
         let clock = PanelClock::of(
             &self.law,
@@ -209,8 +209,8 @@ impl<T: Lane> March<T> {
         let zero = way.splat(0.0);
         let (law, s, c) = (&self.law, knot.sin, knot.cos);
         let (mut w1, mut w3, mut force) = ([knot.w1; N], [knot.w3; N], [knot.force; N]);
-        lines::<_, N>(law, s, c, &mut w1, &mut w3);
-        balance::<_, N>(law, s, c, &w1, &w3, &mut force);
+        lane_lines::<_, N>(law, s, c, &mut w1, &mut w3);
+        square_of_rate::<_, N>(law, s, c, &w1, &w3, &mut force);
         let (mut press, mut grip) = ([zero; N], [zero; N]);
         if sought.ends {
             press::normal(law, (s, c), &force, &mut press);
@@ -247,7 +247,7 @@ impl<T: Lane> March<T> {
         let turning = number(8.0) * (number(1.0) + knot.w1.abs() + knot.w3.abs());
         let balanced = number(12.0) * self.sizes(knot, [knot.w1.abs(), knot.w3.abs()]);
         for part in [0.75, 0.5, 0.25] {
-            let left = |series: &[T; N]| ending(series, edge);
+            let left = |series: &[T; N]| left_out(series, edge);
             let fits = left(w1).max(left(w3)) / turning;
             let fits = fits.max(left(force) / balanced);
             edge = number(f64::EPSILON).select_lt(fits, number(part * REACH), edge);
@@ -320,7 +320,7 @@ impl<T: Lane> March<T> {
 
 /// The turning points ahead and behind; the edge of the series replaces a turning point beyond its reach.
 #[inline(always)]
-fn turning<T: Lane, const N: usize>(force: &[T; N]) -> Between<T> {
+fn turns_of_force<T: Lane, const N: usize>(force: &[T; N]) -> Between<T> {
     let number = here(
         #[inline(always)]
         |x: f64| force[0].splat(x),

@@ -82,7 +82,7 @@ pub(super) fn normal<T: Real, const N: usize>(
         Contact::Rolling if !law.round => {
             let weight = -(s.splat(1.0) / law.inertia(|| (s, c)));
             let with_slope: [T; 5] = scaled(times(&q, &lever), quarter * -weight);
-            pressed(press, force, &q, &with_slope, &scaled(slope, weight));
+            press_series(press, force, &q, &with_slope, &scaled(slope, weight));
         }
         Contact::Rolling => {
             let rim = &law.shape.rim;
@@ -93,7 +93,7 @@ pub(super) fn normal<T: Real, const N: usize>(
             let with_slope: [T; 7] = scaled(times(&levered, &q), quarter);
             let (bent, falls): ([T; 5], [T; 5]) = (times(&lever, &lever), times(&inertia, &slope));
             let with_force = plus(scaled(bent, -rim.rho), &scaled(falls, s.splat(-1.0)));
-            pressed(press, force, &plain, &with_slope, &with_force);
+            press_series(press, force, &plain, &with_slope, &with_force);
         }
         Contact::Smooth => {
             let (square, wide): ([T; 5], [T; 5]) = (times(&q, &q), times(&lever, &lever));
@@ -102,14 +102,14 @@ pub(super) fn normal<T: Real, const N: usize>(
             let with_slope: [T; 11] = scaled(times(&levered, &square), quarter);
             let cube: [T; 7] = times(&square, &q);
             let with_force: [T; 9] = scaled(times(&cube, &slope), -law.shape.i1);
-            pressed(press, force, &plain, &with_slope, &with_force);
+            press_series(press, force, &plain, &with_slope, &with_force);
         }
     }
 }
 
 /// The series X from its three polynomials: the term without F, the factor of F' and the factor of F.
 #[inline(always)]
-fn pressed<T: Real, const A: usize, const B: usize, const C: usize>(
+fn press_series<T: Real, const A: usize, const B: usize, const C: usize>(
     press: &mut [T],
     force: &[T],
     plain: &[T; A],
@@ -186,7 +186,7 @@ mod tests {
     use crate::laws::body::Shape;
     use crate::laws::contact::force_of;
     use crate::laws::contact::reduced::Rates;
-    use crate::motions::exact::lanes::series::{angle, balance, lines};
+    use crate::motions::exact::lanes::series::{angle_at, lane_lines, square_of_rate};
     use crate::numbers::power::horner;
 
     #[test]
@@ -207,8 +207,8 @@ mod tests {
             let [w1, w2, w3] = [2.0 * u(0.236) - 1.0, u(0.303), 3.0 * u(0.162) - 1.5];
             let (mut v, mut n) = ([w1; N], [w3; N]);
             let mut force = [law.inertia(|| (s, c)) * w2 * w2; N];
-            lines::<_, N>(law, s, c, &mut v, &mut n);
-            balance::<_, N>(law, s, c, &v, &n, &mut force);
+            lane_lines::<_, N>(law, s, c, &mut v, &mut n);
+            square_of_rate::<_, N>(law, s, c, &v, &n, &mut force);
             let (mut press, mut held) = ([0.0; N], [0.0; N]);
             normal(law, (s, c), &force, &mut press);
             let mu = 0.1 + u(0.859);
@@ -217,7 +217,7 @@ mod tests {
             }
             for y in [-0.2, -0.05, 0.0, 0.1, 0.25] {
                 let q = 1.0 - 2.0 * c * y + y * y;
-                let place = angle(s, c, y, q);
+                let place = angle_at(s, c, y, q);
                 let inertia = law.inertia(|| place);
                 let square = horner(&force, y) / inertia;
                 if square < 0.0 {

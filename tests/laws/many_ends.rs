@@ -29,13 +29,13 @@ fn pressing(count: usize, slower: f64) -> Vec<(Body, State)> {
 /// Compares every motion with the single motion from its start; returns the share that lanes computed.
 fn as_alone(all: &[(Body, State)], job: &Job<'_>) -> f64 {
     let many = Many::of(all).run(job, 2);
-    let ask = Ask::default().with_table(Table::of(job.table.contact(), job.mu)).with_beyond(job.beyond);
+    let ask = job.ask;
     let mut lanes = 0;
     for (i, (body, start)) in all.iter().enumerate() {
         lanes += usize::from(many.method[i] == Answer::Lanes as u8);
         let alone = moved(body, start, job.times, ask);
         let Ok(alone) = alone else { continue };
-        let ending = alone.event.filter(|e| !job.beyond || e.ending == Ending::Face);
+        let ending = alone.event.filter(|e| !job.ask.beyond || e.ending == Ending::Face);
         let status = ending.map_or(Ending::Done, |e| e.ending);
         assert_eq!(many.status[i], status as u8, "{body:?} {start:?} {:?}", alone.event);
         let claimed = 2.0 * (many.error[i] + alone.error) + 1e-15;
@@ -72,7 +72,8 @@ fn motions_that_end_end_in_lanes_as_they_do_alone() {
 fn slow_motions_and_motions_that_slip_end_in_lanes_as_they_do_alone() {
     let times = [1.0, 8.0, 20.0];
     for (slower, mu) in [(0.2, f64::INFINITY), (1.0, 0.3), (0.5, 1.0), (3.0, 0.1)] {
-        let share = as_alone(&pressing(800, slower), &Job { mu, ..Job::new(&times) });
+        let share =
+            as_alone(&pressing(800, slower), &Job::new(&times).with_ask(Ask::on(Table::Rolling { mu })));
         assert!(share > 0.97, "{slower} {mu}: {share}");
     }
 }
@@ -92,7 +93,7 @@ fn starts_that_nobody_would_choose_end_as_they_do_alone() {
     let times = [10.0];
     for contact in [Contact::Rolling, Contact::Smooth] {
         let some: Vec<_> = all.iter().filter(|x| x.2 == contact).map(|x| (x.0, x.1)).collect();
-        let share = as_alone(&some, &Job { table: contact.into(), ..Job::new(&times) });
+        let share = as_alone(&some, &Job::new(&times).with_ask(Ask::on(contact)));
         assert!(share > 0.9, "{contact:?}: {share}");
     }
 }

@@ -27,7 +27,8 @@ def test_phases_tables_and_laws_have_the_names_of_the_core_in_its_order():
     for name, code in CODES["Law"].items():
         law = laws[name](0.25)
         assert law._coefficients == [0.25 if i == code else 0.0 for i in range(len(laws))]
-        assert _core.loss_laws()[code] == (law._parameter, law.exponent)
+        row = _core.loss_laws()[code]
+        assert (row["parameter"], row["exponent"]) == (law._parameter, law.exponent)
 
 
 def test_every_enumeration_of_the_core_is_one_of_these():

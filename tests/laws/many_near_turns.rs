@@ -8,14 +8,14 @@ use crate::common::{BOTH, any_body, any_state, distance, numbers};
 use proptest::prelude::*;
 use spincyl::ensemble::{Answer, Job};
 use spincyl::exact::Swing;
+use spincyl::motion::Ask;
 use spincyl::{Body, Contact, State};
 
 /// The difference of a motion in lanes and the single one, over the sum of their claimed errors; None if no
 /// lane computed it.
 fn share(body: &Body, y: &State, contact: Contact, t: f64) -> Option<f64> {
     let swing = Swing::new(body, y, contact, false).ok()?;
-    let many =
-        Many::of(&[(*body, *y)]).run(&Job { table: contact.into(), beyond: true, ..Job::new(&[t]) }, 1);
+    let many = Many::of(&[(*body, *y)]).run(&Job::new(&[t]).with_ask(Ask::on(contact).with_beyond(true)), 1);
     let off = distance(&many.last(0), &numbers(&swing.state(t)));
     (many.method[0] == Answer::Lanes as u8).then(|| off / (many.error[0] + swing.error(t)))
 }
