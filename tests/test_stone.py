@@ -405,3 +405,16 @@ def test_moments_that_mass_within_a_stone_has_not_are_warned_of():
     # with the centre of mass elsewhere the limits are narrower
     with pytest.warns(UserWarning, match="inertia"):
         sc.Ellipsoid((1, 1, 1), np.full(3, 2 / 3), offset=(0, 0, 0.1))
+
+
+@pytest.mark.parametrize("contact", ["rolling", "smooth", sc.Coulomb(0.3)])
+def test_a_stone_that_loses_energy_is_computed_again_with_the_same_bits(contact):
+    stone = STONE.in_metres(0.5, radius=0.1)
+    for body, law in (
+        (STONE, sc.loss.AirLinear(1e-3)),
+        (stone, sc.loss.AirLinear.from_si(1e-6, scale=stone)),
+    ):
+        m = sc.roll(body, START, [0.0, 0.5], contact=contact, losses=law, want="pose")
+        again = sc.roll(body, START, 0.5, contact=contact, losses=law).wanting("pose")
+        assert m.work_lost[-1] > 0 and np.array_equal(m.w[-1], again.w[-1])
+        assert np.array_equal(m.orientation, m.at([0.0, 0.5]).orientation)

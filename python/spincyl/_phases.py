@@ -128,7 +128,7 @@ def check_contact(state: State, contact: AnyContact, restitution: object, settin
         number("restitution", restitution)  # its range is known to the core
     struck(restitution, contact)
     if not isinstance(contact, Coulomb | Viscous):
-        if restitution is None or state.height is None:
+        if state.slip is not None and (restitution is None or state.height is None):
             gripping(state, f"contact={contact!r} has no law of friction; give contact=sc.Coulomb(mu)")
         if restitution is None:
             return
