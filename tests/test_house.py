@@ -290,12 +290,10 @@ def test_arguments_and_tuples_are_counted():
     assert [*sizes_of_tuples("(u8, (f64, f64, f64), fn(u8, u8, u8) -> u8)")] == [3, 3]
 
 
-#: Functions with more than six arguments, all of them by position: what Python calls, and two of lanes.
+#: Functions with more than six arguments: the rate of a body for Python, whose numbers come one by one since that
+#: is the fastest, and two of lanes.
 LONG = {
-    "python/drift.rs": {"drift_ask"},
-    "python/ensemble.rs": {"ensemble"},
     "python/mod.rs": {"rate_of_one"},
-    "python/stone.rs": {"stones"},
     "many/maps/survey.rs": {"all_extrema_of"},
     "many/motions/ends/march.rs": {"march"},
 }
@@ -305,7 +303,8 @@ def test_no_function_takes_more_than_six_arguments_by_position():
     found = {}
     for path in SOURCES:
         for word, given, _ in signatures("\n".join(line for _, line in code(path))):
-            if len(given) > 6:
+            # that Python is there is no argument that a caller writes
+            if len([x for x in given if not x.startswith("py: Python<")]) > 6:
                 found.setdefault(name(path), set()).add(word)
     assert found == LONG
 
