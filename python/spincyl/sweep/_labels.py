@@ -9,6 +9,7 @@ import numpy as np
 from spincyl import _core
 from spincyl._ending import DOUBTFUL, ErrorWarning
 from spincyl._input.numbers import Floats, Reals, extra, warn
+from spincyl._loss import LAWS
 from spincyl.sweep._common import many_blocks
 
 _BODY = ("ell", "i1", "i3", "bore", "fillet", "theta_end")
@@ -84,7 +85,7 @@ def refused(columns: dict[str, Floats], asked: dict[str, Any], status: np.ndarra
         "coefficients": ("coefficient", "static", "patch"),
         "slip": ("slip_along", "slip_across"),
         "aloft": ("height", "lift"),
-        "losses": tuple(name for name, _ in _core.loss_laws()),
+        "losses": tuple(LAWS),
     }
     given = {option: [row[name] for name in of] for option, of in own.items() if of[0] in row}
     try:

@@ -423,7 +423,7 @@ mod tests {
 
     #[test]
     fn every_width_gives_the_same_bits() {
-        let kinds = [(TableKind::Rolling, 0.0), (TableKind::Smooth, 0.0), (TableKind::Rolling, 0.4)];
+        let kinds = [(Contact::Rolling, 0.0), (Contact::Smooth, 0.0), (Contact::Rolling, 0.4)];
         for kind in kinds {
             let level = crate::numbers::level();
             let best =

@@ -80,7 +80,7 @@ fn upright(angle: (f64, f64), w: [f64; 3]) -> (f64, State) {
 
 impl<'a> CustomFlow<'a> {
     /// The state as seen from the lower rim of a body with two rims, and -1 if that is the other one, else 1.
-    fn from_lower(&self, y: &State) -> (State, f64) {
+    fn lower(&self, y: &State) -> (State, f64) {
         if y.theta <= FRAC_PI_2 || self.body.ell() <= 0.0 || self.body.theta_end() != FRAC_PI_2 {
             return (*y, 1.0);
         }
@@ -325,7 +325,7 @@ impl Own for CustomFlow<'_> {
     }
 
     fn couple(&self, y: &State, normal: f64) -> [f64; 3] {
-        let (seen, side) = self.from_lower(y);
+        let (seen, side) = self.lower(y);
         match self.custom.couple {
             Some(_) if self.custom.has_failed() => [f64::NAN; 3],
             Some(law) => {
@@ -352,7 +352,7 @@ impl Own for CustomFlow<'_> {
             let slow = |law: &dyn FrictionLaw| {
                 speeds.iter().find_map(|&speed| fault_of_friction(law.coefficient(speed), speed))
             };
-            let seen = self.from_lower(y).0;
+            let seen = self.lower(y).0;
             let turns =
                 |law: &dyn CoupleLaw| fault_of_couple(law.couple(self.body, &seen, normal), &seen, normal);
             let fault = self.custom.couple.and_then(turns);

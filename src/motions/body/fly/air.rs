@@ -81,7 +81,7 @@ pub(crate) struct AirFlight<G = ()> {
 }
 
 /// The angular velocity along the axes of the body.
-fn turning(y: &AirNumbers) -> [f64; 3] {
+fn body_rates(y: &AirNumbers) -> [f64; 3] {
     [y[4], y[5], y[6]]
 }
 
@@ -127,7 +127,7 @@ impl<G: Own> AirFlight<G> {
 
     /// The couple of the air along the axes of the body, with these numbers.
     fn couple(&self, y: &AirNumbers) -> [f64; 3] {
-        let w = turning(y);
+        let w = body_rates(y);
         let m = self.losses.at(&Kinematics::of(&self.shape.rim, (1.0, 0.0), w[0], w)).free;
         if !self.own.has_couple() {
             return m;
@@ -148,7 +148,7 @@ impl<G: Own> AirFlight<G> {
         let [first, second, axis] = axes(self.quaternion(y));
         let (up, s) = ([first[2], second[2]], first[2].hypot(second[2]));
         let [cos, sin] = if s > 0.0 { up.map(|x| x / s) } else { [1.0, 0.0] };
-        let [x, z, w3] = turning(y);
+        let [x, z, w3] = body_rates(y);
         let (w1, w2) = (cos * x + sin * z, cos * z - sin * x);
         (State { theta: s.atan2(axis[2]), w1, w2, w3 }, [sin, cos])
     }
@@ -167,7 +167,7 @@ impl<G: Own> AirFlight<G> {
 
     fn rates(&self, y: &AirNumbers) -> AirNumbers {
         let (Shape { i1, i3, .. }, [a, b, c, d]) = (self.shape, self.quaternion(y));
-        let [x, z, w] = turning(y);
+        let [x, z, w] = body_rates(y);
         let [m1, m2, m3] = self.couple(y);
         [
             -0.5 * (b * x + c * z + d * w),
@@ -441,7 +441,7 @@ impl<G: Own> Flies for AirFlight<G> {
         let y = if part > 0.0 { self.part(step, part).0 } else { step.y };
         let [phi, psi] = self.turned(step, [0.0, part], step.angles, &y);
         let (sin, cos) = psi.sin_cos();
-        let [along, aside, w3] = turning(&y);
+        let [along, aside, w3] = body_rates(&y);
         let w = [along * cos - aside * sin, along * sin + aside * cos, w3];
         let [x, across, cosine] = self.leans(&y).axis;
         let sine = if cosine.abs() < LEVEL_COSINE {
