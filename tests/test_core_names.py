@@ -78,13 +78,15 @@ def test_single_motions_and_sweeps_take_their_options_from_there():
     ]
     assert sorted(name for name, _ in found) == [
         "_ellipsoid_motion.py",
+        "_labels.py",
         "_motion.py",
         "_roll.py",
         "_stones.py",
     ]
     for name, arguments in found:
         # the options of a sweep come from `swept`, which makes them by `crossing`
-        assert any(x.startswith("crossing(") for x in arguments) or arguments[2] == "asked", name
+        asks = any(x.startswith("crossing(") for x in arguments) or arguments[2] == "asked"
+        assert asks or arguments[3] == "asked | given", name  # the first motion that a sweep refused
     swept = (PACKAGE / "sweep" / "_swept.py").read_text("utf-8")
     assert swept.count("crossing(") == 1 and "asked=options" in swept
 

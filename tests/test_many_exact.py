@@ -10,6 +10,9 @@ import pytest
 
 import spincyl as sc
 
+#: Some of the starts have errors that grow to more than 0.1, of which a sweep warns.
+pytestmark = pytest.mark.filterwarnings("ignore::spincyl.ErrorWarning")
+
 NAMES = ("theta", "w1", "w2", "w3")
 SCENES = {
     "rolling": {},

@@ -59,7 +59,6 @@ def _how_to_get(m: "Motion", needs: str) -> str:
     if needs == ALOFT:
         patch = isinstance(m.contact, Coulomb) and m.contact.patch
         kind = "of a stone" if stone else "on a patch of contact" if patch else ""
-        kind = "under a law of your own" if own else kind
         if kind:
             return f"a motion {kind} has none; it ends where the body leaves the table"
         why, how = "restitution=; this motion ends where it leaves the table", "restitution=0.0"

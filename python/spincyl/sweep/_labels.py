@@ -74,8 +74,10 @@ def given_up(status: np.ndarray) -> None:
 
 def refused(columns: dict[str, Floats], asked: dict[str, Any], status: np.ndarray) -> None:
     """Warn if motions are invalid although their inputs are numbers, with the reason of the first one."""
-    numbers = [x for name, x in columns.items() if name != "theta_end"]  # NaN where the body says it
-    rows = np.flatnonzero((status == Status.INVALID) & ~np.isnan(sum(numbers)))
+    missing: Any = False
+    for name, x in columns.items():
+        missing = missing | (np.isnan(x) & (name != "theta_end"))  # that is NaN where the body says it
+    rows = np.flatnonzero((status == Status.INVALID) & ~missing)
     if not rows.size:
         return
     row = {name: float(np.broadcast_to(x, status.shape)[rows[0]]) for name, x in columns.items()}

@@ -301,14 +301,16 @@ pub(crate) trait Flow<const M: usize>: Copy {
     fn at_time<const N: usize>(&self, from: &FlowPlace<N>, after: &FlowPlace<N>, h: f64, t: f64) -> [f64; N] {
         let span = after.y[Self::TIME] - from.y[Self::TIME];
         let near = (1e-9 * span).max(f64::EPSILON * t.abs());
-        let (mut low, mut high) = (0.0, BEYOND);
+        let (mut low, mut high, mut before) = (0.0, BEYOND, f64::INFINITY);
         let mut x = ((t - from.y[Self::TIME]) / span).clamp(0.0, 1.0);
         for _ in 0..SEARCHES {
             let y = self.part(from, x * h);
             let rate = self.rates(&y);
             let left = t - y[Self::TIME];
             if left.abs() <= near {
-                return core::array::from_fn(|i| y[i] + left / rate[Self::TIME] * rate[i]);
+                // Where a motion comes to rest its time may stand still.
+                let late = if left == 0.0 || rate[Self::TIME] == 0.0 { 0.0 } else { left / rate[Self::TIME] };
+                return core::array::from_fn(|i| y[i] + late * rate[i]);
             }
             // A part that is NaN is too long.
             if left > 0.0 {
@@ -317,14 +319,16 @@ pub(crate) trait Flow<const M: usize>: Copy {
                 high = x;
             }
             let newton = x + left / (rate[Self::TIME] * h);
-            x = if low < newton && newton < high { newton } else { 0.5 * (low + high) };
+            let pays = low < newton && newton < high && left.abs() < 0.5 * before;
+            x = if pays { newton } else { 0.5 * (low + high) };
+            before = left.abs();
         }
         [f64::NAN; N]
     }
 
     /// Writes the numbers at those of the `times` that are not after `until`, within a step of `h` between two points, and
-    /// returns the number of those times; `last` gets the numbers at the last of them. Up to an extrapolated halt the
-    /// numbers are linear in time, or a parabola.
+    /// returns the number of those times; `last` gets the numbers at the last of them. Between the end of the step and a
+    /// halt after it the numbers are linear in time, or a parabola.
     #[inline(always)]
     fn write_times<const N: usize>(
         &self,
@@ -336,11 +340,10 @@ pub(crate) trait Flow<const M: usize>: Copy {
     ) -> usize {
         let mut count = 0;
         while let Some(t) = times.get(count).copied().filter(|t| *t <= until) {
-            let stopped = stop.filter(|(halt, _)| Self::is_extrapolated(*halt));
-            if stopped.is_some_and(|(_, y)| t == y[Self::TIME]) {
+            if stop.is_some_and(|(halt, y)| Self::is_extrapolated(*halt) && t == y[Self::TIME]) {
                 break;
             }
-            *last = match stopped.filter(|_| t > after.y[Self::TIME]) {
+            *last = match stop.filter(|_| t > after.y[Self::TIME]) {
                 Some((halt, y)) => {
                     let (begin, end) = (after.y[Self::TIME], y[Self::TIME]);
                     // Rounding must not make a slip vanish before its end.
