@@ -65,7 +65,9 @@ def test_a_constant_coefficient_of_your_own_hops_rattles_rocks_and_lies_as_coulo
     assert hits >= {"slips", "sticks", "both rims"}
 
 
-@pytest.mark.parametrize("contact", ["rolling", "smooth", sc.Coulomb(0.3), sc.Coulomb(0.3, static=0.4), sc.Viscous(0.5)])
+@pytest.mark.parametrize(
+    "contact", ["rolling", "smooth", sc.Coulomb(0.3), sc.Coulomb(0.3, static=0.4), sc.Viscous(0.5)]
+)
 def test_a_couple_of_your_own_acts_in_impacts_in_the_air_and_on_both_rims_as_the_librarys_does(contact):
     kinds = set()
     for body, state, (b, _), e, until in drawn(6602, 18):
@@ -132,7 +134,9 @@ def impulses(body, state, law, e, static):
     p, rate, compressed = np.zeros(4), lambda p: pushed(p, None), None
     stopped = False
     for _ in range(4):
-        ends = (lambda p: -rises(p)) if compressed is None else (lambda p: (1 - e * e) * compressed - p[3])
+        ends = (
+            (lambda p: -rises(p)) if compressed is None else (lambda p, c=compressed: (1 - e * e) * c - p[3])
+        )
         margins = [ends] if stopped else [ends, lambda p: np.hypot(*slip(p)) - 1e-9]
         p, which = until(p, rate, margins)
         if which == 0 and compressed is None:
@@ -145,7 +149,7 @@ def impulses(body, state, law, e, static):
             stopped = True
             held = np.linalg.solve(m[:2, :2], -m[:2, 2])
             if np.hypot(*held) <= static:
-                rate = lambda p: np.array((*held, 1.0, rises(p)))  # noqa: E731
+                rate = lambda p, held=held: np.array((*held, 1.0, rises(p)))  # noqa: E731
             else:
                 way = np.array((np.sign(m[0, 2]), 0.0))
                 rate = lambda p, way=way: pushed(p, way)  # noqa: E731
@@ -192,7 +196,9 @@ def test_an_impact_of_both_rims_opposes_each_slip_by_the_coefficient_at_its_spee
             continue
         # P of both rims from the impulse and from the turning about e1.
         drags = [law(np.hypot(*x)) * x / np.hypot(*x) for x in (low, up)]
-        normal = np.linalg.solve(np.array((np.ones(2), [d[0] for d in drags])), (hit.impulse[2], -hit.impulse[0]))
+        normal = np.linalg.solve(
+            np.array((np.ones(2), [d[0] for d in drags])), (hit.impulse[2], -hit.impulse[0])
+        )
         assert -normal @ [d[1] for d in drags] == pytest.approx(hit.impulse[1], abs=1e-9)
         seen += 1
     assert seen
@@ -299,7 +305,12 @@ def test_a_constant_coefficient_beside_losses_that_press_is_coulombs_friction(lo
         assert own.status == built_in.status
         off = np.array([*(own.w - built_in.w).T, own.theta - built_in.theta])
         assert abs(off).max(initial=0.0) <= max(own.error + built_in.error, 1e-11), (i, body)
-        total = own.energy + own.dissipated + own.work_lost + (own.lost_in_impacts if "restitution" in how else 0.0)
+        total = (
+            own.energy
+            + own.dissipated
+            + own.work_lost
+            + (own.lost_in_impacts if "restitution" in how else 0.0)
+        )
         assert np.ptp(total) <= 1e-9 + 10 * own.error * (1.0 + abs(own.w).max())
         kinds |= {phase.kind for phase in own.phases}
         compared += 1

@@ -37,8 +37,8 @@ def of_stone(losses: object, body: Any) -> Loss:
     """Return a loss law that acts on stones, or an error that names the law."""
     found = made_law(losses, body)
     if found._function is not None:
-        why = "theta, e1, e2 and e3 of a couple of your own are those of a body of revolution, and a stone has no axis"
-        raise TypeError(f"losses = {losses!r}: {why}")
+        why = "theta, e1, e2 and e3 of a couple of your own are those of a body of revolution"
+        raise TypeError(f"losses = {losses!r}: {why}, and a stone has no axis")
     for law in found.laws:
         if law._parameter not in _core.stone_losses():
             why = "acts along a rim, which a stone lacks; take air, rolling resistance or drilling"
