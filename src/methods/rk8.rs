@@ -45,7 +45,11 @@ impl<T: Real, const N: usize> Step<T, N> {
     #[inline(always)]
     pub fn strictness(&self, tol: T, count: usize, time: usize) -> T {
         let number = |x: f64| tol.splat(x);
-        let moved = self.change[1..count].iter().fold(self.change[0].abs(), |most, x| most.max(x.abs()));
+        let mut moved = self.change[0].abs();
+        // In lanes, a closure of an iterator would be a function that is called.
+        for x in &self.change[1..count] {
+            moved = moved.max(x.abs());
+        }
         let spared = (tol * number(1.0 / ROUNDING)).max(number(1.0));
         let span = self.change[time].abs();
         (span / (number(HARDLY) * moved + number(1e-60))).max(number(1.0)).min(spared)

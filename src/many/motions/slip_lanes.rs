@@ -6,6 +6,7 @@
 
 use crate::laws::body::Shape;
 use crate::laws::contact::slip::{SlipResponse, Slipping};
+use crate::laws::loss::Couples;
 use crate::methods::flow::lanes::{Flows, NUMBERS};
 use crate::methods::rk8;
 use crate::motions::body::face::FLAT;
@@ -43,7 +44,8 @@ impl<T: SideBySide> Flows<T, 8, 5> for Slips<T> {
 
     #[inline(always)]
     fn rates(&self, y: &[T; 8], rate: &mut [T; 8]) -> SlipResponse<T> {
-        self.law.rates(y, rate)
+        // What the compiler knows to be absent it does not compile.
+        self.law.with_losses(None::<Couples<T>>).with_patch(None).rates(y, rate)
     }
 
     #[inline(always)]

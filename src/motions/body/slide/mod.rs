@@ -270,7 +270,7 @@ impl<L: Varying> Slide<L> {
     pub fn fastest<T: Real, const N: usize>(y: &[T; N]) -> T {
         let one = y[SIN].splat(1.0);
         let slip = y[UH].mac(y[UH], y[U2] * y[U2]).sqrt();
-        (2..5).fold(one, |most: T, i| most.max(y[i].abs())).max(slip)
+        one.max(y[W1].abs()).max(y[W2].abs()).max(y[W3].abs()).max(slip)
     }
 
     /// Whether the margin `i` can end a slip of this body.
