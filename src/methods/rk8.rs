@@ -101,19 +101,17 @@ const THIRD: Weights<8> = [(0, -0.18980075407240762), (5, 4.450312892752409), (6
 /// Space for the rates at the stages of a step, which a flow keeps from one step to the next.
 pub(crate) type Stages<T, const N: usize> = [[T; N]; STAGES];
 
-/// The sum `a_1 k_1 + ...`.
+/// The sum `a_1 k_1 + ...` of number `i`.
 #[inline(always)]
 fn weighted<T: Real, const N: usize, const M: usize>(
     k: &Stages<T, N>,
     weights: &[(usize, f64); M],
-) -> [T; N] {
-    let mut sum = k[0];
-    for i in 0..N {
-        let (first, weight) = weights[0];
-        sum[i] = sum[i].splat(weight) * k[first][i];
-        for (stage, weight) in &weights[1..] {
-            sum[i] = k[*stage][i].mac(sum[i].splat(*weight), sum[i]);
-        }
+    i: usize,
+) -> T {
+    let (first, weight) = weights[0];
+    let mut sum = k[first][i].splat(weight) * k[first][i];
+    for (stage, weight) in &weights[1..] {
+        sum = k[*stage][i].mac(sum.splat(*weight), sum);
     }
     sum
 }
@@ -124,23 +122,34 @@ pub(crate) const LOOKS: [(usize, f64); 3] = [(5, 1.0 / 3.0), (9, 0.6), (10, 6.0 
 /// The numbers y of a stage, from the rates of the stages before it.
 #[inline(always)]
 pub(crate) fn place<T: Real, const N: usize>(stage: usize, y: &[T; N], h: T, k: &Stages<T, N>) -> [T; N] {
-    let mut place = match stage {
-        1 => weighted(k, &PLACE_2),
-        2 => weighted(k, &PLACE_3),
-        3 => weighted(k, &PLACE_4),
-        4 => weighted(k, &PLACE_5),
-        5 => weighted(k, &PLACE_6),
-        6 => weighted(k, &PLACE_7),
-        7 => weighted(k, &PLACE_8),
-        8 => weighted(k, &PLACE_9),
-        9 => weighted(k, &PLACE_10),
-        10 => weighted(k, &PLACE_11),
-        _ => weighted(k, &PLACE_12),
-    };
-    for i in 0..N {
-        place[i] = place[i].mac(h, y[i]);
+    let mut at = *y;
+    write_place(stage, y, h, k, &mut at);
+    at
+}
+
+/// Writes the numbers y of a stage: in lanes, a copy of all numbers takes as long as some of them.
+#[inline(always)]
+fn write_place<T: Real, const N: usize>(stage: usize, y: &[T; N], h: T, k: &Stages<T, N>, at: &mut [T; N]) {
+    macro_rules! by {
+        ($weights:expr) => {
+            for i in 0..N {
+                at[i] = weighted(k, &$weights, i).mac(h, y[i]);
+            }
+        };
     }
-    place
+    match stage {
+        1 => by!(PLACE_2),
+        2 => by!(PLACE_3),
+        3 => by!(PLACE_4),
+        4 => by!(PLACE_5),
+        5 => by!(PLACE_6),
+        6 => by!(PLACE_7),
+        7 => by!(PLACE_8),
+        8 => by!(PLACE_9),
+        9 => by!(PLACE_10),
+        10 => by!(PLACE_11),
+        _ => by!(PLACE_12),
+    }
 }
 
 /// One step of `h` from `y`, where `k1 = f(y)` is known; LOOP says whether the stages form a loop or are written out.
@@ -155,8 +164,10 @@ pub(crate) fn step<const LOOP: bool, T: Real, const N: usize>(
     k[0] = *k1;
     if LOOP {
         // Eleven inlined copies of the rates in lanes would take most of the time of the compiler.
+        let mut at = *y;
         for stage in 1..STAGES {
-            f(&place(stage, y, h, k), &mut k[stage]);
+            write_place(stage, y, h, k, &mut at);
+            f(&at, &mut k[stage]);
         }
     } else {
         // In a loop, a vector load would wait for numbers that were just stored one by one.
@@ -165,12 +176,11 @@ pub(crate) fn step<const LOOP: bool, T: Real, const N: usize>(
         }
         each!(1 2 3 4 5 6 7 8 9 10 11);
     }
-    let mut made =
-        Step { change: weighted(k, &CHANGE), fifth: weighted(k, &FIFTH), third: weighted(k, &THIRD) };
-    for sum in [&mut made.change, &mut made.fifth, &mut made.third] {
-        for x in sum {
-            *x = h * *x;
-        }
+    let mut made = Step { change: [h; N], fifth: [h; N], third: [h; N] };
+    for i in 0..N {
+        made.change[i] = h * weighted(k, &CHANGE, i);
+        made.fifth[i] = h * weighted(k, &FIFTH, i);
+        made.third[i] = h * weighted(k, &THIRD, i);
     }
     made
 }
@@ -178,7 +188,7 @@ pub(crate) fn step<const LOOP: bool, T: Real, const N: usize>(
 /// A sum, and its accumulated rounding error (Kahan 1965).
 #[inline(always)]
 pub(crate) fn plus<T: Real, const N: usize>(y: &[T; N], carry: &[T; N], change: &[T; N]) -> ([T; N], [T; N]) {
-    let (mut sum, mut left) = (*y, *carry);
+    let (mut sum, mut left) = ([y[0]; N], [y[0]; N]);
     for i in 0..N {
         let change = change[i] + carry[i];
         sum[i] = y[i] + change;

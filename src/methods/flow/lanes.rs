@@ -314,12 +314,14 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
     fn goes_on(&mut self, steps: usize) {
         let (zero, one) = (self.tol.splat(0.0), self.tol.splat(1.0));
         let mut stages = [self.rate; rk8::STAGES];
+        // The margins at three stages, which each step writes anew.
+        let mut within = [self.margins; LOOKS.len()];
         for _ in 0..steps {
             if (0..T::COUNT).any(|k| self.status.lane(k) > 0.0) {
                 return;
             }
             let (law, way) = (&self.law, &self.way);
-            let (mut stage, mut within) = (0, [self.margins; LOOKS.len()]);
+            let mut stage = 0;
             let rates = here(
                 #[inline(always)]
                 |y: &[T; N], rate: &mut [T; N]| {
