@@ -57,7 +57,7 @@ pub(super) struct Walks<'a, const N: usize> {
 }
 
 /// The kind of the flow of a walk, and the numbers that a lane needs; None for a walk that is computed alone.
-fn place<const N: usize>(walk: &BodyWalk<'_, N>) -> Option<(Among, [f64; NUMBERS])> {
+fn place<const N: usize>(walk: &BodyWalk<'_, N>, y: &[f64; N]) -> Option<(Among, [f64; NUMBERS])> {
     let (body, mut numbers) = (&walk.of.body, [0.0; NUMBERS]);
     numbers[..4].copy_from_slice(&[body.ell(), body.i1(), body.i3(), body.fillet()]);
     // A hop that rolls and loses nothing is short.
@@ -72,7 +72,7 @@ fn place<const N: usize>(walk: &BodyWalk<'_, N>) -> Option<(Among, [f64; NUMBERS
     let slide = &walk.of.slide;
     let (sine, cosine) = landing_angle(body.theta_end());
     let there = f64::from(u8::from(body.theta_end() < PI));
-    numbers[4..9].copy_from_slice(&[slide.law.strength, slide.over(), sine, cosine, there]);
+    numbers[4..9].copy_from_slice(&[slide.law.strength, slide.over_in_lanes(y), sine, cosine, there]);
     (slide.law.losses.is_none() && slide.law.patch().is_none())
         .then_some((Among::Slips { dry: slide.law.dry }, numbers))
 }
@@ -101,7 +101,7 @@ impl<const N: usize> Walks<'_, N> {
                     return;
                 }
             };
-            let place = if self.lanes { place(walk) } else { None };
+            let place = if self.lanes { place(walk, &y) } else { None };
             let Some(((among, numbers), until)) = place.zip(walk.until()) else {
                 found = walk.flows(y, step, u64::MAX, go_on);
                 continue;

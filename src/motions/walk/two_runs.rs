@@ -29,7 +29,7 @@ const LATE: f64 = 1e-6;
 const TOGETHER: f64 = 0.3;
 /// A second run with more than this share of the evaluations of the first has made almost the same steps, so
 /// that the difference of the runs hides the errors of these steps.
-const ALIKE: f64 = 0.7;
+const ALIKE: f64 = 0.66;
 /// The estimated error is at least this share of the sum of all step errors, since two runs may agree by chance.
 const LEAST_SHARE: f64 = 0.25;
 /// The share of the step errors by which a rougher run that hops is perturbed.

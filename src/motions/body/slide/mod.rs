@@ -44,6 +44,12 @@ const SLIP_ENDS: [Halt; MARGINS] =
 /// Error of the end of a slip that is extrapolated, in tolerances. It is far below this bound: with a bound of 1 it was at most
 /// 0.1, and no claim of 432 random motions was too small; with a bound of 100 it was up to 7, and two claims were.
 const AT_ONCE: f64 = 0.01;
+/// Lanes leave a slip to a single flow at this share of the speed that friction takes from it in the time of such a rest, unless
+/// it is less than `MUCH_FASTER` times as fast when it gets a lane.
+#[cfg(feature = "many")]
+const SHARE_OF_LAST: f64 = 0.5;
+#[cfg(feature = "many")]
+const MUCH_FASTER: f64 = 10.0;
 /// Largest angle between the direction of such a slip and its mean.
 const STRAIGHT: f64 = 1e-2;
 /// The least growth of a slip that begins, so that it has a direction.
@@ -127,6 +133,17 @@ impl<L: Varying> Slide<L> {
     /// The speed below which a slip counts as zero.
     pub fn over(&self) -> f64 {
         self.law.patch().map_or(slip_over(self.law.dry, self.law.strength), rests_below)
+    }
+
+    /// The speed below which the rest of a slip is about that of [`Slide::ends_at_once`], so that a single flow continues a
+    /// slip that lanes have followed up to there; a slip that begins hardly faster is in lanes to its end.
+    #[cfg(feature = "many")]
+    pub fn over_in_lanes<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        let time = (AT_ONCE * self.tol).cbrt() * self.calm(y) / 3.0;
+        // Friction slows a slip along the lean by mu N or more.
+        let near = SHARE_OF_LAST * self.law.strength * time;
+        let [u_h, u_2] = y.slip();
+        if self.law.dry && u_h.hypot(u_2) > MUCH_FASTER * near { near.max(self.over()) } else { self.over() }
     }
 
     /// The numbers at the end of a slip whose rest is so short that a single step has an error below `AT_ONCE` tolerances:
