@@ -343,10 +343,16 @@ impl Losses {
     /// Whether a face comes down by infinitely many turns: some law causes this, and no law along the contour stops the
     /// contact.
     pub(crate) fn turn_endlessly(&self) -> bool {
-        let any = |of: fn(Law) -> bool| {
-            Law::ALL.iter().any(|law| of(*law) && self.coefficients[*law as usize] > 0.0)
-        };
-        any(Law::turns_endlessly) && !any(Law::is_along)
+        self.any(Law::turns_endlessly) && !self.stop_the_contour()
+    }
+
+    /// Whether some law along the contour stops the contact there.
+    pub(crate) fn stop_the_contour(&self) -> bool {
+        self.any(Law::is_along)
+    }
+
+    fn any(&self, of: fn(Law) -> bool) -> bool {
+        Law::ALL.iter().any(|law| of(*law) && self.coefficients[*law as usize] > 0.0)
     }
 
     /// The power that is lost in a state under a normal force N, in M g R sqrt(g/R). N is in units of the weight, 1 in

@@ -7,7 +7,7 @@ use super::roll::lossy::{LossyFlow, with_patch};
 use super::slide::slow::{BodySlips, Slippery};
 use super::slide::{Slide, Varying};
 use super::spun::{Roundings, knows};
-use super::tail::LastTurns;
+use super::tail::{LastTurns, Nods};
 use super::write::{self, state};
 use super::{check_walk, without_friction};
 use crate::error::Error;
@@ -89,6 +89,8 @@ pub(crate) struct BodyPhases<G: Own = ()> {
     pub(super) lately: [f64; 2],
     /// Estimates of the end of a slipping whirr; None if the losses do not let a whirr last for infinitely many turns.
     pub(super) tail: Option<LastTurns>,
+    /// The slips in its nods; None if a loss stops the contact along the rim.
+    pub(super) nods: Option<Box<Nods>>,
 }
 
 /// A phase that loses energy without a slip.
@@ -266,6 +268,7 @@ impl<G: Own> BodyPhases<G> {
             planar: state.w1 == 0.0 && state.w3 == 0.0 && slip[1] == 0.0 && !own.has_couple(),
             lately: [0.0; 2],
             tail: (!G::IS && !body.is_ball() && ask.losses.turn_endlessly()).then(LastTurns::default),
+            nods: (!G::IS && !body.is_ball() && !ask.losses.stop_the_contour()).then(Box::default),
         }
     }
 
@@ -386,12 +389,18 @@ impl<G: Stepped, const N: usize> Phases<N> for BodyPhases<G> {
     fn audits(walk: &mut BodyWalk<'_, N, G>) {
         walk.compares_energy();
     }
-    fn is_over(walk: &mut BodyWalk<'_, N, G>, next: &Next) -> bool {
+    fn is_over(walk: &mut BodyWalk<'_, N, G>, next: &Next, given_up: bool) -> bool {
         let fall = walk.at[COS] * walk.at[W2];
         if loses(N) && walk.still > STILL && walk.at[SIN] < ALL_BUT_FLAT && fall > 0.0 {
             // Whether the face slips or sticks no longer matters, since it is almost on the table.
             let left = walk.at[SIN] / fall;
             walk.lies_flat([walk.at[TIME] + left, left]);
+            return true;
+        }
+        if matches!(next, Next::SlipsOff { .. }) {
+            walk.nods();
+        }
+        if (given_up || matches!(next, Next::SlipsOff { .. })) && walk.nods_end(given_up) {
             return true;
         }
         if matches!(next, Next::Slips | Next::SlipsOff { .. })

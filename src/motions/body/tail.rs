@@ -6,10 +6,15 @@
 //! t_end = t_2 + (t_2 - t_1)/((p_1/p_2)^(1/3) - 1)
 //! ```
 //! Under rolling resistance or drilling an almost flat face has theta ~ tau^2 and w1 ~ tau, so that every
-//! turn and every slip is a smaller copy of the one before. The vertical momentum p hardly nods with the
-//! body, which is why its values and not those of theta give the end. Two values far apart give one estimate.
+//! turn and every slip is a smaller copy of the one before. So it is under any law that does not stop the contact along
+//! the rim, where a coin slips in each nod: its friction takes more and more of what is left. The vertical momentum p
+//! hardly nods with the body, which is why its values and not those of theta give the end.
 //!
-//! Error: twice the sum of all further changes of the estimate, extrapolated from the last three estimates.
+//! The beginnings of two slips from rest that are a whole number of nods apart give an estimate that is exact as soon as
+//! the turns are copies. Within a slip that does not end, two values far apart give one estimate.
+//!
+//! Error: of slips from rest, twice the spread of the last estimates, divided by the share of the rest of the motion
+//! over which they spread; else twice the sum of all further changes of the estimate, extrapolated from the last three.
 
 /// Sine of theta below which the turns of a whirr are nearly smaller copies of each other. Estimates begin here; at
 /// larger inclinations they would be wrong.
@@ -17,14 +22,103 @@ const ALIKE_BELOW: f64 = 1e-4;
 /// The two values of p^(1/3) in an estimate differ at least by this factor. Closer ones would give a
 /// less accurate end.
 const APART: f64 = 1.25;
-/// The end is accepted, and the last turns are left out, if its error is below this.
+/// The end is accepted, and the last turns are left out, if its error is below this, or below this multiple of the sum of
+/// all step errors: along so many slips these grow by more, and the end moves with them.
 const END_KNOWN: f64 = 1e-9;
+const OF_STEP_ERRORS: f64 = 3.0;
 /// Sine of theta below which any estimate of the end is accepted, and slips are no longer computed.
 const GONE: f64 = 1e-13;
 /// Assumed number of further changes of the estimate where these do not become smaller.
 const LEFT: f64 = 64.0;
+/// A motion that would be given up has an end if its error is below this share of the time that is left.
+const BETTER_THAN_NONE: f64 = 0.1;
+/// A nod has at most so many slips from rest, and so many estimates in a row must agree.
+const SLIPS: usize = 4;
+const AGREE: usize = 9;
+const STARTS: usize = SLIPS + AGREE;
 
-/// The estimates of the end of a whirr.
+/// The beginning of a slip from rest near the end of a whirr.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct SlipStart {
+    pub time: f64,
+    /// p^(1/3), which is proportional to the time that is left.
+    pub root: f64,
+    pub w3: f64,
+    pub heat: f64,
+    pub lost: f64,
+}
+
+/// The end of a whirr in which each nod has slips from rest.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct NodsEnd {
+    pub time: f64,
+    pub doubt: f64,
+    /// The share of the energy that is left which becomes heat.
+    pub heats: f64,
+}
+
+impl NodsEnd {
+    /// Whether this end is better than none, at the time `now`.
+    pub fn is_better_than_none(&self, now: f64) -> bool {
+        self.doubt < BETTER_THAN_NONE * (self.time - now)
+    }
+}
+
+/// The last slips from rest, the latest one first.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Nods {
+    starts: [SlipStart; STARTS],
+    count: usize,
+}
+
+impl Nods {
+    /// Adds the beginning of a slip at this sine of theta.
+    pub fn adds(&mut self, s: f64, start: SlipStart) {
+        if s > ALIKE_BELOW || start.root == 0.0 {
+            self.count = 0;
+            return;
+        }
+        self.starts.rotate_right(1);
+        self.starts[0] = start;
+        self.count = (self.count + 1).min(STARTS);
+    }
+
+    /// The end, by the number of slips in a nod with which the estimates agree best; None as long as none agree.
+    pub fn end(&self) -> Option<NodsEnd> {
+        if self.count < STARTS {
+            return None;
+        }
+        let all = &self.starts;
+        let falls = 1.0 - all[0].root / all[AGREE - 1].root;
+        let by = |slips: usize| {
+            let estimate = |i: usize| {
+                let (now, before) = (&all[i], &all[i + slips]);
+                now.time + (now.time - before.time) / (before.root / now.root - 1.0)
+            };
+            let [low, high] = (0..AGREE)
+                .map(estimate)
+                .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], end| [low.min(end), high.max(end)]);
+            let (now, before) = (&all[0], &all[slips]);
+            let [heat, lost] = [now.heat - before.heat, now.lost - before.lost];
+            // A body that goes on to spin about the vertical does not come to rest.
+            let spins = now.w3 - (before.w3 - now.w3) / (before.root / now.root - 1.0);
+            let doubt = (2.0 * (high - low) / falls).max(spins.abs());
+            NodsEnd { time: estimate(0), doubt, heats: heat / (heat + lost) }
+        };
+        let ends = (1..=SLIPS).map(by).filter(|end| {
+            // The error cannot exceed the time that is left.
+            end.doubt >= 0.0 && end.doubt < end.time - all[0].time && (0.0..=1.0).contains(&end.heats)
+        });
+        ends.filter(|_| falls > 0.0).min_by(|a, b| a.doubt.total_cmp(&b.doubt))
+    }
+}
+
+/// Whether an end before the next output, at the time `until`, is known well enough after these step errors.
+pub(super) fn is_known([end, doubt]: [f64; 2], until: f64, erred: f64) -> bool {
+    doubt < END_KNOWN.max(OF_STEP_ERRORS * erred) && end + doubt < until
+}
+
+/// The estimates of the end of a whirr that comes down by infinitely many turns.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct LastTurns {
     /// Time and p^(1/3) of the last value.
@@ -66,6 +160,6 @@ impl LastTurns {
     /// The time of the end and its error, if the error is small and the end is before `until`, or if `s`
     /// is below `GONE`.
     pub fn known(&self, s: f64, until: f64) -> Option<[f64; 2]> {
-        self.end().filter(|[end, doubt]| s < GONE || *doubt < END_KNOWN && end + doubt < until)
+        self.end().filter(|end| s < GONE || is_known(*end, until, 0.0))
     }
 }

@@ -315,7 +315,7 @@ impl<'l> Phases<CUSTOM_NUMBERS> for BodyPhases<CustomFlow<'l>> {
         walk.compares_energy();
     }
     /// A law that fails in an impact or in the air interrupts the motion there.
-    fn is_over(walk: &mut CustomWalk<'_, 'l>, _: &Next) -> bool {
+    fn is_over(walk: &mut CustomWalk<'_, 'l>, _: &Next, _: bool) -> bool {
         let fails = walk.of.own.custom.has_failed();
         if fails {
             walk.made.motion.limit = Some(Limit::Interrupted);

@@ -229,7 +229,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
                 self.short = 0;
             }
             let limit = self.changes();
-            if P::is_over(self, &next) {
+            if P::is_over(self, &next, limit.is_some()) {
                 break;
             }
             let next = match limit {

@@ -54,8 +54,9 @@ pub(crate) trait Phases<const N: usize>: Sized {
     }
     /// Tests the numbers between two phases; what cannot be true is an error of the motion.
     fn audits(_: &mut Walk<'_, Self, N>) {}
-    /// Ends the motion before the next phase if its end is already known. Returns whether it has ended.
-    fn is_over(_: &mut Walk<'_, Self, N>, _: &Next) -> bool {
+    /// Ends the motion before the next phase if its end is already known, or known at all where it would be given up.
+    /// Returns whether it has ended.
+    fn is_over(_: &mut Walk<'_, Self, N>, _: &Next, _given_up: bool) -> bool {
         false
     }
     /// The phase after an ending past which a motion with restitution continues; otherwise the ending.

@@ -88,16 +88,17 @@ type PhasePairs<'a, S> = Vec<[&'a Phase<S>; 2]>;
 /// The pairs of phases of two runs that correspond to each other, up to the time `end`, and the length of the
 /// longest phase that only one of the runs has. Pairs by number would all be wrong after a slip that only one
 /// run has. `whirrs`: the last turns of a whirr are left out, one run may have computed more turns than the
-/// other, and its additional phases at the end do not count.
+/// other, its additional phases at the end do not count, and the last phase that a run has is followed by others.
 fn together<S>(runs: [&[Phase<S>]; 2], end: f64, whirrs: bool) -> Result<(PhasePairs<'_, S>, f64), Error> {
     let (mut pairs, mut alone, mut at) = (room(runs[0].len().min(runs[1].len()))?, 0f64, [0; 2]);
     let lasts = |k: usize, i: usize| {
-        let next = runs[k].get(i + 1).map_or(end, |next| next.time);
-        (next - runs[k][i].time).max(0.0)
+        let begin = runs[k][i].time;
+        let next = runs[k].get(i + 1).map_or(if whirrs { begin } else { end }, |next| next.time);
+        (next - begin).max(0.0)
     };
     while let (Some(a), Some(b)) = (runs[0].get(at[0]), runs[1].get(at[1])) {
         let long = [lasts(0, at[0]), lasts(1, at[1])];
-        let last = at[0] + 1 == runs[0].len() && at[1] + 1 == runs[1].len();
+        let last = !whirrs && at[0] + 1 == runs[0].len() && at[1] + 1 == runs[1].len();
         let near = (a.time - b.time).abs() <= TOGETHER * long[0].min(long[1]);
         if a.kind == b.kind && (near || last) {
             pairs.push([a, b]);

@@ -10,8 +10,11 @@ use crate::motions::Ending;
 use crate::motions::body::face::turning_share;
 use crate::motions::body::own::Stepped;
 use crate::motions::body::phases::BodyWalk;
+use crate::motions::body::tail::{SlipStart, is_known};
 use crate::motions::body::write::state;
-use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, Halt, SIN, TIME, U2, UH, W1, W2, W3, loses};
+use crate::motions::walk::numbers::{
+    BodyNumbers, COS, HEAT, Halt, SIN, TIME, U2, UH, W1, W2, W3, loses, lost,
+};
 use crate::motions::walk::two_runs::CHANCE;
 use crate::motions::walk::{Next, Pause, Phases, after_rest, ending};
 
@@ -190,6 +193,39 @@ impl<G: Stepped, const N: usize> BodyWalk<'_, N, G> {
         let tail = self.of.tail.as_mut()?;
         tail.adds_point(at[TIME], at[SIN], at[W1]);
         tail.known(at[SIN], until)
+    }
+
+    /// Notes the beginning of a slip from rest.
+    pub(crate) fn nods(&mut self) {
+        let (at, lost) = (&self.at, lost(&self.at));
+        let root = (at[W1] * at[SIN]).abs().cbrt();
+        if let Some(nods) = &mut self.of.nods {
+            nods.adds(at[SIN], SlipStart { time: at[TIME], root, w3: at[W3], heat: at[HEAT], lost });
+        }
+    }
+
+    /// Ends a whirr that slips in each nod where the face lands, if that is known and no output is requested before. The
+    /// energy that is left becomes heat, or is lost, in the same shares as that of the last nod.
+    #[inline(never)]
+    pub(crate) fn nods_end(&mut self, given_up: bool) -> bool {
+        let Some(end) = self.of.nods.as_ref().and_then(|nods| nods.end()) else { return false };
+        let (until, now) = (self.until().unwrap_or(f64::INFINITY), self.at[TIME]);
+        let erred = self.spent.erred * self.of.slide.tol;
+        let accepted = is_known([end.time, end.doubt], until, erred)
+            || given_up && end.is_better_than_none(now) && end.time + end.doubt < until;
+        if accepted {
+            let left = self.of.slide.energy(&self.at);
+            self.at[..5].copy_from_slice(&[0.0, 1.0, 0.0, 0.0, 0.0]);
+            self.stop_slip();
+            let left = left - self.of.slide.energy(&self.at);
+            self.at[HEAT] += end.heats * left;
+            if loses(N) {
+                self.at[N - 1] += (1.0 - end.heats) * left;
+            }
+            self.made.path.leaves_turns = true;
+            self.lies_flat([end.time, end.doubt]);
+        }
+        accepted
     }
 
     /// Ends the walk where the face lands, at a time with its error.
