@@ -208,9 +208,11 @@ def test_a_stiff_law_is_named_where_its_motion_is_given_up():
 @pytest.mark.parametrize(
     "call",
     [
-        lambda: CUBIC + sc.loss.AirLinear(1e-3),
-        lambda: sc.loss.AirLinear(1e-3) + CUBIC,
+        lambda: CUBIC + CUBIC,
+        lambda: CUBIC + sc.loss.AirLinear(1e-3) + CUBIC,
         lambda: sc.loss.Sum([CUBIC]),
+        lambda: sc.drift(COIN, 0.5, CUBIC + sc.loss.AirLinear(1e-3)),
+        lambda: sc.scene(sc.roll(COIN, START, T, losses=CUBIC + sc.loss.AirLinear(1e-3))),
         lambda: sc.drift(COIN, 0.5, CUBIC),
         lambda: sc.sweep.roll(
             sc.Ellipsoid.egg(1.0, 1.5), sc.Ellipsoid.egg(1.0, 1.5).spinning(1.0), 1.0, contact=FALLING

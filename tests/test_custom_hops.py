@@ -323,3 +323,94 @@ def test_a_coefficient_that_varies_beside_rolling_resistance_keeps_the_balance_o
         m = sc.roll(body, state, np.linspace(0.0, until, 9), contact=STRIBECK, losses=losses, restitution=e)
         if np.isfinite(m.error):
             assert np.ptp(sums(m)) <= 1e-9 + 10 * m.error * (1.0 + abs(m.w).max())
+
+
+PRESSING = [sc.loss.RollingResistance(2e-2), sc.loss.DryContour(2e-2), sc.loss.Drilling(2e-2)]
+
+
+@pytest.mark.parametrize("beside", PRESSING, ids=str)
+def test_a_couple_of_your_own_beside_losses_that_press_acts_as_the_librarys_does(beside):
+    kinds, compared = set(), 0
+    for i, (body, state, (mu, static), e, until) in enumerate(drawn(6611, 24)):
+        b = 10.0 ** (-1.0 - i % 3)
+        how = {"contact": sc.Coulomb(mu, static=static), "restitution": e}
+        if i % 2:  # on the table, without impacts
+            state = sc.State(state.theta, state.w1, state.w2, state.w3, slip=state.slip)
+            how = {"contact": how["contact"] if i % 4 == 1 else "rolling"}
+            state = state if i % 4 == 1 else sc.State(state.theta, state.w1, state.w2, state.w3)
+        t = np.linspace(0.0, until, 9)
+        own = sc.custom.Couple(lambda theta, w, normal, b=b: -b * w)
+        try:
+            built_in = sc.roll(body, state, t, losses=beside + sc.loss.AirLinear(b), **how)
+        except ValueError:
+            continue  # no unique contact force
+        found = sc.roll(body, state, t, losses=beside + own, **how)
+        if not np.isfinite(found.error + built_in.error):
+            continue
+        assert found.status == built_in.status
+        off = np.array([*(found.w - built_in.w).T, found.theta - built_in.theta])
+        assert abs(off).max(initial=0.0) <= max(found.error + built_in.error, 1e-11), (i, body)
+        total = found.energy + found.work_lost
+        total = total + (0.0 if how["contact"] == "rolling" else found.dissipated)
+        total = total + (found.lost_in_impacts if "restitution" in how else 0.0)
+        assert np.ptp(total) <= 1e-9 + 10 * found.error * (1.0 + abs(found.w).max())
+        if how["contact"] != "rolling":
+            kinds |= {phase.kind for phase in found.phases}
+        compared += 1
+    assert compared > 12 and kinds >= {"slipping", "rolling", "flying"}
+
+
+def test_a_couple_in_proportion_to_the_normal_force_adds_to_the_losses_beside_it():
+    compared = 0
+    for i, (body, state, (mu, _), _, until) in enumerate(drawn(6612, 16)):
+        state = sc.State(state.theta, state.w1, state.w2, state.w3, slip=state.slip)
+        t, how = np.linspace(0.0, until, 9), {"contact": sc.Coulomb(mu)}
+        all_own = sc.custom.Couple(lambda theta, w, normal: -(0.02 + 0.05 * normal) * w)
+        part = sc.custom.Couple(lambda theta, w, normal: -0.05 * normal * w)
+        try:
+            alone = sc.roll(body, state, t, losses=all_own, **how)
+            both = sc.roll(body, state, t, losses=sc.loss.AirLinear(0.02) + part, **how)
+        except ValueError:
+            continue  # no unique contact force
+        if np.isfinite(alone.error + both.error):
+            assert abs(alone.w - both.w).max(initial=0.0) <= max(alone.error + both.error, 1e-11), i
+            sums = both.energy + both.dissipated + both.work_lost
+            assert np.ptp(sums) <= 1e-9 + 10 * both.error * (1.0 + abs(both.w).max())
+            compared += 1
+    assert compared > 8
+
+
+def test_on_a_patch_a_couple_of_your_own_acts_as_the_librarys_does():
+    kinds, compared = set(), 0
+    for i, (body, state, (mu, _), _, until) in enumerate(drawn(6613, 30)):
+        b, patch = 10.0 ** (-1.0 - i % 3), (0.01, 0.05, 0.2)[i // 3 % 3]
+        state = sc.State(state.theta, state.w1, state.w2, state.w3, slip=state.slip)
+        t, contact = np.linspace(0.0, 4.0 * until, 9), sc.Coulomb(mu, patch=patch)
+        own = sc.custom.Couple(lambda theta, w, normal, b=b: -b * w)
+        try:
+            built_in = sc.roll(body, state, t, contact=contact, losses=sc.loss.AirLinear(b))
+        except ValueError:
+            continue
+        found = sc.roll(body, state, t, contact=contact, losses=own)
+        if not np.isfinite(found.error + built_in.error):
+            continue
+        assert found.status == built_in.status
+        off = np.array([*(found.w - built_in.w).T, found.theta - built_in.theta])
+        assert abs(off).max(initial=0.0) <= max(found.error + built_in.error, 1e-11), (i, body)
+        total = found.energy + found.dissipated + found.work_lost
+        assert np.ptp(total) <= 1e-9 + 10 * found.error * (1.0 + abs(found.w).max())
+        kinds |= {phase.kind for phase in found.phases}
+        compared += 1
+    assert compared > 15 and "slipping" in kinds
+
+
+def test_a_sum_with_a_couple_of_your_own_adds_couples_and_powers():
+    own, other = sc.custom.Couple(lambda theta, w, normal: -0.1 * w), sc.loss.Drilling(1e-2)
+    body, state = sc.Body.solid(1.5), sc.State(0.7, 0.3, 0.2, 1.1)
+    for both in (own + other, other + own):
+        assert repr(both).endswith("+ Drilling(0.01)") and both == own + other
+        for name in ("couple", "power"):
+            parts = [getattr(law, name)(body, state, 1.3) for law in (own, other)]
+            assert np.allclose(getattr(both, name)(body, state, 1.3), sum(parts), rtol=1e-15)
+    three = own + other + sc.loss.AirLinear(1e-3)
+    assert repr(three).endswith("+ Drilling(0.01) + AirLinear(0.001)")

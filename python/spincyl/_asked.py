@@ -66,8 +66,11 @@ def crossing(
     if aloft is not None:
         options["aloft"] = aloft
     if asked.losses is not None:
-        own = asked.losses._function
-        options |= {"losses": asked.losses._coefficients} if own is None else {"couple": own}
+        laws, own = asked.losses._built_in, asked.losses._function
+        if laws is not None:
+            options["losses"] = laws._coefficients
+        if own is not None:
+            options["couple"] = own
     if asked.restitution is not None:
         options["restitution"] = float(asked.restitution)
     if asked.stop_at:

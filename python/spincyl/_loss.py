@@ -60,6 +60,11 @@ class Loss:
         raise NotImplementedError
 
     @property
+    def _built_in(self) -> "Loss | None":
+        """The laws of the library in the sum; None if there are none."""
+        return self
+
+    @property
     def _coefficients(self) -> list[Reals]:
         """The coefficient of each law in the order of the core; 0 for absent laws."""
         own = {law._parameter: law.coefficient for law in self.laws}
@@ -109,7 +114,9 @@ class Loss:
         return *self._coefficients, reals("normal", normal), *numbers(state), *body._numbers
 
     def __add__(self, other: "Loss") -> "Loss":
-        return NotImplemented if not isinstance(other, Loss) else _added((*self.laws, *other.laws))
+        if not isinstance(other, Loss) or other._function is not None:
+            return NotImplemented  # `custom.Couple` adds itself
+        return _added((*self.laws, *other.laws))
 
     def __str__(self) -> str:
         return titled(self) if is_scalar(*self._coefficients) else repr(self)
@@ -306,14 +313,13 @@ def made_law(losses: object, body: Body | None = None) -> Loss:
     if not isinstance(losses, Loss):
         like = "such as sc.loss.DryContour(1e-3), or a sum of them"
         raise TypeError(f"losses: expected a loss from sc.loss, {like}, not {type(losses).__name__}")
-    if losses._function is not None:
-        return losses
-    bare = [] if body is None or body.scale is None else [law for law in losses.laws if not law._sized]
+    laws = () if losses._built_in is None else losses._built_in.laws
+    bare = [] if body is None or body.scale is None else [law for law in laws if not law._sized]
     if bare:
         made = f"sc.loss.{type(bare[0]).__name__}.from_si(..., scale=body)"
         why = f"expected a coefficient in SI for a measured body: use {made}, or pass body.natural"
         raise ValueError(f"losses = {losses!r}: {why}")
-    for law in losses.laws:
+    for law in laws:
         other(f"losses = {law!r}", law._sized, None if body is None else body.scale)
     return losses
 

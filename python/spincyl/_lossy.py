@@ -18,7 +18,8 @@ _WHY = {
 
 def check_losses(losses: object, times: Floats, t0: float, settings: dict[str, Any]) -> None:
     """Raise ValueError for arguments that exclude losses; `settings` are the settings given, by name."""
-    if made_law(losses)._function is None and not is_scalar(*losses._coefficients):  # type: ignore[attr-defined]
+    laws = made_law(losses)._built_in
+    if laws is not None and not is_scalar(*laws._coefficients):
         raise ValueError(
             f"losses = {losses!r}: expected single coefficients, not arrays; sc.drift accepts arrays"
         )
@@ -48,9 +49,10 @@ def of_stone(losses: object, body: Any) -> Loss:
 
 def narrow(losses: Loss, contact: AnyContact) -> None:
     """Warn if the arm of rolling resistance ends outside the patch of contact, where no pressure acts."""
-    if not isinstance(contact, Coulomb) or losses._function is not None:
+    laws = losses._built_in
+    if not isinstance(contact, Coulomb) or laws is None:
         return
-    arms = [law.coefficient for law in losses.laws if law._parameter == "delta"]
+    arms = [law.coefficient for law in laws.laws if law._parameter == "delta"]
     patch = contact.patch
     if any(is_lazy(x) for x in (*arms, patch)):
         return

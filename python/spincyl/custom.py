@@ -39,7 +39,6 @@ def __dir__() -> list[str]:
 
 #: A couple from theta, w along e1, e2, e3 (an array of 3), and the normal force.
 CoupleFunction = Callable[[float, Floats, float], Sequence[float] | Floats]
-_ALONE = f"{OWN}, as the only loss"
 
 
 def _called(name: str, function: object, arguments: str) -> None:
@@ -65,15 +64,15 @@ class Couple(Loss):
     ------
     TypeError
         If `function` is not callable, or is a C function of another signature. Also if the law is used for
-        a drift, for a stone, for lazy arrays, or together with another loss law.
+        a drift, for a stone, or for lazy arrays.
     ValueError
         In `sc.roll` and `sc.sweep.roll`, if the couple adds energy, is not finite, or jumps; the message
         gives a value.
 
     Notes
     -----
-    The motion is integrated with the tolerance `tol` of `sc.roll`, by default 1e-10 for each step.
-    `Motion.error` is estimated from a second run with a larger tolerance.
+    The couples of a sum of this law and laws of `sc.loss` add. The motion is integrated with the tolerance
+    `tol` of `sc.roll`, by default 1e-10 for each step. `Motion.error` is estimated from a second run with a larger tolerance.
     """
 
     function: CoupleFunction
@@ -92,7 +91,21 @@ class Couple(Loss):
     @property
     def laws(self) -> tuple[Law, ...]:
         """Raises TypeError, since a law that is a function has no coefficients to list."""
-        raise TypeError(f"losses = {self!r}: {_ALONE}")
+        raise TypeError(f"losses = {self!r}: {OWN}")
+
+    @property
+    def _built_in(self) -> Loss | None:
+        return None
+
+    def __add__(self, other: Loss) -> Loss:
+        if not isinstance(other, Loss):
+            return NotImplemented
+        if other._function is not None:
+            raise TypeError(f"losses = {self!r} + {other!r}: expected one couple of your own; add them in one function")
+        return Beside(self, other)
+
+    def __radd__(self, other: Any) -> Loss:
+        return self + other if isinstance(other, Loss) else super().__radd__(other)
 
     def _natural(self, scale: Scale | None) -> Loss:
         if scale is None:
@@ -134,6 +147,51 @@ class Couple(Loss):
         return f"custom.Couple({_named(self.function)})"
 
     __str__ = __repr__  # without coefficients there is no unit to print
+
+
+@dataclass(frozen=True, repr=False)
+class Beside(Loss):
+    """Sum of a `Couple` and of laws of `sc.loss`, the result of ``+``."""
+
+    own: Couple
+    others: Loss
+
+    @property
+    def _function(self) -> Any:
+        return self.own._function
+
+    @property
+    def laws(self) -> tuple[Law, ...]:
+        """Raises TypeError, since a law that is a function has no coefficients to list."""
+        raise TypeError(f"losses = {self!r}: {OWN}")
+
+    @property
+    def _built_in(self) -> Loss:
+        return self.others
+
+    def _natural(self, scale: Scale | None) -> Loss:
+        return type(self)(self.own._natural(scale), self.others)  # type: ignore[arg-type]
+
+    def couple(self, body: Body, state: State, normal: Reals = 1.0) -> Result:
+        """Couple of all laws in a single state, along e1, e2, e3."""
+        return self.own.couple(body, state, normal) + self.others.couple(body, state, normal)
+
+    def power(self, body: Body, state: State, normal: Reals = 1.0) -> Result:
+        """Power that all laws take in a single state."""
+        return self.own.power(body, state, normal) + self.others.power(body, state, normal)
+
+    def __add__(self, other: Loss) -> Loss:
+        if not isinstance(other, Loss) or other._function is not None:
+            return NotImplemented
+        return type(self)(self.own, self.others + other)
+
+    def __radd__(self, other: Any) -> Loss:
+        return self + other if isinstance(other, Loss) else super().__radd__(other)
+
+    def __repr__(self) -> str:
+        return f"{self.own!r} + {self.others!r}"
+
+    __str__ = __repr__
 
 
 class Friction(Coulomb):

@@ -48,7 +48,7 @@ fn own(body: &Body, start: Start, times: &[f64], ask: &Ask, laws: Custom<'_>) ->
 
 #[test]
 fn a_couple_of_the_air_that_a_user_writes_moves_a_body_as_that_of_the_library_does() {
-    let mut r = wander(5301);
+    let mut r = wander(5304);
     let times: Vec<f64> = (0..=20).map(|i| 0.2 * f64::from(i)).collect();
     let mut ended = 0;
     // The forces of slow slips, whose directions have larger errors, are rare.
@@ -212,8 +212,8 @@ fn a_law_that_gives_energy_or_has_a_step_is_refused_by_name() {
     assert_eq!(rubs(&|_: f64| 0.4).0, "static");
     let kind = |speed: f64| 0.2 + 0.0 * speed;
     assert_eq!(refused(Custom::default().with_friction(&kind), Ask::default()).0, "contact");
-    let resisted = Ask::default().with_losses(Losses::of(Law::RollingResistance, 0.01));
-    assert_eq!(refused(Custom::default(), resisted).0, Law::RollingResistance.parameter());
+    let patch = Friction::Coulomb { mu: 0.2, fixed: 0.2, patch: 0.05 };
+    assert_eq!(refused(Custom::default().with_friction(&kind), Ask::on(patch)).0, "patch");
     assert_eq!(refused(Custom::default(), Ask::default().with_beyond(true)).0, "beyond");
 }
 

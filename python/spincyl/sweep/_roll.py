@@ -363,8 +363,8 @@ def _fields(bodies: Body, states: State, contact: AnyContact, losses: Loss | Non
         fields |= zip(_SLIP, states._slip, strict=True)
     if states.height is not None:
         fields |= {"height": states.height, "lift": states.lift}
-    if losses is not None and losses._function is None:
-        fields |= zip(LAWS, losses._coefficients, strict=True)
+    if losses is not None and losses._built_in is not None:
+        fields |= zip(LAWS, losses._built_in._coefficients, strict=True)
     return fields
 
 

@@ -17,7 +17,7 @@
 use super::reduced::{Coefficients, Rates};
 use super::{Contact, rolling};
 use crate::laws::body::Body;
-use crate::laws::loss::{Couple, Couples, Law, Losses, OwnCouple, still_needs};
+use crate::laws::loss::{Couple, Couples, Law, Losses, OwnCouple, UnderCouple, still_needs};
 use crate::laws::newton;
 use crate::laws::state::{State, drilling_of, rolling_of};
 use crate::numbers::Real;
@@ -91,6 +91,18 @@ impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
         speed / (speed + self.losses.coefficient(Law::RollingResistance) / inertia)
     }
 
+    /// The normal force under this couple, from g, 1/J, w2' without the couple, and g' w2^2.
+    #[inline(always)]
+    fn normal(couple: &Couple<T>, tilts: bool, [lever, per_inertia, d2, carried]: [T; 4]) -> T {
+        let one = d2.splat(1.0);
+        if !tilts {
+            return one + lever * d2 - carried;
+        }
+        let normal = one + lever * couple.free[1].mac(per_inertia, d2) - carried;
+        let pressed = normal / (one - lever * couple.pressed[1] * per_inertia);
+        d2.splat(0.0).select_lt(normal, pressed, normal)
+    }
+
     /// w1' and w3' under the couple m1 and m3, from their values without it.
     #[inline(always)]
     fn turned(of: &Coefficients<T>, [d1, d3]: [T; 2], m1: T, m3: T) -> [T; 2] {
@@ -108,22 +120,22 @@ impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
         let (lever, slope, one) = (shape.rim.lever(angle), shape.rim.slope(angle), s.splat(1.0));
         let [d1, d2, d3] = self.rates.at(s, c, w);
         let seen = self.losses.seen(&shape.rim, angle, precession, w);
-        let couple = self.losses.at(&seen);
         let tilts = self.losses.tilts();
-        let (mut tilted, mut per_inertia) = (d2, one);
+        let mut per_inertia = one;
         if tilts {
             per_inertia = one
                 / reduced.inertia(
                     #[inline(always)]
                     || angle,
                 );
-            tilted = couple.free[1].mac(per_inertia, d2);
         }
-        let mut normal = one + lever * tilted - slope * w2 * w2;
-        if tilts {
-            let pressed = normal / (one - lever * couple.pressed[1] * per_inertia);
-            normal = s.splat(0.0).select_lt(normal, pressed, normal);
-        }
+        let carried = slope * w2 * w2;
+        let couple = self.losses.joined(
+            &seen,
+            #[inline(always)]
+            |couple| Self::normal(couple, tilts, [lever, per_inertia, d2, carried]),
+        );
+        let normal = Self::normal(&couple, tilts, [lever, per_inertia, d2, carried]);
         // After a lift-off no force presses the body on the table, and the laws have no normal force.
         let pressing = normal.max(s.splat(0.0));
         let [mut m1, m2, mut m3] = couple.under(pressing);
@@ -172,7 +184,14 @@ impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
         let (rim, i1, i3) = (&reduced.shape.rim, reduced.shape.i1, reduced.shape.i3);
         let (zero, one) = (s.splat(0.0), s.splat(1.0));
         let seen = self.losses.seen(rim, angle, precession, w);
-        let [m1, m2, m3] = self.losses.at(&seen).under(one);
+        let [m1, m2, m3] = self
+            .losses
+            .joined(
+                &seen,
+                #[inline(always)]
+                |_| one,
+            )
+            .under(one);
         let far = match reduced.contact {
             Contact::Smooth => zero,
             Contact::Rolling => rim.lever(angle),
@@ -204,13 +223,26 @@ impl<G: OwnCouple<f64>> Lossy<f64, G> {
         let angle = y.theta.sin_cos();
         self.at(angle, y.w1 / angle.0, [y.w1, y.w2, y.w3], Held::Nothing)
     }
+
+    /// The time derivatives of theta and w in such a state, the contact force, and the lost power.
+    pub fn moves(&self, y: &State) -> (State, newton::Force, f64) {
+        let Acted { w: [w1, w2, w3], force: [normal, along, across], power, .. } = self.in_state(y);
+        (State { theta: -y.w2, w1, w2, w3 }, newton::Force { normal, along, across }, power)
+    }
+
+    /// The losses with a user-defined couple that is linear in the normal force about that of this state.
+    pub fn linear(&self, y: &State) -> UnderCouple {
+        let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
+        let seen = self.losses.seen(&self.rates.reduced().shape.rim, angle, w[0] / angle.0, w);
+        self.losses.linear(&seen, |_| self.in_state(y).force[0])
+    }
 }
 
 /// The time derivative of (theta, w1, w2, w3) of a body that rolls, or slides freely, with losses, and the lost
 /// power. A dry loss exerts no couple where the motion that it resists is at rest.
 pub fn derivative(contact: Contact, body: &Body, y: &State, losses: &Losses) -> (State, f64) {
-    let Acted { w: [w1, w2, w3], power, .. } = Lossy::of(contact, body, losses).in_state(y);
-    (State { theta: -y.w2, w1, w2, w3 }, power)
+    let (rate, _, power) = Lossy::of(contact, body, losses).moves(y);
+    (rate, power)
 }
 
 /// The time derivative of (theta, w1, w2, w3), and the contact force, of a body that rolls, or slides freely, under any
@@ -229,14 +261,12 @@ pub fn derivative(contact: Contact, body: &Body, y: &State, losses: &Losses) -> 
 /// ```
 pub fn under_couple(contact: Contact, body: &Body, y: &State, couple: [f64; 3]) -> (State, newton::Force) {
     let given = Couple { free: couple, pressed: [0.0; 3] };
-    let losses = Couples::of(&Losses::NONE, |x| x).with_given(Some(given));
-    let at = Lossy { rates: contact.rates(body), losses }.in_state(y);
-    let ([w1, w2, w3], [normal, along, across]) = (at.w, at.force);
-    (State { theta: -y.w2, w1, w2, w3 }, newton::Force { normal, along, across })
+    let losses = Couples::of(&Losses::NONE, |x| x).beside(Some(given));
+    let (rate, force, _) = Lossy { rates: contact.rates(body), losses }.moves(y);
+    (rate, force)
 }
 
 /// The contact force on a body that rolls, or slides freely, with losses.
 pub fn force(contact: Contact, body: &Body, y: &State, losses: &Losses) -> newton::Force {
-    let [normal, along, across] = Lossy::of(contact, body, losses).in_state(y).force;
-    newton::Force { normal, along, across }
+    Lossy::of(contact, body, losses).moves(y).1
 }

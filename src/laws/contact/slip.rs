@@ -25,7 +25,7 @@ use super::JAMMED;
 use super::patch::rubs;
 use crate::error::{Error, within};
 use crate::laws::body::{Body, Shape};
-use crate::laws::loss::{Couples, Holds, Law, Losses, OwnCouple, still_needs};
+use crate::laws::loss::{Couple, Couples, Holds, Law, Losses, OwnCouple, still_needs};
 use crate::laws::newton::{self, Force};
 use crate::laws::state::{State, drilling_of, rolling_of};
 use crate::numbers::Real;
@@ -235,11 +235,21 @@ impl<T: Real, G: OwnCouple<T>, L: FollowsSpeed<T>> Slipping<T, G, L> {
         let (lever, slope, height) = (rim.lever(angle), rim.slope(angle), rim.height(angle));
         let (radius, depth) = (rim.radius(angle), rim.depth(angle));
         let mut inertia = lever.mac(lever, *i1);
-        let couple = self.losses.as_ref().map(|losses| losses.at(&losses.seen(rim, angle, w1 / s, w)));
+        let holds = self.losses.as_ref().map_or(Holds::default(), Couples::holds);
+        // The normal force under a couple, which only a user-defined law asks for.
+        let normal = |couple: &Couple<T>| {
+            let left = size * (inertia - lever * couple.pressed[1]) - strength * pull[0] * lever * height;
+            let spinning = w1 * (*i3 * w3 - *i1 * (c * (w1 / s))) + couple.free[1];
+            let free = *i1 * (w1.splat(1.0) - slope * (w2 * w2)) + lever * spinning;
+            if holds.rolling { w1.splat(1.0) } else { free * size / left }
+        };
+        let couple = self.losses.as_ref().map(
+            #[inline(always)]
+            |losses| losses.joined(&losses.seen(rim, angle, w1 / s, w), normal),
+        );
         if let Some(couple) = &couple {
             inertia = inertia - lever * couple.pressed[1];
         }
-        let holds = self.losses.as_ref().map_or(Holds::default(), Couples::holds);
         let mut left = size * inertia - strength * pull[0] * lever * height;
         let mut room = left - s.splat(JAMMED) * size * inertia;
         if holds.rolling {
@@ -443,7 +453,7 @@ impl Slipping<f64> {
     }
 }
 
-impl<L: FollowsSpeed<f64>> Slipping<f64, (), L> {
+impl<G: OwnCouple<f64>, L: FollowsSpeed<f64>> Slipping<f64, G, L> {
     /// One compiled copy of [`Slipping::on_patch`].
     #[inline(never)]
     fn on_a_patch(

@@ -25,7 +25,7 @@ use super::{force_at, reduced::Rates};
 use crate::laws::body::Body;
 #[cfg(feature = "many")]
 use crate::laws::body::Shape;
-use crate::laws::loss::{Couples, Losses, OwnCouple};
+use crate::laws::loss::{Couple, Couples, OwnCouple, UnderCouple};
 use crate::laws::state::State;
 use crate::methods::roots::Trig;
 use crate::numbers::Sum;
@@ -134,32 +134,28 @@ pub(crate) fn is_certain(shape: &Shape<f64>, y: &State, mu: f64) -> bool {
     held * (1.0 + mu / limit) < (1.0 - JUST) * mu * free
 }
 
-/// The behaviour of a contact point whose slip is zero.
-pub(crate) fn standstill(body: &Body, y: &State, friction: &Friction, losses: &Losses) -> Standstill {
-    standstill_under(body, y, friction, Couples::some(losses))
-}
-
 /// The motions at rest of a body whose slip is zero, if dry losses resist others than the slip, and whether more than
 /// one behaviour may be consistent.
-fn together(
-    body: &Body,
-    y: &State,
-    mu: f64,
-    of: Option<&Couples<f64, impl OwnCouple<f64>>>,
-) -> Option<(Together, bool)> {
+fn together(body: &Body, y: &State, mu: f64, of: Option<&UnderCouple>) -> Option<(Together, bool)> {
     let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
     let found = Together::of_body(&body.shape(), of?, (angle, w), [0.0; 2], Rubs::Rests)?;
     Some((found, mu >= DOUBTFUL * painleve(body, y.theta)))
 }
 
-/// The behaviour of a contact point whose slip is zero, under these couples.
-pub(crate) fn standstill_under(
+/// These losses with a couple that is linear in the normal force.
+fn linear<G: OwnCouple<f64>>(body: &Body, y: &State, of: Option<Couples<f64, G>>) -> Option<UnderCouple> {
+    of.map(|losses| Lossy { rates: Contact::Rolling.rates(body), losses }.linear(y))
+}
+
+/// The behaviour of a contact point whose slip is zero, under these losses.
+pub(crate) fn standstill<G: OwnCouple<f64>>(
     body: &Body,
     y: &State,
     friction: &Friction,
-    of: Option<Couples<f64, impl OwnCouple<f64>>>,
+    of: Option<Couples<f64, G>>,
 ) -> Standstill {
     let Friction::Coulomb { mu, fixed, .. } = *friction else { return Standstill::Sticks };
+    let of = linear(body, y, of);
     match together(body, y, mu, of.as_ref()) {
         Some((together, doubtful)) => together.standstill([mu, fixed], doubtful),
         None => rest(body, y, (friction, [mu, fixed]), of).decides(),
@@ -167,9 +163,14 @@ pub(crate) fn standstill_under(
 }
 
 /// The direction in which a contact point slips off when static friction has just ceased to hold it.
-pub(crate) fn let_go(body: &Body, y: &State, friction: &Friction, losses: &Losses) -> Standstill {
+pub(crate) fn let_go<G: OwnCouple<f64>>(
+    body: &Body,
+    y: &State,
+    friction: &Friction,
+    of: Option<Couples<f64, G>>,
+) -> Standstill {
     let Friction::Coulomb { mu, fixed, .. } = *friction else { return Standstill::Sticks };
-    let of = Couples::some(losses);
+    let of = linear(body, y, of);
     match together(body, y, mu, of.as_ref()) {
         Some((together, doubtful)) => together.lets_go([mu, fixed], doubtful),
         None => rest(body, y, (friction, [mu, fixed]), of).lets_go(),
@@ -181,7 +182,7 @@ fn rest(
     body: &Body,
     y: &State,
     (friction, mu): (&Friction, [f64; 2]),
-    losses: Option<Couples<f64, impl OwnCouple<f64>>>,
+    losses: Option<UnderCouple>,
 ) -> HeldContact<impl Fn(f64) -> Option<f64>> {
     let slipping = Slipping::on(body, friction).with_losses(losses);
     let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
@@ -203,10 +204,9 @@ fn rest(
 }
 
 /// The force that keeps the contact point at rest.
-fn rolling(body: &Body, y: &State, losses: Option<Couples<f64, impl OwnCouple<f64>>>) -> Force {
+fn rolling(body: &Body, y: &State, losses: Option<UnderCouple>) -> Force {
     let Some(losses) = losses else { return force(Contact::Rolling, body, y) };
-    let [normal, along, across] = Lossy { rates: Contact::Rolling.rates(body), losses }.in_state(y).force;
-    Force { normal, along, across }
+    Lossy { rates: Contact::Rolling.rates(body), losses }.moves(y).1
 }
 
 /// Cosine and sine of a direction; the direction pi or -pi gives exactly (-1, 0).
@@ -269,7 +269,7 @@ impl Onset {
 }
 
 /// The rates at which the slip of a rim begins, along e_h and e2.
-fn onset(slipping: &Slipping<f64, impl OwnCouple<f64>>, angle: (f64, f64), w: [f64; 3], free: f64) -> Onset {
+fn onset(slipping: &Slipping<f64, Option<Couple<f64>>>, angle: (f64, f64), w: [f64; 3], free: f64) -> Onset {
     let crate::laws::body::Shape { rim, i1, i3 } = slipping.shape;
     let (lever, height) = (rim.lever(angle), rim.height(angle));
     let (depth, radius) = (rim.depth(angle), rim.radius(angle));
@@ -295,6 +295,7 @@ fn onset(slipping: &Slipping<f64, impl OwnCouple<f64>>, angle: (f64, f64), w: [f
 #[cfg(all(test, feature = "many"))]
 mod tests {
     use super::*;
+    use crate::laws::loss::Losses;
 
     #[test]
     fn a_contact_point_that_certainly_sticks_has_no_other_way() {
@@ -319,7 +320,7 @@ mod tests {
             (certain, above) = (certain + 1, above + usize::from(mu > painleve(&body, y.theta)));
             let friction = Friction::Coulomb { mu, fixed, patch: 0.0 };
             assert_eq!(
-                standstill(&body, &y, &friction, &Losses::NONE),
+                standstill(&body, &y, &friction, Couples::with_own(&Losses::NONE, ())),
                 Standstill::Sticks,
                 "{body:?} {y:?} {mu}"
             );

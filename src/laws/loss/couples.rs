@@ -92,21 +92,50 @@ impl<T: Real> Couple<T> {
         let ([a, b, c], [x, y, z]) = (self.free, self.pressed);
         [normal.mac(x, a), normal.mac(y, b), normal.mac(z, c)]
     }
+
+    /// The sum of this couple and another one.
+    fn plus(&self, other: &Self) -> Self {
+        let sum = |a: [T; 3], b: [T; 3]| core::array::from_fn(|i| a[i] + b[i]);
+        Self { free: sum(self.free, other.free), pressed: sum(self.pressed, other.pressed) }
+    }
 }
 
-/// The couple of a user-defined law in the state for which losses are made: `()` costs no code.
-pub(crate) trait OwnCouple<T>: Copy {
-    fn couple(&self) -> Option<&Couple<T>>;
-}
+/// A couple beside the losses: that of a user-defined law, or a couple that is linear in the normal force. `()` is none,
+/// and costs no code.
+pub(crate) trait OwnCouple<T: Real>: Copy {
+    /// Whether there is a couple.
+    #[inline(always)]
+    fn is_there(&self) -> bool {
+        false
+    }
 
-impl<T> OwnCouple<T> for () {
+    /// The couple, if it is linear in the normal force and the same in all states.
     #[inline(always)]
     fn couple(&self) -> Option<&Couple<T>> {
         None
     }
+
+    /// The couple of a user-defined law, linear in the normal force about the one that `normal` gives for such a couple.
+    #[inline(always)]
+    fn solved(&self, _seen: &Kinematics<T>, _normal: impl Fn(&Couple<T>) -> T) -> Option<Couple<T>> {
+        None
+    }
+
+    /// The power that a user-defined law takes under a normal force.
+    #[inline(always)]
+    fn takes(&self, _seen: &Kinematics<T>, _normal: T) -> Option<T> {
+        None
+    }
 }
 
+impl<T: Real> OwnCouple<T> for () {}
+
 impl<T: Real> OwnCouple<T> for Option<Couple<T>> {
+    #[inline(always)]
+    fn is_there(&self) -> bool {
+        self.is_some()
+    }
+
     #[inline(always)]
     fn couple(&self) -> Option<&Couple<T>> {
         self.as_ref()
@@ -170,7 +199,7 @@ pub(crate) struct Couples<T, G = ()> {
     pub(super) present: [bool; COUNT],
     /// The signs of the motions that dry friction resists, where a caller holds them fixed within a step.
     pub ways: Option<Ways<T>>,
-    pub(super) given: G,
+    pub given: G,
 }
 
 /// A step may change a speed by this share, or by `NEAR` if that is more, where a law is not smooth at zero speed.
@@ -179,7 +208,7 @@ pub(crate) const NEAR: f64 = 1e-9;
 /// A change of sign counts only for a speed beyond this, since near rest rounding may give either sign.
 pub(crate) const SLACK: f64 = 4e-15;
 
-impl<T: Real> Couples<Dual<T>> {
+impl<T: Real, G: OwnCouple<Dual<T>>> Couples<Dual<T>, G> {
     /// The longest step that these laws allow, since their roots are not smooth where they vanish. `paced` means that
     /// rolling resistance is smooth nevertheless in the variable of the flow.
     #[inline(always)]
@@ -246,7 +275,7 @@ pub(crate) fn rolling_growth((s, c): (f64, f64), [w1, w2, w3]: [f64; 3], [d1, d2
 /// Losses with a user-defined couple.
 pub(crate) type UnderCouple = Couples<f64, Option<Couple<f64>>>;
 
-impl Couples<f64> {
+impl<G> Couples<f64, G> {
     /// These losses without the laws that act along the contour.
     pub fn off_the_contour(mut self) -> Self {
         for law in Law::ALL.iter().copied().filter(|law| law.is_along()) {
@@ -255,13 +284,30 @@ impl Couples<f64> {
         self
     }
 
-    /// These losses with a user-defined couple.
+    /// These losses with another couple beside them.
     #[must_use]
-    pub fn with_given(self, given: Option<Couple<f64>>) -> UnderCouple {
+    pub fn beside<H>(self, given: H) -> Couples<f64, H> {
         let Self { coefficients, present, ways, .. } = self;
         Couples { coefficients, present, ways, given }
     }
+}
 
+impl<G: OwnCouple<f64>> Couples<f64, G> {
+    /// These losses and the couple `own` beside them; None if nothing is lost.
+    pub fn with_own(losses: &Losses, own: G) -> Option<Self> {
+        (!losses.is_none() || own.is_there()).then(|| Couples::of(losses, |x| x).beside(own))
+    }
+
+    /// These losses with a couple that is linear in the normal force, about the one that `normal` gives, and that of a
+    /// user-defined law in this state.
+    pub fn linear(&self, seen: &Kinematics<f64>, normal: impl Fn(&Couple<f64>) -> f64) -> UnderCouple {
+        let losses = self.at(seen);
+        let own = self.given.solved(seen, |own| normal(&losses.plus(own)));
+        self.beside(own.or(self.given.couple().copied()))
+    }
+}
+
+impl Couples<f64> {
     /// The laws that act on a body in the air; None if no law does.
     pub fn in_air(losses: &Losses) -> Option<Self> {
         let mut left = *losses;
@@ -284,9 +330,17 @@ impl<T: Real> Couples<T> {
         Self { coefficients, present: losses.coefficients.map(|x| x != 0.0), ways: None, given: () }
     }
 
+    /// The losses with these coefficients among the laws that are present, where `ways` holds signs fixed.
+    #[inline(always)]
+    pub fn among(coefficients: [T; COUNT], present: [bool; COUNT], ways: Option<Ways<T>>) -> Self {
+        Self { coefficients, present, ways, given: () }
+    }
+}
+
+impl<T: Real, G: Copy> Couples<T, G> {
     /// These losses in another type of number.
     #[inline(always)]
-    pub fn map<U: Real>(&self, number: impl Fn(T) -> U) -> Couples<U> {
+    pub fn map<U: Real>(&self, number: impl Fn(T) -> U) -> Couples<U, G> {
         let ways = self.ways.map(|ways| Ways {
             contour: number(ways.contour),
             drilling: number(ways.drilling),
@@ -299,17 +353,27 @@ impl<T: Real> Couples<T> {
         for (to, from) in coefficients.iter_mut().zip(self.coefficients) {
             *to = number(from);
         }
-        Couples { coefficients, present: self.present, ways, given: () }
-    }
-
-    /// The losses with these coefficients among the laws that are present, where `ways` holds signs fixed.
-    #[inline(always)]
-    pub fn among(coefficients: [T; COUNT], present: [bool; COUNT], ways: Option<Ways<T>>) -> Self {
-        Self { coefficients, present, ways, given: () }
+        Couples { coefficients, present: self.present, ways, given: self.given }
     }
 }
 
 impl<T: Real, G: OwnCouple<T>> Couples<T, G> {
+    /// The couple of all laws and of the user, linear in the normal force about the one that `normal` gives.
+    #[inline(always)]
+    pub fn joined(&self, seen: &Kinematics<T>, normal: impl Fn(&Couple<T>) -> T) -> Couple<T> {
+        let losses = self.at(seen);
+        let own = self.given.solved(
+            seen,
+            #[inline(always)]
+            |own| normal(&losses.plus(own)),
+        );
+        own.map_or(
+            losses,
+            #[inline(always)]
+            |own| losses.plus(&own),
+        )
+    }
+
     /// These losses with another couple, per normal force.
     pub fn with_more(&self, pressed: [T; 3]) -> Couples<T, Option<Couple<T>>> {
         let zero = pressed[0].splat(0.0);
@@ -342,7 +406,7 @@ impl<T: Real, G: OwnCouple<T>> Couples<T, G> {
     /// Whether some law acts about the axis of the rocking.
     #[inline(always)]
     pub fn tilts(&self) -> bool {
-        self.given.couple().is_some()
+        self.given.is_there()
             || self.has_any(
                 #[inline(always)]
                 |law| law.tilts(),

@@ -153,6 +153,9 @@ macro_rules! laws {
                         power = power - m * w;
                     }
                 }
+                if let Some(own) = self.given.takes(seen, normal) {
+                    power = power + own;
+                }
                 power
             }
 

@@ -1,39 +1,41 @@
-//! What friction and losses do to a body between its phases on one rim: by the library's laws, or by laws of the user.
+//! What laws of the user add to a body's walk: its flows ask them for the coefficient of friction and for a couple.
 //!
 //! ```text
-//! ()       the laws of `Ask`, which cost no code
-//! other    the same functions with a coefficient mu(|u|) and a couple m(theta, w, N) of the user
+//! ()       no such laws, which costs no code
+//! other    a coefficient mu(|u|) and a couple m(theta, w, N) of the user
 //! ```
 
-use super::slide::{Slide, Varying};
+use super::phases::BodyWalk;
 use crate::error::Error;
-use crate::laws::body::Body;
 use crate::laws::contact::lying::{Flat, Lying};
-use crate::laws::contact::slip::{Friction, SlipResponse};
-use crate::laws::contact::standstill::{Standstill, standstill};
-use crate::laws::contact::{Contact, lossy};
+use crate::laws::contact::slip::FollowsSpeed;
 use crate::laws::custom::SpeedLaw;
-use crate::laws::loss::{Couples, Losses};
+use crate::laws::loss::{Couples, Losses, OwnCouple};
 use crate::laws::state::State;
-use crate::methods::flow::FlowPlace;
+use crate::methods::flow::{Exhausted, Flow, FlowPlace, Flown};
+use crate::motions::Limit;
 use crate::motions::dry::creep::ASIDE;
+use crate::motions::walk::numbers::Halt;
 use crate::numbers::Dual;
 
-/// The laws of a body's walk.
-pub(crate) trait Own: SpeedLaw {
-    /// Whether these are laws of the user.
-    const IS: bool;
-    /// How the friction of a slip varies on one rim, if the library's flows follow that slip.
-    type Speeds: Varying;
-    fn speeds(&self) -> Self::Speeds;
+/// The laws of the user in a body's walk.
+pub(crate) trait Own:
+    SpeedLaw + FollowsSpeed<f64> + FollowsSpeed<Dual<f64>> + OwnCouple<f64> + OwnCouple<Dual<f64>>
+{
+    /// Whether there are such laws.
+    const IS: bool = false;
 
     /// Whether there is a couple of the user.
     fn has_couple(&self) -> bool {
-        false
+        OwnCouple::<f64>::is_there(self)
     }
     /// That couple in a state under a normal force. A body with two rims is seen from the lower one.
-    fn couple(&self, _: &State, _normal: f64) -> [f64; 3] {
+    fn couple_at(&self, _: &State, _normal: f64) -> [f64; 3] {
         [0.0; 3]
+    }
+    /// Whether a law has failed, and is not called again.
+    fn has_failed(&self) -> bool {
+        false
     }
     /// Takes the error of a wrong value of a law, unless a law has failed.
     fn takes_fault(&self) -> Option<Error> {
@@ -43,34 +45,79 @@ pub(crate) trait Own: SpeedLaw {
     fn is_faulty(&self) -> bool {
         false
     }
-    /// Looks for a wrong value at the numbers of a step that is taken, from the speeds of the slips, and the state with
-    /// its normal force. Returns whether there is one.
-    fn finds_fault(&self, _speeds: &[f64], _: &State, _normal: f64) -> bool {
+    /// Looks for a wrong value at the numbers of a step that is taken, from the speeds of the slips, and a state with its
+    /// normal force if the couple may supply energy there. Returns whether there is one.
+    fn finds_fault(&self, _speeds: &[f64], _: Option<(State, f64)>) -> bool {
         false
     }
 
     /// The laws that act on a body in the air; None if no law does.
     fn in_air(&self, losses: &Losses) -> Option<Couples<f64>> {
-        Couples::in_air(losses)
+        let air = Couples::in_air(losses);
+        if self.has_couple() { air.or(Some(Couples::of(&Losses::NONE, |x| x))) } else { air }
     }
-    /// The response of a body on one rim that slips with u, or that begins to slip along `way`, and the power of its
-    /// losses.
-    fn slides(
+    /// The law of both rims in the state with these numbers.
+    fn lying(&self, law: &Lying<f64>, _: Flat<f64>) -> Lying<f64> {
+        *law
+    }
+}
+
+impl Own for () {}
+
+/// A step is near its limit of stability if its length times the slope of the rates is more than this.
+const STABLE: f64 = 0.3;
+/// A law is stiff if it pulls w at this many times the rate at which w changes.
+const FAR_FASTER: f64 = 100.0;
+
+impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
+    /// Returns the error of a wrong value of a law where a flow begins.
+    pub(super) fn begins_lawfully<const M: usize>(
         &self,
-        slide: &Slide<Self::Speeds>,
-        angle: (f64, f64),
-        w: [f64; 3],
-        u: [f64; 2],
-        way: Option<[f64; 2]>,
-    ) -> (SlipResponse<f64>, f64);
-    /// w' of a body that rolls on one rim, and the power of its losses.
-    fn rolls(&self, body: &Body, y: &State, losses: &Losses) -> ([f64; 3], f64);
-    /// The behaviour of a contact point at rest.
-    fn standstill(&self, body: &Body, y: &State, friction: &Friction, losses: &Losses) -> Standstill;
-    /// The law of both rims in the state with these numbers; None if it does not depend on them.
-    fn lying(&self, _: &Lying<f64>, _: Flat<f64>) -> Option<Lying<f64>> {
-        None
+        flow: &impl Flow<M, Halt = Halt>,
+        place: &FlowPlace<N>,
+    ) -> Result<(), Error> {
+        let ends = G::IS && flow.stopped(place).is_some_and(|(halt, _)| halt == Halt::Endless);
+        self.of.own.takes_fault().filter(|_| ends).map_or(Ok(()), Err)
     }
+
+    /// Returns the error of a wrong value of a law that ends a flow; beyond the last step that was taken a wrong value does
+    /// not count. A law that has kept the steps short is the limit of the motion; `end` has the numbers of the flow at its
+    /// end.
+    pub(super) fn heeds_laws<const M: usize>(
+        &mut self,
+        flow: &impl Flow<M>,
+        flown: &Flown<Halt, N>,
+        end: impl FnOnce() -> [f64; N],
+    ) -> Result<(), Error> {
+        if !G::IS {
+            return Ok(());
+        }
+        let (fault, exhausted) = (self.of.own.takes_fault(), flown.spent.exhausted);
+        if flown.halt != Halt::Endless || exhausted == Some(Exhausted::Interrupted) {
+            return Ok(());
+        }
+        fault.map_or(Ok(()), Err)?;
+        let short = matches!(exhausted, Some(Exhausted::Crawling | Exhausted::Evaluations));
+        if short && is_kept_short(flow, &end(), flown.step) {
+            self.made.motion.limit = Some(Limit::Stiff);
+        }
+        Ok(())
+    }
+}
+
+/// Whether steps of the length `h` from the numbers `y` are short only because a law is stiff: its couple pulls w
+/// towards a slow motion much faster than w changes, and than rotation and nutation allow.
+fn is_kept_short<const M: usize, const N: usize>(flow: &impl Flow<M>, y: &[f64; N], h: f64) -> bool {
+    let (fast, rate) = (flow.fastest(y), flow.rates(y));
+    let mut slope = 0f64;
+    for j in 2..5 {
+        let mut more = *y;
+        more[j] += ASIDE * fast;
+        let above = flow.rates(&more);
+        slope += (2..5).map(|i| ((above[i] - rate[i]) / (more[j] - y[j])).powi(2)).sum::<f64>();
+    }
+    let (slope, change) = (slope.sqrt(), rate[2].hypot(rate[3]).hypot(rate[4]));
+    h * slope > STABLE && slope > FAR_FASTER * change.max(fast / flow.calm(y)) / fast
 }
 
 /// Margins at a place, with slopes that are differences over a share of the time `calm`, since a user-defined law has no
@@ -85,48 +132,4 @@ pub(crate) fn differences<const N: usize, const M: usize>(
         |by: f64| margins(&core::array::from_fn::<f64, N, _>(|i| by.mul_add(place.rate[i], place.y[i])));
     let [before, here, after] = [aside(-by), margins(&place.y), aside(by)];
     core::array::from_fn(|i| Dual { value: here[i], slope: (after[i] - before[i]) / (2.0 * by) })
-}
-
-/// The laws of a walk whose slips and whose rolling the library's flows follow.
-pub(crate) trait Stepped: Own {}
-
-impl Stepped for () {}
-
-/// The answers of [`Own`] by the laws of the library.
-macro_rules! library_answers {
-    () => {
-        #[inline(always)]
-        fn slides(
-            &self,
-            slide: &Slide<Self::Speeds>,
-            angle: (f64, f64),
-            w: [f64; 3],
-            u: [f64; 2],
-            way: Option<[f64; 2]>,
-        ) -> (SlipResponse<f64>, f64) {
-            let law = &slide.law;
-            let at = match way {
-                Some(way) => law.towards(angle, w, u, way),
-                None => law.at(angle, w, u).0,
-            };
-            (at, law.power(angle, w, at.force[0]))
-        }
-
-        fn rolls(&self, body: &Body, y: &State, losses: &Losses) -> ([f64; 3], f64) {
-            let (dy, power) = lossy::derivative(Contact::Rolling, body, y, losses);
-            ([dy.w1, dy.w2, dy.w3], power)
-        }
-
-        fn standstill(&self, body: &Body, y: &State, friction: &Friction, losses: &Losses) -> Standstill {
-            standstill(body, y, friction, losses)
-        }
-    };
-}
-pub(crate) use library_answers;
-
-impl Own for () {
-    const IS: bool = false;
-    type Speeds = ();
-    fn speeds(&self) {}
-    library_answers!();
 }

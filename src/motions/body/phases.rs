@@ -2,20 +2,21 @@
 
 use super::fly::Takeoff;
 use super::lie::flow::LyingPhase;
-use super::own::{Own, Stepped};
+use super::own::Own;
 use super::roll::lossy::{LossyFlow, with_patch};
+use super::slide::Slide;
 use super::slide::slow::{BodySlips, Slippery};
-use super::slide::{Slide, Varying};
 use super::spun::{Roundings, knows};
 use super::tail::{LastTurns, Nods};
 use super::write::{self, state};
 use super::{check_walk, without_friction};
 use crate::error::Error;
 use crate::laws::body::Body;
+use crate::laws::contact::lossy::{Acted, Lossy};
 use crate::laws::contact::slip::{Friction, centre_velocity, painleve};
 use crate::laws::contact::standstill::{Standstill, let_go, standstill, towards};
-use crate::laws::contact::{Contact, Force, Table, force, lossy};
-use crate::laws::loss::{Holds, Losses};
+use crate::laws::contact::{Contact, Force, Table, force};
+use crate::laws::loss::{Couples, Holds, Losses};
 use crate::laws::state::{State, drilling_of, rolling_of};
 use crate::methods::flow::{Flow, FlowPlace, Steps};
 use crate::motions::ask::row::OutputRow;
@@ -26,7 +27,7 @@ use crate::motions::walk::numbers::{
 use crate::motions::walk::slow::clear_until;
 use crate::motions::walk::two_runs::CHANCE;
 use crate::motions::walk::{MOMENT, Next, Pause, Phases, STILL, SlowSeries, Walk, WalkStep};
-use crate::motions::{Ask, Ending, Kind, Phase, Start};
+use crate::motions::{Ask, Ending, Kind, Limit, Phase, Start};
 use core::f64::consts::{FRAC_PI_2, PI};
 
 /// The walk of a body of revolution.
@@ -52,7 +53,7 @@ pub(crate) struct BodyPhases<G: Own = ()> {
     pub body: Body,
     /// The laws of the user.
     pub own: G,
-    pub slide: Slide<G::Speeds>,
+    pub slide: Slide<G>,
     /// The state where the current phase begins or has ended, and the initial state.
     pub state: State,
     pub start: State,
@@ -72,7 +73,7 @@ pub(crate) struct BodyPhases<G: Own = ()> {
     /// The losses of a body that does not slip, with the drilling friction of a patch of contact.
     pub(super) rolling_losses: Losses,
     /// The current phase, if it loses energy without a slip.
-    pub(super) lossy: Option<LossyPhase>,
+    pub(super) lossy: Option<LossyPhase<G>>,
     /// The current phase, if the body lies on both rims.
     pub(crate) lying: Option<Box<LyingPhase<G>>>,
     /// The beginning of the next flight, or the height and the vertical velocity of a body in the air.
@@ -95,8 +96,8 @@ pub(crate) struct BodyPhases<G: Own = ()> {
 
 /// A phase that loses energy without a slip.
 #[derive(Clone, Copy)]
-pub(super) struct LossyPhase {
-    pub(super) flow: LossyFlow,
+pub(super) struct LossyPhase<G = ()> {
+    pub(super) flow: LossyFlow<G>,
 }
 
 impl<'a, const N: usize> BodyWalk<'a, N> {
@@ -109,7 +110,7 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
     }
 }
 
-impl<'a, G: Stepped, const N: usize> BodyWalk<'a, N, G> {
+impl<'a, G: Own, const N: usize> BodyWalk<'a, N, G> {
     /// A walk under these laws, with steps of the tolerance `tol`, where `fine` is the requested one.
     pub fn of_laws(
         body: &Body,
@@ -135,9 +136,9 @@ impl<'a, G: Stepped, const N: usize> BodyWalk<'a, N, G> {
     }
 }
 
-impl<G: Stepped, const N: usize> BodyWalk<'_, N, G> {
+impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     /// The flow of the current phase, if the body loses energy without a slip.
-    pub fn lossy(&self) -> Option<&LossyFlow> {
+    pub fn lossy(&self) -> Option<&LossyFlow<G>> {
         self.of.lossy.as_ref().map(|phase| &phase.flow)
     }
 
@@ -170,16 +171,24 @@ impl<G: Stepped, const N: usize> BodyWalk<'_, N, G> {
     }
 
     /// The force of the table on one rim in the state `y`, with the current slip.
-    pub(crate) fn force_on_rim(&self, y: &State) -> Force
-    where
-        BodyPhases<G>: Phases<N>,
-    {
-        let (body, losses) = (&self.of.body, &self.ask.losses);
-        match self.slips_here() {
-            true => self.of.slide.law.force(y, self.at.slip()),
-            false if losses.is_none() => force(self.contact(), body, y),
-            false => lossy::force(self.contact(), body, y, losses),
+    pub(crate) fn force_on_rim(&self, y: &State) -> Force {
+        if self.slips_here() {
+            return self.of.slide.law.force(y, self.at.slip());
         }
+        let (body, contact) = (&self.of.body, self.contact());
+        match self.of.couples(&self.ask) {
+            Some(losses) => Lossy { rates: contact.rates(body), losses }.moves(y).1,
+            None => force(contact, body, y),
+        }
+    }
+
+    /// w' of a body that rolls, and the power of its losses.
+    pub(super) fn rolling_of(&self, y: &State) -> ([f64; 3], f64) {
+        let losses =
+            self.of.couples(&self.ask).unwrap_or(Couples::of(&Losses::NONE, |x| x).beside(self.of.own));
+        let Acted { w, power, .. } =
+            Lossy { rates: Contact::Rolling.rates(&self.of.body), losses }.in_state(y);
+        (w, power)
     }
 
     /// Whether the contact point slips.
@@ -224,8 +233,8 @@ impl<G: Stepped, const N: usize> BodyWalk<'_, N, G> {
                 let w = [y.w1, y.w2, y.w3];
                 self.of.slide.law.towards(y.theta.sin_cos(), w, [0.0; 2], towards(alpha)).w[1]
             }
-            _ if self.ask.losses.is_none() => Contact::Rolling.derivative(&self.of.body, y).w2,
-            _ => lossy::derivative(Contact::Rolling, &self.of.body, y, &self.ask.losses).0.w2,
+            _ if !self.of.loses(&self.ask) => Contact::Rolling.derivative(&self.of.body, y).w2,
+            _ => self.rolling_of(y).0[1],
         };
         y.w2 > 0.0 || (y.w2 == 0.0 && rate > 0.0)
     }
@@ -240,18 +249,28 @@ pub(crate) fn numbers_at<const N: usize>(start: &Start) -> [f64; N] {
 }
 
 impl<G: Own> BodyPhases<G> {
+    /// Whether a loss or a couple of the user takes energy.
+    pub(super) fn loses(&self, ask: &Ask) -> bool {
+        !ask.losses.is_none() || self.own.has_couple()
+    }
+
+    /// The losses, and the couple of the user beside them; None if nothing is lost.
+    pub(super) fn couples(&self, ask: &Ask) -> Option<Couples<f64, G>> {
+        Couples::with_own(&ask.losses, self.own)
+    }
+
     /// The data of a walk under these laws, with steps of the tolerance `tol`.
     pub(crate) fn of(body: &Body, ask: &Ask, tol: f64, start: &Start, own: G) -> Self {
         let &Start { state, slip, .. } = start;
         let rolling_losses = with_patch(&ask.losses, &ask.table.friction());
-        let slide = Slide::new(body, &ask.table.friction(), &ask.losses, tol, own.speeds());
+        let slide = Slide::new(body, &ask.table.friction(), &ask.losses, tol, own);
         Self {
             body: *body,
             own,
             slide,
             state,
             start: state,
-            integrates: ask.table == Table::Smooth || !rolling_losses.is_none(),
+            integrates: ask.table == Table::Smooth || !rolling_losses.is_none() || own.has_couple(),
             rolls_briefly: false,
             by_steps: false,
             uniform: false,
@@ -311,7 +330,7 @@ impl<G: Own> BodyPhases<G> {
     }
 }
 
-impl<G: Stepped, const N: usize> Phases<N> for BodyPhases<G> {
+impl<G: Own, const N: usize> Phases<N> for BodyPhases<G> {
     type State = State;
     type Slow = BodySlips;
     const SLIP: usize = 5;
@@ -325,6 +344,9 @@ impl<G: Stepped, const N: usize> Phases<N> for BodyPhases<G> {
     }
     fn over(&self) -> f64 {
         self.slide.over()
+    }
+    fn loses(ask: &Ask) -> bool {
+        G::IS || !ask.losses.is_none()
     }
     fn seen(walk: &BodyWalk<'_, N, G>, kind: Kind) -> Phase {
         walk.told(kind)
@@ -371,16 +393,18 @@ impl<G: Stepped, const N: usize> Phases<N> for BodyPhases<G> {
     }
 
     fn rests(walk: &BodyWalk<'_, N, G>) -> Standstill {
-        let (of, losses) = (&walk.of, &walk.ask.losses);
-        standstill(&of.body, &of.state, &walk.friction(), losses)
+        let of = &walk.of;
+        standstill(&of.body, &of.state, &walk.friction(), of.couples(&walk.ask))
     }
     fn lets_go(walk: &BodyWalk<'_, N, G>) -> Standstill {
-        let_go(&walk.of.body, &walk.of.state, &walk.friction(), &walk.ask.losses)
+        let of = &walk.of;
+        let_go(&of.body, &of.state, &walk.friction(), of.couples(&walk.ask))
     }
 
     fn no_unique_force(walk: &BodyWalk<'_, N, G>) -> Error {
         let (mu, theta) = (walk.friction().strength(), walk.of.state.theta);
-        Error::Painleve { mu, theta, limit: painleve(&walk.of.body, theta) }
+        let limit = painleve(&walk.of.body, theta);
+        walk.of.own.takes_fault().unwrap_or(Error::Painleve { mu, theta, limit })
     }
 
     fn normal_here(walk: &BodyWalk<'_, N, G>) -> f64 {
@@ -390,6 +414,12 @@ impl<G: Stepped, const N: usize> Phases<N> for BodyPhases<G> {
         walk.compares_energy();
     }
     fn is_over(walk: &mut BodyWalk<'_, N, G>, next: &Next, given_up: bool) -> bool {
+        // A law of the user that fails in an impact or in the air interrupts the motion there.
+        if walk.of.own.has_failed() {
+            walk.made.motion.limit = Some(Limit::Interrupted);
+            walk.records_event(Ending::Bounded);
+            return true;
+        }
         let fall = walk.at[COS] * walk.at[W2];
         if loses(N) && walk.still > STILL && walk.at[SIN] < ALL_BUT_FLAT && fall > 0.0 {
             // Whether the face slips or sticks no longer matters, since it is almost on the table.
@@ -460,7 +490,7 @@ impl<G: Stepped, const N: usize> Phases<N> for BodyPhases<G> {
         walk.of.slide.rubs(&walk.at)
     }
     fn begins_slowly(walk: &BodyWalk<'_, N, G>) -> bool {
-        !G::Speeds::VARIES && walk.of.slide.law.patch().is_none() && walk.of.slide.begins_to_roll().is_none()
+        !G::IS && walk.of.slide.law.patch().is_none() && walk.of.slide.begins_to_roll().is_none()
     }
 
     fn has_series(walk: &BodyWalk<'_, N, G>) -> bool {
@@ -478,12 +508,12 @@ impl<G: Stepped, const N: usize> Phases<N> for BodyPhases<G> {
         let tol = walk.of.slide.tol;
         match &walk.of.lying {
             Some(phase) => BodySlips::of(&Slippery::Two(phase.flow.law, phase.flow.ways), tol, N),
-            None => BodySlips::of(&Slippery::One(walk.of.slide.law.varying(())), tol, N),
+            None => BodySlips::of(&Slippery::One(walk.of.slide.of_the_library()), tol, N),
         }
     }
 
     fn is_slow(walk: &BodyWalk<'_, N, G>, known: &BodySlips) -> bool {
-        walk.of.lying.is_none() && known.are_under(&walk.of.slide.law.varying(()))
+        walk.of.lying.is_none() && known.are_under(&walk.of.slide.of_the_library())
     }
 
     fn clear_until(walk: &BodyWalk<'_, N, G>, series: &SlowSeries<N>) -> f64 {
@@ -513,7 +543,7 @@ impl<G: Stepped, const N: usize> Phases<N> for BodyPhases<G> {
         }
         let slide = walk.of.slide;
         let begins = walk.at.slip() == [0.0; 2] && way != [0.0; 2] && slide.begins_to_roll().is_none();
-        if G::Speeds::VARIES && begins {
+        if G::IS && begins {
             // A slip that begins continuously grows from zero, and keeps its direction for a moment.
             let share = if growth == 0.0 { KEEPS_ITS_WAY } else { MOMENT };
             let lasts = share * slide.moment(&walk.at);

@@ -75,10 +75,7 @@ fn gained(shape: &Shape<f64>, [old, new]: [&Aloft; 2]) -> [f64; 3] {
     core::array::from_fn(|i| new[i] - old[i])
 }
 
-impl<G: Own, const N: usize> BodyWalk<'_, N, G>
-where
-    BodyPhases<G>: Phases<N, State = State>,
-{
+impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     /// The phase after the impact that stops a slip which presses the rim into the table. None where the rim could
     /// leave the table as well.
     pub(super) fn jams(&mut self, e: f64) -> Option<Next> {
@@ -190,7 +187,7 @@ where
     fn couples(&self, at: &Aloft, force: f64) -> f64 {
         let (body, sum) = (&self.of.body, self.ask.losses.coefficients.iter().sum::<f64>());
         if self.of.own.has_couple() {
-            let own = self.of.own.couple(&at.state(), force);
+            let own = self.of.own.couple_at(&at.state(), force);
             let losses = Couples::of(&self.ask.losses, |x| x);
             return own
                 .into_iter()
@@ -207,11 +204,6 @@ where
         losses.at(&seen).free.into_iter().fold(pressed * fastest, |most: f64, m| most.max(m.abs()))
     }
 
-    /// Whether a loss or a couple of the user takes energy.
-    pub(super) fn loses_energy(&self) -> bool {
-        !self.ask.losses.is_none() || self.of.own.has_couple()
-    }
-
     /// The time of all bounces after an impact, if they are over so soon that they are summed.
     fn bounces_for(&self, from: &Aloft, struck: &Struck, force: f64, e: f64) -> Option<f64> {
         let law = &self.of.slide.law;
@@ -222,7 +214,7 @@ where
             Method::Tolerance(tol) => (TAIL_SHARE * tol).clamp(TAIL, LONGEST_TAIL),
             _ => TAIL,
         };
-        let tail = if self.loses_energy() { LOSSY_TAIL * tail } else { tail };
+        let tail = if self.of.loses(&self.ask) { LOSSY_TAIL * tail } else { tail };
         if 2.0 * struck.lift * struck.lift >= tail * fall {
             return None;
         }
@@ -231,8 +223,7 @@ where
         let [u_h, u_2] = struck.slip.map(|u| u / struck.lift);
         if struck.hit == Hit::Sticks || u_h.hypot(u_2) < REVERSES {
             // Each bounce has the slip that the previous flight has caused.
-            let [along, across] =
-                self.of.own.slides(&self.of.slide, from.angle, w, [0.0; 2], Some([0.0; 2])).0.u;
+            let [along, across] = self.of.slide.slips(from.angle, w, [0.0; 2], Some([0.0; 2])).0.u;
             let [along, across] = [along - b * force, across].map(|rate| 2.0 * rate / fall);
             let slip = [u_h + along, u_2 + across];
             // In units of the bounce, unless a law of the user has a speed of its own.
@@ -253,7 +244,7 @@ where
         if speed > 0.0 {
             let State { theta, w1, w2, w3 } = after.state();
             let (angle, slide) = (theta.sin_cos(), &self.of.slide);
-            let [_, along, across] = self.of.own.slides(slide, angle, [w1, w2, w3], after.slip, None).0.force;
+            let [_, along, across] = slide.slips(angle, [w1, w2, w3], after.slip, None).0.force;
             let heat = -(left * (across * after.slip[0] + along * after.slip[1]));
             if let Some(last) = self.made.path.impacts.last_mut() {
                 last.lost += heat;

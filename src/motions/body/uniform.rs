@@ -7,7 +7,7 @@
 //! [`spun`](super::spun) has the equations. No rougher run has to show these errors, which do not grow otherwise.
 
 use super::fly::Aloft;
-use super::own::{Own, Stepped};
+use super::own::Own;
 use super::phases::{BodyPhases, BodyWalk};
 use super::roll::lossy::LossyFlow;
 use super::slide::{Slide, is_still};
@@ -26,10 +26,7 @@ use crate::motions::walk::two_runs::Followed;
 use crate::motions::walk::{Next, Phases};
 use crate::motions::{Ending, Kind, Limit};
 
-impl<G: Own, const N: usize> BodyWalk<'_, N, G>
-where
-    BodyPhases<G>: Phases<N, State = State>,
-{
+impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     /// The ball after a time of a phase, with its error among the claims.
     fn spun(&mut self, spun: &mut Spun, t: f64) -> (Aloft, f64) {
         let (mut at, angle) = spun.at(t);
@@ -91,7 +88,7 @@ where
     }
 }
 
-impl<G: Stepped, const N: usize> BodyWalk<'_, N, G> {
+impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     fn numbers(&self, at: &Aloft, time: f64, [heat, lost]: [f64; 2]) -> [f64; N] {
         let ((s, c), [w1, w2, w3], [u, v]) = (at.angle, at.w, at.slip);
         let mut y = self.at;
@@ -125,7 +122,7 @@ impl<G: Stepped, const N: usize> BodyWalk<'_, N, G> {
         mut spun: Spun,
         [end, stops]: [f64; 2],
         spent: impl Fn(f64) -> [f64; 2],
-        resists: Option<&LossyFlow>,
+        resists: Option<&LossyFlow<G>>,
     ) -> Option<([f64; N], bool)> {
         let (now, ask, slide) = (self.at[TIME], self.ask, self.of.slide);
         let (body, start) = (self.of.body, self.of.start);
@@ -200,12 +197,13 @@ impl<G: Stepped, const N: usize> BodyWalk<'_, N, G> {
     /// the laboratory.
     pub(super) fn slows_evenly(&self) -> bool {
         let mut losses = self.of.rolling_losses.iter();
-        let dry = losses.all(|(law, _)| matches!(law, Law::RollingResistance | Law::Drilling));
+        let dry = !self.of.own.has_couple()
+            && losses.all(|(law, _)| matches!(law, Law::RollingResistance | Law::Drilling));
         !poses(N) && dry && self.of.body.is_uniform_ball() && self.contact() == Contact::Rolling
     }
 
     /// Rolls under rolling resistance and drills, each until it stops, to rest or to the last time.
-    pub(super) fn rolls_to_rest(&mut self, flow: &LossyFlow) {
+    pub(super) fn rolls_to_rest(&mut self, flow: &LossyFlow<G>) {
         let (losses, inertia) = (self.of.rolling_losses, self.of.body.i3());
         let couples = [Law::RollingResistance, Law::Drilling].map(|law| losses.coefficient(law));
         let rates = [couples[0] / (1.0 + inertia), couples[1] / inertia];

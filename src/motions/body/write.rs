@@ -1,7 +1,8 @@
 //! The outputs of a walk: states, poses and forces from its numbers.
 
+use super::own::Own;
 use super::roll::lossy::LossyFlow;
-use super::slide::{Slide, Varying};
+use super::slide::Slide;
 use crate::laws::body::Body;
 use crate::laws::contact::Table;
 use crate::laws::pose::{Angle, Pose};
@@ -45,7 +46,7 @@ pub(crate) fn state_errors(y: &State, tol: f64) -> [f64; 2] {
 
 impl Followed {
     /// Adds a point of a slip to the outputs.
-    pub(super) fn slid<L: Varying, const N: usize>(&mut self, ask: &Ask, slide: &Slide<L>, y: &[f64; N]) {
+    pub(super) fn slid<L: Own, const N: usize>(&mut self, ask: &Ask, slide: &Slide<L>, y: &[f64; N]) {
         let now = state(y);
         let side = if y[SIN] < 0.0 { -1.0 } else { 1.0 };
         let slip = [side * y[UH], side * y[U2]];
@@ -55,6 +56,10 @@ impl Followed {
         let force = ask.force.then(|| {
             let (force, doubt) =
                 doubted(&now, state_errors(&now, slide.tol), |y| slide.force(y, slip, towards));
+            // Without a series friction turns with a slip whose direction is as uncertain as the slip is slow.
+            let speed = slip[0].hypot(slip[1]);
+            let turns = if L::IS && speed > 0.0 { slide.tol * <Slide>::fastest(y) / speed } else { 0.0 };
+            let doubt = doubt + turns.min(1.0) * force.along.hypot(force.across);
             // No table pulls: such a force is an error.
             (force, doubt.max(-force.normal))
         });
@@ -66,10 +71,10 @@ impl Followed {
     }
 
     /// Adds a point of a phase that loses energy without a slip to the outputs.
-    pub(super) fn lossy<const N: usize>(
+    pub(super) fn lossy<G: Own, const N: usize>(
         &mut self,
         ask: &Ask,
-        (body, start, flow): (&Body, &State, &LossyFlow),
+        (body, start, flow): (&Body, &State, &LossyFlow<G>),
         y: &[f64; N],
         kind: Kind,
     ) {

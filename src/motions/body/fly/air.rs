@@ -156,7 +156,7 @@ impl<G: Own> AirFlight<G> {
     /// The couple of the user along the axes of the body. No normal force acts.
     fn own_couple(&self, y: &AirNumbers) -> [f64; 3] {
         let (state, [sin, cos]) = self.state(y);
-        let [m1, m2, m3] = self.own.couple(&state, 0.0);
+        let [m1, m2, m3] = self.own.couple_at(&state, 0.0);
         [cos * m1 - sin * m2, sin * m1 + cos * m2, m3]
     }
 
@@ -399,7 +399,7 @@ impl<G: Own> Flies for AirFlight<G> {
                 continue;
             }
             if self.own.has_couple() {
-                if self.own.finds_fault(&[], &self.state(&y).0, 0.0) {
+                if self.own.finds_fault(&[], Some((self.state(&y).0, 0.0))) {
                     return Err(NoLanding);
                 }
                 bend = bends(most, COUPLE_GROWS * self.pulls(&step.y).max(self.pulls(&y)));

@@ -35,10 +35,7 @@ pub(crate) fn pose_from(at: &Aloft, shape: &Shape<f64>, over: bool, pose: [f64; 
 /// A bounce in which the body turns by less than this angle is short; its landing is that of a power series.
 const SHORT_BOUNCE: f64 = 0.1;
 
-impl<G: Own, const N: usize> BodyWalk<'_, N, G>
-where
-    BodyPhases<G>: Phases<N, State = State>,
-{
+impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     pub(crate) fn has_two_rims(&self) -> bool {
         self.of.body.ell() > 0.0 && self.of.body.theta_end() == FRAC_PI_2
     }
@@ -105,7 +102,7 @@ where
         }
         let law = &self.of.slide.law;
         let (shape, angle) = (&law.shape, from.angle);
-        let at = self.of.own.slides(&self.of.slide, angle, from.w, [0.0; 2], Some([0.0; 2])).0;
+        let at = self.of.slide.slips(angle, from.w, [0.0; 2], Some([0.0; 2])).0;
         let (lever, [w1, w2, w3]) = (shape.rim.lever(angle), from.w);
         let square = (shape.rim.slope(angle) * w2 * w2).abs();
         let turning = shape.i3 * w1 * w3 - shape.i1 * angle.1 / angle.0 * w1 * w1;

@@ -120,7 +120,7 @@ impl<G: Own> LyingFlow<G> {
 
     /// The law at these numbers.
     pub fn law_at(&self, y: Flat<f64>) -> Lying<f64> {
-        if G::IS { self.own.lying(&self.law, y).unwrap_or(self.law) } else { self.law }
+        self.own.lying(&self.law, y)
     }
 
     /// Forces and accelerations at these numbers.
@@ -315,7 +315,7 @@ impl<G: Own> Flow<MARGINS> for LyingFlow<G> {
         if G::IS {
             let [w1, w3, ..] = flat(&place.y);
             let state = State { theta: FRAC_PI_2, w1, w2: 0.0, w3 };
-            if self.own.finds_fault(&self.speeds(&place.y), &state, 1.0) {
+            if self.own.finds_fault(&self.speeds(&place.y), Some((state, 1.0))) {
                 return Some((Halt::Endless, place.y));
             }
         }

@@ -22,7 +22,7 @@ use crate::error::Error;
 use crate::laws::contact::landing::mirrored;
 use crate::laws::contact::lying::{Lain, Lying};
 use crate::laws::contact::slip::Friction;
-use crate::laws::contact::standstill::{Standstill, towards};
+use crate::laws::contact::standstill::{Standstill, standstill, towards};
 use crate::laws::contact::{Force, Table};
 use crate::laws::loss::GRACE;
 use crate::laws::state::State;
@@ -54,10 +54,7 @@ const DIRECTIONS: usize = 240;
 /// A growth rate of the speed below this counts as zero.
 const SLIPS_FASTER: f64 = 1e-11;
 
-impl<G: Own, const N: usize> BodyWalk<'_, N, G>
-where
-    BodyPhases<G>: Phases<N, State = State>,
-{
+impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     /// The laws of the body on both rims; None for a rolling contact, with which the body cannot turn.
     fn flat(&self) -> Option<LyingFlow<G>> {
         let friction = match self.ask.table {
@@ -129,10 +126,6 @@ where
 
     /// Whether the friction of the rim that carries the body presses it into the table.
     fn jams_here(&self, slip: [f64; 2]) -> bool {
-        if G::IS {
-            let State { w1, w2, w3, .. } = self.of.state;
-            return self.of.own.slides(&self.of.slide, (1.0, 0.0), [w1, w2, w3], slip, None).0.room <= 0.0;
-        }
         self.of.slide.at_start(&self.of.state, slip) == Some(Halt::Jam)
     }
 
@@ -266,7 +259,7 @@ where
         };
         let (state, _) = seen(other);
         let friction = self.friction();
-        let found = self.of.own.standstill(&self.of.body, &state, &friction, &self.ask.losses);
+        let found = standstill(&self.of.body, &state, &friction, self.of.couples(&self.ask));
         let alone = matches!(found, Standstill::Sticks | Standstill::Slips { .. });
         if alone && self.lifts(&state, found) {
             if other {
@@ -277,7 +270,7 @@ where
         }
         let (state, slip) = seen(!other);
         let w = [state.w1, 0.0, state.w3];
-        let one = self.of.own.slides(&self.of.slide, (1.0, 0.0), w, slip, None).0;
+        let one = self.of.slide.slips((1.0, 0.0), w, slip, None).0;
         if one.room > 0.0 && one.force[0] > 0.0 && one.w[1] > 0.0 {
             return self.rises_on(other);
         }
@@ -290,11 +283,9 @@ where
         match found {
             Standstill::Slips { alpha, .. } => {
                 let way = Some(towards(alpha));
-                self.of.own.slides(&self.of.slide, (1.0, 0.0), w, [0.0; 2], way).0.w[1] > 0.0
+                self.of.slide.slips((1.0, 0.0), w, [0.0; 2], way).0.w[1] > 0.0
             }
-            _ if self.of.own.has_couple() => {
-                self.of.own.rolls(&self.of.body, state, &self.ask.losses).0[1] > 0.0
-            }
+            _ if self.of.own.has_couple() => self.rolling_of(state).0[1] > 0.0,
             _ => {
                 let ell = self.of.body.ell();
                 let (i3, w1, w3) = (self.of.body.i3(), state.w1, state.w3);
@@ -348,7 +339,7 @@ where
     #[inline(never)]
     pub(crate) fn lies(&mut self) -> Option<WalkStep<N>> {
         let flow = self.of.lying.as_ref()?.flow;
-        if flow.stance == Stance::Rolls && !self.loses_energy() {
+        if flow.stance == Stance::Rolls && !self.of.loses(&self.ask) {
             let (begin, began) = (self.at, self.at[TIME]);
             while let Some(t) = self.until() {
                 let mut y = begin;
@@ -376,14 +367,14 @@ where
     ) -> Result<Pause<N>, Error> {
         let Some(flow) = self.of.lying.as_ref().map(|phase| phase.flow) else { return Ok(Pause::No) };
         let first = self.made.motion.states.len();
+        let place = flow.place(y);
+        self.begins_lawfully(&flow, &place)?;
         let (ask, over, made) = (self.ask, self.over(), &mut self.made);
         let seen = (over.as_ref(), made.path.way);
         let mut write = |y: &[f64; N]| made.push(row_of(&ask, &flow, seen, y));
-        let flown = flow.run(flow.place(y), steps, &self.since[first..], &mut write, go_on);
+        let flown = flow.run(place, steps, &self.since[first..], &mut write, go_on);
         self.has_spent(flown.spent);
-        // Beyond the last step that was taken a wrong value does not count.
-        let fault = self.of.own.takes_fault();
-        fault.filter(|_| flown.halt == Halt::Endless).map_or(Ok(()), Err)?;
+        self.heeds_laws(&flow, &flown, || flown.y)?;
         // Where a dry loss stops w1 or w3, the acceleration changes at a time as uncertain as that of an end.
         let stops = matches!(flown.halt, Halt::Drilling | Halt::Contour);
         let halt = if stops { Halt::Turned } else { flown.halt };

@@ -24,10 +24,7 @@ const SOON_OVER: f64 = 1e-6;
 const TURNED: f64 = 1e-2;
 const TURNS_SLIP: f64 = 3.0;
 
-impl<G: Own, const N: usize> BodyWalk<'_, N, G>
-where
-    BodyPhases<G>: Phases<N, State = State>,
-{
+impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     /// The numbers at the end of a rocking that has just begun another hop at theta = pi/2; None if the end is not
     /// near.
     pub(crate) fn rocks_out(&mut self) -> Option<([f64; N], f64)> {
@@ -52,10 +49,10 @@ where
                 slowest = slowest.min(slip[0].hypot(slip[1]));
             }
             let (rate, drift, warms, taken) = if sticks {
-                let (rate, taken) = self.of.own.rolls(&self.of.body, &y, &self.ask.losses);
+                let (rate, taken) = self.rolling_of(&y);
                 (rate, [0.0; 2], 0.0, taken)
             } else {
-                let (at, taken) = self.of.own.slides(&self.of.slide, (1.0, 0.0), w, slip, None);
+                let (at, taken) = self.of.slide.slips((1.0, 0.0), w, slip, None);
                 (at.w, at.u, -(at.force[1] * slip[1] + at.force[2] * slip[0]), taken)
             };
             if rate[1] >= 0.0 {

@@ -8,7 +8,7 @@ use crate::laws::loss::Holds;
 use crate::laws::state::State;
 use crate::methods::flow::{Flow, Spent, Steps};
 use crate::motions::Ending;
-use crate::motions::body::own::Stepped;
+use crate::motions::body::own::Own;
 use crate::motions::body::phases::{BodyWalk, LossyPhase};
 use crate::motions::body::write::state;
 use crate::motions::dry::creep::LOST_DRILLING;
@@ -18,7 +18,7 @@ use crate::motions::walk::{Next, Pause, Phases, after_rest, ending};
 /// Tolerance of steps that take the place of an exact solution, as a share of that of the motion.
 const EXACTLY: f64 = 0.1;
 
-impl<G: Stepped, const N: usize> BodyWalk<'_, N, G> {
+impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     /// Begins a phase that loses energy and rolls with friction up to `mu` N, or slides freely. Returns the
     /// numbers of the flow, None if the phase is over at once.
     pub(super) fn begins_to_lose(&mut self, mu: f64) -> Result<Option<[f64; N]>, Error> {
@@ -26,7 +26,7 @@ impl<G: Stepped, const N: usize> BodyWalk<'_, N, G> {
         let (losses, y, friction) = (self.of.rolling_losses, self.of.state, self.friction());
         // Such steps add little to the error.
         let tol = if self.of.by_steps { EXACTLY * self.of.slide.tol } else { self.of.slide.tol };
-        let flow = LossyFlow::new(on, mu, &losses, tol, &y).on_patch(&friction, &y);
+        let flow = LossyFlow::new(on, mu, (&losses, self.of.own), tol, &y).on_patch(&friction, &y);
         if flow.is_patch() && flow.holds_drilling() {
             self.claims(LOST_DRILLING * drilling(&self.of.state).abs());
         }
@@ -53,22 +53,25 @@ impl<G: Stepped, const N: usize> BodyWalk<'_, N, G> {
     /// Computes a phase that loses energy without a slip from the numbers `y`, within the limits `steps`.
     pub(crate) fn loses(
         &mut self,
-        flow: &LossyFlow,
+        flow: &LossyFlow<G>,
         y: [f64; N],
         steps: Steps,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Pause<N>, Error> {
         let first = self.made.motion.states.len();
         let (body, ask, kind, start) = (self.of.body, self.ask, self.kind(), self.of.start);
+        let place = flow.place(y);
+        self.begins_lawfully(flow, &place)?;
         let made = &mut self.made;
         let mut write = |y: &[f64; N]| made.lossy(&ask, (&body, &start, flow), y, kind);
         let times = &self.since[first..];
         let by_steps = self.of.by_steps;
         let steps = if by_steps { Steps { most: steps.most.min(FEW_STEPS), ..steps } } else { steps };
-        let flown = flow.run(flow.place(y), steps, times, &mut write, go_on);
+        let flown = flow.run(place, steps, times, &mut write, go_on);
         let erred = if by_steps { EXACTLY * flown.spent.erred } else { flown.spent.erred };
         self.has_spent(Spent { erred, ..flown.spent });
         self.of.lately[1] = flown.step;
+        self.heeds_laws(flow, &flown, || flow.on_the_way().enter(&flown.y))?;
         self.claims_time_error(flown.halt, flown.steep, &flown.y);
         if flown.halt == Halt::Pause && by_steps {
             // The first integrals continue the phase.

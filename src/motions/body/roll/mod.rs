@@ -3,7 +3,7 @@
 mod loses;
 pub(crate) mod lossy;
 
-use super::own::Stepped;
+use super::own::Own;
 use super::phases::BodyWalk;
 use crate::error::Error;
 use crate::laws::contact::slip::Friction;
@@ -37,7 +37,7 @@ pub(crate) const FEW_STEPS: u64 = 64;
 /// A hop counts as low, and is integrated, if both its height and its speed are below this.
 const LOW_HOP: f64 = 0.1;
 
-impl<G: Stepped, const N: usize> BodyWalk<'_, N, G> {
+impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     /// Computes a rolling phase by the first integrals to its end, or begins its flow if the body loses energy.
     pub(super) fn rolls_on(
         &mut self,

@@ -7,7 +7,7 @@
 //! Where the patch drills slowly, u follows the forces of rolling thousands of times faster than the body moves, and
 //! [`radau`] takes the steps.
 
-use super::{Slide, Varying};
+use super::{Own, Slide};
 use crate::laws::body::Shape;
 use crate::laws::contact::slip::SlipResponse;
 use crate::laws::state::{drilling_of, rolling_of};
@@ -33,7 +33,7 @@ pub(in crate::motions::body) fn is_still<const N: usize>(y: &[f64; N]) -> bool {
     rolling_of(y.angle(), y[W1], y[W3]).hypot(y[W2]) < REST
 }
 
-impl<L: Varying> Slide<L> {
+impl<L: Own> Slide<L> {
     /// Writes the rates of the numbers on a patch of contact, whose couple also produces heat.
     #[inline(never)]
     pub(super) fn patched<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) -> SlipResponse<f64> {
@@ -160,8 +160,7 @@ impl<L: Varying> Slide<L> {
         let sizes = [y[SIN], 1.0, fast, fast, fast, slip, slip];
         let middle = radau::middle(y, &guess);
         let sizes_at = [y[SIN], 1.0, fast, fast, fast, slip, slip];
-        let slopes =
-            if L::VARIES { slopes(&middle, &sizes_at, |y| self.rates(y)) } else { self.slopes(&middle) };
+        let slopes = if L::IS { slopes(&middle, &sizes_at, |y| self.rates(y)) } else { self.slopes(&middle) };
         radau::step(|y, all| self.write_rates(y, all), y, &slopes, &sizes, (h, converged), guess)
     }
 

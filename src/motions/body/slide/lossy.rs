@@ -1,7 +1,7 @@
 //! Losses during a slip: the signs of the motions that dry losses resist, the settling of the contact of a
 //! falling face, and the end of the rolling.
 
-use super::{Slide, Varying};
+use super::{Own, Slide};
 use crate::laws::body::Shape;
 use crate::laws::contact::grip;
 use crate::laws::contact::lossy::DAMPED;
@@ -9,7 +9,8 @@ use crate::laws::contact::patch::rubs;
 use crate::laws::contact::slip::{FollowsSpeed, SlipResponse, Slipping};
 use crate::laws::contact::together::{Resting, Rubs, Together};
 use crate::laws::loss::{
-    Couples, GRACE, Holds, Kinematics, Law, Losses, NEAR, SLACK, Ways, going, reversed_turns, rolling_growth,
+    Couples, GRACE, Holds, Kinematics, Law, Losses, NEAR, OwnCouple, SLACK, Ways, going, reversed_turns,
+    rolling_growth,
 };
 use crate::laws::state::{State, drilling_of, rolling_of, spin_of};
 use crate::methods::flow::FlowPlace;
@@ -22,7 +23,7 @@ use crate::numbers::{Dual, Real, sign_or_zero};
 /// The share by which a couple may exceed the limit of friction that holds a contact which had settled.
 const HELD_SURELY: f64 = 1e-6;
 
-impl<L: Varying> Slide<L> {
+impl<L: Own> Slide<L> {
     /// Sets the signs (`ways`) of the motions that dry losses resist, and which of them friction holds, at a state whose
     /// contact has not settled. `toward` is the direction of a slip from rest, and `known` a motion that friction has
     /// just ceased to hold (true), or that it holds in any case.
@@ -38,6 +39,9 @@ impl<L: Varying> Slide<L> {
             ..Ways::default()
         };
         let (pull, twist) = self.pulls(angle, w, slip, toward);
+        let seen = losses.seen(&self.law.shape.rim, angle, w[0] / angle.0, w);
+        let way = (self.law.dry && slip == [0.0; 2]).then_some(toward);
+        let losses = losses.linear(&seen, |_| self.slips(angle, w, slip, way).0.force[0]);
         let rests =
             Together::of_body(&self.law.shape, &losses, (angle, w), slip, Rubs::Slips { pull, twist });
         let fates = rests.map(|rests| (rests, rests.knowing(known).fates()));
@@ -151,7 +155,7 @@ impl<L: Varying> Slide<L> {
         }
         let slope = losses.slope(s, shape.rim.radius((s, c)), spin);
         let rate = slope * self.lightness((s, c));
-        let Some(within) = settles_within(&losses, (s, fall), rate, s * spin / self.tol) else {
+        let Some(within) = settles_within(&losses.beside(()), (s, fall), rate, s * spin / self.tol) else {
             return false;
         };
         let (fastest, q) = (Self::fastest(&place.y), drilling_of((s, c), w1, w3));
@@ -187,7 +191,7 @@ impl<L: Varying> Slide<L> {
         w2: f64,
         u: [f64; 2],
     ) -> Balance<(SlipResponse<f64>, f64)> {
-        let losses = self.law.losses.unwrap_or(Couples::of(&Losses::NONE, |x| x));
+        let losses = self.law.losses.map_or(Couples::of(&Losses::NONE, |x| x), |losses| losses.beside(()));
         let way = losses.ways.map_or(0.0, |ways| ways.contour);
         let act = |_: f64, w: [f64; 3], rate: f64| {
             let (at, pace, push) = self.bare.settled(angle, w, u, rate);
@@ -201,7 +205,7 @@ impl<L: Varying> Slide<L> {
     /// along the contour.
     pub(crate) fn pushed_on<T: Real>(
         &self,
-        bare: &Slipping<T, (), impl FollowsSpeed<T>>,
+        bare: &Slipping<T, impl OwnCouple<T>, impl FollowsSpeed<T>>,
         angle: (T, T),
         w: [T; 3],
         u: [T; 2],
@@ -271,7 +275,9 @@ impl<L: Varying> Slide<L> {
         let ((s, c), shape) = (y.theta.sin_cos(), &self.law.shape);
         let turned = self.balance((s, c), drilling_of((s, c), y.w1, y.w3), y.w2, slip).turned;
         let (lightness, radius) = (self.lightness((s, c)), shape.rim.radius((s, c)));
-        self.law.losses.map_or(0.0, |losses| lag(&losses, (s, c * y.w2), radius, turned.push, lightness))
+        self.law
+            .losses
+            .map_or(0.0, |losses| lag(&losses.beside(()), (s, c * y.w2), radius, turned.push, lightness))
     }
 
     /// Error of w1 and w3 while psi' follows its balance: s abs(psi'), times the ratio of s abs(psi') to the
@@ -291,7 +297,7 @@ impl<L: Varying> Slide<L> {
     /// The end, by linear extrapolation, of rolling and rocking that rolling resistance has almost stopped,
     /// and would also stop in the opposite direction.
     pub(crate) fn comes_to_rest<const N: usize>(&self, place: &FlowPlace<N>) -> Option<[f64; N]> {
-        let there = |losses: &Couples<f64>| {
+        let there = |losses: &Couples<f64, L>| {
             let planar = losses.ways.is_some_and(|ways| ways.rocking != 0.0);
             losses.has(Law::RollingResistance) && !planar && !losses.holds().rolling
         };
@@ -320,7 +326,12 @@ fn hold<T: Real>([push, limit]: [T; 2]) -> T {
 /// The margins of the motions that dry losses resist: along the rim or, if it is held, of the rolling; and drilling (or
 /// rocking if the body only rocks). `held` has the couple that holds the drilling, and the limit of friction, and `kept`
 /// those of a motion along the rim or of rolling that is held.
-pub(crate) fn ways<T: Real>(losses: &Couples<T>, seen: &Kinematics<T>, held: [T; 2], kept: [T; 2]) -> [T; 2] {
+pub(crate) fn ways<T: Real, G: OwnCouple<T>>(
+    losses: &Couples<T, G>,
+    seen: &Kinematics<T>,
+    held: [T; 2],
+    kept: [T; 2],
+) -> [T; 2] {
     let one = seen.spin.splat(1.0);
     let size = one + seen.w[0].abs() / seen.angle.0.abs();
     let slack = one.splat(SLACK) * size;

@@ -17,11 +17,13 @@ mod slips;
 pub(crate) mod slow;
 
 use super::face::FLAT;
+use super::own::Own;
 use super::pole;
 use super::roll::lossy::REST;
+use super::write::state;
 use crate::laws::body::{Body, Rim, Shape, landing_angle};
 use crate::laws::contact::Force;
-use crate::laws::contact::slip::{FollowsSpeed, Friction, SlipResponse, Slipping};
+use crate::laws::contact::slip::{Friction, SlipResponse, Slipping};
 use crate::laws::loss::{Couples, Holds, Law, Losses};
 use crate::laws::state::State;
 use crate::methods::flow::{FASTEST, Flow, FlowPlace};
@@ -61,27 +63,14 @@ const BESIDE: f64 = 1e-3;
 /// than `FLAT`, since the time of the landing is extrapolated from the last turns.
 const FLATTER: f64 = 1e-14;
 
-/// How the friction of a slip varies: `()` does not.
-pub(crate) trait Varying: FollowsSpeed<f64> + FollowsSpeed<Dual<f64>> {
-    const VARIES: bool;
-    /// Looks for a wrong coefficient at the speed of a step that is taken. Returns whether there is one.
-    fn finds_fault_at(&self, _speed: f64) -> bool {
-        false
-    }
-}
-
-impl Varying for () {
-    const VARIES: bool = false;
-}
-
 /// The equations of a body that slips, and the ends of its slip.
 #[derive(Clone, Copy)]
 pub(crate) struct Slide<L = ()> {
-    pub law: Slipping<f64, (), L>,
+    pub law: Slipping<f64, L, L>,
     /// The law for numbers with a slope.
-    sloped: Slipping<Dual<f64>, (), L>,
+    sloped: Slipping<Dual<f64>, L, L>,
     /// The law without the couples along the contour.
-    bare: Slipping<f64, (), L>,
+    bare: Slipping<f64, L, L>,
     theta_end: f64,
     ball: bool,
     sticks: bool,
@@ -95,16 +84,18 @@ pub(crate) struct Slide<L = ()> {
     pub died: bool,
     /// Whether rolling and rocking begin from rest, in the direction that the signs of the losses have.
     rolls_off: bool,
+    /// Whether there are laws of loss of the library.
+    has_laws: bool,
     /// The share by which the couple that holds the contact along the rim may exceed its limit, after it has settled.
     sure: f64,
     pub tol: f64,
 }
 
-impl<L: Varying> Slide<L> {
-    pub fn new(body: &Body, friction: &Friction, losses: &Losses, tol: f64, varies: L) -> Self {
-        let law = Slipping::on_losing(body, friction, losses).varying(varies);
+impl<L: Own> Slide<L> {
+    pub fn new(body: &Body, friction: &Friction, losses: &Losses, tol: f64, own: L) -> Self {
+        let law = Slipping::on(body, friction).varying(own).with_losses(Couples::with_own(losses, own));
         let dual = |value: f64| Dual { value, slope: 0.0 };
-        let sloped = Slipping::of(&law.shape.map(dual), dual(law.strength), law.dry).varying(varies);
+        let sloped = Slipping::of(&law.shape.map(dual), dual(law.strength), law.dry).varying(own);
         let sloped =
             sloped.with_losses(law.losses.map(|losses| losses.map(dual))).with_patch(law.patch().map(dual));
         let (theta_end, ball) = (body.theta_end(), body.is_ball());
@@ -119,12 +110,15 @@ impl<L: Varying> Slide<L> {
             sticks: law.dry,
             flat,
             settled: false,
-            creeping: law.patch().filter(|_| body.is_uniform_ball()).and_then(|radius| {
-                let arm = losses.is_only(Law::RollingResistance)?;
-                Creeping::under(body.i3(), [law.strength, radius, arm])
-            }),
+            creeping: law.patch().filter(|_| body.is_uniform_ball() && !own.has_couple()).and_then(
+                |radius| {
+                    let arm = losses.is_only(Law::RollingResistance)?;
+                    Creeping::under(body.i3(), [law.strength, radius, arm])
+                },
+            ),
             died: false,
             rolls_off: false,
+            has_laws: !losses.is_none(),
             sure: 0.0,
             tol,
         }
@@ -211,6 +205,26 @@ impl<L: Varying> Slide<L> {
         Some(end)
     }
 
+    /// The law without those of the user.
+    pub fn of_the_library(&self) -> Slipping<f64> {
+        self.law.varying(()).with_losses(self.law.losses.map(|losses| losses.beside(())))
+    }
+
+    /// The response of a body that slips with u, or that begins to slip along `way`, and the power of its losses.
+    pub fn slips(
+        &self,
+        angle: (f64, f64),
+        w: [f64; 3],
+        u: [f64; 2],
+        way: Option<[f64; 2]>,
+    ) -> (SlipResponse<f64>, f64) {
+        let at = match way {
+            Some(way) => self.law.towards(angle, w, u, way),
+            None => self.law.at(angle, w, u).0,
+        };
+        (at, self.law.power(angle, w, at.force[0]))
+    }
+
     /// The energy of the body with these numbers.
     pub fn energy<const N: usize>(&self, y: &[f64; N]) -> f64 {
         let state = State { theta: y[SIN].atan2(y[COS]), w1: y[W1], w2: y[W2], w3: y[W3] };
@@ -226,7 +240,7 @@ impl<L: Varying> Slide<L> {
 
     /// The contact force in a state; a slip that begins has the direction `way`.
     pub fn force(&self, y: &State, slip: [f64; 2], way: [f64; 2]) -> Force {
-        if L::VARIES && slip == [0.0; 2] {
+        if L::IS && slip == [0.0; 2] {
             let [normal, along, across] =
                 self.law.towards(y.theta.sin_cos(), [y.w1, y.w2, y.w3], slip, way).force;
             return Force { normal, along, across };
@@ -355,7 +369,7 @@ impl<L: Varying> Slide<L> {
             1.0,
         ]);
         if rests {
-            let growth = if L::VARIES { growth.max(LEAST_GROWTH) } else { growth };
+            let growth = if L::IS { growth.max(LEAST_GROWTH) } else { growth };
             (rates[UH], rates[U2]) = (growth * way[0], growth * way[1]);
         }
         rates[HEAT] = heat - (at.force[1] * u[1] + at.force[2] * u[0]);
@@ -379,7 +393,7 @@ impl<L: Varying> Slide<L> {
     }
 }
 
-impl<L: Varying> Slide<L> {
+impl<L: Own> Slide<L> {
     /// The longest step in sigma towards the roots of the losses.
     fn rooted<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
         let Some(losses) = self.sloped.losses.filter(|_| loses(N) && !self.settled) else {
@@ -390,7 +404,7 @@ impl<L: Varying> Slide<L> {
     }
 }
 
-impl<L: Varying> Flow<MARGINS> for Slide<L> {
+impl<L: Own> Flow<MARGINS> for Slide<L> {
     type Halt = Halt;
     const TIME: usize = TIME;
     const OVER: Halt = Halt::Time;
@@ -398,13 +412,13 @@ impl<L: Varying> Flow<MARGINS> for Slide<L> {
     const ENDLESS: Halt = Halt::Endless;
     const MAY_BE_STIFF: bool = true;
     /// Each call of a law of the user may be slow.
-    const BREATH: u64 = if L::VARIES { 1 } else { 256 };
+    const BREATH: u64 = if L::IS { 1 } else { 256 };
 
     #[inline(always)]
     fn is_stiff<const N: usize>(&self, place: &FlowPlace<N>) -> bool {
         // A slip under a law of the user has no series. The smaller it begins, the faster it approaches its direction.
         let begins = || place.y[UH] * place.rate[UH] + place.y[U2] * place.rate[U2] > 0.0;
-        let creeps = self.law.patch().is_some() && !self.died || L::VARIES && !self.settled && begins();
+        let creeps = self.law.patch().is_some() && !self.died || L::IS && !self.settled && begins();
         creeps && self.creeps_fast(place)
     }
 
@@ -527,8 +541,15 @@ impl<L: Varying> Flow<MARGINS> for Slide<L> {
     /// The halt of an almost vanished slip, extrapolated to u = 0, or of a body that
     /// rests or settles.
     fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
-        if L::VARIES && self.law.varies().finds_fault_at(place.y[UH].hypot(place.y[U2])) {
-            return Some((Halt::Endless, place.y));
+        if L::IS {
+            // Without losses of the library a couple that takes energy is no fault.
+            let (y, own) = (&place.y, self.law.varies());
+            let supplies = place.rate[N - 1] < 0.0 || own.has_couple() && self.has_laws;
+            let normal = || self.acts(y.angle(), y.w(), y.slip()).force[0];
+            let at = supplies.then(|| (state(&self.common_numbers(y)), normal()));
+            if own.finds_fault(&[y[UH].hypot(y[U2])], at) {
+                return Some((Halt::Endless, *y));
+            }
         }
         if loses(N)
             && !self.settled

@@ -8,7 +8,7 @@ use crate::laws::loss::Law;
 use crate::methods::flow::{Flow, FlowPlace, Steps};
 use crate::motions::Ending;
 use crate::motions::body::face::turning_share;
-use crate::motions::body::own::Stepped;
+use crate::motions::body::own::Own;
 use crate::motions::body::phases::BodyWalk;
 use crate::motions::body::tail::{SlipStart, is_known};
 use crate::motions::body::write::state;
@@ -28,7 +28,7 @@ const ROCKINGS: f64 = 8.0;
 /// Number of steps between two estimates of the end of a whirr that slips.
 const STEPS_PER_LOOK: u64 = 64;
 
-impl<G: Stepped, const N: usize> BodyWalk<'_, N, G> {
+impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     /// Computes a slip from `place`, within the limits `steps`.
     pub(crate) fn slides(
         &mut self,
@@ -37,6 +37,7 @@ impl<G: Stepped, const N: usize> BodyWalk<'_, N, G> {
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Pause<N>, Error> {
         let (slide, first) = (self.of.slide, self.made.motion.states.len());
+        self.begins_lawfully(&slide, &place)?;
         // The flow of a whirr pauses regularly, so that its end can be extrapolated before its last
         // turns are computed.
         let most = if self.of.tail.is_some() { steps.most.min(STEPS_PER_LOOK) } else { steps.most };
@@ -46,9 +47,7 @@ impl<G: Stepped, const N: usize> BodyWalk<'_, N, G> {
         let slid = slide.run(place, steps, &self.since[first..], &mut write, go_on);
         self.has_spent(slid.spent);
         self.of.lately[0] = slid.step;
-        // Beyond the last step that was taken a wrong value does not count.
-        let fault = self.of.own.takes_fault();
-        fault.filter(|_| slid.halt == Halt::Endless).map_or(Ok(()), Err)?;
+        self.heeds_laws(&slide, &slid, || slide.enter(&slid.y))?;
         if slid.halt == Halt::Pause {
             if let Some(end) = self.whirr_ends(&slid.y) {
                 self.arrives(slid.y);

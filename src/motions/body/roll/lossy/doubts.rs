@@ -4,9 +4,10 @@ use super::{Hold, LossyFlow};
 use crate::laws::contact::lossy::Held;
 use crate::laws::loss::SLACK;
 use crate::laws::state::{State, spin_of};
+use crate::motions::body::own::Own;
 use crate::motions::dry::settled::lag;
 
-impl LossyFlow {
+impl<G: Own> LossyFlow<G> {
     /// Error of the time at which the contact point stops, from the sum `erred` of the errors of all steps. The more
     /// slowly psi' changes, the larger is the effect of an error of psi' on that time.
     pub fn doubt(&self, y: &State, erred: f64) -> f64 {
@@ -19,7 +20,7 @@ impl LossyFlow {
         let late = if self.hold == Hold::Settled {
             let push = self.response(angle, w[0] / s, w, Held::Contour(0.0)).held[0];
             let radius = self.law.rates.reduced().shape.rim.radius(angle);
-            lag(&self.law.losses, (s, c * y.w2), radius, push, self.law.stiffness(angle, 1.0))
+            lag(&self.law.losses.beside(()), (s, c * y.w2), radius, push, self.law.stiffness(angle, 1.0))
         } else {
             0.0
         };

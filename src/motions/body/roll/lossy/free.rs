@@ -18,6 +18,7 @@ use crate::laws::loss::{COUNT, Couples, Law, Ways, going};
 use crate::laws::state::drilling_of;
 use crate::methods::rk8;
 use crate::motions::body::face::lands_at;
+use crate::motions::body::own::Own;
 use crate::motions::dry::settled::{CLOSE, SLOWER};
 use crate::motions::walk::numbers::TIME;
 use crate::numbers::{Dual, Real, here};
@@ -201,10 +202,11 @@ impl<T: Real> LossyUnheld<T> {
     }
 }
 
-impl LossyFlow {
+impl<G: Own> LossyFlow<G> {
     /// Whether lanes can compute this flow: no motion is held, all events end it, and the body is not a ball.
     pub fn is_free(&self) -> bool {
-        self.hold == Hold::No && !self.ways.holds.drilling && self.watch && !self.ball && !self.is_patch()
+        let moves = self.hold == Hold::No && !self.ways.holds.drilling;
+        moves && self.watch && !self.ball && !self.is_patch() && !G::IS
     }
 
     /// The numbers that lanes need: theta_end, mu, the coefficients of the losses, and the signs

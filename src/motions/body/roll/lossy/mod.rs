@@ -22,9 +22,10 @@ use crate::laws::body::Body;
 use crate::laws::contact::lossy::{Acted, Held, Lossy};
 use crate::laws::contact::together::{Resting, Rubs, Together};
 use crate::laws::contact::{Contact, Force};
-use crate::laws::loss::{COUNT, GRACE, Holds, Law, Losses, SLACK, Ways, holds, rounded};
+use crate::laws::loss::{COUNT, Couples, GRACE, Holds, Law, Losses, SLACK, Ways, holds, rounded};
 use crate::laws::state::{State, drilling_of, spin_of};
 use crate::motions::body::face::{FLAT, turning_share};
+use crate::motions::body::own::Own;
 use crate::motions::walk::numbers::{COS, Halt, P, SIN, U2, UH, W2, W3};
 use crate::numbers::{Dual, Real, sign_or_zero};
 use core::f64::consts::PI;
@@ -58,12 +59,12 @@ pub(crate) const REST: f64 = 1e-13;
 pub(crate) const LOSSY_NUMBERS: usize = 4 + COUNT + 2;
 
 /// A body, its contact and its losses, and the motions that are held at rest.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct LossyFlow {
-    law: Lossy<f64>,
-    sloped: Lossy<Dual<f64>>,
+#[derive(Clone, Copy)]
+pub(crate) struct LossyFlow<G = ()> {
+    law: Lossy<f64, G>,
+    sloped: Lossy<Dual<f64>, G>,
     /// The law without the couples along the contour.
-    bare: Lossy<f64>,
+    bare: Lossy<f64, G>,
     hold: Hold,
     /// Whether the flow starts from a state in which w_z vanishes exactly.
     starts_still: bool,
@@ -85,10 +86,16 @@ pub(crate) struct LossyFlow {
     slides: f64,
 }
 
-impl LossyFlow {
+impl<G: Own> LossyFlow<G> {
     /// The flow of a body from a state; the body rolls with friction up to mu N, or slides on a smooth table.
-    pub fn new((body, contact): (&Body, Contact), mu: f64, losses: &Losses, tol: f64, y: &State) -> Self {
-        let law = Lossy::of(contact, body, losses);
+    pub fn new(
+        (body, contact): (&Body, Contact),
+        mu: f64,
+        (losses, own): (&Losses, G),
+        tol: f64,
+        y: &State,
+    ) -> Self {
+        let law = Lossy { losses: Couples::of(losses, |x| x).beside(own), rates: contact.rates(body) };
         let dual = |value: f64| Dual { value, slope: 0.0 };
         let rates =
             crate::laws::contact::reduced::Rates::of(contact, &body.shape().map(dual), !body.is_sharp());
@@ -248,8 +255,9 @@ impl LossyFlow {
             Contact::Rolling => Rubs::Rests,
             Contact::Smooth => Rubs::Slips { pull: [0.0; 2], twist: 0.0 },
         };
-        let Some(rests) = Together::of_body(&reduced.shape, &self.law.losses, (angle, w), [0.0; 2], rubs)
-        else {
+        let seen = self.law.losses.seen(&reduced.shape.rim, angle, drilling, w);
+        let losses = self.law.losses.linear(&seen, |_| 1.0);
+        let Some(rests) = Together::of_body(&reduced.shape, &losses, (angle, w), [0.0; 2], rubs) else {
             return;
         };
         let [_, rolling, contour, _] = rests.knowing(Some((Resting::Rolling, true))).fates();

@@ -16,6 +16,7 @@ use crate::laws::contact::slip::Friction;
 use crate::laws::contact::{Force, patch};
 use crate::laws::loss::{Law, Losses};
 use crate::laws::state::{State, drilling_of};
+use crate::motions::body::own::Own;
 use crate::motions::dry::creep::{DRILLS, slip_under};
 use crate::motions::walk::numbers::{BodyNumbers, HEAT, MARGINS, TIME};
 use crate::numbers::{Dual, Real};
@@ -33,7 +34,7 @@ pub(crate) fn with_patch(losses: &Losses, friction: &Friction) -> Losses {
     all
 }
 
-impl LossyFlow {
+impl<G: Own> LossyFlow<G> {
     /// The same flow on a patch of contact, whose drilling friction is among the losses.
     pub fn on_patch(mut self, friction: &Friction, y: &State) -> Self {
         if friction.patch() > 0.0 {
@@ -58,11 +59,11 @@ impl LossyFlow {
     #[inline(never)]
     pub(super) fn acts_on_patch(
         &self,
-        law: &Lossy<f64>,
+        law: &Lossy<f64, G>,
         angle: (f64, f64),
         precession: f64,
         (w, held): ([f64; 3], Held<f64>),
-    ) -> (Acted<f64>, Lossy<f64>) {
+    ) -> (Acted<f64>, Lossy<f64, G>) {
         let (mu, eps) = (self.slides, self.radius());
         let (mut law, mut fits) = (*law, 0);
         loop {
@@ -78,7 +79,7 @@ impl LossyFlow {
     }
 
     /// The law with the length that belongs to the force at these numbers.
-    fn fitted(&self, y: [f64; 5]) -> Lossy<f64> {
+    fn fitted(&self, y: [f64; 5]) -> Lossy<f64, G> {
         let (precession, w) = self.turning(y);
         self.acts_on_patch(&self.law, y.angle(), precession, (w, self.held(0.0))).1
     }
@@ -121,7 +122,11 @@ impl LossyFlow {
 }
 
 /// The margins; that of a slip also fails where the patch drills.
-fn ends_where_it_drills<T: Real>(flow: &LossyFlow, mut margins: [T; MARGINS], y: [T; 5]) -> [T; MARGINS] {
+fn ends_where_it_drills<T: Real, G: Own>(
+    flow: &LossyFlow<G>,
+    mut margins: [T; MARGINS],
+    y: [T; 5],
+) -> [T; MARGINS] {
     let (_, w) = flow.turning(y);
     let drilling = drilling_of(y.angle(), w[0], w[2]).abs();
     margins[3] = margins[3].min(drilling.splat(2.0 * DRILLS) - drilling);

@@ -5,12 +5,14 @@ use super::{Hold, LossyFlow, REST};
 use crate::laws::body::landing_angle;
 use crate::laws::contact::lossy::{Acted, Held, Lossy};
 use crate::laws::contact::{Contact, grip};
-use crate::laws::loss::{GRACE, Law, rolling_growth};
+use crate::laws::loss::{COUNT, GRACE, Law, OwnCouple, rolling_growth};
 use crate::laws::state::{drilling_of, rolling_of};
 use crate::methods::flow::{FASTEST, Flow, FlowPlace};
 use crate::methods::rk8;
 use crate::motions::body::face::{FLAT, lands_at};
+use crate::motions::body::own::Own;
 use crate::motions::body::pole;
+use crate::motions::body::write::state;
 use crate::motions::dry::settled::{Balance, CLOSE, EFFORT, SLOWER, Turned, balance, settles_within};
 use crate::motions::walk::numbers::{
     BodyNumbers, COS, Halt, MARGINS, P, PHI, SIN, TIME, W1, W2, W3, loses, pose_rates, poses,
@@ -34,7 +36,7 @@ pub(crate) fn at_rest<const N: usize>(
     rest
 }
 
-impl LossyFlow {
+impl<G: Own> LossyFlow<G> {
     /// phi', w, the response of the body, and psi' of a settled contact.
     fn settled(&self, angle: (f64, f64), drilling: f64, w2: f64) -> (f64, [f64; 3], Acted<f64>, f64) {
         let radius = self.law.rates.reduced().shape.rim.radius(angle);
@@ -49,7 +51,7 @@ impl LossyFlow {
             Turned { acted, push: acted.held[0], normal: acted.force[0] }
         };
         let Balance { precession, w, turned: Turned { acted, push, .. }, spin } =
-            balance(&self.law.losses, (angle, radius), (drilling, w2), way, act);
+            balance(&self.law.losses.beside(()), (angle, radius), (drilling, w2), way, act);
         (precession, w, Acted { power: acted.power + push * spin, ..acted }, spin)
     }
 
@@ -98,7 +100,7 @@ impl LossyFlow {
         Some(there)
     }
 
-    pub(super) fn margins_of<T: Real>(&self, law: &Lossy<T>, y: [T; 5]) -> [T; MARGINS] {
+    pub(super) fn margins_of<T: Real, H: OwnCouple<T>>(&self, law: &Lossy<T, H>, y: [T; 5]) -> [T; MARGINS] {
         let [s, c, _, w2, _] = y;
         let (precession, w) = self.turning(y);
         let one = s.splat(1.0);
@@ -182,12 +184,14 @@ impl LossyFlow {
     }
 }
 
-impl Flow<MARGINS> for LossyFlow {
+impl<G: Own> Flow<MARGINS> for LossyFlow<G> {
     type Halt = Halt;
     const TIME: usize = TIME;
     const OVER: Halt = Halt::Time;
     const PAUSE: Halt = Halt::Pause;
     const ENDLESS: Halt = Halt::Endless;
+    /// Each call of a law of the user may be slow.
+    const BREATH: u64 = if G::IS { 1 } else { 256 };
 
     fn is_extrapolated(halt: Halt) -> bool {
         halt == Halt::Pole
@@ -269,6 +273,15 @@ impl Flow<MARGINS> for LossyFlow {
 
     fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
         let y = &place.y;
+        if G::IS {
+            // Without losses of the library a couple that takes energy is no fault.
+            let supplies = place.rate[N - 1] < 0.0 || self.law.losses.present() != [false; COUNT];
+            let at = state(&self.shown(y));
+            let at = supplies.then(|| (at, self.force(&at).normal));
+            if self.law.losses.given.finds_fault(&[], at) {
+                return Some((Halt::Endless, *y));
+            }
+        }
         if let Some(rest) = self.comes_to_rest(place) {
             return Some((Halt::Rests, rest));
         }
@@ -290,7 +303,8 @@ impl Flow<MARGINS> for LossyFlow {
         }
         let slope = self.law.losses.slope(s, self.law.rates.reduced().shape.rim.radius(angle), spin);
         let rate = self.law.stiffness(angle, slope);
-        let within = settles_within(&self.law.losses, (s, fall), rate, s * spin / self.tol)? * 0.01 * noise;
+        let within =
+            settles_within(&self.law.losses.beside(()), (s, fall), rate, s * spin / self.tol)? * 0.01 * noise;
         let settled = self.settled(angle, drilling_of((s, c), w[0], w[2]), w2).3;
         let close = s * settled.abs() <= SLOWER * fall
             && s * (spin - settled).abs() <= within + 1e-8 * s * settled.abs();

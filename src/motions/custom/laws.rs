@@ -1,0 +1,243 @@
+//! Laws of the user in the flows of the library.
+//!
+//! ```text
+//! mu     follows the speed of a slip
+//! m(N)   secants of the couple, until N no longer changes:   m = m0 + N mN there
+//! ```
+//! A user-defined law has no derivative: slopes are differences.
+
+use crate::error::Error;
+use crate::laws::body::Body;
+use crate::laws::contact::lying::{Flat, Lying};
+use crate::laws::contact::slip::FollowsSpeed;
+use crate::laws::custom::{CoupleLaw, Custom, FrictionLaw, SpeedLaw, fault_of_couple, fault_of_friction};
+use crate::laws::loss::{Couple, Kinematics, OwnCouple};
+use crate::laws::state::State;
+use crate::motions::body::own::Own;
+use crate::motions::dry::creep::ASIDE;
+use crate::numbers::Dual;
+use core::cell::Cell;
+use core::f64::consts::{FRAC_PI_2, PI};
+
+/// Largest number of secants for the normal force.
+const SECANTS: usize = 40;
+/// The normal force at which a couple is first evaluated. It is not 1, that of a body at rest, since the couple depends on
+/// the normal force by two values.
+const FIRST_NORMAL: f64 = 0.75;
+
+/// The laws of a motion.
+#[derive(Clone, Copy)]
+pub(crate) struct OwnLaws<'a> {
+    pub body: &'a Body,
+    pub custom: Custom<'a>,
+    /// The last wrong value of a law since the last step that was taken.
+    pub fault: &'a Cell<Option<Error>>,
+    /// The sine, the cosine and w at which the couple was last solved for, and the couple.
+    pub last: &'a Cell<([f64; 5], Option<Couple<f64>>)>,
+}
+
+impl<'a> OwnLaws<'a> {
+    /// The coefficient of friction at a speed; NaN for a wrong value, which is noted.
+    fn mu(&self, law: &dyn FrictionLaw, speed: f64) -> f64 {
+        if law.has_failed() || !speed.is_finite() {
+            return f64::NAN;
+        }
+        let mu = law.coefficient(speed);
+        match fault_of_friction(mu, speed) {
+            Some(fault) => {
+                self.fault.set(Some(fault));
+                f64::NAN
+            }
+            None => mu,
+        }
+    }
+
+    /// The state as seen from the lower rim of a body with two rims, and -1 if that is the other one, else 1.
+    fn from_lower(&self, y: &State) -> (State, f64) {
+        if y.theta <= FRAC_PI_2 || self.body.ell() <= 0.0 || self.body.theta_end() != FRAC_PI_2 {
+            return (*y, 1.0);
+        }
+        (State { theta: PI - y.theta, w2: -y.w2, w3: -y.w3, ..*y }, -1.0)
+    }
+
+    /// The couple of a law at the sine and cosine of theta and w; a ball may lean to the other side.
+    fn value(&self, law: &dyn CoupleLaw, [s, c, w1, w2, w3]: [f64; 5], normal: f64) -> [f64; 3] {
+        let side = if s < 0.0 { -1.0 } else { 1.0 };
+        let y = State { theta: (side * s).atan2(c), w1: side * w1, w2: side * w2, w3 };
+        let [m1, m2, m3] = self.of_state(law, &y, normal);
+        [side * m1, side * m2, m3]
+    }
+
+    /// NaN for a law that has failed, and for a wrong value, which is noted.
+    fn of_state(&self, law: &dyn CoupleLaw, y: &State, normal: f64) -> [f64; 3] {
+        if law.has_failed() {
+            return [f64::NAN; 3];
+        }
+        let ((seen, side), normal) = (self.from_lower(y), normal.max(0.0));
+        let [m1, m2, m3] = law.couple(self.body, &seen, normal);
+        if (m1 + m2 + m3).is_nan() && [y.theta, y.w1, y.w2, y.w3].iter().all(|x| x.is_finite()) {
+            self.fault.set(fault_of_couple([m1, m2, m3], &seen, normal));
+        }
+        [m1, side * m2, side * m3]
+    }
+
+    /// The couple about the normal force that `normal` gives for it.
+    fn secants(
+        &self,
+        law: &'a dyn CoupleLaw,
+        at: [f64; 5],
+        normal: impl Fn(&Couple<f64>) -> f64,
+    ) -> Couple<f64> {
+        let mut before = (FIRST_NORMAL, self.value(law, at, FIRST_NORMAL));
+        let mut found = Couple { free: before.1, pressed: [0.0; 3] };
+        for i in 0..=SECANTS {
+            let next = normal(&found);
+            if i == SECANTS {
+                found.free = [f64::NAN; 3];
+            }
+            if next.is_nan() || (next - before.0).abs() <= 4.0 * f64::EPSILON * (1.0 + next.abs()) {
+                break;
+            }
+            let m = self.value(law, at, next);
+            if m == before.1 {
+                break;
+            }
+            let pressed: [f64; 3] = core::array::from_fn(|i| (m[i] - before.1[i]) / (next - before.0));
+            found = Couple { free: core::array::from_fn(|i| m[i] - pressed[i] * next), pressed };
+            before = (next, m);
+        }
+        self.last.set((at, Some(found)));
+        found
+    }
+}
+
+impl SpeedLaw for OwnLaws<'_> {
+    fn varies(&self) -> bool {
+        self.custom.friction.is_some()
+    }
+    fn coefficient_at(&self, speed: f64) -> f64 {
+        self.custom.friction.map_or(f64::NAN, |law| self.mu(law, speed))
+    }
+}
+
+impl FollowsSpeed<f64> for OwnLaws<'_> {
+    fn strength(&self, constant: f64, speed: impl FnOnce() -> f64, dry: bool) -> f64 {
+        let Some(law) = self.custom.friction else { return constant };
+        let speed = speed();
+        if dry { self.mu(law, speed) } else { self.mu(law, speed) / speed.max(f64::MIN_POSITIVE) }
+    }
+}
+
+impl FollowsSpeed<Dual<f64>> for OwnLaws<'_> {
+    fn strength(&self, constant: Dual<f64>, speed: impl FnOnce() -> Dual<f64>, dry: bool) -> Dual<f64> {
+        let Some(law) = self.custom.friction else { return constant };
+        let Dual { value, slope } = speed();
+        let by = ASIDE * value;
+        let [below, above] = [value - by, value + by].map(|speed| self.mu(law, speed));
+        let mu = Dual {
+            value: self.mu(law, value),
+            slope: if by > 0.0 { slope * (above - below) / (2.0 * by) } else { 0.0 },
+        };
+        let size = Dual { value: value.max(f64::MIN_POSITIVE), slope };
+        if dry { mu } else { mu / size }
+    }
+}
+
+impl OwnCouple<f64> for OwnLaws<'_> {
+    fn is_there(&self) -> bool {
+        self.custom.couple.is_some()
+    }
+
+    #[inline(never)]
+    fn solved(&self, seen: &Kinematics<f64>, normal: impl Fn(&Couple<f64>) -> f64) -> Option<Couple<f64>> {
+        let ((s, c), [w1, w2, w3]) = (seen.angle, seen.w);
+        self.custom.couple.map(|law| self.secants(law, [s, c, w1, w2, w3], normal))
+    }
+
+    fn takes(&self, seen: &Kinematics<f64>, normal: f64) -> Option<f64> {
+        let (law, (s, c), [w1, w2, w3]) = (self.custom.couple?, seen.angle, seen.w);
+        let at = [s, c, w1, w2, w3];
+        let m = match self.last.get() {
+            (there, Some(found)) if there == at => found.under(normal),
+            _ => self.value(law, at, normal),
+        };
+        Some(-(m[0] * w1 + m[1] * w2 + m[2] * w3))
+    }
+}
+
+impl OwnCouple<Dual<f64>> for OwnLaws<'_> {
+    fn is_there(&self) -> bool {
+        self.custom.couple.is_some()
+    }
+
+    /// The slope of the part that does not depend on the normal force is that of the couple where this force is constant.
+    #[inline(never)]
+    fn solved(
+        &self,
+        seen: &Kinematics<Dual<f64>>,
+        normal: impl Fn(&Couple<Dual<f64>>) -> Dual<f64>,
+    ) -> Option<Couple<Dual<f64>>> {
+        let (law, (s, c), [w1, w2, w3]) = (self.custom.couple?, seen.angle, seen.w);
+        let (y, still) = ([s, c, w1, w2, w3], |value: f64| Dual { value, slope: 0.0 });
+        let dual =
+            |found: &Couple<f64>| Couple { free: found.free.map(still), pressed: found.pressed.map(still) };
+        let at = |found: &Couple<f64>| normal(&dual(found)).value;
+        let found = self.secants(law, y.map(|x| x.value), at);
+        let normal = at(&found);
+        let fastest = y.iter().fold(1.0, |most: f64, x| most.max(x.value.abs()));
+        let changes = y.iter().fold(0.0, |most: f64, x| most.max(x.slope.abs()));
+        let mut all = dual(&found);
+        if changes > 0.0 {
+            let by = ASIDE * fastest / changes;
+            let aside = |by: f64| self.value(law, y.map(|x| by.mul_add(x.slope, x.value)), normal);
+            let [before, after] = [aside(-by), aside(by)];
+            (0..3).for_each(|i| all.free[i].slope = (after[i] - before[i]) / (2.0 * by));
+        }
+        Some(all)
+    }
+}
+
+impl Own for OwnLaws<'_> {
+    const IS: bool = true;
+
+    fn couple_at(&self, y: &State, normal: f64) -> [f64; 3] {
+        self.custom.couple.map_or([0.0; 3], |law| self.of_state(law, y, normal))
+    }
+
+    fn has_failed(&self) -> bool {
+        self.custom.has_failed()
+    }
+
+    fn takes_fault(&self) -> Option<Error> {
+        self.fault.take().filter(|_| !self.custom.has_failed())
+    }
+
+    fn is_faulty(&self) -> bool {
+        self.custom.has_failed() || self.fault.get().is_some()
+    }
+
+    fn finds_fault(&self, speeds: &[f64], at: Option<(State, f64)>) -> bool {
+        if !self.custom.has_failed() {
+            let slow = |law: &dyn FrictionLaw| {
+                speeds.iter().find_map(|&speed| fault_of_friction(law.coefficient(speed), speed))
+            };
+            let turns = |(law, (y, normal)): (&dyn CoupleLaw, (State, f64))| {
+                let seen = self.from_lower(&y).0;
+                fault_of_couple(law.couple(self.body, &seen, normal), &seen, normal)
+            };
+            let fault = self.custom.couple.zip(at).and_then(turns);
+            self.fault.set(fault.or_else(|| self.custom.friction.and_then(slow)));
+        }
+        self.is_faulty()
+    }
+
+    fn lying(&self, law: &Lying<f64>, y: Flat<f64>) -> Lying<f64> {
+        let ([w1, w3, u_h, u_2], [other_h, other_2]) = (y, law.other_slip(y));
+        let of = |constant: f64, speed: f64| FollowsSpeed::<f64>::strength(self, constant, || speed, law.dry);
+        let [low, up] = law.strength;
+        let strength = [of(low, u_h.hypot(u_2)), of(up, other_h.hypot(other_2))];
+        let state = State { theta: FRAC_PI_2, w1, w2: 0.0, w3 };
+        let own = self.has_couple().then(|| self.couple_at(&state, 1.0));
+        Lying { strength, own, ..*law }
+    }
+}
