@@ -328,6 +328,7 @@ def test_a_coefficient_that_varies_beside_rolling_resistance_keeps_the_balance_o
 PRESSING = [sc.loss.RollingResistance(2e-2), sc.loss.DryContour(2e-2), sc.loss.Drilling(2e-2)]
 
 
+@pytest.mark.filterwarnings("ignore:the estimated error")
 @pytest.mark.parametrize("beside", PRESSING, ids=str)
 def test_a_couple_of_your_own_beside_losses_that_press_acts_as_the_librarys_does(beside):
     kinds, compared = set(), 0

@@ -78,6 +78,7 @@ class Couple(Loss):
     function: CoupleFunction
     _units: ClassVar[tuple[float, float, float]] = (1.0, 1.0, 1.0)  # of the numbers of a C function
     _pointer: ClassVar[Pointer | None] = None
+    _others: ClassVar[Loss | None] = None  # the laws of the library in a sum
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "_pointer", pointer(self.function, COUPLE))
@@ -95,17 +96,20 @@ class Couple(Loss):
 
     @property
     def _built_in(self) -> Loss | None:
-        return None
+        return self._others
 
     def __add__(self, other: Loss) -> Loss:
-        if not isinstance(other, Loss):
-            return NotImplemented
-        if other._function is not None:
-            raise TypeError(f"losses = {self!r} + {other!r}: expected one couple of your own; add them in one function")
-        return Beside(self, other)
+        if getattr(other, "_function", None) is not None:
+            raise TypeError(f"losses = {self!r} + {other!r}: expected one couple of your own, of one function")
+        return self._beside(other if self._others is None else self._others + other)
 
     def __radd__(self, other: Any) -> Loss:
         return self + other if isinstance(other, Loss) else super().__radd__(other)
+
+    def _beside(self, others: Loss | None) -> "Couple":
+        found = type(self)(self.function)
+        object.__setattr__(found, "_others", others)
+        return found
 
     def _natural(self, scale: Scale | None) -> Loss:
         if scale is None:
@@ -113,85 +117,42 @@ class Couple(Loss):
         joules, rate = scale._joule("a couple"), 1.0 / scale._units[1]
         newtons = joules / scale._units[0]
         if self._pointer is not None:
-            found = type(self)(self.function)
+            found = self._beside(self._others)
             object.__setattr__(found, "_units", (rate, newtons, joules))
             return found
 
         def natural(theta: float, w: Floats, normal: float) -> Floats:
             return np.asarray(self.function(theta, rate * w, newtons * normal)) / joules
 
-        return type(self)(natural)
+        return type(self)(natural)._beside(self._others)
 
     def couple(self, body: Body, state: State, normal: Reals = 1.0) -> Result:
-        """Couple in a single state, along e1, e2, e3, as the function returns it; `body` is not used."""
+        """Couple in a single state, along e1, e2, e3, and of the laws added to it."""
         w = np.array([state.w1, state.w2, state.w3], dtype=float)
+        others = 0.0 if self._others is None else self._others.couple(body, state, normal)
         if self._pointer is None:
-            return np.asarray(self.function(float(state.theta), w, float(normal)), dtype=float)
+            return others + np.asarray(self.function(float(state.theta), w, float(normal)), dtype=float)
         from ctypes import c_double
 
         found = (c_double * 3)()
         self._pointer.call((c_double * 5)(state.theta, *w, normal), found)
-        return np.array(found)
+        return others + np.array(found)
 
     def power(self, body: Body, state: State, normal: Reals = 1.0) -> Result:
-        """Power that the law takes in a single state, ``-couple @ w``; `body` is not used."""
+        """Power that the law takes in a single state, ``-couple @ w``."""
         return -float(self.couple(body, state, normal) @ np.array([state.w1, state.w2, state.w3]))
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Couple) and (other.function,) == (self.function,)
+        return isinstance(other, Couple) and (other.function, other._others) == (self.function, self._others)
 
     def __hash__(self) -> int:
         return hash(self.function)
 
     def __repr__(self) -> str:
-        return f"custom.Couple({_named(self.function)})"
+        more = "" if self._others is None else f" + {self._others!r}"
+        return f"custom.Couple({_named(self.function)}){more}"
 
     __str__ = __repr__  # without coefficients there is no unit to print
-
-
-@dataclass(frozen=True, repr=False)
-class Beside(Loss):
-    """Sum of a `Couple` and of laws of `sc.loss`, the result of ``+``."""
-
-    own: Couple
-    others: Loss
-
-    @property
-    def _function(self) -> Any:
-        return self.own._function
-
-    @property
-    def laws(self) -> tuple[Law, ...]:
-        """Raises TypeError, since a law that is a function has no coefficients to list."""
-        raise TypeError(f"losses = {self!r}: {OWN}")
-
-    @property
-    def _built_in(self) -> Loss:
-        return self.others
-
-    def _natural(self, scale: Scale | None) -> Loss:
-        return type(self)(self.own._natural(scale), self.others)  # type: ignore[arg-type]
-
-    def couple(self, body: Body, state: State, normal: Reals = 1.0) -> Result:
-        """Couple of all laws in a single state, along e1, e2, e3."""
-        return self.own.couple(body, state, normal) + self.others.couple(body, state, normal)
-
-    def power(self, body: Body, state: State, normal: Reals = 1.0) -> Result:
-        """Power that all laws take in a single state."""
-        return self.own.power(body, state, normal) + self.others.power(body, state, normal)
-
-    def __add__(self, other: Loss) -> Loss:
-        if not isinstance(other, Loss) or other._function is not None:
-            return NotImplemented
-        return type(self)(self.own, self.others + other)
-
-    def __radd__(self, other: Any) -> Loss:
-        return self + other if isinstance(other, Loss) else super().__radd__(other)
-
-    def __repr__(self) -> str:
-        return f"{self.own!r} + {self.others!r}"
-
-    __str__ = __repr__
 
 
 class Friction(Coulomb):

@@ -224,10 +224,10 @@ impl<G: OwnCouple<f64>> Lossy<f64, G> {
         self.at(angle, y.w1 / angle.0, [y.w1, y.w2, y.w3], Held::Nothing)
     }
 
-    /// The time derivatives of theta and w in such a state, the contact force, and the lost power.
-    pub fn moves(&self, y: &State) -> (State, newton::Force, f64) {
-        let Acted { w: [w1, w2, w3], force: [normal, along, across], power, .. } = self.in_state(y);
-        (State { theta: -y.w2, w1, w2, w3 }, newton::Force { normal, along, across }, power)
+    /// The time derivatives of theta and w in such a state, and the contact force.
+    pub fn moves(&self, y: &State) -> (State, newton::Force) {
+        let Acted { w: [w1, w2, w3], force: [normal, along, across], .. } = self.in_state(y);
+        (State { theta: -y.w2, w1, w2, w3 }, newton::Force { normal, along, across })
     }
 
     /// The losses with a user-defined couple that is linear in the normal force about that of this state.
@@ -241,8 +241,8 @@ impl<G: OwnCouple<f64>> Lossy<f64, G> {
 /// The time derivative of (theta, w1, w2, w3) of a body that rolls, or slides freely, with losses, and the lost
 /// power. A dry loss exerts no couple where the motion that it resists is at rest.
 pub fn derivative(contact: Contact, body: &Body, y: &State, losses: &Losses) -> (State, f64) {
-    let (rate, _, power) = Lossy::of(contact, body, losses).moves(y);
-    (rate, power)
+    let Acted { w: [w1, w2, w3], power, .. } = Lossy::of(contact, body, losses).in_state(y);
+    (State { theta: -y.w2, w1, w2, w3 }, power)
 }
 
 /// The time derivative of (theta, w1, w2, w3), and the contact force, of a body that rolls, or slides freely, under any
@@ -262,8 +262,7 @@ pub fn derivative(contact: Contact, body: &Body, y: &State, losses: &Losses) -> 
 pub fn under_couple(contact: Contact, body: &Body, y: &State, couple: [f64; 3]) -> (State, newton::Force) {
     let given = Couple { free: couple, pressed: [0.0; 3] };
     let losses = Couples::of(&Losses::NONE, |x| x).beside(Some(given));
-    let (rate, force, _) = Lossy { rates: contact.rates(body), losses }.moves(y);
-    (rate, force)
+    Lossy { rates: contact.rates(body), losses }.moves(y)
 }
 
 /// The contact force on a body that rolls, or slides freely, with losses.

@@ -14,6 +14,7 @@
 //! tolerances.
 
 pub(crate) mod face;
+mod faults;
 pub(crate) mod fly;
 pub(crate) mod lie;
 pub(crate) mod own;

@@ -36,6 +36,12 @@ pub(crate) struct OwnLaws<'a> {
     pub last: &'a Cell<([f64; 5], Option<Couple<f64>>)>,
 }
 
+/// The state at the sine and cosine of theta and w, and the sign of e1 and e2 in it: a ball may lean to the other side.
+fn upright([s, c, w1, w2, w3]: [f64; 5]) -> (f64, State) {
+    let side = if s < 0.0 { -1.0 } else { 1.0 };
+    (side, State { theta: (side * s).atan2(c), w1: side * w1, w2: side * w2, w3 })
+}
+
 impl<'a> OwnLaws<'a> {
     /// The coefficient of friction at a speed; NaN for a wrong value, which is noted.
     fn mu(&self, law: &dyn FrictionLaw, speed: f64) -> f64 {
@@ -60,10 +66,9 @@ impl<'a> OwnLaws<'a> {
         (State { theta: PI - y.theta, w2: -y.w2, w3: -y.w3, ..*y }, -1.0)
     }
 
-    /// The couple of a law at the sine and cosine of theta and w; a ball may lean to the other side.
-    fn value(&self, law: &dyn CoupleLaw, [s, c, w1, w2, w3]: [f64; 5], normal: f64) -> [f64; 3] {
-        let side = if s < 0.0 { -1.0 } else { 1.0 };
-        let y = State { theta: (side * s).atan2(c), w1: side * w1, w2: side * w2, w3 };
+    /// The couple of a law at the sine and cosine of theta and w.
+    fn value(&self, law: &dyn CoupleLaw, y: [f64; 5], normal: f64) -> [f64; 3] {
+        let (side, y) = upright(y);
         let [m1, m2, m3] = self.of_state(law, &y, normal);
         [side * m1, side * m2, m3]
     }
@@ -216,13 +221,13 @@ impl Own for OwnLaws<'_> {
         self.custom.has_failed() || self.fault.get().is_some()
     }
 
-    fn finds_fault(&self, speeds: &[f64], at: Option<(State, f64)>) -> bool {
+    fn finds_fault(&self, speeds: &[f64], at: Option<([f64; 5], f64)>) -> bool {
         if !self.custom.has_failed() {
             let slow = |law: &dyn FrictionLaw| {
                 speeds.iter().find_map(|&speed| fault_of_friction(law.coefficient(speed), speed))
             };
-            let turns = |(law, (y, normal)): (&dyn CoupleLaw, (State, f64))| {
-                let seen = self.from_lower(&y).0;
+            let turns = |(law, (y, normal)): (&dyn CoupleLaw, ([f64; 5], f64))| {
+                let (seen, normal) = (self.from_lower(&upright(y).1).0, normal.max(0.0));
                 fault_of_couple(law.couple(self.body, &seen, normal), &seen, normal)
             };
             let fault = self.custom.couple.zip(at).and_then(turns);

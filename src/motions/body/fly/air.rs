@@ -399,7 +399,9 @@ impl<G: Own> Flies for AirFlight<G> {
                 continue;
             }
             if self.own.has_couple() {
-                if self.own.finds_fault(&[], Some((self.state(&y).0, 0.0))) {
+                let State { theta, w1, w2, w3 } = self.state(&y).0;
+                let at = [theta.sin(), theta.cos(), w1, w2, w3];
+                if self.own.finds_fault(&[], Some((at, 0.0))) {
                     return Err(NoLanding);
                 }
                 bend = bends(most, COUPLE_GROWS * self.pulls(&step.y).max(self.pulls(&y)));

@@ -11,7 +11,6 @@ use crate::laws::body::Shape;
 use crate::laws::contact::grip;
 use crate::laws::contact::lying::{Flat, Lain, Lying};
 use crate::laws::loss::{GRACE, SLACK};
-use crate::laws::state::State;
 use crate::methods::flow::{Flow, FlowPlace};
 use crate::methods::rk8;
 use crate::motions::Kind;
@@ -314,8 +313,7 @@ impl<G: Own> Flow<MARGINS> for LyingFlow<G> {
     fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
         if G::IS {
             let [w1, w3, ..] = flat(&place.y);
-            let state = State { theta: FRAC_PI_2, w1, w2: 0.0, w3 };
-            if self.own.finds_fault(&self.speeds(&place.y), Some((state, 1.0))) {
+            if self.own.finds_fault(&self.speeds(&place.y), Some(([1.0, 0.0, w1, 0.0, w3], 1.0))) {
                 return Some((Halt::Endless, place.y));
             }
         }

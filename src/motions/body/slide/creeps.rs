@@ -160,7 +160,10 @@ impl<L: Own> Slide<L> {
         let sizes = [y[SIN], 1.0, fast, fast, fast, slip, slip];
         let middle = radau::middle(y, &guess);
         let sizes_at = [y[SIN], 1.0, fast, fast, fast, slip, slip];
-        let slopes = if L::IS { slopes(&middle, &sizes_at, |y| self.rates(y)) } else { self.slopes(&middle) };
+        // Differences would not resolve a patch that hardly drills.
+        let points = L::IS && self.law.patch().is_none();
+        let slopes =
+            if points { slopes(&middle, &sizes_at, |y| self.rates(y)) } else { self.slopes(&middle) };
         radau::step(|y, all| self.write_rates(y, all), y, &slopes, &sizes, (h, converged), guess)
     }
 

@@ -20,7 +20,6 @@ use super::face::FLAT;
 use super::own::Own;
 use super::pole;
 use super::roll::lossy::REST;
-use super::write::state;
 use crate::laws::body::{Body, Rim, Shape, landing_angle};
 use crate::laws::contact::Force;
 use crate::laws::contact::slip::{Friction, SlipResponse, Slipping};
@@ -546,7 +545,7 @@ impl<L: Own> Flow<MARGINS> for Slide<L> {
             let (y, own) = (&place.y, self.law.varies());
             let supplies = place.rate[N - 1] < 0.0 || own.has_couple() && self.has_laws;
             let normal = || self.acts(y.angle(), y.w(), y.slip()).force[0];
-            let at = supplies.then(|| (state(&self.common_numbers(y)), normal()));
+            let at = supplies.then(|| (core::array::from_fn(|i| self.common_numbers(y)[i]), normal()));
             if own.finds_fault(&[y[UH].hypot(y[U2])], at) {
                 return Some((Halt::Endless, *y));
             }

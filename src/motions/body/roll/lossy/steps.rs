@@ -12,7 +12,6 @@ use crate::methods::rk8;
 use crate::motions::body::face::{FLAT, lands_at};
 use crate::motions::body::own::Own;
 use crate::motions::body::pole;
-use crate::motions::body::write::state;
 use crate::motions::dry::settled::{Balance, CLOSE, EFFORT, SLOWER, Turned, balance, settles_within};
 use crate::motions::walk::numbers::{
     BodyNumbers, COS, Halt, MARGINS, P, PHI, SIN, TIME, W1, W2, W3, loses, pose_rates, poses,
@@ -276,8 +275,9 @@ impl<G: Own> Flow<MARGINS> for LossyFlow<G> {
         if G::IS {
             // Without losses of the library a couple that takes energy is no fault.
             let supplies = place.rate[N - 1] < 0.0 || self.law.losses.present() != [false; COUNT];
-            let at = state(&self.shown(y));
-            let at = supplies.then(|| (at, self.force(&at).normal));
+            let (precession, w) = self.turning([y[SIN], y[COS], y[P], y[W2], y[W3]]);
+            let normal = || self.response(y.angle(), precession, w, self.held(0.0)).force[0];
+            let at = supplies.then(|| ([y[SIN], y[COS], w[0], w[1], w[2]], normal()));
             if self.law.losses.given.finds_fault(&[], at) {
                 return Some((Halt::Endless, *y));
             }
