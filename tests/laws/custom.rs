@@ -366,3 +366,37 @@ fn under_any_couple_a_body_rolls_by_newtons_equations_and_its_contact_point_stay
         }
     }
 }
+
+#[test]
+fn a_couple_that_depends_on_the_normal_force_has_the_one_of_newtons_equations_in_slips_and_rolling() {
+    let mut r = wander(5320);
+    let mut compared = 0;
+    for _ in 0..60 {
+        let (body, start, table) = any(&mut r);
+        let law = |_: &Body, y: &State, normal: f64| {
+            [y.w1, y.w2, y.w3].map(|w| -(0.02 + 0.1 * normal + 0.05 * normal * normal) * w)
+        };
+        let (t, h) = (0.05, 1e-4);
+        let ask = Ask::on(table).with_force(true);
+        let found = own(&body, start, &[t - h, t, t + h], &ask, Custom::default().with_couple(&law));
+        let Ok(m) = found else { continue };
+        let kinds = m.path.as_ref().map(|path| path.kinds.clone()).unwrap_or_default();
+        if m.states.len() < 3 || kinds.iter().any(|kind| *kind != kinds[0]) {
+            continue;
+        }
+        let (y, force) = (m.states[1], m.forces.as_ref().unwrap()[1]);
+        let rate = spincyl::newton::derivative(&body, &y, &force, law(&body, &y, force.normal));
+        let [before, _, after] = [m.states[0], y, m.states[2]];
+        for (told, a, b) in
+            [(rate.w1, before.w1, after.w1), (rate.w2, before.w2, after.w2), (rate.w3, before.w3, after.w3)]
+        {
+            let seen = (b - a) / (2.0 * h);
+            assert!(
+                (seen - told).abs() < 1e-4 * (1.0 + told.abs()),
+                "{body:?} {start:?} {table:?}: {seen} {told}"
+            );
+        }
+        compared += 1;
+    }
+    assert!(compared > 30, "{compared}");
+}
