@@ -74,8 +74,6 @@ def _how_to_get(m: "Motion", needs: str) -> str:
         why, how = f"a patch of contact, not contact = {named(m.contact)!r}", f"contact=sc.Coulomb{patch}"
         more = ', want="force"' if needs == COUPLE else ""
     off = [f"{x}=" for x in _EXCLUDES[PATCH if needs == COUPLE else needs] if _given(m, x)]
-    if needs in (PATCH, COUPLE) and m.losses in own:
-        off.append("losses=")
     without = f", without {' and '.join(off)}" if off else ""
     return f"needs {why}; give {how}{more} to roll{without}"
 

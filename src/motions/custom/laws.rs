@@ -59,7 +59,7 @@ impl<'a> OwnLaws<'a> {
     }
 
     /// The state as seen from the lower rim of a body with two rims, and -1 if that is the other one, else 1.
-    fn from_lower(&self, y: &State) -> (State, f64) {
+    fn lower(&self, y: &State) -> (State, f64) {
         if y.theta <= FRAC_PI_2 || self.body.ell() <= 0.0 || self.body.theta_end() != FRAC_PI_2 {
             return (*y, 1.0);
         }
@@ -78,7 +78,7 @@ impl<'a> OwnLaws<'a> {
         if law.has_failed() {
             return [f64::NAN; 3];
         }
-        let ((seen, side), normal) = (self.from_lower(y), normal.max(0.0));
+        let ((seen, side), normal) = (self.lower(y), normal.max(0.0));
         let [m1, m2, m3] = law.couple(self.body, &seen, normal);
         if (m1 + m2 + m3).is_nan() && [y.theta, y.w1, y.w2, y.w3].iter().all(|x| x.is_finite()) {
             self.fault.set(fault_of_couple([m1, m2, m3], &seen, normal));
@@ -227,7 +227,7 @@ impl Own for OwnLaws<'_> {
                 speeds.iter().find_map(|&speed| fault_of_friction(law.coefficient(speed), speed))
             };
             let turns = |(law, (y, normal)): (&dyn CoupleLaw, ([f64; 5], f64))| {
-                let (seen, normal) = (self.from_lower(&upright(y).1).0, normal.max(0.0));
+                let (seen, normal) = (self.lower(&upright(y).1).0, normal.max(0.0));
                 fault_of_couple(law.couple(self.body, &seen, normal), &seen, normal)
             };
             let fault = self.custom.couple.zip(at).and_then(turns);
