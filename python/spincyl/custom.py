@@ -72,7 +72,8 @@ class Couple(Loss):
     Notes
     -----
     The couples of a sum of this law and laws of `sc.loss` add. The motion is integrated with the tolerance
-    `tol` of `sc.roll`, by default 1e-10 for each step. `Motion.error` is estimated from a second run with a larger tolerance.
+    `tol` of `sc.roll`, by default 1e-10 for each step. `Motion.error` is estimated from a second run with
+    a larger tolerance.
     """
 
     function: CoupleFunction
@@ -100,7 +101,7 @@ class Couple(Loss):
 
     def __add__(self, other: Loss) -> Loss:
         if getattr(other, "_function", None) is not None:
-            raise TypeError(f"losses = {self!r} + {other!r}: expected one couple of your own, of one function")
+            raise TypeError(f"losses = {self!r} + {other!r}: expected a couple of your own of one function")
         return self._beside(other if self._others is None else self._others + other)
 
     def __radd__(self, other: Any) -> Loss:
