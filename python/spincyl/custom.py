@@ -191,7 +191,7 @@ class Friction(Coulomb):
     >>> stribeck = sc.custom.Friction(lambda u: 0.2 + 0.2 * np.exp(-((u / 0.1) ** 2)))
     >>> hoop, thrown = sc.Body.tube(0.0, bore=1.0), sc.State(np.pi / 2, 0.0, 0.0, -3.0, slip=(0.0, 5.0))
     >>> sc.roll(hoop, thrown, 20.0, contact=stribeck).phases
-    ((0, 'slipping'), (12.3659806336, 'rolling'))
+    ((0, 'slipping'), (12.3659806337, 'rolling'))
     """
 
     def __init__(self, function: Callable[[float], float], static: float | None = None) -> None:
