@@ -36,8 +36,8 @@ const CUSTOM_NUMBERS: usize = 14;
 /// `custom.friction` the contact has to be Coulomb's friction, of which only the static coefficient is used. Errors: those of
 /// [`motion::roll_with`](super::motion::roll_with) and of [`Custom::check`], and at any time `Couple` or `Coefficient` if
 /// a law is not finite or supplies energy. A motion whose law is so stiff that it would need too many steps ends there
-/// with [`Limit::Stiff`]. `go_on` is called at every step, and a law that [fails](crate::custom::CoupleLaw::has_failed)
-/// interrupts the motion, too.
+/// with [`Limit::Stiff`](crate::motion::Limit::Stiff). `go_on` is called at every step, and a law that
+/// [fails](crate::custom::CoupleLaw::has_failed) interrupts the motion, too.
 ///
 /// ```
 /// use spincyl::{Body, State, contact::Friction, custom::{self, Custom}, motion::{Ask, Start}};
