@@ -6,7 +6,7 @@ import sys
 import pytest
 
 #: some systems give 128 KiB; NumPy and Python themselves need about 32
-KIB = 96
+KIB = 80
 
 JOB = """
 import sys, threading, numpy as np, spincyl as sc

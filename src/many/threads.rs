@@ -12,7 +12,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 /// thread is started, since it could fail in code that cannot return an error.
 const ARENA: usize = 80 << 20;
 
-/// The stack of a thread of this module. The stack of the caller may be as small as 96 KiB, which does not
+/// The stack of a thread of this module. The stack of the caller may be as small as 80 KiB, which does not
 /// hold the frames of lanes of many motions.
 const STACK: usize = 2 << 20;
 
