@@ -86,6 +86,9 @@ pub(crate) trait Flow<const M: usize>: Copy {
     const ENDLESS: Self::Halt = Self::PAUSE;
     /// Whether the stages of all steps form a loop: for rates so slow that the loop costs little in comparison.
     const LOOPS: bool = rk8::LOOPS;
+    /// Whether the rates take so long that a call of them costs nothing beside. They are then compiled once, and not at each
+    /// place where they are needed.
+    const CALLS: bool = cfg!(short_code);
     /// Writes the rates of all numbers in sigma.
     fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]);
     /// The margins, which must stay positive, and their rates in sigma.
@@ -183,11 +186,15 @@ pub(crate) trait Flow<const M: usize>: Copy {
     /// The inclination that an error names.
     fn theta<const N: usize>(&self, y: &[f64; N]) -> f64;
 
-    /// Writes the rates, in a single copy where the code has to be short.
-    #[cfg_attr(short_code, inline(never))]
-    #[cfg_attr(not(short_code), inline(always))]
+    #[inline(always)]
     fn write_rates_here<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {
-        self.write_rates(y, all);
+        if Self::CALLS { self.call_rates(y, all) } else { self.write_rates(y, all) }
+    }
+
+    /// Writes the rates, in a single copy.
+    #[inline(never)]
+    fn call_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {
+        in_registers!(self.write_rates(y, all));
     }
 
     #[inline(always)]
@@ -270,10 +277,7 @@ pub(crate) trait Flow<const M: usize>: Copy {
 
     #[inline(always)]
     fn part_at_once<const N: usize>(&self, from: &FlowPlace<N>, h: f64) -> [f64; N] {
-        in_registers!(
-            self.parted::<{ rk8::LOOPS }, N>(from, h).1,
-            else self.parted::<SPARES, N>(from, h).1
-        )
+        in_registers!(self.parted::<SPARES, N>(from, h).1)
     }
 
     #[inline(never)]

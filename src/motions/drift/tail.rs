@@ -168,16 +168,17 @@ fn powers<T: Real>(of: &Circular<Dual<T>>, y: Numbers<T>, far: T) -> [T; 4] {
     let far = dual(far, zero);
     // A small exponent is precise only if the state is steady to all digits.
     let steady = (0..2).fold(y.map(|x| dual(x, zero)), |y, _| of.settled(&y, far)).map(|x| x.value);
-    let rates = |slopes: Numbers<T>| {
+    let (mut slopes, mut lasts) = ([zero; 4], dual(zero, zero));
+    // The slopes of the second evaluation are the rates that the first one gives. In numbers of twice the digits the code of
+    // one evaluation is already long.
+    for _ in 0..2 {
         let y = core::array::from_fn(|i| dual(steady[i], slopes[i]));
-        (y, of.at(&y, far).rates)
-    };
-    let slopes = rates([zero; 4]).1.map(|x| x.value);
-    let (y, rate) = rates(slopes);
-    let unit = unit(&y, &rate);
+        let rate = of.at(&y, far).rates;
+        (slopes, lasts) = (rate.map(|x| x.value), unit(&y, &rate));
+    }
     let fold = slopes[0] / steady[0];
     let axial = slopes[2] / steady[2] / fold;
     // A body that does not spin about its axis has no exponent of w3.
     let axial = steady[2].abs().select_lt(one.splat(f64::MIN_POSITIVE), zero, axial);
-    [unit.value, unit.slope / unit.value / fold, one + slopes[1] / steady[1] / fold, axial]
+    [lasts.value, lasts.slope / lasts.value / fold, one + slopes[1] / steady[1] / fold, axial]
 }

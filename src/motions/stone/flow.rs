@@ -293,6 +293,7 @@ pub(super) fn output_slip<const N: usize>(y: &[f64; N]) -> [f64; 2] {
 
 impl Flow<STONE_MARGINS> for StoneFlow<'_> {
     type Halt = Halt;
+    const CALLS: bool = true;
     const TIME: usize = TIME;
     const OVER: Halt = Halt::Time;
     const PAUSE: Halt = Halt::Pause;
