@@ -42,6 +42,17 @@ enum Outlook {
     Unsure,
 }
 
+/// What is asked within a step, at shares of it: all margins with their rates in sigma, one margin alone, and
+/// [`Flow::grazed`]. Few steps are searched, so that the search is compiled once for all flows.
+struct StepParts<'a, const M: usize> {
+    margins: &'a dyn Fn(f64) -> [Dual<f64>; M],
+    margin: &'a dyn Fn(f64, usize) -> f64,
+    grazed: &'a dyn Fn(f64, usize, f64),
+    closely: bool,
+    /// The length of the step in sigma.
+    h: f64,
+}
+
 /// The margins at both ends of a step, and their rates in sigma.
 type Sides<'a, const M: usize> = (&'a [Dual<f64>; M], &'a [Dual<f64>; M]);
 
@@ -58,16 +69,28 @@ pub(super) fn failed<F: Flow<M>, const M: usize, const N: usize>(
     // A margin that rises from zero, as after an event that a flow passes, may still be negative in the
     // middle.
     let closely = F::CLOSELY && both.0.iter().all(|margin| margin.value > 0.0);
-    if M == 0 || long >= 1.0 && !closely {
-        return failure(flow, (from, h), both);
-    }
-    if long >= 1.0 && !(0..M).any(|i| is_near(both.0[i], both.1[i], h)) {
+    if M == 0 || long >= 1.0 && closely && !(0..M).any(|i| is_near(both.0[i], both.1[i], h)) {
         return None;
     }
-    match outlook(flow, (from, h), stages, both) {
-        Outlook::Clear => None,
-        Outlook::Falls => failure(flow, (from, h), both),
-        Outlook::Unsure => in_halves(flow, (from, h), (h * long.max(LONG), HALVINGS), both),
+    let outlook = match () {
+        () if long < 1.0 || closely => outlook(flow, (from, h), stages, both),
+        () if (0..M).any(|i| may_fail(both.0[i], both.1[i], h)) => Outlook::Falls,
+        () => Outlook::Clear,
+    };
+    if let Outlook::Clear = outlook {
+        return None;
+    }
+    let at = |x: f64| flow.part(from, x * h);
+    let parts = StepParts {
+        margins: &|x| flow.margins_at(&flow.place(at(x))),
+        margin: &|x, i| flow.margin(&at(x), i),
+        grazed: &|x, i, least| flow.grazed(&at(x), i, least),
+        closely: F::CLOSELY,
+        h,
+    };
+    match outlook {
+        Outlook::Unsure => parts.in_halves([0.0, 1.0], (h * long.max(LONG), HALVINGS), both),
+        _ => parts.failure([0.0, 1.0], both),
     }
 }
 
@@ -79,6 +102,12 @@ fn variation(a: Dual<f64>, b: Dual<f64>, h: f64) -> f64 {
 /// Whether a margin has a minimum between two places.
 fn is_least(a: Dual<f64>, b: Dual<f64>) -> bool {
     a.slope < 0.0 && b.slope >= 0.0
+}
+
+/// Whether a margin falls to zero in a part of length `h`, or dips below it, by the cubic through both ends.
+fn may_fail(a: Dual<f64>, b: Dual<f64>, h: f64) -> bool {
+    let dips = || is_least(a, b) && lowest(a, b, h) <= 0.0;
+    b.value.is_nan() || b.value <= 0.0 || dips()
 }
 
 /// Whether the variation of a margin is as large as the smaller of its values at the ends, or NaN.
@@ -140,40 +169,69 @@ fn outlook<F: Flow<M>, const M: usize, const N: usize>(
     if fallen.contains(&true) { Outlook::Falls } else { Outlook::Clear }
 }
 
-/// The first margin that fails within a step. The step is halved until its parts are at most `long`; these
-/// are halved up to `halvings` times, until no margin is `Wild`.
-fn in_halves<F: Flow<M>, const M: usize, const N: usize>(
-    flow: &F,
-    (from, h): (&FlowPlace<N>, f64),
-    (long, halvings): (f64, u32),
-    (before, after): Sides<'_, M>,
-) -> Option<(f64, usize)> {
-    if h <= long {
-        if !F::CLOSELY {
-            return failure(flow, (from, h), (before, after));
-        }
-        if !(0..M).any(|i| is_near(before[i], after[i], h)) {
-            return None;
-        }
-    }
-    let middle = flow.place(flow.part(from, 0.5 * h));
-    let between = flow.margins_at(&middle);
-    let bends = || (0..M).map(|i| bend(before[i], between[i], after[i], h).0);
-    if h <= long {
-        if bends().all(|bend| bend == Bend::Clear) {
-            for i in (0..M).filter(|i| is_least(before[*i], after[*i])) {
-                flow.grazed(&middle.y, i, bend(before[i], between[i], after[i], h).1);
+impl<const M: usize> StepParts<'_, M> {
+    /// The first margin that fails within a part of the step. The part is halved until its parts are at most `long`; these
+    /// are halved up to `halvings` times, until no margin is `Wild`.
+    fn in_halves(
+        &self,
+        [from, to]: [f64; 2],
+        (long, halvings): (f64, u32),
+        (before, after): Sides<'_, M>,
+    ) -> Option<(f64, usize)> {
+        let h = (to - from) * self.h;
+        if h <= long {
+            if !self.closely {
+                return self.failure([from, to], (before, after));
             }
-            return None;
+            if !(0..M).any(|i| is_near(before[i], after[i], h)) {
+                return None;
+            }
         }
-        if halvings == 0 || bends().all(|bend| bend != Bend::Wild) {
-            return failure(flow, (from, h), (before, after));
+        let middle = 0.5 * (from + to);
+        let between = (self.margins)(middle);
+        let bends = || (0..M).map(|i| bend(before[i], between[i], after[i], h).0);
+        if h <= long {
+            if bends().all(|bend| bend == Bend::Clear) {
+                for i in (0..M).filter(|i| is_least(before[*i], after[*i])) {
+                    (self.grazed)(middle, i, bend(before[i], between[i], after[i], h).1);
+                }
+                return None;
+            }
+            if halvings == 0 || bends().all(|bend| bend != Bend::Wild) {
+                return self.failure([from, to], (before, after));
+            }
         }
+        let left = (long, if h <= long { halvings - 1 } else { halvings });
+        let early = self.in_halves([from, middle], left, (before, &between));
+        early.or_else(|| self.in_halves([middle, to], left, (&between, after)))
     }
-    let left = (long, if h <= long { halvings - 1 } else { halvings });
-    let early = in_halves(flow, (from, 0.5 * h), left, (before, &between)).map(|(x, i)| (0.5 * x, i));
-    let late = || in_halves(flow, (&middle, 0.5 * h), left, (&between, after));
-    early.or_else(|| late().map(|(x, i)| (0.5 + 0.5 * x, i)))
+
+    /// The first margin that fails within a part of the step, by the cubics through both ends.
+    fn failure(&self, [from, to]: [f64; 2], (before, after): Sides<'_, M>) -> Option<(f64, usize)> {
+        let (mut first, h): (Option<(f64, usize)>, f64) = (None, (to - from) * self.h);
+        let share = |x: f64| from + x * (to - from);
+        for i in 0..M {
+            let (a, b) = (before[i], after[i]);
+            if !may_fail(a, b, h) {
+                continue;
+            }
+            let steadily = || {
+                let on = |x: f64| {
+                    let margin = (self.margins)(share(x))[i];
+                    Dual { slope: h * margin.slope, ..margin }
+                };
+                only_zero(on, [a.value, h * a.slope, b.value, h * b.slope])
+            };
+            let found = if b.value < 0.0 && b.slope < 0.0 && a.value > 0.0 { steadily() } else { None };
+            let found = found.map_or_else(|| first_zero(|x| (self.margin)(share(x), i), a.value, b.value), Ok);
+            match found {
+                Err((x, least)) => (self.grazed)(share(x), i, least),
+                Ok(x) if first.is_none_or(|(earlier, _)| share(x) < earlier) => first = Some((share(x), i)),
+                Ok(_) => {}
+            }
+        }
+        first
+    }
 }
 
 /// The shape of a margin within a part of a step.
@@ -208,42 +266,6 @@ fn bend(a: Dual<f64>, middle: Dual<f64>, b: Dual<f64>, h: f64) -> (Bend, f64) {
     // Halving the part does not help if the difference is NaN or a rounding error.
     let cubic = off.is_nan() || off <= CUBIC * variation(a, b, h) + MARGIN_ROUNDING;
     (if cubic && (once || off.is_nan()) { Bend::Plain } else { Bend::Wild }, low)
-}
-
-/// The first margin that fails within a step, by the cubics through both ends.
-#[cfg_attr(short_code, inline(never))]
-fn failure<F: Flow<M>, const M: usize, const N: usize>(
-    flow: &F,
-    (from, h): (&FlowPlace<N>, f64),
-    (before, after): Sides<'_, M>,
-) -> Option<(f64, usize)> {
-    let mut first: Option<(f64, usize)> = None;
-    for i in 0..M {
-        let (a, b) = (before[i], after[i]);
-        let dips = is_least(a, b) && lowest(a, b, h) <= 0.0;
-        if b.value > 0.0 && !dips {
-            continue;
-        }
-        let steadily = || {
-            let on = |x: f64| {
-                let margin = flow.margins_at(&flow.place(flow.part(from, x * h)))[i];
-                Dual { slope: h * margin.slope, ..margin }
-            };
-            only_zero(on, [a.value, h * a.slope, b.value, h * b.slope])
-        };
-        let found = if b.value < 0.0 && b.slope < 0.0 && a.value > 0.0 { steadily() } else { None };
-        let on = |x: f64| flow.margin(&flow.part(from, x * h), i);
-        let found = found.map_or_else(|| first_zero(on, a.value, b.value), Ok);
-        if let Err((x, least)) = found {
-            flow.grazed(&flow.part(from, x * h), i, least);
-        }
-        if let Ok(x) = found
-            && first.is_none_or(|(earlier, _)| x < earlier)
-        {
-            first = Some((x, i));
-        }
-    }
-    first
 }
 
 /// A lower bound of a margin between the ends of a step of `h`, as far as the margin is the cubic through

@@ -186,11 +186,6 @@ pub(crate) trait Flow<const M: usize>: Copy {
     /// The inclination that an error names.
     fn theta<const N: usize>(&self, y: &[f64; N]) -> f64;
 
-    #[inline(always)]
-    fn write_rates_here<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {
-        if Self::CALLS { self.call_rates(y, all) } else { self.write_rates(y, all) }
-    }
-
     /// Writes the rates, in a single copy.
     #[inline(never)]
     fn call_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {
@@ -200,7 +195,7 @@ pub(crate) trait Flow<const M: usize>: Copy {
     #[inline(always)]
     fn rates<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
         let mut all = *y;
-        self.write_rates_here(y, &mut all);
+        self.call_rates(y, &mut all);
         all
     }
 
@@ -239,7 +234,9 @@ pub(crate) trait Flow<const M: usize>: Copy {
     ) -> rk8::Step<f64, N> {
         let rates = here(
             #[inline(always)]
-            |y: &[f64; N], rate: &mut [f64; N]| self.write_rates_here(y, rate),
+            |y: &[f64; N], rate: &mut [f64; N]| {
+                if LOOP || Self::CALLS { self.call_rates(y, rate) } else { self.write_rates(y, rate) }
+            },
         );
         if LOOP || Self::LOOPS {
             rk8::step::<true, _, _>(rates, &from.y, &from.rate, h, stages)
@@ -275,9 +272,12 @@ pub(crate) trait Flow<const M: usize>: Copy {
         y
     }
 
-    #[inline(always)]
+    #[inline(never)]
     fn part_at_once<const N: usize>(&self, from: &FlowPlace<N>, h: f64) -> [f64; N] {
-        in_registers!(self.parted::<SPARES, N>(from, h).1)
+        in_registers!(
+            self.parted::<{ rk8::LOOPS }, N>(from, h).1,
+            else self.parted::<SPARES, N>(from, h).1
+        )
     }
 
     #[inline(never)]
