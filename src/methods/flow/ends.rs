@@ -223,7 +223,8 @@ impl<const M: usize> StepParts<'_, M> {
                 only_zero(on, [a.value, h * a.slope, b.value, h * b.slope])
             };
             let found = if b.value < 0.0 && b.slope < 0.0 && a.value > 0.0 { steadily() } else { None };
-            let found = found.map_or_else(|| first_zero(|x| (self.margin)(share(x), i), a.value, b.value), Ok);
+            let found =
+                found.map_or_else(|| first_zero(|x| (self.margin)(share(x), i), a.value, b.value), Ok);
             match found {
                 Err((x, least)) => (self.grazed)(share(x), i, least),
                 Ok(x) if first.is_none_or(|(earlier, _)| share(x) < earlier) => first = Some((share(x), i)),
