@@ -16,6 +16,7 @@ use crate::methods::radau;
 use crate::methods::rk8::{self, Stages};
 use crate::methods::search::{crossing, least};
 use crate::numbers::Dual;
+use core::cell::RefCell;
 
 /// Within a step longer than this share of the longest step that rotation and nutation allow, a margin may fall and
 /// rise again; such a step is searched for that.
@@ -43,11 +44,13 @@ enum Outlook {
 }
 
 /// What is asked within a step, at shares of it: all margins with their rates in sigma, one margin alone, and
-/// [`Flow::grazed`]. Few steps are searched, so that the search is compiled once for all flows.
+/// [`Flow::grazed`]; further parts begin at a share of the step from which they are asked to go on. Few steps are searched,
+/// so that the search is compiled once for all flows.
 struct StepParts<'a, const M: usize> {
     margins: &'a dyn Fn(f64) -> [Dual<f64>; M],
     margin: &'a dyn Fn(f64, usize) -> f64,
     grazed: &'a dyn Fn(f64, usize, f64),
+    goes_on_from: &'a dyn Fn(f64),
     closely: bool,
     /// The length of the step in sigma.
     h: f64,
@@ -80,11 +83,19 @@ pub(super) fn failed<F: Flow<M>, const M: usize, const N: usize>(
     if let Outlook::Clear = outlook {
         return None;
     }
-    let at = |x: f64| flow.part(from, x * h);
+    let begin = RefCell::new((0.0, *from));
+    let at = |x: f64| {
+        let (past, from) = &*begin.borrow();
+        flow.part(from, (x - past) * h)
+    };
     let parts = StepParts {
         margins: &|x| flow.margins_at(&flow.place(at(x))),
         margin: &|x, i| flow.margin(&at(x), i),
         grazed: &|x, i, least| flow.grazed(&at(x), i, least),
+        goes_on_from: &|x| {
+            let middle = flow.place(at(x));
+            *begin.borrow_mut() = (x, middle);
+        },
         closely: F::CLOSELY,
         h,
     };
@@ -203,7 +214,10 @@ impl<const M: usize> StepParts<'_, M> {
         }
         let left = (long, if h <= long { halvings - 1 } else { halvings });
         let early = self.in_halves([from, middle], left, (before, &between));
-        early.or_else(|| self.in_halves([middle, to], left, (&between, after)))
+        early.or_else(|| {
+            (self.goes_on_from)(middle);
+            self.in_halves([middle, to], left, (&between, after))
+        })
     }
 
     /// The first margin that fails within a part of the step, by the cubics through both ends.
