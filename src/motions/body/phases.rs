@@ -3,7 +3,7 @@
 use super::fly::Takeoff;
 use super::lie::flow::LyingPhase;
 use super::own::Own;
-use super::roll::lossy::{LossyFlow, with_patch};
+use super::roll::lossy::LossyFlow;
 use super::slide::Slide;
 use super::slide::slow::{BodySlips, Slippery};
 use super::spun::{Roundings, knows};
@@ -20,6 +20,7 @@ use crate::laws::loss::{Couples, Holds, Losses};
 use crate::laws::state::{State, drilling_of, rolling_of};
 use crate::methods::flow::{Flow, FlowPlace, Steps};
 use crate::motions::ask::row::OutputRow;
+use crate::motions::dry::creep::Creeps;
 use crate::motions::walk::errors::doubted;
 use crate::motions::walk::numbers::{
     BodyNumbers, COS, HEAT, Halt, SIN, TIME, U2, UH, W1, W2, W3, leans_over, loses, lost, poses,
@@ -70,8 +71,6 @@ pub(crate) struct BodyPhases<G: Own = ()> {
     /// Whether the caller computes the phases of rolling that the first integrals solve, among those of other walks.
     #[cfg(feature = "many")]
     pub(crate) rolls_among: bool,
-    /// The losses of a body that does not slip, with the drilling friction of a patch of contact.
-    pub(super) rolling_losses: Losses,
     /// The current phase, if it loses energy without a slip.
     pub(super) lossy: Option<LossyPhase<G>>,
     /// The current phase, if the body lies on both rims.
@@ -262,22 +261,22 @@ impl<G: Own> BodyPhases<G> {
     /// The data of a walk under these laws, with steps of the tolerance `tol`.
     pub(crate) fn of(body: &Body, ask: &Ask, tol: f64, start: &Start, own: G) -> Self {
         let &Start { state, slip, .. } = start;
-        let rolling_losses = with_patch(&ask.losses, &ask.table.friction());
-        let slide = Slide::new(body, &ask.table.friction(), &ask.losses, tol, own);
+        let friction = ask.table.friction();
+        let slide = Slide::new(body, &friction, &ask.losses, tol, own);
+        let loses = !ask.losses.is_none() || friction.patch() > 0.0 || own.has_couple();
         Self {
             body: *body,
             own,
             slide,
             state,
             start: state,
-            integrates: ask.table == Table::Smooth || !rolling_losses.is_none() || own.has_couple(),
+            integrates: ask.table == Table::Smooth || loses,
             rolls_briefly: false,
             by_steps: false,
             uniform: false,
             roundings: Roundings::default(),
             #[cfg(feature = "many")]
             rolls_among: false,
-            rolling_losses,
             lossy: None,
             lying: None,
             takeoff: Takeoff::default(),

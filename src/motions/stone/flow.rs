@@ -16,7 +16,7 @@ use crate::laws::stone::{StonePose, StoneState};
 use crate::methods::flow::{Flow, FlowPlace, TakenStep, looks};
 use crate::methods::{SHORT_CODE, radau, rk8};
 use crate::motions::body::roll::lossy::REST;
-use crate::motions::dry::creep::{IMPLICIT_TURNS, rests_below};
+use crate::motions::dry::creep::{Creeps, IMPLICIT_TURNS, rests_below};
 use crate::motions::walk::numbers::{Halt, TIME, loses};
 use crate::motions::walk::{MOMENT, slip_over};
 use crate::numbers::vector::{dot, plus};
@@ -129,7 +129,7 @@ impl StoneFlow<'_> {
         w: [T; 3],
         slip: Option<[T; 2]>,
     ) -> Seen<T> {
-        let lab = laboratory(if law.patch().is_some() { unit_quaternion(q) } else { q });
+        let lab = self.axes(q);
         let mut at = law.touching(lab[2], w);
         let zero = w[0].splat(0.0);
         let mut even = zero.splat(1.0);
@@ -144,6 +144,12 @@ impl StoneFlow<'_> {
             _ => (law.pulled(&at, w, [zero; 3]), even),
         };
         Seen { lab, at, to, pace }
+    }
+
+    /// The axes of the laboratory, along those of the stone.
+    #[inline(always)]
+    pub(super) fn axes<T: Real>(&self, q: [T; 4]) -> [[T; 3]; 3] {
+        laboratory(if self.law.patch().is_some() { unit_quaternion(q) } else { q })
     }
 
     #[inline(always)]
@@ -275,8 +281,8 @@ pub(super) fn spot<const N: usize>(y: &[f64; N], rate: &[f64; N]) -> Spot {
 
 /// The slip among these numbers; zero if they have none.
 #[inline(always)]
-pub(super) fn slip_of<const N: usize>(y: &[f64; N]) -> [f64; 2] {
-    if N >= ALL { y.slid() } else { [0.0; 2] }
+pub(super) fn slip_of<T: Real, const N: usize>(y: &[T; N]) -> [T; 2] {
+    if N >= ALL { y.slid() } else { [y[0].splat(0.0); 2] }
 }
 
 /// The slip in the outputs: its components in the laboratory frame in which the stone has the orientation of
@@ -388,7 +394,7 @@ impl Flow<STONE_MARGINS> for StoneFlow<'_> {
         if loses(N) {
             most = most.min(self.longest_of_roots(place));
         }
-        if self.law.patch().is_none() {
+        if self.law.patch().is_none() || self.touch != Touch::Slips {
             return most;
         }
         (if self.is_stiff(place) { IMPLICIT_TURNS * most } else { most }).min(self.kinked(place))
@@ -398,7 +404,7 @@ impl Flow<STONE_MARGINS> for StoneFlow<'_> {
 
     #[inline(always)]
     fn is_stiff<const N: usize>(&self, place: &FlowPlace<N>) -> bool {
-        N >= ALL && self.law.patch().is_some() && self.creeps_fast(place)
+        N >= ALL && self.touch == Touch::Slips && self.law.patch().is_some() && self.creeps_fast(place)
     }
 
     fn stable<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {

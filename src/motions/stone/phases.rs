@@ -18,7 +18,7 @@ use crate::laws::stone::{Ellipsoid, StoneState};
 use crate::methods::SHORT_CODE;
 use crate::methods::flow::{Flow, Flown, Steps};
 use crate::motions::body::roll::lossy::JUMP;
-use crate::motions::dry::creep::LOST_DRILLING;
+use crate::motions::dry::creep::{Creeps, LOST_DRILLING};
 use crate::motions::walk::numbers::{Halt, TIME, loses};
 use crate::motions::walk::slow::clear_until;
 use crate::motions::walk::{Next, Pause, Phases, SlowSeries, Walk, WalkStep, after_rest, ending};

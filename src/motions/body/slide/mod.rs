@@ -27,7 +27,7 @@ use crate::laws::loss::{Couples, Holds, Law, Losses};
 use crate::laws::state::State;
 use crate::methods::flow::{FASTEST, Flow, FlowPlace};
 use crate::methods::{radau, rk8};
-use crate::motions::dry::creep::{Creeping, IMPLICIT_TURNS, rests_below};
+use crate::motions::dry::creep::{Creeping, Creeps, IMPLICIT_TURNS, rests_below};
 use crate::motions::dry::settled::EFFORT;
 use crate::motions::walk::numbers::{
     BodyNumbers, COS, HEAT, Halt, MARGINS, PHI, SIN, TIME, U2, UH, W1, W2, W3, loses, pose_rates, poses,
@@ -566,7 +566,7 @@ impl<L: Own> Flow<MARGINS> for Slide<L> {
             return Some((Halt::Settles, place.y));
         }
         if self.law.patch().is_some() {
-            return self.hardly_rubs(place);
+            return self.rubs_no_more(place);
         }
         if !self.sticks {
             return None;
