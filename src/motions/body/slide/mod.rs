@@ -22,8 +22,8 @@ use super::pole;
 use super::roll::lossy::REST;
 use crate::laws::body::{Body, Rim, Shape, landing_angle};
 use crate::laws::contact::Force;
-use crate::laws::contact::slip::{Friction, SlipResponse, Slipping};
-use crate::laws::loss::{Couples, Holds, Law, Losses};
+use crate::laws::contact::slip::{FollowsSpeed, Friction, SlipResponse, Slipping};
+use crate::laws::loss::{Couples, Holds, Law, Losses, OwnCouple};
 use crate::laws::state::State;
 use crate::methods::flow::{FASTEST, Flow, FlowPlace};
 use crate::methods::{radau, rk8};
@@ -312,6 +312,53 @@ impl<L: Own> Slide<L> {
         }
     }
 
+    /// The margins of these numbers under this law, or only one of them, which may not need the response that `act` computes.
+    #[inline(always)]
+    fn margins_of<T: Real, const N: usize>(
+        &self,
+        law: &Slipping<T, L, L>,
+        [s, c, mut w1, w2, mut w3, u_h, u_2]: [T; 7],
+        only: Option<usize>,
+        act: impl FnOnce((T, T), [T; 3], [T; 2]) -> SlipResponse<T>,
+    ) -> [T; MARGINS]
+    where
+        L: OwnCouple<T> + FollowsSpeed<T>,
+    {
+        if self.settled {
+            (w1, w3) = (s * w1, c * w1);
+        }
+        let (angle, w, u, one) = ((s, c), [w1, w2, w3], [u_h, u_2], s.splat(1.0));
+        let mut all = [one; MARGINS];
+        if !self.ball {
+            all[0] = s - s.splat(self.flat);
+        }
+        if self.theta_end < PI {
+            let (high, far) = landing_angle(self.theta_end);
+            all[1] = s.splat(high) * c - s.splat(far) * s;
+        }
+        let of_losses = only.is_none_or(|i| i > 3);
+        let losses = law.losses.as_ref().filter(|_| loses(N) && of_losses);
+        let holds = losses.is_some_and(|losses| losses.holds() != Holds::default());
+        let [mut held, mut kept] = [[one; 2]; 2];
+        if only.is_none_or(|i| matches!(i, 2 | 3)) || holds {
+            let at = act(angle, w, u);
+            (all[2], all[3], held, kept) = (at.free, at.room, at.held, at.kept);
+        }
+        if let Some(losses) = losses {
+            let seen = losses.seen(&law.shape.rim, angle, w1 / s, w);
+            [all[4], all[5]] = ways(losses, &seen, held, self.surely(kept));
+        }
+        if self.settled && of_losses {
+            let bare = law.with_losses(self.bare.losses.map(|losses| losses.map(|x| s.splat(x))));
+            let [push, drilling] = self.pushed_on(&bare, angle, w, u);
+            all[4] = push;
+            if self.holds().drilling {
+                all[5] = drilling;
+            }
+        }
+        all
+    }
+
     /// The time in which the body turns by about a radian, at most a unit of time.
     pub(crate) fn moment<const N: usize>(&self, y: &[f64; N]) -> f64 {
         (longest(y, &self.law.shape) / 3.0).min((y[SIN] / y[W2]).abs()).min(1.0)
@@ -470,71 +517,16 @@ impl<L: Own> Flow<MARGINS> for Slide<L> {
     }
 
     fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; MARGINS] {
-        let dual = |i: usize| Dual { value: place.y[i], slope: place.rate[i] };
-        let [s, c, mut w1, w2, mut w3, u_h, u_2] = core::array::from_fn(dual);
-        if self.settled {
-            (w1, w3) = (s * w1, c * w1);
-        }
-        let (angle, w, u) = ((s, c), [w1, w2, w3], [u_h, u_2]);
-        // Only these three are needed, and for a contact point no others are computed.
-        let needed = |at: SlipResponse<_>| (at.free, at.room, [at.held, at.kept]);
-        let (free, room, [held, kept]) = match self.sloped.patch() {
-            Some(patch) => needed(self.sloped_on(angle, w, u, patch).0),
-            None => needed(self.sloped.at(angle, w, u).0),
-        };
-        let one = s.splat(1.0);
-        let (high, far) = landing_angle(self.theta_end);
-        let side = if self.theta_end < PI { s.splat(high) * c - s.splat(far) * s } else { one };
-        let [contour, drilling] = match self.sloped.losses.as_ref().filter(|_| loses(N)) {
-            Some(losses) => {
-                let seen = losses.seen(&self.sloped.shape.rim, (s, c), w1 / s, [w1, w2, w3]);
-                ways(losses, &seen, held, self.surely(kept))
-            }
-            None => [one; 2],
-        };
-        let face = s - s.splat(self.flat);
-        let [contour, drilling] = if self.settled {
-            let losses = self.bare.losses.map(|losses| losses.map(|value| Dual { value, slope: 0.0 }));
-            let bare = self.sloped.with_losses(losses);
-            let [push, kept] = self.pushed_on(&bare, (s, c), [w1, w2, w3], [u_h, u_2]);
-            [push, if self.holds().drilling { kept } else { drilling }]
-        } else {
-            [contour, drilling]
-        };
-        [if self.ball { one } else { face }, side, free, room, contour, drilling]
+        let y = core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
+        self.margins_of::<_, N>(&self.sloped, y, None, |angle, w, u| match self.sloped.patch() {
+            Some(patch) => self.sloped_on(angle, w, u, patch).0,
+            None => self.sloped.at(angle, w, u).0,
+        })
     }
 
     fn margin<const N: usize>(&self, y: &[f64; N], i: usize) -> f64 {
-        let [s, c, mut w1, w2, mut w3, u_h, u_2, ..] = core::array::from_fn::<_, 9, _>(|i| y[i]);
-        if self.settled {
-            (w1, w3) = (s * w1, c * w1);
-        }
-        match SLIP_ENDS[i] {
-            Halt::Face => s - self.flat,
-            Halt::Contour if self.settled => self.pushed_on(&self.bare, (s, c), [w1, w2, w3], [u_h, u_2])[0],
-            Halt::Drilling if self.settled && self.holds().drilling => {
-                self.pushed_on(&self.bare, (s, c), [w1, w2, w3], [u_h, u_2])[1]
-            }
-            Halt::Side => {
-                let (high, far) = landing_angle(self.theta_end);
-                high * c - far * s
-            }
-            Halt::Contour | Halt::Drilling => {
-                let Some(losses) = self.law.losses else { return 1.0 };
-                let seen = losses.seen(&self.law.shape.rim, (s, c), w1 / s, [w1, w2, w3]);
-                let [held, kept] = if losses.holds() == Holds::default() {
-                    [[1.0; 2]; 2]
-                } else {
-                    let at = self.acts((s, c), [w1, w2, w3], [u_h, u_2]);
-                    [at.held, at.kept]
-                };
-                ways(&losses, &seen, held, self.surely(kept))[usize::from(SLIP_ENDS[i] == Halt::Drilling)]
-            }
-            end => {
-                let at = self.acts((s, c), [w1, w2, w3], [u_h, u_2]);
-                if end == Halt::LiftOff { at.free } else { at.room }
-            }
-        }
+        let y = core::array::from_fn(|i| y[i]);
+        self.margins_of::<_, N>(&self.law, y, Some(i), |angle, w, u| self.acts(angle, w, u))[i]
     }
 
     /// The halt of an almost vanished slip, extrapolated to u = 0, or of a body that
