@@ -21,13 +21,14 @@ use crate::laws::state::{State, drilling_of, rolling_of};
 use crate::methods::flow::{Flow, FlowPlace, Steps};
 use crate::motions::ask::row::OutputRow;
 use crate::motions::dry::creep::Creeps;
+use crate::motions::dry::friction::slipped;
 use crate::motions::walk::errors::doubted;
 use crate::motions::walk::numbers::{
     BodyNumbers, COS, HEAT, Halt, SIN, TIME, U2, UH, W1, W2, W3, leans_over, loses, lost, poses,
 };
 use crate::motions::walk::slow::clear_until;
 use crate::motions::walk::two_runs::CHANCE;
-use crate::motions::walk::{MOMENT, Next, Pause, Phases, STILL, SlowSeries, Walk, WalkStep};
+use crate::motions::walk::{Next, Pause, Phases, STILL, SlowSeries, Walk, WalkStep};
 use crate::motions::{Ask, Ending, Kind, Limit, Phase, Start};
 use core::f64::consts::{FRAC_PI_2, PI};
 
@@ -43,9 +44,6 @@ pub(crate) const LONGER: f64 = 3.0;
 /// The first step of a phase, as a share of the last step of the phase of its kind before.
 const LATELY: f64 = 0.5;
 
-/// For this share of the time in which the body turns by a radian, at most of a unit of time, a slip keeps its direction
-/// after static friction has ceased to hold. The error is the cube of this share.
-pub(crate) const KEEPS_ITS_WAY: f64 = 1e-5;
 /// Size of cos theta below which a rougher run perturbs this number and not theta.
 const LEVEL: f64 = 1e-3;
 
@@ -543,15 +541,10 @@ impl<G: Own, const N: usize> Phases<N> for BodyPhases<G> {
         let slide = walk.of.slide;
         let begins = walk.at.slip() == [0.0; 2] && way != [0.0; 2] && slide.begins_to_roll().is_none();
         if G::IS && begins {
-            // A slip that begins continuously grows from zero, and keeps its direction for a moment.
-            let share = if growth == 0.0 { KEEPS_ITS_WAY } else { MOMENT };
-            let lasts = share * slide.moment(&walk.at);
-            let from = walk.at[TIME];
-            while let Some(t) = walk.until().filter(|t| *t <= from + lasts) {
-                let y = slide.slipped(&walk.at, way, t - from);
-                Self::write(walk, &y);
-            }
-            return slide.slipped(&walk.at, way, lasts);
+            let (at, moment) = (walk.at, slide.moment(&walk.at));
+            return walk.keeps_its_way(growth, moment, |lasts| {
+                slipped(&at, UH, (way, lasts), |y| slide.rates_along(y, way))
+            });
         }
         let y = slide.nudged(&walk.at, way, growth);
         walk.of.slide.rolls_freely();

@@ -28,6 +28,7 @@ use crate::laws::state::State;
 use crate::methods::flow::{FASTEST, Flow, FlowPlace};
 use crate::methods::{radau, rk8};
 use crate::motions::dry::creep::{Creeping, Creeps, IMPLICIT_TURNS, rests_below};
+use crate::motions::dry::friction::LEAST_GROWTH;
 use crate::motions::dry::settled::EFFORT;
 use crate::motions::walk::numbers::{
     BodyNumbers, COS, HEAT, Halt, MARGINS, PHI, SIN, TIME, U2, UH, W1, W2, W3, loses, pose_rates, poses,
@@ -53,8 +54,6 @@ const SHARE_OF_LAST: f64 = 0.5;
 const MUCH_FASTER: f64 = 10.0;
 /// Largest angle between the direction of such a slip and its mean.
 const STRAIGHT: f64 = 1e-2;
-/// The least growth of a slip that begins, so that it has a direction.
-pub(crate) const LEAST_GROWTH: f64 = 1e-30;
 /// Angle by which a direction beside that of a slip differs from it.
 const BESIDE: f64 = 1e-3;
 
@@ -365,7 +364,7 @@ impl<L: Own> Slide<L> {
     }
 
     /// The rates of all numbers in time, for a slip that begins along `way` under a law of the user.
-    fn rates_along<const N: usize>(&self, y: &[f64; N], way: [f64; 2]) -> [f64; N] {
+    pub(crate) fn rates_along<const N: usize>(&self, y: &[f64; N], way: [f64; 2]) -> [f64; N] {
         let ((s, c), w, mut all) = (y.angle(), y.w(), [0.0; N]);
         let at = self.law.towards((s, c), w, [0.0; 2], way);
         self.law.writes(y, &mut all, (&at, 1.0));
@@ -377,17 +376,6 @@ impl<L: Own> Slide<L> {
         if loses(N) {
             all[N - 1] = self.law.power((s, c), w, at.force[0]);
         }
-        all
-    }
-
-    /// The numbers at the time `lasts` after a slip has begun along `way` under a law of the user, by the rates at the
-    /// middle of that time.
-    pub(crate) fn slipped<const N: usize>(&self, from: &[f64; N], way: [f64; 2], lasts: f64) -> [f64; N] {
-        let moved = |rate: &[f64; N], by: f64| core::array::from_fn(|i| by.mul_add(rate[i], from[i]));
-        let half: [f64; N] = moved(&self.rates_along(from, way), 0.5 * lasts);
-        let mut all: [f64; N] = moved(&self.rates_along(&half, way), lasts);
-        let speed = (all[UH] * way[0] + all[U2] * way[1]).max(LEAST_GROWTH * lasts);
-        (all[UH], all[U2]) = (speed * way[0], speed * way[1]);
         all
     }
 
