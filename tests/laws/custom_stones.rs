@@ -129,16 +129,13 @@ fn a_ball_is_the_same_under_stribecks_friction_as_a_body_and_as_a_stone() {
     let turned = StoneState { vertical: [s, 0.0, c], w };
     let b = own(&stone, Start::from(turned).with_slip(slip), &times, &ask, &stribeck).unwrap();
     let a = a.unwrap().unwrap();
-    let paths = [a.path.as_ref().unwrap(), b.path.as_ref().unwrap()];
-    for i in 0..times.len() {
-        let spin = (
-            a.states[i].w1 * a.states[i].theta.sin() + a.states[i].w3 * a.states[i].theta.cos(),
-            b.states[i].spin(),
-        );
-        assert!((spin.0 - spin.1).abs() < 1e-10, "{spin:?}");
-        assert!((paths[0].dissipated[i] - paths[1].dissipated[i]).abs() < 1e-10);
+    let (ours, theirs) = (a.path.as_ref().unwrap(), b.path.as_ref().unwrap());
+    for (i, (y, stone)) in a.states.iter().zip(&b.states).enumerate() {
+        let spin = y.w1 * y.theta.sin() + y.w3 * y.theta.cos();
+        assert!((spin - stone.spin()).abs() < 1e-10, "{spin} {}", stone.spin());
+        assert!((ours.dissipated[i] - theirs.dissipated[i]).abs() < 1e-10);
     }
-    let ends = paths.map(|path| path.phases[1].time);
+    let ends = [ours.phases[1].time, theirs.phases[1].time];
     assert!((ends[0] - ends[1]).abs() < 1e-9 && ends[0] > 1.0, "{ends:?}");
 }
 
