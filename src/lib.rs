@@ -98,7 +98,7 @@ pub mod custom {
     //! Source of the example: Armstrong-Helouvry, Dupont and Canudas de Wit, Automatica 30, 1083 (1994), for Stribeck's law.
 
     pub use crate::laws::custom::{CoupleLaw, Custom, FrictionLaw};
-    pub use crate::motions::custom::roll_with;
+    pub use crate::motions::custom::{roll_stone, roll_with};
 }
 
 pub mod stone {

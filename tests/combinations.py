@@ -87,8 +87,6 @@ REASONS = [
            "Impacts of stones are not computed yet: their motion ends where they leave the table."),
     Reason("F", r"^restitution = .* cannot be combined with a patch of contact", False,
            "Impacts on a patch are not computed yet."),
-    Reason("G", r"a law of your own works only .*for bodies of revolution", False,
-           "Friction of your own is not computed yet for stones."),
 ]  # fmt: skip
 #: The refusal of a body in the air whose outline is not known.
 SHAPE = r"^theta_end = .* its shape is unknown"

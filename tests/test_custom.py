@@ -215,15 +215,9 @@ def test_a_stiff_law_is_named_where_its_motion_is_given_up():
         lambda: sc.scene(sc.roll(COIN, START, T, losses=CUBIC + sc.loss.AirLinear(1e-3))),
         lambda: sc.drift(COIN, 0.5, CUBIC),
         lambda: sc.sweep.roll(
-            sc.Ellipsoid.egg(1.0, 1.5), sc.Ellipsoid.egg(1.0, 1.5).spinning(1.0), 1.0, contact=FALLING
-        ),
-        lambda: sc.sweep.roll(
             sc.Ellipsoid.egg(1.0, 1.5), sc.Ellipsoid.egg(1.0, 1.5).spinning(1.0), 1.0, losses=CUBIC
         ),
         lambda: sc.turning_spin(sc.Body.ball(0.2, i1=0.4, i3=0.4), FALLING),
-        lambda: sc.roll(
-            sc.Ellipsoid.egg(1.0, 1.5), sc.Ellipsoid.egg(1.0, 1.5).spinning(1.0), T, contact=FALLING
-        ),
         lambda: sc.scene(sc.roll(COIN, START, T, contact=FALLING)),
         lambda: sc.scene(sc.roll(COIN, START, T, losses=CUBIC)),
         lambda: sc.play(COIN, state=START, contact=FALLING),

@@ -171,7 +171,7 @@ class Viscous(_Law):
 #: A law of friction.
 Friction: TypeAlias = Coulomb | Viscous
 #: Where a law works that a user wrote.
-OWN = "a law of your own works only in sc.roll and sc.sweep.roll, for bodies of revolution"
+OWN = "a law of your own works only in sc.roll and sc.sweep.roll"
 #: Every kind of contact.
 AnyContact: TypeAlias = Contact | Friction
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from spincyl import _core
 from spincyl._asked import Asked, crossing
-from spincyl._contact import AnyContact, built_in
+from spincyl._contact import AnyContact
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._ellipsoid_state import EllipsoidState
 from spincyl._ending import Event
@@ -136,7 +136,6 @@ def start_of(state: Any, contact: AnyContact, step: object, method: object, rest
             "step, method: only for bodies of revolution; for a stone leave them out, or give tol="
         )
     unstruck(restitution)
-    built_in(contact)
     return state if rubs(contact) else EllipsoidState(state.vertical, state.w)
 
 

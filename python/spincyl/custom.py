@@ -93,7 +93,7 @@ class Couple(Loss):
     @property
     def laws(self) -> tuple[Law, ...]:
         """Raises TypeError, since a law that is a function has no coefficients to list."""
-        raise TypeError(f"losses = {self!r}: {OWN}")
+        raise TypeError(f"losses = {self!r}: {OWN}, for bodies of revolution")
 
     @property
     def _built_in(self) -> Loss | None:
@@ -172,7 +172,7 @@ class Friction(Coulomb):
     ------
     TypeError
         If `function` is not callable, or is a C function of another signature. Also if the law is used for
-        a stone, for lazy arrays, or on a page.
+        lazy arrays, or on a page.
     ValueError
         In `sc.roll` and `sc.sweep.roll`, if the coefficient is negative, is not finite, or jumps.
 

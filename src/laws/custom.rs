@@ -94,6 +94,11 @@ impl<'a> Custom<'a> {
     /// friction (`fixed`).
     pub fn check(&self, body: &Body, fixed: f64) -> Result<(), Error> {
         self.couple.map_or(Ok(()), |law| check_couple(law, body))?;
+        self.check_friction(fixed)
+    }
+
+    /// The check of the law of friction alone.
+    pub(crate) fn check_friction(&self, fixed: f64) -> Result<(), Error> {
         self.friction.map_or(Ok(()), |law| check_friction(law, fixed))
     }
 }

@@ -1,17 +1,21 @@
 //! The motions of many stones, computed one by one on threads, and the reversals of their spin.
 
+use super::motions::CustomLaws;
 use super::threads::share;
 use crate::error::{Error, room};
+use crate::laws::custom::Custom;
 use crate::laws::loss::Losses;
 use crate::laws::stone::{Ellipsoid, StoneState};
+use crate::methods::beat::Beat;
 use crate::motions::Path;
+use crate::motions::custom::stone_followed;
 use crate::motions::stone::check_stone;
-use crate::motions::stone::followed;
 use crate::motions::stone::known::Recorded;
 use crate::motions::stone::turns::Reversals;
 use crate::motions::walk::two_runs::Followed;
 use crate::motions::{Ask, Ending, Motion, Moving, Start};
 use core::cell::RefCell;
+use std::sync::OnceLock;
 
 /// The numbers of one motion: its stone, initial state and slip, and its own coefficients of friction and
 /// losses, if any.
@@ -92,25 +96,66 @@ pub fn many(
     threads: usize,
     go_on: &mut dyn FnMut(f64) -> bool,
 ) -> Result<Option<Vec<StoneSummary>>, Error> {
-    check_stone(&StoneState { vertical: [0.0, 0.0, 1.0], w: [0.0; 3] }.into(), times, ask)?;
+    let laws = CustomLaws::Anywhere(&Custom::default);
+    many_custom(count, row, times, (ask, turns), (&laws, threads), go_on)
+}
+
+/// Computes the motions of [`many`] under a law of friction of the user, whose wrong values are errors.
+pub(crate) fn many_custom(
+    count: usize,
+    row: &(dyn Fn(usize) -> StoneRow + Sync),
+    times: &[f64],
+    how: (&Ask, bool),
+    (laws, threads): (&CustomLaws<'_>, usize),
+    go_on: &mut dyn FnMut(f64) -> bool,
+) -> Result<Option<Vec<StoneSummary>>, Error> {
+    check_stone(&StoneState { vertical: [0.0, 0.0, 1.0], w: [0.0; 3] }.into(), times, how.0)?;
     let mut all = room(count)?;
     all.resize(count, StoneSummary::none(Ending::Invalid));
-    let blocks = all.chunks_mut(16).enumerate().collect();
-    let done = share(blocks, threads, go_on, |(block, to): (usize, &mut [StoneSummary]), still| {
-        for (k, to) in to.iter_mut().enumerate() {
-            *to = one(&row(16 * block + k), times, (ask, turns), still);
+    let done = match laws {
+        CustomLaws::Here(custom) => {
+            let (mut beat, mut goes_on) = (Beat::new(), true);
+            for (k, to) in all.iter_mut().enumerate() {
+                let mut still = || {
+                    goes_on = goes_on && (!beat.is_due() || go_on(k as f64 / count as f64));
+                    goes_on
+                };
+                *to = one(&row(k), times, how, *custom, &mut still)?;
+                if custom.has_failed() || !goes_on {
+                    break;
+                }
+            }
+            goes_on
         }
-    });
+        CustomLaws::Anywhere(of) => {
+            let failed = OnceLock::new();
+            let mut go_on = |share| failed.get().is_none() && go_on(share);
+            let blocks = all.chunks_mut(16).enumerate().collect();
+            let done =
+                share(blocks, threads, &mut go_on, |(block, to): (usize, &mut [StoneSummary]), still| {
+                    for (k, to) in to.iter_mut().enumerate() {
+                        match one(&row(16 * block + k), times, how, of(), still) {
+                            Ok(found) => *to = found,
+                            Err(e) => _ = failed.set(e),
+                        }
+                    }
+                });
+            failed.into_inner().map_or(Ok(done), Err)?
+        }
+    };
     Ok(done.then_some(all))
 }
 
+/// One motion; an error only for a wrong value of a law.
 fn one(
     row: &StoneRow,
     times: &[f64],
     (ask, turns): (&Ask, bool),
+    custom: Custom<'_>,
     still: &mut dyn FnMut() -> bool,
-) -> StoneSummary {
-    let Ok(stone) = Ellipsoid::of_numbers(row.stone) else { return StoneSummary::none(Ending::Invalid) };
+) -> Result<StoneSummary, Error> {
+    let invalid = Ok(StoneSummary::none(Ending::Invalid));
+    let Ok(stone) = Ellipsoid::of_numbers(row.stone) else { return invalid };
     let [a, b, c, d, e, f] = row.state;
     let state = StoneState { vertical: [a, b, c], w: [d, e, f] };
     let start = Start { slip: row.slip, ..Start::from(state) };
@@ -123,17 +168,20 @@ fn one(
         turns: turns.then(|| Reversals::of(state.spin(), state.fastest())),
         ..Recorded::default()
     });
-    let found = match followed(&stone, &start, &times[times.len() - 1..], &ask, &recorded, still) {
+    custom.check_friction(ask.table.mu())?;
+    let last = &times[times.len() - 1..];
+    let found = match stone_followed(&stone, &start, last, (&ask, custom), &recorded, still) {
         Ok(found) => found,
-        Err(Error::Painleve { .. }) => return StoneSummary::none(Ending::Painleve),
-        Err(Error::OutOfRange { .. } | Error::Inertia { .. }) => return StoneSummary::none(Ending::Invalid),
-        Err(_) => return StoneSummary::none(Ending::Bounded),
+        Err(Error::Painleve { .. }) => return Ok(StoneSummary::none(Ending::Painleve)),
+        Err(Error::OutOfRange { .. } | Error::Inertia { .. }) => return invalid,
+        Err(e @ Error::Coefficient { .. }) => return Err(e),
+        Err(_) => return Ok(StoneSummary::none(Ending::Bounded)),
     };
     if let Some(event) = found.motion.event.filter(|event| event.ending == Ending::Bounded) {
-        return StoneSummary::given_up(event.time);
+        return Ok(StoneSummary::given_up(event.time));
     }
     let Some(last) = found.motion.event.map(|e| e.state).or(found.motion.states.last().copied()) else {
-        return StoneSummary::none(Ending::Bounded);
+        return Ok(StoneSummary::none(Ending::Bounded));
     };
     let end = found.motion.event.map_or(times[times.len() - 1], |e| e.time);
     let turns = recorded.into_inner().turns.map(|turns| turns.times);
@@ -143,5 +191,5 @@ fn one(
     let Followed { motion: Motion { error, .. }, path: Path { heat, lost, known_until, .. } } = found;
     let known = known_until.min(end);
     let numbers = [a, b, c, d, e, f, end, last.spin(), count, first, heat, lost, error, known];
-    StoneSummary { status: found.motion.ending() as u8, numbers }
+    Ok(StoneSummary { status: found.motion.ending() as u8, numbers })
 }

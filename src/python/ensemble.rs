@@ -74,7 +74,7 @@ pub fn ensemble<'py>(
     };
     let tol = asked.tol.ok_or_else(|| PyValueError::new_err("no option tol"))?;
     let method = asked.step.map_or(Method::Exact, Method::Step);
-    let ask = Ask { method, losses: Losses::NONE, ..asked.ask_without_custom()? };
+    let ask = Ask { method, losses: Losses::NONE, ..asked.ask()? };
     let job = Job { ask, times: times.as_slice()?, tol, errors: asked.errors };
     let (mut method, mut status) = (code_column(&out, "method")?, code_column(&out, "status")?);
     let mut numbers: Vec<(String, PyReadwriteArray1<'py, f64>)> = Vec::new();

@@ -7,6 +7,7 @@ use super::stone::{STONE, stone_of};
 use super::watch::Watch;
 use crate::error::{copied, room};
 use crate::laws::contact::patch;
+use crate::laws::custom::Custom;
 use crate::laws::state::drilling_of;
 use crate::laws::stone::{Ellipsoid, StoneState};
 use crate::motions::custom;
@@ -244,20 +245,18 @@ pub fn roll<'py>(
     asked: MotionAsked,
 ) -> PyResult<Bound<'py, PyDict>> {
     let (times, start, aloft) = (times.as_slice()?, (asked.slip, asked.t0), asked.aloft);
-    if asked.is_custom()
-        && let (AnyBody::Rim(body), AnyState::Rim(state)) = (&body, &state)
-    {
-        let state = State::from(<[f64; 4]>::from(*state));
-        let start = Start { state, slip: start.0, time: start.1, aloft };
-        return under_own_laws(py, &Body::of_numbers((*body).into())?, start, times, &asked);
-    }
     let ask = asked.ask()?;
-    let loses = !ask.losses.is_none();
+    let loses = asked.couple.is_some() || !ask.losses.is_none();
     match (body, state) {
         (AnyBody::Rim(body), AnyState::Rim(state)) => {
             let body = Body::of_numbers(body.into())?;
             let state = State::from(<[f64; 4]>::from(state));
             let start = Start { state, slip: start.0, time: start.1, aloft };
+            if asked.is_custom() {
+                return under_own_laws(py, (&body, &asked), (&ask, loses), |laws, go_on| {
+                    custom::roll_with(&body, start, times, &ask, laws, go_on)
+                });
+            }
             found(py, &body, (&ask, loses), |watch| {
                 motion::roll_with(&body, start, times, &ask, || watch.still())
             })
@@ -266,6 +265,11 @@ pub fn roll<'py>(
             let stone = stone_of(&stone)?;
             let state = StoneState { vertical: [a, b, c], w: [d, e, f] };
             let start = Start { state, slip: start.0, time: start.1, aloft: None };
+            if asked.is_custom() {
+                return under_own_laws(py, (&stone, &asked), (&ask, loses), |laws, go_on| {
+                    custom::roll_stone(&stone, start, times, &ask, laws, go_on)
+                });
+            }
             found(py, &stone, (&ask, loses), |watch| {
                 stone::roll(&stone, start, times, &ask, || watch.still())
             })
@@ -274,29 +278,27 @@ pub fn roll<'py>(
     }
 }
 
-/// The motion of a body under user-defined laws, of which only functions of Python need the GIL.
-fn under_own_laws<'py>(
+/// The motion of a body or a stone under user-defined laws, of which only functions of Python need the GIL.
+fn under_own_laws<'py, S: Told + Send + Sync>(
     py: Python<'py>,
-    body: &Body,
-    start: Start,
-    times: &[f64],
-    asked: &MotionAsked,
-) -> PyResult<Bound<'py, PyDict>> {
-    let ask = asked.ask_without_custom()?;
-    let loses = asked.couple.is_some() || !ask.losses.is_none();
+    (body, asked): (&S::Body, &MotionAsked),
+    (ask, loses): (&Ask, bool),
+    roll: impl Fn(Custom<'_>, &mut dyn FnMut() -> bool) -> Result<Option<Motion<S>>, Error> + Sync,
+) -> PyResult<Bound<'py, PyDict>>
+where
+    S::Body: Sync,
+    Motion<S>: Send,
+{
     if !asked.calls_python() {
         let pointed = asked.pointed();
-        return found(py, body, (&ask, loses), |watch| {
-            custom::roll_with(body, start, times, &ask, pointed.custom(), || watch.still())
-        });
+        return found(py, body, (ask, loses), |watch| roll(pointed.custom(), &mut || watch.still()));
     }
     let mut watch = Watch::new(None);
-    let rolled =
-        with_laws(py, asked, |laws| custom::roll_with(body, start, times, &ask, laws, || watch.still()))?;
+    let rolled = with_laws(py, asked, |laws| roll(laws, &mut || watch.still()))?;
     watch.done(py)?;
     let m = rolled?.ok_or_else(|| PyRuntimeError::new_err("the motion was interrupted"))?;
-    let columns = motion_columns(&m, body, (&ask, loses), &mut || true)?.unwrap_or_default();
-    dictionary(py, (&m, body), columns, rubs(&ask))
+    let columns = motion_columns(&m, body, (ask, loses), &mut || true)?.unwrap_or_default();
+    dictionary(py, (&m, body), columns, rubs(ask))
 }
 
 /// The least spin with which a top turns over within a time, with the friction of a table, or ValueError.

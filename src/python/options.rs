@@ -4,7 +4,7 @@ use super::pointer::{GivenLaw, PointedLaws};
 use crate::laws::contact::{Contact, TableKind};
 use crate::laws::loss::{COUNT, Losses};
 use crate::motions::{Ask, Method};
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 
@@ -86,14 +86,6 @@ pub fn motion_options() -> [&'static str; MotionAsked::NAMES.len()] {
 }
 
 impl MotionAsked {
-    pub fn ask(&self) -> PyResult<Ask> {
-        if self.is_custom() {
-            let told = "a law of your own works only for bodies of revolution";
-            return Err(PyTypeError::new_err(told));
-        }
-        self.ask_without_custom()
-    }
-
     /// Whether any law is user-defined.
     pub fn is_custom(&self) -> bool {
         self.couple.is_some() || self.friction.is_some()
@@ -110,7 +102,7 @@ impl MotionAsked {
     }
 
     /// The options that are not user-defined laws.
-    pub fn ask_without_custom(&self) -> PyResult<Ask> {
+    pub fn ask(&self) -> PyResult<Ask> {
         Ok(Ask {
             table: table_of(self.table)?.with(self.coefficients),
             losses: self.losses.map_or(Losses::NONE, |coefficients| Losses { coefficients }),

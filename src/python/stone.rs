@@ -1,12 +1,14 @@
 //! Stones: their numbers, their constructors, the rocking of an upright spin, and many motions.
 
 use super::columns::{GivenColumns, code_column, numbers};
+use super::custom::with_laws;
 use super::options::MotionAsked;
 use super::watch::Watch;
 use crate::Error;
 use crate::laws::loss::{COUNT, Law, Losses};
 use crate::laws::stone::{Ellipsoid, StoneState};
-use crate::many::stones::{StoneRow, StoneSummary, many};
+use crate::many::motions::CustomLaws;
+use crate::many::stones::{StoneRow, StoneSummary, many_custom};
 use crate::states::steady::MOST;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -234,8 +236,19 @@ pub fn stones<'py>(
     let (times, ask) = (times.as_slice()?, asked.ask()?);
     let mut watch = Watch::new(progress);
     let turns = out.contains("reversals")? || out.contains("first_reversal")?;
-    let found: Option<Vec<StoneSummary>> =
-        py.detach(|| many(count, &row, times, (&ask, turns), threads, &mut |share| watch.go_on(share)))?;
+    let mut go_on = |share| watch.go_on(share);
+    let found: Option<Vec<StoneSummary>> = if asked.calls_python() {
+        with_laws(py, &asked, |laws| {
+            many_custom(count, &row, times, (&ask, turns), (&CustomLaws::Here(laws), threads), &mut go_on)
+        })??
+    } else {
+        let pointed = asked.pointed();
+        let of = || pointed.custom();
+        py.detach(|| {
+            let laws = CustomLaws::Anywhere(&of);
+            many_custom(count, &row, times, (&ask, turns), (&laws, threads), &mut go_on)
+        })?
+    };
     watch.done(py)?;
     let found = found.unwrap_or_default();
     for (to, row) in status.iter_mut().zip(&found) {

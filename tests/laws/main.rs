@@ -5,6 +5,7 @@
 mod big_integers;
 mod common;
 mod custom;
+mod custom_stones;
 mod drift;
 mod endings;
 mod ensemble;

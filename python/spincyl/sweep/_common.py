@@ -21,6 +21,13 @@ def is_lazy(*values: object) -> bool:
     return any(hasattr(v, "dask") or getattr(v, "chunks", None) is not None for v in values)
 
 
+def in_memory(name: str, law: object, fields: Mapping[str, object]) -> None:
+    """Raise TypeError for a law that the user wrote, with arrays that are not in memory."""
+    if getattr(law, "_function", None) is not None and is_lazy(*fields.values()):
+        why = "for arrays in memory, since nothing shows whether a saved sweep had the same law"
+        raise TypeError(f"{name} = {law!r}: a law of your own is only {why}")
+
+
 @contextmanager
 def many_blocks() -> Iterator[None]:
     """Silence dask's warning about many blocks: a map has as many as its axes' blocks multiplied."""

@@ -34,7 +34,7 @@ from spincyl._measured import natural_time, speaking
 from spincyl._phases import rubs, struck
 from spincyl._roll import is_stone
 from spincyl._state import State, gripping, landed
-from spincyl.sweep._common import is_lazy
+from spincyl.sweep._common import in_memory
 from spincyl.sweep._inputs import kept_bodies, kept_contact
 from spincyl.sweep._labels import flags, given_up, refused, uncertain
 from spincyl.sweep._swept import Question, swept
@@ -304,9 +304,7 @@ def roll(
     if not isinstance(contact, str):
         asked = asked._replace(contact=contact._natural(scale))
     for name, own in (("contact", contact), ("losses", losses)):
-        if getattr(own, "_function", None) is not None and is_lazy(*fields.values()):
-            why = "for arrays in memory, since nothing shows whether a saved sweep had the same law"
-            raise TypeError(f"{name} = {own!r}: a law of your own is only {why}")
+        in_memory(name, own, fields)
     slips = rubs(contact) or restitution is not None
     shown = (*_STATE, *(_SLIP if slips else ()), *(_RIM if restitution is not None else ()))
     names = [*shown] if {"final", "states"} & {*wanted} else []

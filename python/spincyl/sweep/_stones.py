@@ -7,7 +7,7 @@ import numpy as np
 
 from spincyl import _core
 from spincyl._asked import Asked, evaluations
-from spincyl._contact import AnyContact, Coulomb, Viscous, built_in, code, fitting
+from spincyl._contact import AnyContact, Coulomb, Viscous, code, fitting
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._ellipsoid_state import EllipsoidState
 from spincyl._ending import ErrorWarning
@@ -16,6 +16,7 @@ from spincyl._input.progress import Progress
 from spincyl._loss import LAWS, Loss
 from spincyl._lossy import narrow, of_stone
 from spincyl._measured import natural_time
+from spincyl.sweep._common import in_memory
 from spincyl.sweep._inputs import kept_contact, kept_stones
 from spincyl.sweep._labels import given_up
 from spincyl.sweep._swept import Question
@@ -39,7 +40,6 @@ def question(
     max_nfev: int | None,
 ) -> Question:
     """The arguments of `spincyl.sweep.roll` for stones, checked; an error names the argument."""
-    built_in(contact)
     states, scale, seconds = made("states", states, EllipsoidState), stones.scale, t
     if scale is not None:
         fitting(contact, scale)
@@ -61,12 +61,14 @@ def question(
     fields |= zip((*_FINAL, *slip), (x for part in parts for x in components(part)), strict=True)
     if isinstance(contact, Coulomb | Viscous):
         fields |= zip(("coefficient", "static", "patch"), contact._numbers, strict=True)
+        contact = contact._natural(scale)
     if losses is not None:
         narrow(of_stone(losses, stones), contact)
         fields |= zip(LAWS, losses._coefficients, strict=True)
     asked = Asked(np.array([end]), tol=number("tol", tol), contact=contact, mu=number("mu", mu))
     asked = asked._replace(max_nfev=evaluations(max_nfev))
     told = kept_stones(stones, states) | kept_contact(contact)
+    in_memory("contact", contact, fields)
     return Question(fields, names, frozenset(), asked, wanted, scale, seconds, told)
 
 

@@ -28,7 +28,7 @@ use crate::laws::body::{Body, Shape};
 use crate::laws::loss::{Couple, Couples, Holds, Law, Losses, OwnCouple, still_needs};
 use crate::laws::newton::{self, Force};
 use crate::laws::state::{State, drilling_of, rolling_of};
-use crate::numbers::Real;
+use crate::numbers::{Real, here};
 
 /// A patch of this radius or less is a point, since a motion on a patch differs from rolling by its radius at least.
 const POINT: f64 = 1e-16;
@@ -234,41 +234,45 @@ impl<T: Real, G: OwnCouple<T>, L: FollowsSpeed<T>> Slipping<T, G, L> {
         let ([w1, w2, w3], angle) = (w, (s, c));
         let (lever, slope, height) = (rim.lever(angle), rim.slope(angle), rim.height(angle));
         let (radius, depth) = (rim.radius(angle), rim.depth(angle));
-        let mut inertia = lever.mac(lever, *i1);
+        let (inertia, square, one) = (lever.mac(lever, *i1), w2 * w2, w1.splat(1.0));
         let holds = self.losses.as_ref().map_or(Holds::default(), Couples::holds);
-        // The normal force under a couple, which only a user-defined law asks for.
-        let normal = |couple: &Couple<T>| {
-            let left = size * (inertia - lever * couple.pressed[1]) - strength * pull[0] * lever * height;
-            let spinning = w1 * (*i3 * w3 - *i1 * (c * (w1 / s))) + couple.free[1];
-            let free = *i1 * (w1.splat(1.0) - slope * (w2 * w2)) + lever * spinning;
-            if holds.rolling { w1.splat(1.0) } else { free * size / left }
-        };
+        // The normal force under a couple is size free/left, where `turn` is c w1/s. Where rolling is held, the centre
+        // stays at its height, so that N = 1.
+        let left_of = here(
+            #[inline(always)]
+            |couple: Option<&Couple<T>>| {
+                let inertia = couple.map_or(inertia, |couple| inertia - lever * couple.pressed[1]);
+                let left = size * inertia - strength * pull[0] * lever * height;
+                let room = left - s.splat(JAMMED) * size * inertia;
+                if holds.rolling { [size; 2] } else { [left, room] }
+            },
+        );
+        let free_of = here(
+            #[inline(always)]
+            |couple: Option<&Couple<T>>, turn: T| {
+                let mut spinning = w1 * (*i3 * w3 - *i1 * turn);
+                if let Some(couple) = couple {
+                    spinning = spinning + couple.free[1];
+                }
+                if holds.rolling { one } else { *i1 * (one - slope * square) + lever * spinning }
+            },
+        );
         let couple = self.losses.as_ref().map(
             #[inline(always)]
-            |losses| losses.joined(&losses.seen(rim, angle, w1 / s, w), normal),
+            |losses| {
+                losses.joined(
+                    &losses.seen(rim, angle, w1 / s, w),
+                    // Only a user-defined law asks for it.
+                    |couple| free_of(Some(couple), c * (w1 / s)) * size / left_of(Some(couple))[0],
+                )
+            },
         );
-        if let Some(couple) = &couple {
-            inertia = inertia - lever * couple.pressed[1];
-        }
-        let mut left = size * inertia - strength * pull[0] * lever * height;
-        let mut room = left - s.splat(JAMMED) * size * inertia;
-        if holds.rolling {
-            // The centre stays at its height, so that N = 1.
-            (left, room) = (size, size);
-        }
+        let [left, room] = left_of(couple.as_ref());
         // One division gives 1/s, 1/left and 1/sum.
-        let per = s.splat(1.0) / (s * left * sum);
+        let per = one / (s * left * sum);
         let precession = w1 * (per * left * sum);
         let turn = c * precession;
-        let square = w2 * w2;
-        let mut spinning = w1 * (*i3 * w3 - *i1 * turn);
-        if let Some(couple) = &couple {
-            spinning = spinning + couple.free[1];
-        }
-        let mut free = *i1 * (w1.splat(1.0) - slope * square) + lever * spinning;
-        if holds.rolling {
-            free = w1.splat(1.0);
-        }
+        let free = free_of(couple.as_ref(), turn);
         let share = free * (per * s * sum);
         let grip = strength * share;
         let (across, along) = (-(grip * pull[0]), -(grip * pull[1]));

@@ -284,6 +284,13 @@ impl<G> Couples<f64, G> {
         self
     }
 
+    /// These losses with this law among them.
+    #[must_use]
+    pub fn resisting(mut self, law: Law, coefficient: f64) -> Self {
+        (self.coefficients[law as usize], self.present[law as usize]) = (coefficient, true);
+        self
+    }
+
     /// These losses with another couple beside them.
     #[must_use]
     pub fn beside<H>(self, given: H) -> Couples<f64, H> {

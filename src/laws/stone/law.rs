@@ -101,6 +101,12 @@ impl<T: Real> StoneLaw<T> {
         if SHORT_CODE { None } else { self.radius }
     }
 
+    /// Returns this law with another coefficient of friction, for the speed of a slip.
+    #[must_use]
+    pub fn with_strength(self, strength: T) -> Self {
+        Self { strength, ..self }
+    }
+
     /// Returns this law with losses.
     #[must_use]
     pub fn with_losses(self, losses: Option<Couples<T>>) -> Self {

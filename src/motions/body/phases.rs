@@ -3,7 +3,7 @@
 use super::fly::Takeoff;
 use super::lie::flow::LyingPhase;
 use super::own::Own;
-use super::roll::lossy::{LossyFlow, with_patch};
+use super::roll::lossy::LossyFlow;
 use super::slide::Slide;
 use super::slide::slow::{BodySlips, Slippery};
 use super::spun::{Roundings, knows};
@@ -20,13 +20,15 @@ use crate::laws::loss::{Couples, Holds, Losses};
 use crate::laws::state::{State, drilling_of, rolling_of};
 use crate::methods::flow::{Flow, FlowPlace, Steps};
 use crate::motions::ask::row::OutputRow;
+use crate::motions::dry::creep::Creeps;
+use crate::motions::dry::friction::slipped;
 use crate::motions::walk::errors::doubted;
 use crate::motions::walk::numbers::{
     BodyNumbers, COS, HEAT, Halt, SIN, TIME, U2, UH, W1, W2, W3, leans_over, loses, lost, poses,
 };
 use crate::motions::walk::slow::clear_until;
 use crate::motions::walk::two_runs::CHANCE;
-use crate::motions::walk::{MOMENT, Next, Pause, Phases, STILL, SlowSeries, Walk, WalkStep};
+use crate::motions::walk::{Next, Pause, Phases, STILL, SlowSeries, Walk, WalkStep};
 use crate::motions::{Ask, Ending, Kind, Limit, Phase, Start};
 use core::f64::consts::{FRAC_PI_2, PI};
 
@@ -42,9 +44,6 @@ pub(crate) const LONGER: f64 = 3.0;
 /// The first step of a phase, as a share of the last step of the phase of its kind before.
 const LATELY: f64 = 0.5;
 
-/// For this share of the time in which the body turns by a radian, at most of a unit of time, a slip keeps its direction
-/// after static friction has ceased to hold. The error is the cube of this share.
-pub(crate) const KEEPS_ITS_WAY: f64 = 1e-5;
 /// Size of cos theta below which a rougher run perturbs this number and not theta.
 const LEVEL: f64 = 1e-3;
 
@@ -70,8 +69,6 @@ pub(crate) struct BodyPhases<G: Own = ()> {
     /// Whether the caller computes the phases of rolling that the first integrals solve, among those of other walks.
     #[cfg(feature = "many")]
     pub(crate) rolls_among: bool,
-    /// The losses of a body that does not slip, with the drilling friction of a patch of contact.
-    pub(super) rolling_losses: Losses,
     /// The current phase, if it loses energy without a slip.
     pub(super) lossy: Option<LossyPhase<G>>,
     /// The current phase, if the body lies on both rims.
@@ -262,22 +259,22 @@ impl<G: Own> BodyPhases<G> {
     /// The data of a walk under these laws, with steps of the tolerance `tol`.
     pub(crate) fn of(body: &Body, ask: &Ask, tol: f64, start: &Start, own: G) -> Self {
         let &Start { state, slip, .. } = start;
-        let rolling_losses = with_patch(&ask.losses, &ask.table.friction());
-        let slide = Slide::new(body, &ask.table.friction(), &ask.losses, tol, own);
+        let friction = ask.table.friction();
+        let slide = Slide::new(body, &friction, &ask.losses, tol, own);
+        let loses = !ask.losses.is_none() || friction.patch() > 0.0 || own.has_couple();
         Self {
             body: *body,
             own,
             slide,
             state,
             start: state,
-            integrates: ask.table == Table::Smooth || !rolling_losses.is_none() || own.has_couple(),
+            integrates: ask.table == Table::Smooth || loses,
             rolls_briefly: false,
             by_steps: false,
             uniform: false,
             roundings: Roundings::default(),
             #[cfg(feature = "many")]
             rolls_among: false,
-            rolling_losses,
             lossy: None,
             lying: None,
             takeoff: Takeoff::default(),
@@ -544,15 +541,10 @@ impl<G: Own, const N: usize> Phases<N> for BodyPhases<G> {
         let slide = walk.of.slide;
         let begins = walk.at.slip() == [0.0; 2] && way != [0.0; 2] && slide.begins_to_roll().is_none();
         if G::IS && begins {
-            // A slip that begins continuously grows from zero, and keeps its direction for a moment.
-            let share = if growth == 0.0 { KEEPS_ITS_WAY } else { MOMENT };
-            let lasts = share * slide.moment(&walk.at);
-            let from = walk.at[TIME];
-            while let Some(t) = walk.until().filter(|t| *t <= from + lasts) {
-                let y = slide.slipped(&walk.at, way, t - from);
-                Self::write(walk, &y);
-            }
-            return slide.slipped(&walk.at, way, lasts);
+            let (at, moment) = (walk.at, slide.moment(&walk.at));
+            return walk.keeps_its_way(growth, moment, |lasts| {
+                slipped(&at, UH, (way, lasts), |y| slide.rates_along(y, way))
+            });
         }
         let y = slide.nudged(&walk.at, way, growth);
         walk.of.slide.rolls_freely();

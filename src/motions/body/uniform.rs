@@ -196,7 +196,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     /// Whether the phase of rolling that begins is known: only dry friction slows the ball, by couples that are constant in
     /// the laboratory.
     pub(super) fn slows_evenly(&self) -> bool {
-        let mut losses = self.of.rolling_losses.iter();
+        let mut losses = self.ask.losses.iter();
         let dry = !self.of.own.has_couple()
             && losses.all(|(law, _)| matches!(law, Law::RollingResistance | Law::Drilling));
         !poses(N) && dry && self.of.body.is_uniform_ball() && self.contact() == Contact::Rolling
@@ -204,7 +204,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
 
     /// Rolls under rolling resistance and drills, each until it stops, to rest or to the last time.
     pub(super) fn rolls_to_rest(&mut self, flow: &LossyFlow<G>) {
-        let (losses, inertia) = (self.of.rolling_losses, self.of.body.i3());
+        let (losses, inertia) = (self.ask.losses, self.of.body.i3());
         let couples = [Law::RollingResistance, Law::Drilling].map(|law| losses.coefficient(law));
         let rates = [couples[0] / (1.0 + inertia), couples[1] / inertia];
         self.inherits_errors();

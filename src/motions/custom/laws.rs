@@ -15,6 +15,7 @@ use crate::laws::loss::{Couple, Kinematics, OwnCouple};
 use crate::laws::state::State;
 use crate::motions::body::own::Own;
 use crate::motions::dry::creep::ASIDE;
+use crate::motions::dry::friction::OwnFriction;
 use crate::numbers::Dual;
 use core::cell::Cell;
 use core::f64::consts::{FRAC_PI_2, PI};
@@ -43,19 +44,9 @@ fn upright([s, c, w1, w2, w3]: [f64; 5]) -> (f64, State) {
 }
 
 impl<'a> OwnLaws<'a> {
-    /// The coefficient of friction at a speed; NaN for a wrong value, which is noted.
-    fn mu(&self, law: &dyn FrictionLaw, speed: f64) -> f64 {
-        if law.has_failed() || !speed.is_finite() {
-            return f64::NAN;
-        }
-        let mu = law.coefficient(speed);
-        match fault_of_friction(mu, speed) {
-            Some(fault) => {
-                self.fault.set(Some(fault));
-                f64::NAN
-            }
-            None => mu,
-        }
+    /// The law of friction, if there is one.
+    fn friction(&self) -> Option<OwnFriction<'a>> {
+        self.custom.friction.map(|law| OwnFriction { law, fault: self.fault })
     }
 
     /// The state as seen from the lower rim of a body with two rims, and -1 if that is the other one, else 1.
@@ -121,30 +112,19 @@ impl SpeedLaw for OwnLaws<'_> {
         self.custom.friction.is_some()
     }
     fn coefficient_at(&self, speed: f64) -> f64 {
-        self.custom.friction.map_or(f64::NAN, |law| self.mu(law, speed))
+        self.friction().map_or(f64::NAN, |own| own.mu(speed))
     }
 }
 
 impl FollowsSpeed<f64> for OwnLaws<'_> {
     fn strength(&self, constant: f64, speed: impl FnOnce() -> f64, dry: bool) -> f64 {
-        let Some(law) = self.custom.friction else { return constant };
-        let speed = speed();
-        if dry { self.mu(law, speed) } else { self.mu(law, speed) / speed.max(f64::MIN_POSITIVE) }
+        self.friction().map_or(constant, |own| own.strength(constant, speed, dry))
     }
 }
 
 impl FollowsSpeed<Dual<f64>> for OwnLaws<'_> {
     fn strength(&self, constant: Dual<f64>, speed: impl FnOnce() -> Dual<f64>, dry: bool) -> Dual<f64> {
-        let Some(law) = self.custom.friction else { return constant };
-        let Dual { value, slope } = speed();
-        let by = ASIDE * value;
-        let [below, above] = [value - by, value + by].map(|speed| self.mu(law, speed));
-        let mu = Dual {
-            value: self.mu(law, value),
-            slope: if by > 0.0 { slope * (above - below) / (2.0 * by) } else { 0.0 },
-        };
-        let size = Dual { value: value.max(f64::MIN_POSITIVE), slope };
-        if dry { mu } else { mu / size }
+        self.friction().map_or(constant, |own| own.strength(constant, speed, dry))
     }
 }
 

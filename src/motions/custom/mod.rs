@@ -1,4 +1,4 @@
-//! A body under user-defined laws of loss and friction ([`custom`](crate::custom)).
+//! A body under user-defined laws of loss and friction, or a stone under one of friction ([`custom`](crate::custom)).
 //!
 //! ```text
 //! mu(|u|)        in place of mu where the contact point slips; static friction holds it up to mu_s N, and a slip begins with mu(0)
@@ -18,8 +18,12 @@ use crate::laws::body::Body;
 use crate::laws::contact::Table;
 use crate::laws::contact::slip::Friction;
 use crate::laws::custom::Custom;
+use crate::laws::stone::{Ellipsoid, StoneState};
 use crate::motions::body::{self, BodyWalk, without_friction};
-use core::cell::Cell;
+use crate::motions::dry::friction::OwnFriction;
+use crate::motions::stone;
+use crate::motions::stone::known::Recorded;
+use core::cell::{Cell, RefCell};
 use laws::OwnLaws;
 
 /// The default tolerance of a step, since a user-defined law may be slow.
@@ -66,6 +70,71 @@ pub fn roll_with(
     Ok(Motion::from(followed(body, &start, times, (ask, true), custom, &mut go_on)?).advanced(start.time))
 }
 
+/// Computes the motion of a stone with a user-defined law of friction at `times`, as [`stone::roll`] does under the laws of
+/// the library, with the options and the errors of [`roll_with`]. A couple of the user is an error, since it is a function
+/// of the inclination of an axis.
+///
+/// ```
+/// use spincyl::{Ellipsoid, contact::Friction, custom::{self, Custom}, motion::Ask};
+///
+/// let egg = Ellipsoid::egg(1.0, 1.4, 0.0)?;
+/// let (start, ask) = (egg.spinning(5.0, 0.3, 0.0), Ask::on(Friction::coulomb(0.4)));
+/// let stribeck = |speed: f64| 0.2 + 0.2 * (-(speed / 0.1).powi(2)).exp();
+/// let laws = Custom::default().with_friction(&stribeck);
+/// let motion = custom::roll_stone(&egg, start, &[0.0, 5.0], &ask, laws, || true)?.expect("not interrupted");
+/// assert!(motion.path.unwrap().heat > 0.0);
+/// # Ok::<(), spincyl::Error>(())
+/// ```
+///
+/// [`stone::roll`]: crate::stone::roll
+pub fn roll_stone(
+    stone: &Ellipsoid,
+    start: impl Into<Start<StoneState>>,
+    times: &[f64],
+    ask: &Ask,
+    custom: Custom<'_>,
+    mut go_on: impl FnMut() -> bool,
+) -> Result<Option<Motion<StoneState>>, Error> {
+    let start = start.into();
+    custom.check_friction(ask.table.mu())?;
+    let found = stone_followed(stone, &start, times, (ask, custom), &RefCell::default(), &mut go_on)?;
+    Ok(Motion::from(found).advanced(start.time))
+}
+
+/// The motion of [`roll_stone`] under a law that is checked; `recorded` as in [`followed`](stone::followed).
+pub(crate) fn stone_followed(
+    stone: &Ellipsoid,
+    start: &Start<StoneState>,
+    times: &[f64],
+    (ask, custom): (&Ask, Custom<'_>),
+    recorded: &RefCell<Recorded>,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<Followed<StoneState>, Error> {
+    if custom.friction.is_some() {
+        check_options(ask, &custom)?;
+    }
+    if custom.couple.is_some() {
+        let expected = "none for a stone, which has no axis";
+        return Err(Error::OutOfRange { name: "couple", value: f64::NAN, expected });
+    }
+    let (mut ask, fault) = (on_own_table(ask, &custom), Cell::new(None));
+    if ask.method == Method::Exact && custom.friction.is_some() {
+        ask.method = Method::Tolerance(FAIR);
+    }
+    let own = custom.friction.map(|law| OwnFriction { law, fault: &fault });
+    let mut go_on = || !custom.has_failed() && go_on();
+    stone::followed(stone, start, times, (&ask, own), recorded, &mut go_on)
+}
+
+/// These options with the coefficient of sliding friction that the law of the user has at rest.
+fn on_own_table(ask: &Ask, custom: &Custom<'_>) -> Ask {
+    let mut ask = *ask;
+    if let (Some(law), Table::Rubs(Friction::Coulomb { mu, .. })) = (custom.friction, &mut ask.table) {
+        *mu = law.coefficient(0.0);
+    }
+    ask
+}
+
 /// The motion of [`roll_with`] under laws that are checked. Its error is NaN unless it `is_judged`, by a second run.
 pub(crate) fn followed(
     body: &Body,
@@ -77,11 +146,8 @@ pub(crate) fn followed(
 ) -> Result<Followed, Error> {
     let tol = check(body, start, ask, &custom)?;
     check_times_after(start.time, times)?;
-    let (mut ask, start) = without_friction(body, ask, start);
-    if let (Some(law), Table::Rubs(Friction::Coulomb { mu, .. })) = (custom.friction, &mut ask.table) {
-        *mu = law.coefficient(0.0);
-    }
-    let (ask, start) = (&ask, &start);
+    let (ask, start) = without_friction(body, ask, start);
+    let (ask, start) = (&on_own_table(&ask, &custom), &start);
     let fault = Cell::new(None);
     let mut go_on = || !custom.has_failed() && go_on();
     let last = Cell::new(([f64::NAN; 5], None));

@@ -1,10 +1,13 @@
-//! A patch of contact along a motion: when it counts as at rest, how fast it creeps, and the steps that it needs.
-//! Bodies and stones share this module.
+//! A patch of contact along a motion: when it counts as at rest, how fast it creeps, the steps that it needs, and the
+//! drilling that static friction holds. Bodies and stones share this module: their flows give the slip, the drilling and
+//! how their numbers react ([`Creeps`]).
 //!
 //! ```text
 //! S = |u|,   R = eps |w_z|                        the patch rests if S + R <= eps DRILLS, and no longer grows
 //! S = R k,   f(k) = F/(mu N)                      the slip of a creep under the force F
 //! dt/dsigma < STIFF/3 (3 radians of the turning)  u follows the motion much faster than the body turns
+//! |M| <= mu_s N eps g(k),   f(k) = F/(mu_s N)     holds the drilling while the contact point is at rest
+//! |w_z| = 2 DRILLS, or F = mu_s N                 begins to slip, with the slip of the creep
 //! a uniform ball:   k stays,   F = mu f(k) = (delta + mu eps^2 k g(k))/(1 + I)
 //!                   |w_h|' = -(delta - F)/I,   |w_z|' = -mu eps g(k)/I              under rolling resistance delta
 //! ```
@@ -12,11 +15,17 @@
 //! [`radau`](crate::methods::radau) takes the steps where u is that fast, unless they are too short to pay; at k = 1 the
 //! steps are short.
 //!
+//! Where the drilling passes zero and is not held, the contact point is at rest, and the couple acts only briefly and is
+//! left out.
+//!
 //! Error: `LOST_DRILLING` times the drilling that is left out.
 
 use crate::laws::contact::patch;
+use crate::methods::flow::{Flow, FlowPlace};
+use crate::methods::{radau, rk8};
+use crate::motions::walk::numbers::{Halt, TIME};
 use crate::numbers::{Dual, Real};
-use nalgebra::SMatrix;
+use nalgebra::{Const, DimMin, SMatrix, ToTypenum};
 
 /// Share of the longest step, or of a number, over which a slope is computed.
 pub(crate) const ASIDE: f64 = 1e-5;
@@ -31,13 +40,15 @@ const STIFF: f64 = 0.4;
 const STABLE_STEP: f64 = 5.5;
 /// An implicit step may be this many times longer than an explicit one, since it amplifies no rounding.
 pub(crate) const IMPLICIT_TURNS: f64 = 8.0;
-/// Relative error of the drilling due to rounding of w. The slip need not be known more precisely.
+/// Relative error of the drilling due to rounding of w. An implicit step need not know the slip more precisely.
 const ROUNDED_DRILLING: f64 = 4e-15;
 /// The remaining way to rest is a straight line if it takes less than this time, in sqrt(R/g).
 const REST_IS_NEAR: f64 = 1e-6;
 /// The drilling at which a patch begins to be held, or at which a creep begins, has no friction while it changes from
 /// or to zero; the estimated error includes this many times that drilling.
 pub(crate) const LOST_DRILLING: f64 = 4.0;
+/// Largest coefficient of static friction in a couple; an infinite one times zero would be NaN.
+const STICKY: f64 = 1e9;
 /// Largest number of approximations to the k of a ball, whose error falls by about eps^2 in each of them.
 const APPROXIMATIONS: usize = 60;
 /// Two of them that differ by less than this share are the same k.
@@ -69,6 +80,40 @@ impl<T: Real> Rubbing<T> {
     }
 }
 
+/// A patch of contact at rest: the coefficients of static friction, which may be infinite, and of sliding friction, and
+/// the radius.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct RestingPatch {
+    pub fixed: f64,
+    pub slides: f64,
+    pub radius: f64,
+}
+
+impl RestingPatch {
+    /// The couple per normal force that can hold the drilling beside this friction.
+    pub fn grips(&self, friction: f64, normal: f64) -> f64 {
+        let mu = self.fixed.min(STICKY);
+        let share = friction / (mu * normal.max(f64::MIN_POSITIVE));
+        mu * self.radius * patch::of(patch::slip_for(share.min(1.0)))[1]
+    }
+
+    /// The slip with which the patch begins to creep under this horizontal force, if it drills. None if it would count as at
+    /// rest.
+    pub fn begins_to_creep(&self, force: [f64; 2], normal: f64, drilling: f64) -> Option<[f64; 2]> {
+        let (friction, turn) = (force[0].hypot(force[1]), self.radius * drilling.abs());
+        let slip = turn * patch::slip_for((friction / (self.slides * normal)).min(MOST_CREEP));
+        (friction > 0.0 && slip + turn > rests_below(self.radius))
+            .then(|| force.map(|f| -(slip / friction * f)))
+    }
+}
+
+/// The margin of a contact point that is at rest only as long as the patch does not drill.
+#[inline(always)]
+pub(crate) fn hardly_drills<T: Real>(drilling: T) -> T {
+    let drilling = drilling.abs();
+    drilling.splat(2.0 * DRILLS) - drilling
+}
+
 impl Rubbing<Dual<f64>> {
     /// Whether a patch of this radius comes to rest. A slip that begins is as slow, but it grows.
     pub fn comes_to_rest(&self, radius: f64) -> bool {
@@ -93,31 +138,98 @@ impl Rubbing<Dual<f64>> {
     }
 }
 
-/// Whether u follows the motion much faster than the body turns, from the longest stable time step and the time `calm` of
-/// three radians of the turning.
-pub(crate) fn is_fast(stable: f64, calm: f64) -> bool {
-    stable < STIFF / 3.0 * calm
-}
+/// A phase on a patch of contact, whose slip creeps as long as the patch drills. The flow of a body or of a stone, with M
+/// margins, gives its equations and the R numbers that react to each other; what follows from these is the same for both.
+pub(crate) trait Creeps<const M: usize, const R: usize>: Flow<M, Halt = Halt>
+where
+    Const<R>: ToTypenum + DimMin<Const<R>, Output = Const<R>>,
+{
+    /// The indices of the first number of the slip, and of the heat.
+    const SLIP: usize;
+    const HEATED: usize;
 
-/// The longest time step that is stable although friction stops the slip u of a patch, whose rim moves with the speed R,
-/// at the rate `eased` F/|u|. Friction makes `heat` in a unit of time: with mu N f/|u| at most 3 pi mu N/(8 R) and heat
-/// 3 pi mu N R/16 where k is small, and mu N/|u| and mu N |u| where it is large, their ratio is known within a fifth.
-pub(crate) fn stable_time([u, v, turn]: [f64; 3], heat: f64, eased: f64) -> f64 {
-    STABLE_STEP * (u * u + v * v + 0.5 * turn * turn) / (heat * eased)
-}
+    /// The radius of the patch; None for a point.
+    fn radius(&self) -> Option<f64>;
+    /// The tolerance of the steps.
+    fn allowed(&self) -> f64;
+    /// The slip u.
+    fn sliding<T: Real, const N: usize>(y: &[T; N]) -> [T; 2];
+    /// The drilling w_z.
+    fn drilling<T: Real, const N: usize>(&self, y: &[T; N]) -> T;
+    /// The largest change of the slip by a unit of force.
+    fn eased<const N: usize>(&self, y: &[f64; N]) -> f64;
+    /// The numbers that react to each other have the size `fast` of a speed, `slip` of the slip, or that of an angle.
+    fn sizes<const N: usize>(y: &[f64; N], fast: f64, slip: f64) -> [f64; R];
+    /// The derivatives of the rates of these numbers by these numbers.
+    fn reacting<const N: usize>(&self, y: &[f64; N], sizes: &[f64; R]) -> SMatrix<f64, R, R>;
+    /// The longest time step that a number other than the slip allows where it follows the motion.
+    fn damps_within<const N: usize>(&self, _: &[f64; N]) -> f64 {
+        f64::INFINITY
+    }
 
-/// The speed of the slip of a patch that rubs with this speed, to which errors of an implicit step are relative; `fast`
-/// is the largest speed, and the iteration goes down to the share `converged`.
-pub(crate) fn known_slip(rubs: f64, radius: f64, fast: f64, converged: f64) -> f64 {
-    rubs + ROUNDED_DRILLING / converged * radius * fast
-}
+    /// The speed of the slip, and under a patch also that of its rim by the drilling.
+    #[inline(never)]
+    fn rubs<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        let [u, v] = Self::sliding(y);
+        let on = |radius| Rubbing::of([u, v], self.drilling(y), radius).speed();
+        self.radius().map_or(u.hypot(v), on)
+    }
 
-/// The slip of a patch that creeps under this horizontal force, if its rim moves with the speed `turn` and friction is at
-/// most `limit`. None if it would count as at rest.
-pub(crate) fn slip_under(force: [f64; 2], limit: f64, turn: f64, radius: f64) -> Option<[f64; 2]> {
-    let friction = force[0].hypot(force[1]);
-    let slip = turn * patch::slip_for((friction / limit).min(MOST_CREEP));
-    (friction > 0.0 && slip + turn > rests_below(radius)).then(|| force.map(|f| -(slip / friction * f)))
+    /// The speeds of the patch, with slopes in sigma; None for a point.
+    fn rubbing<const N: usize>(&self, place: &FlowPlace<N>) -> Option<Rubbing<Dual<f64>>> {
+        let radius = Dual { value: self.radius()?, slope: 0.0 };
+        let y: [Dual<f64>; N] = core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
+        Some(Rubbing::of(Self::sliding(&y), self.drilling(&y), radius))
+    }
+
+    /// The halt of a patch that neither slips nor drills any more.
+    #[inline(never)]
+    fn hardly_rubs<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
+        let (radius, rubbing) = (self.radius()?, self.rubbing(place)?);
+        let left = rubbing.left(place.rate[TIME]);
+        let mut rests: [f64; N] = core::array::from_fn(|i| place.y[i] + left * place.rate[i]);
+        (rests[Self::SLIP], rests[Self::SLIP + 1]) = (0.0, 0.0);
+        rubbing.comes_to_rest(radius).then(|| (Halt::Standstill, self.kept(rests)))
+    }
+
+    /// The longest step in sigma towards and past k = 1.
+    #[inline(never)]
+    fn kinked<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
+        self.rubbing(place).map_or(f64::INFINITY, |rubbing| rubbing.longest(self.allowed()))
+    }
+
+    /// Whether u follows the motion much faster than the body turns.
+    #[inline(never)]
+    fn creeps_fast<const N: usize>(&self, place: &FlowPlace<N>) -> bool {
+        self.follows_within(place) < STIFF / 3.0 * self.calm(&place.y)
+    }
+
+    /// The longest time step that is stable although friction stops the slip u of a patch, whose rim moves with the speed R,
+    /// at the rate `eased` F/|u|. Friction makes heat: with mu N f/|u| at most 3 pi mu N/(8 R) and heat
+    /// 3 pi mu N R/16 in a unit of time where k is small, and mu N/|u| and mu N |u| where it is large, their ratio is known
+    /// within a fifth.
+    fn follows_within<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
+        let (y, rate) = (&place.y, &place.rate);
+        let ([u, v], turn) = (Self::sliding(y), self.radius().unwrap_or(0.0) * self.drilling(y));
+        let heat = rate[Self::HEATED] / rate[TIME];
+        let stable = STABLE_STEP * (u * u + v * v + 0.5 * turn * turn) / (heat * self.eased(y));
+        self.damps_within(y).min(stable)
+    }
+
+    /// An implicit step and its stages. The error of a slip is relative to the speed of the rubbing.
+    fn creeps_on<const N: usize>(
+        &self,
+        from: &FlowPlace<N>,
+        h: f64,
+        guess: radau::Guess<N>,
+    ) -> (rk8::Step<f64, N>, radau::Collocated<N>) {
+        let y = &from.y;
+        let (fast, converged) = (self.fastest(y), 0.01 * self.allowed());
+        let slip = self.rubs(y) + ROUNDED_DRILLING / converged * self.radius().unwrap_or(0.0) * fast;
+        let sizes = Self::sizes(y, fast, slip);
+        let slopes = self.reacting(&radau::middle(y, &guess), &sizes);
+        radau::step(|y, all| self.write_rates(y, all), y, &slopes, &sizes, (h, converged), guess)
+    }
 }
 
 /// A uniform ball that creeps on a patch: its k, and the rates at which the speed of its rolling and its drilling fall.
@@ -146,6 +258,19 @@ impl Creeping {
         }
         None
     }
+}
+
+/// The derivatives of R rates by the first R numbers.
+pub(crate) fn derivatives<const R: usize, const N: usize>(
+    y: &[f64; N],
+    rates: impl Fn([Dual<f64>; R]) -> [Dual<f64>; R],
+) -> SMatrix<f64, R, R> {
+    let mut all = SMatrix::zeros();
+    for j in 0..R {
+        let rates = rates(core::array::from_fn(|i| Dual { value: y[i], slope: f64::from(u8::from(i == j)) }));
+        (0..R).for_each(|i| all[(i, j)] = rates[i].slope);
+    }
+    all
 }
 
 /// The derivatives of the first M rates by the first M numbers, of these sizes, as differences.

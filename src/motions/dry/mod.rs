@@ -1,4 +1,5 @@
 //! What dry friction and the losses hold, for bodies and for stones.
 
 pub(crate) mod creep;
+pub(crate) mod friction;
 pub(crate) mod settled;

@@ -11,12 +11,14 @@
 use super::known::Recorded;
 use super::turns::Spot;
 use crate::laws::contact::grip;
+use crate::laws::contact::slip::FollowsSpeed;
 use crate::laws::stone::law::{StoneLaw, StoneResponse, Touching, across, laboratory, turning};
 use crate::laws::stone::{StonePose, StoneState};
 use crate::methods::flow::{Flow, FlowPlace, TakenStep, looks};
 use crate::methods::{SHORT_CODE, radau, rk8};
 use crate::motions::body::roll::lossy::REST;
-use crate::motions::dry::creep::{IMPLICIT_TURNS, rests_below};
+use crate::motions::dry::creep::{Creeps, IMPLICIT_TURNS, rests_below};
+use crate::motions::dry::friction::OwnFriction;
 use crate::motions::walk::numbers::{Halt, TIME, loses};
 use crate::motions::walk::{MOMENT, slip_over};
 use crate::numbers::vector::{dot, plus};
@@ -86,7 +88,7 @@ pub(super) enum Touch {
 }
 
 /// The equations and the margins of a phase of a stone.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub(super) struct StoneFlow<'a> {
     pub law: StoneLaw<f64>,
     pub sloped: StoneLaw<Dual<f64>>,
@@ -107,6 +109,8 @@ pub(super) struct StoneFlow<'a> {
     pub resisted: f64,
     /// The records of reversals and ends, in the finer run.
     pub recorded: Option<&'a RefCell<Recorded>>,
+    /// The law of friction of the user, if there is one.
+    pub own: Option<OwnFriction<'a>>,
 }
 
 /// The axes of the laboratory, the contact point and the response of a stone.
@@ -118,7 +122,7 @@ pub(super) struct Seen<T> {
     pub pace: T,
 }
 
-impl StoneFlow<'_> {
+impl<'a> StoneFlow<'a> {
     /// The response of a stone with these numbers, for plain numbers or numbers with a slope; `slip` is None if it is
     /// not among the numbers.
     #[inline(always)]
@@ -128,8 +132,11 @@ impl StoneFlow<'_> {
         q: [T; 4],
         w: [T; 3],
         slip: Option<[T; 2]>,
-    ) -> Seen<T> {
-        let lab = laboratory(if law.patch().is_some() { unit_quaternion(q) } else { q });
+    ) -> Seen<T>
+    where
+        OwnFriction<'a>: FollowsSpeed<T>,
+    {
+        let lab = self.axes(q);
         let mut at = law.touching(lab[2], w);
         let zero = w[0].splat(0.0);
         let mut even = zero.splat(1.0);
@@ -140,10 +147,22 @@ impl StoneFlow<'_> {
         let (to, pace) = match (self.touch, slip) {
             (Touch::Rolls, _) => (law.rolling(&at, w), even),
             (Touch::Held, _) => (law.resting(&at, w, !SHORT_CODE), even),
-            (Touch::Slips, Some(slip)) => law.slipping(&at, w, across(&lab, slip)),
+            (Touch::Slips, Some([u, v])) => {
+                let speed = || (u * u + v * v).sqrt();
+                let follows =
+                    |own: OwnFriction<'a>| law.with_strength(own.strength(law.strength, speed, law.dry));
+                let own = self.own.filter(|_| !SHORT_CODE).map(follows);
+                own.as_ref().unwrap_or(law).slipping(&at, w, across(&lab, [u, v]))
+            }
             _ => (law.pulled(&at, w, [zero; 3]), even),
         };
         Seen { lab, at, to, pace }
+    }
+
+    /// The axes of the laboratory, along those of the stone.
+    #[inline(always)]
+    pub(super) fn axes<T: Real>(&self, q: [T; 4]) -> [[T; 3]; 3] {
+        laboratory(if self.law.patch().is_some() { unit_quaternion(q) } else { q })
     }
 
     #[inline(always)]
@@ -211,19 +230,10 @@ impl StoneFlow<'_> {
     /// The numbers at the time `MOMENT` after the beginning of a slip along `way`, whose speed grows at the
     /// rate `growth`.
     pub fn nudged<const N: usize>(&self, y: &[f64; N], way: [f64; 2], growth: f64) -> [f64; N] {
-        let ([a, b, c, d, e, f, g], mut to) = (core::array::from_fn(|i| y[i]), *y);
-        let (lab, w) = (laboratory([a, b, c, d]), [e, f, g]);
-        let mut rates = [0.0; N];
+        let (mut to, mut rates) = (*y, [0.0; N]);
         if slip_of(y) == [0.0; 2] && self.law.dry && self.rubs(y) <= self.over() {
-            let at = self.law.losing(self.law.touching(lab[2], w), &lab, w);
-            let pulled = self.law.pulled(&at, w, across(&lab, way));
-            rates[..4].copy_from_slice(&turning([a, b, c, d], w));
-            rates[4..8].copy_from_slice(&[pulled.w[0], pulled.w[1], pulled.w[2], 1.0]);
+            rates = self.rates_along(y, way);
             (rates[SLID_X], rates[SLID_Y]) = (growth * way[0], growth * way[1]);
-            (rates[STONE_X], rates[STONE_Y]) = (dot(lab[0], at.r_rate), dot(lab[1], at.r_rate));
-            if let Some(lost) = at.lost.filter(|_| loses(N)) {
-                rates[N - 1] = -dot(lost.under(dot(pulled.force, at.n).max(0.0)), w);
-            }
         } else {
             self.write_rates(y, &mut rates);
             let pace = rates[TIME];
@@ -231,6 +241,25 @@ impl StoneFlow<'_> {
         }
         (0..N).for_each(|i| to[i] += MOMENT * rates[i]);
         self.kept(to)
+    }
+
+    /// The rates in time while a dry slip, which is just beginning, has the direction `way`.
+    pub fn rates_along<const N: usize>(&self, y: &[f64; N], way: [f64; 2]) -> [f64; N] {
+        let (lab, q, w, u) = (laboratory(y.quaternion()), y.quaternion(), y.omega(), slip_of(y));
+        let at = self.law.losing(self.law.touching(lab[2], w), &lab, w);
+        let pulled = self.law.pulled(&at, w, across(&lab, way));
+        let (rate, mut rates) = (self.law.slip_rate(&at, w, &pulled), [0.0; N]);
+        rates[..4].copy_from_slice(&turning(q, w));
+        rates[4..8].copy_from_slice(&[pulled.w[0], pulled.w[1], pulled.w[2], 1.0]);
+        for i in [0, 1] {
+            rates[SLID_X + i] = dot(lab[i], rate);
+            rates[STONE_HEAT] -= u[i] * dot(lab[i], pulled.force);
+            rates[STONE_X + i] = u[i] + dot(lab[i], at.r_rate);
+        }
+        if let Some(lost) = at.lost.filter(|_| loses(N)) {
+            rates[N - 1] = -dot(lost.under(dot(pulled.force, at.n).max(0.0)), w);
+        }
+        rates
     }
 
     /// The contact force along the axes of the laboratory. If a dry slip is just beginning, with u = 0, friction
@@ -275,8 +304,8 @@ pub(super) fn spot<const N: usize>(y: &[f64; N], rate: &[f64; N]) -> Spot {
 
 /// The slip among these numbers; zero if they have none.
 #[inline(always)]
-pub(super) fn slip_of<const N: usize>(y: &[f64; N]) -> [f64; 2] {
-    if N >= ALL { y.slid() } else { [0.0; 2] }
+pub(super) fn slip_of<T: Real, const N: usize>(y: &[T; N]) -> [T; 2] {
+    if N >= ALL { y.slid() } else { [y[0].splat(0.0); 2] }
 }
 
 /// The slip in the outputs: its components in the laboratory frame in which the stone has the orientation of
@@ -389,7 +418,7 @@ impl Flow<STONE_MARGINS> for StoneFlow<'_> {
         if loses(N) {
             most = most.min(self.longest_of_roots(place));
         }
-        if self.law.patch().is_none() {
+        if self.touch != Touch::Slips || self.law.patch().is_none() && self.own.is_none() {
             return most;
         }
         (if self.is_stiff(place) { IMPLICIT_TURNS * most } else { most }).min(self.kinked(place))
@@ -399,7 +428,15 @@ impl Flow<STONE_MARGINS> for StoneFlow<'_> {
 
     #[inline(always)]
     fn is_stiff<const N: usize>(&self, place: &FlowPlace<N>) -> bool {
-        N >= ALL && self.law.patch().is_some() && self.creeps_fast(place)
+        if N < ALL || self.touch != Touch::Slips {
+            return false;
+        }
+        // A slip under a law of the user has no series. The smaller it begins, the faster it approaches its direction.
+        let begins = || {
+            let ([u, v], [du, dv]) = (slip_of(&place.y), slip_of(&place.rate));
+            u * du + v * dv > 0.0
+        };
+        (self.law.patch().is_some() || self.own.is_some() && begins()) && self.creeps_fast(place)
     }
 
     fn stable<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
@@ -418,6 +455,11 @@ impl Flow<STONE_MARGINS> for StoneFlow<'_> {
 
     /// The end of a slip that is almost zero, extrapolated linearly to u = 0.
     fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
+        if let Some(own) = self.own.filter(|_| self.touch == Touch::Slips)
+            && own.is_wrong_at(self.rubs(&place.y))
+        {
+            return Some((Halt::Endless, place.y));
+        }
         if loses(N)
             && let Some(rests) = self.rolls_no_more(place)
         {

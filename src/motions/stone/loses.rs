@@ -20,6 +20,7 @@ use crate::laws::stone::law::{StoneLaw, Touching, across, laboratory};
 use crate::methods::flow::{Flow, FlowPlace};
 pub(super) use crate::motions::body::roll::lossy::REST;
 use crate::motions::body::slide::ways;
+use crate::motions::dry::creep::Creeps;
 use crate::motions::walk::numbers::TIME;
 use crate::numbers::vector::{dot, plus};
 use crate::numbers::{Dual, Real};

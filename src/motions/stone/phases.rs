@@ -1,7 +1,8 @@
 //! The phases of a stone: their beginnings, their flows and their ends.
 
 use super::flow::{
-    HOLD, SLID_X, SLID_Y, Seen, StoneFlow, StoneNumbers, Touch, WITHOUT_POSE, output_slip, spot, state,
+    HOLD, SLID_X, SLID_Y, Seen, StoneFlow, StoneNumbers, Touch, WITHOUT_POSE, output_slip, slip_of, spot,
+    state,
 };
 use super::known::Recorded;
 use super::loses::{HARDLY_ROLLS, REST};
@@ -16,9 +17,10 @@ use crate::laws::loss::{Couples, GRACE, Law, rounded};
 use crate::laws::stone::law::{across, laboratory};
 use crate::laws::stone::{Ellipsoid, StoneState};
 use crate::methods::SHORT_CODE;
-use crate::methods::flow::{Flow, Flown, Steps};
+use crate::methods::flow::{Exhausted, Flow, Flown, Steps};
 use crate::motions::body::roll::lossy::JUMP;
-use crate::motions::dry::creep::LOST_DRILLING;
+use crate::motions::dry::creep::{Creeps, LOST_DRILLING};
+use crate::motions::dry::friction::{OwnFriction, slipped};
 use crate::motions::walk::numbers::{Halt, TIME, loses};
 use crate::motions::walk::slow::clear_until;
 use crate::motions::walk::{Next, Pause, Phases, SlowSeries, Walk, WalkStep, after_rest, ending};
@@ -59,7 +61,7 @@ impl<'a, 'n, const N: usize> StoneWalk<'a, 'n, N> {
         times: &'a [f64],
         ask: &Ask,
         (tol, fine): (f64, f64),
-        recorded: Option<&'n RefCell<Recorded>>,
+        (recorded, own): (Option<&'n RefCell<Recorded>>, Option<OwnFriction<'n>>),
     ) -> Result<Self, Error> {
         let &Start { state: y, slip, time, .. } = start;
         let friction = ask.table.friction();
@@ -80,6 +82,7 @@ impl<'a, 'n, const N: usize> StoneWalk<'a, 'n, N> {
             push: [0.0; 2],
             resisted: law.resisted(),
             recorded,
+            own,
         };
         let mut at = [0.0; N];
         at[..4].copy_from_slice(&y.orientation());
@@ -396,7 +399,8 @@ impl<'n, const N: usize> Phases<N> for StonePhases<'n> {
         walk.of.flow.rubs(&walk.at)
     }
     fn begins_slowly(walk: &StoneWalk<'_, 'n, N>) -> bool {
-        walk.of.flow.law.patch().is_none() && walk.of.flow.push == [0.0; 2]
+        let flow = &walk.of.flow;
+        flow.law.patch().is_none() && flow.own.is_none() && flow.push == [0.0; 2]
     }
 
     fn has_series(walk: &StoneWalk<'_, 'n, N>) -> bool {
@@ -418,7 +422,14 @@ impl<'n, const N: usize> Phases<N> for StonePhases<'n> {
     }
 
     fn nudged(walk: &mut StoneWalk<'_, 'n, N>, way: [f64; 2], growth: f64) -> [f64; N] {
-        let y = walk.of.flow.nudged(&walk.at, way, growth);
+        let (flow, at) = (walk.of.flow, walk.at);
+        let begins = slip_of(&at) == [0.0; 2] && way != [0.0; 2] && flow.push == [0.0; 2];
+        if flow.own.is_some() && begins {
+            return walk.keeps_its_way(growth, (flow.calm(&at) / 3.0).min(1.0), |lasts| {
+                flow.kept(slipped(&at, SLID_X, (way, lasts), |y| flow.rates_along(y, way)))
+            });
+        }
+        let y = flow.nudged(&at, way, growth);
         walk.of.flow.rolls_freely();
         y
     }
@@ -473,8 +484,11 @@ impl<'n, const N: usize> Phases<N> for StonePhases<'n> {
             |y: &[f64; WITHOUT_POSE]| core::array::from_fn(|i| if i < WITHOUT_POSE { y[i] } else { 0.0 });
         // A stone that rolls without a pose has fewer numbers.
         let flown = if SHORT_CODE || loses(N) || flow.touch == Touch::Slips || ask.pose || ask.table.rubs() {
-            let mut write = |y: &[f64; N]| write(made, (&flow, &ask, still), y);
-            flow.run(flow.place(y), steps, times, &mut write, go_on)
+            let (mut write, place) = (|y: &[f64; N]| write(made, (&flow, &ask, still), y), flow.place(y));
+            let wrong =
+                flow.own.filter(|_| flow.stopped(&place).is_some_and(|(halt, _)| halt == Halt::Endless));
+            wrong.and_then(|own| own.takes_fault()).map_or(Ok(()), Err)?;
+            flow.run(place, steps, times, &mut write, go_on)
         } else {
             let mut write = |y: &[f64; WITHOUT_POSE]| write(made, (&flow, &ask, still), &whole(y));
             let here = flow.place(core::array::from_fn(|i| y[i]));
@@ -482,6 +496,11 @@ impl<'n, const N: usize> Phases<N> for StonePhases<'n> {
             Flown { halt, y: whole(&y), step, steep, spent }
         };
         walk.has_spent(flown.spent);
+        // Beyond the last step that was taken a wrong value of a law does not count.
+        let fault = flow.own.and_then(|own| own.takes_fault());
+        if flown.halt == Halt::Endless && flown.spent.exhausted != Some(Exhausted::Interrupted) {
+            fault.map_or(Ok(()), Err)?;
+        }
         if flown.halt == Halt::Pause {
             return Ok(Pause::Here(flown.y, Some(flown.step)));
         }

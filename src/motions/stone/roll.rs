@@ -13,6 +13,7 @@ use super::known::{Recorded, Runs, settle};
 use super::phases::StoneWalk;
 use crate::error::Error;
 use crate::laws::stone::{Ellipsoid, StoneState};
+use crate::motions::dry::friction::OwnFriction;
 use crate::motions::walk::two_runs::{Followed, judged, rougher};
 use crate::motions::{Ask, Motion, Start};
 use core::cell::RefCell;
@@ -56,17 +57,18 @@ fn rolled(
     ask: &Ask,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Option<Motion<StoneState>>, Error> {
-    let found = followed(stone, start, times, ask, &RefCell::default(), go_on)?;
+    let found = followed(stone, start, times, (ask, None), &RefCell::default(), go_on)?;
     Ok(Motion::from(found).advanced(start.time))
 }
 
-/// The motion and its path, with the error from a rougher run. The finer run records reversals and ends in
-/// `recorded`; reversals after the time up to which the motion is known are removed.
+/// The motion and its path, with the error from a rougher run, under the options and perhaps a law of friction of the user.
+/// The finer run records reversals and ends in `recorded`; reversals after the time up to which the motion is known are
+/// removed.
 pub(crate) fn followed(
     stone: &Ellipsoid,
     start: &Start<StoneState>,
     times: &[f64],
-    ask: &Ask,
+    (ask, own): (&Ask, Option<OwnFriction<'_>>),
     recorded: &RefCell<Recorded>,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Followed<StoneState>, Error> {
@@ -74,9 +76,9 @@ pub(crate) fn followed(
     let mut run = |tol: f64, times: &[f64], recorded| {
         let of = (stone, &start);
         if ask.losses.is_none() {
-            walk::<ALL>(of, times, ask, (tol, fine), recorded)?.run(go_on)
+            walk::<ALL>(of, times, (ask, own), (tol, fine), recorded)?.run(go_on)
         } else {
-            walk::<LOSING>(of, times, ask, (tol, fine), recorded)?.run(go_on)
+            walk::<LOSING>(of, times, (ask, own), (tol, fine), recorded)?.run(go_on)
         }
     };
     let runs = |tol: f64, times: &[f64]| run(tol, times, (tol == fine).then_some(recorded));
@@ -100,9 +102,9 @@ pub(crate) fn followed(
 fn walk<'a, 'n, const N: usize>(
     of: (&Ellipsoid, &Start<StoneState>),
     times: &'a [f64],
-    ask: &Ask,
+    (ask, own): (&Ask, Option<OwnFriction<'n>>),
     tols: (f64, f64),
     recorded: Option<&'n RefCell<Recorded>>,
 ) -> Result<Box<StoneWalk<'a, 'n, N>>, Error> {
-    Ok(Box::new(StoneWalk::of_stone(of, times, ask, tols, recorded)?))
+    Ok(Box::new(StoneWalk::of_stone(of, times, ask, tols, (recorded, own))?))
 }

@@ -2,7 +2,7 @@
 
 use super::numbers::{Halt, TIME};
 use super::slow::{SLOW_SLIP, pays};
-use super::{Next, Pause, Phases, Walk};
+use super::{MOMENT, Next, Pause, Phases, Walk};
 use crate::laws::contact::standstill::towards;
 use crate::motions::ask::result::Ending;
 use crate::numbers::Series;
@@ -63,6 +63,10 @@ pub(super) struct Looked {
     evaluations: u64,
     skips: [u32; 2],
 }
+
+/// For this share of the time in which the body turns by a radian, at most of a unit of time, a slip under a law of the
+/// user keeps its direction after static friction has ceased to hold. The error is the cube of this share.
+const KEEPS_ITS_WAY: f64 = 1e-5;
 
 /// A series lasts at most about this many times as long as the one before it.
 const STRETCHES: f64 = 2.0;
@@ -217,6 +221,16 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
             P::write(self, &{ self.at });
         }
         y
+    }
+
+    /// Begins a slip from rest under a law of the user: it keeps its direction for a share of the time `moment`, which is
+    /// longer if it begins continuously, with a speed that grows at no rate. `slips` has the numbers after a time.
+    pub fn keeps_its_way(&mut self, growth: f64, moment: f64, slips: impl Fn(f64) -> [f64; N]) -> [f64; N] {
+        let (from, lasts) = (self.at[TIME], moment * if growth == 0.0 { KEEPS_ITS_WAY } else { MOMENT });
+        while let Some(t) = self.until().filter(|t| *t <= from + lasts) {
+            P::write(self, &slips(t - from));
+        }
+        slips(lasts)
     }
 
     /// Removes a phase that has lasted only for a moment, such as one in which the drilling of a patch passes zero.

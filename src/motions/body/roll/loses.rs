@@ -22,14 +22,16 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     /// Begins a phase that loses energy and rolls with friction up to `mu` N, or slides freely. Returns the
     /// numbers of the flow, None if the phase is over at once.
     pub(super) fn begins_to_lose(&mut self, mu: f64) -> Result<Option<[f64; N]>, Error> {
-        let on = (&self.of.body, self.contact());
-        let (losses, y, friction) = (self.of.rolling_losses, self.of.state, self.friction());
+        let (losses, friction) = (self.ask.losses, self.friction());
+        if friction.patch() > 0.0 {
+            // The patch hardly drills.
+            self.claims(LOST_DRILLING * drilling(&self.of.state).abs());
+            self.stops_exactly(Holds { drilling: true, ..Holds::default() });
+        }
+        let (on, y) = ((&self.of.body, self.contact()), self.of.state);
         // Such steps add little to the error.
         let tol = if self.of.by_steps { EXACTLY * self.of.slide.tol } else { self.of.slide.tol };
         let flow = LossyFlow::new(on, mu, (&losses, self.of.own), tol, &y).on_patch(&friction, &y);
-        if flow.is_patch() && flow.holds_drilling() {
-            self.claims(LOST_DRILLING * drilling(&self.of.state).abs());
-        }
         let halt = flow.at_start(&self.of.state);
         // The friction that would hold a moving contact point is not that of a body at rest.
         let rests = halt.is_none_or(|halt| halt == Halt::Slips) && flow.has_stopped(&self.of.state);
@@ -42,7 +44,6 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             Some(halt) => self.meets_halt(halt),
             None if self.slows_evenly() => {
                 self.of.lossy = None;
-                self.stops_exactly(Holds { drilling: flow.is_patch(), ..Holds::default() });
                 self.rolls_to_rest(&flow);
                 Ok(None)
             }

@@ -26,12 +26,12 @@ use crate::laws::loss::{COUNT, Couples, GRACE, Holds, Law, Losses, SLACK, Ways, 
 use crate::laws::state::{State, drilling_of, spin_of};
 use crate::motions::body::face::{FLAT, turning_share};
 use crate::motions::body::own::Own;
+use crate::motions::dry::creep::RestingPatch;
 use crate::motions::walk::numbers::{COS, Halt, P, SIN, U2, UH, W2, W3};
 use crate::numbers::{Dual, Real, sign_or_zero};
 use core::f64::consts::PI;
 use free::pace_of;
 pub(crate) use free::{LossyUnheld, from_side};
-pub(crate) use patched::with_patch;
 pub(crate) use steps::at_rest;
 
 /// The reason why the contact point does not move along the rim.
@@ -81,9 +81,8 @@ pub(crate) struct LossyFlow<G = ()> {
     pub tol: f64,
     /// Whether events other than a landing of the face end the flow.
     watch: bool,
-    /// The coefficient of sliding friction on a patch, whose couple is that of drilling friction with a length that
-    /// depends on the force; 0 without a patch.
-    slides: f64,
+    /// The patch of contact; None for a point.
+    patch: Option<RestingPatch>,
 }
 
 impl<G: Own> LossyFlow<G> {
@@ -120,7 +119,7 @@ impl<G: Own> LossyFlow<G> {
             ball,
             tol,
             watch,
-            slides: 0.0,
+            patch: None,
         };
         lossy.sets_holds(y);
         lossy
@@ -139,6 +138,11 @@ impl<G: Own> LossyFlow<G> {
         self.law.losses.has(law)
     }
 
+    /// Whether dry friction can hold the drilling.
+    fn can_hold_drilling(&self) -> bool {
+        self.is_patch() || self.has(Law::Drilling)
+    }
+
     /// Sets which motions are held at a state, and the signs (`ways`) of the others.
     fn sets_holds(&mut self, y: &State) {
         let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
@@ -149,7 +153,7 @@ impl<G: Own> LossyFlow<G> {
         // What a slip has held is at rest up to rounding.
         let still = rounded(s, w);
         let along = spin.abs() <= still && self.has(Law::DryContour);
-        let about = drilling.abs() <= still && self.has(Law::Drilling);
+        let about = drilling.abs() <= still && self.can_hold_drilling();
         if y.w1 == 0.0 && y.w3 == 0.0 || along && about {
             self.only_rocks(angle, y.w2);
         } else {
@@ -183,10 +187,9 @@ impl<G: Own> LossyFlow<G> {
     }
 
     fn response(&self, angle: (f64, f64), precession: f64, w: [f64; 3], held: Held<f64>) -> Acted<f64> {
-        if self.is_patch() {
-            return self.acts_on_patch(&self.law, angle, precession, (w, held)).0;
-        }
-        self.law.at(angle, precession, w, held)
+        let drills = matches!(held, Held::Drilling);
+        let acted = self.law.at(angle, precession, w, held);
+        self.patch.filter(|_| drills).map_or(acted, |patch| self.held_by(&patch, acted))
     }
 
     /// Makes dry friction hold the contact point if its limit suffices, or always if `surely`; else the push moves the
@@ -230,7 +233,7 @@ impl<G: Own> LossyFlow<G> {
         let slow = |x: f64| x.abs() < little;
         Holds {
             contour: slow(y.spin()) && self.has(Law::DryContour),
-            drilling: slow(drilling_of(angle, y.w1, y.w3)) && self.has(Law::Drilling),
+            drilling: slow(drilling_of(angle, y.w1, y.w3)) && self.can_hold_drilling(),
             rolling: slow(pace_of(angle, y.precession(), [y.w1, y.w2, y.w3]))
                 && self.has(Law::RollingResistance),
         }
@@ -256,7 +259,10 @@ impl<G: Own> LossyFlow<G> {
             Contact::Smooth => Rubs::Slips { pull: [0.0; 2], twist: 0.0 },
         };
         let seen = self.law.losses.seen(&reduced.shape.rim, angle, drilling, w);
-        let losses = self.law.losses.linear(&seen, |_| 1.0);
+        let mut losses = self.law.losses.linear(&seen, |_| 1.0);
+        if let Some(patch) = self.patch {
+            losses = losses.resisting(Law::Drilling, patch.grips(0.0, 1.0));
+        }
         let Some(rests) = Together::of_body(&reduced.shape, &losses, (angle, w), [0.0; 2], rubs) else {
             return;
         };

@@ -12,6 +12,7 @@ use crate::methods::rk8;
 use crate::motions::body::face::{FLAT, lands_at};
 use crate::motions::body::own::Own;
 use crate::motions::body::pole;
+use crate::motions::dry::creep::hardly_drills;
 use crate::motions::dry::settled::{Balance, CLOSE, EFFORT, SLOWER, Turned, balance, settles_within};
 use crate::motions::walk::numbers::{
     BodyNumbers, COS, Halt, MARGINS, P, PHI, SIN, TIME, W1, W2, W3, loses, pose_rates, poses,
@@ -42,11 +43,7 @@ impl<G: Own> LossyFlow<G> {
         let way = if self.hold == Hold::Settled { self.settled_way } else { self.ways.contour };
         let act = |precession: f64, w: [f64; 3], rate: f64| {
             let held = Held::Contour(rate);
-            let acted = if self.is_patch() {
-                self.acts_on_patch(&self.bare, angle, precession, (w, held)).0
-            } else {
-                self.bare.at(angle, precession, w, held)
-            };
+            let acted = self.bare.at(angle, precession, w, held);
             Turned { acted, push: acted.held[0], normal: acted.force[0] }
         };
         let Balance { precession, w, turned: Turned { acted, push, .. }, spin } =
@@ -99,7 +96,13 @@ impl<G: Own> LossyFlow<G> {
         Some(there)
     }
 
-    pub(super) fn margins_of<T: Real, H: OwnCouple<T>>(&self, law: &Lossy<T, H>, y: [T; 5]) -> [T; MARGINS] {
+    /// The margins; `grips` is the couple per normal force that holds the drilling on a patch, whose derivative is left out.
+    fn margins_of<T: Real, H: OwnCouple<T>>(
+        &self,
+        law: &Lossy<T, H>,
+        y: [T; 5],
+        grips: Option<f64>,
+    ) -> [T; MARGINS] {
         let [s, c, _, w2, _] = y;
         let (precession, w) = self.turning(y);
         let one = s.splat(1.0);
@@ -116,8 +119,14 @@ impl<G: Own> LossyFlow<G> {
         let side = from_side([high, far, there].map(number), (s, c));
         let [normal, along, across] = acted.force;
         let square = along * along + across * across;
-        let grip = if self.mu.is_finite() { grip(number(self.mu), normal, square) } else { one };
-        let [push, limit] = acted.held;
+        let mut grip = if self.mu.is_finite() { grip(number(self.mu), normal, square) } else { one };
+        if self.is_patch() {
+            grip = grip.min(hardly_drills(drilling_of((s, c), w[0], w[2])));
+        }
+        let [push, mut limit] = acted.held;
+        if let Some(grips) = grips {
+            limit = number(grips) * normal;
+        }
         let within = limit * limit * number(1.0 + 2.0 * GRACE) - push * push;
         let slack = self.slack.map(|slack| number(slack) * (one + precession.abs()));
         let contour = match self.hold {
@@ -203,26 +212,16 @@ impl<G: Own> Flow<MARGINS> for LossyFlow<G> {
 
     #[inline(always)]
     fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {
-        if self.is_patch() {
-            return self.rates_on_patch(y, all);
-        }
         self.rates(y, all);
     }
 
     fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; MARGINS] {
         let y = core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
-        if self.is_patch() {
-            return self.margins_on_patch(y);
-        }
-        self.margins_of(&self.sloped, y)
+        self.margins_of(&self.sloped, y, self.grips(&place.y))
     }
 
     fn margin<const N: usize>(&self, y: &[f64; N], i: usize) -> f64 {
-        let y = core::array::from_fn(|k| y[k]);
-        if self.is_patch() {
-            return self.margin_on_patch(y, i);
-        }
-        self.margins_of(&self.law, y)[i]
+        self.margins_of(&self.law, core::array::from_fn(|k| y[k]), self.grips(y))[i]
     }
 
     fn end(&self, i: usize) -> Halt {
