@@ -1,12 +1,13 @@
 //! The slip of a contact point along an impact, followed by steps of a flow.
 //!
 //! ```text
-//! y = (u_1, u_2, P_1, P_2, p, u_n, work)        dp = |u|/(|u| + mu) dx, in which nothing is singular
-//! u' = b |u| - mu A u,   P' = -mu u,   p' = |u|,   u_n' = a_n |u| - mu b.u,   work' = u_n |u|       all over |u| + mu
+//! y = (u_1, u_2, P_1, P_2, p, u_n, work)        dp = |u|/(|u| + k) dx, in which nothing is singular
+//! u' = b |u| - mu A u,   P' = -mu u,   p' = |u|,   u_n' = a_n |u| - mu b.u,   work' = u_n |u|       all over |u| + k
 //! compression ends where u_n = 0, the impact where the work since then is e^2 times that of compression
 //! ```
 //! [`Delassus`] has A, b and a_n. All velocities are in units of the first normal velocity, or of the slip where that is zero.
-//! The time of this flow is p. The coefficient mu is constant, or a function of the speed.
+//! The time of this flow is p. The coefficient mu is constant, with k = 1, or a function of the speed, with k = mu, since mu
+//! may vanish with the speed.
 //!
 //! Error: the tolerance of the steps.
 
@@ -117,7 +118,8 @@ impl Flow<1> for ImpactSlip<'_> {
     fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {
         let sigma = (y[0] * y[0] + y[1] * y[1]).sqrt().max(f64::MIN_POSITIVE);
         let (mu, light) = (self.rubs.at(sigma), &self.light);
-        let (per, pull) = (1.0 / (sigma + mu), [mu * y[0], mu * y[1]]);
+        let per = 1.0 / (sigma + if self.rubs.law.is_some() { mu } else { 1.0 });
+        let pull = [mu * y[0], mu * y[1]];
         let ([slows, slows_aside], [b_1, b_2]) = (light.level(pull), light.couples);
         all[0] = per * (b_1 * sigma - slows);
         all[1] = per * (b_2 * sigma - slows_aside);
@@ -175,14 +177,6 @@ impl Flow<1> for ImpactSlip<'_> {
 
     fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(SlipEnd, [f64; N])> {
         self.is_over([place.y[0], place.y[1]]).then_some((SlipEnd::Straight, place.y))
-    }
-
-    fn stuck<const N: usize>(&self, _: &FlowPlace<N>, _: &[Dual<f64>; 1]) -> Option<SlipEnd> {
-        None
-    }
-
-    fn shown<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
-        *y
     }
 
     fn theta<const N: usize>(&self, _: &[f64; N]) -> f64 {

@@ -115,7 +115,9 @@ pub(crate) trait Flow<const M: usize>: Copy {
     /// The halt of a flow that ends at this point, and the numbers at the halt, which may lie a little further on.
     fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Self::Halt, [f64; N])>;
     /// The halt of a flow whose steps become too short or crawl; None where the reason is unknown.
-    fn stuck<const N: usize>(&self, place: &FlowPlace<N>, margins: &[Dual<f64>; M]) -> Option<Self::Halt>;
+    fn stuck<const N: usize>(&self, _: &FlowPlace<N>, _: &[Dual<f64>; M]) -> Option<Self::Halt> {
+        None
+    }
     /// For a halt at which a speed vanishes, the rate in time at which this speed falls; infinite for other halts.
     fn slows<const N: usize>(&self, _: Self::Halt, _: &FlowPlace<N>) -> f64 {
         f64::INFINITY
@@ -130,7 +132,9 @@ pub(crate) trait Flow<const M: usize>: Copy {
         false
     }
     /// The numbers of the output, from those of this flow.
-    fn shown<const N: usize>(&self, y: &[f64; N]) -> [f64; N];
+    fn shown<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
+        *y
+    }
     /// Moves the numbers after a step back to the surface of an invariant, from which rounding and step
     /// errors lead away.
     #[inline(always)]

@@ -85,12 +85,6 @@ impl Flow<MARGINS> for Clock {
     fn stopped<const N: usize>(&self, _: &FlowPlace<N>) -> Option<(Rings, [f64; N])> {
         None
     }
-    fn stuck<const N: usize>(&self, _: &FlowPlace<N>, _: &[Dual<f64>; MARGINS]) -> Option<Rings> {
-        None
-    }
-    fn shown<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
-        *y
-    }
 }
 
 /// The halt of a clock that runs up to `last`, the time of that halt, and how many of three outputs the clock writes.

@@ -222,12 +222,12 @@ impl<G: Own, const N: usize> Phases<N> for BodyPhases<G> {
     fn goes(
         walk: &mut BodyWalk<'_, N, G>,
         kind: Kind,
-        _: &mut dyn FnMut() -> bool,
+        go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Option<WalkStep<N>>, Error> {
         if kind != Kind::Flying {
             return Ok(walk.lies());
         }
-        walk.flies();
+        walk.flies(go_on);
         Ok(None)
     }
     fn slip_kind(walk: &BodyWalk<'_, N, G>) -> Kind {
