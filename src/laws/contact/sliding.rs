@@ -113,6 +113,7 @@ impl Flow<1> for ImpactSlip<'_> {
     const TIME: usize = PUSHED;
     const OVER: SlipEnd = SlipEnd::GivenUp;
     const PAUSE: SlipEnd = SlipEnd::GivenUp;
+    const ONLY_ENDS: bool = true;
 
     #[inline(always)]
     fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {

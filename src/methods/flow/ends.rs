@@ -58,7 +58,7 @@ pub(super) fn failed<F: Flow<M>, const M: usize, const N: usize>(
     // A margin that rises from zero, as after an event that a flow passes, may still be negative in the
     // middle.
     let closely = F::CLOSELY && both.0.iter().all(|margin| margin.value > 0.0);
-    if M == 0 || long >= 1.0 && !closely {
+    if M == 0 || F::ONLY_ENDS || long >= 1.0 && !closely {
         return failure(flow, (from, h), both);
     }
     if long >= 1.0 && !(0..M).any(|i| is_near(both.0[i], both.1[i], h)) {
@@ -229,11 +229,11 @@ fn failure<F: Flow<M>, const M: usize, const N: usize>(
                 let margin = flow.margins_at(&flow.place(flow.part(from, x * h)))[i];
                 Dual { slope: h * margin.slope, ..margin }
             };
-            only_zero(on, [a.value, h * a.slope, b.value, h * b.slope])
+            only_zero(&mut { on }, [a.value, h * a.slope, b.value, h * b.slope])
         };
         let found = if b.value < 0.0 && b.slope < 0.0 && a.value > 0.0 { steadily() } else { None };
         let on = |x: f64| flow.margin(&flow.part(from, x * h), i);
-        let found = found.map_or_else(|| first_zero(on, a.value, b.value), Ok);
+        let found = found.map_or_else(|| first_zero(&on, a.value, b.value), Ok);
         if let Err((x, least)) = found {
             flow.grazed(&flow.part(from, x * h), i, least);
         }
@@ -261,8 +261,8 @@ fn lowest(a: Dual<f64>, b: Dual<f64>, h: f64) -> f64 {
 /// the cubic with the values and slopes of the margin at both ends. That cubic is almost exact, and an
 /// iteration that moves by less than `NEAR` leaves an error of the square of that. None if the iteration
 /// leaves [0, 1] or does not converge.
-pub(crate) fn only_zero(
-    mut on: impl FnMut(f64) -> Dual<f64>,
+pub(super) fn only_zero(
+    on: &mut dyn FnMut(f64) -> Dual<f64>,
     [begin, rise, end, last]: [f64; 4],
 ) -> Option<f64> {
     const NEAR: f64 = 1e-8;
@@ -285,7 +285,7 @@ pub(crate) fn only_zero(
 
 /// The zero before `x` of a margin that rises from zero at the start and has fallen to `value` there; the start if it does
 /// not rise.
-fn after_start(on: impl Fn(f64) -> f64, mut x: f64, mut value: f64) -> f64 {
+fn after_start(on: &dyn Fn(f64) -> f64, mut x: f64, mut value: f64) -> f64 {
     while x > LEAST_RISE {
         let before = on(0.5 * x);
         if before > 0.0 {
@@ -298,7 +298,7 @@ fn after_start(on: impl Fn(f64) -> f64, mut x: f64, mut value: f64) -> f64 {
 
 /// The first zero within [0, 1] of a margin that may fail in this interval, from its values at both ends;
 /// without a zero, the place of its minimum and the minimum.
-fn first_zero(on: impl Fn(f64) -> f64, begin: f64, end: f64) -> Result<f64, (f64, f64)> {
+fn first_zero(on: &dyn Fn(f64) -> f64, begin: f64, end: f64) -> Result<f64, (f64, f64)> {
     let mut values = [begin; PARTS + 1];
     for k in 1..=PARTS {
         let x = k as f64 / PARTS as f64;
@@ -314,7 +314,7 @@ fn first_zero(on: impl Fn(f64) -> f64, begin: f64, end: f64) -> Result<f64, (f64
     // The margin has its minimum around the lowest of these places.
     let low = (0..=PARTS).min_by(|i, j| values[*i].total_cmp(&values[*j])).unwrap_or(0);
     let [from, to] = [low.saturating_sub(1), (low + 1).min(PARTS)];
-    let (x, value) = least(&on, from as f64 / PARTS as f64, to as f64 / PARTS as f64);
+    let (x, value) = least(on, from as f64 / PARTS as f64, to as f64 / PARTS as f64);
     let fails = value < 0.0;
     if fails { Ok(crossing(on, from as f64 / PARTS as f64, x, values[from], value)) } else { Err((x, value)) }
 }

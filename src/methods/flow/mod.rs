@@ -16,7 +16,7 @@ mod place;
 pub(crate) mod schedule;
 mod stiff;
 
-pub(crate) use ends::{looks, only_zero};
+pub(crate) use ends::looks;
 pub(crate) use place::{Exhausted, FlowPlace, Flown, Spent, Steps, TakenStep};
 use stiff::{STABLE, StiffSteps};
 
@@ -174,6 +174,8 @@ pub(crate) trait Flow<const M: usize>: Copy {
     /// whole step.
     #[inline(always)]
     fn passed<const N: usize>(&self, _: TakenStep<'_, N>, _: f64, _: &FlowPlace<N>) {}
+    /// Whether only the end of the flow is asked for, and none of its steps is long: then it needs less code.
+    const ONLY_ENDS: bool = false;
     /// Whether short steps are also searched for margins that fail for a moment.
     const CLOSELY: bool = false;
     /// Called with a point within a step near which margin `i` has a minimum, and with that minimum, which is
@@ -512,7 +514,9 @@ pub(crate) trait Flow<const M: usize>: Copy {
             spent.erred += if implicit { BEFORE_IT_DECAYS } else { 1.0 } * error * self.fastest(&here.y);
             let until = stop.as_ref().map_or(after.y[Self::TIME], |(_, y)| y[Self::TIME]);
             let step = (&here, &after, h);
-            next += self.write_times(step, stop.as_ref(), (&times[next..], until), &mut last, write);
+            if !Self::ONLY_ENDS {
+                next += self.write_times(step, stop.as_ref(), (&times[next..], until), &mut last, write);
+            }
             if Self::LOOKS_ON {
                 let taken = (&here, h, &stages);
                 match stop {
