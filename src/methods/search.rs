@@ -3,14 +3,22 @@
 //! Error: a zero is found to the last digit, or as far as the values of the function allow; a minimum is found to nine
 //! digits of the interval, and its value to the square of that.
 
+use super::SHORT_CODE;
+
 /// The zero of `f` between `a` and `b`, at which the signs of `f` differ: to the last digit, or as far as the values of
 /// `f` allow. The zero is `b` if `fb` is 0.
-pub(crate) fn crossing(
-    mut f: impl FnMut(f64) -> f64,
-    mut a: f64,
-    mut b: f64,
-    mut fa: f64,
-    mut fb: f64,
+pub(crate) fn crossing(mut f: impl FnMut(f64) -> f64, a: f64, b: f64, fa: f64, fb: f64) -> f64 {
+    if SHORT_CODE {
+        return bracketed(&mut f as &mut dyn FnMut(f64) -> f64, [a, b], [fa, fb]);
+    }
+    bracketed(&mut f, [a, b], [fa, fb])
+}
+
+/// The zero between `a` and `b`; pages have one compiled copy.
+fn bracketed<F: FnMut(f64) -> f64 + ?Sized>(
+    f: &mut F,
+    [mut a, mut b]: [f64; 2],
+    [mut fa, mut fb]: [f64; 2],
 ) -> f64 {
     for i in 0..200 {
         // Regula falsi: the value at an end that is kept is halved (Illinois), and every fourth step bisects.

@@ -400,3 +400,26 @@ fn a_couple_that_depends_on_the_normal_force_has_the_one_of_newtons_equations_in
     }
     assert!(compared > 30, "{compared}");
 }
+
+#[test]
+fn a_ball_whose_axis_passes_its_pole_is_resisted_by_a_users_air_on_the_other_side_as_by_the_librarys() {
+    // The axis passes the pole while the ball spins about it, so that w1 is not zero on the other side.
+    let b = 0.3;
+    let air = |_: &Body, y: &State, _: f64| [y.w1, y.w2, y.w3].map(|w| -b * w);
+    let times = [0.05, 0.3, 0.6];
+    for (offset, table, slip) in [
+        (0.0, Table::default(), [0.0; 2]),
+        (0.1, Table::default(), [0.0; 2]),
+        (0.1, Friction::coulomb(0.1).into(), [2.0, 1.0]),
+    ] {
+        let ball = Body::ball(offset, 0.4, 0.42).unwrap();
+        let state = State { theta: 1e-8, w1: 2e-8, w2: 1.0, w3: 2.0 };
+        let (start, ask) = (Start::from(state).with_slip(slip), Ask::on(table));
+        let found = own(&ball, start, &times, &ask, Custom::default().with_couple(&air)).unwrap();
+        let known = ask.with_losses(Losses::of(Law::AirLinear, b));
+        let known = roll_with(&ball, start, &times, &known, || true).unwrap().unwrap();
+        let [off, claimed] = apart(&found, &known);
+        assert!(found.states.len() == 3 && known.states[1].w1.abs() > 0.1, "{known:?}");
+        assert!(off <= claimed && off < 1e-7, "{offset} {table:?}: {off:e} {claimed:e}");
+    }
+}

@@ -149,10 +149,11 @@ fn a_coin_in_air_that_slips_in_each_nod_comes_down_to_its_face() {
         1.0477455556517266,
         0.6135957148583386,
     ];
+    // At 1e-8 roundings decide whether the last nods tell how it ends.
     let air = Losses::of(Law::AirLinear, 0.01);
-    let [rough, fine] = [1e-8, 1e-9]
+    let [rough, fine] = [1e-9, 1e-10]
         .map(|tol| dropped_coin(0.26704267447958785, numbers, (0.34384162495140747, air), 200.0, tol));
-    lands_within_claims(&rough, &fine, 0.02);
+    lands_within_claims(&rough, &fine, 0.06);
 }
 
 /// Checks that a motion and a finer one end with the face on the table, at rest, at times that differ by at most the

@@ -8,7 +8,7 @@ use spincyl::contact::Table;
 use spincyl::contact::slip::Friction;
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::path::{Hit, Kind};
-use spincyl::motion::{Ask, Ending, Method, Motion, Start, roll_with};
+use spincyl::motion::{Ask, Ending, Limit, Method, Motion, Start, roll_with};
 use spincyl::{Body, State};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -233,6 +233,53 @@ fn a_body_that_leaves_the_table_against_the_air_lands_when_newtons_equations_say
         }
     }
     assert!(met > drawn(60), "{met}");
+}
+
+#[test]
+fn against_an_air_that_hardly_acts_a_body_lands_when_and_as_it_does_without_air() {
+    let (mut r, mut met, mut upper) = (wander(646), 0, 0);
+    for _ in 0..drawn(1500) {
+        let body = any_profile(&mut r);
+        let start = any_start(&body, &mut r).with_aloft([2.0 * r() * r(), 2.0 * r() - 1.0]);
+        let fast = 1.0 + 9.0 * r() * r();
+        let State { theta, w1, w2, w3 } = start.state;
+        let state = State { theta, w1: fast * w1, w2: fast * w2, w3: fast * w3 };
+        let start = Start { state, ..start };
+        let ask = Ask::on(coulomb(0.3)).with_restitution(0.5).with_method(Method::Tolerance(1e-10));
+        let air = Losses::of(Law::AirLinear, 1e-14);
+        let until = [6.0];
+        let Ok(Some(free)) = roll_with(&body, start, &until, &ask, || true) else { continue };
+        let slowed = moved(&body, &start, &ask.with_losses(air), &until);
+        let Some(known) = impacts(&free).first() else { continue };
+        let found = impacts(&slowed)[0];
+        let steep = known.velocities[0][2].abs();
+        let off = (found.time - known.time).abs() * steep.min(1.0);
+        assert!(off < 1e-8 && found.other == known.other, "{body:?} {start:?}: {off:e}");
+        met += 1;
+        upper += usize::from(found.other);
+    }
+    assert!(met > drawn(900) && upper > drawn(60), "{met} {upper}");
+}
+
+#[test]
+fn a_long_flight_against_the_air_can_be_interrupted_and_has_the_limit_of_a_motion() {
+    let (body, air) = (Body::solid(0.5).unwrap(), Losses::of(Law::AirLinear, 1e-3));
+    let state = State { theta: 1.0, w1: 40.0, w2: -30.0, w3: 60.0 };
+    let start = Start::from(state).with_aloft([500.0, 0.0]);
+    let ask = Ask::on(coulomb(0.3)).with_restitution(0.5).with_losses(air);
+    let mut asked = 0;
+    let go_on = || {
+        asked += 1;
+        false
+    };
+    let stopped = roll_with(&body, start, &[20.0], &ask, go_on).unwrap();
+    assert!(asked == 1 && stopped.is_none_or(|m| m.limit == Some(Limit::Interrupted)));
+    let most = 3_000;
+    let tired = moved(&body, &start, &ask.with_max_evaluations(most), &[20.0]);
+    assert_eq!((tired.ending(), tired.limit), (Ending::Bounded, Some(Limit::Evaluations)));
+    assert!(tired.evaluations > most / 2 && tired.evaluations < 3 * most, "{}", tired.evaluations);
+    let whole = moved(&body, &start, &ask, &[20.0]);
+    assert!(whole.limit.is_none() && whole.evaluations > 2 * most, "{}", whole.evaluations);
 }
 
 #[test]

@@ -10,6 +10,7 @@
 //!
 //! Error: 64 ulp of the largest term, by comparison with a three-dimensional model in a test of `laws`.
 
+pub(crate) mod delassus;
 pub(crate) mod impact;
 pub mod landing;
 pub mod lossy;
@@ -17,6 +18,7 @@ pub(crate) mod lying;
 pub mod patch;
 pub(crate) mod reduced;
 pub mod rolling;
+mod sliding;
 pub mod slip;
 pub mod smooth;
 pub(crate) mod standstill;

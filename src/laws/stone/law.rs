@@ -382,3 +382,30 @@ pub(crate) fn turning<T: Real>([w, x, y, z]: [T; 4], [a, b, c]: [T; 3]) -> [T; 4
 pub(crate) fn across<T: Real>(lab: &[[T; 3]; 3], [a, b]: [T; 2]) -> [T; 3] {
     plus(lab[0].map(|x| x * a), b, lab[1])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_forces_at_a_stone_differ_by_what_the_contact_point_yields_also_where_the_drilling_is_held() {
+        let inertia = Symmetric([0.2, 0.3, 0.35, -0.015, 0.02, 0.01]);
+        let law = StoneLaw::new([1.0, 0.64, 0.36], inertia, [0.03, -0.02, -0.1], 0.3, true);
+        let lab = laboratory([0.8, 0.36, -0.48, 0.0]);
+        let w = across(&lab, [1.3, -0.7]);
+        for drilling in [false, true] {
+            let held = Holds { drilling, ..Holds::default() };
+            let at = Touching { holds: held, ..law.touching(lab[2], w) };
+            let [(one, here), (other, there)] = [[0.6, 0.8], [-1.0, 0.0]].map(|way| {
+                let to = law.pulled(&at, w, across(&lab, way));
+                (to.force, (law.slip_rate(&at, w, &to), dot(to.w, at.n)))
+            });
+            let yields = law.yields(&at, plus(one, -1.0, other));
+            for (i, yields) in yields.into_iter().enumerate() {
+                assert!((here.0[i] - there.0[i] - yields).abs() < 1e-14, "{drilling}: {yields}");
+            }
+            // No force makes a stone drill whose drilling is held.
+            assert_eq!(here.1.abs().max(there.1.abs()) < 1e-14, drilling);
+        }
+    }
+}

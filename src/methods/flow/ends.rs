@@ -72,11 +72,12 @@ pub(super) fn failed<F: Flow<M>, const M: usize, const N: usize>(
     // A margin that rises from zero, as after an event that a flow passes, may still be negative in the
     // middle.
     let closely = F::CLOSELY && both.0.iter().all(|margin| margin.value > 0.0);
-    if M == 0 || long >= 1.0 && closely && !(0..M).any(|i| is_near(both.0[i], both.1[i], h)) {
+    let inside = !F::ONLY_ENDS && (long < 1.0 || closely);
+    if M == 0 || inside && long >= 1.0 && !(0..M).any(|i| is_near(both.0[i], both.1[i], h)) {
         return None;
     }
     let outlook = match () {
-        () if long < 1.0 || closely => outlook(flow, (from, h), stages, both),
+        () if inside => outlook(flow, (from, h), stages, both),
         () if (0..M).any(|i| may_fail(both.0[i], both.1[i], h)) => Outlook::Falls,
         () => Outlook::Clear,
     };
@@ -234,11 +235,11 @@ impl<const M: usize> StepParts<'_, M> {
                     let margin = (self.margins)(share(x))[i];
                     Dual { slope: h * margin.slope, ..margin }
                 };
-                only_zero(on, [a.value, h * a.slope, b.value, h * b.slope])
+                only_zero(&mut { on }, [a.value, h * a.slope, b.value, h * b.slope])
             };
             let found = if b.value < 0.0 && b.slope < 0.0 && a.value > 0.0 { steadily() } else { None };
             let found =
-                found.map_or_else(|| first_zero(|x| (self.margin)(share(x), i), a.value, b.value), Ok);
+                found.map_or_else(|| first_zero(&|x| (self.margin)(share(x), i), a.value, b.value), Ok);
             match found {
                 Err((x, least)) => (self.grazed)(share(x), i, least),
                 Ok(x) if first.is_none_or(|(earlier, _)| share(x) < earlier) => first = Some((share(x), i)),
@@ -298,8 +299,8 @@ fn lowest(a: Dual<f64>, b: Dual<f64>, h: f64) -> f64 {
 /// the cubic with the values and slopes of the margin at both ends. That cubic is almost exact, and an
 /// iteration that moves by less than `NEAR` leaves an error of the square of that. None if the iteration
 /// leaves [0, 1] or does not converge.
-pub(crate) fn only_zero(
-    mut on: impl FnMut(f64) -> Dual<f64>,
+pub(super) fn only_zero(
+    on: &mut dyn FnMut(f64) -> Dual<f64>,
     [begin, rise, end, last]: [f64; 4],
 ) -> Option<f64> {
     const NEAR: f64 = 1e-8;
@@ -322,7 +323,7 @@ pub(crate) fn only_zero(
 
 /// The zero before `x` of a margin that rises from zero at the start and has fallen to `value` there; the start if it does
 /// not rise.
-fn after_start(on: impl Fn(f64) -> f64, mut x: f64, mut value: f64) -> f64 {
+fn after_start(on: &dyn Fn(f64) -> f64, mut x: f64, mut value: f64) -> f64 {
     while x > LEAST_RISE {
         let before = on(0.5 * x);
         if before > 0.0 {
@@ -335,7 +336,7 @@ fn after_start(on: impl Fn(f64) -> f64, mut x: f64, mut value: f64) -> f64 {
 
 /// The first zero within [0, 1] of a margin that may fail in this interval, from its values at both ends;
 /// without a zero, the place of its minimum and the minimum.
-fn first_zero(on: impl Fn(f64) -> f64, begin: f64, end: f64) -> Result<f64, (f64, f64)> {
+fn first_zero(on: &dyn Fn(f64) -> f64, begin: f64, end: f64) -> Result<f64, (f64, f64)> {
     let mut values = [begin; PARTS + 1];
     for k in 1..=PARTS {
         let x = k as f64 / PARTS as f64;
@@ -351,7 +352,7 @@ fn first_zero(on: impl Fn(f64) -> f64, begin: f64, end: f64) -> Result<f64, (f64
     // The margin has its minimum around the lowest of these places.
     let low = (0..=PARTS).min_by(|i, j| values[*i].total_cmp(&values[*j])).unwrap_or(0);
     let [from, to] = [low.saturating_sub(1), (low + 1).min(PARTS)];
-    let (x, value) = least(&on, from as f64 / PARTS as f64, to as f64 / PARTS as f64);
+    let (x, value) = least(on, from as f64 / PARTS as f64, to as f64 / PARTS as f64);
     let fails = value < 0.0;
     if fails { Ok(crossing(on, from as f64 / PARTS as f64, x, values[from], value)) } else { Err((x, value)) }
 }

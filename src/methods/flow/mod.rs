@@ -16,7 +16,7 @@ mod place;
 pub(crate) mod schedule;
 mod stiff;
 
-pub(crate) use ends::{looks, only_zero};
+pub(crate) use ends::looks;
 pub(crate) use place::{Exhausted, FlowPlace, Flown, Spent, Steps, TakenStep};
 use stiff::{STABLE, StiffSteps};
 
@@ -118,7 +118,9 @@ pub(crate) trait Flow<const M: usize>: Copy {
     /// The halt of a flow that ends at this point, and the numbers at the halt, which may lie a little further on.
     fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Self::Halt, [f64; N])>;
     /// The halt of a flow whose steps become too short or crawl; None where the reason is unknown.
-    fn stuck<const N: usize>(&self, place: &FlowPlace<N>, margins: &[Dual<f64>; M]) -> Option<Self::Halt>;
+    fn stuck<const N: usize>(&self, _: &FlowPlace<N>, _: &[Dual<f64>; M]) -> Option<Self::Halt> {
+        None
+    }
     /// For a halt at which a speed vanishes, the rate in time at which this speed falls; infinite for other halts.
     fn slows<const N: usize>(&self, _: Self::Halt, _: &FlowPlace<N>) -> f64 {
         f64::INFINITY
@@ -133,7 +135,9 @@ pub(crate) trait Flow<const M: usize>: Copy {
         false
     }
     /// The numbers of the output, from those of this flow.
-    fn shown<const N: usize>(&self, y: &[f64; N]) -> [f64; N];
+    fn shown<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
+        *y
+    }
     /// Moves the numbers after a step back to the surface of an invariant, from which rounding and step
     /// errors lead away.
     #[inline(always)]
@@ -173,6 +177,8 @@ pub(crate) trait Flow<const M: usize>: Copy {
     /// whole step.
     #[inline(always)]
     fn passed<const N: usize>(&self, _: TakenStep<'_, N>, _: f64, _: &FlowPlace<N>) {}
+    /// Whether only the end of the flow is asked for, and none of its steps is long: then it needs less code.
+    const ONLY_ENDS: bool = false;
     /// Whether short steps are also searched for margins that fail for a moment.
     const CLOSELY: bool = false;
     /// Called with a point within a step near which margin `i` has a minimum, and with that minimum, which is
@@ -512,7 +518,9 @@ pub(crate) trait Flow<const M: usize>: Copy {
             spent.erred += if implicit { BEFORE_IT_DECAYS } else { 1.0 } * error * self.fastest(&here.y);
             let until = stop.as_ref().map_or(after.y[Self::TIME], |(_, y)| y[Self::TIME]);
             let step = (&here, &after, h);
-            next += self.write_times(step, stop.as_ref(), (&times[next..], until), &mut last, write);
+            if !Self::ONLY_ENDS {
+                next += self.write_times(step, stop.as_ref(), (&times[next..], until), &mut last, write);
+            }
             if Self::LOOKS_ON {
                 let taken = (&here, h, &stages);
                 match stop {

@@ -85,12 +85,6 @@ impl Flow<MARGINS> for Clock {
     fn stopped<const N: usize>(&self, _: &FlowPlace<N>) -> Option<(Rings, [f64; N])> {
         None
     }
-    fn stuck<const N: usize>(&self, _: &FlowPlace<N>, _: &[Dual<f64>; MARGINS]) -> Option<Rings> {
-        None
-    }
-    fn shown<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
-        *y
-    }
 }
 
 /// The halt of a clock that runs up to `last`, the time of that halt, and how many of three outputs the clock writes.
@@ -202,12 +196,12 @@ fn the_zero_of_a_margin_that_falls_takes_three_looks() {
         };
         let [begin, end] = [on(0.0), on(1.0)];
         looks.set(0);
-        let found = only_zero(on, [begin.value, begin.slope, end.value, end.slope]).expect("a zero");
+        let found = only_zero(&mut { on }, [begin.value, begin.slope, end.value, end.slope]).expect("a zero");
         assert!((found - zero).abs() < 1e-16 + 1e-15 * zero && looks.get() <= 3, "{zero}: {found}");
     }
     // With a wrong slope the iteration leaves the step.
     let wrong = |x: f64| Dual { value: 0.4 - x, slope: 0.1 };
-    assert_eq!(only_zero(wrong, [0.5, -1.5, -0.5, -1.5]), None);
+    assert_eq!(only_zero(&mut { wrong }, [0.5, -1.5, -0.5, -1.5]), None);
 }
 
 /// A clock in a lane, whose margin (a - t) (b - t) + up is a parabola of time.

@@ -1,7 +1,7 @@
 //! Wrong values of laws of the user along a flow, and laws that are so stiff that they keep its steps short.
 
+use super::body_walk::BodyWalk;
 use super::own::Own;
-use super::phases::BodyWalk;
 use crate::error::Error;
 use crate::methods::flow::{Exhausted, Flow, FlowPlace, Flown};
 use crate::motions::Limit;

@@ -13,6 +13,7 @@
 //! third of the time. The estimated error is thirty times the difference of the two paths, scaled by the ratio of the
 //! tolerances.
 
+pub(crate) mod body_walk;
 pub(crate) mod face;
 mod faults;
 pub(crate) mod fly;
@@ -39,7 +40,7 @@ pub use crate::motions::ask::FINE;
 use crate::motions::ask::{check_flow, check_patch, check_times_after};
 use crate::motions::exact;
 use crate::motions::walk::two_runs::{Followed, judged};
-pub(crate) use phases::{BodyPhases, BodyWalk};
+pub(crate) use body_walk::{BodyPhases, BodyWalk};
 
 /// The share of the estimated error of the states that counts as an error of a ball's axis.
 const AXIS: f64 = 0.25;

@@ -9,11 +9,12 @@
 //! they slip. Where they stick, the contact point has moved in each flight before: the error of their sum is of second
 //! order, about TAIL, and part of the estimated error. The friction of all bounces is lost in impacts.
 
+use super::body_walk::{BodyPhases, BodyWalk, LONGER};
 use super::fly::{Aloft, Takeoff};
 use super::own::Own;
-use super::phases::{BodyPhases, BodyWalk, LONGER};
 use crate::laws::body::Shape;
-use crate::laws::contact::impact::{Hit, RimImpact, Struck, lightness, turned};
+use crate::laws::contact::delassus::Delassus;
+use crate::laws::contact::impact::{Hit, PointImpact, Struck, lightness, turned};
 use crate::laws::contact::landing::{Landed, Outcome, REVERSES, bounced, land_at, settled};
 use crate::laws::contact::slip::Friction;
 use crate::laws::contact::{FLAT, Table};
@@ -163,13 +164,13 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let mut light = lightness(&self.of.slide.law.shape, from.angle);
         if self.of.uniform {
             // Rounding must not make the slip turn.
-            (light[1], light[2], light[3]) = (light[0], 1.0, 0.0);
+            (light.level[1][1], light.normal, light.couples[0]) = (light.level[0][0], 1.0, 0.0);
         }
         self.rim_impact(from.slip, from.lift, light).on(&self.ask.table, e, &self.of.own)
     }
 
     /// The impact of a rim. A rougher run begins it with a longer step, so that the two runs take different steps.
-    fn rim_impact(&self, slip: [f64; 2], lift: f64, light: [f64; 4]) -> RimImpact {
+    fn rim_impact(&self, slip: [f64; 2], lift: f64, light: Delassus) -> PointImpact {
         let (longer, rougher) = if self.perturbation > 0.0 {
             (LONGER, self.perturbation * State::SAFETY / f64::EPSILON)
         } else {
@@ -179,7 +180,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let tol = (IMPACT_SHARE * fine).clamp(IMPACT_TOL[0], IMPACT_TOL[1]);
         // A law of the user need not be smooth.
         let tol = if self.of.own.varies() { OWN_IMPACT_TOL * fine } else { tol };
-        RimImpact { slip, lift, light, tol: tol * rougher, longer }
+        PointImpact { slip, lift, light, tol: tol * rougher, longer }
     }
 
     /// A bound of the change by the losses in a unit of time, under a normal force. The couple of the air below a face
@@ -207,8 +208,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     /// The time of all bounces after an impact, if they are over so soon that they are summed.
     fn bounces_for(&self, from: &Aloft, struck: &Struck, force: f64, e: f64) -> Option<f64> {
         let law = &self.of.slide.law;
-        let light @ [.., a_n, b] = lightness(&law.shape, from.angle);
-        let (fall, w) = (a_n * force, turned(&law.shape, from.angle, from.w, struck.impulse));
+        let light = lightness(&law.shape, from.angle);
+        let (fall, w) = (light.normal * force, turned(&law.shape, from.angle, from.w, struck.impulse));
         // Both runs of a sweep have its tolerance, so that they end their bounces together.
         let tail = match self.ask.method {
             Method::Tolerance(tol) => (TAIL_SHARE * tol).clamp(TAIL, LONGEST_TAIL),
@@ -224,7 +225,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         if struck.hit == Hit::Sticks || u_h.hypot(u_2) < REVERSES {
             // Each bounce has the slip that the previous flight has caused.
             let [along, across] = self.of.slide.slips(from.angle, w, [0.0; 2], Some([0.0; 2])).0.u;
-            let [along, across] = [along - b * force, across].map(|rate| 2.0 * rate / fall);
+            let [along, across] = [along - light.couples[0] * force, across].map(|rate| 2.0 * rate / fall);
             let slip = [u_h + along, u_2 + across];
             // In units of the bounce, unless a law of the user has a speed of its own.
             let unit = if self.of.own.varies() { struck.lift } else { 1.0 };

@@ -6,9 +6,9 @@
 //! ```
 //! [`spun`](super::spun) has the equations. No rougher run has to show these errors, which do not grow otherwise.
 
+use super::body_walk::{BodyPhases, BodyWalk};
 use super::fly::Aloft;
 use super::own::Own;
-use super::phases::{BodyPhases, BodyWalk};
 use super::roll::lossy::LossyFlow;
 use super::slide::{Slide, is_still};
 use super::spun::{OF_A_PHASE, Spun};

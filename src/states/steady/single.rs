@@ -70,7 +70,10 @@ mod tests {
         let (mut worst, mut counted): (f64, usize) = (0.0, 0);
         let drawn: Vec<_> = (1..=3_200_000).map(drawn).collect();
         for some in drawn.chunks(2 * LANES) {
-            let lanes = in_lanes!(level(), simd => sixteen(simd, some), else return);
+            let Some(lanes) = in_lanes!(level(), simd => Some(sixteen(simd, some)), else None::<[f32; 16]>)
+            else {
+                return;
+            };
             for (&(body, theta), lane) in some.iter().zip(lanes) {
                 let (ell, excess) = (body.ell(), body.excess_sum());
                 let double = || rare_rate(theta, ell, excess);

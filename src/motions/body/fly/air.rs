@@ -9,21 +9,22 @@
 //! in the air; the others need a contact or a gap under the face. In these axes the poles are ordinary points, and no
 //! number changes fast near them: an integral of sin theta, which has a sharp bend there, would deceive the estimated
 //! error of a step. The height of a rim and cos theta follow from the changes of q since the start, of which small ones
-//! have all their digits. The landing is computed as in [`lands`](super::lands), step by step, with the initial K = (|l| + a)
-//! (|L|^2/I1^2 + |m|/I1) - 1, since w3 and the size of w across the axis only fall. Where a rim touches at the start,
-//! the couple of the air belongs to the leading terms of its height, so that the power series there includes it. Error:
-//! the tolerance of the steps.
+//! have all their digits. The heights of the rims are the margins of the flow, which also finds one that is negative for a
+//! moment. Where a rim touches at the start, the couple of the air belongs to the leading terms of its height, so that the
+//! power series there includes it; up to the time until which the series shows the height, it is no margin. Error: the
+//! tolerance of the steps.
 
-use super::lands::{AngleSeries, Falling, Leaves, NoLanding, RIM_TERMS, TOUCH};
-use super::{Aloft, Flies, Flight};
+use super::lands::{AngleSeries, Leaves, RIM_TERMS};
+use super::{Aloft, FirstLanding, Flies, Flight};
 use crate::laws::body::Shape;
 use crate::laws::loss::{Couples, Kinematics};
 use crate::laws::state::State;
-use crate::methods::flow::Spent;
+use crate::methods::flow::{Exhausted, Flow, FlowPlace, Spent, Steps, TakenStep};
 use crate::methods::rk8;
 use crate::motions::body::own::Own;
 use crate::numbers::tape::{Tape, Taped};
-use crate::numbers::{Real, TERMS};
+use crate::numbers::{Dual, Real, TERMS};
+use core::cell::RefCell;
 use core::f64::consts::{FRAC_PI_2, TAU};
 
 const NUMBERS: usize = 9;
@@ -32,16 +33,12 @@ const AIR_TIME: usize = 8;
 type AirNumbers = [f64; NUMBERS];
 /// Length of the first step, in units of the time in which the body turns by one radian.
 const FIRST_STEP: f64 = 0.05;
-/// Number of evaluations of the rates in a step.
-const RATES_PER_STEP: u64 = 12;
-/// Largest number of steps.
-const AIR_STEPS: usize = 100_000;
+/// Angle by which the fastest of rotation and nutation turns in the longest step.
+const LONGEST_STEP: f64 = 3.0;
 /// The series at the start holds for this share of the time that it would without the air, or for less, until its last
 /// two terms are below `LAST_SHARE` of its largest one.
 const AIR_SHARE: f64 = 0.25;
 const LAST_SHARE: f64 = 1e-17;
-/// Error of the height within a step, in tolerances.
-const STEP_NOISE: f64 = 100.0;
 /// Angle of phi in a part of a step, and length of a part in units of the first step, below which a part is not divided.
 const FAR_TURN: f64 = 1.0;
 const SHORT_PART: f64 = 1e-9;
@@ -49,13 +46,11 @@ const SHORT_PART: f64 = 1e-9;
 const FITTED: usize = 7;
 /// Number of coordinates of the vertical and of w.
 const MOVING: usize = 6;
-/// The couple of the user within a step is at most this many times as large as at its ends.
-const COUPLE_GROWS: f64 = 4.0;
 /// Below this size of the cosine of theta its sine follows from it.
 const LEVEL_COSINE: f64 = 0.5;
 
-/// The time of the first landing, and whether it is that of the other rim.
-type FirstLanding = Option<(f64, bool)>;
+/// The sides of the rim that was down last and of the other one.
+const SIDES: [f64; 2] = [1.0, -1.0];
 
 /// A step of a flight against the air: the numbers at its start, and phi and psi there.
 #[derive(Debug, Clone, Copy)]
@@ -74,10 +69,28 @@ pub(crate) struct AirFlight<G = ()> {
     free: Flight,
     losses: Couples<f64>,
     own: G,
-    steps: Vec<AirStep>,
+    steps: RefCell<Vec<AirStep>>,
     tol: f64,
     first: f64,
     spent: Spent,
+}
+
+/// The flow of such a flight, of which these rims may land.
+#[derive(Clone, Copy)]
+struct AirFlow<'a, G> {
+    of: &'a AirFlight<G>,
+    rims: [bool; 2],
+}
+
+/// The reason for which a flight against the air halts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum AirHalt {
+    Time,
+    /// The rim that was down last lands, or the other one.
+    Lands(bool),
+    /// A law of the user has a wrong value.
+    Fault,
+    GivenUp,
 }
 
 /// The angular velocity along the axes of the body.
@@ -115,7 +128,7 @@ impl<G: Own> AirFlight<G> {
         let (sin, cos) = if half < FRAC_PI_2 { half.sin_cos() } else { (1.0, 0.0) };
         let [w1, w2, w3] = from.w;
         let y = [0.0, 0.0, 0.0, 0.0, w1, w2, w3, 0.0, 0.0];
-        let steps = vec![AirStep { y, angles: [0.0; 2] }];
+        let steps = RefCell::new(vec![AirStep { y, angles: [0.0; 2] }]);
         let fastest = w1.abs().max(w2.abs()).max(w3.abs());
         let (first, spent) = (
             longer * FIRST_STEP / (1.0 + fastest),
@@ -134,12 +147,6 @@ impl<G: Own> AirFlight<G> {
         }
         let own = self.own_couple(y);
         core::array::from_fn(|i| m[i] + own[i])
-    }
-
-    /// The size of the couple of the air.
-    fn pulls(&self, y: &AirNumbers) -> f64 {
-        let [m1, m2, m3] = self.couple(y);
-        m1.hypot(m2).hypot(m3)
     }
 
     /// The state with these numbers, and the sine and cosine of psi in it.
@@ -163,23 +170,6 @@ impl<G: Own> AirFlight<G> {
     /// The quaternion of the body's axes.
     fn quaternion(&self, y: &AirNumbers) -> [f64; 4] {
         core::array::from_fn(|i| self.facing[i] + y[i])
-    }
-
-    fn rates(&self, y: &AirNumbers) -> AirNumbers {
-        let (Shape { i1, i3, .. }, [a, b, c, d]) = (self.shape, self.quaternion(y));
-        let [x, z, w] = body_rates(y);
-        let [m1, m2, m3] = self.couple(y);
-        [
-            -0.5 * (b * x + c * z + d * w),
-            0.5 * (a * x + c * w - d * z),
-            0.5 * (a * z + d * x - b * w),
-            0.5 * (a * w + b * z - c * x),
-            ((i1 - i3) * z * w + m1) / i1,
-            ((i3 - i1) * x * w + m2) / i1,
-            m3 / i3,
-            -(m1 * x + m2 * z + m3 * w),
-            1.0,
-        ]
     }
 
     fn leans(&self, y: &AirNumbers) -> Leaning {
@@ -213,16 +203,15 @@ impl<G: Own> AirFlight<G> {
         ]
     }
 
-    /// The numbers after a part of a step, and the error of this part.
-    fn part(&self, step: &AirStep, h: f64) -> (AirNumbers, f64) {
-        let rate = self.rates(&step.y);
-        let mut stages = [rate; rk8::STAGES];
-        let rates = |y: &AirNumbers, to: &mut AirNumbers| *to = self.rates(y);
-        let made = rk8::step::<true, _, _>(rates, &step.y, &rate, h, &mut stages);
-        // The height of a rim changes by at most this much with a number of q.
-        let reach = 2.0 * (self.shape.rim.ell.abs() + 1.0);
-        let per = |i: usize| if i < 4 { reach } else { 1.0 / step.y[i].abs().max(1.0) } / self.tol;
-        (core::array::from_fn(|i| step.y[i] + made.change[i]), made.error(per, NUMBERS as f64))
+    /// The flow of these rims.
+    fn flow(&self, rims: [bool; 2]) -> AirFlow<'_, G> {
+        AirFlow { of: self, rims }
+    }
+
+    /// The numbers after a part of a step.
+    fn part(&self, step: &AirStep, h: f64) -> AirNumbers {
+        let flow = self.flow([false; 2]);
+        flow.part(&flow.place(step.y), h)
     }
 
     /// phi and psi since the start, from the numbers, within half a turn of those before.
@@ -246,7 +235,7 @@ impl<G: Own> AirFlight<G> {
         if (angles[0] - before[0]).abs() < FAR_TURN || middle - from <= SHORT_PART * self.first {
             return angles;
         }
-        let half = self.part(step, middle).0;
+        let half = self.part(step, middle);
         self.turned(step, [middle, to], self.turned(step, [from, middle], before, &half), y)
     }
 }
@@ -258,11 +247,9 @@ impl<G: Own> AirFlight<G> {
         if !self.own.has_couple() {
             return all;
         }
-        let wide = near / (FITTED - 1) as f64;
-        let values: [[f64; 3]; FITTED] = core::array::from_fn(|k| {
-            let y = self.part(&self.steps[0], wide * k as f64).0;
-            self.own_couple(&y)
-        });
+        let (wide, first) = (near / (FITTED - 1) as f64, self.steps.borrow()[0]);
+        let values: [[f64; 3]; FITTED] =
+            core::array::from_fn(|k| self.own_couple(&self.part(&first, wide * k as f64)));
         for (i, all) in all.iter_mut().enumerate() {
             let mut divided = values.map(|m| m[i]);
             for order in 1..FITTED {
@@ -326,7 +313,7 @@ impl<G: Own> AirFlight<G> {
 
     /// The earliest landing of a rim that touches at the start, up to the time until which a series shows it; and the
     /// times up to which no other landing is possible.
-    fn leaves(&self, leaves: [Leaves; 2], two: bool) -> Result<(FirstLanding, [f64; 2]), NoLanding> {
+    fn leaves(&self, leaves: [Leaves; 2], two: bool) -> Result<(FirstLanding, [f64; 2]), Exhausted> {
         let (mut first, mut clear) = (None, [0.0; 2]);
         if leaves == [None; 2] {
             return Ok((first, clear));
@@ -349,7 +336,7 @@ impl<G: Own> AirFlight<G> {
                 core::array::from_fn::<f64, RIM_TERMS, _>(known)
             })
         };
-        for (i, side) in [1.0, -1.0].into_iter().enumerate().take(if two { 2 } else { 1 }) {
+        for (i, side) in SIDES.into_iter().enumerate().take(if two { 2 } else { 1 }) {
             let Some(order) = leaves[i] else { continue };
             match self.free.leaves(side, order, near, &swung)? {
                 Some(t) => {
@@ -365,82 +352,144 @@ impl<G: Own> AirFlight<G> {
     }
 }
 
+impl<G: Own> Flow<2> for AirFlow<'_, G> {
+    type Halt = AirHalt;
+    const TIME: usize = AIR_TIME;
+    const OVER: AirHalt = AirHalt::Time;
+    const PAUSE: AirHalt = AirHalt::GivenUp;
+    /// Each call of a law of the user may be slow.
+    const BREATH: u64 = if G::IS { 1 } else { 256 };
+    const LOOKS_ON: bool = true;
+    const CLOSELY: bool = true;
+
+    fn theta<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        self.of.state(&core::array::from_fn(|i| y[i])).0.theta
+    }
+
+    #[inline(always)]
+    fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {
+        let y: AirNumbers = core::array::from_fn(|i| y[i]);
+        let (Shape { i1, i3, .. }, [a, b, c, d]) = (self.of.shape, self.of.quaternion(&y));
+        let [x, z, w] = body_rates(&y);
+        let [m1, m2, m3] = self.of.couple(&y);
+        all[..NUMBERS].copy_from_slice(&[
+            -0.5 * (b * x + c * z + d * w),
+            0.5 * (a * x + c * w - d * z),
+            0.5 * (a * z + d * x - b * w),
+            0.5 * (a * w + b * z - c * x),
+            ((i1 - i3) * z * w + m1) / i1,
+            ((i3 - i1) * x * w + m2) / i1,
+            m3 / i3,
+            -(m1 * x + m2 * z + m3 * w),
+            1.0,
+        ]);
+    }
+
+    fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; 2] {
+        let y = core::array::from_fn(|i| place.y[i]);
+        core::array::from_fn(|i| {
+            let [value, slope] = if self.rims[i] { self.of.rim(&y, SIDES[i]) } else { [1.0, 0.0] };
+            Dual { value, slope }
+        })
+    }
+
+    fn margin<const N: usize>(&self, y: &[f64; N], i: usize) -> f64 {
+        self.of.rim(&core::array::from_fn(|i| y[i]), SIDES[i])[0]
+    }
+
+    fn end(&self, i: usize) -> AirHalt {
+        AirHalt::Lands(i == 1)
+    }
+
+    fn error<const N: usize>(&self, y: &[f64; N], made: &rk8::Step<f64, N>) -> f64 {
+        // The height of a rim changes by at most this much with a number of q.
+        let reach = 2.0 * (self.of.shape.rim.ell.abs() + 1.0);
+        let per = |i: usize| if i < 4 { reach } else { 1.0 / y[i].abs().max(1.0) } / self.of.tol;
+        made.error(per, N as f64)
+    }
+
+    fn fastest<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        (4..7).fold(1.0, |most: f64, i| most.max(y[i].abs()))
+    }
+
+    fn first<const N: usize>(&self, _: &[f64; N]) -> f64 {
+        self.of.first
+    }
+
+    fn calm<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        LONGEST_STEP / self.fastest(y).max(self.of.free.rate)
+    }
+
+    fn longest<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
+        self.calm(&place.y)
+    }
+
+    fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(AirHalt, [f64; N])> {
+        if !self.of.own.has_couple() {
+            return None;
+        }
+        let State { theta, w1, w2, w3 } = self.of.state(&core::array::from_fn(|i| place.y[i])).0;
+        let at = [theta.sin(), theta.cos(), w1, w2, w3];
+        self.of.own.finds_fault(&[], Some((at, 0.0))).then_some((AirHalt::Fault, place.y))
+    }
+
+    fn passed<const N: usize>(&self, (from, ..): TakenStep<'_, N>, _: f64, to: &FlowPlace<N>) {
+        let y: AirNumbers = core::array::from_fn(|i| to.y[i]);
+        let Some(step) = self.of.steps.borrow().last().copied() else { return };
+        let angles = self.of.turned(&step, [0.0, y[AIR_TIME] - from.y[AIR_TIME]], step.angles, &y);
+        self.of.steps.borrow_mut().push(AirStep { y, angles });
+    }
+}
+
 impl<G: Own> Flies for AirFlight<G> {
     fn lands(
         &mut self,
         leaves: [Leaves; 2],
         two: bool,
         until: f64,
-    ) -> Result<Option<(f64, bool)>, NoLanding> {
-        let (Shape { rim, i1, i3 }, [w1, w2, w3]) = (self.shape, self.from.w);
-        let reach = rim.ell.abs() + rim.a;
-        let bends = |square: f64, pull: f64| (reach * (square + pull / i1) - 1.0).max(1e-9);
-        let mut bend = bends(self.free.rate * self.free.rate, self.pulls(&self.steps[0].y));
-        // The energy that turns the body falls under a couple of the user, too.
-        let most = i1.max(i3) * (i1 * (w1 * w1 + w2 * w2) + i3 * w3 * w3) / (i1 * i1);
+        limits: Steps,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<FirstLanding, Exhausted> {
+        self.spent.patience = limits.patience;
         let (soon, clear) = self.leaves(leaves, two)?;
         let soon = soon.filter(|(t, _)| *t <= until);
         let until = soon.map_or(until, |(t, _)| t);
-        let (mut h, fastest) = (self.first, w1.abs().max(w2.abs()).max(w3.abs()).max(1.0));
-        for _ in 0..AIR_STEPS {
-            let step = *self.steps.last().ok_or(NoLanding)?;
-            let now = step.y[AIR_TIME];
-            if now >= until {
-                return Ok(soon);
-            }
-            h = h.min(until - now);
-            let (y, error) = self.part(&step, h);
-            self.spent.evaluations += RATES_PER_STEP;
-            if error.is_nan() || error > 1.0 {
-                if error.is_nan() && self.own.is_faulty() {
-                    return Err(NoLanding);
-                }
-                h *= rk8::growth(error).min(0.7);
+        let mut times = [clear[0].min(clear[1]), clear[0].max(clear[1]), until];
+        times.iter_mut().for_each(|t| *t = t.min(until));
+        let (mut y, mut limits) = (self.steps.borrow()[0].y, Steps { first: Some(self.first), ..limits });
+        for t in times {
+            let now = y[AIR_TIME];
+            if t <= now {
                 continue;
             }
-            if self.own.has_couple() {
-                let State { theta, w1, w2, w3 } = self.state(&y).0;
-                let at = [theta.sin(), theta.cos(), w1, w2, w3];
-                if self.own.finds_fault(&[], Some((at, 0.0))) {
-                    return Err(NoLanding);
-                }
-                bend = bends(most, COUPLE_GROWS * self.pulls(&step.y).max(self.pulls(&y)));
-            }
-            let mut first: Option<(f64, bool)> = None;
-            for (i, clear) in clear.into_iter().enumerate().take(if two { 2 } else { 1 }) {
-                let (low, high) = ((clear - now).max(0.0), first.map_or(h, |(t, _)| t));
-                if low >= high {
-                    continue;
-                }
-                let side = if i == 1 { -1.0 } else { 1.0 };
-                let of = |x: f64| self.rim(&self.part(&step, x).0, side);
-                let noise = STEP_NOISE * self.tol;
-                let mut falling = Falling { of, bend, touch: TOUCH, noise };
-                if let Some(x) = falling.first_zero(low, high)?
-                    && first.is_none_or(|(before, _)| x < before)
-                {
-                    first = Some((x, i == 1));
+            let flow = self.flow([clear[0] <= now, two && clear[1] <= now]);
+            let flown = flow.run(flow.place(y), limits, &[t], &mut |_| (), go_on);
+            let Spent { evaluations, erred, patience, exhausted } = flown.spent;
+            y = flown.y;
+            self.spent.evaluations += evaluations;
+            self.spent.erred += erred;
+            self.spent.patience = patience;
+            let toil = limits.toil.saturating_sub(evaluations);
+            limits = Steps { first: Some(flown.step), patience, toil, ..limits };
+            match flown.halt {
+                AirHalt::Time => {}
+                AirHalt::Lands(other) => return Ok(Some((y[AIR_TIME], other))),
+                AirHalt::Fault | AirHalt::GivenUp => {
+                    return Err(exhausted.unwrap_or(Exhausted::Evaluations));
                 }
             }
-            self.spent.erred += error * fastest;
-            if let Some((x, other)) = first {
-                return Ok(Some((now + x, other)));
-            }
-            let angles = self.turned(&step, [0.0, h], step.angles, &y);
-            self.steps.push(AirStep { y, angles });
-            h *= rk8::growth(error);
         }
-        Err(NoLanding)
+        Ok(soon)
     }
 
     fn at(&self, t: f64) -> (Aloft, f64) {
         if t == 0.0 {
             return (self.free.given, 0.0);
         }
-        let k = self.steps.partition_point(|step| step.y[AIR_TIME] <= t).max(1) - 1;
-        let step = &self.steps[k];
+        let steps = self.steps.borrow();
+        let step = &steps[steps.partition_point(|step| step.y[AIR_TIME] <= t).max(1) - 1];
         let part = (t - step.y[AIR_TIME]).max(0.0);
-        let y = if part > 0.0 { self.part(step, part).0 } else { step.y };
+        let y = if part > 0.0 { self.part(step, part) } else { step.y };
         let [phi, psi] = self.turned(step, [0.0, part], step.angles, &y);
         let (sin, cos) = psi.sin_cos();
         let [along, aside, w3] = body_rates(&y);

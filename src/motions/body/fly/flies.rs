@@ -12,15 +12,15 @@ use crate::laws::body::Shape;
 use crate::laws::contact::{Force, Table};
 use crate::laws::newton;
 use crate::laws::state::State;
-use crate::methods::flow::Spent;
+use crate::methods::flow::Steps;
 use crate::motions::ask::row::OutputRow;
+use crate::motions::body::body_walk::{BodyPhases, BodyWalk, LONGER};
 use crate::motions::body::fly::{Aloft, Flies, Flight, Takeoff};
 use crate::motions::body::own::Own;
-use crate::motions::body::phases::{BodyPhases, BodyWalk, LONGER};
 use crate::motions::body::strike::{RATTLED, ROUNDED};
 use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, PHI, SIN, TIME, W2, loses, lost, poses};
 use crate::motions::walk::{Next, Phases};
-use crate::motions::{Ending, Kind, Limit};
+use crate::motions::{Ending, Kind};
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// A pose as seen from the other rim; `over` if it is that of the other rim. Applied twice it returns the same pose.
@@ -160,7 +160,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
 
     /// Computes a flight to its end, which sets the next phase.
     #[inline(never)]
-    pub(crate) fn flies(&mut self) {
+    pub(crate) fn flies(&mut self, go_on: &mut dyn FnMut() -> bool) {
         if !poses(N) && self.of.uniform {
             return self.flies_uniformly();
         }
@@ -179,13 +179,24 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let touches = other.height.abs() <= 2.0 * TOUCH;
         let leaves = [leaves, touches.then_some(if other.lift == 0.0 { 2 } else { 1 })];
         let left = self.since.last().map_or(0.0, |t| t - now);
-        let Ok(landing) = course.lands(leaves, self.has_two_rims(), left) else {
-            self.next = Some(self.gives_up(Limit::Evaluations));
-            return;
+        let limits = Steps {
+            first: None,
+            most: u64::MAX,
+            patience: self.spent.patience,
+            toil: self.toil(),
+            tired: false,
         };
+        let landing = course.lands(leaves, self.has_two_rims(), left, limits, go_on);
         if let Some(spent) = course.spent() {
-            self.has_spent(Spent { patience: self.spent.patience, ..spent });
+            self.has_spent(spent);
         }
+        let landing = match landing {
+            Ok(landing) => landing,
+            Err(why) => {
+                self.next = Some(self.gives_up(why.into()));
+                return;
+            }
+        };
         let before = lost(&self.at);
         let end = landing.map_or(f64::INFINITY, |(t, _)| t);
         while let Some(t) = self.until().filter(|t| *t <= now + end) {

@@ -14,8 +14,9 @@
 //!
 //! Error: that of h divided by the normal velocity; a rim that only grazes the table lands where h is a rounding error.
 
-use super::{Aloft, Flies, Flight};
+use super::{Aloft, FirstLanding, Flies, Flight};
 use crate::laws::body::Shape;
+use crate::methods::flow::{Exhausted, Steps};
 
 /// Number of terms of the series at the start.
 pub(super) const RIM_TERMS: usize = 30;
@@ -50,16 +51,16 @@ pub(super) struct Falling<F: FnMut(f64) -> [f64; 2]> {
 impl<F: FnMut(f64) -> [f64; 2]> Falling<F> {
     /// The first zero in [from, to], where the function is known to be positive up to `from`. An error if it is
     /// negative there, and after too many evaluations.
-    pub fn first_zero(&mut self, from: f64, to: f64) -> Result<Option<f64>, NoLanding> {
+    pub fn first_zero(&mut self, from: f64, to: f64) -> Result<Option<f64>, Exhausted> {
         let (mut t, [mut here, mut rate]) = (from, (self.of)(from));
         if here <= 0.0 {
-            return if here >= -self.noise { Ok(Some(from)) } else { Err(NoLanding) };
+            return if here >= -self.noise { Ok(Some(from)) } else { Err(Exhausted::Evaluations) };
         }
         let (mut ends, mut count) = (vec![to], 0);
         while let Some(&end) = ends.last() {
             count += 1;
             if count > HEIGHTS {
-                return Err(NoLanding);
+                return Err(Exhausted::Evaluations);
             }
             let [there, fall] = (self.of)(end);
             let wide = end - t;
@@ -108,10 +109,6 @@ impl<F: FnMut(f64) -> [f64; 2]> Falling<F> {
     }
 }
 
-/// The search for a landing takes too many evaluations, or a rim is below the table where it begins.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct NoLanding;
-
 impl Flight {
     /// Height and vertical velocity of the lowest point of a rim. The height is the sum of the initial height and its
     /// change, which keeps the digits of a small change.
@@ -129,7 +126,7 @@ impl Flight {
         ]
     }
 
-    fn lands_on(&self, side: f64, leaves: Leaves, two: bool, until: f64) -> Result<Option<f64>, NoLanding> {
+    fn lands_on(&self, side: f64, leaves: Leaves, two: bool, until: f64) -> Result<Option<f64>, Exhausted> {
         let Shape { rim, .. } = self.shape;
         let [.., up] = self.velocity;
         let reach = rim.ell.hypot(rim.a) + rim.rho;
@@ -190,7 +187,7 @@ impl Flight {
         order: usize,
         near: f64,
         swung: &dyn Fn(f64, usize) -> AngleSeries,
-    ) -> Result<Option<f64>, NoLanding> {
+    ) -> Result<Option<f64>, Exhausted> {
         // A bounce that is over much earlier needs few terms, up to twice the time that the first two give.
         let first = self.heights(side, near, &swung(near, order + 2));
         let early = -(2.0 * first[order] / first[order + 1]);
@@ -211,7 +208,7 @@ impl Flight {
         order: usize,
         near: f64,
         (terms, swung): (usize, &dyn Fn(f64, usize) -> AngleSeries),
-    ) -> Result<Option<f64>, NoLanding> {
+    ) -> Result<Option<f64>, Exhausted> {
         let heights = self.heights(side, near, &swung(near, terms));
         // A normal force that has just become negative is hardly larger than the errors of the numbers, as this term.
         let vanishes = side > 0.0 && order == 2 && heights[2] <= 0.0 && heights[2] > -HARDLY * near * near;
@@ -267,7 +264,9 @@ impl Flies for Flight {
         leaves: [Leaves; 2],
         two: bool,
         until: f64,
-    ) -> Result<Option<(f64, bool)>, NoLanding> {
+        _: Steps,
+        _: &mut dyn FnMut() -> bool,
+    ) -> Result<FirstLanding, Exhausted> {
         let mut first = None;
         for (i, side) in [1.0, -1.0].into_iter().enumerate().take(if two { 2 } else { 1 }) {
             // Of two rims that land at the same time the first one counts; an impact looks at both.

@@ -22,9 +22,9 @@ use crate::laws::body::Shape;
 use crate::laws::contact::lying::from_other;
 use crate::laws::pose::Pose;
 use crate::laws::state::State;
-use crate::methods::flow::Spent;
+use crate::methods::flow::{Exhausted, Spent, Steps};
 use core::f64::consts::{FRAC_PI_2, PI};
-use lands::{Leaves, NoLanding};
+use lands::Leaves;
 
 /// A body in the air, or in an impact, as seen from one of its rims.
 #[derive(Debug, Clone, Copy)]
@@ -95,12 +95,22 @@ pub(crate) struct Takeoff {
     pub leaves: Leaves,
 }
 
+/// The time of the first landing, and whether it is that of the other rim.
+pub(crate) type FirstLanding = Option<(f64, bool)>;
+
 /// A flight, with or without losses in the air.
 pub(crate) trait Flies {
     /// The first time after the start at which a rim lands, and whether it is the other rim of a body with two rims;
     /// None if no rim lands up to the time `until`. `leaves` is the beginning of both rims' flights.
-    fn lands(&mut self, leaves: [Leaves; 2], two: bool, until: f64)
-    -> Result<Option<(f64, bool)>, NoLanding>;
+    /// `limits` are those of the steps, if it takes any.
+    fn lands(
+        &mut self,
+        leaves: [Leaves; 2],
+        two: bool,
+        until: f64,
+        limits: Steps,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<FirstLanding, Exhausted>;
     /// The body at a time since the start, as seen from the same rim, and the energy lost to the air.
     fn at(&self, t: f64) -> (Aloft, f64);
     /// The flight without losses.

@@ -13,10 +13,10 @@
 pub(crate) mod flow;
 mod rocks;
 
+use super::body_walk::{BodyPhases, BodyWalk};
 use super::fly::Aloft;
 use super::fly::flies::pose_from;
 use super::own::Own;
-use super::phases::{BodyPhases, BodyWalk};
 use super::write;
 use crate::error::Error;
 use crate::laws::contact::landing::mirrored;

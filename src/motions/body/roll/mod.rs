@@ -3,8 +3,8 @@
 mod loses;
 pub(crate) mod lossy;
 
+use super::body_walk::BodyWalk;
 use super::own::Own;
-use super::phases::BodyWalk;
 use crate::error::Error;
 use crate::laws::contact::slip::Friction;
 use crate::laws::contact::{Contact, Table, force};

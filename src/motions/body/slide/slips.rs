@@ -7,9 +7,9 @@ use crate::laws::loss::Holds;
 use crate::laws::loss::Law;
 use crate::methods::flow::{Flow, FlowPlace, Steps};
 use crate::motions::Ending;
+use crate::motions::body::body_walk::BodyWalk;
 use crate::motions::body::face::turning_share;
 use crate::motions::body::own::Own;
-use crate::motions::body::phases::BodyWalk;
 use crate::motions::body::tail::{SlipStart, is_known};
 use crate::motions::body::write::state;
 use crate::motions::walk::numbers::{

@@ -1,0 +1,95 @@
+//! The inverse inertia of a point of contact: how its velocity changes with an impulse there.
+//!
+//! ```text
+//! u' - u = W P,   W = [[A, b], [b, a_n]]       A of the two horizontal axes, b the coupling to the normal impulse
+//! slip along d:   du/dp = b - mu A d,   du_n/dp = a_n - mu b.d          p the normal impulse so far
+//!                 d turns by f = d x (b - mu A d) per |u| dp,   df/dalpha = -d.(b - mu A d) - mu e.A e,   e across d
+//! held:           |A^-1 b| <= mu_s;   else it leaves along the one d with b - mu A d = lam d, lam > 0
+//! ```
+//! W is symmetric and positive for every body and every contact point (Delassus 1917; Routh 1860), and the two horizontal
+//! axes may be any. For every mu the slip at each p is unique, since (u - v).A^-1 (u - v) of two solutions never grows;
+//! so there is one way out of rest.
+//!
+//! Error: a few roundings; the direction of a slip is known to one.
+
+use crate::methods::search::crossing;
+
+/// The velocity that a unit impulse gives the point of contact.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Delassus {
+    /// A, the velocity along the two horizontal axes per impulse along them.
+    pub level: [[f64; 2]; 2],
+    /// b, the velocity along these axes per normal impulse.
+    pub couples: [f64; 2],
+    /// a_n, the normal velocity per normal impulse.
+    pub normal: f64,
+}
+
+/// The speed of a slip.
+pub(super) fn speed([u, v]: [f64; 2]) -> f64 {
+    u.hypot(v)
+}
+
+fn inner([a, b]: [f64; 2], [c, d]: [f64; 2]) -> f64 {
+    a * c + b * d
+}
+
+impl Delassus {
+    /// The horizontal velocity that a horizontal impulse gives.
+    #[inline(always)]
+    pub fn level(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        self.level.map(|[a, b]| a * x + b * y)
+    }
+
+    /// The normal velocity that a horizontal impulse gives.
+    #[inline(always)]
+    pub fn lifts(&self, impulse: [f64; 2]) -> f64 {
+        inner(self.couples, impulse)
+    }
+
+    /// The horizontal impulse that gives this horizontal velocity.
+    pub fn pushes(&self, velocity: [f64; 2]) -> [f64; 2] {
+        solved(self.level, velocity)
+    }
+
+    /// Whether a slip across the first axis couples to nothing: so it is for a rim, whose first axis is that of the lean.
+    pub fn is_lean(&self) -> bool {
+        self.level[0][1] == 0.0 && self.couples[1] == 0.0
+    }
+
+    /// du/dp of a slip along `way` under this friction.
+    fn changes(&self, way: [f64; 2], mu: f64) -> [f64; 2] {
+        let held = self.level(way);
+        [self.couples[0] - mu * held[0], self.couples[1] - mu * held[1]]
+    }
+
+    /// The rate at which a slip along `way` grows, per normal impulse.
+    pub fn growth(&self, way: [f64; 2], mu: f64) -> f64 {
+        inner(way, self.changes(way, mu))
+    }
+
+    /// The angle per |u| dp by which the direction of a slip along `way` turns, its derivative with respect to that
+    /// direction, and e.A e.
+    pub fn turning(&self, way @ [x, y]: [f64; 2], mu: f64) -> [f64; 3] {
+        let ([along, aside], across) = (self.changes(way, mu), [-y, x]);
+        let light = inner(across, self.level(across));
+        [x * aside - y * along, -(x * along + y * aside) - mu * light, light]
+    }
+
+    /// The direction in which a slip begins that friction cannot hold.
+    pub fn way_out(&self, mu: f64) -> [f64; 2] {
+        let [[a, ab], [_, b]] = self.level;
+        let pushed = |lam: f64| solved([[mu * a + lam, mu * ab], [mu * ab, mu * b + lam]], self.couples);
+        // The one root lies below |b|, as A is positive.
+        let most = speed(self.couples);
+        let left = |lam: f64| speed(pushed(lam)) - 1.0;
+        let way = pushed(crossing(left, 0.0, most, left(0.0).min(f64::MAX), left(most)));
+        way.map(|x| x / speed(way))
+    }
+}
+
+/// The solution x of A x = v.
+fn solved([[a, ab], [_, b]]: [[f64; 2]; 2], [u, v]: [f64; 2]) -> [f64; 2] {
+    let y = (v - ab / a * u) / (b - ab / a * ab);
+    [(u - ab * y) / a, y]
+}

@@ -1,0 +1,248 @@
+//! The walk of a body of revolution: its equations, the data of the current phase, and its first numbers.
+//!
+//! ```text
+//! body, laws of the user, slip      what does not change but for what friction and losses hold
+//! lossy, lying, takeoff             the current phase, if it is one of these
+//! ```
+//! [`phases`](super::phases) begins and ends the phases. A rougher run is perturbed by a share of the state (`perturbs_by`), so
+//! that its difference from the finer run shows how errors grow.
+
+use super::fly::Takeoff;
+use super::lie::flow::LyingPhase;
+use super::own::Own;
+use super::roll::lossy::LossyFlow;
+use super::slide::Slide;
+use super::spun::{Roundings, knows};
+use super::tail::{LastTurns, Nods};
+use super::write::state;
+use super::{check_walk, without_friction};
+use crate::error::Error;
+use crate::laws::body::Body;
+use crate::laws::contact::{Contact, Table};
+use crate::laws::loss::{Couples, Losses};
+use crate::laws::state::{State, drilling_of, rolling_of};
+use crate::methods::flow::Flow;
+use crate::motions::walk::numbers::{COS, HEAT, SIN, TIME, leans_over, loses, poses};
+use crate::motions::walk::two_runs::CHANCE;
+use crate::motions::walk::{Phases, Walk};
+use crate::motions::{Ask, Start};
+
+/// The walk of a body of revolution.
+pub(crate) type BodyWalk<'a, const N: usize, G = ()> = Walk<'a, BodyPhases<G>, N>;
+
+/// The first step of a rougher run is this many times as long as that of the finer run, so that
+/// their steps differ.
+pub(crate) const LONGER: f64 = 3.0;
+/// Size of cos theta below which a rougher run perturbs this number and not theta.
+const LEVEL: f64 = 1e-3;
+
+/// The data of a body's walk: its equations, and the current phase.
+pub(crate) struct BodyPhases<G: Own = ()> {
+    pub body: Body,
+    /// The laws of the user.
+    pub own: G,
+    pub slide: Slide<G>,
+    /// The state where the current phase begins or has ended, and the initial state.
+    pub state: State,
+    pub start: State,
+    /// Whether a phase without a slip is integrated; otherwise the first integrals solve it, as long as no energy is
+    /// lost.
+    pub(super) integrates: bool,
+    /// Whether the last phase of rolling by the first integrals was brief, and whether the current one, without losses, is
+    /// integrated.
+    pub(crate) rolls_briefly: bool,
+    pub(crate) by_steps: bool,
+    /// Whether the body is a uniform ball, whose phases are known; and their errors.
+    pub(super) uniform: bool,
+    pub(super) roundings: Roundings,
+    /// Whether the caller computes the phases of rolling that the first integrals solve, among those of other walks.
+    #[cfg(feature = "many")]
+    pub(crate) rolls_among: bool,
+    /// The current phase, if it loses energy without a slip.
+    pub(super) lossy: Option<LossyPhase<G>>,
+    /// The current phase, if the body lies on both rims.
+    pub(crate) lying: Option<Box<LyingPhase<G>>>,
+    /// The beginning of the next flight, or the height and the vertical velocity of a body in the air.
+    pub(super) takeoff: Takeoff,
+    /// The energy that the impacts before the last one have taken, and the sum of energy, heat and all that was lost
+    /// at the start.
+    pub(super) struck: f64,
+    pub(super) energy: Option<f64>,
+    /// The step errors by which a rougher run has been perturbed.
+    pub(super) shown: f64,
+    /// Whether only theta changes, so that rounding must not make the body turn.
+    pub(super) planar: bool,
+    /// The steps at the ends of the last slip and of the last phase that loses energy without one, in their variables.
+    pub(super) lately: [f64; 2],
+    /// Estimates of the end of a slipping whirr; None if the losses do not let a whirr last for infinitely many turns.
+    pub(super) tail: Option<LastTurns>,
+    /// The slips in its nods; None if a loss stops the contact along the rim.
+    pub(super) nods: Option<Box<Nods>>,
+}
+
+/// A phase that loses energy without a slip.
+#[derive(Clone, Copy)]
+pub(super) struct LossyPhase<G = ()> {
+    pub(super) flow: LossyFlow<G>,
+}
+
+impl<'a, const N: usize> BodyWalk<'a, N> {
+    /// A walk from its initial state, with steps of the tolerance `tol`, which is the requested tolerance or a larger
+    /// one.
+    pub fn of_body(body: &Body, ask: &Ask, tol: f64, times: &'a [f64], start: &Start) -> Result<Self, Error> {
+        let fine = check_walk(body, start, ask)?;
+        let (ask, start) = without_friction(body, ask, start);
+        Self::of_laws(body, &ask, (tol, fine), times, &start, ())
+    }
+}
+
+impl<'a, G: Own, const N: usize> BodyWalk<'a, N, G> {
+    /// A walk under these laws, with steps of the tolerance `tol`, where `fine` is the requested one.
+    pub fn of_laws(
+        body: &Body,
+        ask: &Ask,
+        (tol, fine): (f64, f64),
+        times: &'a [f64],
+        start: &Start,
+        own: G,
+    ) -> Result<Self, Error> {
+        let &Start { time, aloft, .. } = start;
+        let at = numbers_at(start);
+        let mut of = BodyPhases::of(body, ask, tol, start, own);
+        of.uniform = !G::IS && !poses(N) && knows(body, ask);
+        let mut walk = Self::new(of, at, ask, fine, (time, times))?;
+        walk.next = Some(match aloft {
+            Some(aloft) => walk.starts_in_air(aloft),
+            None => walk.first_phase()?,
+        });
+        if start.state.theta < body.theta_end() {
+            Phases::perturbs(&mut walk);
+        }
+        Ok(walk)
+    }
+}
+
+impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
+    /// The flow of the current phase, if the body loses energy without a slip.
+    pub fn lossy(&self) -> Option<&LossyFlow<G>> {
+        self.of.lossy.as_ref().map(|phase| &phase.flow)
+    }
+
+    pub fn contact(&self) -> Contact {
+        self.ask.table.contact()
+    }
+
+    /// All numbers of a flow of which a lane has computed only the first ones. The missing energy has become heat, or
+    /// is lost to the losses.
+    pub fn followed(&self, from: &[f64; N], y: [f64; N]) -> [f64; N] {
+        let mut all = y;
+        all[8..].copy_from_slice(&from[8..]);
+        match self.lossy() {
+            Some(flow) => {
+                let energy = |y: &[f64; N]| self.contact().energy(&self.of.body, &state(&flow.shown(y)));
+                all[N - 1] += energy(from) - energy(&y);
+            }
+            None => all[HEAT] += self.of.slide.energy(from) - self.of.slide.energy(&y),
+        }
+        all
+    }
+
+    /// Moves the walk to the numbers at which a flow has halted.
+    pub(super) fn arrives(&mut self, at: [f64; N]) {
+        self.at = at;
+        if leans_over(&mut self.at) {
+            self.of.slide.leans_over();
+        }
+        self.of.state = state(&self.at);
+    }
+}
+
+/// The first numbers of a motion from this start.
+pub(crate) fn numbers_at<const N: usize>(start: &Start) -> [f64; N] {
+    let (State { theta, w1, w2, w3 }, [along, across]) = (start.state, start.slip);
+    let ((s, c), mut at) = (theta.sin_cos(), [0.0; N]);
+    at[..TIME].copy_from_slice(&[s, c, w1, w2, w3, along, across]);
+    at
+}
+
+impl<G: Own> BodyPhases<G> {
+    /// Whether a loss or a couple of the user takes energy.
+    pub(super) fn loses(&self, ask: &Ask) -> bool {
+        !ask.losses.is_none() || self.own.has_couple()
+    }
+
+    /// The losses, and the couple of the user beside them; None if nothing is lost.
+    pub(super) fn couples(&self, ask: &Ask) -> Option<Couples<f64, G>> {
+        Couples::with_own(&ask.losses, self.own)
+    }
+
+    /// The data of a walk under these laws, with steps of the tolerance `tol`.
+    pub(crate) fn of(body: &Body, ask: &Ask, tol: f64, start: &Start, own: G) -> Self {
+        let &Start { state, slip, .. } = start;
+        let friction = ask.table.friction();
+        let slide = Slide::new(body, &friction, &ask.losses, tol, own);
+        let loses = !ask.losses.is_none() || friction.patch() > 0.0 || own.has_couple();
+        Self {
+            body: *body,
+            own,
+            slide,
+            state,
+            start: state,
+            integrates: ask.table == Table::Smooth || loses,
+            rolls_briefly: false,
+            by_steps: false,
+            uniform: false,
+            roundings: Roundings::default(),
+            #[cfg(feature = "many")]
+            rolls_among: false,
+            lossy: None,
+            lying: None,
+            takeoff: Takeoff::default(),
+            struck: 0.0,
+            energy: None,
+            shown: 0.0,
+            planar: state.w1 == 0.0 && state.w3 == 0.0 && slip[1] == 0.0 && !own.has_couple(),
+            lately: [0.0; 2],
+            tail: (!G::IS && !body.is_ball() && ask.losses.turn_endlessly()).then(LastTurns::default),
+            nods: (!G::IS && !body.is_ball() && !ask.losses.stop_the_contour()).then(Box::default),
+        }
+    }
+
+    /// Perturbs the state by this share.
+    pub(crate) fn perturbs_by<const N: usize>(walk: &mut BodyWalk<'_, N, G>, share: f64)
+    where
+        Self: Phases<N>,
+    {
+        if share == 0.0 || walk.of.lying.is_some() {
+            return;
+        }
+        let (down, up) = (1.0 - share, 1.0 + share);
+        let State { theta, w1, w2, w3 } = walk.of.state;
+        // Drilling w_z, rolling w_h and rocking w2 are each changed by a share of themselves: a motion that is zero
+        // stays zero.
+        let (s, c) = theta.sin_cos();
+        let (drilling, rolling) = (drilling_of((s, c), w1, w3) * up, rolling_of((s, c), w1, w3) * up);
+        // Near its other rim the height of the body is known from cos theta, not from theta.
+        let near = walk.ask.restitution.is_some() && walk.at[COS].abs() < LEVEL;
+        let theta = if near { theta } else { theta * down };
+        let (s, c) = if near { (walk.at[SIN], walk.at[COS] * down) } else { theta.sin_cos() };
+        let (w1, w3) = (s * drilling + c * rolling, c * drilling - s * rolling);
+        walk.of.state = State { theta, w1, w2: w2 * down, w3 };
+        walk.at[..5].copy_from_slice(&[s, c, w1, w2 * down, w3]);
+    }
+
+    /// The share by which a rougher run perturbs the state at the end of a phase. A motion that has hopped is also
+    /// perturbed by a share of the step errors since the last time: impacts multiply them, and where both runs take the
+    /// same steps only this shows by how much.
+    pub(crate) fn share_of_errors<const N: usize>(walk: &mut BodyWalk<'_, N, G>) -> f64
+    where
+        Self: Phases<N, State = State>,
+    {
+        let mut share = walk.perturbation;
+        if share > 0.0 && !walk.made.path.impacts.is_empty() {
+            let erred = walk.spent.erred - core::mem::replace(&mut walk.of.shown, walk.spent.erred);
+            share += CHANCE * erred * walk.of.slide.tol * walk.sign_of_rounding();
+        }
+        share
+    }
+}
