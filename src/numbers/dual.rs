@@ -15,6 +15,14 @@ pub(crate) struct Dual<T> {
     pub slope: T,
 }
 
+impl<T: Real> Dual<T> {
+    /// A number that does not depend on the variable.
+    #[inline(always)]
+    pub fn constant(value: T) -> Self {
+        Self { value, slope: value.splat(0.0) }
+    }
+}
+
 operators!(
     [T: Real] Dual<T>,
     (a, b),

@@ -14,13 +14,13 @@
 //!
 //! Error: a few roundings of the terms written above; a test of `losses` compares them with [`newton`].
 
-use super::reduced::{Coefficients, Rates};
+use super::reduced::{Coefficients, Rates, Reduced};
 use super::{Contact, rolling};
 use crate::laws::body::Body;
 use crate::laws::loss::{Couple, Couples, Law, Losses, OwnCouple, UnderCouple, still_needs};
 use crate::laws::newton;
 use crate::laws::state::{State, drilling_of, rolling_of};
-use crate::numbers::Real;
+use crate::numbers::{Dual, Real};
 
 /// Longest step, in units of the time in which the couples along the contour stop psi'. A step of eighth
 /// order is stable up to about six of these times.
@@ -218,6 +218,14 @@ impl Lossy<f64> {
 }
 
 impl<G: OwnCouple<f64>> Lossy<f64, G> {
+    /// This law for numbers with a slope.
+    #[inline(always)]
+    pub fn sloped(&self) -> Lossy<Dual<f64>, G> {
+        let Reduced { contact, shape, round, .. } = self.rates.reduced();
+        let rates = Rates::of(*contact, &shape.map(Dual::constant), *round);
+        Lossy { rates, losses: self.losses.map(Dual::constant) }
+    }
+
     /// The response in a state in which dry friction holds nothing.
     pub fn in_state(&self, y: &State) -> Acted<f64> {
         let angle = y.theta.sin_cos();

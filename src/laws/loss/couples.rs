@@ -174,24 +174,6 @@ impl<T: Real> Ways<T> {
     }
 }
 
-impl Ways {
-    /// These signs with the drilling held.
-    pub fn holding_drilling(self) -> Self {
-        Self { drilling: 0.0, holds: Holds { drilling: true, ..self.holds }, ..self }
-    }
-
-    /// These signs with a drilling that begins in the direction of the push, given by the couple that would hold it.
-    pub fn drilling_from(self, push: f64) -> Self {
-        Self { drilling: -push.signum(), holds: Holds { drilling: false, ..self.holds }, ..self }
-    }
-
-    /// These signs where the drilling has stopped: dry friction holds the drilling if its limit suffices; otherwise the
-    /// drilling begins anew. `needs` has the couple that holds the drilling, and the limit of friction.
-    pub fn drilling_stopped(self, needs: [f64; 2]) -> Self {
-        if holds(needs) { self.holding_drilling() } else { self.drilling_from(needs[0]) }
-    }
-}
-
 /// The losses in the form that the equations of motion use, of one body or of eight in lanes.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Couples<T, G = ()> {
@@ -228,11 +210,6 @@ impl<T: Real, G: OwnCouple<Dual<T>>> Couples<Dual<T>, G> {
 
 /// Dry friction holds up to its limit times 1 plus this, so that a released motion moves away from the limit.
 pub(crate) const GRACE: f64 = 1e-11;
-
-/// Whether dry friction can exert the couple that holds a motion, from this couple and the limit of friction.
-pub(crate) fn holds([push, limit]: [f64; 2]) -> bool {
-    push.abs() <= limit * (1.0 + GRACE)
-}
 
 /// The couple of rolling resistance that keeps a body from rolling and rocking, from the whole horizontal couple, along
 /// h and e2, that this needs; dry friction along the contour exerts as much of the former as it can.

@@ -99,8 +99,7 @@ pub(crate) trait LossLaw {
     /// The behaviour of the power near the ends of a drift.
     const POWERS: EndPowers;
     /// Whether the law is dry: proportional to the normal force, and to the sign of a motion. Where that motion comes
-    /// to rest, dry friction may hold it. `body::roll::lossy` and `body::slide` give the couple that then acts, for each dry
-    /// law.
+    /// to rest, dry friction may hold it. `dry::held` decides so, from the couple that then acts.
     const PRESSES: bool = false;
     /// Whether the law needs a flat face above the table.
     const NEEDS_FACE: bool = false;

@@ -37,7 +37,7 @@ use crate::numbers::Real;
 use crate::numbers::codes::coded;
 use core::ops::Add;
 pub(crate) use couples::{
-    Couple, Couples, GRACE, Holds, Kinematics, NEAR, OwnCouple, SLACK, UnderCouple, Ways, going, holds,
+    Couple, Couples, GRACE, Holds, Kinematics, NEAR, OwnCouple, SLACK, UnderCouple, Ways, going,
     reversed_turns, rolling_growth, rounded, still_needs,
 };
 pub(crate) use law::{EndPowers, LossLaw, Resists, Speed, Unit};

@@ -163,7 +163,7 @@ impl OwnCouple<Dual<f64>> for OwnLaws<'_> {
         normal: impl Fn(&Couple<Dual<f64>>) -> Dual<f64>,
     ) -> Option<Couple<Dual<f64>>> {
         let (law, (s, c), [w1, w2, w3]) = (self.custom.couple?, seen.angle, seen.w);
-        let (y, still) = ([s, c, w1, w2, w3], |value: f64| Dual { value, slope: 0.0 });
+        let (y, still) = ([s, c, w1, w2, w3], Dual::constant);
         let dual =
             |found: &Couple<f64>| Couple { free: found.free.map(still), pressed: found.pressed.map(still) };
         let at = |found: &Couple<f64>| normal(&dual(found)).value;

@@ -162,7 +162,7 @@ impl Rolling<'_> {
         // digits.
         let start = (0..4).fold(first, |y, _| of.settled(&y, far));
         of.signs = of.at(&start, far).going.map(|x| if x < 0.0 { -1.0 } else { 1.0 });
-        let dual = |value: f64| Dual { value, slope: 0.0 };
+        let dual = Dual::constant;
         let margins = Margins::of(&losses.coefficients, body.theta_end(), start[0]);
         let dual_margins =
             Margins::of(&losses.coefficients.map(dual), dual(body.theta_end()), dual(start[0]));
@@ -264,7 +264,7 @@ impl Flow<DRIFT_MARGINS> for Rolling<'_> {
     }
 
     fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; DRIFT_MARGINS] {
-        let ((of, margins), far) = (&self.sloped, Dual { value: self.far, slope: 0.0 });
+        let ((of, margins), far) = (&self.sloped, Dual::constant(self.far));
         let y = core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
         margins.all(&of.at(&y, far), counted(y[0], far))
     }

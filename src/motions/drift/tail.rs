@@ -75,7 +75,7 @@ impl Tail {
 
     /// The spin that fades; None if its time cannot be resolved.
     fn fade(of: &Circular<Dual<f64>>, y: &Numbers<f64>, far: f64) -> Option<Self> {
-        let dual = |value: f64| Dual { value, slope: 0.0 };
+        let dual = Dual::constant;
         let rates = |z: f64| {
             let [theta, rate, w3] = [y[0], y[1] * (-z).exp(), y[2] * (-z).exp()];
             let known = of.at(&[theta, rate, w3, y[3]].map(dual), dual(far)).rates.map(|x| x.value);

@@ -2,4 +2,5 @@
 
 pub(crate) mod creep;
 pub(crate) mod friction;
+pub(crate) mod held;
 pub(crate) mod settled;

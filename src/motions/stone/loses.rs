@@ -15,19 +15,15 @@
 use super::flow::{Seen, StoneFlow, StoneNumbers, Touch, slip_of};
 use crate::laws::contact::patch::rubs;
 use crate::laws::contact::together::{Resting, Together};
-use crate::laws::loss::{Couple, Holds, Law, NEAR, Ways, rounded};
+use crate::laws::loss::{Couple, Holds, Law, Ways, rounded};
 use crate::laws::stone::law::{StoneLaw, Touching, across, laboratory};
 use crate::methods::flow::{Flow, FlowPlace};
 pub(super) use crate::motions::body::roll::lossy::REST;
-use crate::motions::body::slide::ways;
 use crate::motions::dry::creep::Creeps;
+use crate::motions::dry::held::{HARDLY_ROLLS, left_to_rest, margins_of_ways};
 use crate::motions::walk::numbers::TIME;
 use crate::numbers::vector::{dot, plus};
 use crate::numbers::{Dual, Real};
-
-/// In a slip, rolling that is slower than this, and that a step may change by `NEAR`, ends if rolling resistance would also
-/// stop it in the opposite direction.
-pub(super) const HARDLY_ROLLS: f64 = 4.0 * NEAR;
 
 /// w without the drilling.
 #[inline(always)]
@@ -104,7 +100,8 @@ impl StoneFlow<'_> {
         let most = |law: Law| losses.coefficient(law) * normal;
         let kept = [seen.to.kept, most(Law::RollingResistance)];
         let kinematics = StoneLaw::kinematics(losses, &seen.lab, w);
-        let [rolling, drilling] = ways(losses, &kinematics, [seen.to.couple, most(Law::Drilling)], kept);
+        let [rolling, drilling] =
+            margins_of_ways(losses, &kinematics, [[seen.to.couple, most(Law::Drilling)], kept]);
         [drilling, rolling]
     }
 
@@ -115,7 +112,7 @@ impl StoneFlow<'_> {
     fn turn(&mut self, ways: Ways) {
         if let Some(losses) = &mut self.law.losses {
             losses.ways = Some(ways);
-            self.sloped.losses = Some(losses.map(|value| Dual { value, slope: 0.0 }));
+            self.sloped.losses = Some(losses.map(Dual::constant));
         }
     }
 
@@ -195,8 +192,7 @@ impl StoneFlow<'_> {
             return 0.0;
         }
         let drilling = self.drilling(y);
-        let mut ways =
-            Ways { drilling: if drilling == 0.0 { 0.0 } else { drilling.signum() }, ..Ways::default() };
+        let ways = Ways::of(0.0, drilling);
         self.turn(ways);
         let slip = slip_of(y);
         let slips = (!self.rests()).then_some(match self.touch {
@@ -205,29 +201,28 @@ impl StoneFlow<'_> {
             _ => [0.0; 2],
         });
         let Some(rests) = self.together(y, slips) else { return 0.0 };
-        let [_, rolls, _, drills] = rests.knowing(known).fates();
-        if rests.has(Resting::Drilling) && self.touch != Touch::Held {
-            ways.drilling = if drills.begins() { drills.way[0].signum() } else { 0.0 };
-            ways.holds.drilling = !drills.begins();
+        let (mut decided, push) = ways.deciding(rests, known);
+        if self.touch == Touch::Held {
+            // Friction of the patch, and no loss, holds the drilling.
+            (decided.drilling, decided.holds.drilling) = (ways.drilling, false);
         }
         if rests.has(Resting::Rolling) {
-            ways.holds.rolling = !rolls.begins();
-            self.push = rolls.way;
+            self.push = push;
             // In the variables of the laws, e2 and e3 are the axes x and y of the laboratory.
             if self.touch == Touch::Slips {
-                [ways.rocking, ways.rolling] = [rolls.way[0], -rolls.way[1]];
+                [decided.rocking, decided.rolling] = [push[0], -push[1]];
             }
-            *y = self.rolling_along(y, rolls.way.map(|x| 2.0 * REST * x));
+            *y = self.rolling_along(y, push.map(|x| 2.0 * REST * x));
         }
-        self.turn(ways);
-        if ways.holds.drilling { self.removes_drilling(y) } else { 0.0 }
+        self.turn(decided);
+        if decided.holds.drilling { self.removes_drilling(y) } else { 0.0 }
     }
 
     /// Frees the direction of a rolling that has begun in a slip.
     pub(super) fn rolls_freely(&mut self) {
         self.push = [0.0; 2];
         if let Some(ways) = self.law.losses.as_ref().and_then(|losses| losses.ways) {
-            self.turn(Ways { rolling: 0.0, rocking: 0.0, ..ways });
+            self.turn(ways.rolling_freely());
         }
     }
 
@@ -252,20 +247,19 @@ impl StoneFlow<'_> {
     pub(super) fn rolls_no_more<const N: usize>(&self, place: &FlowPlace<N>) -> Option<[f64; N]> {
         let (y, speed) = (&place.y, self.rolls_at(&place.y));
         let slow = if self.is_paced() { REST } else { HARDLY_ROLLS };
-        if self.resisted == 0.0 || self.holds().rolling || speed > slow || speed == 0.0 {
+        if self.resisted == 0.0 || self.holds().rolling || speed > slow {
             return None;
         }
-        let growth = self.rolling_growth(y);
+        let left = left_to_rest([speed, self.rolling_growth(y)], slow, place.rate[TIME])?;
         let back = || {
             let (mut back, n) = (*y, self.seen_at(y).at.n);
             let rolling = rolling_of(n, y.omega());
             (0..3).for_each(|i| back[4 + i] -= 2.0 * rolling[i]);
             self.rolling_growth(&back)
         };
-        if growth >= 0.0 || !self.is_paced() && back() >= 0.0 {
+        if !self.is_paced() && back() >= 0.0 {
             return None;
         }
-        let left = -speed / (growth * place.rate[TIME]);
         let rests = core::array::from_fn(|i| y[i] + left * place.rate[i]);
         Some(self.rolling_along(&self.kept(rests), [0.0; 2]))
     }

@@ -5,7 +5,7 @@ use super::flow::{
     state,
 };
 use super::known::Recorded;
-use super::loses::{HARDLY_ROLLS, REST};
+use super::loses::REST;
 use super::slow::StoneSlips;
 use super::turns::Spot;
 use super::write::write;
@@ -21,6 +21,7 @@ use crate::methods::flow::{Exhausted, Flow, Flown, Steps};
 use crate::motions::body::roll::lossy::JUMP;
 use crate::motions::dry::creep::{Creeps, LOST_DRILLING};
 use crate::motions::dry::friction::{OwnFriction, slipped};
+use crate::motions::dry::held::HARDLY_ROLLS;
 use crate::motions::walk::numbers::{Halt, TIME, loses};
 use crate::motions::walk::slow::clear_until;
 use crate::motions::walk::{Next, Pause, Phases, SlowSeries, Walk, WalkStep, after_rest, ending};
@@ -71,7 +72,7 @@ impl<'a, 'n, const N: usize> StoneWalk<'a, 'n, N> {
         let law = law.with_patch((patch > 0.0).then_some(patch)).with_losses(Couples::some(&ask.losses));
         let edge = if stone.theta_end < core::f64::consts::PI { stone.theta_end.cos() } else { -2.0 };
         let flow = StoneFlow {
-            sloped: law.map(|x| Dual { value: x, slope: 0.0 }),
+            sloped: law.map(Dual::constant),
             law,
             touch: Touch::Rolls,
             mu: ask.table.mu(),

@@ -1,6 +1,5 @@
 //! A slip as a flow: its rates, the margins at which it ends, and the lengths and errors of its steps.
 
-use super::lossy::ways;
 use super::standstill::vanished;
 use super::{Own, Slide, contact_velocity};
 use crate::laws::body::{Shape, landing_angle};
@@ -11,6 +10,7 @@ use crate::methods::{radau, rk8};
 use crate::motions::body::face::FLAT;
 use crate::motions::body::pole;
 use crate::motions::dry::creep::{Creeps, IMPLICIT_TURNS};
+use crate::motions::dry::held::margins_of_ways;
 use crate::motions::dry::settled::EFFORT;
 use crate::motions::walk::numbers::{
     BodyNumbers, COS, Halt, MARGINS, PHI, SIN, TIME, U2, UH, W1, W2, W3, loses, pose_rates, poses,
@@ -104,7 +104,7 @@ impl<L: Own> Slide<L> {
         }
         if let Some(losses) = losses {
             let seen = losses.seen(&law.shape.rim, angle, w1 / s, w);
-            [all[4], all[5]] = ways(losses, &seen, held, self.surely(kept));
+            [all[4], all[5]] = margins_of_ways(losses, &seen, [held, self.surely(kept)]);
         }
         if self.settled && of_losses {
             let bare = law.with_losses(self.bare.losses.map(|losses| losses.map(|x| s.splat(x))));

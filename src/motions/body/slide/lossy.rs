@@ -3,19 +3,16 @@
 
 use super::{Own, Slide};
 use crate::laws::body::Shape;
-use crate::laws::contact::grip;
 use crate::laws::contact::lossy::DAMPED;
 use crate::laws::contact::patch::rubs;
 use crate::laws::contact::slip::{FollowsSpeed, SlipResponse, Slipping};
 use crate::laws::contact::together::{Resting, Rubs, Together};
-use crate::laws::loss::{
-    Couples, GRACE, Holds, Kinematics, Law, Losses, NEAR, OwnCouple, SLACK, Ways, going, reversed_turns,
-    rolling_growth,
-};
+use crate::laws::loss::{Couples, Holds, Law, Losses, OwnCouple, Ways, reversed_turns, rolling_growth};
 use crate::laws::state::{State, drilling_of, rolling_of, spin_of};
 use crate::methods::flow::FlowPlace;
 use crate::motions::body::face::FLAT;
 use crate::motions::body::roll::lossy::at_rest;
+use crate::motions::dry::held::{HARDLY_ROLLS, hold, left_to_rest};
 use crate::motions::dry::settled::{Balance, CLOSE, SLOWER, Turned, balance, lag, settles_within};
 use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, Halt, P, SIN, TIME, W1, W2, W3};
 use crate::numbers::{Dual, Real, sign_or_zero};
@@ -33,37 +30,24 @@ impl<L: Own> Slide<L> {
         self.sure = if known == Some((Resting::Contour, false)) { HELD_SURELY } else { 0.0 };
         let Some(losses) = self.law.losses else { return };
         let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
-        let moving = Ways {
-            contour: sign_or_zero(spin_of(angle, w[0], w[2])),
-            drilling: sign_or_zero(drilling_of(angle, w[0], w[2])),
-            ..Ways::default()
-        };
         let (pull, twist) = self.pulls(angle, w, slip, toward);
         let seen = losses.seen(&self.law.shape.rim, angle, w[0] / angle.0, w);
         let way = (self.law.dry && slip == [0.0; 2]).then_some(toward);
         let losses = losses.linear(&seen, |_| self.slips(angle, w, slip, way).0.force[0]);
         let rests =
             Together::of_body(&self.law.shape, &losses, (angle, w), slip, Rubs::Slips { pull, twist });
-        let fates = rests.map(|rests| (rests, rests.knowing(known).fates()));
-        let mut ways = moving;
+        let mut ways = Ways::of(spin_of(angle, w[0], w[2]), drilling_of(angle, w[0], w[2]));
         if w[0] == 0.0 && w[2] == 0.0 && pull[1] == 0.0 && twist == 0.0 {
             // The body only rocks, since no couple turns it.
             ways = Ways { rocking: sign_or_zero(w[1]), ..Ways::default() };
         }
-        if let Some((rests, [_, rolling, contour, drilling])) = fates {
-            if rests.has(Resting::Contour) {
-                ways.contour = -sign_or_zero(contour.way[0]);
-                ways.holds.contour = !contour.begins();
-            }
-            if rests.has(Resting::Drilling) {
-                ways.drilling = sign_or_zero(drilling.way[0]);
-                ways.holds.drilling = !drilling.begins();
-            }
+        if let Some(rests) = rests {
+            let (decided, way) = ways.deciding(rests, known);
+            ways = decided;
             if rests.has(Resting::Rolling) {
-                ways.holds.rolling = !rolling.begins();
-                [ways.rolling, ways.rocking] = rolling.way;
+                [ways.rolling, ways.rocking] = way;
                 self.rolls_off = ways.rolling != 0.0 || w[0] != 0.0 || w[2] != 0.0 || pull[1] != 0.0;
-                self.rolls_off &= rolling.begins();
+                self.rolls_off &= way != [0.0; 2];
             }
         }
         self.turn(ways);
@@ -99,7 +83,7 @@ impl<L: Own> Slide<L> {
     pub fn rolls_freely(&mut self) {
         if let Some(ways) = self.law.losses.and_then(|losses| losses.ways).filter(|_| self.rolls_off) {
             self.rolls_off = false;
-            self.turn(Ways { rolling: 0.0, rocking: 0.0, ..ways });
+            self.turn(ways.rolling_freely());
         }
     }
 
@@ -112,7 +96,7 @@ impl<L: Own> Slide<L> {
     fn turn(&mut self, ways: Ways) {
         if let (Some(losses), Some(sloped)) = (&mut self.law.losses, &mut self.sloped.losses) {
             losses.ways = Some(ways);
-            *sloped = losses.map(|value| Dual { value, slope: 0.0 });
+            *sloped = losses.map(Dual::constant);
             self.bare.losses = Some(losses.off_the_contour());
         }
     }
@@ -128,14 +112,10 @@ impl<L: Own> Slide<L> {
     /// The motion that friction ceases to hold at this halt; None if the halt stops a motion. A settled contact stops
     /// where dry friction balances its push, so that friction holds it in any case.
     pub fn known(&self, halt: Halt) -> Option<(Resting, bool)> {
-        let holds = self.holds();
-        match halt {
-            Halt::Contour if self.settled => Some((Resting::Contour, false)),
-            Halt::Contour if holds.rolling => Some((Resting::Rolling, true)),
-            Halt::Contour if holds.contour => Some((Resting::Contour, true)),
-            Halt::Drilling if holds.drilling => Some((Resting::Drilling, true)),
-            _ => None,
+        if halt == Halt::Contour && self.settled {
+            return Some((Resting::Contour, false));
         }
+        self.holds().ceasing(halt).map(|part| (part, true))
     }
 
     /// Whether a couple that grows with psi' has almost stopped the contact along the rim, while
@@ -305,52 +285,11 @@ impl<L: Own> Slide<L> {
             return None;
         }
         let [s, c, w1, w2, w3] = core::array::from_fn(|i| place.y[i]);
-        let [speed, rate] = self.rolling_growth(place, [w1, w2, w3]);
-        let back = reversed_turns((s, c), [w1, w2, w3]);
-        if speed > 4.0 * NEAR || rate >= 0.0 || self.rolling_growth(place, back)[1] >= 0.0 {
+        let w = [w1, w2, w3];
+        let left = left_to_rest(self.rolling_growth(place, w), HARDLY_ROLLS, place.rate[TIME])?;
+        if self.rolling_growth(place, reversed_turns((s, c), w))[1] >= 0.0 {
             return None;
         }
-        let drills = |[s, c, w1, _, w3]: [f64; 5]| {
-            let drilling = drilling_of((s, c), w1, w3);
-            [s * drilling, 0.0, c * drilling]
-        };
-        Some(at_rest(place, -speed / (rate * place.rate[TIME]), drills))
+        Some(at_rest(place, left, |[s, c, w1, _, w3]| drilling_of((s, c), w1, w3)))
     }
-}
-
-/// The margin of a motion that dry friction holds, from the couple that this needs and its limit.
-fn hold<T: Real>([push, limit]: [T; 2]) -> T {
-    grip(push.splat(1.0 + GRACE), limit, push * push)
-}
-
-/// The margins of the motions that dry losses resist: along the rim or, if it is held, of the rolling; and drilling (or
-/// rocking if the body only rocks). `held` has the couple that holds the drilling, and the limit of friction, and `kept`
-/// those of a motion along the rim or of rolling that is held.
-pub(crate) fn ways<T: Real, G: OwnCouple<T>>(
-    losses: &Couples<T, G>,
-    seen: &Kinematics<T>,
-    held: [T; 2],
-    kept: [T; 2],
-) -> [T; 2] {
-    let one = seen.spin.splat(1.0);
-    let size = one + seen.w[0].abs() / seen.angle.0.abs();
-    let slack = one.splat(SLACK) * size;
-    let Some(of) = losses.ways else { return [one; 2] };
-    let contour = if of.holds.contour || of.holds.rolling {
-        hold(kept)
-    } else if losses.has(Law::DryContour) {
-        going(of.contour, seen.spin, slack)
-    } else {
-        one
-    };
-    if of.rocking != 0.0 {
-        let way = one.splat(of.rocking);
-        let there = losses.has(Law::RollingResistance);
-        return [contour, if there { going(way, seen.w[1], slack) } else { one }];
-    }
-    if of.holds.drilling {
-        return [contour, hold(held)];
-    }
-    let there = losses.has(Law::Drilling);
-    [contour, if there { going(of.drilling, seen.drilling(), slack) } else { one }]
 }

@@ -32,7 +32,6 @@ use crate::numbers::Dual;
 use core::f64::consts::PI;
 pub(super) use creeps::is_still;
 pub(crate) use flow::longest;
-pub(crate) use lossy::ways;
 
 /// Sine of theta at which a slipping face has landed if it comes down by infinitely many turns. It is smaller
 /// than `FLAT`, since the time of the landing is extrapolated from the last turns.
@@ -69,7 +68,7 @@ pub(crate) struct Slide<L = ()> {
 impl<L: Own> Slide<L> {
     pub fn new(body: &Body, friction: &Friction, losses: &Losses, tol: f64, own: L) -> Self {
         let law = Slipping::on(body, friction).varying(own).with_losses(Couples::with_own(losses, own));
-        let dual = |value: f64| Dual { value, slope: 0.0 };
+        let dual = Dual::constant;
         let sloped = Slipping::of(&law.shape.map(dual), dual(law.strength), law.dry).varying(own);
         let sloped =
             sloped.with_losses(law.losses.map(|losses| losses.map(dual))).with_patch(law.patch().map(dual));

@@ -1,6 +1,6 @@
 //! Error estimates of a body that loses energy, for a contact point that stops or has settled.
 
-use super::{Hold, LossyFlow};
+use super::LossyFlow;
 use crate::laws::contact::lossy::Held;
 use crate::laws::loss::SLACK;
 use crate::laws::state::{State, spin_of};
@@ -17,7 +17,7 @@ impl<G: Own> LossyFlow<G> {
         let rate = spin_of((s, c), d1, d3) - w[0] * w[1] / (s * s);
         // Since psi' = w3 - w1 c/s, an error of w1 counts for more where s is small.
         let rounded = (4.0 * SLACK + erred.max(100.0 * self.tol)) * (1.0 + y.precession().abs());
-        let late = if self.hold == Hold::Settled {
+        let late = if self.settled {
             let push = self.response(angle, w[0] / s, w, Held::Contour(0.0)).held[0];
             let radius = self.law.rates.reduced().shape.rim.radius(angle);
             lag(&self.law.losses.beside(()), (s, c * y.w2), radius, push, self.law.stiffness(angle, 1.0))

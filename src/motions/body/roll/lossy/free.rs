@@ -10,7 +10,7 @@
 //! are. In sigma the motion is smooth up to the point where both vanish, which is approached as exp(-sigma). Single
 //! motions and lanes of eight share this code.
 
-use super::{Hold, LOSSY_NUMBERS, LossyFlow, REST};
+use super::{LOSSY_NUMBERS, LossyFlow, REST};
 use crate::laws::body::{Shape, landing_angle};
 use crate::laws::contact::grip;
 use crate::laws::contact::lossy::{Acted, Held, Lossy};
@@ -205,8 +205,8 @@ impl<T: Real> LossyUnheld<T> {
 impl<G: Own> LossyFlow<G> {
     /// Whether lanes can compute this flow: no motion is held, all events end it, and the body is not a ball.
     pub fn is_free(&self) -> bool {
-        let moves = self.hold == Hold::No && !self.ways.holds.drilling;
-        moves && self.watch && !self.ball && !self.is_patch() && !G::IS
+        let free = self.moves && !self.holds_drilling();
+        free && self.watch && !self.ball && !self.is_patch() && !G::IS
     }
 
     /// The numbers that lanes need: theta_end, mu, the coefficients of the losses, and the signs
@@ -219,7 +219,7 @@ impl<G: Own> LossyFlow<G> {
         for &law in Law::ALL {
             all[4 + law as usize] = self.law.losses.coefficient(law);
         }
-        all[4 + COUNT..].copy_from_slice(&[self.ways.contour, self.ways.drilling]);
+        all[4 + COUNT..].copy_from_slice(&[self.ways().contour, self.ways().drilling]);
         all
     }
 

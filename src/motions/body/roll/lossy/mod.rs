@@ -22,32 +22,18 @@ use crate::laws::body::Body;
 use crate::laws::contact::lossy::{Acted, Held, Lossy};
 use crate::laws::contact::together::{Resting, Rubs, Together};
 use crate::laws::contact::{Contact, Force};
-use crate::laws::loss::{COUNT, Couples, GRACE, Holds, Law, Losses, SLACK, Ways, holds, rounded};
-use crate::laws::state::{State, drilling_of, spin_of};
+use crate::laws::loss::{COUNT, Couples, GRACE, Holds, Law, Losses, Ways, rounded};
+use crate::laws::state::{State, drilling_of};
 use crate::motions::body::face::{FLAT, turning_share};
 use crate::motions::body::own::Own;
 use crate::motions::dry::creep::RestingPatch;
+use crate::motions::dry::held::holds;
 use crate::motions::walk::numbers::{COS, Halt, P, SIN, U2, UH, W2, W3};
-use crate::numbers::{Dual, Real, sign_or_zero};
+use crate::numbers::{Dual, Real};
 use core::f64::consts::PI;
 use free::pace_of;
 pub(crate) use free::{LossyUnheld, from_side};
 pub(crate) use steps::at_rest;
-
-/// The reason why the contact point does not move along the rim.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Hold {
-    /// The contact point moves.
-    No,
-    /// The body only rocks, since no couple turns it.
-    Planar,
-    /// Dry friction holds the contact point.
-    Dry,
-    /// A couple that grows with psi' has almost stopped the contact point (see `settled`).
-    Settled,
-    /// Rolling resistance holds rolling and rocking: the body only turns about the vertical.
-    Still,
-}
 
 /// If the required friction exceeds mu N by more than this share, it has jumped beyond mu N, as at a reversal of a dry
 /// couple, and has not crossed mu N continuously.
@@ -62,17 +48,18 @@ pub(crate) const LOSSY_NUMBERS: usize = 4 + COUNT + 2;
 #[derive(Clone, Copy)]
 pub(crate) struct LossyFlow<G = ()> {
     law: Lossy<f64, G>,
+    /// The law for numbers with a slope, and without the couples along the contour.
     sloped: Lossy<Dual<f64>, G>,
-    /// The law without the couples along the contour.
     bare: Lossy<f64, G>,
-    hold: Hold,
+    /// Whether the contact point moves along the rim: nothing holds it, it has not settled, and the body does not only rock,
+    /// since no couple turns it.
+    moves: bool,
+    /// Whether a couple that grows with psi' has almost stopped the contact point (see `settled`).
+    settled: bool,
     /// Whether the flow starts from a state in which w_z vanishes exactly.
     starts_still: bool,
     /// The direction of (w_h, w2) in which rolling and rocking begin from rest.
     push: [f64; 2],
-    /// Allowances for the rounding of psi', and of w_z (of w2 if the body only rocks), where these start from zero.
-    slack: [f64; 2],
-    ways: Ways,
     /// The sign of psi' of a settled contact.
     settled_way: f64,
     mu: f64,
@@ -95,30 +82,22 @@ impl<G: Own> LossyFlow<G> {
         y: &State,
     ) -> Self {
         let law = Lossy { losses: Couples::of(losses, |x| x).beside(own), rates: contact.rates(body) };
-        let dual = |value: f64| Dual { value, slope: 0.0 };
-        let rates =
-            crate::laws::contact::reduced::Rates::of(contact, &body.shape().map(dual), !body.is_sharp());
-        let sloped = Lossy { rates, losses: law.losses.map(dual) };
         let (theta_end, ball) = (body.theta_end(), body.is_ball());
         let mu = if contact == Contact::Smooth { f64::INFINITY } else { mu };
-        let (hold, ways) = (Hold::No, Ways::default());
-        let bare = Lossy { losses: law.losses.off_the_contour(), ..law };
-        let (settled_way, starts_still, slack, watch) = (0.0, false, [0.0; 2], true);
         let mut lossy = Self {
             law,
-            sloped,
-            bare,
-            hold,
-            starts_still,
+            sloped: law.sloped(),
+            bare: law,
+            moves: true,
+            settled: false,
+            starts_still: false,
             push: [0.0; 2],
-            slack,
-            ways,
-            settled_way,
+            settled_way: 0.0,
             mu,
             theta_end,
             ball,
             tol,
-            watch,
+            watch: true,
             patch: None,
         };
         lossy.sets_holds(y);
@@ -126,7 +105,11 @@ impl<G: Own> LossyFlow<G> {
     }
 
     pub fn holds_drilling(&self) -> bool {
-        self.ways.holds.drilling
+        self.law.losses.holds().drilling
+    }
+
+    fn ways(&self) -> Ways {
+        self.law.losses.ways.unwrap_or_default()
     }
 
     /// Makes a landing of the face the only event that ends the flow.
@@ -143,47 +126,41 @@ impl<G: Own> LossyFlow<G> {
         self.is_patch() || self.has(Law::Drilling)
     }
 
-    /// Sets which motions are held at a state, and the signs (`ways`) of the others.
+    /// Sets which motions are held at a state, and the signs of the others.
     fn sets_holds(&mut self, y: &State) {
         let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
-        let (s, c) = angle;
-        let (spin, drilling) = (spin_of((s, c), y.w1, y.w3), drilling_of((s, c), y.w1, y.w3));
-        self.ways = Ways { contour: sign_or_zero(spin), drilling: sign_or_zero(drilling), ..Ways::default() };
-        self.hold = Hold::No;
+        let (spin, drilling) = (y.spin(), drilling_of(angle, y.w1, y.w3));
+        self.settled = false;
+        self.turn(Ways::of(spin, drilling));
         // What a slip has held is at rest up to rounding.
-        let still = rounded(s, w);
+        let still = rounded(angle.0, w);
         let along = spin.abs() <= still && self.has(Law::DryContour);
         let about = drilling.abs() <= still && self.can_hold_drilling();
         if y.w1 == 0.0 && y.w3 == 0.0 || along && about {
-            self.only_rocks(angle, y.w2);
+            self.rocks_only(angle, y.w2);
         } else {
             if along {
-                self.stop_contour(angle, w, false);
+                self.stop(Resting::Contour, angle, w);
             }
             if about {
-                self.stop_drilling(angle, w);
+                self.stop(Resting::Drilling, angle, w);
             }
             if self.has(Law::RollingResistance) && pace_of(angle, y.precession(), w) < REST {
                 self.stop_rolling(angle, drilling);
             }
         }
-        self.turn(self.ways);
-        self.sets_slack(y);
-    }
-
-    /// Sets the allowances for motions that start from rest against a dry loss, where rounding may give either sign.
-    fn sets_slack(&mut self, y: &State) {
-        let size = SLACK * (1.0 + y.precession().abs());
-        let (s, c) = y.theta.sin_cos();
-        let slow = |x: f64| if x.abs() < 16.0 * size { SLACK } else { 0.0 };
-        let other = if self.hold == Hold::Planar { y.w2 } else { drilling_of((s, c), y.w1, y.w3) };
-        self.slack = [slow(y.spin()), slow(other)];
     }
 
     fn turn(&mut self, ways: Ways) {
-        self.ways = ways;
-        (self.law.losses.ways, self.bare.losses.ways) = (Some(ways), Some(ways));
-        self.sloped.losses = self.law.losses.map(|value| Dual { value, slope: 0.0 });
+        self.law.losses.ways = Some(ways);
+        (self.sloped, self.bare.losses) = (self.law.sloped(), self.law.losses.off_the_contour());
+        let Ways { rocking, holds, .. } = ways;
+        self.moves = !(holds.contour || holds.rolling || rocking != 0.0 || self.settled);
+    }
+
+    /// Whether the body only rocks, since no couple turns it.
+    fn only_rocks(&self) -> bool {
+        self.ways().rocking != 0.0
     }
 
     fn response(&self, angle: (f64, f64), precession: f64, w: [f64; 3], held: Held<f64>) -> Acted<f64> {
@@ -192,33 +169,37 @@ impl<G: Own> LossyFlow<G> {
         self.patch.filter(|_| drills).map_or(acted, |patch| self.held_by(&patch, acted))
     }
 
-    /// Makes dry friction hold the contact point if its limit suffices, or always if `surely`; else the push moves the
-    /// contact point.
-    fn stop_contour(&mut self, angle: (f64, f64), w: [f64; 3], surely: bool) {
-        self.turn(Ways { contour: 0.0, ..self.ways });
-        let needs = self.response(angle, w[0] / angle.0, w, Held::Contour(0.0)).held;
-        let held = surely || holds(needs);
-        self.hold = if held { Hold::Dry } else { Hold::No };
-        self.turn(Ways { contour: if held { 0.0 } else { needs[0].signum() }, ..self.ways });
-        if held && self.ways.holds.drilling {
-            self.only_rocks(angle, w[1]);
+    /// The response of the body with what is held.
+    fn responds(&self, angle: (f64, f64), w: [f64; 3]) -> Acted<f64> {
+        self.response(angle, w[0] / angle.0, w, self.held(0.0))
+    }
+
+    /// Makes dry friction hold a motion that has stopped, or makes the motion begin anew.
+    fn stop(&mut self, part: Resting, angle: (f64, f64), w: [f64; 3]) {
+        self.turn(self.ways().holding(part));
+        self.turn(self.ways().keeping(|_| self.responds(angle, w).held));
+        // A body that neither turns along its rim nor drills does not turn at all.
+        let Holds { contour, drilling, .. } = self.ways().holds;
+        if contour && drilling {
+            self.rocks_only(angle, w[1]);
         }
     }
 
+    /// Lets a motion go that dry friction has held.
+    fn let_go_of(&mut self, part: Resting, angle: (f64, f64), w: [f64; 3]) {
+        if part == Resting::Rolling {
+            return self.leave(angle, drilling_of(angle, w[0], w[2]));
+        }
+        self.turn(self.ways().beginning(part, self.responds(angle, w).held[0]));
+    }
+
     /// Makes the body only rock, since no couple turns it any more.
-    fn only_rocks(&mut self, angle: (f64, f64), w2: f64) {
-        self.hold = Hold::Planar;
+    fn rocks_only(&mut self, angle: (f64, f64), w2: f64) {
+        self.settled = false;
         self.turn(Ways::default());
         let falls = self.response(angle, 0.0, [0.0, w2, 0.0], Held::Nothing).w[1];
         let rocking = if w2 != 0.0 { w2.signum() } else { falls.signum() };
         self.turn(Ways { rocking, ..Ways::default() });
-    }
-
-    /// Makes dry friction hold the drilling, or makes the drilling begin anew.
-    fn stop_drilling(&mut self, angle: (f64, f64), w: [f64; 3]) {
-        self.turn(self.ways.holding_drilling());
-        let needs = self.response(angle, w[0] / angle.0, w, Held::Drilling).held;
-        self.turn(self.ways.drilling_stopped(needs));
     }
 
     /// Whether the required friction has jumped beyond mu N, as where a dry couple has just reversed.
@@ -243,9 +224,7 @@ impl<G: Own> LossyFlow<G> {
     /// begin, in the direction of their push. Dry friction along the contour holds the contact point, or lets it go.
     fn stop_rolling(&mut self, angle: (f64, f64), drilling: f64) {
         if self.keeps_still(angle, drilling) {
-            self.hold = Hold::Still;
-            let holds = Holds { rolling: true, ..Holds::default() };
-            self.turn(Ways { contour: 0.0, rolling: 0.0, rocking: 0.0, holds, ..self.ways });
+            self.turn(self.ways().holding_rolling());
         } else {
             self.leave(angle, drilling);
         }
@@ -266,28 +245,16 @@ impl<G: Own> LossyFlow<G> {
         let Some(rests) = Together::of_body(&reduced.shape, &losses, (angle, w), [0.0; 2], rubs) else {
             return;
         };
-        let [_, rolling, contour, _] = rests.knowing(Some((Resting::Rolling, true))).fates();
-        self.push = rolling.way;
-        self.hold = Hold::No;
-        let mut ways = Ways { holds: Holds { rolling: false, ..self.ways.holds }, ..self.ways };
-        if rests.has(Resting::Contour) {
-            self.hold = if contour.begins() { Hold::No } else { Hold::Dry };
-            ways.contour = if contour.begins() { -contour.way[0].signum() } else { 0.0 };
-        }
+        let (ways, push) = self.ways().deciding(rests, Some((Resting::Rolling, true)));
+        self.push = push;
         self.turn(ways);
     }
 
     /// Whether a body that only turns about the vertical, with this w_z, neither rolls nor rocks.
     fn keeps_still(&self, angle: (f64, f64), drilling: f64) -> bool {
         let mut still = *self;
-        still.turn(Ways {
-            contour: 0.0,
-            rocking: 0.0,
-            holds: Holds { rolling: true, ..Holds::default() },
-            ..self.ways
-        });
-        let w = [angle.0 * drilling, 0.0, angle.1 * drilling];
-        holds(still.response(angle, drilling, w, Held::Rolling).held)
+        still.turn(self.ways().holding_rolling());
+        holds(still.responds(angle, [angle.0 * drilling, 0.0, angle.1 * drilling]).held)
     }
 
     /// Whether the body is at rest, and rolling resistance keeps it there.
@@ -295,13 +262,10 @@ impl<G: Own> LossyFlow<G> {
         let (s, c) = y.theta.sin_cos();
         let w = [y.w1, y.w2, y.w3];
         let turns = drilling_of((s, c), y.w1, y.w3).abs() > rounded(s, w);
-        match self.hold {
-            Hold::Still => !turns,
-            Hold::Planar => {
-                self.has(Law::RollingResistance) && y.w2.abs() < REST && self.keeps_still((s, c), 0.0)
-            }
-            _ => false,
+        if self.only_rocks() {
+            return self.has(Law::RollingResistance) && y.w2.abs() < REST && self.keeps_still((s, c), 0.0);
         }
+        self.ways().holds.rolling && !turns
     }
 
     /// w, with a small speed in the direction in which rolling and rocking begin from rest.
@@ -313,49 +277,32 @@ impl<G: Own> LossyFlow<G> {
 
     /// Applies the changes of a halt. Returns whether the body is at rest.
     pub fn after(&mut self, halt: Halt, y: &State) -> bool {
-        let stops = self.turned_by(halt, y);
-        self.sets_slack(y);
-        stops
-    }
-
-    fn turned_by(&mut self, halt: Halt, y: &State) -> bool {
         let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
         self.starts_still = halt == Halt::Drilling;
+        let holds = self.ways().holds;
         let drilling = drilling_of(angle, y.w1, y.w3);
         match halt {
-            Halt::Contour if self.hold == Hold::Still => self.leave(angle, drilling),
-            Halt::Contour if self.hold == Hold::Dry => {
-                let push = self.response(angle, w[0] / angle.0, w, Held::Contour(0.0)).held[0];
-                self.hold = Hold::No;
-                self.turn(Ways { contour: push.signum(), ..self.ways });
-            }
-            Halt::Contour => {
+            _ if let Some(part) = holds.ceasing(halt) => self.let_go_of(part, angle, w),
+            Halt::Contour if self.settled => {
                 // A settled contact stops where dry friction balances the push, so that friction holds
                 // it in any case.
-                let settled = self.hold == Hold::Settled;
-                self.stop_contour(angle, w, settled);
+                self.settled = false;
+                self.turn(self.ways().holding(Resting::Contour));
             }
-            Halt::Drilling if self.ways.holds.drilling => {
-                let push = self.response(angle, w[0] / angle.0, w, Held::Drilling).held[0];
-                self.turn(self.ways.drilling_from(push));
-            }
-            Halt::Drilling if self.hold == Hold::Still => {
-                // Without the drilling the body may begin to rock.
-                self.only_rocks(angle, 0.0);
-                return !self.rocks_back(angle);
-            }
-            // A body that neither rolls along its rim nor drills does not turn at all.
-            Halt::Drilling if self.hold != Hold::No => self.only_rocks(angle, w[1]),
-            Halt::Drilling => self.stop_drilling(angle, w),
+            Halt::Contour => self.stop(Resting::Contour, angle, w),
+            // Without the drilling the body may begin to rock.
+            Halt::Drilling if holds.rolling => return !self.rocks_back(angle),
+            Halt::Drilling if !self.moves => self.rocks_only(angle, w[1]),
+            Halt::Drilling => self.stop(Resting::Drilling, angle, w),
             Halt::Rocking => return !self.rocks_back(angle),
             Halt::Rests => {
                 self.stop_rolling(angle, drilling);
                 return self.has_stopped(y);
             }
-            Halt::Settles if self.ways.holds.drilling => self.only_rocks(angle, w[1]),
+            Halt::Settles if holds.drilling => self.rocks_only(angle, w[1]),
             Halt::Settles => {
-                (self.hold, self.settled_way) = (Hold::Settled, self.ways.contour);
-                self.turn(Ways { contour: 0.0, ..self.ways });
+                (self.settled, self.settled_way) = (true, self.ways().contour);
+                self.turn(Ways { contour: 0.0, ..self.ways() });
             }
             _ => {}
         }
@@ -364,7 +311,7 @@ impl<G: Own> LossyFlow<G> {
 
     /// Whether a body that only rocks, and has come to rest, rocks back; otherwise rolling resistance holds the body.
     fn rocks_back(&mut self, angle: (f64, f64)) -> bool {
-        self.only_rocks(angle, 0.0);
+        self.rocks_only(angle, 0.0);
         !self.keeps_still(angle, 0.0)
     }
 
@@ -375,7 +322,7 @@ impl<G: Own> LossyFlow<G> {
 
     /// Whether sigma differs from time: under rolling resistance, except for a body that only rocks.
     fn is_paced(&self) -> bool {
-        self.has(Law::RollingResistance) && !matches!(self.hold, Hold::Planar | Hold::Still)
+        self.has(Law::RollingResistance) && (self.moves || !self.only_rocks() && !self.ways().holds.rolling)
     }
 
     /// Gives a body that neither rolls nor rocks, but is not held, a small speed in the direction of the push.
@@ -394,7 +341,7 @@ impl<G: Own> LossyFlow<G> {
         let mut y = *shown;
         self.pushed_off(&mut y);
         let [s, c, mut w1, mut w3] = [y[SIN], y[COS], y[P], y[W3]];
-        if self.starts_still && self.hold == Hold::No {
+        if self.starts_still && self.moves {
             // Here w_z vanishes exactly, and its rounding error is removed.
             let off = drilling_of((s, c), w1, w3);
             if c.abs() > 0.5 {
@@ -404,21 +351,24 @@ impl<G: Own> LossyFlow<G> {
             }
             y[W3] = w3;
         }
-        y[P] = match self.hold {
-            Hold::No => w1 * s,
-            Hold::Planar => 0.0,
-            Hold::Dry | Hold::Settled | Hold::Still => drilling_of((s, c), w1, w3),
+        y[P] = if self.moves {
+            w1 * s
+        } else if self.only_rocks() {
+            0.0
+        } else {
+            drilling_of((s, c), w1, w3)
         };
         (y[UH], y[U2]) = (0.0, 0.0);
         y
     }
 
     fn held<T: Real>(&self, like: T) -> Held<T> {
-        match self.hold {
-            Hold::No if self.ways.holds.drilling => Held::Drilling,
-            Hold::No => Held::Nothing,
-            Hold::Still => Held::Rolling,
-            _ => Held::Contour(like.splat(0.0)),
+        let holds = self.law.losses.holds();
+        match self.moves {
+            true if holds.drilling => Held::Drilling,
+            true => Held::Nothing,
+            false if holds.rolling => Held::Rolling,
+            false => Held::Contour(like.splat(0.0)),
         }
     }
 
@@ -426,13 +376,13 @@ impl<G: Own> LossyFlow<G> {
     #[inline(always)]
     fn turning<T: Real>(&self, y: [T; 5]) -> (T, [T; 3]) {
         let [s, c, p, w2, _] = y;
-        if self.hold == Hold::No { free::turning(y) } else { (p, [s * p, w2, c * p]) }
+        if self.moves { free::turning(y) } else { (p, [s * p, w2, c * p]) }
     }
 
     /// The halt by the first margin that fails at the start of a flow; None if all margins hold.
     pub fn at_start(&self, y: &State) -> Option<Halt> {
         let (angle, w) = (y.theta.sin_cos(), self.pushed(y));
-        let acted = self.response(angle, w[0] / angle.0, w, self.held(0.0));
+        let acted = self.responds(angle, w);
         let rises = y.w2 > 0.0 || (y.w2 == 0.0 && acted.w[1] > 0.0);
         let side = self.theta_end - y.theta;
         let [normal, along, across] = acted.force;
@@ -450,7 +400,7 @@ impl<G: Own> LossyFlow<G> {
     /// The contact force at a state of the flow.
     pub fn force(&self, y: &State) -> Force {
         let (angle, w) = (y.theta.sin_cos(), self.pushed(y));
-        let [normal, along, across] = self.response(angle, w[0] / angle.0, w, self.held(0.0)).force;
+        let [normal, along, across] = self.responds(angle, w).force;
         Force { normal, along, across }
     }
 
@@ -458,8 +408,8 @@ impl<G: Own> LossyFlow<G> {
     pub fn rest_of<const N: usize>(&self, shown: &[f64; N]) -> (f64, f64) {
         let [s, c, w1, w2, w3] = core::array::from_fn(|i| shown[i]);
         let (falls, i1) = (if c * w2 > 0.0 { s / (c * w2) } else { 0.0 }, self.law.rates.reduced().shape.i1);
-        let acted = self.response((s, c), w1 / s, [w1, w2, w3], self.held(0.0));
-        if self.hold != Hold::No || falls > 0.0 && turning_share(i1, s, w1, w2) < 0.25 {
+        let acted = self.responds((s, c), [w1, w2, w3]);
+        if !self.moves || falls > 0.0 && turning_share(i1, s, w1, w2) < 0.25 {
             if w2 * w2 > s || falls == 0.0 {
                 return (falls, falls * falls.max(s));
             }

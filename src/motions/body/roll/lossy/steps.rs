@@ -1,11 +1,11 @@
 //! The flow of a body that loses energy: its rates, its margins, and the settling of its contact.
 
 use super::free::{error, fastest_of, from_side, pace_of, three_radians};
-use super::{Hold, LossyFlow, REST};
+use super::{LossyFlow, REST};
 use crate::laws::body::landing_angle;
 use crate::laws::contact::lossy::{Acted, Held, Lossy};
 use crate::laws::contact::{Contact, grip};
-use crate::laws::loss::{COUNT, GRACE, Law, OwnCouple, rolling_growth};
+use crate::laws::loss::{COUNT, Law, OwnCouple, rolling_growth};
 use crate::laws::state::{drilling_of, rolling_of};
 use crate::methods::flow::{FASTEST, Flow, FlowPlace};
 use crate::methods::rk8;
@@ -13,6 +13,7 @@ use crate::motions::body::face::{FLAT, lands_at};
 use crate::motions::body::own::Own;
 use crate::motions::body::pole;
 use crate::motions::dry::creep::hardly_drills;
+use crate::motions::dry::held::{left_to_rest, margins_of_ways};
 use crate::motions::dry::settled::{Balance, CLOSE, EFFORT, SLOWER, Turned, balance, settles_within};
 use crate::motions::walk::numbers::{
     BodyNumbers, COS, Halt, MARGINS, P, PHI, SIN, TIME, W1, W2, W3, loses, pose_rates, poses,
@@ -23,16 +24,16 @@ use core::f64::consts::PI;
 const ROLLING_ENDS: [Halt; MARGINS] =
     [Halt::Face, Halt::Side, Halt::LiftOff, Halt::Slips, Halt::Contour, Halt::Drilling];
 
-/// The numbers where the body only drills, extrapolated linearly by `left` in sigma; `drills` computes the three
-/// numbers of its angular velocity from the extrapolated numbers.
+/// The numbers where the body only drills, extrapolated linearly by `left` in sigma; `drills` computes its drilling from
+/// the extrapolated numbers.
 pub(crate) fn at_rest<const N: usize>(
     place: &FlowPlace<N>,
     left: f64,
-    drills: impl Fn([f64; 5]) -> [f64; 3],
+    drills: impl Fn([f64; 5]) -> f64,
 ) -> [f64; N] {
     let mut rest: [f64; N] = core::array::from_fn(|i| place.y[i] + left * place.rate[i]);
-    let turning = drills(core::array::from_fn(|i| rest[i]));
-    rest[2..5].copy_from_slice(&turning);
+    let drilling = drills(core::array::from_fn(|i| rest[i]));
+    [rest[W1], rest[W2], rest[W3]] = [rest[SIN] * drilling, 0.0, rest[COS] * drilling];
     rest
 }
 
@@ -40,7 +41,7 @@ impl<G: Own> LossyFlow<G> {
     /// phi', w, the response of the body, and psi' of a settled contact.
     fn settled(&self, angle: (f64, f64), drilling: f64, w2: f64) -> (f64, [f64; 3], Acted<f64>, f64) {
         let radius = self.law.rates.reduced().shape.rim.radius(angle);
-        let way = if self.hold == Hold::Settled { self.settled_way } else { self.ways.contour };
+        let way = if self.settled { self.settled_way } else { self.ways().contour };
         let act = |precession: f64, w: [f64; 3], rate: f64| {
             let held = Held::Contour(rate);
             let acted = self.bare.at(angle, precession, w, held);
@@ -61,7 +62,7 @@ impl<G: Own> LossyFlow<G> {
         let y = &place.y;
         let angle = y.angle();
         let (_, w) = self.turning([y[SIN], y[COS], y[P], y[W2], y[W3]]);
-        let acted = self.response(angle, w[0] / angle.0, w, self.held(0.0));
+        let acted = self.responds(angle, w);
         rolling_growth(angle, w, acted.w)
     }
 
@@ -71,16 +72,14 @@ impl<G: Own> LossyFlow<G> {
         if !self.is_paced() || place.y[SIN].abs() < FLAT {
             return None;
         }
-        let [speed, growth] = self.rolling_growth(place);
-        if speed > REST || speed == 0.0 || growth >= 0.0 {
-            return None;
-        }
-        let drills = |y: [f64; 5]| {
-            let ([s, c, ..], (_, w)) = (y, self.turning(y));
-            let drilling = drilling_of((s, c), w[0], w[2]);
-            [if self.hold == Hold::No { s * s * drilling } else { drilling }, 0.0, c * drilling]
-        };
-        Some(at_rest(place, -speed / (growth * place.rate[TIME]), drills))
+        let left = left_to_rest(self.rolling_growth(place), REST, place.rate[TIME])?;
+        let mut rest = at_rest(place, left, |y| {
+            let (_, w) = self.turning(y);
+            drilling_of(y.angle(), w[0], w[2])
+        });
+        let p = if self.moves { rest[SIN] * rest[P] } else { drilling_of(rest.angle(), rest[P], rest[W3]) };
+        rest[P] = p;
+        Some(rest)
     }
 
     /// The numbers after a passage of the pole, nearer than steps resolve.
@@ -107,7 +106,7 @@ impl<G: Own> LossyFlow<G> {
         let (precession, w) = self.turning(y);
         let one = s.splat(1.0);
         let acted = law.at((s, c), precession, w, self.held(s));
-        let endless = self.hold == Hold::No && self.law.losses.turn_endlessly();
+        let endless = self.moves && self.law.losses.turn_endlessly();
         let face = if self.ball {
             one
         } else {
@@ -127,25 +126,11 @@ impl<G: Own> LossyFlow<G> {
         if let Some(grips) = grips {
             limit = number(grips) * normal;
         }
-        let within = limit * limit * number(1.0 + 2.0 * GRACE) - push * push;
-        let slack = self.slack.map(|slack| number(slack) * (one + precession.abs()));
-        let contour = match self.hold {
-            Hold::Dry | Hold::Still => within,
-            Hold::Settled if self.has(Law::DryContour) => number(self.settled_way) * push - limit,
-            Hold::No if self.has(Law::DryContour) => {
-                number(self.ways.contour) * (w[2] - c * precession) + slack[0]
-            }
-            _ => one,
-        };
-        let drilling = if self.hold == Hold::Planar {
-            if self.has(Law::RollingResistance) { number(self.ways.rocking) * w2 + slack[1] } else { one }
-        } else if self.ways.holds.drilling {
-            within
-        } else if self.has(Law::Drilling) && self.ways.drilling != 0.0 {
-            number(self.ways.drilling) * drilling_of((s, c), w[0], w[2]) + slack[1]
-        } else {
-            one
-        };
+        let seen = law.losses.seen(&law.rates.reduced().shape.rim, (s, c), precession, w);
+        let [mut contour, drilling] = margins_of_ways(&law.losses, &seen, [[push, limit]; 2]);
+        if self.settled && self.has(Law::DryContour) {
+            contour = number(self.settled_way) * push - limit;
+        }
         if self.watch {
             [face, side, normal, grip, contour, drilling]
         } else {
@@ -157,7 +142,7 @@ impl<G: Own> LossyFlow<G> {
     #[inline(always)]
     pub(super) fn rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) -> ([f64; 3], [f64; 3]) {
         let [s, c, w2] = [y[SIN], y[COS], y[W2]];
-        let (precession, w, acted) = if self.hold == Hold::Settled {
+        let (precession, w, acted) = if self.settled {
             let (precession, w, acted, _) = self.settled((s, c), y[P], w2);
             (precession, w, acted)
         } else {
@@ -165,7 +150,7 @@ impl<G: Own> LossyFlow<G> {
             (precession, w, self.response((s, c), precession, w, self.held(0.0)))
         };
         let [d1, d2, d3] = acted.w;
-        let (turn, free) = if self.hold == Hold::No {
+        let (turn, free) = if self.moves {
             (s * d1 - c * w2 * w[0], d3)
         } else {
             (drilling_of((s, c), d1, d3) - w2 * rolling_of((s, c), w[0], w[2]), 0.0)
@@ -175,8 +160,7 @@ impl<G: Own> LossyFlow<G> {
             all[N - 1] = acted.power;
         }
         if poses(N) {
-            let moves = matches!(self.hold, Hold::No | Hold::Settled);
-            let spin = if moves { w[2] - c * precession } else { 0.0 };
+            let spin = if self.moves || self.settled { w[2] - c * precession } else { 0.0 };
             let reduced = self.law.rates.reduced();
             let over = match reduced.contact {
                 Contact::Rolling => [reduced.shape.rim.rho * w2, reduced.shape.rim.radius((s, c)) * spin],
@@ -225,16 +209,16 @@ impl<G: Own> Flow<MARGINS> for LossyFlow<G> {
     }
 
     fn end(&self, i: usize) -> Halt {
-        if i == 5 && self.hold == Hold::Planar { Halt::Rocking } else { ROLLING_ENDS[i] }
+        if i == 5 && self.only_rocks() { Halt::Rocking } else { ROLLING_ENDS[i] }
     }
 
     #[inline(always)]
     fn error<const N: usize>(&self, y: &[f64; N], made: &rk8::Step<f64, N>) -> f64 {
         // A ball that only rocks passes through its pole, where an error relative to s has no meaning.
-        let s = if self.ball && self.hold != Hold::No { 1.0 } else { y[SIN].abs() };
+        let s = if self.ball && !self.moves { 1.0 } else { y[SIN].abs() };
         let (precession, w) = self.turning([y[SIN], y[COS], y[P], y[W2], y[W3]]);
         let paced = self.is_paced().then(|| pace_of(y.angle(), precession, w));
-        error(self.tol, (s, w), (self.hold == Hold::No, paced), made, if poses(N) { 9..13 } else { 0..0 })
+        error(self.tol, (s, w), (self.moves, paced), made, if poses(N) { 9..13 } else { 0..0 })
     }
 
     fn fastest<const N: usize>(&self, y: &[f64; N]) -> f64 {
@@ -242,7 +226,7 @@ impl<G: Own> Flow<MARGINS> for LossyFlow<G> {
     }
 
     fn effort(&self) -> u64 {
-        if self.hold == Hold::Settled { EFFORT } else { 1 }
+        if self.settled { EFFORT } else { 1 }
     }
 
     fn first<const N: usize>(&self, y: &[f64; N]) -> f64 {
@@ -263,7 +247,7 @@ impl<G: Own> Flow<MARGINS> for LossyFlow<G> {
         let seen = losses.seen(&self.sloped.rates.reduced().shape.rim, y.angle(), precession, w);
         // `calm` limits the time, and a step in sigma takes less time where the body hardly rolls.
         let mut most = self.calm(&place.y);
-        if self.hold == Hold::No && losses.is_soft() {
+        if self.moves && losses.is_soft() {
             let spin = w[2] - y[COS] * precession;
             most = most.min(self.law.damped(place.y.angle(), spin.value));
         }
@@ -285,13 +269,13 @@ impl<G: Own> Flow<MARGINS> for LossyFlow<G> {
         if let Some(rest) = self.comes_to_rest(place) {
             return Some((Halt::Rests, rest));
         }
-        if self.ball && self.hold == Hold::No {
+        if self.ball && self.moves {
             return self.passes_pole(place).map(|there| (Halt::Pole, there));
         }
         let [s, c, w2] = [y[SIN], y[COS], y[W2]];
         // `fall` is the speed at which either face falls, and `faster` is the rate of that speed.
         let (fall, faster) = (c * w2, c * place.rate[W2] / place.rate[TIME]);
-        if self.hold != Hold::No || self.ball || fall <= 0.0 || faster <= 0.0 || s > CLOSE {
+        if !self.moves || self.ball || fall <= 0.0 || faster <= 0.0 || s > CLOSE {
             return None;
         }
         let angle = (s, c);
@@ -314,7 +298,7 @@ impl<G: Own> Flow<MARGINS> for LossyFlow<G> {
     #[inline(always)]
     fn passes_unseen<const N: usize>(&self, from: &[f64; N], y: &[f64; N]) -> Option<f64> {
         let turns = self.law.losses.has(Law::DryContour);
-        pole::passes_unseen(from, y, turns).filter(|_| self.ball && self.hold == Hold::No)
+        pole::passes_unseen(from, y, turns).filter(|_| self.ball && self.moves)
     }
 
     fn slows<const N: usize>(&self, halt: Halt, place: &FlowPlace<N>) -> f64 {
@@ -326,19 +310,19 @@ impl<G: Own> Flow<MARGINS> for LossyFlow<G> {
         if self.ball || s > CLOSE {
             return None;
         }
-        if s < 1e-8 || (s < 1e-5 && self.hold != Hold::No && c * w2 > 0.0) {
+        if s < 1e-8 || (s < 1e-5 && !self.moves && c * w2 > 0.0) {
             return Some(Halt::Face);
         }
         // Roots of an almost vanishing psi' make the steps short here.
         let (precession, w) = self.turning([s, c, p, w2, w3]);
         let slow = s * (w3 - c * precession).abs() <= SLOWER * c * w2 + self.noise(w);
         let soft = self.law.losses.slope(s, 1.0, 1.0) > 0.0;
-        (self.hold == Hold::No && slow && soft).then_some(Halt::Settles)
+        (self.moves && slow && soft).then_some(Halt::Settles)
     }
 
     /// A drilling that is held stays zero. The errors of the steps would let it begin on a patch of contact.
     fn kept<const N: usize>(&self, mut y: [f64; N]) -> [f64; N] {
-        if self.hold == Hold::No && self.ways.holds.drilling {
+        if self.moves && self.holds_drilling() {
             let drilling = y[P] + y[COS] * y[W3];
             (y[P], y[W3]) = (y[P] - y[SIN] * y[SIN] * drilling, y[W3] - y[COS] * drilling);
         }
@@ -350,7 +334,7 @@ impl<G: Own> Flow<MARGINS> for LossyFlow<G> {
         let [s, c, q] = [y[SIN], y[COS], y[P]];
         let (_, [w1, _, w3]) = self.turning([s, c, q, y[W2], y[W3]]);
         (shown[W1], shown[W3]) = (w1, w3);
-        if self.hold == Hold::Settled {
+        if self.settled {
             let (.., spin) = self.settled((s, c), q, y[W2]);
             (shown[W1], shown[W3]) = (s * (q - c * spin), c * q + s * s * spin);
         }
