@@ -109,6 +109,31 @@ fn rolling_resistance_stops_the_rolling_of_what_spins_on_its_side_and_holds_it_w
 }
 
 #[test]
+fn dry_losses_resist_what_rolls_from_rest_where_a_rim_slips_off_as_what_rolls_slowly() {
+    let mut rolls_off = 0;
+    for (ell, w1, mu) in [(0.3, 0.4, 0.15), (0.5, 1.0, 0.15), (1.0, -0.8, 0.2), (0.4, 0.7, 0.05)] {
+        let body = Body::solid(ell).unwrap();
+        for law in [Law::RollingResistance, Law::DryContour] {
+            for size in [0.002, 0.02, 0.5] {
+                let rolling = |w3: f64| {
+                    let start = Start::from(State { theta: FRAC_PI_2, w1, w2: 0.0, w3 });
+                    let m = losing(&body, start, Friction::coulomb(mu), Losses::of(law, size), &[0.02, 0.1]);
+                    assert_eq!(kinds(&m)[0], Kind::Lying);
+                    [m.states[0].w3, m.states[1].w3]
+                };
+                let (rest, slow) = (rolling(0.0), rolling(1e-9));
+                let off = (0..2).map(|i| (rest[i] - slow[i]).abs()).fold(0.0, f64::max);
+                assert!(off < 1e-8, "{ell} {law:?} {size}: {rest:?} {slow:?}");
+                // Friction on both rims turns the body unless the loss is strong.
+                assert_eq!(rest == [0.0; 2], size == 0.5, "{rest:?}");
+                rolls_off += u32::from(rest[0] != 0.0);
+            }
+        }
+    }
+    assert_eq!(rolls_off, 16);
+}
+
+#[test]
 fn what_lies_on_ice_keeps_its_velocities_and_both_rims_share_the_weight_with_the_launch_number() {
     let body = Body::solid(1.2).unwrap();
     let (w1, w3) = (0.8, 0.9);

@@ -111,7 +111,7 @@ pub fn rises(body: &Body, y: &State, slip: [f64; 2], mu: f64) -> bool {
 /// With friction, the forces are NaN where a rim does not slip, since its friction is not known from the state alone.
 pub fn normals(body: &Body, y: &State, slip: [f64; 2], mu: f64) -> [f64; 2] {
     let lying = Lying::on(body, &Friction::coulomb(mu), &Losses::NONE);
-    lying.slipping([y.w1, y.w3, slip[0], slip[1]], [0.0; 2]).force.map(|[normal, ..]| normal)
+    lying.slipping([y.w1, y.w3, slip[0], slip[1]]).force.map(|[normal, ..]| normal)
 }
 
 /// The plastic landing of the other rim at theta = pi/2, with w2 <= 0, on a table with the friction `mu`.

@@ -18,7 +18,7 @@
 
 use super::slip::Friction;
 use crate::laws::body::{Body, Shape};
-use crate::laws::loss::{Couples, Losses};
+use crate::laws::loss::{Couples, Holds, Losses};
 use crate::numbers::Real;
 
 /// A body that lies on both rims, on a table with friction.
@@ -31,8 +31,6 @@ pub(crate) struct Lying<T> {
     pub losses: Option<Couples<T>>,
     /// The couple of a user-defined law in the state for which this law is made.
     pub own: Option<[T; 3]>,
-    /// Whether dry losses hold w1, and w3, at zero.
-    pub held: [bool; 2],
 }
 
 /// Forces and accelerations on both rims.
@@ -63,14 +61,14 @@ impl Lying<f64> {
         let dry = matches!(*friction, Friction::Coulomb { mu, .. } if mu > 0.0 || friction.sticks());
         let losses = Couples::some(losses);
         let strength = [friction.strength(); 2];
-        Self { shape: body.shape(), strength, dry, losses, own: None, held: [false; 2] }
+        Self { shape: body.shape(), strength, dry, losses, own: None }
     }
 
     /// The largest couples with which dry losses hold w1 and w3.
     pub fn limits(&self) -> [f64; 2] {
         // All couples that are not dry vanish at this speed.
         const SLOW: f64 = 1e-100;
-        let [m1, _, m3] = Self { own: None, ..*self }.couple([SLOW, SLOW], [1.0; 2]);
+        let [m1, _, m3] = Self { own: None, ..*self }.couple([SLOW, SLOW]);
         [m1.abs(), m3.abs()]
     }
 }
@@ -84,7 +82,6 @@ impl<T: Real> Lying<T> {
             dry: self.dry,
             losses: self.losses.as_ref().map(|losses| losses.map(&number)),
             own: self.own.map(|m| m.map(&number)),
-            held: self.held,
         }
     }
 
@@ -99,23 +96,26 @@ impl<T: Real> Lying<T> {
         u.map(|u| strength * u / size)
     }
 
-    /// The couples m1, m2 and m3 of the losses; `ways` are the signs of w1 and w3 for the dry ones. Only a user-defined
-    /// law may have m2, which then takes no power.
-    fn couple(&self, w: [T; 2], ways: [f64; 2]) -> [T; 3] {
-        let [m1, m3] = self.couple_of_losses(w, ways);
+    /// Whether dry losses hold w1, which drills, and w3, by which the body rolls.
+    pub fn held(&self) -> [bool; 2] {
+        let Holds { contour, drilling, .. } = self.losses.as_ref().map_or(Holds::default(), Couples::holds);
+        [drilling, contour]
+    }
+
+    /// The couples m1, m2 and m3 of the losses. Only a user-defined law may have m2, which then takes no power.
+    fn couple(&self, w: [T; 2]) -> [T; 3] {
+        let [m1, m3] = self.couple_of_losses(w);
         match self.own {
             Some([o1, o2, o3]) => [m1 + o1, o2, m3 + o3],
             None => [m1, m1.splat(0.0), m3],
         }
     }
 
-    fn couple_of_losses(&self, [w1, w3]: [T; 2], ways: [f64; 2]) -> [T; 2] {
+    fn couple_of_losses(&self, [w1, w3]: [T; 2]) -> [T; 2] {
         let zero = w1.splat(0.0);
         let Some(losses) = &self.losses else { return [zero; 2] };
         let one = w1.splat(1.0);
-        let mut seen = losses.seen(&self.shape.rim, (one, zero), w1, [w1, zero, w3]);
-        seen.signs = [w1.splat(ways[1]), w1.splat(ways[0])];
-        seen.only = Some([w1.splat(-ways[1]), zero]);
+        let seen = losses.seen(&self.shape.rim, (one, zero), w1, [w1, zero, w3]);
         let [m1, _, m3] = losses.at(&seen).under(one);
         [m1, m3]
     }
@@ -126,20 +126,20 @@ impl<T: Real> Lying<T> {
         let [[_, low, low_h], [_, up, up_h]] = force;
         let (apart, all) = (ell * (low - up), low + up);
         let zero = w1.splat(0.0);
-        let m1 = if self.held[0] { zero - apart } else { m1 };
-        let m3 = if self.held[1] { all } else { m3 };
+        let [drilling, rolling] = self.held();
+        let m1 = if drilling { zero - apart } else { m1 };
+        let m3 = if rolling { all } else { m3 };
         let (d1, d3) = ((apart + m1) / i1, (m3 - all) / i3);
         let aside = u_2 - ell * w1 + w3;
         let u = [low_h + up_h + w1 * aside, all - w1 * u_h + ell * d1 - d3];
         Lain { force, w: [d1, d3], u, couple: [m1, m3] }
     }
 
-    /// Motion with both rims slipping, for the given friction per normal force (sign reversed); `ways` as for the
-    /// losses.
-    pub fn slipping_along(&self, y: Flat<T>, [low, up]: [[T; 2]; 2], ways: [f64; 2]) -> Lain<T> {
+    /// Motion with both rims slipping, for the given friction per normal force (sign reversed).
+    pub fn slipping_along(&self, y: Flat<T>, [low, up]: [[T; 2]; 2]) -> Lain<T> {
         let [w1, w3, ..] = y;
         let (ell, zero) = (self.shape.rim.ell, w1.splat(0.0));
-        let couple = self.couple([w1, w3], ways);
+        let couple = self.couple([w1, w3]);
         let mut lift = self.shape.i3 * w1 * w3;
         if self.own.is_some() {
             lift = lift + couple[1];
@@ -151,20 +151,20 @@ impl<T: Real> Lying<T> {
     }
 
     /// Motion with both rims slipping.
-    pub fn slipping(&self, y: Flat<T>, ways: [f64; 2]) -> Lain<T> {
+    pub fn slipping(&self, y: Flat<T>) -> Lain<T> {
         let [low, up] = self.strength;
         let drags = [self.drag(low, [y[2], y[3]]), self.drag(up, self.other_slip(y))];
-        self.slipping_along(y, drags, ways)
+        self.slipping_along(y, drags)
     }
 
     /// Motion where the rim from which the state is seen sticks, and the other slips across the axis with friction of the
     /// strength `mu`; `turn` is the sign of w1.
-    fn pivots_here(&self, y: Flat<T>, mu: T, turn: f64, ways: [f64; 2]) -> Lain<T> {
+    fn pivots_here(&self, y: Flat<T>, mu: T, turn: f64) -> Lain<T> {
         let [w1, w3, ..] = y;
         let Shape { rim, i1, i3 } = self.shape;
         let (ell, one, zero) = (rim.ell, w1.splat(1.0), w1.splat(0.0));
         let along = zero - w1 * (w3 - ell * w1);
-        let couple @ [m1, m2, m3] = self.couple([w1, w3], ways);
+        let couple @ [m1, m2, m3] = self.couple([w1, w3]);
         let mut push = i3 * w1 * w3 - along;
         if self.own.is_some() {
             push = push + m2;
@@ -173,22 +173,23 @@ impl<T: Real> Lying<T> {
         let half = one.splat(0.5);
         let (n, m) = (half + lean, half - lean);
         let up = mu * m * one.splat(turn);
-        let (square, axial) = (ell * ell / i1, if self.held[1] { zero } else { one / i3 });
+        let (square, axial) = (ell * ell / i1, if self.held()[1] { zero } else { one / i3 });
         let pull = ell * m1 / i1 - axial * m3;
         let low = zero - ((one + axial - square) * up + pull) / (one + axial + square);
         self.under([w1, w3, zero, zero], [[n, low, along], [m, up, zero]], couple)
     }
 
     /// Motion where one rim sticks: the other rim if `other`.
-    pub fn pivots(&self, y: Flat<T>, other: bool, turn: f64, ways: [f64; 2]) -> Lain<T> {
+    pub fn pivots(&self, y: Flat<T>, other: bool, turn: f64) -> Lain<T> {
         if !other {
-            return self.pivots_here(y, self.strength[1], turn, ways);
+            return self.pivots_here(y, self.strength[1], turn);
         }
         let ell = self.shape.rim.ell;
         let back = |[m1, m2, m3]: [T; 3]| [m1, ell.splat(0.0) - m2, ell.splat(0.0) - m3];
-        let seen = Self { own: self.own.map(back), ..*self };
+        let losses = self.losses.as_ref().map(Couples::from_other_rim);
+        let seen = Self { own: self.own.map(back), losses, ..*self };
         let Lain { force: [there, here], w: [d1, d3], couple: [m1, m3], .. } =
-            seen.pivots_here(from_other(ell, y), self.strength[0], turn, [ways[0], -ways[1]]);
+            seen.pivots_here(from_other(ell, y), self.strength[0], turn);
         let zero = d1.splat(0.0);
         let seen = |[n, across, along]: [T; 3]| [n, zero - across, zero - along];
         // Axes e_h and e2 of the other rim point the other way.
@@ -198,11 +199,11 @@ impl<T: Real> Lying<T> {
     }
 
     /// Motion where both rims stick, and the body rolls straight on.
-    pub fn rolls(&self, [_, w3, ..]: Flat<T>, ways: [f64; 2]) -> Lain<T> {
+    pub fn rolls(&self, [_, w3, ..]: Flat<T>) -> Lain<T> {
         let (one, zero) = (w3.splat(1.0), w3.splat(0.0));
         let half = w3.splat(0.5);
-        let [m1, m2, m3] = self.couple([zero, w3], ways);
-        let m3 = if self.held[1] { zero } else { m3 };
+        let [m1, m2, m3] = self.couple([zero, w3]);
+        let m3 = if self.held()[1] { zero } else { m3 };
         let d3 = m3 / (one + self.shape.i3);
         let mut force = [[half, half * d3, zero]; 2];
         if self.own.is_some() {

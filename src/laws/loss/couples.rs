@@ -341,6 +341,14 @@ impl<T: Real, G: Copy> Couples<T, G> {
     }
 }
 
+impl<T: Real> Couples<T> {
+    /// These losses with the signs as seen from the other rim, where psi' has the other sign.
+    pub fn from_other_rim(&self) -> Self {
+        let back = |ways: Ways<T>| Ways { contour: -ways.contour, rolling: -ways.rolling, ..ways };
+        Self { ways: self.ways.map(back), ..*self }
+    }
+}
+
 impl<T: Real, G: OwnCouple<T>> Couples<T, G> {
     /// The couple of all laws and of the user, linear in the normal force about the one that `normal` gives.
     #[inline(always)]

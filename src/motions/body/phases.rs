@@ -278,7 +278,7 @@ impl<G: Own, const N: usize> Phases<N> for BodyPhases<G> {
     fn slow(walk: &BodyWalk<'_, N, G>) -> BodySlips {
         let tol = walk.of.slide.tol;
         match &walk.of.lying {
-            Some(phase) => BodySlips::of(&Slippery::Two(phase.flow.law, phase.flow.ways), tol, N),
+            Some(phase) => BodySlips::of(&Slippery::Two(phase.flow.law), tol, N),
             None => BodySlips::of(&Slippery::One(walk.of.slide.of_the_library()), tol, N),
         }
     }

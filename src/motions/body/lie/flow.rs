@@ -10,12 +10,14 @@
 use crate::laws::body::Shape;
 use crate::laws::contact::grip;
 use crate::laws::contact::lying::{Flat, Lain, Lying};
-use crate::laws::loss::{GRACE, SLACK};
+use crate::laws::contact::together::Resting;
+use crate::laws::loss::{SLACK, Ways};
 use crate::methods::flow::{Flow, FlowPlace};
 use crate::methods::rk8;
 use crate::motions::Kind;
 use crate::motions::body::own::{Own, differences};
 use crate::motions::body::slide::longest;
+use crate::motions::dry::held::margin_of_way;
 use crate::motions::walk::MOMENT;
 use crate::motions::walk::numbers::{
     BodyNumbers, Halt, MARGINS, PHI, TIME, U2, UH, W1, W3, loses, pose_rates, poses,
@@ -64,8 +66,7 @@ pub(crate) struct LyingFlow<G = ()> {
     own: G,
     sloped: Lying<Dual<f64>>,
     pub stance: Stance,
-    /// The signs of w1 and w3 for the dry losses, and of w1 in a pivot.
-    pub ways: [f64; 2],
+    /// The sign of w1 in a pivot.
     pub turn: f64,
     /// The largest couples with which dry losses hold w1 and w3.
     pub limits: [f64; 2],
@@ -86,34 +87,83 @@ impl<G: Own> LyingFlow<G> {
     pub fn new(law: Lying<f64>, own: G, fixed: f64, (over, tol): (f64, f64)) -> Self {
         let (ell, i1, i3) = (law.shape.rim.ell, law.shape.i1, law.shape.i3);
         let soft = if law.dry { 0.25 * law.strength[0] * (1.0 + ell * ell / i1 + 1.0 / i3) } else { 0.0 };
-        let mut flow = Self {
+        Self {
             law,
             own,
-            sloped: law.map(|value| Dual { value, slope: 0.0 }),
+            sloped: law.map(Dual::constant),
             stance: Stance::Slips,
-            ways: [0.0; 2],
             turn: 0.0,
             limits: law.limits(),
             fixed,
             over,
             soft,
             tol,
-        };
-        flow.holds([false; 2]);
-        flow
+        }
     }
 
-    /// Sets which of w1 and w3 dry losses hold.
-    pub fn holds(&mut self, held: [bool; 2]) {
-        self.law.held = held;
-        self.sloped.held = held;
+    /// The signs of w1 and w3, which dry losses resist, and which of them they hold.
+    pub fn ways(&self) -> Ways {
+        self.law.losses.and_then(|losses| losses.ways).unwrap_or_default()
+    }
+
+    /// Sets these signs. A body that rolls on both rims rolls along them.
+    pub fn turn_to(&mut self, ways: Ways) {
+        if let Some(losses) = &mut self.law.losses {
+            losses.ways = Some(Ways { rolling: -ways.contour, ..ways });
+            self.sloped = self.law.map(Dual::constant);
+        }
+    }
+
+    /// Sets the signs of these w1 and w3, and holds those that are at rest and that dry losses resist.
+    pub fn holds_all<const N: usize>(&mut self, y: &[f64; N]) {
+        let [resists, resists_rolling] = self.limits.map(|limit| limit > 0.0);
+        let mut ways = Ways::of(y[W3], y[W1]);
+        if y[W1] == 0.0 && resists && self.stance != Stance::Rolls {
+            ways = ways.holding(Resting::Drilling);
+        }
+        if y[W3] == 0.0 && resists_rolling {
+            ways = ways.holding(Resting::Contour);
+        }
+        self.turn_to(ways);
+    }
+
+    /// Lets those of the held motions begin that dry losses cannot hold where a rim slips off along `way`. Returns whether
+    /// there are any.
+    pub fn lets_begin<const N: usize>(&mut self, y: &[f64; N], way: [f64; 2]) -> bool {
+        let held = self.law.held();
+        self.turn_to(self.ways().keeping(|part| self.needs(part, y, way)));
+        self.law.held() != held
+    }
+
+    /// This flow with another motion of the rims.
+    pub fn in_stance<const N: usize>(mut self, stance: Stance, y: &[f64; N]) -> Self {
+        (self.stance, self.turn) = (stance, y[W1].signum());
+        self.sets_ways(y);
+        self
+    }
+
+    /// Sets the signs of these w1 and w3, and which of them dry losses hold.
+    pub fn sets_ways<const N: usize>(&mut self, y: &[f64; N]) {
+        self.holds_all(y);
+        self.lets_begin(y, [0.0; 2]);
+    }
+
+    /// Lets a motion go that a dry loss has held.
+    pub fn lets_go_of<const N: usize>(&mut self, part: Resting, y: &[f64; N]) {
+        self.turn_to(self.ways().beginning(part, self.needs(part, y, [0.0; 2])[0]));
+    }
+
+    /// The couple that holds w1 or w3, and its limit.
+    fn needs<const N: usize>(&self, part: Resting, y: &[f64; N], way: [f64; 2]) -> [f64; 2] {
+        let [m1, m3] = self.lain_along(y, way).couple;
+        if part == Resting::Contour { [-m3, self.limits[1]] } else { [m1, self.limits[0]] }
     }
 
     fn lain_of<T: Real>(&self, law: &Lying<T>, y: Flat<T>) -> Lain<T> {
         match self.stance {
-            Stance::Slips => law.slipping(y, self.ways),
-            Stance::Pivots { other } => law.pivots(y, other, self.turn, self.ways),
-            Stance::Rolls => law.rolls(y, self.ways),
+            Stance::Slips => law.slipping(y),
+            Stance::Pivots { other } => law.pivots(y, other, self.turn),
+            Stance::Rolls => law.rolls(y),
         }
     }
 
@@ -135,7 +185,7 @@ impl<G: Own> LyingFlow<G> {
         }
         let (law, y) = (&self.law_at(flat(y)), flat(y));
         let [low, up] = law.strength;
-        law.slipping_along(y, [way.map(|x| low * x), law.drag(up, law.other_slip(y))], self.ways)
+        law.slipping_along(y, [way.map(|x| low * x), law.drag(up, law.other_slip(y))])
     }
 
     /// The speeds of the slips of both rims.
@@ -148,15 +198,11 @@ impl<G: Own> LyingFlow<G> {
         let at = self.lain_of(law, y);
         let one = y[0].splat(1.0);
         let [here, there] = at.force;
+        let (held, Ways { contour, drilling, .. }) = (law.held(), self.ways());
         let hold = |i: usize| {
-            let limit = one.splat(self.limits[i] * self.limits[i] * (1.0 + 2.0 * GRACE));
-            if law.held[i] {
-                limit - at.couple[i] * at.couple[i]
-            } else if self.limits[i] > 0.0 && self.ways[i] != 0.0 {
-                one.splat(self.ways[i]) * y[i] + one.splat(SLACK)
-            } else {
-                one
-            }
+            let (needs, way) = ([at.couple[i], one.splat(self.limits[i])], one.splat([drilling, contour][i]));
+            let resists = self.limits[i] > 0.0;
+            margin_of_way((held[i], needs), (resists, way), y[i], one.splat(SLACK))
         };
         let fixed = one.splat(self.fixed);
         let grips = |[n, across, along]: [T; 3]| {
@@ -209,7 +255,7 @@ impl<G: Own> LyingFlow<G> {
     pub fn nudged<const N: usize>(&self, start: &[f64; N], way: [f64; 2], growth: f64) -> [f64; N] {
         let mut y = *start;
         (y[UH], y[U2]) = (MOMENT * growth * way[0], MOMENT * growth * way[1]);
-        let at = self.law_at(flat(&y)).slipping(flat(&y), self.ways);
+        let at = self.law_at(flat(&y)).slipping(flat(&y));
         (y[W1], y[W3]) = (y[W1] + MOMENT * at.w[0], y[W3] + MOMENT * at.w[1]);
         y[TIME] += MOMENT;
         y

@@ -34,7 +34,6 @@ use crate::motions::walk::numbers::{
 };
 use crate::motions::walk::{Next, Pause, Phases, WalkStep, after_rest, ending};
 use crate::motions::{Ask, Ending, Kind, Phase};
-use crate::numbers::sign_or_zero;
 use core::f64::consts::{FRAC_PI_2, PI};
 use flow::{LyingFlow, LyingPhase, Stance};
 
@@ -135,31 +134,14 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
 
     /// The normal forces of both rims while both slip, with the signs of the dry losses set.
     fn normals(&self, flow: &mut LyingFlow<G>) -> [f64; 2] {
-        self.sets_ways(flow);
+        flow.sets_ways(&self.at);
         let [here, there] = flow.lain(&self.at).force;
         [here[0], there[0]]
     }
 
-    /// Sets the signs of the motions that dry losses resist, and which of them they hold.
-    fn sets_ways(&self, flow: &mut LyingFlow<G>) {
-        let moving = [self.at[W1], self.at[W3]];
-        flow.ways = moving.map(sign_or_zero);
-        let rolls = flow.stance == Stance::Rolls;
-        flow.holds([0, 1].map(|i| moving[i] == 0.0 && flow.limits[i] > 0.0 && !(i == 0 && rolls)));
-        let needs = flow.lain(&self.at).couple;
-        let held = flow.law.held;
-        for i in 0..2 {
-            if held[i] && needs[i].abs() > flow.limits[i] * (1.0 + GRACE) {
-                flow.ways[i] = -needs[i].signum();
-            }
-        }
-        flow.holds([0, 1].map(|i| held[i] && flow.ways[i] == 0.0));
-    }
-
     /// Begins a phase on both rims.
-    fn begins_stance(&mut self, mut flow: LyingFlow<G>, stance: Stance) -> Next {
-        (flow.stance, flow.turn) = (stance, self.at[W1].signum());
-        self.sets_ways(&mut flow);
+    fn begins_stance(&mut self, flow: LyingFlow<G>, stance: Stance) -> Next {
+        let flow = flow.in_stance(stance, &self.at);
         let law = &flow.law;
         if stance == Stance::Rolls {
             let Lain { w: [_, slows], force, .. } = flow.lain(&self.at);
@@ -171,7 +153,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
                 return self.begins_stance(flow, Stance::Slips);
             }
         }
-        if stance == Stance::Rolls && self.at[W3] == 0.0 && law.held[1] {
+        if stance == Stance::Rolls && self.at[W3] == 0.0 && law.held()[1] {
             while self.until().is_some_and(|t| t <= self.at[TIME]) {
                 self.writes_lying(&flow, &{ self.at });
             }
@@ -213,16 +195,14 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
         let begin = self.at;
         (self.at[W2], self.at[UH], self.at[U2]) = (0.0, 0.0, if other { 2.0 * ell * w1 } else { 0.0 });
-        flow.stance = Stance::Pivots { other };
-        flow.turn = w1.signum();
-        self.sets_ways(&mut flow);
+        flow = flow.in_stance(Stance::Pivots { other }, &self.at);
         let Lain { force, .. } = flow.lain(&self.at);
         let [n, across, along] = force[usize::from(other)];
         let least = force[0][0].min(force[1][0]);
         // A rim that is only just held, or presses little, takes longer to come to rest.
         let lasts =
             ROCKS_LONG * slow * (1.0 / mu + 1.0 / ell) / (least * (1.0 - across.hypot(along) / (mu * n)));
-        let held = flow.law.held != [false; 2];
+        let held = flow.law.held() != [false; 2];
         if held || least <= 0.0 || !(0.0..ROCKS_ON).contains(&lasts) {
             self.at = begin;
             return None;
@@ -240,18 +220,14 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
 
     /// The phase of a body with one rim at rest while the other slips; the other rim is at rest if `other`.
     #[inline(never)]
-    fn rests_on_one(&mut self, mut flow: LyingFlow<G>, other: bool) -> Next {
-        let ways = flow.ways;
-        flow.stance = Stance::Pivots { other };
-        flow.turn = self.at[W1].signum();
-        self.sets_ways(&mut flow);
+    fn rests_on_one(&mut self, flow: LyingFlow<G>, other: bool) -> Next {
+        let flow = flow.in_stance(Stance::Pivots { other }, &self.at);
         let at = flow.lain(&self.at);
         let [n, across, along] = at.force[usize::from(other)];
         let presses = at.force.iter().all(|force| force[0] >= 0.0);
         if presses && across.hypot(along) <= flow.fixed * n * (1.0 + GRACE) {
             return self.begins_stance(flow, Stance::Pivots { other });
         }
-        flow.ways = ways;
         // The rim at rest, or the other one, carries the body alone.
         let seen = |view: bool| {
             let slip = self.at.slip();
@@ -303,22 +279,32 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
         (self.at[UH], self.at[U2]) = (0.0, 0.0);
         flow.stance = Stance::Slips;
+        flow.holds_all(&self.at);
+        let mut found = self.way_off(&flow, against);
+        // A motion that dry losses cannot hold in this slip begins with it.
+        if found.is_some_and(|(alpha, _)| flow.lets_begin(&self.at, towards(alpha))) {
+            found = self.way_off(&flow, against);
+        }
+        let Some((alpha, growth)) = found else { return Next::Ends(Ending::Painleve) };
+        self.of.lying = Some(Box::new(LyingPhase { flow }));
+        Next::SlipsOff { alpha, growth }
+    }
+
+    /// The direction in which the rim at rest slips off while the other one slips, and the rate at which this slip grows.
+    fn way_off(&self, flow: &LyingFlow<G>, against: Option<f64>) -> Option<(f64, f64)> {
         let y = [self.at[W1], self.at[W3], 0.0, 0.0];
         let law = flow.law_at(y);
         let [mu, up] = law.strength;
         let up = law.drag(up, law.other_slip(y));
-        flow.ways = [sign_or_zero(y[0]), sign_or_zero(y[1])];
-        flow.holds([false; 2]);
-        let ways = flow.ways;
         // f and lambda; f is multiplied by the factor of the normal forces, so that it has no poles.
         let turns = |alpha: f64| {
             let [cos, sin] = towards(alpha);
-            let at = law.slipping_along(y, [[mu * cos, mu * sin], up], ways);
+            let at = law.slipping_along(y, [[mu * cos, mu * sin], up]);
             let room = 2.0 * law.shape.rim.ell + up[0] - mu * cos;
             let sound = at.force.iter().all(|force| force[0] >= 0.0);
             (room * (cos * at.u[1] - sin * at.u[0]), cos * at.u[0] + sin * at.u[1], sound)
         };
-        let found = against.map(|alpha| (alpha, 0.0)).or_else(|| {
+        against.map(|alpha| (alpha, 0.0)).or_else(|| {
             let place = |k: usize| -PI + 1e-3 + core::f64::consts::TAU * k as f64 / DIRECTIONS as f64;
             let all = (0..DIRECTIONS).filter_map(|k| {
                 let (low, high) = (place(k), place(k + 1));
@@ -329,10 +315,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
                 .map(|alpha| (alpha, turns(alpha)))
                 .filter(|(_, (_, growth, sound))| *sound && *growth > SLIPS_FASTER);
             grows.map(|(alpha, (_, growth, _))| (alpha, growth)).max_by(|a, b| a.1.total_cmp(&b.1))
-        });
-        let Some((alpha, growth)) = found else { return Next::Ends(Ending::Painleve) };
-        self.of.lying = Some(Box::new(LyingPhase { flow }));
-        Next::SlipsOff { alpha, growth }
+        })
     }
 
     /// Computes a phase on both rims, or begins its flow.
@@ -416,21 +399,15 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
                 if self.turns_too_often() {
                     return None;
                 }
-                let i = usize::from(halt == Halt::Contour);
-                let which = [2, 4][i];
-                if phase.flow.law.held[i] {
-                    // The push exceeds the limit: the motion begins against the couple that has held it.
-                    let needs = phase.flow.lain(&self.at).couple[i];
-                    phase.flow.ways[i] = -needs.signum();
-                    let mut held = phase.flow.law.held;
-                    held[i] = false;
-                    phase.flow.holds(held);
+                let flow = &mut phase.flow;
+                if let Some(part) = flow.ways().holds.ceasing(halt) {
+                    flow.lets_go_of(part, &self.at);
                 } else {
-                    self.at[which] = 0.0;
+                    self.at[if halt == Halt::Contour { W3 } else { W1 }] = 0.0;
                     self.sets_state();
-                    self.sets_ways(&mut phase.flow);
+                    flow.sets_ways(&self.at);
                 }
-                let rests = phase.flow.stance == Stance::Rolls && phase.flow.law.held[1];
+                let rests = flow.stance == Stance::Rolls && flow.law.held()[1];
                 if !rests {
                     self.of.lying = Some(phase);
                     return Some(self.at);

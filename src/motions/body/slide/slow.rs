@@ -19,10 +19,10 @@ pub(crate) struct BodySlips {
     lost: Option<usize>,
 }
 
-/// The law of a slip on one rim, or on two rims of which the other already slips, with the signs of its dry losses.
+/// The law of a slip on one rim, or on two rims of which the other already slips.
 pub(crate) enum Slippery {
     One(Slipping<f64>),
-    Two(Lying<f64>, [f64; 2]),
+    Two(Lying<f64>),
 }
 
 impl BodySlips {
@@ -30,7 +30,7 @@ impl BodySlips {
     pub fn of(law: &Slippery, tol: f64, count: usize) -> Self {
         match law {
             Slippery::One(law) => Self::on_one(law, tol, count),
-            Slippery::Two(law, ways) => Self::on_two(law, *ways, tol, count),
+            Slippery::Two(law) => Self::on_two(law, tol, count),
         }
     }
 
@@ -39,7 +39,7 @@ impl BodySlips {
         self.one && self.ways == law.losses.and_then(|losses| losses.ways)
     }
 
-    fn on_two(law: &Lying<f64>, ways: [f64; 2], tol: f64, count: usize) -> Self {
+    fn on_two(law: &Lying<f64>, tol: f64, count: usize) -> Self {
         let mut lost = None;
         let slips = SlowSlips::of(tol, |tape, [s, c, w1, _, w3], slip, way| {
             let taped = law.map(|x| tape.number(x));
@@ -47,7 +47,7 @@ impl BodySlips {
             let [mu, _] = taped.strength;
             let [u, v] = taped.other_slip(y);
             let size = (u * u + v * v).sqrt();
-            let at = taped.slipping_along(y, [way.map(|x| mu * x), [mu * u / size, mu * v / size]], ways);
+            let at = taped.slipping_along(y, [way.map(|x| mu * x), [mu * u / size, mu * v / size]]);
             let [[_, low_2, low_h], [_, up_2, up_h]] = at.force;
             let mut more = vec![-(low_2 * slip[1] + low_h * slip[0] + up_2 * v + up_h * u)];
             if poses(count) {
