@@ -55,15 +55,9 @@ impl Ways {
         self.with(part, false, sign)
     }
 
-    /// These signs, of which those held motions begin that friction cannot hold. `needs` tells the couple that a hold
-    /// needs, and its limit.
-    pub fn keeping(mut self, needs: impl Fn(Resting) -> [f64; 2]) -> Self {
-        let held = self.holds;
-        for part in [Resting::Contour, Resting::Drilling].into_iter().filter(|part| held.has(*part)) {
-            let needs = needs(part);
-            self = if holds(needs) { self } else { self.beginning(part, needs[0]) };
-        }
-        self
+    /// These signs where a motion is at rest, from the couple that holds it and the limit of friction.
+    pub fn stopping(self, part: Resting, needs: [f64; 2]) -> Self {
+        if holds(needs) { self.holding(part) } else { self.beginning(part, needs[0]) }
     }
 
     /// These signs with those of the motions at rest, of which one may have a known fate; and the direction in which

@@ -130,9 +130,12 @@ impl<G: Own> LyingFlow<G> {
     /// Lets those of the held motions begin that dry losses cannot hold where a rim slips off along `way`. Returns whether
     /// there are any.
     pub fn lets_begin<const N: usize>(&mut self, y: &[f64; N], way: [f64; 2]) -> bool {
-        let held = self.law.held();
-        self.turn_to(self.ways().keeping(|part| self.needs(part, y, way)));
-        self.law.held() != held
+        let (held, mut ways) = (self.ways().holds, self.ways());
+        for part in [Resting::Contour, Resting::Drilling].into_iter().filter(|part| held.has(*part)) {
+            ways = ways.stopping(part, self.needs(part, y, way));
+        }
+        self.turn_to(ways);
+        ways.holds != held
     }
 
     /// This flow with another motion of the rims.

@@ -177,7 +177,7 @@ impl<G: Own> LossyFlow<G> {
     /// Makes dry friction hold a motion that has stopped, or makes the motion begin anew.
     fn stop(&mut self, part: Resting, angle: (f64, f64), w: [f64; 3]) {
         self.turn(self.ways().holding(part));
-        self.turn(self.ways().keeping(|_| self.responds(angle, w).held));
+        self.turn(self.ways().stopping(part, self.responds(angle, w).held));
         // A body that neither turns along its rim nor drills does not turn at all.
         let Holds { contour, drilling, .. } = self.ways().holds;
         if contour && drilling {
