@@ -164,7 +164,7 @@ fn a_law_of_a_stone_that_is_wrong_is_refused_by_name_and_one_that_fails_ends_the
     let calls = Cell::new(0);
     let late = |_: f64| {
         calls.set(calls.get() + 1);
-        if calls.get() > 3000 { -0.1 } else { 0.3 }
+        if calls.get() > 1100 { -0.1 } else { 0.3 }
     };
     let found = of(&late, &ask);
     assert!(matches!(found, Err(Error::Coefficient { .. })), "{found:?}");

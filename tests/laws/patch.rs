@@ -1,12 +1,12 @@
 //! Friction of a round patch: balls that drill, slip and creep, the limits of small patches, and laws of every motion.
 
 use crate::common::{drawn, wander};
-use spincyl::Ellipsoid;
 use spincyl::contact::slip::{Friction, derivative};
 use spincyl::contact::{Table, patch};
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::path::Kind;
 use spincyl::motion::{Ask, Ending, Method, Motion, Start, roll_with};
+use spincyl::stone::{self, Ellipsoid, StoneState};
 use spincyl::turning::{jellett_rising_spin, jellett_spin, rising_spin, turning_spin};
 use spincyl::{Body, State, steady};
 use std::f64::consts::PI;
@@ -375,4 +375,43 @@ fn an_egg_that_lies_rises_with_a_little_more_spin_than_jelletts_number_says() {
         rising_spin(&sphere, table, 0.1, None, || true).is_err() && jellett_rising_spin(&sphere).is_err()
     );
     assert_eq!(rising_spin(&egg, table, 0.1, None, || false).unwrap(), None);
+}
+
+#[test]
+fn static_friction_holds_the_drilling_of_a_ball_as_a_body_and_as_a_stone_alike() {
+    let (mut r, mut held, mut drilled) = (wander(6603), 0, 0);
+    let times = [0.0, 0.3, 0.6, 1.0, 1.5];
+    for k in 0..drawn(120) {
+        let (low, i1) = (0.4 * r() - 0.2, 0.3 + 0.2 * r());
+        let (i3, mu) = (i1 * (0.7 + 0.6 * r()), 0.1 + 0.3 * r());
+        let (ball, inertia) = (Body::ball(low, i1, i3), [[i1, 0.0, 0.0], [0.0, i1, 0.0], [0.0, 0.0, i3]]);
+        let (ball, stone) = (ball.unwrap(), Ellipsoid::new([1.0; 3], inertia, [0.0, 0.0, low]).unwrap());
+        let fixed = mu * [1.0, 1.5, 4.0, f64::INFINITY][k % 4];
+        let table = Friction::Coulomb { mu, fixed, patch: 0.02 + 0.3 * r() };
+        // Neither slips nor drills.
+        let (theta, rolls, rocks) = (0.4 + 2.2 * r(), 2.0 * r() - 1.0, 2.0 * r() - 1.0);
+        let (s, c) = theta.sin_cos();
+        let y = State { theta, w1: c * rolls, w2: rocks, w3: -(s * rolls) };
+        let turned = StoneState { vertical: [s, 0.0, c], w: [y.w1, y.w2, y.w3] };
+        let ask = Ask::on(table);
+        let a = roll_with(&ball, y, &times, &ask, || true).unwrap().unwrap();
+        let b = stone::roll(&stone, turned, &times, &ask, || true).unwrap().unwrap();
+        let told = format!("{ball:?} {y:?} {table:?}");
+        assert_eq!(a.ending(), b.ending(), "{told}");
+        let kinds: [Vec<Kind>; 2] = [
+            a.path.as_ref().unwrap().phases.iter().map(|phase| phase.kind).collect(),
+            b.path.as_ref().unwrap().phases.iter().map(|phase| phase.kind).collect(),
+        ];
+        assert_eq!(kinds[0], kinds[1], "{told}");
+        let claimed = a.error + b.error + 1e-9;
+        for (y, z) in a.states.iter().zip(&b.states) {
+            let (s, c) = y.theta.sin_cos();
+            let pairs = [(c, z.vertical[2]), (y.w3, z.w[2]), (s * y.w1 + c * y.w3, z.spin())];
+            let off = pairs.iter().fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+            assert!(off <= 10.0 * claimed, "{told}: {off:e} of {claimed:e}");
+        }
+        held += usize::from(kinds[0][0] == Kind::Rolling);
+        drilled += usize::from(kinds[0].contains(&Kind::Slipping));
+    }
+    assert!(held > drawn(90) && drilled > drawn(15), "{held} are held, and {drilled} begin to drill");
 }

@@ -129,8 +129,10 @@ pub(crate) fn stone_followed(
 /// These options with the coefficient of sliding friction that the law of the user has at rest.
 fn on_own_table(ask: &Ask, custom: &Custom<'_>) -> Ask {
     let mut ask = *ask;
-    if let (Some(law), Table::Rubs(Friction::Coulomb { mu, .. })) = (custom.friction, &mut ask.table) {
+    if let (Some(law), Table::Rubs(Friction::Coulomb { mu, fixed, .. })) = (custom.friction, &mut ask.table) {
         *mu = law.coefficient(0.0);
+        // The static coefficient may be smaller by rounding.
+        *fixed = fixed.max(*mu);
     }
     ask
 }

@@ -305,7 +305,7 @@ pub(super) fn spot<const N: usize>(y: &[f64; N], rate: &[f64; N]) -> Spot {
 /// The slip among these numbers; zero if they have none.
 #[inline(always)]
 pub(super) fn slip_of<T: Real, const N: usize>(y: &[T; N]) -> [T; 2] {
-    if N >= ALL { y.slid() } else { [y[0].splat(0.0); 2] }
+    if N >= ALL { y.slid() } else { [y[TIME].splat(0.0); 2] }
 }
 
 /// The slip in the outputs: its components in the laboratory frame in which the stone has the orientation of

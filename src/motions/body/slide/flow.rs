@@ -86,35 +86,30 @@ impl<L: Own> Slide<L> {
             (w1, w3) = (s * w1, c * w1);
         }
         let (angle, w, u, one) = ((s, c), [w1, w2, w3], [u_h, u_2], s.splat(1.0));
-        let mut all = [one; MARGINS];
-        if !self.ball {
-            all[0] = s - s.splat(self.flat);
-        }
-        if self.theta_end < PI {
-            let (high, far) = landing_angle(self.theta_end);
-            all[1] = s.splat(high) * c - s.splat(far) * s;
-        }
+        let face = if self.ball { one } else { s - s.splat(self.flat) };
+        let (high, far) = landing_angle(self.theta_end);
+        let side = if self.theta_end < PI { s.splat(high) * c - s.splat(far) * s } else { one };
         let of_losses = only.is_none_or(|i| i > 3);
         let losses = law.losses.as_ref().filter(|_| loses(N) && of_losses);
         let holds = losses.is_some_and(|losses| losses.holds() != Holds::default());
-        let [mut held, mut kept] = [[one; 2]; 2];
+        let ([mut free, mut room], [mut held, mut kept]) = ([one; 2], [[one; 2]; 2]);
         if only.is_none_or(|i| matches!(i, 2 | 3)) || holds {
-            let at = act(angle, w, u);
-            (all[2], all[3], held, kept) = (at.free, at.room, at.held, at.kept);
+            SlipResponse { free, room, held, kept, .. } = act(angle, w, u);
         }
+        let [mut contour, mut drilling] = [one; 2];
         if let Some(losses) = losses {
             let seen = losses.seen(&law.shape.rim, angle, w1 / s, w);
-            [all[4], all[5]] = margins_of_ways(losses, &seen, [held, self.surely(kept)]);
+            [contour, drilling] = margins_of_ways(losses, &seen, [held, self.surely(kept)]);
         }
         if self.settled && of_losses {
             let bare = law.with_losses(self.bare.losses.map(|losses| losses.map(|x| s.splat(x))));
-            let [push, drilling] = self.pushed_on(&bare, angle, w, u);
-            all[4] = push;
+            let [push, hold] = self.pushed_on(&bare, angle, w, u);
+            contour = push;
             if self.holds().drilling {
-                all[5] = drilling;
+                drilling = hold;
             }
         }
-        all
+        [face, side, free, room, contour, drilling]
     }
 
     /// The time in which the body turns by about a radian, at most a unit of time.
