@@ -240,11 +240,10 @@ fn against_an_air_that_hardly_acts_a_body_lands_when_and_as_it_does_without_air(
     let (mut r, mut met, mut upper) = (wander(646), 0, 0);
     for _ in 0..drawn(1500) {
         let body = any_profile(&mut r);
-        let start = any_start(&body, &mut r).with_aloft([2.0 * r() * r(), 2.0 * r() - 1.0]);
+        let mut start = any_start(&body, &mut r).with_aloft([2.0 * r() * r(), 2.0 * r() - 1.0]);
         let fast = 1.0 + 9.0 * r() * r();
         let State { theta, w1, w2, w3 } = start.state;
-        let state = State { theta, w1: fast * w1, w2: fast * w2, w3: fast * w3 };
-        let start = Start { state, ..start };
+        start.state = State { theta, w1: fast * w1, w2: fast * w2, w3: fast * w3 };
         let ask = Ask::on(coulomb(0.3)).with_restitution(0.5).with_method(Method::Tolerance(1e-10));
         let air = Losses::of(Law::AirLinear, 1e-14);
         let until = [6.0];
@@ -254,7 +253,10 @@ fn against_an_air_that_hardly_acts_a_body_lands_when_and_as_it_does_without_air(
         let found = impacts(&slowed)[0];
         let steep = known.velocities[0][2].abs();
         let off = (found.time - known.time).abs() * steep.min(1.0);
-        assert!(off < 1e-8 && found.other == known.other, "{body:?} {start:?}: {off:e}");
+        // Of two rims that land together rounding says which one is first.
+        let together = two_rims(&body) && (known.states[0].theta - FRAC_PI_2).abs() < 1e-8;
+        let same = together || found.other == known.other;
+        assert!(off < 1e-8 && same, "{body:?} {start:?}: {off:e}");
         met += 1;
         upper += usize::from(found.other);
     }

@@ -19,7 +19,7 @@
 //! Error: 1e-13 of the largest velocity; a test of `laws` compares with integration in the laboratory's axes.
 
 use super::delassus::{Delassus, speed};
-use super::sliding::{FIRST, ImpactSlip, LIFT, Rubbing, STOPPED, SlipEnd, WORK};
+use super::sliding::{FIRST, ImpactSlip, LIFT, Roughness, STOPPED, SlipEnd, WORK};
 use super::slip::Friction;
 use super::table::Table;
 use crate::laws::body::Shape;
@@ -180,7 +180,7 @@ impl PointImpact {
                 if mu > 0.0 || friction.sticks() || own.varies() =>
             {
                 let law = |speed: f64| own.coefficient_at(speed * big);
-                let rubs = Rubbing { mu, law: if own.varies() { Some(&law) } else { None } };
+                let rubs = Roughness { mu, law: if own.varies() { Some(&law) } else { None } };
                 self.rubs(&mut course, slip, rubs, fixed)?
             }
             _ => {
@@ -218,7 +218,7 @@ impl PointImpact {
         &self,
         course: &mut ImpactCourse,
         slip: [f64; 2],
-        rubs: Rubbing<'_>,
+        rubs: Roughness<'_>,
         fixed: f64,
     ) -> Option<Along> {
         let light = &self.light;
@@ -247,7 +247,7 @@ impl PointImpact {
         &self,
         course: &mut ImpactCourse,
         slip: [f64; 2],
-        rubs: Rubbing<'_>,
+        rubs: Roughness<'_>,
     ) -> Option<([f64; 2], bool)> {
         let mut flow = ImpactSlip { light: self.light, rubs, restores: course.restores, tol: self.tol };
         let ([p_1, p_2, p], mut first) = (course.impulse, FIRST * self.longer);
@@ -302,8 +302,10 @@ enum Along {
 }
 
 impl ImpactCourse {
-    /// The whole impact on a viscous film, whose force is c u times the normal force.
+    /// The whole impact on a viscous film, whose force is c u times the normal force, for a slip across that couples to
+    /// nothing, as on a rim: otherwise the normal velocity may rise and fall twice.
     fn film(&mut self, c: f64, [u_h, u_2]: [f64; 2], light: &Delassus) {
+        debug_assert!(light.is_lean(), "the film below a rim");
         let ([[a_h, _], [_, a_2]], [b, _], a_n) = (light.level, light.couples, light.normal);
         let decay = |x: f64| -(-x).exp_m1();
         // The integrals of exp(-c a_h p) over p, once and twice.

@@ -50,12 +50,12 @@ pub(super) enum SlipEnd {
 
 /// The coefficient of friction: constant, or a function of the speed.
 #[derive(Clone, Copy)]
-pub(super) struct Rubbing<'a> {
+pub(super) struct Roughness<'a> {
     pub mu: f64,
     pub law: Option<&'a dyn Fn(f64) -> f64>,
 }
 
-impl Rubbing<'_> {
+impl Roughness<'_> {
     pub fn at(&self, speed: f64) -> f64 {
         self.law.map_or(self.mu, |law| law(speed))
     }
@@ -65,7 +65,7 @@ impl Rubbing<'_> {
 #[derive(Clone, Copy)]
 pub(super) struct ImpactSlip<'a> {
     pub light: Delassus,
-    pub rubs: Rubbing<'a>,
+    pub rubs: Roughness<'a>,
     /// The work that is restored from the end of compression on; None in compression.
     pub restores: Option<f64>,
     pub tol: f64,
