@@ -88,7 +88,7 @@ pub(crate) trait Flow<const M: usize>: Copy {
     const LOOPS: bool = rk8::LOOPS;
     /// Whether the rates take so long that a call of them costs nothing beside. They are then compiled once, and not at each
     /// place where they are needed.
-    const CALLS: bool = cfg!(short_code);
+    const CALLS: bool = false;
     /// Writes the rates of all numbers in sigma.
     fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]);
     /// The margins, which must stay positive, and their rates in sigma.

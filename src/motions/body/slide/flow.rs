@@ -136,7 +136,7 @@ impl<L: Own> Flow<MARGINS> for Slide<L> {
     const MAY_BE_STIFF: bool = true;
     /// Each call of a law of the user may be slow.
     const BREATH: u64 = if L::IS { 1 } else { 256 };
-    const CALLS: bool = L::IS || cfg!(short_code);
+    const CALLS: bool = L::IS;
 
     #[inline(always)]
     fn is_stiff<const N: usize>(&self, place: &FlowPlace<N>) -> bool {

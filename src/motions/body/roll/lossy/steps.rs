@@ -184,7 +184,7 @@ impl<G: Own> Flow<MARGINS> for LossyFlow<G> {
     const ENDLESS: Halt = Halt::Endless;
     /// Each call of a law of the user may be slow.
     const BREATH: u64 = if G::IS { 1 } else { 256 };
-    const CALLS: bool = G::IS || cfg!(short_code);
+    const CALLS: bool = G::IS;
 
     fn is_extrapolated(halt: Halt) -> bool {
         halt == Halt::Pole
