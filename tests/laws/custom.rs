@@ -402,58 +402,6 @@ fn a_couple_that_depends_on_the_normal_force_has_the_one_of_newtons_equations_in
 }
 
 #[test]
-fn a_ball_whose_axis_passes_its_pole_is_resisted_by_a_users_air_on_the_other_side_as_by_the_librarys() {
-    // The axis passes the pole while the ball spins about it, so that w1 is not zero on the other side.
-    let b = 0.3;
-    let air = |_: &Body, y: &State, _: f64| [y.w1, y.w2, y.w3].map(|w| -b * w);
-    let times = [0.05, 0.3, 0.6];
-    for (offset, table, slip) in [
-        (0.0, Table::default(), [0.0; 2]),
-        (0.1, Table::default(), [0.0; 2]),
-        (0.1, Friction::coulomb(0.1).into(), [2.0, 1.0]),
-    ] {
-        let ball = Body::ball(offset, 0.4, 0.42).unwrap();
-        let state = State { theta: 1e-8, w1: 2e-8, w2: 1.0, w3: 2.0 };
-        let (start, ask) = (Start::from(state).with_slip(slip), Ask::on(table));
-        let found = own(&ball, start, &times, &ask, Custom::default().with_couple(&air)).unwrap();
-        let known = ask.with_losses(Losses::of(Law::AirLinear, b));
-        let known = roll_with(&ball, start, &times, &known, || true).unwrap().unwrap();
-        let [off, claimed] = apart(&found, &known);
-        assert!(found.states.len() == 3 && known.states[1].w1.abs() > 0.1, "{known:?}");
-        assert!(off <= claimed && off < 1e-7, "{offset} {table:?}: {off:e} {claimed:e}");
-    }
-}
-
-#[test]
-fn where_rolling_under_a_users_couple_needs_all_of_the_friction_it_needs_it_to_the_last_digits() {
-    let (mut r, mut met) = (wander(5361), 0);
-    for _ in 0..400 {
-        let body =
-            if r() < 0.3 { Body::ball(0.4 * r() - 0.2, 0.4, 0.42) } else { Body::solid(0.05 + 1.5 * r()) };
-        let body = body.unwrap();
-        let mut speed = || 3.0 * r() - 1.5;
-        let state = State { theta: 0.0, w1: speed(), w2: 0.5 * speed(), w3: 2.0 * speed() };
-        let state = State { theta: 0.4 + r(), ..state };
-        let (drag, mu) = (0.2 + r(), 0.05 + 0.4 * r());
-        let law = |_: &Body, y: &State, _: f64| {
-            let fast = y.w1.hypot(y.w2).hypot(y.w3);
-            [y.w1, y.w2, y.w3].map(|w| -drag * fast * fast * w)
-        };
-        let ask = Ask::on(Table::Rolling { mu }).with_method(Method::Tolerance(1e-6));
-        let Ok(m) = own(&body, state.into(), &[20.0], &ask, Custom::default().with_couple(&law)) else {
-            continue;
-        };
-        let Some(end) = m.event.filter(|end| end.ending == Ending::Slip && end.time > 0.0) else { continue };
-        let (_, force) =
-            lossy::under_couple(Contact::Rolling, &body, &end.state, law(&body, &end.state, 0.0));
-        let off = (force.friction_coefficient() / mu - 1.0).abs();
-        assert!(off < 1e-10, "{body:?} {state:?} {mu} {drag}: {off:e}");
-        met += 1;
-    }
-    assert!(met > 40, "{met}");
-}
-
-#[test]
 fn a_couple_that_grows_with_the_normal_force_is_asked_a_few_times_for_each_evaluation() {
     // Its secants are the couple itself, so that the second value gives the force.
     let body = Body::solid(1.0).unwrap();

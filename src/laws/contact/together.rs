@@ -431,3 +431,33 @@ impl Together {
         Self::of([slips, limits[1], limits[2], limits[3]], respond)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_slope_of_what_reactions_miss_is_that_of_its_differences_within_limits_and_beyond() {
+        // A response like that of a body: x' = a + A r, symmetric and positive, under a normal force that leans.
+        let respond = |r: &[f64; REACTIONS]| {
+            let a = [0.4, -0.7, 0.5, 0.3, 0.0, -0.6];
+            let x = core::array::from_fn(|i| {
+                a[i] + (0..REACTIONS).map(|j| r[j] * if i == j { 2.0 } else { 0.2 }).sum::<f64>()
+            });
+            (1.0 / (1.0 - 0.1 * r[0]), x)
+        };
+        for limits in [0.05, 0.2, 10.0] {
+            let rests =
+                Together::of([Some(limits), Some(0.5 * limits), None, Some(limits)], respond).unwrap();
+            let r = Reactions::from([0.1, -0.2, 0.15, 0.05, 0.0, 0.3]);
+            let slope = rests.off(&r).1;
+            for j in [0, 1, 2, 3, 5] {
+                let mut by = Reactions::zeros();
+                by[j] = 1e-6;
+                let differs = (rests.off(&(r + by)).0 - rests.off(&(r - by)).0) / 2e-6;
+                let off = (slope.column(j) - differs).amax();
+                assert!(off < 1e-8, "{limits}, {j}: {off:e}");
+            }
+        }
+    }
+}

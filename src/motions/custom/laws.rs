@@ -226,3 +226,53 @@ impl Own for OwnLaws<'_> {
         Lying { strength, own, ..*law }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A couple that depends on the whole state, and linearly on the normal force.
+    fn couple(_: &Body, y: &State, normal: f64) -> [f64; 3] {
+        let size = (0.1 + 0.2 * normal) * (1.0 + y.theta + y.w1 * y.w1 + y.w2 * y.w3);
+        [y.w1, y.w2, y.w3].map(|w| -size * w)
+    }
+
+    const Y: [f64; 5] = [0.6, 0.8, 0.7, -0.4, 1.3];
+
+    fn laws<T>(of: impl FnOnce(&OwnLaws<'_>) -> T) -> T {
+        let (body, fault, last) =
+            (Body::ball(0.1, 0.4, 0.42).unwrap(), Cell::new(None), Cell::new(([0.0; 5], None)));
+        let custom = Custom::default().with_couple(&couple);
+        of(&OwnLaws { body: &body, custom, fault: &fault, last: &last })
+    }
+
+    #[test]
+    fn past_the_pole_of_a_ball_a_couple_is_that_of_the_same_motion_seen_from_the_other_side() {
+        let ([s, c, w1, w2, w3], normal) = (Y, 0.9);
+        let [here, there] =
+            [[s, c, w1, w2, w3], [-s, c, -w1, -w2, w3]].map(|y| laws(|of| of.value(&couple, y, normal)));
+        assert_eq!(there, [-here[0], -here[1], here[2]]);
+    }
+
+    #[test]
+    fn the_slope_of_a_couple_is_that_of_its_values_along_a_motion_on_which_the_normal_force_changes() {
+        let (rate, normal) = ([0.3, -0.2, 1.1, 0.6, -0.5], Dual { value: 0.9, slope: 0.7 });
+        let y: [_; 5] = core::array::from_fn(|i| Dual { value: Y[i], slope: rate[i] });
+        let [s, c, w1, w2, w3] = y;
+        let found = laws(|of| {
+            let rim = of.body.shape().map(|value| Dual { value, slope: 0.0 }).rim;
+            let seen = Kinematics::of(&rim, (s, c), w1 / s, [w1, w2, w3]);
+            of.solved(&seen, |_: &Couple<Dual<f64>>| normal).unwrap().under(normal)
+        });
+        let by = 1e-5;
+        let along = |by: f64| {
+            let there = core::array::from_fn(|i| Y[i] + by * rate[i]);
+            laws(|of| of.value(&couple, there, normal.value + by * normal.slope))
+        };
+        let [before, here, after] = [-by, 0.0, by].map(along);
+        for (i, m) in found.into_iter().enumerate() {
+            let slope = (after[i] - before[i]) / (2.0 * by);
+            assert!((m.value - here[i]).abs() < 1e-15 && (m.slope - slope).abs() < 1e-7, "{m:?}, {slope}");
+        }
+    }
+}
