@@ -116,15 +116,15 @@ pub(crate) fn hold<T: Real>([push, limit]: [T; 2]) -> T {
 
 /// The margins of the motions that dry losses resist: along the rim or, if it is held, of the rolling; and drilling (or
 /// rocking if the body only rocks). `held` has the couple that holds the drilling, and the limit of friction, and `kept`
-/// those of a motion along the rim or of rolling that is held.
+/// those of a motion along the rim or of rolling that is held. Rounding of the speeds grows with phi', the `precession`.
 pub(crate) fn margins_of_ways<T: Real, G: OwnCouple<T>>(
     losses: &Couples<T, G>,
     seen: &Kinematics<T>,
+    precession: T,
     [held, kept]: [[T; 2]; 2],
 ) -> [T; 2] {
     let one = seen.spin.splat(1.0);
-    let size = one + seen.w[0].abs() / seen.angle.0.abs();
-    let slack = one.splat(SLACK) * size;
+    let slack = one.splat(SLACK) * (one + precession.abs());
     let Some(of) = losses.ways else { return [one; 2] };
     let along = (of.holds.contour || of.holds.rolling, kept);
     let contour = margin_of_way(along, (losses.has(Law::DryContour), of.contour), seen.spin, slack);

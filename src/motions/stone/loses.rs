@@ -100,8 +100,12 @@ impl StoneFlow<'_> {
         let most = |law: Law| losses.coefficient(law) * normal;
         let kept = [seen.to.kept, most(Law::RollingResistance)];
         let kinematics = StoneLaw::kinematics(losses, &seen.lab, w);
-        let [rolling, drilling] =
-            margins_of_ways(losses, &kinematics, [[seen.to.couple, most(Law::Drilling)], kept]);
+        let [rolling, drilling] = margins_of_ways(
+            losses,
+            &kinematics,
+            kinematics.w[0],
+            [[seen.to.couple, most(Law::Drilling)], kept],
+        );
         [drilling, rolling]
     }
 

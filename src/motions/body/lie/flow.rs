@@ -103,7 +103,7 @@ impl<G: Own> LyingFlow<G> {
 
     /// The signs of w1 and w3, which dry losses resist, and which of them they hold.
     pub fn ways(&self) -> Ways {
-        self.law.losses.and_then(|losses| losses.ways).unwrap_or_default()
+        self.law.losses.as_ref().and_then(|losses| losses.ways).unwrap_or_default()
     }
 
     /// Sets these signs. A body that rolls on both rims rolls along them.

@@ -24,7 +24,7 @@ use crate::laws::contact::lying::{Lain, Lying};
 use crate::laws::contact::slip::Friction;
 use crate::laws::contact::standstill::{Standstill, standstill, towards};
 use crate::laws::contact::{Force, Table};
-use crate::laws::loss::GRACE;
+use crate::laws::loss::{GRACE, Ways};
 use crate::laws::state::State;
 use crate::methods::flow::{Flow, Steps};
 use crate::methods::search::crossing;
@@ -279,12 +279,14 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
         (self.at[UH], self.at[U2]) = (0.0, 0.0);
         flow.stance = Stance::Slips;
+        let mut free = flow;
+        free.turn_to(Ways::of(self.at[W3], self.at[W1]));
         flow.holds_all(&self.at);
-        let mut found = self.way_off(&flow, against);
-        // A motion that dry losses cannot hold in this slip begins with it.
-        if found.is_some_and(|(alpha, _)| flow.lets_begin(&self.at, towards(alpha))) {
-            found = self.way_off(&flow, against);
-        }
+        let held = self.way_off(&flow, against);
+        // A motion that dry losses cannot hold in this slip, or without which there is none, begins with it.
+        let along = held.or_else(|| self.way_off(&free, against));
+        let begins = along.is_some_and(|(alpha, _)| flow.lets_begin(&self.at, towards(alpha)));
+        let found = if begins { self.way_off(&flow, against) } else { held };
         let Some((alpha, growth)) = found else { return Next::Ends(Ending::Painleve) };
         self.of.lying = Some(Box::new(LyingPhase { flow }));
         Next::SlipsOff { alpha, growth }

@@ -98,8 +98,9 @@ impl<L: Own> Slide<L> {
         }
         let [mut contour, mut drilling] = [one; 2];
         if let Some(losses) = losses {
-            let seen = losses.seen(&law.shape.rim, angle, w1 / s, w);
-            [contour, drilling] = margins_of_ways(losses, &seen, [held, self.surely(kept)]);
+            let precession = w1 / s;
+            let seen = losses.seen(&law.shape.rim, angle, precession, w);
+            [contour, drilling] = margins_of_ways(losses, &seen, precession, [held, self.surely(kept)]);
         }
         if self.settled && of_losses {
             let bare = law.with_losses(self.bare.losses.map(|losses| losses.map(|x| s.splat(x))));

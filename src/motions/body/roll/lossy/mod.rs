@@ -54,6 +54,8 @@ pub(crate) struct LossyFlow<G = ()> {
     /// Whether the contact point moves along the rim: nothing holds it, it has not settled, and the body does not only rock,
     /// since no couple turns it.
     moves: bool,
+    /// Whether sigma differs from time: under rolling resistance, except for a body that only rocks, or is held.
+    paced: bool,
     /// Whether a couple that grows with psi' has almost stopped the contact point (see `settled`).
     settled: bool,
     /// Whether the flow starts from a state in which w_z vanishes exactly.
@@ -89,6 +91,7 @@ impl<G: Own> LossyFlow<G> {
             sloped: law.sloped(),
             bare: law,
             moves: true,
+            paced: false,
             settled: false,
             starts_still: false,
             push: [0.0; 2],
@@ -155,7 +158,9 @@ impl<G: Own> LossyFlow<G> {
         self.law.losses.ways = Some(ways);
         (self.sloped, self.bare.losses) = (self.law.sloped(), self.law.losses.off_the_contour());
         let Ways { rocking, holds, .. } = ways;
-        self.moves = !(holds.contour || holds.rolling || rocking != 0.0 || self.settled);
+        let stops = holds.rolling || rocking != 0.0;
+        self.moves = !(holds.contour || stops || self.settled);
+        self.paced = self.has(Law::RollingResistance) && !stops;
     }
 
     /// Whether the body only rocks, since no couple turns it.
@@ -320,15 +325,10 @@ impl<G: Own> LossyFlow<G> {
         Self { starts_still: false, ..*self }
     }
 
-    /// Whether sigma differs from time: under rolling resistance, except for a body that only rocks.
-    fn is_paced(&self) -> bool {
-        self.has(Law::RollingResistance) && (self.moves || !self.only_rocks() && !self.ways().holds.rolling)
-    }
-
     /// Gives a body that neither rolls nor rocks, but is not held, a small speed in the direction of the push.
     fn pushed_off<const N: usize>(&self, y: &mut [f64; N]) {
         let [s, c, w1, w2, w3] = core::array::from_fn(|i| y[i]);
-        if !self.is_paced() || pace_of((s, c), w1 / s, [w1, w2, w3]) >= REST {
+        if !self.paced || pace_of((s, c), w1 / s, [w1, w2, w3]) >= REST {
             return;
         }
         let drilling = drilling_of((s, c), w1, w3);

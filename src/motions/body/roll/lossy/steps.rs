@@ -69,7 +69,7 @@ impl<G: Own> LossyFlow<G> {
     /// The end, by linear extrapolation, of rolling and rocking that rolling resistance has almost stopped.
     fn comes_to_rest<const N: usize>(&self, place: &FlowPlace<N>) -> Option<[f64; N]> {
         // A whirr rolls as slowly before its face lands, but is not at rest.
-        if !self.is_paced() || place.y[SIN].abs() < FLAT {
+        if !self.paced || place.y[SIN].abs() < FLAT {
             return None;
         }
         let left = left_to_rest(self.rolling_growth(place), REST, place.rate[TIME])?;
@@ -127,7 +127,7 @@ impl<G: Own> LossyFlow<G> {
             limit = number(grips) * normal;
         }
         let seen = law.losses.seen(&law.rates.reduced().shape.rim, (s, c), precession, w);
-        let [mut contour, drilling] = margins_of_ways(&law.losses, &seen, [[push, limit]; 2]);
+        let [mut contour, drilling] = margins_of_ways(&law.losses, &seen, precession, [[push, limit]; 2]);
         if self.settled && self.has(Law::DryContour) {
             contour = number(self.settled_way) * push - limit;
         }
@@ -168,7 +168,7 @@ impl<G: Own> LossyFlow<G> {
             };
             all[PHI..PHI + 4].copy_from_slice(&pose_rates(y[PHI], [precession, spin], over));
         }
-        if self.is_paced() {
+        if self.paced {
             let pace = self.law.pace((s, c), pace_of((s, c), precession, w));
             all.iter_mut().for_each(|x| *x *= pace);
         }
@@ -217,7 +217,7 @@ impl<G: Own> Flow<MARGINS> for LossyFlow<G> {
         // A ball that only rocks passes through its pole, where an error relative to s has no meaning.
         let s = if self.ball && !self.moves { 1.0 } else { y[SIN].abs() };
         let (precession, w) = self.turning([y[SIN], y[COS], y[P], y[W2], y[W3]]);
-        let paced = self.is_paced().then(|| pace_of(y.angle(), precession, w));
+        let paced = self.paced.then(|| pace_of(y.angle(), precession, w));
         error(self.tol, (s, w), (self.moves, paced), made, if poses(N) { 9..13 } else { 0..0 })
     }
 
@@ -251,7 +251,7 @@ impl<G: Own> Flow<MARGINS> for LossyFlow<G> {
             let spin = w[2] - y[COS] * precession;
             most = most.min(self.law.damped(place.y.angle(), spin.value));
         }
-        (most / place.rate[TIME].min(1.0)).min(losses.longest(&seen, self.is_paced()))
+        (most / place.rate[TIME].min(1.0)).min(losses.longest(&seen, self.paced))
     }
 
     fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
