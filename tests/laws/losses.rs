@@ -350,6 +350,36 @@ fn a_contact_that_has_settled_loses_what_it_loses() {
 }
 
 #[test]
+fn the_pose_of_a_contact_that_has_settled_turns_at_the_rate_of_its_state() {
+    let disk = Body::solid(0.17).unwrap();
+    let start = steady::state(&disk, 0.2).unwrap();
+    let mut turned = 0;
+    for ((law, coefficient), table) in [(Law::ViscousContour, 5e-3), (Law::BoundaryLayer, 1e-2)]
+        .into_iter()
+        .flat_map(|law| [(law, ROLLS), (law, Table::Rubs(Friction::coulomb(1e-3)))])
+    {
+        let losses = Losses::of(law, coefficient);
+        let end = follow(&disk, &start, losses, &[0.0, 1e4], table).event.unwrap();
+        let left = |i: i32| 10f64.powf(-1.0 - 0.05 * f64::from(i));
+        let times: Vec<f64> =
+            (0..60).flat_map(|i| [1.0, 0.99, 0.98].map(|share| end.time - share * left(i))).collect();
+        let ask = Ask::on(table).with_losses(losses).with_pose(true);
+        let m = roll_with(&disk, start, &times, &ask, || true).unwrap().unwrap();
+        let poses = m.poses.as_ref().unwrap();
+        for i in (0..times.len() - 2).step_by(3) {
+            // Simpson's rule.
+            let [a, b, c] = [0, 1, 2].map(|k| m.states[i + k].spin());
+            let turns = (times[i + 2] - times[i]) / 6.0 * (a + 4.0 * b + c);
+            let found = poses[i + 2].psi.radians() - poses[i].psi.radians();
+            let off = (found - turns).abs();
+            assert!(off < 1e-12 + 1e-4 * turns.abs(), "{law:?} {table:?} {i}: {found:e} for {turns:e}");
+            turned += usize::from(turns.abs() > 1e-11);
+        }
+    }
+    assert!(turned > 100, "{turned}");
+}
+
+#[test]
 fn a_face_whose_contact_has_stopped_falls_about_a_fixed_point_of_the_rim() {
     let coin = Body::solid(0.0).unwrap();
     let start = steady::state(&coin, 0.02).unwrap();
