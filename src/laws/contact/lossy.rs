@@ -219,7 +219,6 @@ impl Lossy<f64> {
 
 impl<G: OwnCouple<f64>> Lossy<f64, G> {
     /// This law for numbers with a slope.
-    #[inline(always)]
     pub fn sloped(&self) -> Lossy<Dual<f64>, G> {
         let Reduced { contact, shape, round, .. } = self.rates.reduced();
         let rates = Rates::of(*contact, &shape.map(Dual::constant), *round);

@@ -117,6 +117,7 @@ pub(crate) fn hold<T: Real>([push, limit]: [T; 2]) -> T {
 /// The margins of the motions that dry losses resist: along the rim or, if it is held, of the rolling; and drilling (or
 /// rocking if the body only rocks). `held` has the couple that holds the drilling, and the limit of friction, and `kept`
 /// those of a motion along the rim or of rolling that is held. Rounding of the speeds grows with phi', the `precession`.
+#[inline(never)]
 pub(crate) fn margins_of_ways<T: Real, G: OwnCouple<T>>(
     losses: &Couples<T, G>,
     seen: &Kinematics<T>,

@@ -107,10 +107,11 @@ impl<G: Own> LyingFlow<G> {
     }
 
     /// Sets these signs. A body that rolls on both rims rolls along them.
+    #[inline(never)]
     pub fn turn_to(&mut self, ways: Ways) {
         if let Some(losses) = &mut self.law.losses {
             losses.ways = Some(Ways { rolling: -ways.contour, ..ways });
-            self.sloped = self.law.map(Dual::constant);
+            self.sloped.losses = Some(losses.map(Dual::constant));
         }
     }
 

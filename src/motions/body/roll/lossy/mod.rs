@@ -154,9 +154,11 @@ impl<G: Own> LossyFlow<G> {
         }
     }
 
+    #[inline(never)]
     fn turn(&mut self, ways: Ways) {
         self.law.losses.ways = Some(ways);
-        (self.sloped, self.bare.losses) = (self.law.sloped(), self.law.losses.off_the_contour());
+        self.sloped.losses = self.law.losses.map(Dual::constant);
+        self.bare.losses = self.law.losses.off_the_contour();
         let Ways { rocking, holds, .. } = ways;
         let stops = holds.rolling || rocking != 0.0;
         self.moves = !(holds.contour || stops || self.settled);
