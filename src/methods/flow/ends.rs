@@ -44,12 +44,13 @@ enum Outlook {
 }
 
 /// What is asked within a step, at shares of it: all margins with their rates in sigma, one margin alone, and
-/// [`Flow::grazed`]; further parts begin at a share of the step from which they are asked to go on. Few steps are searched,
-/// so that the search is compiled once for all flows.
+/// [`Flow::grazed`]. After `goes_on_from` a share of the step for which `middle` has given the margins, further parts begin
+/// there. Few steps are searched, so that the search is compiled once for all flows.
 struct StepParts<'a, const M: usize> {
     margins: &'a dyn Fn(f64) -> [Dual<f64>; M],
     margin: &'a dyn Fn(f64, usize) -> f64,
     grazed: &'a dyn Fn(f64, usize, f64),
+    middle: &'a dyn Fn(f64) -> [Dual<f64>; M],
     goes_on_from: &'a dyn Fn(f64),
     closely: bool,
     /// The length of the step in sigma.
@@ -84,7 +85,7 @@ pub(super) fn failed<F: Flow<M>, const M: usize, const N: usize>(
     if let Outlook::Clear = outlook {
         return None;
     }
-    let begin = RefCell::new((0.0, *from));
+    let (begin, middles) = (RefCell::new((0.0, *from)), RefCell::new(Vec::new()));
     let at = |x: f64| {
         let (past, from) = &*begin.borrow();
         flow.part(from, (x - past) * h)
@@ -93,9 +94,16 @@ pub(super) fn failed<F: Flow<M>, const M: usize, const N: usize>(
         margins: &|x| flow.margins_at(&flow.place(at(x))),
         margin: &|x, i| flow.margin(&at(x), i),
         grazed: &|x, i, least| flow.grazed(&at(x), i, least),
+        middle: &|x| {
+            let place = flow.place(at(x));
+            let margins = flow.margins_at(&place);
+            middles.borrow_mut().push((x, place));
+            margins
+        },
         goes_on_from: &|x| {
-            let middle = flow.place(at(x));
-            *begin.borrow_mut() = (x, middle);
+            if let Some(middle) = middles.borrow().iter().rev().find(|(share, _)| *share == x) {
+                *begin.borrow_mut() = *middle;
+            }
         },
         closely: F::CLOSELY,
         h,
@@ -200,7 +208,7 @@ impl<const M: usize> StepParts<'_, M> {
             }
         }
         let middle = 0.5 * (from + to);
-        let between = (self.margins)(middle);
+        let between = (self.middle)(middle);
         let bends = || (0..M).map(|i| bend(before[i], between[i], after[i], h).0);
         if h <= long {
             if bends().all(|bend| bend == Bend::Clear) {
