@@ -400,26 +400,3 @@ fn a_couple_that_depends_on_the_normal_force_has_the_one_of_newtons_equations_in
     }
     assert!(compared > 30, "{compared}");
 }
-
-#[test]
-fn a_couple_that_grows_with_the_normal_force_is_asked_a_few_times_for_each_evaluation() {
-    // Its secants are the couple itself, so that the second value gives the force.
-    let body = Body::solid(1.0).unwrap();
-    let state = State { theta: 0.8, w1: 1.0, w2: 0.3, w3: -2.0 };
-    for (table, slip) in [
-        (Table::default(), [0.0; 2]),
-        (Friction::coulomb(0.3).into(), [1.0, 0.5]),
-        (Table::of(Contact::Smooth, 0.0), [0.0; 2]),
-    ] {
-        let calls = Cell::new(0u64);
-        let law = |_: &Body, y: &State, normal: f64| {
-            calls.set(calls.get() + 1);
-            [y.w1, y.w2, y.w3].map(|w| -(0.05 + 0.3 * normal) * w)
-        };
-        let start = Start::from(state).with_slip(slip);
-        let custom = Custom::default().with_couple(&law);
-        let m = own(&body, start, &[2.0], &Ask::on(table), custom).unwrap();
-        let each = calls.get() as f64 / m.evaluations as f64;
-        assert!(m.evaluations > 100 && each < 6.0, "{table:?}: {each} calls for each evaluation");
-    }
-}
