@@ -18,7 +18,7 @@
 
 use super::slip::Friction;
 use crate::laws::body::{Body, Shape};
-use crate::laws::loss::{Couples, Holds, Losses};
+use crate::laws::loss::{Couples, Holds, Kinematics, Losses};
 use crate::numbers::Real;
 
 /// A body that lies on both rims, on a table with friction.
@@ -115,7 +115,11 @@ impl<T: Real> Lying<T> {
         let zero = w1.splat(0.0);
         let Some(losses) = &self.losses else { return [zero; 2] };
         let one = w1.splat(1.0);
-        let seen = losses.seen(&self.shape.rim, (one, zero), w1, [w1, zero, w3]);
+        let mut seen = Kinematics::of(&self.shape.rim, (one, zero), w1, [w1, zero, w3]);
+        if let Some(ways) = &losses.ways {
+            // The body can only roll along both rims.
+            (seen.signs, seen.only) = ([ways.contour, ways.drilling], Some([zero - ways.contour, zero]));
+        }
         let [m1, _, m3] = losses.at(&seen).under(one);
         [m1, m3]
     }

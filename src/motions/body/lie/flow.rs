@@ -106,11 +106,11 @@ impl<G: Own> LyingFlow<G> {
         self.law.losses.as_ref().and_then(|losses| losses.ways).unwrap_or_default()
     }
 
-    /// Sets these signs. A body that rolls on both rims rolls along them.
+    /// Sets these signs.
     #[inline(never)]
     pub fn turn_to(&mut self, ways: Ways) {
         if let Some(losses) = &mut self.law.losses {
-            losses.ways = Some(Ways { rolling: -ways.contour, ..ways });
+            losses.ways = Some(ways);
             self.sloped.losses = Some(losses.map(Dual::constant));
         }
     }

@@ -126,8 +126,11 @@ impl<G: Own> LossyFlow<G> {
         if let Some(grips) = grips {
             limit = number(grips) * normal;
         }
-        let seen = law.losses.seen(&law.rates.reduced().shape.rim, (s, c), precession, w);
-        let [mut contour, drilling] = margins_of_ways(&law.losses, &seen, precession, [[push, limit]; 2]);
+        let [mut contour, mut drilling] = [one; 2];
+        if !self.moves || self.is_patch() || self.has(Law::DryContour) || self.has(Law::Drilling) {
+            let seen = law.losses.seen(&law.rates.reduced().shape.rim, (s, c), precession, w);
+            [contour, drilling] = margins_of_ways(&law.losses, &seen, precession, [[push, limit]; 2]);
+        }
         if self.settled && self.has(Law::DryContour) {
             contour = number(self.settled_way) * push - limit;
         }
