@@ -208,13 +208,13 @@ def test_no_modules_of_the_package_import_each_other_in_a_circle():
 
 
 def test_each_method_of_a_layer_above_has_one_function_and_each_function_its_method():
-    from spincyl._upward import HOMES, above
+    from spincyl._upward import HOMES, function_of_method
 
     methods = set()
     for path in modules_of_python().values():
-        methods |= set(re.findall(r"\babove\(\"([\w.]+)\"\)", path.read_text("utf-8")))
+        methods |= set(re.findall(r"\bfunction_of_method\(\"([\w.]+)\"\)", path.read_text("utf-8")))
     assert methods == set(HOMES)
-    assert all(callable(above(method)) for method in methods)
+    assert all(callable(function_of_method(method)) for method in methods)
 
 
 def test_lines_of_code_are_neither_empty_nor_comments_nor_docstrings():
