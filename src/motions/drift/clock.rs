@@ -225,7 +225,7 @@ impl DriftClock {
 
     /// The point of the path at a time; None before the start and after the end.
     pub fn point_at_time(&self, t: f64) -> Option<WayPoint> {
-        if t.is_nan() || t < 0.0 || t > self.time_to_goal() * (1.0 + super::END_TIME_SLACK) {
+        if t.is_nan() || t < 0.0 || t > self.time_to_goal() * (1.0 + super::SLACK) {
             return None;
         }
         if let Some([t0, last, slow, power]) = self.tail

@@ -8,7 +8,7 @@
 use super::circular::{CirclePoint, Numbers};
 use super::rolling::{DriftStep, MOST_DRIFT_STEPS, Rolling};
 use super::tail::Tail;
-use super::{DriftState, END_TIME_SLACK, End};
+use super::{DriftState, End, SLACK};
 use crate::error::Error;
 use crate::laws::body::Body;
 use crate::laws::loss::Losses;
@@ -88,7 +88,7 @@ impl DriftCourse {
 
     pub fn at_time(&self, t: f64) -> Option<DriftState> {
         let whole = self.end.2;
-        if t.is_nan() || t < 0.0 || t > whole * (1.0 + END_TIME_SLACK) {
+        if t.is_nan() || t < 0.0 || t > whole * (1.0 + SLACK) {
             return None;
         }
         let step = self.steps.get(self.steps.partition_point(|s| s.to[3] <= t));

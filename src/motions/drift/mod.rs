@@ -45,7 +45,7 @@ enum DriftVariant {
 }
 
 /// A time that exceeds the time of the end by at most this fraction of it counts as the end.
-const END_TIME_SLACK: f64 = 1e-9;
+const SLACK: f64 = 1e-9;
 
 impl Drift {
     /// The drift of a body whose centre is kept at rest, from the inclination `theta`. [`Drift::rolling`] is the drift
